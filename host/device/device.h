@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/kernel.h"
+
+// The whole device abstraction: a Device allocates Memory and runs lists of Dispatches. The typed
+// faces that the rest of the host uses are Buffer<T> (buffer.h) and Queue (queue.h).
+// Nothing here is global: every object belongs to the Device that made it, and a Device may be used
+// from one thread at a time.
+namespace topple::device {
+
+enum class Backend : std::uint8_t { native, opencl, vulkan };
+const char* to_string(Backend backend);
+
+struct Limits {
+    std::uint64_t max_binding_bytes = 0;     // largest range that one kernel binding may span
+    std::uint64_t max_allocation_bytes = 0;  // largest single Memory
+    std::uint64_t memory_bytes = 0;          // all memory of the device
+    std::uint32_t max_group_size = 0;
+    std::uint32_t shared_bytes = 0;  // per work-group
+};
+
+struct DeviceInfo {
+    Backend backend = Backend::native;
+    std::string name;
+    std::string driver;  // driver or platform name and version
+    bool gpu = false;    // a real GPU, not a CPU behind a GPU's interface
+    Limits limits;
+};
+
+// Offsets of bound ranges are multiples of this, on every backend.
+inline constexpr std::uint64_t slice_alignment = 256;
+
+// One allocation. Owned by whoever holds it; must not outlive its Device.
+class Memory {
+  public:
+    virtual ~Memory() = default;
+    virtual std::uint64_t bytes() const = 0;
+    virtual const std::string& name() const = 0;
+    // Where the host may read and write the memory in place between runs, without a copy; null where
+    // the device's memory is not the host's.
+    virtual std::byte* host_address() = 0;
+};
+
+struct BoundRange {
+    Memory* memory = nullptr;
+    std::uint64_t offset = 0;  // bytes, a multiple of slice_alignment
+    std::uint64_t bytes = 0;
+};
+
+// `groups` work-groups of one kernel. Parameters are copied in (at most 128 bytes).
+struct Dispatch {
+    const KernelSource* kernel = nullptr;
+    std::uint64_t groups = 0;
+    std::vector<BoundRange> ranges;
+    std::vector<std::byte> params;
+};
+
+// Counts that don't depend on the machine's speed: they can be gated exactly.
+struct Counters {
+    std::uint64_t dispatches = 0, submits = 0, kernel_builds = 0;
+    std::uint64_t bytes_written = 0, bytes_read = 0;  // host to device, device to host
+};
+
+class Device {
+  public:
+    virtual ~Device() = default;
+    const DeviceInfo& info() const { return info_; }
+    const Counters& counters() const { return counters_; }
+
+    // At least one byte is allocated, so that an empty array still has something to bind.
+    // Throws Error(device) naming the buffer, its size and the limit.
+    virtual std::unique_ptr<Memory> allocate(std::uint64_t bytes, const std::string& name) = 0;
+    virtual void write(Memory& to, std::uint64_t offset, std::span<const std::byte> from) = 0;
+    virtual void read(Memory& from, std::uint64_t offset, std::span<std::byte> to) = 0;
+    virtual void fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word) = 0;
+
+    // Runs the dispatches in order, each seeing what the ones before it wrote, and waits once.
+    // Throws Error(device) with the kernel's name and the driver's message.
+    virtual void run(std::span<const Dispatch> dispatches) = 0;
+
+    // Builds a kernel ahead of its first use, so that timings don't contain it.
+    virtual void prepare(const KernelSource& kernel) = 0;
+
+    std::uint32_t items_per_lane(const KernelSource& kernel) const;
+
+  protected:
+    DeviceInfo info_;
+    Counters counters_;
+};
+
+}  // namespace topple::device

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <string>
+
+#include "device/devices.h"
+#include "device/native/thread_pool.h"
+#include "topple/error.h"
+
+namespace topple::device {
+namespace {
+
+constexpr std::size_t alignment = 64;  // a cache line, and the widest vector register
+
+class NativeMemory final : public Memory {
+  public:
+    NativeMemory(std::uint64_t bytes, std::string name) : bytes_(bytes), name_(std::move(name)) {
+        const std::uint64_t padded = (std::max<std::uint64_t>(bytes, 1) + alignment - 1) / alignment * alignment;
+        data_ = static_cast<std::byte*>(std::aligned_alloc(alignment, padded));
+        if (!data_) {
+            throw Error(ErrorKind::device, "buffer " + name_ + ": the system has no " +
+                                               std::to_string(bytes) + " bytes left; use a larger --voxel");
+        }
+    }
+    ~NativeMemory() override { std::free(data_); }
+    std::uint64_t bytes() const override { return bytes_; }
+    const std::string& name() const override { return name_; }
+    std::byte* host_address() override { return data_; }
+
+  private:
+    std::uint64_t bytes_;
+    std::string name_;
+    std::byte* data_;
+};
+
+NativeEntry best_entry(const NativeEntries& entries) {
+#if defined(__x86_64__)
+    if (entries.avx512 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512cd")) {
+        return entries.avx512;
+    }
+    if (entries.avx2 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+        __builtin_cpu_supports("bmi2")) {
+        return entries.avx2;
+    }
+#endif
+    return entries.baseline;
+}
+
+std::string cpu_name() {
+    std::ifstream cpuinfo("/proc/cpuinfo");
+    for (std::string line; std::getline(cpuinfo, line);) {
+        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+    }
+    return "CPU";
+}
+
+class NativeDevice final : public Device {
+  public:
+    explicit NativeDevice(unsigned threads) : pool_(threads) {
+        info_.backend = Backend::native;
+        info_.name = cpu_name();
+        info_.driver = std::to_string(pool_.threads()) + " threads";
+        const std::uint64_t memory = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+                                     static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+        info_.limits = {memory, memory, memory, 1024, 1u << 20};
+    }
+
+    std::unique_ptr<Memory> allocate(std::uint64_t bytes, const std::string& name) override {
+        if (bytes > info_.limits.max_allocation_bytes) {
+            throw Error(ErrorKind::device, "buffer " + name + ": " + std::to_string(bytes) +
+                                               " bytes are more than the machine's memory of " +
+                                               std::to_string(info_.limits.memory_bytes) +
+                                               " bytes; use a larger --voxel");
+        }
+        return std::make_unique<NativeMemory>(bytes, name);
+    }
+    void write(Memory& to, std::uint64_t offset, std::span<const std::byte> from) override {
+        std::memcpy(to.host_address() + offset, from.data(), from.size());
+        counters_.bytes_written += from.size();
+    }
+    void read(Memory& from, std::uint64_t offset, std::span<std::byte> to) override {
+        std::memcpy(to.data(), from.host_address() + offset, to.size());
+        counters_.bytes_read += to.size();
+    }
+    void fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word) override {
+        auto* first = reinterpret_cast<std::uint32_t*>(memory.host_address() + offset);
+        std::fill(first, first + bytes / sizeof(word), word);
+    }
+    void prepare(const KernelSource&) override {}
+
+    void run(std::span<const Dispatch> dispatches) override {
+        for (const Dispatch& dispatch : dispatches) {
+            std::vector<void*> addresses;
+            addresses.reserve(dispatch.ranges.size());
+            for (const BoundRange& range : dispatch.ranges) {
+                addresses.push_back(range.memory->host_address() + range.offset);
+            }
+            const NativeEntry entry = best_entry(dispatch.kernel->native);
+            const NativeArgs args{addresses.data(), dispatch.params.data()};
+            // Some chunks per thread, so that an uneven load evens out.
+            const std::uint64_t chunk = dispatch.groups / (std::uint64_t{pool_.threads()} * 16) + 1;
+            pool_.run(dispatch.groups, chunk, [&](std::uint64_t first, std::uint64_t last) {
+                entry(args, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
+            });
+        }
+        counters_.dispatches += dispatches.size();
+        ++counters_.submits;
+    }
+
+  private:
+    ThreadPool pool_;
+};
+
+}  // namespace
+
+std::unique_ptr<Device> open_native(unsigned threads) { return std::make_unique<NativeDevice>(threads); }
+
+}  // namespace topple::device

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "device/native/thread_pool.h"
+
+#include <algorithm>
+
+namespace topple::device {
+
+ThreadPool::ThreadPool(unsigned threads) {
+    if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
+    workers_.reserve(threads - 1);
+    for (unsigned i = 1; i < threads; ++i) workers_.emplace_back([this] { work(); });
+}
+
+ThreadPool::~ThreadPool() {
+    {
+        std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    start_.notify_all();
+    for (auto& worker : workers_) worker.join();
+}
+
+void ThreadPool::run(std::uint64_t count, std::uint64_t chunk,
+                     const std::function<void(std::uint64_t, std::uint64_t)>& body) {
+    if (count == 0) return;
+    chunk = std::max<std::uint64_t>(1, chunk);
+    if (workers_.empty() || count <= chunk) {
+        body(0, count);
+        return;
+    }
+    {
+        std::lock_guard lock(mutex_);
+        body_ = &body;
+        count_ = count;
+        chunk_ = chunk;
+        next_.store(0, std::memory_order_relaxed);
+        busy_ = static_cast<unsigned>(workers_.size());
+        ++generation_;
+    }
+    start_.notify_all();
+    take_chunks();
+    std::unique_lock lock(mutex_);
+    done_.wait(lock, [this] { return busy_ == 0; });
+    body_ = nullptr;
+}
+
+void ThreadPool::take_chunks() {
+    for (;;) {
+        const std::uint64_t first = next_.fetch_add(chunk_, std::memory_order_relaxed);
+        if (first >= count_) return;
+        (*body_)(first, std::min(count_, first + chunk_));
+    }
+}
+
+void ThreadPool::work() {
+    std::uint64_t seen = 0;
+    for (;;) {
+        {
+            std::unique_lock lock(mutex_);
+            start_.wait(lock, [&] { return stop_ || generation_ != seen; });
+            if (stop_) return;
+            seen = generation_;
+        }
+        take_chunks();
+        std::lock_guard lock(mutex_);
+        if (--busy_ == 0) done_.notify_one();
+    }
+}
+
+}  // namespace topple::device

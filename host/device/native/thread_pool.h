@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace topple::device {
+
+// A fixed set of threads that share out ranges of an index space. The caller's thread works too.
+class ThreadPool {
+  public:
+    explicit ThreadPool(unsigned threads);
+    ~ThreadPool();
+    ThreadPool(const ThreadPool&) = delete;
+    ThreadPool& operator=(const ThreadPool&) = delete;
+
+    unsigned threads() const { return static_cast<unsigned>(workers_.size()) + 1; }
+
+    // Calls body(first, last) for consecutive chunks of [0, count) until all are done. Chunks are
+    // handed out as threads become free; which thread runs which is not defined. The body must not
+    // throw.
+    void run(std::uint64_t count, std::uint64_t chunk,
+             const std::function<void(std::uint64_t, std::uint64_t)>& body);
+
+  private:
+    void work();
+    void take_chunks();
+
+    std::mutex mutex_;
+    std::condition_variable start_, done_;
+    std::uint64_t generation_ = 0;
+    unsigned busy_ = 0;
+    bool stop_ = false;
+    const std::function<void(std::uint64_t, std::uint64_t)>* body_ = nullptr;
+    std::uint64_t count_ = 0, chunk_ = 1;
+    std::atomic<std::uint64_t> next_{0};
+    std::vector<std::thread> workers_;
+};
+
+}  // namespace topple::device

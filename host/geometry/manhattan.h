@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "device/device.h"
+#include "geometry/surfels.h"
+
+namespace topple::geometry {
+
+// The scene's axes (paper, 2.2.1).
+struct SceneFrame {
+    std::array<Vec3, 3> axes;  // orthonormal, right-handed, input frame; axes[2] is up
+    bool found = false;        // three near-orthogonal directions carry the scene's surfaces
+    std::string up_method;     // "given" | "manhattan" | "dominant-plane" | "assumed"
+    double up_share = 0;       // share of surfels whose normal is within 10 degrees of +-up
+};
+
+struct FrameHints {
+    std::optional<Vec3> up;             // the user's: always wins
+    std::optional<Vec3> camera_up;      // mean -y axis of the cameras, if there were any
+};
+
+// Clusters the normals on the sphere (kernel normal_cluster: spherical k-means with antipodes
+// folded), picks three large near-orthogonal clusters, orthogonalises them, chooses as up the axis
+// closest to the hint (without one: the axis whose lowest large plane has the scene above it), and
+// refines up over the normals near it. Deterministic.
+SceneFrame find_scene_frame(device::Device& device, const Surfels& surfels, const FrameHints& hints);
+
+// Spherical k-means with antipodes folded; exposed for tests. Returns `k` unit directions by falling
+// weight; weights are sums of surfel weight.
+struct NormalClusters {
+    std::vector<Vec3> direction;
+    std::vector<double> weight;
+};
+NormalClusters cluster_normals(device::Device& device, const Surfels& surfels, unsigned k);
+
+}  // namespace topple::geometry

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "geometry/surfels.h"
+
+namespace topple::geometry {
+
+// Implicit algebraic model of degree 1 or 2 (paper, Eqs. 1-2): f(p) = q' A q with q = (1, x, y, z)
+// about `origin`; f < 0 is inside, the sensor's side is outside; |f| is close to the distance in
+// metres near the surface.
+struct AlgebraicModel {
+    int degree = 1;
+    Vec3 origin{};
+    // 1, x, y, z, xx, yy, zz, xy, xz, yz; the last six are zero for degree 1
+    std::array<double, 10> coefficients{};
+    double value(double x, double y, double z) const;
+};
+
+struct Region {
+    AlgebraicModel model;
+    double residual_m = 0;  // rms
+    std::uint64_t surfels = 0;
+};
+
+// Over-segmentation into planar and quadric regions (paper, 2.1.1). label: region of each surfel, -1
+// for surfels that fit none.
+struct Regions {
+    std::vector<std::int32_t> label;
+    std::vector<Region> regions;
+};
+Regions split(const Surfels& surfels);
+
+// Convexly connected regions merged into primitives (paper, 2.1.2, Eq. 3). label: primitive of each
+// surfel, -1 for none; ids by falling size. model: "plane" | "quadric" | "merged".
+struct PrimitiveSet {
+    std::vector<std::int32_t> label;
+    std::vector<std::string> model;
+    std::vector<std::vector<std::int32_t>> regions;  // of each primitive
+};
+PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const Vec3& up);
+
+}  // namespace topple::geometry

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "device/device.h"
+#include "topple/input.h"
+
+// Everything in this folder works in the grid frame of vdb::VoxelFrame: metres, z up, voxel (i, j, k)
+// spans [i, i+1] * voxel_m per axis.
+namespace topple::physics {
+
+// The solid voxels of a scene, one array per field, sorted by (i, j, k).
+struct SolidCells {
+    double voxel_m = 0;
+    std::vector<std::int32_t> i, j, k;
+    std::vector<std::int32_t> primitive;  // -1: belongs to none; such cells block but have no mass
+    std::vector<std::uint8_t> surface;    // 1: seen, 0: completed
+    std::size_t size() const { return i.size(); }
+};
+
+// Mass properties of one primitive or of a group of them.
+struct Body {
+    std::uint64_t voxels = 0;
+    double volume_m3 = 0, mass_kg = 0;
+    Vec3 center{};  // centre of mass
+};
+
+// Mass properties of `count` labels over the cells (kernel segmented_sum; exact integer sums).
+// density_kg_m3: one value per label.
+std::vector<Body> mass_properties(device::Device& device, const SolidCells& cells, std::int32_t count,
+                                  std::span<const double> density_kg_m3);
+
+Body combine(std::span<const Body> bodies);
+
+// Two primitives with face-adjacent voxels.
+struct TouchingPair {
+    std::int32_t a = -1, b = -1;           // a < b
+    std::array<std::uint32_t, 6> faces{};  // voxel faces of a towards b: -x +x -y +y -z +z
+    double area_m2 = 0;  // area of the contact patch: the largest opposite-direction face count
+    Vec3 normal{};       // from a to b, unit: the axis that carries the contact
+    Vec3 center{};       // mean of the contact faces
+};
+
+// All touching pairs, sorted by (a, b). Gaps of up to `gap` empty voxels along an axis count as
+// contact (noise leaves one-voxel gaps).
+std::vector<TouchingPair> touching_pairs(device::Device& device, const SolidCells& cells,
+                                         std::int32_t count, unsigned gap = 1);
+
+}  // namespace topple::physics

@@ -1,0 +1,34 @@
+// The kernel dialect as GLSL 4.50, for glslang. See kernels/README.md.
+#define TOPPLE_VULKAN 1
+
+#define STRUCT(T) struct T
+#define STRUCT_END(T) ;
+#define FN
+#define CONST_ARRAY(T, n, c) const T n[c]
+
+#define KERNEL(name, wg) layout(local_size_x = wg) in;
+#define BUFFER_IN(i, T, n) layout(std430, set = 0, binding = i) readonly restrict buffer n##_block { T n[]; };
+#define BUFFER_OUT(i, T, n) layout(std430, set = 0, binding = i) restrict buffer n##_block { T n[]; };
+#define BUFFER_INOUT(i, T, n) layout(std430, set = 0, binding = i) restrict buffer n##_block { T n[]; };
+#define PARAMS(T, n) layout(push_constant, std430) uniform T##_block { T n; };
+#define SHARED(T, n, count) shared T n[count];
+
+#define BEGIN void main() {
+#define END }
+#define BEGIN_GROUP void main() {
+#define END_GROUP }
+#define LANES {
+#define END_LANES } memoryBarrierBuffer(); barrier();
+
+#define GLOBAL_ID gl_GlobalInvocationID.x
+#define LOCAL_ID gl_LocalInvocationID.x
+#define GROUP_ID gl_WorkGroupID.x
+
+#define ATOMIC_ADD(lvalue, v) atomicAdd(lvalue, v)
+#define ATOMIC_MIN(lvalue, v) atomicMin(lvalue, v)
+#define ATOMIC_OR(lvalue, v) atomicOr(lvalue, v)
+#define SHARED_ADD(lvalue, v) atomicAdd(lvalue, v)
+#define SHARED_OR(lvalue, v) atomicOr(lvalue, v)
+
+#define float_bits(v) floatBitsToUint(v)
+#define bits_float(v) uintBitsToFloat(v)

@@ -1,0 +1,269 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Builds one kernel source into the forms that the three backends run.
+
+  build_kernels.py KERNEL_FILE OUT_DIR --glslang PATH
+
+Writes into OUT_DIR, for kernels/<name>.kernel:
+  <name>.hpp         the kernel's typed description: Args (one member per binding), Params, source()
+  <name>.source.cpp  its KernelSource: SPIR-V words, OpenCL text, native entries
+  <name>.native.cpp  the C++ form, compiled once per instruction set
+
+The declarations in the source (KERNEL, BUFFER_*, PARAMS, SHARED, ITEMS_PER_LANE) are the only
+binding list there is: all forms and the host's types come from it.
+"""
+import argparse
+import os
+import re
+import struct
+import subprocess
+import sys
+
+SIZES = {'float': 4, 'uint': 4, 'int': 4}
+HOST_TYPES = {'float': 'float', 'uint': 'std::uint32_t', 'int': 'std::int32_t'}
+ACCESS = {'IN': 'read', 'OUT': 'write', 'INOUT': 'read_write'}
+
+
+def fail(path, message):
+    sys.exit(f'{path}: {message}')
+
+
+class Kernel:
+    """The declarations of one kernel file."""
+
+    def __init__(self, path):
+        self.path = path
+        with open(path, encoding='utf-8') as f:
+            self.text = f.read()
+        code = re.sub(r'//[^\n]*', '', self.text)
+        self.name = os.path.basename(path).rsplit('.', 1)[0]
+        head = re.findall(r'\bKERNEL\(\s*(\w+)\s*,\s*(\d+)\s*\)', code)
+        if len(head) != 1:
+            fail(path, f'expected one KERNEL(name, group_size), found {len(head)}')
+        if head[0][0] != self.name:
+            fail(path, f'KERNEL is called {head[0][0]}, but its file {self.name}')
+        self.group = int(head[0][1])
+        self.bindings = []
+        for access, index, kind, name in re.findall(
+                r'\bBUFFER_(IN|OUT|INOUT)\(\s*(\d+)\s*,\s*(\w+)\s*,\s*(\w+)\s*\)', code):
+            if kind not in SIZES:
+                fail(path, f'buffer {name} has type {kind}; a buffer holds {", ".join(SIZES)}')
+            if int(index) != len(self.bindings):
+                fail(path, f'buffer {name} has index {index}, expected {len(self.bindings)}')
+            self.bindings.append((access, kind, name))
+        params = re.findall(r'\bPARAMS\(\s*(\w+)\s*,\s*(\w+)\s*\)', code)
+        if len(params) != 1:
+            fail(path, f'expected one PARAMS(Type, name), found {len(params)}')
+        self.params_type, self.params_name = params[0]
+        self.shared = re.findall(r'\bSHARED\(\s*(\w+)\s*,\s*(\w+)\s*,\s*(\w+)\s*\)', code)
+        items = re.findall(r'\bITEMS_PER_LANE\(\s*(\d+)\s*,\s*(\d+)\s*,\s*(\d+)\s*\)', code)
+        self.items = dict(zip(('native', 'opencl', 'vulkan'), map(int, items[0] if items else (1, 1, 1))))
+        self.per_group = 'BEGIN_GROUP' in code
+        if not self.per_group and ('BARRIER' in code or 'LANES' in code.replace('ITEMS_PER_LANE', '')):
+            fail(path, 'LANES needs BEGIN_GROUP ... END_GROUP')
+
+    def body(self, backend):
+        """The source as that backend's compiler gets it."""
+        items = f'#define ITEMS {self.items[backend]}\n#define ITEMS_PER_LANE(native, opencl, vulkan)\n'
+        return items + f'#line 1 "kernels/{self.name}.kernel"\n' + self.text
+
+
+def params_fields(params_h, kind):
+    """Fields of one parameter struct, as (type, name)."""
+    code = re.sub(r'//[^\n]*', '', params_h)
+    found = re.search(r'STRUCT\(%s\)\s*\{(.*?)\}' % kind, code, re.S)
+    if not found:
+        sys.exit(f'kernels/params.h: no STRUCT({kind})')
+    fields = re.findall(r'(\w+)\s+(\w+)\s*;', found.group(1))
+    for t, n in fields:
+        if t not in SIZES:
+            sys.exit(f'kernels/params.h: {kind}.{n} has type {t}; parameters are {", ".join(SIZES)}')
+    if 4 * len(fields) > 128:
+        sys.exit(f'kernels/params.h: {kind} has {4 * len(fields)} bytes, more than the 128 of a push constant')
+    return fields
+
+
+# Opcodes of SPIR-V float arithmetic, from the specification's section 3.42.13.
+ARITHMETIC = {127, 129, 131, 133, 136, 140, 141, 142, 143, 144, 145, 146, 148}
+OP_DECORATE, OP_MEMBER_DECORATE, NO_CONTRACTION = 71, 72, 42
+
+
+def add_no_contraction(words):
+    """Decorates every arithmetic result, so that drivers neither fuse nor re-associate."""
+    at, insert, results = 5, None, []
+    while at < len(words):
+        opcode, length = words[at] & 0xffff, words[at] >> 16
+        if opcode in ARITHMETIC:
+            results.append(words[at + 2])
+        if opcode in (OP_DECORATE, OP_MEMBER_DECORATE):
+            insert = at + length
+        at += length
+    extra = []
+    for result in results:
+        extra += [(3 << 16) | OP_DECORATE, result, NO_CONTRACTION]
+    return words[:insert] + extra + words[insert:]
+
+
+def spirv(kernel, shared_text, glslang, out_dir):
+    glsl = ('#version 450\n#extension GL_GOOGLE_cpp_style_line_directive : require\n' + shared_text
+            + kernel.body('vulkan'))
+    source = os.path.join(out_dir, kernel.name + '.comp')
+    binary = os.path.join(out_dir, kernel.name + '.spv')
+    with open(source, 'w', encoding='utf-8') as f:
+        f.write(glsl)
+    run = subprocess.run([glslang, '-V', '--target-env', 'vulkan1.1', '-S', 'comp', '-o', binary, source],
+                         capture_output=True, text=True)
+    if run.returncode:
+        sys.exit(f'glslang refuses {kernel.path}:\n{run.stdout}{run.stderr}')
+    with open(binary, 'rb') as f:
+        data = f.read()
+    words = add_no_contraction(list(struct.unpack('<%dI' % (len(data) // 4), data)))
+    with open(binary, 'wb') as f:
+        f.write(struct.pack('<%dI' % len(words), *words))
+    return words
+
+
+def header(kernel, fields):
+    camel = ''.join(w.capitalize() for w in kernel.name.split('_'))
+    args = '\n'.join(f'        device::Argument<{HOST_TYPES[t]}> {n};' for _, t, n in kernel.bindings)
+    binds = '\n'.join(f'        ranges.push_back(args.{n}.range);' for _, _, n in kernel.bindings)
+    asserts = '\n'.join(f'static_assert(offsetof({kernel.params_type}, {n}) == {4 * i});'
+                        for i, (_, n) in enumerate(fields))
+    return f'''// Generated from kernels/{kernel.name}.kernel.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "device/buffer.h"
+#include "params.hpp"
+
+namespace topple::kernels {{
+
+{asserts}
+static_assert(sizeof({kernel.params_type}) == {4 * len(fields)});
+
+struct {camel} {{
+    using Params = {kernel.params_type};
+    struct Args {{
+{args}
+    }};
+    static void bind(const Args& args, std::vector<device::BoundRange>& ranges) {{
+{binds}
+    }}
+    static const device::KernelSource& source();
+}};
+
+}}  // namespace topple::kernels
+'''
+
+
+def native(kernel):
+    """The C++ form, with the bindings spelled out for the prelude's macros."""
+    const = {'IN': 'const ', 'OUT': '', 'INOUT': ''}
+    load = ' '.join(f'auto* __restrict {n} = static_cast<{const[a]}{t}*>(args.buffers[{i}]); (void){n};'
+                    for i, (a, t, n) in enumerate(kernel.bindings))
+    load += (f' {kernel.params_type} {kernel.params_name}; std::memcpy(&{kernel.params_name}, args.params, '
+             f'sizeof({kernel.params_name}));')
+    parameters = ''.join(f'{const[a]}{t}* __restrict {n}, ' for a, t, n in kernel.bindings)
+    parameters += f'const {kernel.params_type} {kernel.params_name},'
+    arguments = ''.join(f'{n}, ' for _, _, n in kernel.bindings) + f'{kernel.params_name},'
+    shared = ' '.join(f'alignas(64) {t} {n}[{c}];' for t, n, c in kernel.shared)
+    return f'''// Generated from kernels/{kernel.name}.kernel.
+#include "dialect/native/prelude.h"
+#define RUN_NAME {kernel.name}_TOPPLE_ISA
+#define LOAD_BINDINGS {load}
+#define BINDING_PARAMETERS {parameters}
+#define BINDING_ARGUMENTS {arguments}
+#define SHARED_ARRAYS {shared}
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#pragma GCC diagnostic ignored "-Wunused-variable"
+#pragma GCC diagnostic ignored "-Wunknown-pragmas"
+namespace topple::kernels {{
+#include "params.h"
+#include "math.h"
+{kernel.body('native')}
+}}  // namespace topple::kernels
+'''.replace(f'{kernel.name}_TOPPLE_ISA', 'TOPPLE_RUN_NAME')
+
+
+def source_cpp(kernel, words, opencl_text):
+    camel = ''.join(w.capitalize() for w in kernel.name.split('_'))
+    bindings = ',\n    '.join(f'{{"{n}", device::Access::{ACCESS[a]}, {SIZES[t]}}}'
+                              for a, t, n in kernel.bindings)
+    spv = ',\n    '.join(', '.join(f'0x{w:08x}' for w in words[i:i + 8]) for i in range(0, len(words), 8))
+    # Long literals in pieces: compilers only promise 65,536 characters for one.
+    pieces = '\n    '.join('R"CL(' + opencl_text[i:i + 8000] + ')CL"' for i in range(0, len(opencl_text), 8000))
+    scope = f'{kernel.name}_scope'
+    return f'''// Generated from kernels/{kernel.name}.kernel.
+#include "{kernel.name}.hpp"
+
+namespace topple::kernels {{
+namespace {scope} {{
+void run_baseline(const device::NativeArgs&, std::uint32_t, std::uint32_t);
+#ifdef TOPPLE_NATIVE_ISAS
+void run_avx2(const device::NativeArgs&, std::uint32_t, std::uint32_t);
+void run_avx512(const device::NativeArgs&, std::uint32_t, std::uint32_t);
+#endif
+}}  // namespace {scope}
+namespace {{
+
+constexpr device::Binding bindings[] = {{
+    {bindings}}};
+constexpr std::uint32_t spirv[] = {{
+    {spv}}};
+constexpr const char* opencl =
+    {pieces};
+
+}}  // namespace
+
+const device::KernelSource& {camel}::source() {{
+    static const device::KernelSource source{{
+        "{kernel.name}", {kernel.group},
+        {kernel.items['native']}, {kernel.items['opencl']}, {kernel.items['vulkan']},
+        {str(kernel.per_group).lower()}, sizeof(Params), bindings, spirv, opencl,
+#ifdef TOPPLE_NATIVE_ISAS
+        {{{scope}::run_baseline, {scope}::run_avx2, {scope}::run_avx512}}
+#else
+        {{{scope}::run_baseline, nullptr, nullptr}}
+#endif
+    }};
+    return source;
+}}
+
+}}  // namespace topple::kernels
+'''
+
+
+def write(path, text):
+    with open(path, 'w', encoding='utf-8') as f:
+        f.write(text)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('kernel')
+    parser.add_argument('out')
+    parser.add_argument('--glslang', required=True)
+    options = parser.parse_args()
+    root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+
+    def text(*path):
+        with open(os.path.join(root, *path), encoding='utf-8') as f:
+            return f.read()
+
+    os.makedirs(options.out, exist_ok=True)
+    kernel = Kernel(options.kernel)
+    fields = params_fields(text('params.h'), kernel.params_type)
+    common = '#line 1 "kernels/params.h"\n' + text('params.h') + '#line 1 "kernels/math.h"\n' + text('math.h')
+    words = spirv(kernel, text('dialect', 'glsl', 'prelude.glsl') + common, options.glslang, options.out)
+    opencl_text = text('dialect', 'opencl', 'prelude.cl') + common + kernel.body('opencl')
+    at = os.path.join(options.out, kernel.name)
+    write(at + '.hpp', header(kernel, fields))
+    write(at + '.native.cpp', native(kernel))
+    write(at + '.source.cpp', source_cpp(kernel, words, opencl_text))
+
+
+if __name__ == '__main__':
+    main()
