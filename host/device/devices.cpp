@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "device/devices.h"
+
+#include <algorithm>
+
+#include "topple/error.h"
+
+namespace topple::device {
+namespace {
+
+bool has_gpu(const std::vector<Listing>& listings) {
+    return std::any_of(listings.begin(), listings.end(),
+                       [](const Listing& listing) { return listing.usable && listing.info.gpu; });
+}
+
+// A software driver behind a GPU's interface is slower than the native backend on the same CPU, so
+// "auto" takes only a real GPU. Vulkan first: its kernels are built ahead of time.
+std::unique_ptr<Device> open_best(unsigned threads) {
+    if (has_gpu(list_vulkan())) return open_vulkan();
+    if (has_gpu(list_opencl())) return open_opencl();
+    return open_native(threads);
+}
+
+}  // namespace
+
+std::vector<Listing> list_native() {
+    Listing listing;
+    listing.backend = Backend::native;
+    listing.usable = true;
+    listing.info = open_native()->info();
+    return {listing};
+}
+
+std::vector<Listing> list_devices() {
+    std::vector<Listing> all = list_native();
+    for (const auto& list : {list_opencl(), list_vulkan()}) {
+        all.insert(all.end(), list.begin(), list.end());
+    }
+    return all;
+}
+
+std::unique_ptr<Device> open_device(const std::string& backend, unsigned threads) {
+    if (backend == "auto") return open_best(threads);
+    if (backend == "native") return open_native(threads);
+    if (backend == "opencl") return open_opencl();
+    if (backend == "vulkan") return open_vulkan();
+    throw Error(ErrorKind::usage,
+                "--backend " + backend + " is unknown; take auto, native, opencl or vulkan");
+}
+
+}  // namespace topple::device
