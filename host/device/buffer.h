@@ -72,7 +72,8 @@ class Buffer {
     Slice<T> slice(std::uint64_t first, std::uint64_t count) const {
         check(first, count);
         if (first * sizeof(T) % slice_alignment != 0) {
-            throw Error(ErrorKind::device, "buffer " + name() + ": a slice must start at a multiple of " +
+            throw Error(ErrorKind::device, "buffer " + name() +
+                                               ": a slice must start at a multiple of " +
                                                std::to_string(slice_alignment / sizeof(T)) +
                                                " elements, not at " + std::to_string(first));
         }
@@ -89,9 +90,10 @@ class Buffer {
   private:
     void check(std::uint64_t first, std::uint64_t count) const {
         if (first > count_ || count > count_ - first) {
-            throw Error(ErrorKind::device, "buffer " + name() + ": range [" + std::to_string(first) + ", " +
-                                               std::to_string(first + count) + ") is outside of its " +
-                                               std::to_string(count_) + " elements");
+            throw Error(ErrorKind::device,
+                        "buffer " + name() + ": range [" + std::to_string(first) + ", " +
+                            std::to_string(first + count) + ") is outside of its " +
+                            std::to_string(count_) + " elements");
         }
     }
 

@@ -7,18 +7,24 @@ namespace topple::device {
 
 const char* to_string(Backend backend) {
     switch (backend) {
-        case Backend::native: return "native";
-        case Backend::opencl: return "opencl";
-        case Backend::vulkan: return "vulkan";
+        case Backend::native:
+            return "native";
+        case Backend::opencl:
+            return "opencl";
+        case Backend::vulkan:
+            return "vulkan";
     }
     return "?";
 }
 
 std::uint32_t Device::items_per_lane(const KernelSource& kernel) const {
     switch (info_.backend) {
-        case Backend::native: return kernel.items_native;
-        case Backend::opencl: return kernel.items_opencl;
-        case Backend::vulkan: return kernel.items_vulkan;
+        case Backend::native:
+            return kernel.items_native;
+        case Backend::opencl:
+            return kernel.items_opencl;
+        case Backend::vulkan:
+            return kernel.items_vulkan;
     }
     return 1;
 }
@@ -34,16 +40,21 @@ void Queue::check(const Dispatch& dispatch) const {
     const KernelSource& kernel = *dispatch.kernel;
     const std::string where = std::string("kernel ") + kernel.name;
     for (std::size_t i = 0; i < dispatch.ranges.size(); ++i) {
+        if (!dispatch.ranges[i].memory) {
+            throw Error(ErrorKind::device, where + ": binding " + kernel.bindings[i].name +
+                                               " is given a Buffer that was never allocated");
+        }
         if (dispatch.ranges[i].bytes > device_.info().limits.max_binding_bytes) {
             throw Error(ErrorKind::device,
                         where + ": binding " + kernel.bindings[i].name + " spans " +
                             std::to_string(dispatch.ranges[i].bytes) + " bytes, more than the " +
-                            std::to_string(device_.info().limits.max_binding_bytes) +
-                            " that " + device_.info().name + " can bind; dispatch it in tiles");
+                            std::to_string(device_.info().limits.max_binding_bytes) + " that " +
+                            device_.info().name + " can bind; dispatch it in tiles");
         }
     }
     // Work-group and element indices are 32-bit in the kernels.
-    const std::uint64_t items = dispatch.groups * kernel.group_size * device_.items_per_lane(kernel);
+    const std::uint64_t items =
+        dispatch.groups * kernel.group_size * device_.items_per_lane(kernel);
     if (items > 0xffffffffULL) {
         throw Error(ErrorKind::device, where + ": " + std::to_string(items) +
                                            " work-items exceed 2^32; dispatch it in tiles");

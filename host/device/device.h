@@ -35,8 +35,9 @@ struct DeviceInfo {
     Limits limits;
 };
 
-// Offsets of bound ranges are multiples of this, on every backend.
-inline constexpr std::uint64_t slice_alignment = 256;
+// Offsets of bound ranges are multiples of this, on every backend. Vulkan asks for 256 at most,
+// some OpenCL GPUs for 512.
+inline constexpr std::uint64_t slice_alignment = 512;
 
 // One allocation. Owned by whoever holds it; must not outlive its Device.
 class Memory {
@@ -44,8 +45,8 @@ class Memory {
     virtual ~Memory() = default;
     virtual std::uint64_t bytes() const = 0;
     virtual const std::string& name() const = 0;
-    // Where the host may read and write the memory in place between runs, without a copy; null where
-    // the device's memory is not the host's.
+    // Where the host may read and write the memory in place between runs, without a copy; null
+    // where the device's memory is not the host's.
     virtual std::byte* host_address() = 0;
 };
 
@@ -80,7 +81,8 @@ class Device {
     virtual std::unique_ptr<Memory> allocate(std::uint64_t bytes, const std::string& name) = 0;
     virtual void write(Memory& to, std::uint64_t offset, std::span<const std::byte> from) = 0;
     virtual void read(Memory& from, std::uint64_t offset, std::span<std::byte> to) = 0;
-    virtual void fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word) = 0;
+    virtual void fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
+                      std::uint32_t word) = 0;
 
     // Runs the dispatches in order, each seeing what the ones before it wrote, and waits once.
     // Throws Error(device) with the kernel's name and the driver's message.

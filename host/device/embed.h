@@ -15,7 +15,7 @@ struct VulkanHandles {
     void* instance;         // VkInstance
     void* physical_device;  // VkPhysicalDevice
     void* device;           // VkDevice
-    void* queue;            // VkQueue that supports compute; the caller does not submit to it meanwhile
+    void* queue;  // VkQueue that supports compute; the caller does not submit to it meanwhile
     std::uint32_t queue_family;
 };
 

@@ -32,14 +32,15 @@ struct NativeEntries {
     NativeEntry avx512;    // x86-64-v4, or null
 };
 
-// A kernel in the three forms that kernels/tools/build_kernels.py makes of its one source.
+// A kernel in the three forms that kernels/tools/build_kernels.py makes of its one source. Devices
+// cache what they build of it under its address, so it must outlive them.
 struct KernelSource {
     const char* name;
-    std::uint32_t group_size;      // work-items in a group
-    std::uint32_t items_native;    // elements that one work-item handles, per backend
+    std::uint32_t group_size;    // work-items in a group
+    std::uint32_t items_native;  // elements that one work-item handles, per backend
     std::uint32_t items_opencl;
     std::uint32_t items_vulkan;
-    bool per_group;                // the work is counted in groups (BEGIN_GROUP), not in elements
+    bool per_group;  // the work is counted in groups (BEGIN_GROUP), not in elements
     std::uint32_t params_bytes;
     std::span<const Binding> bindings;
     std::span<const std::uint32_t> spirv;

@@ -13,8 +13,8 @@ namespace topple::device {
 //     queue.add<kernels::Triad>(count, {.a = a, .b = b, .dst = c}, {.count = count, .scale = 2});
 //     queue.run();
 //
-// K is a kernel description generated from kernels/<name>.kernel; its Args struct has one member per
-// binding, by name, so a missing or mistyped buffer does not compile.
+// K is a kernel description generated from kernels/<name>.kernel; its Args struct has one member
+// per binding, by name, so a missing or mistyped buffer does not compile.
 class Queue {
   public:
     explicit Queue(Device& device) : device_(device) {}
@@ -23,7 +23,8 @@ class Queue {
     // 0 adds nothing.
     template <class K>
     void add(std::uint64_t count, const typename K::Args& args, const typename K::Params& params) {
-        static_assert(sizeof(typename K::Params) <= 128 && std::is_trivially_copyable_v<typename K::Params>);
+        static_assert(sizeof(typename K::Params) <= 128 &&
+                      std::is_trivially_copyable_v<typename K::Params>);
         if (count == 0) return;
         Dispatch dispatch;
         dispatch.kernel = &K::source();

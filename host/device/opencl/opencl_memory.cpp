@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "device/opencl/opencl_device.h"
+#include "device/opencl/opencl_error.h"
+#include "topple/error.h"
+
+namespace topple::device {
+namespace {
+
+constexpr std::uint64_t page = 4096;
+// An empty slice at a buffer's very end still binds something.
+constexpr std::uint64_t tail = 16;
+
+}  // namespace
+
+OpenClMemory::OpenClMemory(OpenClDevice& device, std::uint64_t bytes, std::string name)
+    : device_(device), bytes_(bytes), name_(std::move(name)) {
+    cl_mem_flags flags = CL_MEM_READ_WRITE;
+    if (device.shares_host_memory()) {
+        const std::uint64_t padded = (bytes + tail + page - 1) / page * page;
+        host_.reset(static_cast<std::byte*>(std::aligned_alloc(page, padded)));
+        if (!host_) {
+            throw Error(ErrorKind::device, "buffer " + name_ + ": the system has no " +
+                                               std::to_string(bytes) +
+                                               " bytes left; use a larger --voxel");
+        }
+        flags |= CL_MEM_USE_HOST_PTR;
+    }
+    cl_int code = CL_SUCCESS;
+    buffer_ = clCreateBuffer(device.handles().context, flags, bytes + tail, host_.get(), &code);
+    cl_check(code, "buffer " + name_ + " of " + std::to_string(bytes) + " bytes");
+}
+
+OpenClMemory::~OpenClMemory() {
+    if (mapped_) {
+        clEnqueueUnmapMemObject(device_.handles().queue, buffer_, host_.get(), 0, nullptr, nullptr);
+        clFinish(device_.handles().queue);
+    }
+    clReleaseMemObject(buffer_);
+}
+
+std::byte* OpenClMemory::host_address() {
+    if (!host_) return nullptr;
+    map();
+    return host_.get();
+}
+
+void OpenClMemory::map() {
+    if (mapped_) return;
+    cl_int code = CL_SUCCESS;
+    clEnqueueMapBuffer(device_.handles().queue, buffer_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
+                       bytes_ + tail, 0, nullptr, nullptr, &code);
+    cl_check(code, "mapping buffer " + name_);
+    mapped_ = true;
+}
+
+void OpenClMemory::unmap() {
+    if (!mapped_) return;
+    cl_check(
+        clEnqueueUnmapMemObject(device_.handles().queue, buffer_, host_.get(), 0, nullptr, nullptr),
+        "unmapping buffer " + name_);
+    mapped_ = false;
+}
+
+}  // namespace topple::device
