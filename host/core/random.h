@@ -5,8 +5,8 @@
 
 namespace topple {
 
-// SplitMix64 (Steele, Lea, Flood 2014). Our own, because the standard library's distributions differ
-// between implementations and a seed must mean the same result everywhere.
+// SplitMix64 (Steele, Lea, Flood 2014). Our own, because the standard library's distributions
+// differ between implementations and a seed must mean the same result everywhere.
 class Random {
   public:
     explicit Random(std::uint64_t seed) : state_(seed) {}

@@ -20,7 +20,8 @@ struct Adjacency {
     std::vector<std::int32_t> node;
     std::vector<std::size_t> edge;
 
-    Adjacency(std::int32_t nodes, std::span<const Edge> edges) : first(static_cast<std::size_t>(nodes) + 1) {
+    Adjacency(std::int32_t nodes, std::span<const Edge> edges)
+        : first(static_cast<std::size_t>(nodes) + 1) {
         for (const Edge& e : edges) {
             ++first[static_cast<std::size_t>(e.a) + 1];
             ++first[static_cast<std::size_t>(e.b) + 1];
@@ -122,13 +123,13 @@ class Chain {
         p.from_before = take(p.from);
         p.to_before = take(p.to);
         p.from_after.pinned = p.from_before.pinned;
-        std::set_difference(p.from_before.nodes.begin(), p.from_before.nodes.end(), p.moved.begin(), p.moved.end(),
-                            std::back_inserter(p.from_after.nodes));
+        std::set_difference(p.from_before.nodes.begin(), p.from_before.nodes.end(), p.moved.begin(),
+                            p.moved.end(), std::back_inserter(p.from_after.nodes));
         if (!connected(p.from_after)) return proposal_;
         p.any = true;
         p.to_after.pinned = p.to_before.pinned;
-        std::merge(p.to_before.nodes.begin(), p.to_before.nodes.end(), p.moved.begin(), p.moved.end(),
-                   std::back_inserter(p.to_after.nodes));
+        std::merge(p.to_before.nodes.begin(), p.to_before.nodes.end(), p.moved.begin(),
+                   p.moved.end(), std::back_inserter(p.to_after.nodes));
         return proposal_;
     }
 
@@ -138,9 +139,10 @@ class Chain {
         // Drawn always, so that the stream of random numbers doesn't depend on the outcome.
         const double u = random_.uniform();
         if (!p.any) return;
-        const double change = energy_of(p.from_after) + energy_of(p.to_after) - energy_of(p.from_before) -
-                              energy_of(p.to_before);
-        if (std::log(std::max(u, std::numeric_limits<double>::min())) >= p.log_cut_ratio - change / temperature) {
+        const double change = energy_of(p.from_after) + energy_of(p.to_after) -
+                              energy_of(p.from_before) - energy_of(p.to_before);
+        if (std::log(std::max(u, std::numeric_limits<double>::min())) >=
+            p.log_cut_ratio - change / temperature) {
             return;
         }
         for (const std::int32_t n : p.moved) label_[static_cast<std::size_t>(n)] = p.to;
@@ -208,8 +210,8 @@ class Chain {
         }
     }
 
-    // A group is one rigid body, so it hangs together; the pinned nodes do so by definition. Flips that
-    // would break a group are not proposed, which also keeps every flip reversible.
+    // A group is one rigid body, so it hangs together; the pinned nodes do so by definition. Flips
+    // that would break a group are not proposed, which also keeps every flip reversible.
     bool connected(const GroupQuery& group) const {
         if (group.nodes.size() < 2) return true;
         std::vector<bool> reached(label_.size());
@@ -274,8 +276,9 @@ std::vector<std::int32_t> canonical(const std::vector<std::int32_t>& labels) {
 
 }  // namespace
 
-Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges, const std::vector<bool>& pinned,
-                             const GroupEnergies& energies, const SwendsenWangOptions& options) {
+Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
+                             const std::vector<bool>& pinned, const GroupEnergies& energies,
+                             const SwendsenWangOptions& options) {
     Partition best;
     best.joined.assign(edges.size(), 0.0);
     if (nodes == 0) return best;
@@ -300,8 +303,9 @@ Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges, co
         if (options.cancelled && options.cancelled()) break;
         const bool annealing = step < options.anneal_steps;
         const double along = annealing ? static_cast<double>(step) / options.anneal_steps : 1.0;
-        const double temperature = options.first_temperature *
-                                   std::pow(options.last_temperature / options.first_temperature, along);
+        const double temperature =
+            options.first_temperature *
+            std::pow(options.last_temperature / options.first_temperature, along);
         std::vector<GroupQuery> wanted;
         for (Chain& chain : chains) {
             const Proposal& p = chain.propose();

@@ -17,8 +17,8 @@ struct Edge {
 // A group of nodes, ascending.
 using Group = std::vector<std::int32_t>;
 
-// Energies of groups that hold no pinned node, or (`pinned` true) of the one that holds them all. The
-// energy of a partition is the sum over its groups.
+// Energies of groups that hold no pinned node, or (`pinned` true) of the one that holds them all.
+// The energy of a partition is the sum over its groups.
 struct GroupQuery {
     Group nodes;
     bool pinned = false;
@@ -27,28 +27,29 @@ using GroupEnergies = std::function<void(std::span<const GroupQuery>, std::span<
 
 struct SwendsenWangOptions {
     std::uint64_t seed = 1;
-    unsigned chains = 8;               // independent, run in lockstep so that energies come in batches
-    unsigned anneal_steps = 2000;      // flips per chain while cooling
-    unsigned sample_steps = 2000;      // flips per chain at the last temperature
-    double first_temperature = 1.0;    // of p ~ exp(-E / T)
+    unsigned chains = 8;           // independent, run in lockstep so that energies come in batches
+    unsigned anneal_steps = 2000;  // flips per chain while cooling
+    unsigned sample_steps = 2000;  // flips per chain at the last temperature
+    double first_temperature = 1.0;  // of p ~ exp(-E / T)
     double last_temperature = 0.05;
-    std::function<bool()> cancelled;   // polled between steps; may be empty
+    std::function<bool()> cancelled;  // polled between steps; may be empty
 };
 
 struct Partition {
-    std::vector<std::int32_t> label;        // group of each node, numbered by first appearance;
-                                            // the pinned group, where there is one, is -1
+    std::vector<std::int32_t> label;  // group of each node, numbered by first appearance;
+                                      // the pinned group, where there is one, is -1
     double energy = 0;
-    std::vector<double> joined;             // per edge: share of sampled states with both ends in one group
+    std::vector<double> joined;  // per edge: share of sampled states with both ends in one group
     std::vector<double> best_energy_curve;  // after every step of the annealing, over all chains
     std::uint64_t energies_evaluated = 0;   // groups asked for, cache misses only
 };
 
-// Starts from one group per node (pinned nodes together) and returns the best partition seen, and the
-// joint probabilities of the states sampled at the last temperature. A flip moves one connected
+// Starts from one group per node (pinned nodes together) and returns the best partition seen, and
+// the joint probabilities of the states sampled at the last temperature. A flip moves one connected
 // component of turned-on edges to the group of one of its neighbours, or to a fresh group; it is
 // accepted with the probability of Barbu and Zhu's Theorem 1 (paper, Eq. 11). Deterministic.
-Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges, const std::vector<bool>& pinned,
-                             const GroupEnergies& energies, const SwendsenWangOptions& options);
+Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
+                             const std::vector<bool>& pinned, const GroupEnergies& energies,
+                             const SwendsenWangOptions& options);
 
 }  // namespace topple::graph

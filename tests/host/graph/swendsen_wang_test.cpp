@@ -26,7 +26,8 @@ std::vector<Edge> complete_graph(std::int32_t nodes) {
     std::vector<Edge> edges;
     Random random(5);
     for (std::int32_t a = 0; a < nodes; ++a) {
-        for (std::int32_t b = a + 1; b < nodes; ++b) edges.push_back({a, b, random.uniform(0.1, 0.9)});
+        for (std::int32_t b = a + 1; b < nodes; ++b)
+            edges.push_back({a, b, random.uniform(0.1, 0.9)});
     }
     return edges;
 }
@@ -83,7 +84,9 @@ void expect_enumerated(std::int32_t nodes, const std::vector<bool>& pinned) {
         const double p = std::exp(-energy / 0.5);
         total += p;
         for (std::size_t e = 0; e < edges.size(); ++e) {
-            if (label[static_cast<std::size_t>(edges[e].a)] == label[static_cast<std::size_t>(edges[e].b)]) joined[e] += p;
+            if (label[static_cast<std::size_t>(edges[e].a)] ==
+                label[static_cast<std::size_t>(edges[e].b)])
+                joined[e] += p;
         }
     }
     for (std::size_t e = 0; e < edges.size(); ++e) {
@@ -92,7 +95,9 @@ void expect_enumerated(std::int32_t nodes, const std::vector<bool>& pinned) {
     EXPECT_NEAR(sampled.energy, least, 1e-9);
 }
 
-TEST(SwendsenWang, MatchesEnumerationOfSixNodes) { expect_enumerated(6, std::vector<bool>(6)); }
+TEST(SwendsenWang, MatchesEnumerationOfSixNodes) {
+    expect_enumerated(6, std::vector<bool>(6));
+}
 
 TEST(SwendsenWang, MatchesEnumerationWithPinnedNodes) {
     expect_enumerated(6, {true, false, false, true, false, false});
@@ -101,7 +106,8 @@ TEST(SwendsenWang, MatchesEnumerationWithPinnedNodes) {
 TEST(SwendsenWang, GroupsStayConnected) {
     // A path 0-1-2: 0 and 2 may only be together with 1, however cheap that would be.
     const std::vector<Edge> path{{0, 1, 0.5}, {1, 2, 0.5}};
-    const GroupEnergies ends_attract = [](std::span<const GroupQuery> groups, std::span<double> energies) {
+    const GroupEnergies ends_attract = [](std::span<const GroupQuery> groups,
+                                          std::span<double> energies) {
         for (std::size_t i = 0; i < groups.size(); ++i) {
             energies[i] = groups[i].nodes == Group{0, 2} ? -10 : groups[i].nodes.size() > 1 ? 1 : 0;
         }
@@ -112,8 +118,10 @@ TEST(SwendsenWang, GroupsStayConnected) {
 
 TEST(SwendsenWang, EmptyGraphAndSingleNode) {
     EXPECT_TRUE(swendsen_wang_cuts(0, {}, {}, arbitrary, {}).label.empty());
-    EXPECT_EQ(swendsen_wang_cuts(1, {}, {false}, arbitrary, {}).label, std::vector<std::int32_t>{0});
-    EXPECT_EQ(swendsen_wang_cuts(1, {}, {true}, arbitrary, {}).label, std::vector<std::int32_t>{-1});
+    EXPECT_EQ(swendsen_wang_cuts(1, {}, {false}, arbitrary, {}).label,
+              std::vector<std::int32_t>{0});
+    EXPECT_EQ(swendsen_wang_cuts(1, {}, {true}, arbitrary, {}).label,
+              std::vector<std::int32_t>{-1});
 }
 
 TEST(SwendsenWang, SameSeedSameResult) {

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "geometry/structure.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace topple::geometry {
+namespace {
+
+constexpr double horizontal_cos = 0.9;  // within 26 degrees of up: allows for noisy normals
+constexpr double vertical_sin = 0.3;    // within 17 degrees of level
+// A shell plane is no smaller than this share of the largest plane of its kind.
+constexpr double floor_share = 0.1, wall_share = 0.05;
+constexpr double floor_area_m2 = 0.02, wall_area_m2 = 0.3;
+// Share of the scene's surfels that may lie behind a wall: windows, mirrors, open doors.
+constexpr double behind_share = 0.02;
+
+// Area-weighted mean plane of one primitive: point, normal, and how much of it agrees.
+struct Face {
+    double area_m2 = 0;  // of surfels whose normal agrees with the mean
+    double nx = 0, ny = 0, nz = 0, px = 0, py = 0, pz = 0;
+    double flatness = 0;  // length of the mean normal: 1 for a plane, less for a box
+};
+
+double dot(const Vec3& a, double x, double y, double z) {
+    return a[0] * x + a[1] * y + a[2] * z;
+}
+
+std::vector<Face> faces(const Surfels& s, const PrimitiveSet& primitives) {
+    std::vector<Face> out(primitives.model.size());
+    const double cell_area = s.cell_m * s.cell_m;
+    for (std::size_t n = 0; n < s.size(); ++n) {
+        if (primitives.label[n] < 0) continue;
+        Face& f = out[static_cast<std::size_t>(primitives.label[n])];
+        f.area_m2 += cell_area;
+        f.nx += s.nx[n], f.ny += s.ny[n], f.nz += s.nz[n];
+        f.px += s.x[n], f.py += s.y[n], f.pz += s.z[n];
+    }
+    for (Face& f : out) {
+        const double count = std::max(1.0, f.area_m2 / cell_area);
+        const double length = std::sqrt(f.nx * f.nx + f.ny * f.ny + f.nz * f.nz);
+        f.flatness = length / count;
+        if (length > 0) f.nx /= length, f.ny /= length, f.nz /= length;
+        f.px /= count, f.py /= count, f.pz /= count;
+    }
+    return out;
+}
+
+// Share of all surfels further behind the face than its own thickness and noise explain.
+double share_behind(const Surfels& s, const Face& f) {
+    const double slack = std::max(0.05, 3 * s.cell_m);
+    std::uint64_t behind = 0;
+    for (std::size_t n = 0; n < s.size(); ++n) {
+        behind += (s.x[n] - f.px) * f.nx + (s.y[n] - f.py) * f.ny + (s.z[n] - f.pz) * f.nz < -slack;
+    }
+    return s.size() ? static_cast<double>(behind) / static_cast<double>(s.size()) : 0;
+}
+
+}  // namespace
+
+std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet& primitives,
+                                      const Vec3& up) {
+    const std::vector<Face> face = faces(surfels, primitives);
+    std::vector<Structure> out(face.size(), Structure::none);
+    const auto level = [&](const Face& f) { return dot(up, f.nx, f.ny, f.nz); };
+    constexpr double flat = 0.85;
+    double largest_level = 0, largest_upright = 0;
+    for (const Face& f : face) {
+        if (f.flatness < flat) continue;
+        if (level(f) > horizontal_cos) largest_level = std::max(largest_level, f.area_m2);
+        if (std::abs(level(f)) < vertical_sin)
+            largest_upright = std::max(largest_upright, f.area_m2);
+    }
+    // The floor: the lowest of the large level planes, and what continues it at the same height.
+    const auto may_be_floor = [&](const Face& f) {
+        return f.flatness > flat && level(f) > horizontal_cos &&
+               f.area_m2 >= std::max(floor_area_m2, floor_share * largest_level);
+    };
+    double floor_height = INFINITY;
+    for (const Face& f : face) {
+        if (may_be_floor(f)) floor_height = std::min(floor_height, dot(up, f.px, f.py, f.pz));
+    }
+    for (std::size_t p = 0; p < face.size(); ++p) {
+        const Face& f = face[p];
+        const double height = dot(up, f.px, f.py, f.pz);
+        if (f.flatness > flat && level(f) > horizontal_cos && f.area_m2 >= floor_area_m2 &&
+            std::abs(height - floor_height) < std::max(0.03, 2 * surfels.cell_m)) {
+            out[p] = Structure::floor;
+        } else if (f.flatness > flat && f.area_m2 >= wall_area_m2 &&
+                   f.area_m2 >= wall_share * largest_upright &&
+                   share_behind(surfels, f) < behind_share) {
+            if (std::abs(level(f)) < vertical_sin) out[p] = Structure::wall;
+            if (level(f) < -horizontal_cos) out[p] = Structure::ceiling;
+        }
+    }
+    return out;
+}
+
+}  // namespace topple::geometry

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/manhattan.h"
+#include "geometry/segmentation.h"
+#include "geometry/surfels.h"
+
+namespace topple::geometry {
+
+// The part that a primitive plays in the room's shell.
+enum class Structure : std::uint8_t { none, floor, wall, ceiling };
+
+// Finds the shell: the lowest large horizontal plane is the floor (on a scan of a table top, the
+// table takes its place), and large planes that have the whole scene on one side are walls or
+// ceiling. A scene without such planes has no shell.
+std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet& primitives,
+                                      const Vec3& up);
+
+}  // namespace topple::geometry

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "device/device.h"
+#include "physics/bodies.h"
+
+// What touches what, and what rests on what (paper, 4.2). Grid frame: metres, z up.
+namespace topple::graph {
+
+// One primitive resting on another: columns in which a voxel of `supported` lies right above one of
+// `supporter`.
+struct Carrying {
+    std::int32_t supporter = -1;  // -1: solid that belongs to no primitive
+    std::int32_t supported = -1;
+    double area_m2 = 0;
+    double height_m = 0;                         // of the contact, the mean over its columns
+    std::vector<std::array<double, 2>> outline;  // convex hull of the contact, counter-clockwise
+};
+
+// How far a primitive hangs above what lies under it.
+struct Clearance {
+    std::int32_t below = -1;  // primitive, or -1 for unlabelled solid
+    double gap_m = 0;         // least over the columns they share
+};
+
+struct ContactGraph {
+    std::int32_t primitives = 0;
+    std::vector<physics::TouchingPair> pairs;          // sorted by (a, b)
+    std::vector<Carrying> carryings;                   // sorted by (supported, supporter)
+    std::vector<std::array<double, 3>> silhouette_m2;  // by primitive: area seen along x, y, z
+    std::vector<std::vector<Clearance>> clearances;    // by primitive, sorted by `below`
+    std::vector<double> lowest_m, highest_m;           // by primitive
+};
+
+// Gaps of up to `gap` empty voxels count as contact: sensor noise leaves such gaps.
+ContactGraph build_contact_graph(device::Device& device, const physics::SolidCells& cells,
+                                 std::int32_t primitives, unsigned gap = 1);
+
+// Convex hull of points in the plane, counter-clockwise, without collinear points.
+std::vector<std::array<double, 2>> convex_outline(std::span<const std::array<double, 2>> points);
+
+}  // namespace topple::graph
