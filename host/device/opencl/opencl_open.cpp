@@ -19,7 +19,7 @@ struct Found {
     std::string problem;  // why it can't be used; empty where it can
 };
 
-// "OpenCL C 1.2 ..." to {1, 2}.
+// Whether a version such as "OpenCL 1.2 pocl ..." will do.
 bool at_least_1_2(const std::string& version) {
     int major = 0, minor = 0;
     if (std::sscanf(version.c_str(), "OpenCL %d.%d", &major, &minor) != 2) return false;

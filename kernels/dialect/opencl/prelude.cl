@@ -40,6 +40,7 @@
 #define uint(x) ((uint)(x))
 #define bool(x) ((bool)(x))
 // GLSL's names for what OpenCL calls otherwise.
+#undef abs
 #define abs(x) topple_abs(x)
 float __attribute__((overloadable)) topple_abs(float x) { return fabs(x); }
 int __attribute__((overloadable)) topple_abs(int x) { return x < 0 ? -x : x; }

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+#include "device/vulkan/vulkan_context.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include "device/vulkan/vulkan_error.h"
+#include "topple/error.h"
+
+namespace topple::device {
+namespace {
+
+constexpr const char* mend = "; install a driver, such as the package mesa-vulkan-drivers";
+constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
+
+bool validation_wanted() {
+    const char* value = std::getenv("TOPPLE_VULKAN_VALIDATION");
+    return value && std::strcmp(value, "1") == 0;
+}
+
+bool validation_installed() {
+    std::uint32_t count = 0;
+    vkEnumerateInstanceLayerProperties(&count, nullptr);
+    std::vector<VkLayerProperties> layers(count);
+    vkEnumerateInstanceLayerProperties(&count, layers.data());
+    return std::any_of(layers.begin(), layers.end(), [](const VkLayerProperties& layer) {
+        return std::strcmp(layer.layerName, validation_layer) == 0;
+    });
+}
+
+VKAPI_ATTR VkBool32 VKAPI_CALL keep_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                            VkDebugUtilsMessageTypeFlagsEXT,
+                                            const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                            void* user) {
+    static_cast<ValidationLog*>(user)->messages.emplace_back(data->pMessage);
+    return VK_FALSE;
+}
+
+VkDebugUtilsMessengerCreateInfoEXT messenger_info(ValidationLog& log) {
+    auto info = vk_struct<VkDebugUtilsMessengerCreateInfoEXT>(
+        VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
+    info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+    info.pfnUserCallback = keep_message;
+    info.pUserData = &log;
+    return info;
+}
+
+// The entry point of an extension, which the loader does not export.
+template <class Function>
+Function entry(VkInstance instance, const char* name) {
+    return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
+}
+
+void create_instance(VulkanContext& context) {
+    auto application = vk_struct<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
+    application.pApplicationName = "topple";
+    application.apiVersion = VK_API_VERSION_1_1;
+    auto info = vk_struct<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
+    info.pApplicationInfo = &application;
+
+    const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
+                                VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    const VkValidationFeatureEnableEXT enable[] = {
+        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+    auto features = vk_struct<VkValidationFeaturesEXT>(VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT);
+    features.enabledValidationFeatureCount = 1;
+    features.pEnabledValidationFeatures = enable;
+    VkDebugUtilsMessengerCreateInfoEXT messenger{};
+    if (validation_wanted() && validation_installed()) {
+        context.log = std::make_unique<ValidationLog>();
+        messenger = messenger_info(*context.log);
+        features.pNext = &messenger;  // also covers the instance's own creation
+        info.pNext = &features;
+        info.enabledLayerCount = 1;
+        info.ppEnabledLayerNames = &validation_layer;
+        info.enabledExtensionCount = 2;
+        info.ppEnabledExtensionNames = extensions;
+    }
+    const VkResult result = vkCreateInstance(&info, nullptr, &context.instance);
+    if (result != VK_SUCCESS) {
+        context.instance = VK_NULL_HANDLE;
+        throw Error(ErrorKind::device,
+                    "Vulkan finds no driver (" + vk_result_name(result) + ")" + mend);
+    }
+    context.owned = true;
+    if (context.log) {
+        const auto create = entry<PFN_vkCreateDebugUtilsMessengerEXT>(
+            context.instance, "vkCreateDebugUtilsMessengerEXT");
+        messenger.pNext = nullptr;
+        if (create)
+            vk_check(create(context.instance, &messenger, nullptr, &context.messenger),
+                     "validation messenger");
+    }
+}
+
+std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
+    std::uint32_t count = 0;
+    vk_check(vkEnumeratePhysicalDevices(instance, &count, nullptr), "listing Vulkan devices");
+    std::vector<VkPhysicalDevice> devices(count);
+    vk_check(vkEnumeratePhysicalDevices(instance, &count, devices.data()),
+             "listing Vulkan devices");
+    if (devices.empty())
+        throw Error(ErrorKind::device, std::string("Vulkan finds no device") + mend);
+    return devices;
+}
+
+VkPhysicalDeviceProperties properties_of(VkPhysicalDevice physical) {
+    VkPhysicalDeviceProperties properties;
+    vkGetPhysicalDeviceProperties(physical, &properties);
+    return properties;
+}
+
+std::string problem_of(VkPhysicalDevice physical) {
+    if (properties_of(physical).apiVersion < VK_API_VERSION_1_1)
+        return "it offers less than Vulkan 1.1";
+    if (compute_family(physical) < 0) return "it has no queue that computes";
+    return {};
+}
+
+int rank(VkPhysicalDevice physical) {
+    if (!problem_of(physical).empty()) return 9;
+    switch (properties_of(physical).deviceType) {
+        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+            return 0;
+        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+            return 1;
+        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+            return 2;
+        default:
+            return 3;
+    }
+}
+
+void create_device(VulkanContext& context) {
+    const float priority = 1.0f;
+    auto queue = vk_struct<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
+    queue.queueFamilyIndex = context.queue_family;
+    queue.queueCount = 1;
+    queue.pQueuePriorities = &priority;
+    auto info = vk_struct<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
+    info.queueCreateInfoCount = 1;
+    info.pQueueCreateInfos = &queue;
+    vk_check(vkCreateDevice(context.physical, &info, nullptr, &context.device),
+             std::string("opening Vulkan device ") + properties_of(context.physical).deviceName);
+    vkGetDeviceQueue(context.device, context.queue_family, 0, &context.queue);
+}
+
+}  // namespace
+
+VulkanContext::VulkanContext(VulkanContext&& other) noexcept
+    : instance(other.instance),
+      messenger(std::exchange(other.messenger, VK_NULL_HANDLE)),
+      physical(other.physical),
+      device(other.device),
+      queue(other.queue),
+      queue_family(other.queue_family),
+      owned(std::exchange(other.owned, false)),
+      log(std::move(other.log)) {}
+
+VulkanContext::~VulkanContext() {
+    if (!owned) return;
+    if (device) vkDestroyDevice(device, nullptr);
+    if (messenger) {
+        const auto destroy =
+            entry<PFN_vkDestroyDebugUtilsMessengerEXT>(instance, "vkDestroyDebugUtilsMessengerEXT");
+        if (destroy) destroy(instance, messenger, nullptr);
+    }
+    if (instance) vkDestroyInstance(instance, nullptr);
+}
+
+std::int64_t compute_family(VkPhysicalDevice physical) {
+    std::uint32_t count = 0;
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+    std::int64_t any = -1;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (families[i].queueCount == 0 || !(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT))
+            continue;
+        if (!(families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT)) return i;
+        if (any < 0) any = i;
+    }
+    return any;
+}
+
+DeviceInfo describe_vulkan(VkPhysicalDevice physical) {
+    auto driver = vk_struct<VkPhysicalDeviceDriverProperties>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES);
+    auto largest = vk_struct<VkPhysicalDeviceMaintenance3Properties>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES);
+    auto two =
+        vk_struct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
+    two.pNext = &largest;
+    // The driver's properties are part of Vulkan 1.2.
+    if (properties_of(physical).apiVersion >= VK_API_VERSION_1_2) largest.pNext = &driver;
+    vkGetPhysicalDeviceProperties2(physical, &two);
+    VkPhysicalDeviceMemoryProperties memory;
+    vkGetPhysicalDeviceMemoryProperties(physical, &memory);
+
+    const VkPhysicalDeviceProperties& properties = two.properties;
+    DeviceInfo info;
+    info.backend = Backend::vulkan;
+    info.name = properties.deviceName;
+    info.driver = driver.driverName[0] ? std::string(driver.driverName) + ", " + driver.driverInfo
+                                       : "driver " + std::to_string(properties.driverVersion);
+    info.gpu = properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ||
+               properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU ||
+               properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU;
+    for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
+        if (!(memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)) continue;
+        info.limits.memory_bytes =
+            std::max<std::uint64_t>(info.limits.memory_bytes, memory.memoryHeaps[i].size);
+    }
+    const std::uint64_t allocation =
+        std::min<std::uint64_t>(largest.maxMemoryAllocationSize, info.limits.memory_bytes);
+    info.limits.max_allocation_bytes =
+        allocation > slice_alignment ? allocation - slice_alignment : 0;
+    info.limits.max_binding_bytes = properties.limits.maxStorageBufferRange;
+    info.limits.max_group_size = std::min(properties.limits.maxComputeWorkGroupInvocations,
+                                          properties.limits.maxComputeWorkGroupSize[0]);
+    info.limits.shared_bytes = properties.limits.maxComputeSharedMemorySize;
+    return info;
+}
+
+VulkanContext open_vulkan_context() {
+    VulkanContext context;
+    create_instance(context);
+    std::vector<VkPhysicalDevice> devices = physical_devices(context.instance);
+    std::stable_sort(devices.begin(), devices.end(),
+                     [](VkPhysicalDevice a, VkPhysicalDevice b) { return rank(a) < rank(b); });
+    context.physical = devices.front();
+    if (const std::string problem = problem_of(context.physical); !problem.empty()) {
+        throw Error(ErrorKind::device, std::string("Vulkan device ") +
+                                           properties_of(context.physical).deviceName +
+                                           " can't be used: " + problem + mend);
+    }
+    context.queue_family = static_cast<std::uint32_t>(compute_family(context.physical));
+    create_device(context);
+    return context;
+}
+
+std::vector<Listing> list_vulkan() {
+    std::vector<Listing> listings;
+    try {
+        VulkanContext context;
+        create_instance(context);
+        for (VkPhysicalDevice physical : physical_devices(context.instance)) {
+            Listing listing;
+            listing.backend = Backend::vulkan;
+            listing.info = describe_vulkan(physical);
+            listing.problem = problem_of(physical);
+            listing.usable = listing.problem.empty();
+            listings.push_back(listing);
+        }
+    } catch (const Error& error) {
+        Listing listing;
+        listing.backend = Backend::vulkan;
+        listing.problem = error.what();
+        listings.push_back(listing);
+    }
+    return listings;
+}
+
+}  // namespace topple::device

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "device/device.h"
+#include "device/devices.h"
+
+namespace topple::device {
+
+// What the validation layers have reported since it was last taken.
+struct ValidationLog {
+    std::vector<std::string> messages;
+};
+
+// An instance, one physical device, its logical device and a compute queue; destroyed at the end
+// only where `owned`.
+struct VulkanContext {
+    VkInstance instance = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+    VkPhysicalDevice physical = VK_NULL_HANDLE;
+    VkDevice device = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;
+    std::uint32_t queue_family = 0;
+    bool owned = false;
+    std::unique_ptr<ValidationLog> log;  // null without validation
+
+    VulkanContext() = default;
+    VulkanContext(VulkanContext&& other) noexcept;
+    VulkanContext& operator=(VulkanContext&&) = delete;
+    ~VulkanContext();
+};
+
+// Opens the best usable device: a discrete, integrated or virtual GPU before a CPU, then in the
+// loader's order. With TOPPLE_VULKAN_VALIDATION=1 in the environment the validation layer is on,
+// where it is installed. Throws Error(device) with what would mend it.
+VulkanContext open_vulkan_context();
+
+// What a device says of itself.
+DeviceInfo describe_vulkan(VkPhysicalDevice physical);
+
+// The family that computes, one without graphics first; -1 where there is none.
+std::int64_t compute_family(VkPhysicalDevice physical);
+
+}  // namespace topple::device

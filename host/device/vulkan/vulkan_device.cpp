@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: MIT
+#include "device/vulkan/vulkan_device.h"
+
+#include <algorithm>
+
+#include "device/devices.h"
+#include "device/embed.h"
+#include "device/vulkan/vulkan_error.h"
+#include "topple/error.h"
+
+namespace topple::device {
+
+VulkanDevice::VulkanDevice(VulkanContext context, const VulkanOptions& options)
+    : context_(std::move(context)), options_(options) {
+    info_ = describe_vulkan(context_.physical);
+    vkGetPhysicalDeviceMemoryProperties(context_.physical, &memory_);
+    VkPhysicalDeviceProperties properties;
+    vkGetPhysicalDeviceProperties(context_.physical, &properties);
+    max_groups_ =
+        options_.max_groups ? options_.max_groups : properties.limits.maxComputeWorkGroupCount[0];
+    unified_ = !options_.force_staging &&
+               (properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ||
+                properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU);
+
+    try {
+        create_objects();
+    } catch (const Error&) {
+        release();
+        throw;
+    }
+}
+
+void VulkanDevice::create_objects() {
+    auto pool = vk_struct<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+    pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+    pool.queueFamilyIndex = context_.queue_family;
+    vk_check(vkCreateCommandPool(context_.device, &pool, nullptr, &command_pool_),
+             info_.name + ": command pool");
+    auto buffer =
+        vk_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+    buffer.commandPool = command_pool_;
+    buffer.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    buffer.commandBufferCount = 1;
+    vk_check(vkAllocateCommandBuffers(context_.device, &buffer, &commands_),
+             info_.name + ": command buffer");
+    const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, 0};
+    vk_check(vkCreateFence(context_.device, &fence, nullptr, &fence_), info_.name + ": fence");
+    if (!unified_) staging_ = create_staging(options_.staging_bytes);
+}
+
+VulkanDevice::~VulkanDevice() {
+    release();
+}
+
+void VulkanDevice::release() {
+    vkQueueWaitIdle(context_.queue);
+    for (auto& [source, built] : kernels_) destroy(built);
+    destroy(staging_);
+    if (descriptor_pool_) vkDestroyDescriptorPool(context_.device, descriptor_pool_, nullptr);
+    if (fence_) vkDestroyFence(context_.device, fence_, nullptr);
+    if (command_pool_) vkDestroyCommandPool(context_.device, command_pool_, nullptr);
+}
+
+void VulkanDevice::check_validation(const std::string& what) {
+    if (!context_.log || context_.log->messages.empty()) return;
+    const std::string first = context_.log->messages.front();
+    context_.log->messages.clear();
+    throw Error(ErrorKind::device, what + ": Vulkan validation: " + first);
+}
+
+void VulkanDevice::prepare(const KernelSource& source) {
+    kernel(source);
+}
+
+const VulkanDevice::Built& VulkanDevice::kernel(const KernelSource& source) {
+    auto found = kernels_.find(&source);
+    if (found == kernels_.end()) {
+        found = kernels_.emplace(&source, build(source)).first;
+        ++counters_.kernel_builds;
+        check_validation(std::string("kernel ") + source.name);
+    }
+    return found->second;
+}
+
+VulkanDevice::Built VulkanDevice::build(const KernelSource& source) const {
+    const std::string where =
+        std::string("kernel ") + source.name + " does not build for " + info_.name;
+    if (source.group_size > info_.limits.max_group_size) {
+        throw Error(ErrorKind::device,
+                    where + ": its groups of " + std::to_string(source.group_size) +
+                        " are more than the " + std::to_string(info_.limits.max_group_size) +
+                        " work-items that can run together");
+    }
+    Built built;
+    VkShaderModule module = VK_NULL_HANDLE;
+    VkResult result = VK_SUCCESS;
+    std::vector<VkDescriptorSetLayoutBinding> bindings(source.bindings.size());
+    for (std::uint32_t i = 0; i < bindings.size(); ++i) {
+        bindings[i] = {i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT,
+                       nullptr};
+    }
+    auto set = vk_struct<VkDescriptorSetLayoutCreateInfo>(
+        VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+    set.bindingCount = static_cast<std::uint32_t>(bindings.size());
+    set.pBindings = bindings.data();
+    result = vkCreateDescriptorSetLayout(context_.device, &set, nullptr, &built.set_layout);
+    if (result == VK_SUCCESS) {
+        const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, source.params_bytes};
+        auto layout =
+            vk_struct<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+        layout.setLayoutCount = 1;
+        layout.pSetLayouts = &built.set_layout;
+        layout.pushConstantRangeCount = 1;
+        layout.pPushConstantRanges = &push;
+        result = vkCreatePipelineLayout(context_.device, &layout, nullptr, &built.layout);
+    }
+    if (result == VK_SUCCESS) {
+        auto info =
+            vk_struct<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+        info.codeSize = source.spirv.size_bytes();
+        info.pCode = source.spirv.data();
+        result = vkCreateShaderModule(context_.device, &info, nullptr, &module);
+    }
+    if (result == VK_SUCCESS) {
+        auto info =
+            vk_struct<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
+        // Work-group counts beyond the device's limit are split; the base keeps GROUP_ID right.
+        info.flags = VK_PIPELINE_CREATE_DISPATCH_BASE_BIT;
+        info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+        info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+        info.stage.module = module;
+        info.stage.pName = "main";
+        info.layout = built.layout;
+        result = vkCreateComputePipelines(context_.device, VK_NULL_HANDLE, 1, &info, nullptr,
+                                          &built.pipeline);
+    }
+    if (module) vkDestroyShaderModule(context_.device, module, nullptr);
+    if (result != VK_SUCCESS) {
+        destroy(built);
+        vk_check(result, where);
+    }
+    return built;
+}
+
+void VulkanDevice::destroy(Built& built) const {
+    if (built.pipeline) vkDestroyPipeline(context_.device, built.pipeline, nullptr);
+    if (built.layout) vkDestroyPipelineLayout(context_.device, built.layout, nullptr);
+    if (built.set_layout) vkDestroyDescriptorSetLayout(context_.device, built.set_layout, nullptr);
+    built = {};
+}
+
+// Makes room for one descriptor set per dispatch; the pool only grows.
+void VulkanDevice::reserve_descriptors(std::span<const Dispatch> dispatches) {
+    std::uint32_t descriptors = 1;
+    for (const Dispatch& dispatch : dispatches) {
+        descriptors += static_cast<std::uint32_t>(dispatch.ranges.size());
+    }
+    const auto sets = static_cast<std::uint32_t>(dispatches.size());
+    if (descriptor_pool_ && sets <= pool_sets_ && descriptors <= pool_descriptors_) {
+        vk_check(vkResetDescriptorPool(context_.device, descriptor_pool_, 0), "descriptor pool");
+        return;
+    }
+    if (descriptor_pool_) vkDestroyDescriptorPool(context_.device, descriptor_pool_, nullptr);
+    descriptor_pool_ = VK_NULL_HANDLE;
+    pool_sets_ = std::max(2 * pool_sets_, sets);
+    pool_descriptors_ = std::max(2 * pool_descriptors_, descriptors);
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, pool_descriptors_};
+    auto info =
+        vk_struct<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
+    info.maxSets = pool_sets_;
+    info.poolSizeCount = 1;
+    info.pPoolSizes = &size;
+    vk_check(vkCreateDescriptorPool(context_.device, &info, nullptr, &descriptor_pool_),
+             "descriptor pool");
+}
+
+VkDescriptorSet VulkanDevice::describe(const Dispatch& dispatch, const Built& built) {
+    auto info =
+        vk_struct<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+    info.descriptorPool = descriptor_pool_;
+    info.descriptorSetCount = 1;
+    info.pSetLayouts = &built.set_layout;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    vk_check(vkAllocateDescriptorSets(context_.device, &info, &set),
+             std::string("kernel ") + dispatch.kernel->name + ": descriptor set");
+    std::vector<VkDescriptorBufferInfo> buffers(dispatch.ranges.size());
+    std::vector<VkWriteDescriptorSet> writes(dispatch.ranges.size());
+    for (std::uint32_t i = 0; i < buffers.size(); ++i) {
+        const BoundRange& range = dispatch.ranges[i];
+        buffers[i] = {own(*range.memory).buffer(), range.offset,
+                      std::max<std::uint64_t>(4, range.bytes)};
+        writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+        writes[i].dstSet = set;
+        writes[i].dstBinding = i;
+        writes[i].descriptorCount = 1;
+        writes[i].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        writes[i].pBufferInfo = &buffers[i];
+    }
+    vkUpdateDescriptorSets(context_.device, static_cast<std::uint32_t>(writes.size()),
+                           writes.data(), 0, nullptr);
+    return set;
+}
+
+void VulkanDevice::begin() {
+    auto info = vk_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+    info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    vk_check(vkBeginCommandBuffer(commands_, &info), info_.name + ": command buffer");
+}
+
+// Ends the commands, submits them and waits. What they wrote is visible to host, kernels and
+// copies.
+void VulkanDevice::submit(const std::string& what) {
+    const VkMemoryBarrier written{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr,
+                                  VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
+                                  VK_ACCESS_HOST_READ_BIT | VK_ACCESS_HOST_WRITE_BIT |
+                                      VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
+                                      VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT};
+    const VkPipelineStageFlags device_stages =
+        VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+    vkCmdPipelineBarrier(commands_, device_stages, device_stages | VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
+                         &written, 0, nullptr, 0, nullptr);
+    vk_check(vkEndCommandBuffer(commands_), what);
+    auto info = vk_struct<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
+    info.commandBufferCount = 1;
+    info.pCommandBuffers = &commands_;
+    vk_check(vkResetFences(context_.device, 1, &fence_), what);
+    vk_check(vkQueueSubmit(context_.queue, 1, &info, fence_), what);
+    vk_check(vkWaitForFences(context_.device, 1, &fence_, VK_TRUE, UINT64_MAX), what);
+    check_validation(what);
+}
+
+void VulkanDevice::record(const Dispatch& dispatch) {
+    const Built& built = kernel(*dispatch.kernel);
+    const VkDescriptorSet set = describe(dispatch, built);
+    vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, built.pipeline);
+    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, built.layout, 0, 1, &set, 0,
+                            nullptr);
+    vkCmdPushConstants(commands_, built.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                       static_cast<std::uint32_t>(dispatch.params.size()), dispatch.params.data());
+    for (std::uint64_t first = 0; first < dispatch.groups; first += max_groups_) {
+        const std::uint64_t count = std::min<std::uint64_t>(max_groups_, dispatch.groups - first);
+        vkCmdDispatchBase(commands_, static_cast<std::uint32_t>(first), 0, 0,
+                          static_cast<std::uint32_t>(count), 1, 1);
+    }
+}
+
+void VulkanDevice::run_batch(std::span<const Dispatch> dispatches) {
+    reserve_descriptors(dispatches);
+    begin();
+    const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr,
+                                  VK_ACCESS_SHADER_WRITE_BIT,
+                                  VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT};
+    for (std::size_t i = 0; i < dispatches.size(); ++i) {
+        if (i > 0) {
+            vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                                 VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1, &barrier, 0, nullptr,
+                                 0, nullptr);
+        }
+        record(dispatches[i]);
+    }
+    submit(dispatches.size() == 1
+               ? std::string("kernel ") + dispatches[0].kernel->name
+               : "batch of " + std::to_string(dispatches.size()) +
+                     " dispatches, the last of kernel " + dispatches.back().kernel->name);
+    counters_.dispatches += dispatches.size();
+    ++counters_.submits;
+}
+
+void VulkanDevice::run(std::span<const Dispatch> dispatches) {
+    // All that can be wrong with a batch is found before any of it runs.
+    for (const Dispatch& dispatch : dispatches) {
+        for (const BoundRange& range : dispatch.ranges) own(*range.memory);
+        kernel(*dispatch.kernel);
+    }
+    while (!dispatches.empty()) {
+        const std::size_t count =
+            std::min<std::size_t>(dispatches.size(), options_.dispatches_per_submit);
+        run_batch(dispatches.first(count));
+        dispatches = dispatches.subspan(count);
+    }
+}
+
+std::unique_ptr<Device> open_vulkan() {
+    return std::make_unique<VulkanDevice>(open_vulkan_context());
+}
+
+std::unique_ptr<Device> adopt_vulkan(const VulkanHandles& handles) {
+    VulkanContext given;
+    given.instance = static_cast<VkInstance>(handles.instance);
+    given.physical = static_cast<VkPhysicalDevice>(handles.physical_device);
+    given.device = static_cast<VkDevice>(handles.device);
+    given.queue = static_cast<VkQueue>(handles.queue);
+    given.queue_family = handles.queue_family;
+    if (!given.instance || !given.physical || !given.device || !given.queue) {
+        throw Error(ErrorKind::device,
+                    "adopt_vulkan needs an instance, a physical device, a device and a queue, none "
+                    "of them null");
+    }
+    return std::make_unique<VulkanDevice>(std::move(given));
+}
+
+}  // namespace topple::device

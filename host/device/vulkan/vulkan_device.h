@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "device/device.h"
+#include "device/vulkan/vulkan_context.h"
+
+namespace topple::device {
+
+// Choices that follow from the device; tests set them to run, on any driver, the paths that others
+// need.
+struct VulkanOptions {
+    bool force_staging = false;  // copy through a staging buffer even where memory is unified
+    std::uint64_t staging_bytes = 16u << 20;
+    std::uint32_t max_groups = 0;  // groups in one command; 0: the device's limit
+    std::uint32_t dispatches_per_submit = 4096;
+};
+
+// A VkBuffer with memory of its own. `mapped` is null where the host can't see the memory.
+struct VulkanBuffer {
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    std::byte* mapped = nullptr;
+};
+
+class VulkanDevice;
+
+class VulkanMemory final : public Memory {
+  public:
+    VulkanMemory(VulkanDevice& device, std::uint64_t bytes, std::string name);
+    ~VulkanMemory() override;
+    VulkanMemory(const VulkanMemory&) = delete;
+    VulkanMemory& operator=(const VulkanMemory&) = delete;
+
+    std::uint64_t bytes() const override { return bytes_; }
+    const std::string& name() const override { return name_; }
+    std::byte* host_address() override { return buffer_.mapped; }
+    VkBuffer buffer() const { return buffer_.buffer; }
+    const VulkanDevice& device() const { return device_; }
+
+  private:
+    VulkanDevice& device_;
+    std::uint64_t bytes_;
+    std::string name_;
+    VulkanBuffer buffer_;
+};
+
+class VulkanDevice final : public Device {
+  public:
+    explicit VulkanDevice(VulkanContext context, const VulkanOptions& options = {});
+    ~VulkanDevice() override;
+
+    std::unique_ptr<Memory> allocate(std::uint64_t bytes, const std::string& name) override;
+    void write(Memory& to, std::uint64_t offset, std::span<const std::byte> from) override;
+    void read(Memory& from, std::uint64_t offset, std::span<std::byte> to) override;
+    void fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
+              std::uint32_t word) override;
+    void run(std::span<const Dispatch> dispatches) override;
+    void prepare(const KernelSource& kernel) override;
+
+    // What the kernels' arrays lie in, and what copies to and from them pass through.
+    VulkanBuffer create_storage(std::uint64_t bytes, const std::string& name) const;
+    VulkanBuffer create_staging(std::uint64_t bytes) const;
+    void destroy(VulkanBuffer& buffer) const;
+
+  private:
+    struct Built {
+        VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
+        VkPipelineLayout layout = VK_NULL_HANDLE;
+        VkPipeline pipeline = VK_NULL_HANDLE;
+    };
+    void create_objects();
+    void release();
+    VulkanBuffer create_buffer(std::uint64_t bytes, VkBufferUsageFlags usage,
+                               VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred,
+                               const std::string& name) const;
+    std::int64_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
+                             VkMemoryPropertyFlags preferred) const;
+    VulkanMemory& own(Memory& memory) const;
+    const Built& kernel(const KernelSource& source);
+    Built build(const KernelSource& source) const;
+    void destroy(Built& built) const;
+    void reserve_descriptors(std::span<const Dispatch> dispatches);
+    VkDescriptorSet describe(const Dispatch& dispatch, const Built& built);
+    void record(const Dispatch& dispatch);
+    void run_batch(std::span<const Dispatch> dispatches);
+    void begin();
+    void submit(const std::string& what);
+    void copy(VkBuffer from, std::uint64_t from_offset, VkBuffer to, std::uint64_t to_offset,
+              std::uint64_t bytes, const std::string& what);
+    void check_validation(const std::string& what);
+
+    VulkanContext context_;
+    VulkanOptions options_;
+    bool unified_ = false;
+    std::uint32_t max_groups_ = 0;
+    VkPhysicalDeviceMemoryProperties memory_{};
+    VkCommandPool command_pool_ = VK_NULL_HANDLE;
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;
+    VkFence fence_ = VK_NULL_HANDLE;
+    VkDescriptorPool descriptor_pool_ = VK_NULL_HANDLE;
+    std::uint32_t pool_sets_ = 0, pool_descriptors_ = 0;
+    VulkanBuffer staging_;
+    std::map<const KernelSource*, Built> kernels_;  // looked up only, never iterated for a result
+};
+
+}  // namespace topple::device
