@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/summary.h"
+#include "device/devices.h"
+#include "topple/parse.h"
+
+namespace topple::cli {
+namespace {
+
+// Set by SIGINT and SIGTERM; the parse polls it, so that its cleaning-up runs as after any error.
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void interrupt(int) { interrupted.store(true); }
+
+struct Arguments {
+    std::string input, out, backend = "auto", up, disturbance = "human,wind,earthquake", max_memory;
+    ParseOptions options;
+    unsigned threads = 0;
+    bool quiet = false;
+};
+
+std::vector<std::string> split_commas(const std::string& text) {
+    std::vector<std::string> parts;
+    std::stringstream stream(text);
+    for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+    return parts;
+}
+
+Vec3 parse_up(const std::string& text) {
+    const auto bad = [&] { return Error(ErrorKind::usage, "--up " + text + ": expected three numbers X,Y,Z, not all zero"); };
+    const std::vector<std::string> parts = split_commas(text);
+    if (parts.size() != 3) throw bad();
+    Vec3 up{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        std::size_t used = 0;
+        try {
+            up[i] = std::stod(parts[i], &used);
+        } catch (const std::exception&) {
+            throw bad();
+        }
+        if (used != parts[i].size() || !std::isfinite(up[i])) throw bad();
+    }
+    const double length = std::hypot(up[0], up[1], up[2]);
+    if (!(length > 0) || !std::isfinite(length)) throw bad();
+    for (double& c : up) c /= length;
+    return up;
+}
+
+// "500M", "4G", "1.5G", or a number of bytes.
+std::uint64_t parse_size(const std::string& text) {
+    std::size_t used = 0;
+    double value = 0;
+    try {
+        value = std::stod(text, &used);
+    } catch (const std::exception&) {
+        used = 0;
+    }
+    const std::string unit = text.substr(used);
+    const double factor = unit.empty() || unit == "B"     ? 1
+                          : unit == "K" || unit == "KiB"  ? 0x1p10
+                          : unit == "M" || unit == "MiB"  ? 0x1p20
+                          : unit == "G" || unit == "GiB"  ? 0x1p30
+                          : unit == "T" || unit == "TiB" ? 0x1p40
+                                                          : 0;
+    if (used == 0 || factor == 0 || !(value > 0) || value * factor > 0x1p60) {
+        throw Error(ErrorKind::usage, "--max-memory " + text + ": expected a size such as 500M or 4G");
+    }
+    return static_cast<std::uint64_t>(value * factor);
+}
+
+// A sibling of nothing the user owns: named after the input, in the current folder.
+std::filesystem::path default_output(const std::filesystem::path& input) {
+    std::filesystem::path name = input.has_filename() ? input : input.parent_path();
+    name = std::filesystem::is_directory(input) ? name.filename() : name.stem();
+    if (name.empty() || name == "." || name == "..") name = "scan";
+    return name.string() + "-parsed";
+}
+
+// One line per stage; on a terminal the line of the running stage shows how far it is.
+class Progress {
+  public:
+    explicit Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+    void operator()(const std::string& stage, double done) {
+        if (quiet_) return;
+        if (terminal_) {
+            std::fprintf(stderr, "\r\033[K%s %3.0f %%", stage.c_str(), 100 * done);
+        } else if (stage != last_) {
+            std::fprintf(stderr, "%s\n", stage.c_str());
+        }
+        last_ = stage;
+        std::fflush(stderr);
+    }
+    void finish() const {
+        if (!quiet_ && terminal_) std::fprintf(stderr, "\r\033[K");
+    }
+
+  private:
+    bool quiet_, terminal_;
+    std::string last_;
+};
+
+int run(Arguments& a) {
+    if (!a.up.empty()) a.options.up = parse_up(a.up);
+    if (!a.max_memory.empty()) a.options.max_memory_bytes = parse_size(a.max_memory);
+    a.options.disturbances = split_commas(a.disturbance);
+    const std::filesystem::path out = a.out.empty() ? default_output(a.input) : std::filesystem::path(a.out);
+    std::signal(SIGINT, interrupt);
+    std::signal(SIGTERM, interrupt);
+    const auto device = device::open_device(a.backend, a.threads);
+    Progress progress(a.quiet);
+    a.options.progress = [&](const std::string& stage, double done) { progress(stage, done); };
+    a.options.cancelled = [] { return interrupted.load(); };
+    try {
+        const ParseResult result = parse(*device, a.input, a.options);
+        progress("output", 0);
+        write_outputs(result, out);
+        progress.finish();
+        if (!a.quiet) print_summary(result.scene, out);
+    } catch (...) {
+        progress.finish();
+        if (interrupted.load()) {
+            std::fprintf(stderr, "topple: interrupted; nothing was written\n");
+            return 130;
+        }
+        throw;
+    }
+    return 0;
+}
+
+}  // namespace
+
+Command add_parse(CLI::App& app) {
+    auto a = std::make_shared<Arguments>();
+    app.add_option("INPUT", a->input,
+                   "A point cloud (.ply, .pcd, .xyz), a sequence folder (depth/*.png, intrinsics.json,\n"
+                   "trajectory.txt), or the same folder without a trajectory: a single frame")
+        ->required();
+    app.add_option("-o,--output", a->out, "Folder for the results (default: INPUT's name with -parsed, in the current folder)");
+    app.add_option("--backend", a->backend, "auto (a real GPU if there is one, else native), native, opencl, vulkan")
+        ->capture_default_str();
+    app.add_option("--voxel", a->options.voxel_m, "Edge of a solid voxel in metres (default: from the scan's resolution)");
+    app.add_option("--up", a->up, "Up in the input's frame, X,Y,Z, as from an IMU (default: found from the scan)");
+    app.add_option("--disturbance", a->disturbance, "Which to reckon with: human, wind, earthquake, separated by commas")
+        ->capture_default_str();
+    app.add_option("--wind", a->options.wind_m_s, "Wind speed in m/s")->capture_default_str();
+    app.add_option("--pga", a->options.pga_m_s2, "Peak ground acceleration of the earthquake in m/s^2")->capture_default_str();
+    app.add_option("--density", a->options.density_kg_m3, "Density of all objects in kg/m^3")->capture_default_str();
+    app.add_option("--friction", a->options.friction, "Coefficient of friction")->capture_default_str();
+    app.add_option("--seed", a->options.seed, "Seed of everything random")->capture_default_str();
+    app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
+    app.add_option("--max-memory", a->max_memory, "Refuse a scan that would need more, such as 4G");
+    app.add_flag("--quiet", a->quiet, "Print errors only");
+    return [a] { return run(*a); };
+}
+
+}  // namespace topple::cli

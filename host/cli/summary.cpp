@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "cli/summary.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace topple::cli {
+namespace {
+
+constexpr std::size_t rows_shown = 12;
+
+double risk_of(const Object& o, const std::string& disturbance) {
+    const auto at = o.risk_J.find(disturbance);
+    return at == o.risk_J.end() ? 0 : at->second;
+}
+
+void print_objects(const Scene& scene) {
+    std::map<std::int32_t, std::string> rests_on;
+    for (const Support& s : scene.supports) {
+        std::string& text = rests_on[s.supported];
+        text += (text.empty() ? "" : ",") + std::to_string(s.supporter);
+    }
+    std::vector<const Object*> movable;
+    for (const Object& o : scene.objects) {
+        if (!o.grounded) movable.push_back(&o);
+    }
+    std::stable_sort(movable.begin(), movable.end(),
+                     [](const Object* a, const Object* b) { return a->unsafety > b->unsafety; });
+    std::printf("\n%6s %8s %8s %9s %9s %6s %10s %10s %10s  %s\n", "object", "unsafety", "mass kg", "barrier J",
+                "release J", "mode", "human J", "wind J", "quake J", "rests on");
+    for (std::size_t i = 0; i < std::min(rows_shown, movable.size()); ++i) {
+        const Object& o = *movable[i];
+        std::printf("%6d %8.1f %8.3g %9.3g %9.3g %6s %10.3g %10.3g %10.3g  %s\n", o.id, o.unsafety, o.mass_kg, o.barrier_J,
+                    o.release_J, o.mode.c_str(), risk_of(o, "human"), risk_of(o, "wind"), risk_of(o, "earthquake"),
+                    rests_on[o.id].c_str());
+    }
+    if (movable.size() > rows_shown) std::printf("   ... and %zu more in scene.json\n", movable.size() - rows_shown);
+}
+
+}  // namespace
+
+void print_summary(const Scene& scene, const std::filesystem::path& out) {
+    double seconds = 0;
+    for (const auto& [stage, s] : scene.timings_s) seconds += s;
+    std::size_t grounded = 0;
+    for (const Object& o : scene.objects) grounded += o.grounded;
+    std::printf("%zu points, %zu primitives, %zu objects (%zu fixed to the ground), %zu supports; %.1f s on %s (%s)\n",
+                scene.points.x.size(), scene.primitives.size(), scene.objects.size(), grounded, scene.supports.size(),
+                seconds, scene.backend.c_str(), scene.device.c_str());
+    print_objects(scene);
+    for (const std::string& note : scene.notes) std::printf("Note: %s\n", note.c_str());
+    std::printf("\nReport: %s\n", (out / "report.html").c_str());
+}
+
+}  // namespace topple::cli

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/geometry_stage.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace topple {
+
+GeometryStage find_primitives(device::Device& device, const Ingested& input, const ParseOptions& options,
+                              StageClock& stage) {
+    GeometryStage g;
+    g.surfels = stage("normals", [&] {
+        return geometry::make_surfels(device, input.cloud, input.cell_m, input.viewpoints, input.viewpoint_of_point);
+    });
+    g.frame = stage("frame", [&] {
+        return geometry::find_scene_frame(device, g.surfels, {options.up, input.camera_up});
+    });
+    const geometry::Regions regions = stage("splitting", [&] { return geometry::split(g.surfels); });
+    g.primitives = stage("merging", [&] {
+        return geometry::merge_convex(g.surfels, regions, g.frame.axes[2]);
+    });
+    g.structure = geometry::find_structure(g.surfels, g.primitives, g.frame.axes[2]);
+    g.primitive_of_point.reserve(input.cloud.size());
+    for (const std::uint32_t s : g.surfels.of_point) g.primitive_of_point.push_back(g.primitives.label[s]);
+    return g;
+}
+
+void keep_primitives(GeometryStage& g, const std::vector<bool>& keep) {
+    std::vector<std::int32_t> number(keep.size(), -1);
+    std::int32_t next = 0;
+    for (std::size_t p = 0; p < keep.size(); ++p) {
+        if (!keep[p]) continue;
+        number[p] = next;
+        const auto to = static_cast<std::size_t>(next++);
+        if (to == p) continue;
+        g.primitives.model[to] = std::move(g.primitives.model[p]);
+        g.primitives.regions[to] = std::move(g.primitives.regions[p]);
+        g.structure[to] = g.structure[p];
+    }
+    g.primitives.model.resize(static_cast<std::size_t>(next));
+    g.primitives.regions.resize(static_cast<std::size_t>(next));
+    g.structure.resize(static_cast<std::size_t>(next));
+    for (auto* labels : {&g.primitives.label, &g.primitive_of_point}) {
+        for (std::int32_t& l : *labels) l = l < 0 ? -1 : number[static_cast<std::size_t>(l)];
+    }
+}
+
+graph::NormalVariation normal_variation(const GeometryStage& g) {
+    const geometry::Surfels& s = g.surfels;
+    graph::NormalVariation out;
+    out.inside.resize(g.primitives.model.size());
+    for (std::size_t n = 0; n < s.size(); ++n) {
+        const std::int32_t a = g.primitives.label[n];
+        if (a < 0) continue;
+        for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
+            const std::uint32_t m = s.neighbours[k];
+            const std::int32_t b = g.primitives.label[m];
+            if (m <= n || b < 0) continue;
+            graph::NormalVariation::Sum& sum = a == b ? out.inside[static_cast<std::size_t>(a)]
+                                                      : out.between[{std::min(a, b), std::max(a, b)}];
+            sum.sum += 1 - (double{s.nx[n]} * s.nx[m] + double{s.ny[n]} * s.ny[m] + double{s.nz[n]} * s.nz[m]);
+            ++sum.pairs;
+        }
+    }
+    return out;
+}
+
+}  // namespace topple

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "device/device.h"
+#include "geometry/manhattan.h"
+#include "geometry/segmentation.h"
+#include "geometry/structure.h"
+#include "geometry/surfels.h"
+#include "graph/scene_prior.h"
+#include "pipeline/ingest.h"
+#include "pipeline/stage_clock.h"
+
+// Section 2.1 of the paper: from points to primitives.
+namespace topple {
+
+struct GeometryStage {
+    geometry::Surfels surfels;
+    geometry::SceneFrame frame;
+    geometry::PrimitiveSet primitives;
+    std::vector<geometry::Structure> structure;   // by primitive
+    std::vector<std::int32_t> primitive_of_point;
+};
+
+GeometryStage find_primitives(device::Device& device, const Ingested& input, const ParseOptions& options,
+                              StageClock& stage);
+
+// Drops the primitives for which `keep` is false and renumbers the others in their order.
+void keep_primitives(GeometryStage& geometry, const std::vector<bool>& keep);
+
+// How much the surface normals vary inside primitives and across their borders (for Eq. 9, f2).
+graph::NormalVariation normal_variation(const GeometryStage& geometry);
+
+}  // namespace topple

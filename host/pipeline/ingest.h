@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topple/input.h"
+#include "topple/parse.h"
+
+namespace topple {
+
+// Depth frames that can be walked through more than once without holding them all.
+class FrameStream {
+  public:
+    virtual ~FrameStream() = default;
+    virtual const Intrinsics& intrinsics() const = 0;
+    virtual std::size_t size() const = 0;
+    virtual DepthFrame load(std::size_t i) const = 0;
+};
+
+// What every later stage starts from, whatever the input was.
+struct Ingested {
+    PointCloud cloud;
+    std::vector<Vec3> viewpoints;                   // where the sensor was
+    std::vector<std::uint32_t> viewpoint_of_point;  // of each point, or empty: viewpoint 0 for all
+    std::unique_ptr<FrameStream> frames;            // what carves the free space; null: nothing can
+    std::optional<Vec3> camera_up;
+    double cell_m = 0;   // working resolution, from the point spacing and the sensor's noise
+    std::vector<std::string> notes;
+};
+
+Ingested ingest(const std::filesystem::path& input, const ParseOptions& options);
+Ingested ingest_cloud(PointCloud cloud, const ParseOptions& options);
+
+}  // namespace topple

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/voxel_stage.h"
+
+#include <algorithm>
+#include <array>
+
+namespace topple {
+namespace {
+
+// Frames are carved in batches of this many bytes of depth, so that any number of them fits.
+constexpr std::uint64_t batch_bytes = 16u << 20;
+
+std::vector<bool> present(const vdb::VoxelScene& scene, std::size_t primitives) {
+    std::vector<bool> seen(primitives, false);
+    for (const std::int32_t p : scene.primitives(scene.tiles())) {
+        if (p >= 0) seen[static_cast<std::size_t>(p)] = true;
+    }
+    return seen;
+}
+
+void carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScene& scene, StageClock& stage) {
+    const Intrinsics& k = frames.intrinsics();
+    const std::uint64_t frame_bytes = std::uint64_t{2} * k.width * k.height;
+    const std::size_t per_batch = static_cast<std::size_t>(std::clamp<std::uint64_t>(batch_bytes / frame_bytes, 1, 64));
+    std::vector<DepthFrame> batch;
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+        batch.push_back(frames.load(f));
+        if (batch.size() < per_batch && f + 1 < frames.size()) continue;
+        scene.carve(device, k, batch);
+        batch.clear();
+        stage.progress("carving", static_cast<double>(f + 1) / static_cast<double>(frames.size()));
+    }
+}
+
+}  // namespace
+
+double voxel_for_cell(double cell_m) {
+    constexpr std::array<double, 8> handy{0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05};
+    for (const double h : handy) {
+        if (h >= 1.75 * cell_m) return h;
+    }
+    return 2 * cell_m;
+}
+
+VoxelStage make_solids(device::Device& device, const Ingested& input, GeometryStage& geometry, double voxel_m,
+                       StageClock& stage) {
+    VoxelStage out;
+    const vdb::VoxelFrame frame{voxel_m, geometry.frame.axes};
+    stage("voxels", [&] {
+        const auto build = [&] {
+            out.scene = std::make_shared<vdb::VoxelScene>(frame, input.cloud, geometry.primitive_of_point);
+        };
+        build();
+        const std::vector<bool> keep = present(*out.scene, geometry.primitives.model.size());
+        if (std::find(keep.begin(), keep.end(), false) != keep.end()) {
+            keep_primitives(geometry, keep);
+            build();
+        }
+    });
+    stage("carving", [&] {
+        if (input.frames) carve_all(device, *input.frames, *out.scene, stage);
+    });
+    stage("filling", [&] {
+        vdb::VoxelScene::FillOptions options;
+        for (const geometry::Structure s : geometry.structure) {
+            options.hollow.push_back(s == geometry::Structure::wall || s == geometry::Structure::ceiling);
+        }
+        out.scene->fill(device, options);
+    });
+    return out;
+}
+
+}  // namespace topple

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+
+#include "device/device.h"
+#include "physics/bodies.h"
+#include "pipeline/geometry_stage.h"
+#include "pipeline/ingest.h"
+#include "pipeline/stage_clock.h"
+#include "vdb/voxel_scene.h"
+
+// Section 2.2 of the paper: from labelled points to solid voxels.
+namespace topple {
+
+struct VoxelStage {
+    std::shared_ptr<vdb::VoxelScene> scene;
+    physics::SolidCells cells;
+};
+
+// Edge of a solid voxel for a scan of this resolution: about two cells, rounded to a handy value.
+double voxel_for_cell(double cell_m);
+
+// Voxels, carving and filling. Primitives that win no voxel are dropped from `geometry`.
+VoxelStage make_solids(device::Device& device, const Ingested& input, GeometryStage& geometry, double voxel_m,
+                       StageClock& stage);
+
+}  // namespace topple
