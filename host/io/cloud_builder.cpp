@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "io/cloud_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "io/text.h"
+
+namespace topple::io {
+namespace {
+
+// Farther from the origin than this, a room is not described in metres: at 1e6 a float resolves 6
+// cm.
+constexpr double farthest_m = 1e6;
+
+bool finite(const std::array<double, 3>& v) {
+    return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+// Distance between the 2nd and the 98th hundredth of the values, from at most ~10,000 of them:
+// stray points must not decide.
+double robust_extent(const std::vector<float>& values) {
+    std::vector<float> sample;
+    const std::size_t stride = values.size() / 10000 + 1;
+    for (std::size_t i = 0; i < values.size(); i += stride) sample.push_back(values[i]);
+    std::sort(sample.begin(), sample.end());
+    const std::size_t cut = sample.size() / 50;
+    return double(sample[sample.size() - 1 - cut]) - sample[cut];
+}
+
+}  // namespace
+
+CloudBuilder::CloudBuilder(const std::filesystem::path& file, std::uint64_t promised,
+                           bool with_normals)
+    : file_(file), with_normals_(with_normals) {
+    cloud_.source = file.string();
+    try {
+        for (auto* values : {&cloud_.x, &cloud_.y, &cloud_.z}) values->reserve(promised);
+        if (with_normals) {
+            for (auto* values : {&cloud_.nx, &cloud_.ny, &cloud_.nz}) values->reserve(promised);
+        }
+        cloud_.pixel.reserve(promised);
+    } catch (const std::exception&) {
+        fail(file, counted(promised, "point") + " don't fit into memory; thin the cloud");
+    }
+}
+
+void CloudBuilder::add(const std::array<double, 3>& point, const std::array<double, 3>& normal) {
+    const auto index = seen_++;
+    if (!finite(point)) {
+        ++cloud_.dropped;
+        return;
+    }
+    for (const double value : point) {
+        if (std::abs(value) > farthest_m) {
+            fail(file_,
+                 "point " + std::to_string(index) + " has a coordinate of " + short_number(value) +
+                     ", beyond the limit of 1e+06 m; coordinates must be metres from an origin "
+                     "near the scene: convert the units, or subtract the map's offset");
+        }
+    }
+    cloud_.x.push_back(static_cast<float>(point[0]));
+    cloud_.y.push_back(static_cast<float>(point[1]));
+    cloud_.z.push_back(static_cast<float>(point[2]));
+    // Whether the cloud is organised shows at the end; 2^32 pixels and more are refused before.
+    cloud_.pixel.push_back(static_cast<std::uint32_t>(index));
+    if (!with_normals_) return;
+    const double length =
+        std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    const bool usable = std::isfinite(length) && length > 1e-6;
+    any_normal_ = any_normal_ || usable;
+    cloud_.nx.push_back(usable ? static_cast<float>(normal[0] / length) : 0.0f);
+    cloud_.ny.push_back(usable ? static_cast<float>(normal[1] / length) : 0.0f);
+    cloud_.nz.push_back(usable ? static_cast<float>(normal[2] / length) : 0.0f);
+}
+
+void CloudBuilder::note_units() {
+    double extent = 0, reach = 0;
+    for (const auto* values : {&cloud_.x, &cloud_.y, &cloud_.z}) {
+        extent = std::max(extent, robust_extent(*values));
+        for (const float value : *values) reach = std::max(reach, double(std::abs(value)));
+    }
+    // Rooms and buildings stay below 300 m; the same in millimetres starts at 1000.
+    if (extent > 300) {
+        cloud_.notes.push_back(
+            "The points extend over " + short_number(extent) +
+            " m: if the file's unit is the millimetre, divide its coordinates by 1000.");
+    }
+    // Half a millimetre is what a float resolves at 8192 m.
+    if (reach > 8192 && extent <= 300) {
+        cloud_.notes.push_back(
+            "The points lie up to " + short_number(reach) +
+            " m from the origin, where 32-bit coordinates are coarser than 0.5 mm: "
+            "subtract the offset from the file's coordinates.");
+    }
+}
+
+PointCloud CloudBuilder::finish(std::uint32_t width, std::uint32_t height) {
+    if (cloud_.x.empty()) {
+        fail(file_, seen_ == 0 ? std::string("has no points")
+                               : "none of its " + counted(seen_, "point") +
+                                     " is finite; at least one must be");
+    }
+    if (height > 1) {
+        cloud_.width = width;
+        cloud_.height = height;
+    } else {
+        cloud_.pixel = {};
+    }
+    if (!any_normal_) cloud_.nx = cloud_.ny = cloud_.nz = {};
+    note_units();
+    return std::move(cloud_);
+}
+
+}  // namespace topple::io

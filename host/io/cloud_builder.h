@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+
+#include "topple/input.h"
+
+namespace topple::io {
+
+// Collects the points of a file into a PointCloud: drops and counts the ones that are not finite,
+// refuses coordinates that can't be metres, and makes normals unit length.
+class CloudBuilder {
+  public:
+    // `promised` points are reserved: check it against the file's size first.
+    CloudBuilder(const std::filesystem::path& file, std::uint64_t promised, bool with_normals);
+
+    // Adds point number seen(). `normal` is read with normals only; one that is not finite or has
+    // no length is stored as 0, 0, 0. Throws Error(input) for a coordinate beyond 1e6 m.
+    void add(const std::array<double, 3>& point, const std::array<double, 3>& normal = {});
+    std::uint64_t seen() const { return seen_; }
+
+    // All points are in. `width`, `height` > 0: the points are the pixels of one image, row by row.
+    // Throws Error(input) where no point is finite.
+    PointCloud finish(std::uint32_t width = 0, std::uint32_t height = 0);
+
+  private:
+    void note_units();
+
+    std::filesystem::path file_;
+    PointCloud cloud_;
+    bool with_normals_;
+    bool any_normal_ = false;
+    std::uint64_t seen_ = 0;
+};
+
+}  // namespace topple::io

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+
+#include "topple/input.h"
+
+// Point clouds from files. Nothing in a file is trusted: sizes are checked against the file's
+// before memory is taken for them, and every failure is an Error(input) of one line that names the
+// file, the place in it, what was found and what was expected.
+namespace topple::io {
+
+// Reads a PLY, PCD or XYZ file, told apart by its first bytes and, where those say nothing, by its
+// extension (.ply, .pcd; .xyz, .txt, .csv, .asc, .pts are XYZ).
+//
+// Metres, the file's own frame. Points with a coordinate that is not finite are left out and
+// counted in `dropped`; a file without a finite point, or with a coordinate beyond 1e6 m, is
+// refused. Normals are kept, made unit length, where the file has them (0, 0, 0 for single points
+// without one).
+PointCloud read_cloud(const std::filesystem::path& file);
+
+}  // namespace topple::io

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "io/cloud_builder.h"
+#include "io/formats.h"
+#include "io/text.h"
+
+namespace topple::io {
+namespace {
+
+constexpr std::size_t none = SIZE_MAX;
+// Columns beyond this one are not looked at.
+constexpr std::size_t most_columns = 256;
+
+// Which columns hold what.
+struct Columns {
+    std::array<std::size_t, 3> point{0, 1, 2}, normal{none, none, none};
+    bool normals_by_name = false;
+    bool has_normals() const { return normal[0] != none && normal[1] != none && normal[2] != none; }
+};
+
+std::string_view without_comment(std::string_view line) {
+    line = line.substr(0, line.find('#'));
+    return line.substr(0, line.find("//"));
+}
+
+std::size_t split(std::string_view line, std::array<std::string_view, most_columns>& tokens) {
+    std::size_t count = 0;
+    while (count < most_columns) {
+        const auto token = next_token(line, true);
+        if (token.empty()) break;
+        tokens[count++] = token;
+    }
+    return count;
+}
+
+// Reads a line of column names; false where it is none.
+bool parse_names(const std::array<std::string_view, most_columns>& tokens, std::size_t count,
+                 Columns& columns) {
+    double number;
+    if (count == 0 || parse_number(tokens[0], number)) return false;
+    static constexpr std::array<const char*, 6> names{"x", "y", "z", "nx", "ny", "nz"};
+    std::array<std::size_t, 6> at;
+    at.fill(none);
+    for (std::size_t i = 0; i < count; ++i) {
+        std::string name;
+        for (const char c : tokens[i]) {
+            if (c != '"' && c != '\'')
+                name += static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+        }
+        if (name.empty() || !((name[0] >= 'a' && name[0] <= 'z') || name[0] == '_')) return false;
+        for (std::size_t k = 0; k < names.size(); ++k) {
+            if (name == names[k] && at[k] == none) at[k] = i;
+        }
+    }
+    if (at[0] == none || at[1] == none || at[2] == none) return true;  // the first three columns
+    columns.point = {at[0], at[1], at[2]};
+    columns.normal = {at[3], at[4], at[5]};
+    columns.normals_by_name = true;
+    return true;
+}
+
+// Whether nearly all of the triples have length 1: then they are normals and no colours.
+bool are_unit(const std::vector<std::array<double, 3>>& triples) {
+    std::size_t unit = 0;
+    for (const auto& t : triples) {
+        const double length = std::sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
+        unit += std::abs(length - 1) < 0.02;
+    }
+    return !triples.empty() && unit >= triples.size() - triples.size() / 100;
+}
+
+class XyzParser {
+  public:
+    XyzParser(const std::filesystem::path& file, std::string_view bytes)
+        : file_(file), lines_(bytes) {}
+
+    PointCloud parse() {
+        std::string_view line;
+        bool first = true;
+        while (lines_.next(line)) {
+            const auto count = split(without_comment(line), tokens_);
+            if (count == 0) continue;
+            if (first) {
+                first = false;
+                if (count == 1 && parse_count(tokens_[0], promised_.emplace())) continue;
+                promised_.reset();
+                if (parse_names(tokens_, count, columns_)) continue;
+                if (count == 6) columns_.normal = {3, 4, 5};
+            }
+            add_row(count);
+        }
+        if (promised_ && *promised_ != points_.size()) {
+            fail(file_, "its first line promises " + counted(*promised_, "point") +
+                            ", the file has " + std::to_string(points_.size()) +
+                            "; it is cut short, or that line is wrong");
+        }
+        return build();
+    }
+
+  private:
+    void add_row(std::size_t count) {
+        points_.push_back(triple(columns_.point, count));
+        // A row that has not six columns like the first: the columns beyond three are no normals.
+        if (columns_.has_normals() && !columns_.normals_by_name && count != 6)
+            columns_.normal.fill(none);
+        if (columns_.has_normals()) normals_.push_back(triple(columns_.normal, count));
+    }
+
+    std::array<double, 3> triple(const std::array<std::size_t, 3>& which, std::size_t count) const {
+        std::array<double, 3> values{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (which[axis] >= count) {
+                bad(counted(count, "value") + ", but " + std::to_string(which[axis] + 1) +
+                    " are needed");
+            }
+            if (!parse_number(tokens_[which[axis]], values[axis])) {
+                bad(in_quotes(tokens_[which[axis]]) + " is not a number");
+            }
+        }
+        return values;
+    }
+
+    [[noreturn]] void bad(const std::string& message) const {
+        fail(file_, "line " + std::to_string(lines_.number()) + ": " + message);
+    }
+
+    PointCloud build() {
+        const bool normals =
+            columns_.has_normals() && (columns_.normals_by_name || are_unit(normals_));
+        CloudBuilder cloud(file_, points_.size(), normals);
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            cloud.add(points_[i], normals ? normals_[i] : std::array<double, 3>{});
+        }
+        return cloud.finish();
+    }
+
+    const std::filesystem::path& file_;
+    Lines lines_;
+    Columns columns_;
+    std::optional<std::uint64_t> promised_;
+    std::array<std::string_view, most_columns> tokens_;
+    std::vector<std::array<double, 3>> points_, normals_;
+};
+
+}  // namespace
+
+PointCloud parse_xyz(const std::filesystem::path& file, std::string_view bytes) {
+    if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);  // byte order mark
+    if (bytes.substr(0, 4096).find('\0') != std::string_view::npos) {
+        fail(file,
+             "is not text: it has zero bytes near its start; give text in UTF-8 or ASCII, or a "
+             ".ply or .pcd file");
+    }
+    return XyzParser(file, bytes).parse();
+}
+
+}  // namespace topple::io

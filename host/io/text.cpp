@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "io/text.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+
+namespace topple::io {
+namespace {
+
+// Length of the UTF-8 sequence at the front of `text`, 0 where there is none.
+std::size_t utf8_length(std::string_view text) {
+    const auto lead = static_cast<unsigned char>(text[0]);
+    const std::size_t length = lead < 0x80                    ? 1
+                               : lead >= 0xC2 && lead <= 0xDF ? 2
+                               : lead >= 0xE0 && lead <= 0xEF ? 3
+                               : lead >= 0xF0 && lead <= 0xF4 ? 4
+                                                              : 0;
+    if (length > text.size()) return 0;
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) return 0;
+    }
+    return length;
+}
+
+// Closes the descriptor when it goes.
+struct Descriptor {
+    int value;
+    explicit Descriptor(int descriptor) : value(descriptor) {}
+    ~Descriptor() {
+        if (value >= 0) ::close(value);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+};
+
+}  // namespace
+
+std::string printable(std::string_view text, std::size_t most) {
+    std::string out;
+    while (!text.empty()) {
+        if (out.size() >= most) return out + "...";
+        const auto length = utf8_length(text);
+        const auto byte = static_cast<unsigned char>(text[0]);
+        // C1 control characters (U+0080 to U+009F) steer terminals as C0 ones do.
+        const bool control = length == 0 || byte < 0x20 || byte == 0x7F ||
+                             (byte == 0xC2 && static_cast<unsigned char>(text[1]) < 0xA0);
+        const std::size_t taken = length == 0 ? 1 : length;
+        if (!control) {
+            out.append(text.substr(0, taken));
+        } else {
+            for (std::size_t i = 0; i < taken; ++i) {
+                char hex[5];
+                std::snprintf(hex, sizeof(hex), "\\x%02x", static_cast<unsigned char>(text[i]));
+                out += hex;
+            }
+        }
+        text.remove_prefix(taken);
+    }
+    return out;
+}
+
+std::string in_quotes(std::string_view text) {
+    std::string out(1, '"');
+    out += printable(text);
+    out += '"';
+    return out;
+}
+
+std::string path_text(const std::filesystem::path& path) {
+    return printable(path.native(), 4096);
+}
+
+void fail(const std::filesystem::path& file, const std::string& message) {
+    throw Error(ErrorKind::input, path_text(file) + ": " + message);
+}
+
+std::string counted(std::uint64_t count, const char* noun) {
+    return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string short_number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.6g", value);
+    return text;
+}
+
+FileBytes read_file(const std::filesystem::path& file, std::uint64_t limit) {
+    // Opening a FIFO without O_NONBLOCK would wait for a writer.
+    const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    struct stat status {};
+    if (descriptor.value < 0 || ::fstat(descriptor.value, &status) != 0) {
+        fail(file, std::string("can't be read: ") + std::strerror(errno));
+    }
+    if (!S_ISREG(status.st_mode)) {
+        fail(file, S_ISDIR(status.st_mode) ? "is a folder, not a file" : "is not a regular file");
+    }
+    const auto size = static_cast<std::uint64_t>(status.st_size);
+    if (size == 0) fail(file, "is empty (0 bytes)");
+    if (size > limit) {
+        fail(file, "has " + counted(size, "byte") + ", more than the " + std::to_string(limit) +
+                       " that such a file may have");
+    }
+    FileBytes bytes;
+    try {
+        bytes.data = std::make_unique_for_overwrite<char[]>(size);
+    } catch (const std::bad_alloc&) {
+        fail(file, "has " + counted(size, "byte") + ", which don't fit into memory");
+    }
+    while (bytes.size < size) {
+        const auto got = ::read(descriptor.value, bytes.data.get() + bytes.size, size - bytes.size);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) fail(file, std::string("can't be read: ") + std::strerror(errno));
+        if (got == 0) {
+            fail(file, "shrank while it was read: " + counted(size, "byte") + " expected, " +
+                           std::to_string(bytes.size) + " found");
+        }
+        bytes.size += static_cast<std::size_t>(got);
+    }
+    return bytes;
+}
+
+bool parse_number(std::string_view token, double& value) {
+    if (!token.empty() && token.front() == '+') {
+        token.remove_prefix(1);
+        if (!token.empty() && (token.front() == '-' || token.front() == '+')) return false;
+    }
+    if (token.empty()) return false;
+    const auto* last = token.data() + token.size();
+    const auto result = std::from_chars(token.data(), last, value);
+    if (result.ptr != last || result.ec == std::errc::invalid_argument) return false;
+    if (result.ec == std::errc::result_out_of_range) {
+        // from_chars does not tell too large from too small; strtod does, and this is rare.
+        value = std::strtod(std::string(token).c_str(), nullptr);
+    }
+    return true;
+}
+
+bool parse_count(std::string_view token, std::uint64_t& value) {
+    if (token.empty() || token.front() < '0' || token.front() > '9') return false;
+    const auto* last = token.data() + token.size();
+    const auto result = std::from_chars(token.data(), last, value);
+    return result.ptr == last && result.ec == std::errc();
+}
+
+}  // namespace topple::io
