@@ -20,3 +20,86 @@ STRUCT(SupportParams) {
     uint direction_count;
     uint output_first;     // where this primitive's row starts in the output
 } STRUCT_END(SupportParams)
+
+// voxel_normals
+STRUCT(VoxelNormalsParams) {
+    uint query_count;
+    uint cell_count;      // stride of the planes of cells and prior
+    uint column_first;    // cell of the first column
+    uint column_count;    // stride of the planes of columns
+    int radius;           // of the neighbourhood, cells per axis, 1 to 3
+    float inverse_reach2; // 1 / (distance at which a cell's weight falls to 0)^2, cells^-2
+    uint use_prior;       // 1: weigh cells by agreement of normals
+} STRUCT_END(VoxelNormalsParams)
+
+// normal_cluster
+STRUCT(NormalClusterParams) {
+    uint count;         // normals
+    uint cluster_count; // 1 to 32
+} STRUCT_END(NormalClusterParams)
+
+// disturbance_reach
+STRUCT(DisturbanceReachParams) {
+    uint cell_count;  // cells in the tile, a multiple of 64
+    uint row_count;   // offsets, one output row each
+} STRUCT_END(DisturbanceReachParams)
+
+// disturbance
+STRUCT(DisturbanceParams) {
+    uint cell_count;    // cells in the tile, a multiple of 64
+    uint entry_first;   // the footprint's first entry
+    uint entry_count;
+    uint band_first;    // height band of the first output plane, 0 to 31
+    uint band_count;    // output planes, 1 to 4
+    uint output_first;  // where the first plane starts in the output
+} STRUCT_END(DisturbanceParams)
+
+// carve_leaves, carve
+STRUCT(CarveParams) {
+    uint leaf_count;
+    uint frame_count;       // of this batch, 32 at most
+    uint width;             // words in a row of a frame's finest level: pixels - 1
+    uint height;            // rows of it: pixels - 1
+    uint frame_words;       // all levels of one frame
+    float near_m;           // nothing closer to the camera plane is judged
+    float metres_per_unit;  // of stored depth
+    float margin_m;         // half a voxel's diagonal, and half a depth unit
+    float noise_base_m;     // depth noise: base + growth * max(depth - from, 0)^2
+    float noise_growth;     // 1/m
+    float noise_from_m;
+    float slack_m;          // of carve_leaves alone, for rounding
+} STRUCT_END(CarveParams)
+
+// six_fill_sweep
+STRUCT(SixFillSweepParams) {
+    uint run_count;
+    uint stride;       // words from a voxel to the next along the axis: 64, 8 or 1
+    uint stride_high;  // between the lines of a leaf's cross-section, by the line's upper
+    uint stride_low;   // and lower three bits
+} STRUCT_END(SixFillSweepParams)
+
+// six_fill_vote
+STRUCT(SixFillVoteParams) {
+    uint count;  // voxels
+    uint votes;  // directions that must agree
+} STRUCT_END(SixFillVoteParams)
+
+// segmented_sum
+STRUCT(SegmentedSumParams) {
+    int origin_i;  // lowest indices of the scene: sums are taken relative to them
+    int origin_j;
+    int origin_k;
+} STRUCT_END(SegmentedSumParams)
+
+// group_landscape
+STRUCT(LandscapeParams) {
+    uint candidate_count;
+    uint tile_directions;    // directions in this tile of the table, a multiple of the items per work-item
+    uint padded_directions;  // row length of the output
+    uint tile_first;         // where the tile starts in an output row
+} STRUCT_END(LandscapeParams)
+
+// barrier_flood
+STRUCT(FloodParams) {
+    uint padded_directions;  // row length, a multiple of 128, at most 3072
+} STRUCT_END(FloodParams)

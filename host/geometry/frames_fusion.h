@@ -13,15 +13,15 @@ namespace topple::geometry {
 // A cloud with the sensor position of each point.
 struct FusedCloud {
     PointCloud cloud;
-    std::vector<Vec3> viewpoints;                  // one per frame that was fused
-    std::vector<std::uint32_t> viewpoint_of_point; // index into viewpoints
+    std::vector<Vec3> viewpoints;                   // one per frame that was fused
+    std::vector<std::uint32_t> viewpoint_of_point;  // index into viewpoints
 };
 
-// Fuses depth frames into one cloud: back-projects, then takes the mean of the readings in each cell
-// of `cell_m`, weighted by the inverse variance of a depth reading (which grows with depth), and drops
-// cells that a single stray reading made where others had the chance to see them. Frames are added
-// one at a time, so a sequence of any length needs memory for the cloud only. The result does not
-// depend on the order of the frames beyond rounding.
+// Fuses depth frames into one cloud: back-projects, then takes the mean of the readings in each
+// cell of `cell_m`, weighted by the inverse variance of a depth reading (which grows with depth),
+// and drops cells that a single stray reading made where others had the chance to see them. Frames
+// are added one at a time, so a sequence of any length needs memory for the cloud only. The result
+// does not depend on the order of the frames beyond rounding.
 class FrameFusion {
   public:
     FrameFusion(const Intrinsics& intrinsics, double cell_m);
@@ -43,8 +43,9 @@ class FrameFusion {
 bool frame_of_organised_cloud(const PointCloud& cloud, Intrinsics& intrinsics, DepthFrame& frame);
 
 // For a cloud without poses: depth images as a sensor would have taken them from inside the scene,
-// rendered from the points (six views of 90 degrees from each of `count` positions chosen where there
-// is most free space). The carving they give is an estimate, and said to be one in the result.
+// rendered from the points (six views of 90 degrees from each of `count` positions chosen where
+// there is most free space). The carving they give is an estimate, and said to be one in the
+// result.
 void virtual_frames(const PointCloud& cloud, double spacing_m, std::uint32_t count,
                     Intrinsics& intrinsics, std::vector<DepthFrame>& frames);
 

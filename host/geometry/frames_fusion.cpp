@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+#include "geometry/frames_fusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "geometry/depth_noise.h"
+#include "geometry/frames_cells.h"
+#include "topple/error.h"
+
+namespace topple::geometry {
+
+void CellSums::add(const CellSums& other) {
+    for (std::size_t a = 0; a < 3; ++a) offset[a] += other.offset[a];
+    weight += other.weight;
+    count += other.count;
+    if (other.best_weight > best_weight ||
+        (other.best_weight == best_weight && other.best_frame < best_frame)) {
+        best_weight = other.best_weight;
+        best_frame = other.best_frame;
+    }
+}
+
+void CellTable::add(const CellSums& sums) {
+    if (2 * (cells_.size() + 1) > slots_.size()) grow();
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t at = hash(sums.key) & mask;
+    while (slots_[at].at != 0 && slots_[at].key != sums.key) at = (at + 1) & mask;
+    if (slots_[at].at == 0) {
+        cells_.push_back(sums);
+        slots_[at] = {sums.key, static_cast<std::uint32_t>(cells_.size())};
+    } else {
+        cells_[slots_[at].at - 1].add(sums);
+    }
+}
+
+void CellTable::grow() {
+    slots_.assign(std::max<std::size_t>(2 * slots_.size(), 1024), Slot{});
+    const std::size_t mask = slots_.size() - 1;
+    for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+        std::size_t at = hash(cells_[cell].key) & mask;
+        while (slots_[at].at != 0) at = (at + 1) & mask;
+        slots_[at] = {cells_[cell].key, static_cast<std::uint32_t>(cell + 1)};
+    }
+}
+
+namespace {
+
+// Beyond this angle between the ray and the surface's normal, neighbouring readings say little
+// about each other, and a jump counts as one between two surfaces.
+constexpr double grazing_tangent = 7.1;  // tan 82 degrees
+
+void check(const Intrinsics& k, double cell_m) {
+    const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
+    if (!positive(cell_m)) {
+        throw Error(ErrorKind::usage,
+                    "fusion cell of " + std::to_string(cell_m) + " m: it must be positive");
+    }
+    if (!positive(k.fx) || !positive(k.fy) || !positive(k.depth_scale) || !std::isfinite(k.cx) ||
+        !std::isfinite(k.cy)) {
+        throw Error(ErrorKind::input,
+                    "intrinsics: fx, fy and depth_scale must be positive, cx and cy finite");
+    }
+}
+
+void check(const DepthFrame& frame, const Intrinsics& k, std::size_t number) {
+    if (frame.depth.size() != std::size_t{k.width} * k.height) {
+        throw Error(ErrorKind::input, "depth frame " + std::to_string(number) + ": " +
+                                          std::to_string(frame.depth.size()) +
+                                          " pixels, the intrinsics say " + std::to_string(k.width) +
+                                          " x " + std::to_string(k.height));
+    }
+    for (const double v : frame.camera_to_world) {
+        if (!std::isfinite(v)) {
+            throw Error(ErrorKind::input, "depth frame " + std::to_string(number) +
+                                              ": its pose is not finite; leave the frame out");
+        }
+    }
+}
+
+// A reading between two surfaces lies on neither: along a row or a column, both neighbours are too
+// far off in depth. Missing neighbours don't support it either.
+bool flying(const std::uint16_t* depth, std::uint32_t u, std::uint32_t v, const Intrinsics& k,
+            float limit) {
+    const auto far = [&](std::uint32_t other) {
+        return other == 0 ||
+               std::abs(static_cast<float>(other) - static_cast<float>(*depth)) > limit;
+    };
+    const std::size_t w = k.width;
+    const bool left = u == 0 || far(depth[-1]), right = u + 1 == w || far(depth[1]);
+    const bool up = v == 0 || far(*(depth - w)), down = v + 1 == k.height || far(depth[w]);
+    return (left && right) || (up && down);
+}
+
+}  // namespace
+
+FrameFusion::FrameFusion(const Intrinsics& intrinsics, double cell_m)
+    : cells_(std::make_unique<Cells>()), intrinsics_(intrinsics), cell_m_(cell_m) {
+    check(intrinsics, cell_m);
+    // One entry per stored depth: what depends on depth alone.
+    cells_->sigma_limit.resize(65536);
+    cells_->weight.resize(65536);
+    const double focal = std::min(intrinsics.fx, intrinsics.fy);
+    for (std::size_t stored = 1; stored < 65536; ++stored) {
+        const double z = static_cast<double>(stored) / intrinsics.depth_scale;
+        const double sigma = depth_sigma(z), ratio = least_depth_sigma / sigma;
+        cells_->sigma_limit[stored] = static_cast<float>(
+            intrinsics.depth_scale * (3 * std::sqrt(2.0) * sigma + z * grazing_tangent / focal));
+        cells_->weight[stored] =
+            std::max(1u, static_cast<std::uint32_t>(std::lround(65535 * ratio * ratio)));
+    }
+}
+FrameFusion::~FrameFusion() = default;
+FrameFusion::FrameFusion(FrameFusion&&) noexcept = default;
+
+void FrameFusion::add(const DepthFrame& frame) {
+    const Intrinsics& k = intrinsics_;
+    Cells& c = *cells_;
+    check(frame, k, c.viewpoints.size());
+    const auto number = static_cast<std::uint32_t>(c.viewpoints.size());
+    const Mat4& m = frame.camera_to_world;
+    c.viewpoints.push_back({m[3], m[7], m[11]});
+    const double per_cell = 1 / cell_m_;
+
+    c.pool.run(Cells::block_count, 1, [&](std::uint64_t block, std::uint64_t) {
+        auto& runs = c.runs[block];
+        for (auto& list : runs) list.clear();
+        const auto first = static_cast<std::uint32_t>(block * k.height / Cells::block_count);
+        const auto last = static_cast<std::uint32_t>((block + 1) * k.height / Cells::block_count);
+        for (std::uint32_t v = first; v < last; ++v) {
+            const double dy = (v - k.cy) / k.fy;
+            CellSums run;
+            const auto flush = [&] {
+                if (run.count) runs[(run.key * 0xD6E8FEB86659FD93u) >> 60].push_back(run);
+            };
+            const std::uint16_t* row = frame.depth.data() + std::size_t{v} * k.width;
+            for (std::uint32_t u = 0; u < k.width; ++u) {
+                const std::uint16_t stored = row[u];
+                if (stored == 0 || flying(row + u, u, v, k, c.sigma_limit[stored])) continue;
+                const double z = stored / k.depth_scale, dx = (u - k.cx) / k.fx;
+                constexpr auto bias = static_cast<double>(key_bias);
+                const std::array<double, 3> p{
+                    ((m[0] * dx + m[1] * dy + m[2]) * z + m[3]) * per_cell + bias,
+                    ((m[4] * dx + m[5] * dy + m[6]) * z + m[7]) * per_cell + bias,
+                    ((m[8] * dx + m[9] * dy + m[10]) * z + m[11]) * per_cell + bias};
+                if (!(p[0] >= 1 && p[1] >= 1 && p[2] >= 1 && p[0] < 2 * bias - 1 &&
+                      p[1] < 2 * bias - 1 && p[2] < 2 * bias - 1)) {
+                    ++c.outside[block];
+                    continue;
+                }
+                const auto x = static_cast<std::uint64_t>(p[0]),
+                           y = static_cast<std::uint64_t>(p[1]),
+                           h = static_cast<std::uint64_t>(p[2]);
+                const std::uint64_t key = x << 42 | y << 21 | h;
+                if (key != run.key || run.count == 0) {
+                    flush();
+                    run = CellSums{};
+                    run.key = key;
+                    run.best_frame = number;
+                }
+                const std::uint32_t weight = c.weight[stored];
+                const auto fraction = [](double value, std::uint64_t whole) {
+                    return static_cast<std::uint64_t>((value - static_cast<double>(whole)) * 65536);
+                };
+                run.offset[0] += weight * fraction(p[0], x);
+                run.offset[1] += weight * fraction(p[1], y);
+                run.offset[2] += weight * fraction(p[2], h);
+                run.weight += weight;
+                run.best_weight = std::max(run.best_weight, weight);
+                ++run.count;
+            }
+            flush();
+        }
+    });
+    c.pool.run(Cells::shard_count, 1, [&](std::uint64_t shard, std::uint64_t) {
+        for (const auto& block : c.runs) {
+            for (const CellSums& run : block[shard]) c.shards[shard].add(run);
+        }
+    });
+}
+
+FusedCloud FrameFusion::finish() {
+    FusedCells fused;
+    fused.cell_m = cell_m_;
+    for (const CellTable& shard : cells_->shards) {
+        fused.cells.insert(fused.cells.end(), shard.cells().begin(), shard.cells().end());
+    }
+    cells_->shards = {};
+    std::sort(fused.cells.begin(), fused.cells.end(),
+              [](const CellSums& a, const CellSums& b) { return a.key < b.key; });
+    drop_weak(fused, cells_->viewpoints.size());
+    flatten_layers(fused);
+
+    FusedCloud result;
+    result.viewpoints = std::move(cells_->viewpoints);
+    for (const std::uint64_t count : cells_->outside) result.cloud.dropped += count;
+    for (const CellSums& cell : fused.cells) {
+        const auto at = [&](unsigned shift, std::size_t axis) {
+            const auto index = static_cast<std::int64_t>(cell.key >> shift & 0x1FFFFF) - key_bias;
+            // Half a unit: fractions were cut off, not rounded.
+            const double fraction =
+                (static_cast<double>(cell.offset[axis]) / static_cast<double>(cell.weight) + 0.5) /
+                65536;
+            return static_cast<float>((static_cast<double>(index) + fraction) * cell_m_);
+        };
+        result.cloud.x.push_back(at(42, 0));
+        result.cloud.y.push_back(at(21, 1));
+        result.cloud.z.push_back(at(0, 2));
+        result.viewpoint_of_point.push_back(cell.best_frame);
+    }
+    return result;
+}
+
+}  // namespace topple::geometry

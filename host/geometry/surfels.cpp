@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+#include "geometry/surfels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "geometry/cell_grid.h"
+#include "geometry/plane_fit.h"
+#include "geometry/surfels_clean.h"
+#include "geometry/surfels_orient.h"
+#include "topple/error.h"
+
+namespace topple::geometry {
+namespace {
+
+// Normals are looked for on coarser grids where the cells are too sparse; this many doublings.
+constexpr int most_levels = 3;
+
+void check(const PointCloud& cloud, double cell_m, std::span<const Vec3> viewpoints,
+           std::span<const std::uint32_t> viewpoint_of_point) {
+    if (!(cell_m > 0) || !std::isfinite(cell_m)) {
+        throw Error(ErrorKind::usage,
+                    "surfel size " + std::to_string(cell_m) + " m: it must be a positive number");
+    }
+    if (cloud.size() >= std::numeric_limits<std::uint32_t>::max()) {
+        throw Error(ErrorKind::input, cloud.source + ": " + std::to_string(cloud.size()) +
+                                          " points, more than 2^32 - 2; thin the cloud out");
+    }
+    if (!viewpoint_of_point.empty() && viewpoint_of_point.size() != cloud.size()) {
+        throw Error(ErrorKind::input,
+                    cloud.source + ": " + std::to_string(viewpoint_of_point.size()) +
+                        " viewpoint indices for " + std::to_string(cloud.size()) + " points");
+    }
+    for (const std::uint32_t index : viewpoint_of_point) {
+        if (index >= viewpoints.size()) {
+            throw Error(ErrorKind::input, cloud.source + ": viewpoint " + std::to_string(index) +
+                                              " of " + std::to_string(viewpoints.size()));
+        }
+    }
+}
+
+// The cells of the points and their moments.
+CellGrid bin(const PointCloud& cloud, double cell_m, std::vector<std::uint32_t>& of_point,
+             std::vector<float>& count) {
+    const std::array<const std::vector<float>*, 3> p{&cloud.x, &cloud.y, &cloud.z};
+    const std::size_t n = cloud.size();
+    CellGrid grid;
+    grid.cell_m = cell_m;
+    of_point.resize(n);
+    if (n == 0) return grid;
+    std::array<std::int64_t, 3> lowest{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto [low, high] = std::minmax_element(p[a]->begin(), p[a]->end());
+        const double lo = std::floor(*low / cell_m), hi = std::floor(*high / cell_m);
+        constexpr double most_index = 1 << 30;
+        if (!(std::abs(lo) < most_index && std::abs(hi) < most_index &&
+              hi - lo < static_cast<double>(max_cells_per_axis))) {
+            throw Error(ErrorKind::input, cloud.source + ": the cloud reaches from " +
+                                              std::to_string(*low) + " to " +
+                                              std::to_string(*high) + " m, more than " +
+                                              std::to_string(max_cells_per_axis) + " cells of " +
+                                              std::to_string(cell_m) +
+                                              " m; remove stray points or use a larger --voxel");
+        }
+        lowest[a] = static_cast<std::int64_t>(lo);
+    }
+    CellPacking pack{{static_cast<std::int32_t>(lowest[0]), static_cast<std::int32_t>(lowest[1]),
+                      static_cast<std::int32_t>(lowest[2])}};
+    std::vector<std::uint64_t> keys(n);
+    const auto index = [&](float v) { return static_cast<std::int64_t>(std::floor(v / cell_m)); };
+    for (std::size_t i = 0; i < n; ++i) {
+        keys[i] = pack(index(cloud.x[i]), index(cloud.y[i]), index(cloud.z[i]));
+    }
+    const std::vector<std::uint32_t> order = sorted_order(keys);
+    std::size_t cells = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        cells += k == 0 || keys[order[k]] != keys[order[k - 1]];
+        of_point[order[k]] = static_cast<std::uint32_t>(cells - 1);
+    }
+    grid.resize(cells);
+    count.assign(cells, 0);
+    for (std::size_t begin = 0, end = 0, cell = 0; begin < n; begin = end, ++cell) {
+        std::array<double, 3> first{};
+        std::array<double, 6> second{};
+        const std::uint32_t one = order[begin];
+        const std::array<std::int64_t, 3> at{index(cloud.x[one]), index(cloud.y[one]),
+                                             index(cloud.z[one])};
+        for (; end < n && keys[order[end]] == keys[one]; ++end) {
+            std::array<double, 3> d{};
+            for (std::size_t a = 0; a < 3; ++a) {
+                d[a] = (*p[a])[order[end]] / cell_m - (static_cast<double>(at[a]) + 0.5);
+                first[a] += d[a];
+                second[a] += d[a] * d[a];
+            }
+            second[3] += d[0] * d[1];
+            second[4] += d[0] * d[2];
+            second[5] += d[1] * d[2];
+        }
+        const double size = static_cast<double>(end - begin);
+        for (double& v : first) v /= size;
+        for (double& v : second) v /= size;
+        grid.x[cell] = static_cast<std::int32_t>(at[0]);
+        grid.y[cell] = static_cast<std::int32_t>(at[1]);
+        grid.z[cell] = static_cast<std::int32_t>(at[2]);
+        for (std::size_t a = 0; a < 3; ++a) {
+            grid.mean[a][cell] = static_cast<float>(first[a]);
+            grid.spread[a][cell] = static_cast<float>(second[a] - first[a] * first[a]);
+        }
+        grid.spread[3][cell] = static_cast<float>(second[3] - first[0] * first[1]);
+        grid.spread[4][cell] = static_cast<float>(second[4] - first[0] * first[2]);
+        grid.spread[5][cell] = static_cast<float>(second[5] - first[1] * first[2]);
+        count[cell] = static_cast<float>(size);
+        grid.weight[cell] = fit_weight(size);
+    }
+    return grid;
+}
+
+void set_normals(Surfels& s, const PlaneFit& fit, const std::vector<std::uint32_t>* of,
+                 double cell_m) {
+    for (std::size_t k = 0; k < fit.rms.size(); ++k) {
+        const std::size_t i = of ? (*of)[k] : k;
+        s.nx[i] = fit.normal[0][k];
+        s.ny[i] = fit.normal[1][k];
+        s.nz[i] = fit.normal[2][k];
+        s.roughness_m[i] = static_cast<float>(fit.rms[k] * cell_m);
+    }
+}
+
+bool undefined(const Surfels& s, std::size_t i) {
+    return s.nx[i] == 0 && s.ny[i] == 0 && s.nz[i] == 0;
+}
+
+// Where a surfel has too few neighbours for a plane, the next coarser grid that has enough gives
+// it.
+void fill_from_coarser(device::Device& device, const CellGrid& fine, Surfels& s) {
+    std::vector<std::uint32_t> left;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        if (undefined(s, i)) left.push_back(static_cast<std::uint32_t>(i));
+    }
+    std::vector<std::uint32_t> cell_of(s.size());
+    for (std::size_t i = 0; i < s.size(); ++i) cell_of[i] = static_cast<std::uint32_t>(i);
+    CellGrid grid = fine;
+    for (int level = 1; level <= most_levels && !left.empty(); ++level) {
+        std::vector<std::uint32_t> parent;
+        CellGrid coarse = coarsen(grid, parent);
+        grid = std::move(coarse);
+        for (std::uint32_t& cell : cell_of) cell = parent[cell];
+        PlaneQueries queries;
+        for (const std::uint32_t i : left) {
+            const std::uint32_t cell = cell_of[i];
+            queries.cell.push_back(cell);
+            queries.at[0].push_back(
+                static_cast<float>(s.x[i] / grid.cell_m - (grid.x[cell] + 0.5)));
+            queries.at[1].push_back(
+                static_cast<float>(s.y[i] / grid.cell_m - (grid.y[cell] + 0.5)));
+            queries.at[2].push_back(
+                static_cast<float>(s.z[i] / grid.cell_m - (grid.z[cell] + 0.5)));
+        }
+        set_normals(s, fit_planes(device, grid, queries, {}), &left, grid.cell_m);
+        std::erase_if(left, [&](std::uint32_t i) { return !undefined(s, i); });
+    }
+}
+
+Surfels from_grid(const CellGrid& grid) {
+    Surfels s;
+    s.cell_m = grid.cell_m;
+    s.cx = grid.x;
+    s.cy = grid.y;
+    s.cz = grid.z;
+    for (auto* field : {&s.x, &s.y, &s.z, &s.nx, &s.ny, &s.nz, &s.roughness_m}) {
+        field->assign(grid.size(), 0.0f);
+    }
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+        s.x[i] = static_cast<float>((grid.x[i] + 0.5 + grid.mean[0][i]) * grid.cell_m);
+        s.y[i] = static_cast<float>((grid.y[i] + 0.5 + grid.mean[1][i]) * grid.cell_m);
+        s.z[i] = static_cast<float>((grid.z[i] + 0.5 + grid.mean[2][i]) * grid.cell_m);
+    }
+    return s;
+}
+
+}  // namespace
+
+Surfels make_surfels(device::Device& device, const PointCloud& cloud, double cell_m,
+                     std::span<const Vec3> viewpoints,
+                     std::span<const std::uint32_t> viewpoint_of_point) {
+    check(cloud, cell_m, viewpoints, viewpoint_of_point);
+    std::vector<std::uint32_t> of_point;
+    std::vector<float> count;
+    CellGrid grid = bin(cloud, cell_m, of_point, count);
+    if (grid.size() == 0) {
+        Surfels none;
+        none.cell_m = cell_m;
+        none.neighbour_first.assign(1, 0);
+        return none;
+    }
+    flatten_noise(device, grid, count, of_point);
+    Surfels s = from_grid(grid);
+    s.weight = std::move(count);
+    s.of_point = std::move(of_point);
+    cell_neighbours(s.cx, s.cy, s.cz, s.neighbour_first, s.neighbours);
+
+    const PlaneQueries queries = queries_at_means(grid);
+    set_normals(s, fit_planes(device, grid, queries, {}), nullptr, cell_m);
+    const Orientation towards = sensor_side(s, cloud, viewpoints, viewpoint_of_point);
+    orient(s, towards);
+    // The second pass knows which side each cell faces and leaves the others out.
+    PlaneFitOptions guided;
+    const std::vector<float> px = s.nx, py = s.ny, pz = s.nz;
+    guided.prior_x = px;
+    guided.prior_y = py;
+    guided.prior_z = pz;
+    PlaneFit sharp = fit_planes(device, grid, queries, guided);
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        // Where too few agree, the first pass stands.
+        if (sharp.normal[0][i] == 0 && sharp.normal[1][i] == 0 && sharp.normal[2][i] == 0) {
+            sharp.normal[0][i] = px[i];
+            sharp.normal[1][i] = py[i];
+            sharp.normal[2][i] = pz[i];
+            sharp.rms[i] = static_cast<float>(s.roughness_m[i] / cell_m);
+        } else if (sharp.normal[0][i] * px[i] + sharp.normal[1][i] * py[i] +
+                       sharp.normal[2][i] * pz[i] <
+                   0) {
+            for (auto& axis : sharp.normal) axis[i] = -axis[i];
+        }
+    }
+    set_normals(s, sharp, nullptr, cell_m);
+    fill_from_coarser(device, grid, s);
+    orient(s, towards);
+    return s;
+}
+
+double point_spacing(const PointCloud& cloud) {
+    const std::size_t n = cloud.size();
+    if (n < 2) return 0;
+    // Brute force over a fixed sample: the clouds that come here have at most some 10^7 points.
+    const std::size_t samples = std::clamp<std::size_t>(200'000'000 / n, 64, 512);
+    std::vector<float> nearest;
+    for (std::size_t k = 0; k < std::min(samples, n); ++k) {
+        const std::size_t i = k * n / std::min(samples, n);
+        const float x = cloud.x[i], y = cloud.y[i], z = cloud.z[i];
+        float best = std::numeric_limits<float>::max();
+        for (std::size_t j = 0; j < n; ++j) {
+            const float dx = cloud.x[j] - x, dy = cloud.y[j] - y, dz = cloud.z[j] - z;
+            const float d = dx * dx + dy * dy + dz * dz;
+            // Stored twice is not a spacing.
+            best = d > 0 && d < best ? d : best;
+        }
+        if (best < std::numeric_limits<float>::max()) nearest.push_back(best);
+    }
+    if (nearest.empty()) return 0;
+    const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
+    std::nth_element(nearest.begin(), middle, nearest.end());
+    return std::sqrt(static_cast<double>(*middle));
+}
+
+}  // namespace topple::geometry
