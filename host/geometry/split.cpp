@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "geometry/split.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/algebraic_model.h"
+
+namespace topple::geometry {
+
+namespace {
+
+float quantile(std::vector<float> values, double q) {
+    if (values.empty()) return 0;
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(q * double(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+// The lower quartile of each surfel's neighbourhood, itself included.
+std::vector<float> lower_neighbours(const Surfels& s, const std::vector<float>& value) {
+    std::vector<float> out(value.size()), around;
+    for (std::size_t i = 0; i < value.size(); ++i) {
+        around.assign(1, value[i]);
+        for (auto e = s.neighbour_first[i]; e < s.neighbour_first[i + 1]; ++e)
+            around.push_back(value[s.neighbours[e]]);
+        const auto at = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 4);
+        std::nth_element(around.begin(), at, around.end());
+        out[i] = *at;
+    }
+    return out;
+}
+
+// Typical angle between neighbouring normals where the scan is smooth, radians.
+double normal_noise(const Surfels& s, float smooth_m) {
+    std::vector<float> angles;
+    const std::size_t step = s.size() / 20000 + 1;
+    for (std::size_t i = 0; i < s.size(); i += step) {
+        if (s.roughness_m[i] > smooth_m) continue;
+        for (auto e = s.neighbour_first[i]; e < s.neighbour_first[i + 1]; ++e) {
+            const std::uint32_t j = s.neighbours[e];
+            if (s.roughness_m[j] > smooth_m) continue;
+            const double c = normal(s, i).dot(normal(s, j));
+            angles.push_back(static_cast<float>(std::acos(std::clamp(c, -1.0, 1.0))));
+        }
+    }
+    return quantile(std::move(angles), 0.5);
+}
+
+}  // namespace
+
+SplitScale measure_scale(const Surfels& surfels, const SplitOptions& options) {
+    SplitScale scale;
+    scale.layer_m = options.layer_cells * surfels.cell_m;
+    const float typical = quantile(surfels.roughness_m, 0.5);
+    const float rough = quantile(surfels.roughness_m, 0.75);
+    std::vector<float> noise = lower_neighbours(surfels, surfels.roughness_m);
+    noise = lower_neighbours(surfels, noise);
+    const double floor_m = options.cell_noise_share * surfels.cell_m;
+    scale.tolerance_m.resize(surfels.size());
+    for (std::size_t i = 0; i < surfels.size(); ++i) {
+        const double sigma = std::clamp(noise[i], 0.5f * typical, rough);
+        scale.tolerance_m[i] =
+            static_cast<float>(options.tolerance_sigma * std::hypot(sigma, floor_m));
+    }
+    const double degree = EIGEN_PI / 180;
+    scale.angle_rad = std::clamp(options.angle_factor * normal_noise(surfels, typical),
+                                 options.angle_min_deg * degree, options.angle_max_deg * degree);
+    return scale;
+}
+
+void refit_regions(const Surfels& surfels, const SplitScale& scale, Regions& regions) {
+    std::vector<std::vector<std::uint32_t>> members(regions.regions.size());
+    std::vector<std::int32_t> order;  // old ids by lowest surfel
+    for (std::size_t i = 0; i < surfels.size(); ++i) {
+        const std::int32_t label = regions.label[i];
+        if (label < 0) continue;
+        auto& list = members[static_cast<std::size_t>(label)];
+        if (list.empty()) order.push_back(label);
+        list.push_back(static_cast<std::uint32_t>(i));
+    }
+    std::vector<Region> kept;
+    std::vector<Eigen::Vector3d> points, normals;
+    for (const std::int32_t old : order) {
+        const auto& list = members[static_cast<std::size_t>(old)];
+        Region region = regions.regions[static_cast<std::size_t>(old)];
+        PlaneMoments moments;
+        points.clear();
+        normals.clear();
+        for (const std::uint32_t i : list) {
+            if (region.model.degree == 1) {
+                moments.add(position(surfels, i), normal(surfels, i));
+            } else {
+                points.push_back(position(surfels, i));
+                normals.push_back(normal(surfels, i));
+            }
+        }
+        region.model = region.model.degree == 1 ? fit_plane(moments, scale.layer_m)
+                                                : fit_quadric(points, normals, scale.layer_m);
+        double sum = 0;
+        for (const std::uint32_t i : list) {
+            const double d = distance(region.model, position(surfels, i));
+            sum += d * d;
+        }
+        region.surfels = list.size();
+        region.residual_m = std::sqrt(sum / static_cast<double>(list.size()));
+        const auto id = static_cast<std::int32_t>(kept.size());
+        for (const std::uint32_t i : list) regions.label[i] = id;
+        kept.push_back(region);
+    }
+    regions.regions = std::move(kept);
+}
+
+Regions split(const Surfels& surfels) {
+    const SplitOptions options;
+    if (surfels.size() == 0) return {};
+    const SplitScale scale = measure_scale(surfels, options);
+    Regions regions = grow_regions(surfels, scale, options);
+    refit_regions(surfels, scale, regions);
+    clean_regions(surfels, scale, options, regions);
+    return regions;
+}
+
+}  // namespace topple::geometry

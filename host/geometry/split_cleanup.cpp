@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <queue>
+#include <tuple>
+
+#include "geometry/algebraic_model.h"
+#include "geometry/split.h"
+
+namespace topple::geometry {
+
+namespace {
+
+constexpr double kReach = 2.0;  // tolerances within which a leftover still belongs to a model
+constexpr double kNeighbourVote = 2.0;  // weight of all neighbours agreeing, against the fit's cost
+constexpr int kSmoothingPasses = 3;
+constexpr std::uint32_t kAbsorbBelow =
+    40;  // surfels under which a region may be taken by a neighbour
+
+class Cleaner {
+  public:
+    Cleaner(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
+            Regions& regions)
+        : s_(surfels), scale_(scale), options_(options), r_(regions) {}
+
+    void run() {
+        hand_out(kReach);
+        make_regions_of_leftovers();
+        refit_regions(s_, scale_, r_);
+        absorb_small();
+        smooth_borders();
+        refit_regions(s_, scale_, r_);
+    }
+
+  private:
+    const AlgebraicModel& model(std::int32_t label) const {
+        return r_.regions[static_cast<std::size_t>(label)].model;
+    }
+
+    // How badly a model explains a surfel: distance in tolerances, plus the angle where it is
+    // beyond what noise explains. 1 is the bound of growing.
+    double misfit(std::int32_t label, std::uint32_t i) const {
+        const Eigen::Vector3d p = position(s_, i);
+        const double d = std::abs(distance(model(label), p)) / scale_.tolerance_m[i];
+        const Eigen::Vector3d g = gradient(model(label), p);
+        const double length = g.norm();
+        const double c = length > 0 ? normal(s_, i).dot(g) / length : 0;
+        return d + 0.5 * std::acos(std::clamp(c, -1.0, 1.0)) / scale_.angle_rad;
+    }
+
+    // Surfels without a region go to adjacent regions, best fits first, so that a border between
+    // two regions comes to lie where their models meet.
+    void hand_out(double reach) {
+        using Offer = std::tuple<double, std::uint32_t, std::int32_t>;
+        std::priority_queue<Offer, std::vector<Offer>, std::greater<>> offers;
+        const auto offer_around = [&](std::uint32_t i) {
+            for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
+                const std::uint32_t j = s_.neighbours[e];
+                if (r_.label[j] >= 0) continue;
+                const double d = std::abs(distance(model(r_.label[i]), position(s_, j)));
+                if (d > reach * scale_.tolerance_m[j]) continue;
+                offers.emplace(misfit(r_.label[i], j), j, r_.label[i]);
+            }
+        };
+        for (std::uint32_t i = 0; i < s_.size(); ++i)
+            if (r_.label[i] >= 0) offer_around(i);
+        while (!offers.empty()) {
+            const auto [cost, i, label] = offers.top();
+            offers.pop();
+            if (r_.label[i] >= 0) continue;
+            r_.label[i] = label;
+            offer_around(i);
+        }
+    }
+
+    // What no model reaches: connected pieces become regions of their own, crumbs join a neighbour.
+    void make_regions_of_leftovers() {
+        std::vector<std::uint32_t> piece;
+        std::vector<bool> seen(s_.size(), false);
+        for (std::uint32_t first = 0; first < s_.size(); ++first) {
+            if (r_.label[first] >= 0 || seen[first]) continue;
+            piece.assign(1, first);
+            seen[first] = true;
+            std::map<std::int32_t, std::uint32_t> touches;
+            for (std::size_t head = 0; head < piece.size(); ++head) {
+                const std::uint32_t i = piece[head];
+                for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
+                    const std::uint32_t j = s_.neighbours[e];
+                    if (r_.label[j] >= 0) {
+                        ++touches[r_.label[j]];
+                    } else if (!seen[j]) {
+                        seen[j] = true;
+                        piece.push_back(j);
+                    }
+                }
+            }
+            place(piece, touches, seen);
+        }
+    }
+
+    void place(const std::vector<std::uint32_t>& piece,
+               const std::map<std::int32_t, std::uint32_t>& touches, std::vector<bool>&) {
+        std::int32_t label = -1;
+        if (piece.size() >= options_.region_min) {
+            label = static_cast<std::int32_t>(r_.regions.size());
+            Region region;
+            region.model.degree = 2;
+            r_.regions.push_back(region);
+        } else {
+            std::uint32_t most = 0;
+            for (const auto& [other, count] : touches)
+                if (count > most) most = count, label = other;
+        }
+        for (const std::uint32_t i : piece) r_.label[i] = label;
+    }
+
+    // Small regions that a neighbour's model explains as a whole join it.
+    void absorb_small() {
+        std::vector<std::vector<std::uint32_t>> members(r_.regions.size());
+        for (std::uint32_t i = 0; i < s_.size(); ++i)
+            if (r_.label[i] >= 0) members[static_cast<std::size_t>(r_.label[i])].push_back(i);
+        std::vector<std::int32_t> order;
+        for (std::size_t k = 0; k < members.size(); ++k)
+            if (members[k].size() < kAbsorbBelow) order.push_back(static_cast<std::int32_t>(k));
+        std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+            return members[std::size_t(a)].size() < members[std::size_t(b)].size();
+        });
+        for (const std::int32_t k : order) {
+            auto& mine = members[static_cast<std::size_t>(k)];
+            std::map<std::int32_t, std::uint32_t> touches;
+            for (const std::uint32_t i : mine)
+                for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
+                    const std::int32_t other = r_.label[s_.neighbours[e]];
+                    if (other >= 0 && other != k) ++touches[other];
+                }
+            std::int32_t best = -1;
+            double best_cost = 1.25;
+            for (const auto& [other, count] : touches) {
+                double cost = 0;
+                for (const std::uint32_t i : mine) cost += misfit(other, i);
+                cost /= static_cast<double>(mine.size());
+                if (cost < best_cost) best_cost = cost, best = other;
+            }
+            if (best < 0) continue;
+            auto& theirs = members[static_cast<std::size_t>(best)];
+            for (const std::uint32_t i : mine) r_.label[i] = best;
+            theirs.insert(theirs.end(), mine.begin(), mine.end());
+            mine.clear();
+        }
+    }
+
+    // Each surfel at a border takes the label that fits best given its neighbours, all at once.
+    void smooth_borders() {
+        std::vector<std::int32_t> next;
+        std::vector<std::pair<std::int32_t, int>> votes;
+        for (int pass = 0; pass < kSmoothingPasses; ++pass) {
+            next = r_.label;
+            for (std::uint32_t i = 0; i < s_.size(); ++i) {
+                const auto first = s_.neighbour_first[i], last = s_.neighbour_first[i + 1];
+                votes.clear();
+                for (auto e = first; e < last; ++e) {
+                    const std::int32_t label = r_.label[s_.neighbours[e]];
+                    if (label < 0) continue;
+                    auto at = std::find_if(votes.begin(), votes.end(),
+                                           [&](const auto& v) { return v.first == label; });
+                    if (at == votes.end())
+                        votes.emplace_back(label, 1);
+                    else
+                        ++at->second;
+                }
+                if (votes.empty() || (votes.size() == 1 && votes[0].first == r_.label[i])) continue;
+                std::sort(votes.begin(), votes.end());
+                double best = 1e9;
+                for (const auto& [label, count] : votes) {
+                    const double cost = std::min(misfit(label, i), 4.0) -
+                                        kNeighbourVote * count / double(last - first);
+                    if (cost < best) best = cost, next[i] = label;
+                }
+            }
+            r_.label.swap(next);
+        }
+    }
+
+    const Surfels& s_;
+    const SplitScale& scale_;
+    const SplitOptions& options_;
+    Regions& r_;
+};
+
+}  // namespace
+
+void clean_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
+                   Regions& regions) {
+    Cleaner(surfels, scale, options, regions).run();
+}
+
+}  // namespace topple::geometry
