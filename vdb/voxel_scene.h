@@ -13,12 +13,13 @@
 
 #include "device/device.h"
 #include "topple/input.h"
+#include "topple/scene.h"
 
 // Sparse voxel grids of a scene. OpenVDB holds them; devices see their leaves as flat tiles.
 namespace topple::vdb {
 
-// How voxels lie in the input's frame: voxel (i, j, k) is centred at R' * ((i, j, k) + 0.5) * voxel_m,
-// with R = grid_from_input, a rotation whose third row is up.
+// How voxels lie in the input's frame: voxel (i, j, k) is centred at R' * ((i, j, k) + 0.5) *
+// voxel_m, with R = grid_from_input, a rotation whose third row is up.
 struct VoxelFrame {
     double voxel_m = 0.02;
     std::array<Vec3, 3> grid_from_input{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
@@ -29,31 +30,67 @@ enum class State : std::uint8_t { empty = 0, surface = 1, invisible = 2, complet
 // Leaves of 8x8x8 voxels, sorted by origin (x, then y, then z). Voxel (x, y, z) of leaf n has index
 // n * 512 + (x & 7) * 64 + (y & 7) * 8 + (z & 7), in every per-voxel array here.
 struct Tiles {
-    std::vector<std::int32_t> x, y, z;      // lowest voxel of each leaf, multiples of 8
-    std::vector<std::int32_t> neighbour;    // 6 per leaf: -x, +x, -y, +y, -z, +z; -1 where absent
+    std::vector<std::int32_t> x, y, z;    // lowest voxel of each leaf, multiples of 8
+    std::vector<std::int32_t> neighbour;  // 6 per leaf: -x, +x, -y, +y, -z, +z; -1 where absent
     std::size_t size() const { return x.size(); }
+};
+
+// When a voxel counts as seen through. Depth noise: base + growth * max(depth - from, 0)^2, metres
+// (the defaults are those of structured-light cameras); a voxel is in front of a reading where it
+// is closer by half its diagonal and `noise_sigmas` of that noise.
+struct CarveOptions {
+    unsigned through = 1;  // frames that must see through a voxel without points
+    // A voxel that holds points becomes empty where at least `surface_through` frames see through
+    // it, and more than `surface_ratio` times as many as see a surface in it: a flying point.
+    unsigned surface_through = 3;
+    double surface_ratio = 2;
+    double noise_base_m = 0.0012, noise_growth_per_m = 0.0019, noise_from_m = 0.4;
+    double noise_sigmas = 2;
+};
+
+// The solid voxels, one array per field, sorted by (i, j, k).
+struct SolidCellArrays {
+    std::vector<std::int32_t> i, j, k;
+    std::vector<std::int32_t> primitive;  // -1: none
+    std::vector<State> state;             // surface or completed
+    std::size_t size() const { return i.size(); }
 };
 
 class VoxelScene {
   public:
     // Surface voxels from points and their primitive labels (-1: no primitive; the voxel is still
-    // surface). A voxel takes the label that most of its points have, the lowest of equals.
-    VoxelScene(const VoxelFrame& frame, const PointCloud& cloud, std::span<const std::int32_t> label);
+    // surface). A voxel takes the label that most of its labelled points have, the lowest of
+    // equals. The scene's bounds are those of its points; where few stray points lie far from all
+    // others, the bounds leave them out (0.1 % per side), and only their own leaves exist out
+    // there. Throws Error(usage) for a frame that is no rotation, a voxel size that is not
+    // positive, or labels that don't match the points; Error(input) where the bounds hold more
+    // leaves than memory allows.
+    VoxelScene(const VoxelFrame& frame, const PointCloud& cloud,
+               std::span<const std::int32_t> label);
     ~VoxelScene();
     VoxelScene(VoxelScene&&) noexcept;
 
     const VoxelFrame& frame() const;
 
-    // Visibility carving (paper, 2.2.2; kernels carve_leaves, carve): voxels in front of a depth
-    // reading become empty, those that no frame saw stay invisible. May be called for as many batches
-    // of frames as there are. Leaves that are all empty or all invisible are stored as one value.
-    void carve(device::Device& device, const Intrinsics& intrinsics, std::span<const DepthFrame> frames);
+    // Points that no voxel index can reach: further than 2^20 voxels from the points' median.
+    std::uint64_t unplaced_points() const;
 
-    // Six-direction filling (paper, 2.2.3; kernels six_fill_sweep, six_fill_vote). Primitives in
-    // `hollow` (walls, floors: large planes) neither fill nor are filled. Returns voxels completed.
+    // Visibility carving (paper, 2.2.2; kernels carve_leaves, carve): voxels in front of a depth
+    // reading become empty, those that no frame saw stay invisible. May be called for as many
+    // batches of frames as there are, with the same options. Leaves that are all empty or all
+    // invisible are stored as one value. Undoes an earlier fill(). Throws Error(input) for frames
+    // that don't match the intrinsics or whose pose is not finite.
+    void carve(device::Device& device, const Intrinsics& intrinsics,
+               std::span<const DepthFrame> frames, const CarveOptions& options = {});
+
+    // Six-direction filling (paper, 2.2.3; kernels six_fill_sweep, six_fill_vote): an invisible
+    // voxel takes the primitive that at least `votes` of the rays along its six axes hit first; of
+    // several the one hit most often, then the nearest, then the lowest. Rays end at seen-empty
+    // voxels and at surfaces. Primitives in `hollow` (walls, floors: large planes) stop rays, but
+    // neither fill nor are filled. Returns voxels completed.
     struct FillOptions {
-        unsigned votes = 2;              // directions that must agree
-        std::vector<bool> hollow;        // by primitive
+        unsigned votes = 2;        // directions that must agree
+        std::vector<bool> hollow;  // by primitive
     };
     std::uint64_t fill(device::Device& device, const FillOptions& options);
 
@@ -61,23 +98,31 @@ class VoxelScene {
     Tiles tiles(bool all = false) const;
     std::vector<std::uint8_t> states(const Tiles& tiles) const;
     std::vector<std::int32_t> primitives(const Tiles& tiles) const;  // -1: none
+    // Outside of the scene's bounds: invisible.
     State state_at(std::int32_t i, std::int32_t j, std::int32_t k) const;
 
-    // Bounds of all surface voxels, inclusive.
+    SolidCellArrays solid_cells() const;
+    SolidVoxels solid_voxels() const;  // centres in the input's frame, same order
+
+    // Bounds of all surface voxels, inclusive; highest < lowest where there are none.
     std::array<std::int32_t, 3> lowest() const, highest() const;
 
+    // Object of each primitive, for solid_voxels() and write(); -1 where the span ends.
     void set_objects(std::span<const std::int32_t> object_of_primitive);
 
     // Adds a float grid to what write() stores: value per voxel of `tiles`, zeros are not stored.
+    // Throws Error(usage) for a name that is taken or an array that doesn't match the tiles.
     void add_field(const std::string& name, const Tiles& tiles, std::span<const float> values);
 
-    // Grids `state`, `primitive`, `object` (Int32Grid; inactive background -1 for the last two) and
-    // the added fields, with the voxel-to-input transform. Throws Error(input) where the file can't
-    // be written.
+    // Grids `state`, `primitive`, `object` (Int32Grid; inactive background -1 for the last two, 2
+    // for `state`, whose active voxels are the solid ones) and the added fields. The transform
+    // takes the index (i, j, k) to the voxel's centre in the input's frame. Throws Error(input)
+    // where the file can't be written.
     void write(const std::filesystem::path& path) const;
 
+    struct Grids;  // internal to vdb/
+
   private:
-    struct Grids;
     std::unique_ptr<Grids> grids_;
 };
 

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: MIT
+#include "carve.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "carve_leaves.hpp"
+#include "device/buffer.h"
+#include "device/queue.h"
+#include "topple/error.h"
+#include "vdb/depth_pyramid.h"
+#include "vdb/grids.h"
+
+// Visibility carving: what the frames say about leaves, then about the voxels of mixed ones.
+namespace topple::vdb {
+namespace {
+
+constexpr std::uint64_t batch_frames = 32;                        // one bit of a word each
+constexpr std::uint64_t resident_bytes = std::uint64_t{1} << 28;  // frames on the device at a time
+constexpr std::uint64_t leaf_chunk = std::uint64_t{1} << 18;      // leaves classified at a time
+constexpr std::uint64_t voxel_chunk = std::uint64_t{1} << 14;     // leaves counted at a time
+constexpr std::size_t max_slots = std::size_t{1} << 21;
+
+// Up to 32 frames on the device.
+struct Batch {
+    std::uint32_t frames = 0;
+    device::Buffer<float> camera;
+    device::Buffer<std::uint32_t> pyramid;
+};
+
+void check(const Intrinsics& k, std::span<const DepthFrame> frames, const device::Device& device) {
+    const bool sane = k.width >= 2 && k.height >= 2 && k.width <= 65536 && k.height <= 65536 &&
+                      k.fx > 0 && k.fy > 0 && std::isfinite(k.fx) && std::isfinite(k.fy) &&
+                      std::isfinite(k.cx) && std::isfinite(k.cy) && k.depth_scale > 0 &&
+                      std::isfinite(k.depth_scale);
+    if (!sane) {
+        throw Error(ErrorKind::input,
+                    "intrinsics: need at least 2x2 pixels and positive, finite fx, fy and "
+                    "depth_scale");
+    }
+    if (pyramid_words(k) * 4 > device.info().limits.max_binding_bytes) {
+        throw Error(ErrorKind::input, "depth frames of " + std::to_string(k.width) + "x" +
+                                          std::to_string(k.height) + " pixels exceed the " +
+                                          std::to_string(device.info().limits.max_binding_bytes) +
+                                          " bytes that the device can bind; scale them down");
+    }
+    for (std::size_t n = 0; n < frames.size(); ++n) {
+        const std::string where = "depth frame " + std::to_string(n);
+        if (frames[n].depth.size() != std::uint64_t{k.width} * k.height) {
+            throw Error(ErrorKind::input, where + ": " + std::to_string(frames[n].depth.size()) +
+                                              " pixels, but the intrinsics say " +
+                                              std::to_string(k.width) + "x" +
+                                              std::to_string(k.height));
+        }
+        for (const double value : frames[n].camera_to_world) {
+            if (!std::isfinite(value))
+                throw Error(ErrorKind::input, where + ": its pose is not finite");
+        }
+    }
+}
+
+// One call of VoxelScene::carve.
+class Carver {
+  public:
+    Carver(device::Device& device, VoxelScene::Grids& grids, const Intrinsics& intrinsics,
+           const CarveOptions& options)
+        : device_(device),
+          g_(grids),
+          intrinsics_(intrinsics),
+          options_(options),
+          words_(pyramid_words(intrinsics)) {
+        auto& p = params_;
+        p.width = intrinsics.width - 1;
+        p.height = intrinsics.height - 1;
+        p.frame_words = static_cast<std::uint32_t>(words_);
+        p.near_m = 0.02f;
+        p.metres_per_unit = static_cast<float>(1 / intrinsics.depth_scale);
+        p.margin_m = static_cast<float>(g_.frame.voxel_m * std::sqrt(3.0) / 2 +
+                                        0.5 / intrinsics.depth_scale);
+        p.noise_base_m = static_cast<float>(options.noise_sigmas * options.noise_base_m);
+        p.noise_growth = static_cast<float>(options.noise_sigmas * options.noise_growth_per_m);
+        p.noise_from_m = static_cast<float>(options.noise_from_m);
+        p.slack_m = static_cast<float>(g_.frame.voxel_m * 0.02);
+    }
+
+    void carve(std::span<const DepthFrame> frames) {
+        upload(frames);
+        std::vector<std::uint64_t> leaves;
+        for (std::uint64_t next = 0; next < g_.leaves.size();) {
+            leaves.clear();
+            for (; next < g_.leaves.size() && leaves.size() < leaf_chunk; ++next) {
+                if (g_.evidence.kind[next] != Evidence::Kind::empty) leaves.push_back(next);
+            }
+            classify(leaves);
+        }
+    }
+
+  private:
+    void upload(std::span<const DepthFrame> frames);
+    void classify(const std::vector<std::uint64_t>& leaves);
+    void count(std::span<const std::uint64_t> leaves,
+               const std::vector<std::vector<std::uint32_t>>& mixed);
+    void judge(std::uint64_t leaf, std::span<const std::uint32_t> evidence);
+    void make_empty(std::uint64_t leaf);
+    bool has_points(std::uint64_t leaf) const {
+        return g_.points.probeConstLeaf(origin_of(g_.leaves.leaf_at(leaf))) != nullptr;
+    }
+    // Lowest voxels of leaves, relative to the reference, on the device.
+    std::array<device::Buffer<std::int32_t>, 3> origins(
+        std::span<const std::uint64_t> leaves) const;
+
+    device::Device& device_;
+    VoxelScene::Grids& g_;
+    const Intrinsics& intrinsics_;
+    const CarveOptions& options_;
+    std::uint64_t words_;
+    kernels::CarveParams params_{};
+    std::vector<Batch> batches_;
+};
+
+void Carver::upload(std::span<const DepthFrame> frames) {
+    const std::uint64_t fit = device_.info().limits.max_binding_bytes / (words_ * 4);
+    const std::uint64_t step =
+        std::min({batch_frames, fit, std::max<std::uint64_t>(1, resident_bytes / (words_ * 4))});
+    std::vector<std::uint32_t> words;
+    std::vector<float> rows;
+    batches_.clear();
+    for (std::size_t first = 0; first < frames.size(); first += step) {
+        const auto some = frames.subspan(first, std::min<std::size_t>(step, frames.size() - first));
+        words.resize(some.size() * words_);
+        rows.clear();
+        for (std::size_t n = 0; n < some.size(); ++n) {
+            build_pyramid(intrinsics_, some[n].depth, {words.data() + n * words_, words_});
+            const auto camera =
+                camera_rows(g_.frame, g_.leaves.reference(), intrinsics_, some[n].camera_to_world);
+            rows.insert(rows.end(), camera.begin(), camera.end());
+        }
+        batches_.push_back({static_cast<std::uint32_t>(some.size()),
+                            {device_, std::span<const float>(rows), "cameras"},
+                            {device_, std::span<const std::uint32_t>(words), "depth frames"}});
+    }
+}
+
+std::array<device::Buffer<std::int32_t>, 3> Carver::origins(
+    std::span<const std::uint64_t> leaves) const {
+    const auto reference = g_.leaves.reference();
+    std::array<std::vector<std::int32_t>, 3> at;
+    for (const std::uint64_t leaf : leaves) {
+        const auto place = g_.leaves.leaf_at(leaf);
+        for (int a = 0; a < 3; ++a) at[a].push_back(place[a] * 8 - reference[a]);
+    }
+    std::array<device::Buffer<std::int32_t>, 3> buffers;
+    for (int a = 0; a < 3; ++a)
+        buffers[a] = {device_, std::span<const std::int32_t>(at[a]), "leaf origins"};
+    return buffers;
+}
+
+void Carver::classify(const std::vector<std::uint64_t>& leaves) {
+    if (leaves.empty()) return;
+    const auto origin = origins(leaves);
+    std::vector<device::Buffer<std::uint32_t>> mixed_words, front_words;
+    params_.leaf_count = static_cast<std::uint32_t>(leaves.size());
+    device::Queue queue(device_);
+    for (const Batch& batch : batches_) {
+        mixed_words.emplace_back(device_, leaves.size(), "mixed leaves");
+        front_words.emplace_back(device_, leaves.size(), "leaves seen through");
+        params_.frame_count = batch.frames;
+        queue.add<kernels::CarveLeaves>(leaves.size(),
+                                        {.leaf_x = origin[0],
+                                         .leaf_y = origin[1],
+                                         .leaf_z = origin[2],
+                                         .camera = batch.camera,
+                                         .pyramid = batch.pyramid,
+                                         .mixed = mixed_words.back(),
+                                         .front = front_words.back()},
+                                        params_);
+    }
+    queue.run();
+
+    std::vector<std::vector<std::uint32_t>> mixed, front;
+    for (std::size_t b = 0; b < batches_.size(); ++b) {
+        mixed.push_back(mixed_words[b].download());
+        front.push_back(front_words[b].download());
+    }
+    Evidence& e = g_.evidence;
+    // Leaves to look into, and their frames, by batch.
+    std::vector<std::uint64_t> detailed;
+    std::vector<std::vector<std::uint32_t>> detailed_mixed(batches_.size());
+    for (std::size_t n = 0; n < leaves.size(); ++n) {
+        const std::uint64_t leaf = leaves[n];
+        std::uint32_t any = 0, through = e.front[leaf];
+        for (std::size_t b = 0; b < batches_.size(); ++b) {
+            any |= mixed[b][n];
+            through += static_cast<std::uint32_t>(std::popcount(front[b][n]));
+        }
+        const bool changed = through != e.front[leaf];
+        e.front[leaf] = static_cast<std::uint16_t>(std::min(through, 65535u));
+        if (through >= options_.through && !has_points(leaf)) {
+            make_empty(leaf);
+        } else if (any != 0 || (changed && (has_points(leaf) || e.slot[leaf] >= 0))) {
+            detailed.push_back(leaf);
+            for (std::size_t b = 0; b < batches_.size(); ++b)
+                detailed_mixed[b].push_back(mixed[b][n]);
+        }
+    }
+    for (std::size_t first = 0; first < detailed.size(); first += voxel_chunk) {
+        const std::size_t size = std::min<std::size_t>(voxel_chunk, detailed.size() - first);
+        std::vector<std::vector<std::uint32_t>> part;
+        for (const auto& bits : detailed_mixed) {
+            part.emplace_back(bits.begin() + static_cast<std::ptrdiff_t>(first),
+                              bits.begin() + static_cast<std::ptrdiff_t>(first + size));
+        }
+        count({detailed.data() + first, size}, part);
+    }
+}
+
+void Carver::count(std::span<const std::uint64_t> leaves,
+                   const std::vector<std::vector<std::uint32_t>>& mixed) {
+    Evidence& e = g_.evidence;
+    std::vector<std::uint32_t> evidence(leaves.size() * 512, 0);
+    for (std::size_t n = 0; n < leaves.size(); ++n) {
+        const std::int32_t slot = e.slot[leaves[n]];
+        if (slot < 0) continue;
+        const auto& from = e.voxels[static_cast<std::size_t>(slot)];
+        std::copy(from.begin(), from.end(),
+                  evidence.begin() + static_cast<std::ptrdiff_t>(n * 512));
+    }
+    const auto origin = origins(leaves);
+    device::Buffer<std::uint32_t> words(device_, std::span<const std::uint32_t>(evidence),
+                                        "carving evidence");
+    std::vector<device::Buffer<std::uint32_t>> bits;
+    params_.leaf_count = static_cast<std::uint32_t>(leaves.size());
+    device::Queue queue(device_);
+    for (std::size_t b = 0; b < batches_.size(); ++b) {
+        bits.emplace_back(device_, std::span<const std::uint32_t>(mixed[b]),
+                          "frames of mixed leaves");
+        params_.frame_count = batches_[b].frames;
+        queue.add<kernels::Carve>(leaves.size() * 512,
+                                  {.leaf_x = origin[0],
+                                   .leaf_y = origin[1],
+                                   .leaf_z = origin[2],
+                                   .mixed = bits.back(),
+                                   .camera = batches_[b].camera,
+                                   .pyramid = batches_[b].pyramid,
+                                   .evidence = words},
+                                  params_);
+    }
+    queue.run();
+    words.download(std::span<std::uint32_t>(evidence));
+    for (std::size_t n = 0; n < leaves.size(); ++n) {
+        judge(leaves[n], std::span<const std::uint32_t>(evidence).subspan(n * 512, 512));
+    }
+}
+
+void Carver::make_empty(std::uint64_t leaf) {
+    Evidence& e = g_.evidence;
+    e.kind[leaf] = Evidence::Kind::empty;
+    if (e.slot[leaf] >= 0) {
+        e.free_slots.push_back(e.slot[leaf]);
+        e.slot[leaf] = -1;
+    }
+    g_.state->tree().addTile(1, origin_of(g_.leaves.leaf_at(leaf)),
+                             static_cast<std::int32_t>(State::empty), false);
+}
+
+// Turns a leaf's counts into states.
+void Carver::judge(std::uint64_t leaf, std::span<const std::uint32_t> evidence) {
+    Evidence& e = g_.evidence;
+    const auto origin = origin_of(g_.leaves.leaf_at(leaf));
+    const auto* points = g_.points.probeConstLeaf(origin);
+    const std::uint32_t front = e.front[leaf];
+    if (!points) {
+        std::size_t empty = 0, seen = 0;
+        for (const std::uint32_t word : evidence) {
+            empty += front + (word & 0xffff) >= options_.through;
+            seen += (word & 0xffff) != 0;
+        }
+        if (empty == evidence.size()) return make_empty(leaf);
+        if (seen == 0) return;
+    }
+    if (e.slot[leaf] < 0) {
+        if (e.free_slots.empty()) {
+            if (e.voxels.size() >= max_slots) {
+                throw Error(ErrorKind::input,
+                            "carving needs more than " + std::to_string(max_slots) +
+                                " blocks of 8x8x8 voxels in detail; use a --voxel larger than " +
+                                std::to_string(g_.frame.voxel_m));
+            }
+            e.free_slots.push_back(static_cast<std::int32_t>(e.voxels.size()));
+            e.voxels.emplace_back();
+        }
+        e.slot[leaf] = e.free_slots.back();
+        e.free_slots.pop_back();
+    }
+    e.kind[leaf] = Evidence::Kind::detailed;
+    e.voxels[static_cast<std::size_t>(e.slot[leaf])].assign(evidence.begin(), evidence.end());
+
+    auto* state = g_.state->tree().touchLeaf(origin);
+    for (openvdb::Index v = 0; v < 512; ++v) {
+        const std::uint32_t through = front + (evidence[v] & 0xffff), hit = evidence[v] >> 16;
+        if (points && points->isValueOn(v)) {
+            const bool flying =
+                through >= options_.surface_through && through > options_.surface_ratio * hit;
+            if (flying) {
+                state->setValueOff(v, static_cast<std::int32_t>(State::empty));
+            } else {
+                state->setValueOn(v, static_cast<std::int32_t>(State::surface));
+            }
+        } else {
+            const bool empty = through >= options_.through;
+            state->setValueOff(v,
+                               static_cast<std::int32_t>(empty ? State::empty : State::invisible));
+        }
+    }
+}
+
+}  // namespace
+
+void VoxelScene::carve(device::Device& device, const Intrinsics& intrinsics,
+                       std::span<const DepthFrame> frames, const CarveOptions& options) {
+    check(intrinsics, frames, device);
+    if (options.through < 1 || options.surface_through < 1) {
+        throw Error(ErrorKind::usage,
+                    "carving: at least one frame must see through a voxel to make it empty");
+    }
+    Grids& g = *grids_;
+    g.clear_completed();
+    const auto size = g.leaves.size();
+    if (g.evidence.kind.size() != size) {
+        g.evidence.kind.assign(size, Evidence::Kind::invisible);
+        g.evidence.front.assign(size, 0);
+        g.evidence.slot.assign(size, -1);
+    }
+    const std::uint64_t frame_bytes = pyramid_words(intrinsics) * 4;
+    const std::size_t step =
+        static_cast<std::size_t>(std::max<std::uint64_t>(1, resident_bytes / frame_bytes));
+    Carver carver(device, g, intrinsics, options);
+    for (std::size_t first = 0; first < frames.size(); first += step) {
+        carver.carve(frames.subspan(first, std::min(step, frames.size() - first)));
+    }
+}
+
+}  // namespace topple::vdb

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "device/buffer.h"
+#include "device/queue.h"
+#include "six_fill_sweep.hpp"
+#include "six_fill_vote.hpp"
+#include "topple/error.h"
+#include "vdb/grids.h"
+
+// Six-direction filling: which leaves to sweep, their runs along each axis, and the vote.
+namespace topple::vdb {
+namespace {
+
+constexpr std::int32_t max_primitives = 65534;  // labels travel as 16 bits
+
+struct Box {
+    std::array<std::int32_t, 3> low{1, 1, 1}, high{0, 0, 0};
+    bool empty() const { return low[0] > high[0]; }
+    void add(const LeafTable::Leaf& leaf) {
+        const bool first = empty();
+        for (int a = 0; a < 3; ++a) {
+            low[a] = first ? leaf[a] : std::min(low[a], leaf[a]);
+            high[a] = first ? leaf[a] : std::max(high[a], leaf[a]);
+        }
+    }
+};
+
+// The leaves of the boxes around the primitives that fill. That is enough: where two rays of a
+// voxel hit the same primitive, the voxel and both rays lie inside that primitive's bounding box.
+std::vector<LeafTable::Leaf> leaves_to_sweep(const VoxelScene::Grids& g,
+                                             const std::vector<bool>& fills, bool all) {
+    std::vector<Box> boxes(fills.size());
+    for (auto leaf = g.state->tree().cbeginLeaf(); leaf; ++leaf) {
+        if (leaf->isEmpty()) continue;
+        const auto* label = g.primitive->tree().probeConstLeaf(leaf->origin());
+        for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
+            const std::int32_t p = label->getValue(voxel.pos());
+            if (p >= 0 && fills[static_cast<std::size_t>(p)]) {
+                boxes[static_cast<std::size_t>(p)].add(leaf_of(leaf->origin()));
+            }
+        }
+    }
+    std::vector<bool> wanted(g.leaves.size(), all);
+    for (const Box& box : boxes) {
+        if (box.empty() || all) continue;
+        // Clipped to the table's box, so that a stray voxel can't make the loop long.
+        std::array<std::int32_t, 3> low, high;
+        for (int a = 0; a < 3; ++a) {
+            low[a] = std::max(box.low[a], g.leaves.low[a]);
+            high[a] = std::min(box.high[a], g.leaves.low[a] + g.leaves.count[a] - 1);
+        }
+        for (std::int32_t x = low[0]; x <= high[0]; ++x) {
+            for (std::int32_t y = low[1]; y <= high[1]; ++y) {
+                for (std::int32_t z = low[2]; z <= high[2]; ++z) {
+                    wanted[static_cast<std::size_t>(g.leaves.index_of({x, y, z}))] = true;
+                }
+            }
+        }
+    }
+    for (std::uint64_t n = g.leaves.box_size(); n < g.leaves.size(); ++n) wanted[n] = true;
+    const auto accessor = g.state->getConstAccessor();
+    std::vector<LeafTable::Leaf> leaves;
+    for (std::uint64_t n = 0; n < wanted.size(); ++n) {
+        if (!wanted[n]) continue;
+        const auto leaf = g.leaves.leaf_at(n);
+        const bool uniform_empty =
+            !accessor.probeConstLeaf(origin_of(leaf)) &&
+            accessor.getValue(origin_of(leaf)) == static_cast<std::int32_t>(State::empty);
+        if (!uniform_empty) leaves.push_back(leaf);
+    }
+    return leaves;
+}
+
+// What six_fill_sweep calls cells.
+std::vector<std::uint32_t> cells_of(const VoxelScene::Grids& g,
+                                    const std::vector<LeafTable::Leaf>& leaves,
+                                    const std::vector<bool>& fills) {
+    std::vector<std::uint32_t> cells(leaves.size() * 512, 1);
+    for (std::size_t n = 0; n < leaves.size(); ++n) {
+        const auto* state = g.state->tree().probeConstLeaf(origin_of(leaves[n]));
+        if (!state) continue;
+        const auto* label = g.primitive->tree().probeConstLeaf(origin_of(leaves[n]));
+        for (openvdb::Index v = 0; v < 512; ++v) {
+            if (state->getValue(v) == static_cast<std::int32_t>(State::invisible)) continue;
+            std::uint32_t cell = 0;
+            if (state->isValueOn(v)) {
+                const std::int32_t p = label->getValue(v);
+                if (p >= 0 && fills[static_cast<std::size_t>(p)])
+                    cell = static_cast<std::uint32_t>(p) + 2;
+            }
+            cells[n * 512 + v] = cell;
+        }
+    }
+    return cells;
+}
+
+// Runs of leaves that follow one another along an axis.
+struct Runs {
+    std::vector<std::uint32_t> first, length, leaf;
+};
+Runs runs_along(const std::vector<LeafTable::Leaf>& leaves, int axis) {
+    const int other = axis == 0 ? 1 : 0, last = axis == 2 ? 1 : 2;
+    Runs runs;
+    runs.leaf.resize(leaves.size());
+    std::iota(runs.leaf.begin(), runs.leaf.end(), 0u);
+    std::sort(runs.leaf.begin(), runs.leaf.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const auto key = [&](std::uint32_t n) {
+            return std::array{leaves[n][other], leaves[n][last], leaves[n][axis]};
+        };
+        return key(a) < key(b);
+    });
+    for (std::uint32_t n = 0; n < runs.leaf.size(); ++n) {
+        if (n > 0) {
+            auto expected = leaves[runs.leaf[n - 1]];
+            ++expected[axis];
+            if (leaves[runs.leaf[n]] == expected) {
+                ++runs.length.back();
+                continue;
+            }
+        }
+        runs.first.push_back(n);
+        runs.length.push_back(1);
+    }
+    return runs;
+}
+
+std::vector<std::uint32_t> sweep_and_vote(device::Device& device,
+                                          const std::vector<LeafTable::Leaf>& leaves,
+                                          std::span<const std::uint32_t> cells, unsigned votes) {
+    const device::Buffer<std::uint32_t> cell_words(device, cells, "fill cells");
+    std::vector<device::Buffer<std::uint32_t>> hits, keep;
+    for (int side = 0; side < 6; ++side) hits.emplace_back(device, cells.size(), "fill hits");
+    const device::Buffer<std::uint32_t> filled(device, cells.size(), "filled voxels");
+    device::Queue queue(device);
+    for (int axis = 0; axis < 3; ++axis) {
+        const Runs runs = runs_along(leaves, axis);
+        const auto buffer =
+            [&](const std::vector<std::uint32_t>& data) -> device::Buffer<std::uint32_t>& {
+            return keep.emplace_back(device, std::span<const std::uint32_t>(data), "fill runs");
+        };
+        keep.reserve(9);
+        const auto& first = buffer(runs.first);
+        const auto& length = buffer(runs.length);
+        const auto& order = buffer(runs.leaf);
+        const std::size_t side = static_cast<std::size_t>(axis) * 2;
+        constexpr std::uint32_t stride[3] = {64, 8, 1}, high[3] = {8, 64, 64}, low[3] = {1, 1, 8};
+        queue.add<kernels::SixFillSweep>(
+            runs.first.size() * 64,
+            {.run_first = first,
+             .run_length = length,
+             .run_leaf = order,
+             .cells = cell_words,
+             .backward = hits[side],
+             .forward = hits[side + 1]},
+            {.run_count = static_cast<std::uint32_t>(runs.first.size()),
+             .stride = stride[axis],
+             .stride_high = high[axis],
+             .stride_low = low[axis]});
+    }
+    queue.add<kernels::SixFillVote>(
+        cells.size(),
+        {.cells = cell_words,
+         .hit_0 = hits[0],
+         .hit_1 = hits[1],
+         .hit_2 = hits[2],
+         .hit_3 = hits[3],
+         .hit_4 = hits[4],
+         .hit_5 = hits[5],
+         .filled = filled},
+        {.count = static_cast<std::uint32_t>(cells.size()), .votes = votes});
+    queue.run();
+    return filled.download();
+}
+
+}  // namespace
+
+std::uint64_t VoxelScene::fill(device::Device& device, const FillOptions& options) {
+    if (options.votes < 1 || options.votes > 6) {
+        throw Error(ErrorKind::usage, "filling: " + std::to_string(options.votes) +
+                                          " votes; there are six directions");
+    }
+    Grids& g = *grids_;
+    g.clear_completed();
+    std::int32_t highest = -1;
+    for (auto leaf = g.primitive->tree().cbeginLeaf(); leaf; ++leaf) {
+        for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)
+            highest = std::max(highest, *voxel);
+    }
+    if (highest >= max_primitives) {
+        throw Error(ErrorKind::input,
+                    "filling: primitive " + std::to_string(highest) + " is beyond the limit of " +
+                        std::to_string(max_primitives) + " primitives; use a larger --voxel");
+    }
+    std::vector<bool> fills(static_cast<std::size_t>(highest + 1), true);
+    for (std::size_t p = 0; p < std::min(fills.size(), options.hollow.size()); ++p)
+        fills[p] = !options.hollow[p];
+
+    const auto leaves = leaves_to_sweep(g, fills, options.votes == 1);
+    if (leaves.empty()) return 0;
+    const auto cells = cells_of(g, leaves, fills);
+    const auto filled = sweep_and_vote(device, leaves, cells, options.votes);
+    std::uint64_t count = 0;
+    for (std::size_t n = 0; n < leaves.size(); ++n) {
+        const auto* from = filled.data() + n * 512;
+        if (std::all_of(from, from + 512, [](std::uint32_t v) { return v == 0; })) continue;
+        auto* state = g.state->tree().touchLeaf(origin_of(leaves[n]));
+        auto* label = g.primitive->tree().touchLeaf(origin_of(leaves[n]));
+        for (openvdb::Index v = 0; v < 512; ++v) {
+            if (from[v] == 0) continue;
+            state->setValueOn(v, static_cast<std::int32_t>(State::completed));
+            label->setValueOn(v, static_cast<std::int32_t>(from[v]) - 1);
+            ++count;
+        }
+    }
+    return count;
+}
+
+}  // namespace topple::vdb

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <numeric>
+
+#include "topple/error.h"
+#include "vdb/grids.h"
+
+// VoxelScene's contents, flattened.
+namespace topple::vdb {
+namespace {
+
+std::vector<LeafTable::Leaf> solid_leaves(const openvdb::Int32Grid& state) {
+    std::vector<LeafTable::Leaf> leaves;
+    for (auto leaf = state.tree().cbeginLeaf(); leaf; ++leaf) {
+        if (!leaf->isEmpty()) leaves.push_back(leaf_of(leaf->origin()));
+    }
+    std::sort(leaves.begin(), leaves.end());
+    return leaves;
+}
+
+}  // namespace
+
+Tiles VoxelScene::tiles(bool all) const {
+    std::vector<LeafTable::Leaf> leaves;
+    if (all) {
+        leaves.resize(grids_->leaves.size());
+        for (std::uint64_t n = 0; n < leaves.size(); ++n) leaves[n] = grids_->leaves.leaf_at(n);
+        std::sort(leaves.begin(), leaves.end());
+    } else {
+        leaves = solid_leaves(*grids_->state);
+    }
+    Tiles tiles;
+    tiles.neighbour.reserve(6 * leaves.size());
+    for (const auto& leaf : leaves) {
+        tiles.x.push_back(leaf[0] * 8);
+        tiles.y.push_back(leaf[1] * 8);
+        tiles.z.push_back(leaf[2] * 8);
+        for (int side = 0; side < 6; ++side) {
+            auto next = leaf;
+            next[side / 2] += side % 2 ? 1 : -1;
+            const auto at = std::lower_bound(leaves.begin(), leaves.end(), next);
+            const bool found = at != leaves.end() && *at == next;
+            tiles.neighbour.push_back(found ? static_cast<std::int32_t>(at - leaves.begin()) : -1);
+        }
+    }
+    return tiles;
+}
+
+std::vector<std::uint8_t> VoxelScene::states(const Tiles& tiles) const {
+    std::vector<std::uint8_t> out(tiles.size() * 512);
+    const auto accessor = grids_->state->getConstAccessor();
+    for (std::size_t n = 0; n < tiles.size(); ++n) {
+        const openvdb::Coord origin(tiles.x[n], tiles.y[n], tiles.z[n]);
+        auto* to = out.data() + n * 512;
+        if (const auto* leaf = accessor.probeConstLeaf(origin)) {
+            const std::int32_t* from = leaf->buffer().data();
+            for (int v = 0; v < 512; ++v) to[v] = static_cast<std::uint8_t>(from[v]);
+        } else {
+            std::fill(to, to + 512, static_cast<std::uint8_t>(accessor.getValue(origin)));
+        }
+    }
+    return out;
+}
+
+std::vector<std::int32_t> VoxelScene::primitives(const Tiles& tiles) const {
+    std::vector<std::int32_t> out(tiles.size() * 512, -1);
+    const auto state = grids_->state->getConstAccessor();
+    const auto primitive = grids_->primitive->getConstAccessor();
+    for (std::size_t n = 0; n < tiles.size(); ++n) {
+        const openvdb::Coord origin(tiles.x[n], tiles.y[n], tiles.z[n]);
+        const auto* solid = state.probeConstLeaf(origin);
+        const auto* label = primitive.probeConstLeaf(origin);
+        if (!solid || !label) continue;
+        for (auto voxel = solid->cbeginValueOn(); voxel; ++voxel) {
+            out[n * 512 + voxel.pos()] = label->getValue(voxel.pos());
+        }
+    }
+    return out;
+}
+
+State VoxelScene::state_at(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    return static_cast<State>(grids_->state->tree().getValue({i, j, k}));
+}
+
+SolidCellArrays VoxelScene::solid_cells() const {
+    SolidCellArrays cells;
+    struct Pair {
+        LeafTable::Leaf at;
+        const StateLeaf* state;
+        const StateLeaf* primitive;
+    };
+    std::vector<Pair> leaves;
+    for (const auto& leaf : solid_leaves(*grids_->state)) {
+        const auto origin = origin_of(leaf);
+        leaves.push_back({leaf, grids_->state->tree().probeConstLeaf(origin),
+                          grids_->primitive->tree().probeConstLeaf(origin)});
+    }
+    const auto count = grids_->state->activeVoxelCount();
+    cells.i.reserve(count);
+    cells.j.reserve(count);
+    cells.k.reserve(count);
+    cells.primitive.reserve(count);
+    cells.state.reserve(count);
+    // Leaves are sorted; planes of voxels across all leaves of one x, then rows across all of one
+    // (x, y), come out sorted by (i, j, k) without a sort.
+    const auto end_of = [&](std::size_t first, int axes) {
+        std::size_t end = first;
+        while (end < leaves.size() &&
+               std::equal(leaves[end].at.begin(), leaves[end].at.begin() + axes,
+                          leaves[first].at.begin())) {
+            ++end;
+        }
+        return end;
+    };
+    for (std::size_t slab = 0, next_slab; slab < leaves.size(); slab = next_slab) {
+        next_slab = end_of(slab, 1);
+        for (std::int32_t x = 0; x < 8; ++x) {
+            for (std::size_t row = slab, next_row; row < next_slab; row = next_row) {
+                next_row = end_of(row, 2);
+                for (std::int32_t y = 0; y < 8; ++y) {
+                    for (std::size_t n = row; n < next_row; ++n) {
+                        for (std::int32_t z = 0; z < 8; ++z) {
+                            const auto offset = static_cast<openvdb::Index>(x << 6 | y << 3 | z);
+                            if (!leaves[n].state->isValueOn(offset)) continue;
+                            cells.i.push_back(leaves[n].at[0] * 8 + x);
+                            cells.j.push_back(leaves[n].at[1] * 8 + y);
+                            cells.k.push_back(leaves[n].at[2] * 8 + z);
+                            cells.primitive.push_back(leaves[n].primitive->getValue(offset));
+                            cells.state.push_back(
+                                static_cast<State>(leaves[n].state->getValue(offset)));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    return cells;
+}
+
+SolidVoxels VoxelScene::solid_voxels() const {
+    SolidCellArrays cells = solid_cells();
+    SolidVoxels out;
+    const auto& rows = grids_->frame.grid_from_input;
+    const auto& object = grids_->object_of_primitive;
+    const std::size_t count = cells.size();
+    out.x.resize(count);
+    out.y.resize(count);
+    out.z.resize(count);
+    out.object.resize(count);
+    out.state.resize(count);
+    for (std::size_t n = 0; n < count; ++n) {
+        const double v = grids_->frame.voxel_m;
+        const double p[3] = {(cells.i[n] + 0.5) * v, (cells.j[n] + 0.5) * v,
+                             (cells.k[n] + 0.5) * v};
+        const auto coordinate = [&](int a) {
+            return static_cast<float>(rows[0][a] * p[0] + rows[1][a] * p[1] + rows[2][a] * p[2]);
+        };
+        out.x[n] = coordinate(0);
+        out.y[n] = coordinate(1);
+        out.z[n] = coordinate(2);
+        const std::int32_t primitive = cells.primitive[n];
+        const bool known = primitive >= 0 && static_cast<std::size_t>(primitive) < object.size();
+        out.object[n] = known ? object[static_cast<std::size_t>(primitive)] : -1;
+        out.state[n] = cells.state[n] == State::completed;
+    }
+    out.primitive = std::move(cells.primitive);
+    return out;
+}
+
+}  // namespace topple::vdb

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+#include "vdb/voxel_scene.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <cmath>
+
+#include "topple/error.h"
+#include "vdb/grids.h"
+
+namespace topple::vdb {
+namespace {
+
+constexpr int key_bits = 21;                          // of a voxel index, per axis
+constexpr std::int32_t window = 1 << (key_bits - 1);  // voxels from the median, either way
+constexpr std::uint64_t max_leaves = std::uint64_t{1} << 23;
+
+// A point's voxel, relative to a corner that is a multiple of 8, and its label: the key sorts by
+// leaf (x, then y, then z) and within the leaf by the voxel's offset.
+struct Sample {
+    std::uint64_t key;
+    std::int32_t label;
+    friend auto operator<=>(const Sample&, const Sample&) = default;
+};
+
+std::uint64_t make_key(const std::array<std::uint32_t, 3>& v) {
+    const std::uint64_t leaf =
+        (std::uint64_t{v[0] >> 3} << 36) | (std::uint64_t{v[1] >> 3} << 18) | (v[2] >> 3);
+    return leaf << 9 | (v[0] & 7) << 6 | (v[1] & 7) << 3 | (v[2] & 7);
+}
+
+void check(const VoxelFrame& frame, const PointCloud& cloud, std::span<const std::int32_t> label) {
+    if (!(frame.voxel_m > 0) || !std::isfinite(frame.voxel_m)) {
+        throw Error(ErrorKind::usage,
+                    "voxel size " + std::to_string(frame.voxel_m) + " m: it must be positive");
+    }
+    for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) {
+            double dot = 0;
+            for (int d = 0; d < 3; ++d)
+                dot += frame.grid_from_input[a][d] * frame.grid_from_input[b][d];
+            if (!(std::abs(dot - (a == b)) < 1e-6)) {
+                throw Error(ErrorKind::usage, "voxel frame: its rows are not orthonormal");
+            }
+        }
+    }
+    if (label.size() != cloud.size()) {
+        throw Error(ErrorKind::usage, "voxel scene: " + std::to_string(label.size()) +
+                                          " labels for " + std::to_string(cloud.size()) +
+                                          " points");
+    }
+}
+
+// Grid coordinates in voxels, and their median.
+struct Placed {
+    std::array<std::vector<double>, 3> at;
+    std::array<double, 3> median{0, 0, 0};
+};
+Placed place(const VoxelFrame& frame, const PointCloud& cloud) {
+    Placed placed;
+    for (int a = 0; a < 3; ++a) {
+        const Vec3& row = frame.grid_from_input[a];
+        auto& values = placed.at[a];
+        values.resize(cloud.size());
+        for (std::size_t n = 0; n < cloud.size(); ++n) {
+            values[n] =
+                (row[0] * cloud.x[n] + row[1] * cloud.y[n] + row[2] * cloud.z[n]) / frame.voxel_m;
+        }
+        std::vector<double> sorted = values;
+        if (sorted.empty()) continue;
+        std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
+        placed.median[a] = std::floor(sorted[sorted.size() / 2]);
+    }
+    return placed;
+}
+
+// Box of leaves between two voxels, inclusive, with a margin of two voxels for noise.
+LeafTable box_of(const std::array<std::int32_t, 3>& low, const std::array<std::int32_t, 3>& high,
+                 std::int32_t margin) {
+    LeafTable table;
+    for (int a = 0; a < 3; ++a) {
+        table.low[a] = (low[a] - margin) >> 3;
+        table.count[a] = ((high[a] + margin) >> 3) - table.low[a] + 1;
+    }
+    return table;
+}
+
+// Bounds of all samples, or, where that is much more space than the bounds of 99.8 % of them per
+// axis, the latter with a twentieth added on each side.
+LeafTable bounds_of(const VoxelFrame& frame,
+                    const std::array<std::vector<std::int32_t>, 3>& index) {
+    std::array<std::int32_t, 3> low, high, inner_low, inner_high;
+    const std::size_t n = index[0].size(), cut = n < 100 ? 0 : std::max<std::size_t>(1, n / 1000);
+    std::int32_t widest = 0;
+    for (int a = 0; a < 3; ++a) {
+        std::vector<std::int32_t> sorted = index[a];
+        const auto [first, last] = std::minmax_element(sorted.begin(), sorted.end());
+        low[a] = *first;
+        high[a] = *last;
+        std::nth_element(sorted.begin(), sorted.begin() + cut, sorted.end());
+        inner_low[a] = sorted[cut];
+        std::nth_element(sorted.begin(), sorted.end() - 1 - cut, sorted.end());
+        inner_high[a] = sorted[n - 1 - cut];
+        widest = std::max(widest, inner_high[a] - inner_low[a]);
+    }
+    const LeafTable all = box_of(low, high, 2);
+    LeafTable inner = box_of(inner_low, inner_high, 2 + widest / 20);
+    for (int a = 0; a < 3; ++a) {  // never larger than all
+        const std::int32_t end = std::min(inner.low[a] + inner.count[a], all.low[a] + all.count[a]);
+        inner.low[a] = std::max(inner.low[a], all.low[a]);
+        inner.count[a] = end - inner.low[a];
+    }
+    const bool strays = all.box_size() / 4 > inner.box_size();
+    const LeafTable& chosen = strays ? inner : all;
+    if (chosen.box_size() > max_leaves) {
+        const double scale =
+            std::cbrt(static_cast<double>(chosen.box_size()) / static_cast<double>(max_leaves));
+        std::string size;
+        for (int a = 0; a < 3; ++a) {
+            size += (a ? " x " : "") + std::to_string(chosen.count[a] * 8 * frame.voxel_m);
+        }
+        throw Error(
+            ErrorKind::input,
+            "the scene's bounds, " + size + " m, hold " + std::to_string(chosen.box_size()) +
+                " blocks of 8x8x8 voxels, more than the limit of " + std::to_string(max_leaves) +
+                "; use --voxel " + std::to_string(std::ceil(frame.voxel_m * scale * 1100) / 1000) +
+                " or larger");
+    }
+    return chosen;
+}
+
+// The most frequent label of sorted samples, the lowest of equals; -1 counts only by itself.
+std::int32_t majority(std::span<const Sample> samples) {
+    std::int32_t best = -1;
+    std::size_t best_count = 0;
+    for (std::size_t first = 0; first < samples.size();) {
+        std::size_t end = first;
+        while (end < samples.size() && samples[end].label == samples[first].label) ++end;
+        if (samples[first].label >= 0 && end - first > best_count) {
+            best = samples[first].label;
+            best_count = end - first;
+        }
+        first = end;
+    }
+    return best;
+}
+
+}  // namespace
+
+VoxelScene::VoxelScene(const VoxelFrame& frame, const PointCloud& cloud,
+                       std::span<const std::int32_t> label)
+    : grids_(std::make_unique<Grids>()) {
+    check(frame, cloud, label);
+    openvdb::initialize();
+    Grids& g = *grids_;
+    g.frame = frame;
+    g.state = openvdb::Int32Grid::create(static_cast<std::int32_t>(State::invisible));
+    g.primitive = openvdb::Int32Grid::create(-1);
+
+    const Placed placed = place(frame, cloud);
+    for (int a = 0; a < 3; ++a) {
+        if (!(std::abs(placed.median[a]) < 1e9)) {
+            throw Error(ErrorKind::input, "the points lie " +
+                                              std::to_string(placed.median[a] * frame.voxel_m) +
+                                              " m from the origin, too far for voxels of " +
+                                              std::to_string(frame.voxel_m) + " m; move the cloud");
+        }
+    }
+    std::array<std::vector<std::int32_t>, 3> index;
+    std::vector<std::int32_t> labels;
+    for (std::size_t n = 0; n < cloud.size(); ++n) {
+        bool within = true;
+        for (int a = 0; a < 3; ++a)
+            within = within && std::abs(placed.at[a][n] - placed.median[a]) < window - 16;
+        if (!within) {
+            ++g.unplaced;
+            continue;
+        }
+        for (int a = 0; a < 3; ++a)
+            index[a].push_back(static_cast<std::int32_t>(std::floor(placed.at[a][n])));
+        labels.push_back(std::max(label[n], -1));
+    }
+    if (labels.empty()) return;
+    g.leaves = bounds_of(frame, index);
+
+    std::array<std::int32_t, 3> corner;
+    for (int a = 0; a < 3; ++a) {
+        corner[a] = (static_cast<std::int32_t>(placed.median[a]) - window) & ~7;
+        g.lowest[a] = *std::min_element(index[a].begin(), index[a].end());
+        g.highest[a] = *std::max_element(index[a].begin(), index[a].end());
+    }
+    std::vector<Sample> samples(labels.size());
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+        samples[n].key = make_key({static_cast<std::uint32_t>(index[0][n] - corner[0]),
+                                   static_cast<std::uint32_t>(index[1][n] - corner[1]),
+                                   static_cast<std::uint32_t>(index[2][n] - corner[2])});
+        samples[n].label = labels[n];
+    }
+    tbb::parallel_sort(samples.begin(), samples.end());
+
+    StateLeaf* state = nullptr;
+    StateLeaf* primitive = nullptr;
+    openvdb::MaskTree::LeafNodeType* points = nullptr;
+    std::uint64_t leaf_key = ~std::uint64_t{0};
+    for (std::size_t first = 0; first < samples.size();) {
+        std::size_t end = first;
+        while (end < samples.size() && samples[end].key == samples[first].key) ++end;
+        if (samples[first].key >> 9 != leaf_key) {
+            leaf_key = samples[first].key >> 9;
+            const LeafTable::Leaf leaf{
+                static_cast<std::int32_t>(leaf_key >> 36) + (corner[0] >> 3),
+                static_cast<std::int32_t>(leaf_key >> 18 & 0x3ffff) + (corner[1] >> 3),
+                static_cast<std::int32_t>(leaf_key & 0x3ffff) + (corner[2] >> 3)};
+            if (!g.leaves.in_box(leaf)) g.leaves.beyond.push_back(leaf);
+            state = g.state->tree().touchLeaf(origin_of(leaf));
+            primitive = g.primitive->tree().touchLeaf(origin_of(leaf));
+            points = g.points.touchLeaf(origin_of(leaf));
+        }
+        const auto offset = static_cast<openvdb::Index>(samples[first].key & 511);
+        state->setValueOn(offset, static_cast<std::int32_t>(State::surface));
+        primitive->setValueOn(offset, majority({samples.data() + first, end - first}));
+        points->setValueOn(offset);
+        first = end;
+    }
+}
+
+VoxelScene::~VoxelScene() = default;
+VoxelScene::VoxelScene(VoxelScene&&) noexcept = default;
+
+const VoxelFrame& VoxelScene::frame() const {
+    return grids_->frame;
+}
+std::uint64_t VoxelScene::unplaced_points() const {
+    return grids_->unplaced;
+}
+std::array<std::int32_t, 3> VoxelScene::lowest() const {
+    return grids_->lowest;
+}
+std::array<std::int32_t, 3> VoxelScene::highest() const {
+    return grids_->highest;
+}
+
+void VoxelScene::set_objects(std::span<const std::int32_t> object_of_primitive) {
+    grids_->object_of_primitive.assign(object_of_primitive.begin(), object_of_primitive.end());
+}
+
+void VoxelScene::Grids::clear_completed() {
+    constexpr auto completed = static_cast<std::int32_t>(State::completed);
+    for (auto leaf = state->tree().beginLeaf(); leaf; ++leaf) {
+        for (auto voxel = leaf->beginValueOn(); voxel; ++voxel) {
+            if (*voxel != completed) continue;
+            primitive->tree().setValueOff(voxel.getCoord(), -1);
+            leaf->setValueOff(voxel.pos(), static_cast<std::int32_t>(State::invisible));
+        }
+    }
+}
+
+}  // namespace topple::vdb

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include <openvdb/io/File.h>
+
+#include "topple/error.h"
+#include "vdb/grids.h"
+
+// VoxelScene as an OpenVDB file.
+namespace topple::vdb {
+
+openvdb::math::Transform::Ptr VoxelScene::Grids::transform() const {
+    // OpenVDB multiplies row vectors from the left: world = index * M. Its index (i, j, k) is the
+    // voxel's centre already, ours its corner.
+    openvdb::Mat4d m = openvdb::Mat4d::identity();
+    for (int a = 0; a < 3; ++a) {
+        for (int d = 0; d < 3; ++d) m(a, d) = frame.grid_from_input[a][d] * frame.voxel_m;
+    }
+    for (int d = 0; d < 3; ++d) m(3, d) = 0.5 * (m(0, d) + m(1, d) + m(2, d));
+    return openvdb::math::Transform::createLinearTransform(m);
+}
+
+void VoxelScene::add_field(const std::string& name, const Tiles& tiles,
+                           std::span<const float> values) {
+    bool taken = name.empty() || name == "state" || name == "primitive" || name == "object";
+    for (const auto& field : grids_->fields) taken = taken || field.first == name;
+    if (taken) throw Error(ErrorKind::usage, "field \"" + name + "\": the name is taken or empty");
+    if (values.size() != tiles.size() * 512) {
+        throw Error(ErrorKind::usage, "field \"" + name + "\": " + std::to_string(values.size()) +
+                                          " values for " + std::to_string(tiles.size() * 512) +
+                                          " voxels");
+    }
+    auto grid = openvdb::FloatGrid::create(0);
+    for (std::size_t n = 0; n < tiles.size(); ++n) {
+        const float* from = values.data() + n * 512;
+        if (std::all_of(from, from + 512, [](float v) { return v == 0; })) continue;
+        auto* leaf = grid->tree().touchLeaf({tiles.x[n], tiles.y[n], tiles.z[n]});
+        for (openvdb::Index v = 0; v < 512; ++v) {
+            if (from[v] != 0) leaf->setValueOn(v, from[v]);
+        }
+    }
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    grids_->fields.emplace_back(name, grid);
+}
+
+void VoxelScene::write(const std::filesystem::path& path) const {
+    const Grids& g = *grids_;
+    // Labels count where the voxel is solid; elsewhere they are background.
+    auto primitive = openvdb::Int32Grid::create(-1);
+    auto object = openvdb::Int32Grid::create(-1);
+    for (auto leaf = g.state->tree().cbeginLeaf(); leaf; ++leaf) {
+        if (leaf->isEmpty()) continue;
+        const auto* label = g.primitive->tree().probeConstLeaf(leaf->origin());
+        auto* to_primitive = primitive->tree().touchLeaf(leaf->origin());
+        auto* to_object = object->tree().touchLeaf(leaf->origin());
+        for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
+            const std::int32_t p = label->getValue(voxel.pos());
+            const bool known = p >= 0 && static_cast<std::size_t>(p) < g.object_of_primitive.size();
+            to_primitive->setValueOn(voxel.pos(), p);
+            to_object->setValueOn(voxel.pos(),
+                                  known ? g.object_of_primitive[static_cast<std::size_t>(p)] : -1);
+        }
+    }
+    openvdb::GridPtrVec grids;
+    const auto add = [&](const std::string& name, const openvdb::GridBase::Ptr& grid) {
+        grid->setName(name);
+        grid->setTransform(g.transform());
+        grid->setCreator("topple");
+        grid->insertMeta("voxel_size_m", openvdb::DoubleMetadata(g.frame.voxel_m));
+        grids.push_back(grid);
+    };
+    const auto state =
+        openvdb::gridPtrCast<openvdb::Int32Grid>(g.state->copyGrid());  // shares the tree
+    state->setGridClass(openvdb::GRID_UNKNOWN);
+    state->insertMeta("values",
+                      openvdb::StringMetadata("0 empty, 1 surface, 2 invisible, 3 completed"));
+    add("state", state);
+    add("primitive", primitive);
+    add("object", object);
+    for (const auto& [name, field] : g.fields) add(name, field);
+
+    openvdb::MetaMap meta;
+    meta.insertMeta("creator", openvdb::StringMetadata("topple"));
+    meta.insertMeta("topple_schema", openvdb::StringMetadata("topple.volume/1"));
+    meta.insertMeta("voxel_size_m", openvdb::DoubleMetadata(g.frame.voxel_m));
+    try {
+        openvdb::io::File file(path.string());
+        file.write(grids, meta);
+        file.close();
+        // The writer does not notice a full disk; a short file does not open and read back.
+        openvdb::io::File back(path.string());
+        back.open(false);
+        for (auto name = back.beginName(); name != back.endName(); ++name)
+            back.readGrid(name.gridName());
+    } catch (const std::exception& error) {
+        throw Error(ErrorKind::input, path.string() + ": can't write the volume: " + error.what());
+    }
+}
+
+}  // namespace topple::vdb
