@@ -29,9 +29,13 @@ SphereMesh geodesic_sphere(unsigned frequency);
 // any group of primitives is then a minimum over its rows (paper-exact: U(d) = M g (c.d - min s)).
 class SupportTable {
   public:
-    // Vertices: the corners of each primitive's extreme cells, reduced to their convex hull (Qhull).
+    // Vertices: the corners of each primitive's extreme cells, reduced to their convex hull
+    // (Qhull).
     SupportTable(device::Device& device, const SolidCells& cells, std::int32_t primitives,
                  const SphereMesh& mesh);
+    // From vertices (metres, grid frame), one set per primitive, that are exact to resolution_m.
+    SupportTable(device::Device& device, std::span<const std::vector<Vec3>> vertices,
+                 double resolution_m, const SphereMesh& mesh);
     ~SupportTable();
     SupportTable(SupportTable&&) noexcept;
     std::int32_t primitives() const;
@@ -43,17 +47,23 @@ class SupportTable {
     std::unique_ptr<Rows> rows_;
 };
 
-// What a group of primitives can do when pushed.
+// What a group of primitives can do when pushed. Heights are known to one voxel, so a descent
+// behind a pass counts from M g * voxel, and a minimum is deeper than the start from half of that.
+// A body that can turn by 90 degrees within that tolerance (a ball, a lying cylinder) has barrier
+// 0.
 struct Stability {
-    double barrier_J = 0;   // least energy that takes it out of its basin; 0: it falls by itself
-    double release_J = 0;   // largest release behind that barrier
-    double margin_m = 0;    // distance of the centre of mass inside the support polygon; < 0 outside
-    Vec3 direction{};       // horizontal way it goes, unit, grid frame
+    double barrier_J =
+        0;  // least energy that takes it out of its basin; 0: it falls or rolls by itself
+    double release_J =
+        0;  // largest release behind that barrier, counted from the pass; 0: none is deeper
+    double margin_m = 0;  // distance of the centre of mass inside the support polygon; < 0 outside;
+                          // minus the body's radius where nothing holds it
+    Vec3 direction{};     // horizontal way it goes, unit, grid frame
     std::vector<InstabilityStep> curve;  // S(W), ascending in W
 };
 
-// One candidate rigid body: its primitives, its mass properties, and the hull of the points on which
-// it is held up (x, y pairs, metres, counter-clockwise; empty: nothing below holds it).
+// One candidate rigid body: its primitives, its mass properties, and the hull of the points on
+// which it is held up (x, y pairs, metres, counter-clockwise; empty: nothing below holds it).
 struct Candidate {
     std::vector<std::int32_t> primitives;
     Body body;
@@ -62,7 +72,14 @@ struct Candidate {
 };
 
 // Pose landscapes and barriers of many candidates in one batch (kernels group_landscape,
-// barrier_flood). Order as given; deterministic.
+// barrier_flood). Order as given; deterministic. The barrier is the least of
+//   - M g (sqrt(h^2 + m^2) - h) over the edges of the support polygon, m the distance of the centre
+//   of
+//     mass to the edge's line, h its height above the support (paper-exact for rigid tipping), and
+//   - the lowest pass of the hull's landscape on a plane, made exact on the hull's edges.
+// A centre of mass outside the polygon, or no polygon: barrier 0. The curve counts what the pose
+// releases on a plane at the support's height; a further drop, where the support ends, is the
+// caller's to add. Throws Error(usage) for a primitive that the table doesn't hold.
 std::vector<Stability> evaluate(device::Device& device, const SupportTable& table,
                                 std::span<const Candidate> candidates);
 
@@ -71,12 +88,19 @@ struct MergeTree {
     struct Basin {
         std::uint32_t minimum = 0;  // direction of the mesh
         double energy = 0;          // of the minimum
-        double pass = 0;            // energy at which it joins a deeper basin; infinity for the deepest
-        std::uint32_t saddle = 0;   // direction of that pass
-        std::int32_t parent = -1;   // basin that it joins
+        double pass = 0;  // energy at which it joins a deeper basin; infinity for the deepest
+        std::uint32_t saddle = 0;  // direction of that pass
+        std::int32_t parent = -1;  // basin that it joins
     };
-    std::vector<Basin> basins;  // by rising energy
+    std::vector<Basin> basins;           // by rising energy
+    std::vector<std::int32_t> basin_of;  // basin of each direction: the deepest one that its
+                                         // component holds at its own level
+    // The least, over all paths from a to b, of the highest energy on the way; exact where the tree
+    // was built with plateau_tolerance 0.
+    double minimax(std::span<const float> energy, std::uint32_t a, std::uint32_t b) const;
 };
+// Basins no deeper than plateau_tolerance (in the energies' unit) below their pass are merged into
+// the basin they join: a rolling ball has one basin, not one per facet.
 MergeTree disconnectivity_graph(std::span<const float> energy, const SphereMesh& mesh,
                                 double plateau_tolerance);
 

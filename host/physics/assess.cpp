@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+#include "physics/assess.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/pose_passes.h"
+#include "physics/tipping.h"
+
+namespace topple::physics {
+namespace {
+
+// One way out of the start's basin; metres, to be multiplied by M g.
+struct Way {
+    double climb_m = 0, release_m = 0;
+    Vec3 direction{};  // horizontal, unit or zero
+};
+
+// The body turns so that d becomes vertical; its own vertical then leans to the other side of d.
+Vec3 lean(const Vec3& d) {
+    const double length = std::sqrt(d[0] * d[0] + d[1] * d[1]);
+    if (!(length > 1e-6)) return {};
+    return {-d[0] / length, -d[1] / length, 0};
+}
+
+// The direction of the mesh nearest to d, by ascent from v.
+std::uint32_t nearest(const SphereMesh& mesh, std::uint32_t v, const Vec3& d) {
+    const auto along = [&](std::uint32_t w) {
+        return mesh.x[w] * d[0] + mesh.y[w] * d[1] + mesh.z[w] * d[2];
+    };
+    for (;;) {
+        std::uint32_t best = v;
+        for (std::size_t k = 0; k < 6; ++k) {
+            const std::uint32_t w = mesh.neighbour[std::size_t{v} * 6 + k];
+            if (along(w) > along(best)) best = w;
+        }
+        if (best == v) return v;
+        v = best;
+    }
+}
+
+// The deepest height that opens to a body leaning towards `way` (unit, horizontal): behind the
+// first pass of the hull that this turn meets. The start's height if it meets none within 120
+// degrees.
+double deepest_towards(const Flooded& f, std::span<const PosePass> passes, const Vec3& way) {
+    std::uint32_t v = 0;
+    const double step = f.spacing / 2;
+    for (double angle = 0; angle < 2.1; angle += step) {
+        const double s = std::sin(angle), c = std::cos(angle);
+        v = nearest(*f.mesh, v, {-s * way[0], -s * way[1], c});
+        if (double{f.level[v]} - f.height[v] <= f.tolerance_m) continue;
+        const auto after =
+            std::upper_bound(passes.begin(), passes.end(), double{f.level[v]},
+                             [](double level, const PosePass& p) { return level < p.height_m; });
+        if (after != passes.begin()) return std::prev(after)->deepest_m;
+    }
+    return f.height[f.start];
+}
+
+std::vector<Vec3> vertices_of(const SupportTable::Rows& rows, const Candidate& candidate) {
+    std::vector<Vec3> all;
+    for (const std::int32_t p : candidate.primitives) {
+        const auto at = static_cast<std::size_t>(p);
+        Vec3 offset{};
+        for (std::size_t a = 0; a < 3; ++a)
+            offset[a] = rows.origin[at][a] - candidate.body.center[a];
+        for (const Vec3& v : rows.vertices[at]) {
+            all.push_back({v[0] + offset[0], v[1] + offset[1], v[2] + offset[2]});
+        }
+    }
+    return all;
+}
+
+// What the hull's landscape offers: every pass that opens something deeper than lower passes do,
+// and the lowest one in any case.
+void add_passes(const SupportTable::Rows& rows, const Candidate& candidate, const Flooded& f,
+                std::span<const PosePass> passes, std::vector<Way>& ways) {
+    const double base = f.height[f.start];
+    std::vector<Vec3> vertices;
+    double deepest = 0;
+    for (std::size_t n = 0; n < passes.size(); ++n) {
+        if (n > 0 && passes[n].deepest_m >= deepest) continue;
+        deepest = passes[n].deepest_m;
+        PosePass pass = passes[n];
+        if (pass.height_m > base) {
+            if (vertices.empty()) vertices = vertices_of(rows, candidate);
+            if (const auto exact = refine_pass(pass, vertices, f.spacing)) pass = *exact;
+        }
+        const double height = std::max(pass.height_m, base);
+        const bool deeper = pass.deepest_m < base - f.tolerance_m / 2;
+        ways.push_back({height - base, deeper ? height - pass.deepest_m : 0, lean(pass.direction)});
+    }
+}
+
+void add_footing(const Candidate& candidate, const Footing& on, const Flooded& f,
+                 std::span<const PosePass> passes, std::vector<Way>& ways) {
+    const double base = f.height[f.start];
+    const auto add = [&](double climb, const Vec3& way) {
+        const double deepest = deepest_towards(f, passes, way);
+        const bool deeper = deepest < base - f.tolerance_m / 2;
+        ways.push_back({climb, deeper ? climb + base - deepest : 0, way});
+    };
+    if (on.edges.empty()) return add(0, on.away);
+    const double h = candidate.body.center[2] - candidate.support_height_m;
+    for (const Footing::Edge& edge : on.edges) {
+        add(std::sqrt(h * h + edge.distance_m * edge.distance_m) - h, edge.outward);
+    }
+}
+
+// Held by nothing: it falls as its hull lets it.
+void add_fall(const Flooded& f, std::span<const PosePass> passes, std::vector<Way>& ways) {
+    const double base = f.height[f.start];
+    Way fall;
+    for (const PosePass& pass : passes) {
+        if (pass.height_m > base + f.tolerance_m) break;
+        if (pass.deepest_m < base - f.tolerance_m / 2) {
+            fall.release_m = base - pass.deepest_m;
+            fall.direction = lean(pass.direction);
+        }
+    }
+    ways.push_back(fall);
+}
+
+// S(W) of Eq. 6: the largest release over all ways with a climb of at most W.
+std::vector<InstabilityStep> curve_of(std::vector<Way> ways, double weight_N) {
+    std::stable_sort(ways.begin(), ways.end(),
+                     [](const Way& a, const Way& b) { return a.climb_m < b.climb_m; });
+    std::vector<InstabilityStep> curve;
+    for (const Way& way : ways) {
+        const double W = weight_N * way.climb_m, S = weight_N * way.release_m;
+        if (S <= (curve.empty() ? 0 : curve.back().S_J)) continue;
+        if (!curve.empty() && curve.back().W_J == W) {
+            curve.back().S_J = S;
+        } else {
+            curve.push_back({W, S});
+        }
+    }
+    return curve;
+}
+
+}  // namespace
+
+std::uint32_t start_direction(const SupportTable::Rows& rows, const Candidate& candidate,
+                              std::span<const float> height) {
+    if (candidate.support_polygon.empty() || !(rows.resolution_m > 0)) return 0;
+    const Vec3& c = candidate.body.center;
+    const double margin = footing(candidate.support_polygon, c[0], c[1]).margin_m;
+    if (!(margin > 0)) return 0;
+    // Two voxels of height over the distance at which the footing holds.
+    const double angle =
+        std::min(std::atan(2 * rows.resolution_m / std::max(margin, rows.resolution_m)), 0.5);
+    std::uint32_t v = 0;
+    for (bool lower = true; lower;) {
+        std::uint32_t best = v;
+        for (std::size_t k = 0; k < 6; ++k) {
+            const std::uint32_t w = rows.mesh.neighbour[std::size_t{v} * 6 + k];
+            if (height[w] < height[best]) best = w;
+        }
+        lower = best != v;
+        v = best;
+    }
+    return rows.mesh.z[v] >= std::cos(angle) && height[0] - height[v] <= 2 * rows.resolution_m ? v
+                                                                                               : 0;
+}
+
+Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
+                 std::span<const float> height, std::span<const float> level, std::uint32_t start) {
+    const double radius = *std::max_element(height.begin(), height.end());
+    const double weight_N = candidate.body.mass_kg * gravity;
+    // Heights are known to a voxel, and to the rounding of their float sums.
+    const Flooded f{&rows.mesh, height,       level,
+                    start,      rows.spacing, rows.resolution_m + 1e-5 * radius};
+    const std::vector<PosePass> passes = find_passes(f);
+
+    Stability result;
+    std::vector<Way> ways;
+    if (candidate.support_polygon.empty()) {
+        result.margin_m = -radius;
+        add_fall(f, passes, ways);
+    } else {
+        const Footing on =
+            footing(candidate.support_polygon, candidate.body.center[0], candidate.body.center[1]);
+        result.margin_m = on.margin_m;
+        add_footing(candidate, on, f, passes, ways);
+    }
+    add_passes(rows, candidate, f, passes, ways);
+    if (rolls(f)) ways.push_back({});
+
+    const auto least = std::min_element(
+        ways.begin(), ways.end(), [](const Way& a, const Way& b) { return a.climb_m < b.climb_m; });
+    // Of ways equal to within rounding, the one that releases most.
+    const Way* taken = &*least;
+    for (const Way& way : ways) {
+        if (way.climb_m <= least->climb_m + 1e-6 * radius && way.release_m > taken->release_m)
+            taken = &way;
+    }
+    result.barrier_J = weight_N * least->climb_m;
+    result.release_J = weight_N * taken->release_m;
+    result.direction = taken->direction;
+    result.curve = curve_of(std::move(ways), weight_N);
+    return result;
+}
+
+}  // namespace topple::physics

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "barrier_flood.hpp"
+#include "device/queue.h"
+#include "group_landscape.hpp"
+#include "physics/assess.h"
+#include "topple/error.h"
+
+namespace topple::physics {
+namespace {
+
+constexpr std::uint64_t batch_bytes = 32U << 20;             // of energies
+constexpr std::size_t batch_members = std::size_t{4} << 20;  // primitives over all candidates
+
+void check(const SupportTable& table, std::span<const Candidate> candidates) {
+    for (std::size_t n = 0; n < candidates.size(); ++n) {
+        for (const std::int32_t p : candidates[n].primitives) {
+            if (p < 0 || p >= table.primitives()) {
+                throw Error(ErrorKind::usage, "evaluate: candidate " + std::to_string(n) +
+                                                  " names primitive " + std::to_string(p) +
+                                                  ", but the table holds " +
+                                                  std::to_string(table.primitives()));
+            }
+        }
+    }
+}
+
+// What the kernels get for a batch: members of all candidates, one after the other. Primitives
+// without voxels have no row worth reading.
+struct Batch {
+    std::vector<std::uint32_t> first{0}, row;
+    std::vector<float> x, y, z;
+};
+
+Batch gather(const SupportTable::Rows& rows, std::span<const Candidate> candidates) {
+    Batch batch;
+    for (const Candidate& candidate : candidates) {
+        for (const std::int32_t p : candidate.primitives) {
+            const auto at = static_cast<std::size_t>(p);
+            if (rows.vertices[at].empty()) continue;
+            batch.row.push_back(static_cast<std::uint32_t>(p));
+            batch.x.push_back(static_cast<float>(rows.origin[at][0] - candidate.body.center[0]));
+            batch.y.push_back(static_cast<float>(rows.origin[at][1] - candidate.body.center[1]));
+            batch.z.push_back(static_cast<float>(rows.origin[at][2] - candidate.body.center[2]));
+        }
+        batch.first.push_back(static_cast<std::uint32_t>(batch.row.size()));
+    }
+    return batch;
+}
+
+device::Buffer<float> landscapes(device::Device& device, const SupportTable::Rows& rows,
+                                 const Batch& batch) {
+    const std::size_t count = batch.first.size() - 1;
+    device::Buffer<float> energy(device, std::uint64_t{count} * rows.padded, "landscapes");
+    device::Buffer<std::uint32_t> first(device, std::span<const std::uint32_t>(batch.first),
+                                        "group starts"),
+        row(device, std::span<const std::uint32_t>(batch.row), "group members");
+    device::Buffer<float> ox(device, std::span<const float>(batch.x), "member origins x"),
+        oy(device, std::span<const float>(batch.y), "member origins y"),
+        oz(device, std::span<const float>(batch.z), "member origins z");
+    device::Queue queue(device);
+    for (const SupportTable::Rows::Tile& tile : rows.tiles) {
+        queue.add<kernels::GroupLandscape>(std::uint64_t{count} * tile.directions,
+                                           {.s = tile.s,
+                                            .dx = tile.dx,
+                                            .dy = tile.dy,
+                                            .dz = tile.dz,
+                                            .first = first,
+                                            .row = row,
+                                            .ox = ox,
+                                            .oy = oy,
+                                            .oz = oz,
+                                            .energy = energy},
+                                           {.candidate_count = static_cast<std::uint32_t>(count),
+                                            .tile_directions = tile.directions,
+                                            .padded_directions = rows.padded,
+                                            .tile_first = tile.first});
+    }
+    queue.run();
+    return energy;
+}
+
+// Levels of all candidates: by the kernel, or from merge trees where a mesh is too fine for it.
+std::vector<float> flood(device::Device& device, const SupportTable::Rows& rows,
+                         const device::Buffer<float>& energy, std::span<const float> heights,
+                         std::span<const std::uint32_t> start) {
+    if (rows.padded <= flood_directions) {
+        device::Buffer<std::uint32_t> starts(device, start, "flood starts");
+        device::Buffer<float> level(device, energy.size(), "flood levels");
+        device::Queue queue(device);
+        queue.add<kernels::BarrierFlood>(
+            start.size(),
+            {.energy = energy, .neighbour = rows.neighbour, .start = starts, .level = level},
+            {.padded_directions = rows.padded});
+        queue.run();
+        return level.download();
+    }
+    std::vector<float> levels(heights.begin(), heights.end());
+    for (std::size_t n = 0; n < start.size(); ++n) {
+        const auto height = heights.subspan(n * rows.padded, rows.mesh.size());
+        const MergeTree tree = disconnectivity_graph(height, rows.mesh, 0);
+        for (std::uint32_t v = 0; v < rows.mesh.size(); ++v) {
+            levels[n * rows.padded + v] = static_cast<float>(tree.minimax(height, start[n], v));
+        }
+    }
+    return levels;
+}
+
+void evaluate_batch(device::Device& device, const SupportTable::Rows& rows,
+                    std::span<const Candidate> candidates, std::vector<Stability>& results) {
+    const Batch batch = gather(rows, candidates);
+    const device::Buffer<float> energy = landscapes(device, rows, batch);
+    const std::vector<float> heights = energy.download();
+    const auto row = [&](const std::vector<float>& values, std::size_t n) {
+        return std::span<const float>(values).subspan(n * rows.padded, rows.mesh.size());
+    };
+    std::vector<std::uint32_t> start(candidates.size());
+    for (std::size_t n = 0; n < candidates.size(); ++n) {
+        start[n] = start_direction(rows, candidates[n], row(heights, n));
+    }
+    const std::vector<float> levels = flood(device, rows, energy, heights, start);
+    for (std::size_t n = 0; n < candidates.size(); ++n) {
+        const bool empty = batch.first[n] == batch.first[n + 1];
+        results.push_back(
+            empty ? Stability{}
+                  : assess(rows, candidates[n], row(heights, n), row(levels, n), start[n]));
+    }
+}
+
+}  // namespace
+
+std::vector<Stability> evaluate(device::Device& device, const SupportTable& table,
+                                std::span<const Candidate> candidates) {
+    check(table, candidates);
+    const SupportTable::Rows& rows = table.rows();
+    const std::size_t most =
+        std::max<std::uint64_t>(1, batch_bytes / (std::uint64_t{rows.padded} * sizeof(float)));
+    std::vector<Stability> results;
+    results.reserve(candidates.size());
+    for (std::size_t from = 0; from < candidates.size();) {
+        std::size_t to = from, members = 0;
+        while (to < candidates.size() && to - from < most &&
+               (to == from || members + candidates[to].primitives.size() <= batch_members)) {
+            members += candidates[to++].primitives.size();
+        }
+        evaluate_batch(device, rows, candidates.subspan(from, to - from), results);
+        from = to;
+    }
+    return results;
+}
+
+}  // namespace topple::physics

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "physics/landscape.h"
+
+// Passes of one pose landscape, from its energies U and its flooded levels L (paper, Defs. 1 and
+// 2). All heights are U / (M g), metres: the centre of mass above the lowest point.
+namespace topple::physics {
+
+struct Flooded {
+    const SphereMesh* mesh = nullptr;
+    std::span<const float> height;  // U / (M g) per direction
+    std::span<const float> level;   // L / (M g) per direction
+    std::uint32_t start = 0;
+    double spacing = 0;      // longest edge of the mesh, radians
+    double tolerance_m = 0;  // a descent of less than this is noise
+};
+
+// One pass out of the start's basin, and the deepest minimum that it opens beyond those that lower
+// passes open.
+struct PosePass {
+    double height_m = 0;   // at the pass
+    Vec3 direction{};      // up in the body's frame at the pass
+    double deepest_m = 0;  // lowest height behind this pass or lower ones
+};
+
+// All passes by rising height. Two that are within rounding of each other stay two.
+std::vector<PosePass> find_passes(const Flooded& landscape);
+
+// Whether the body can turn by 90 degrees and more while rising by no more than the tolerance.
+bool rolls(const Flooded& landscape);
+
+// The exact pass near one found on the mesh. A body balances over an edge of its hull where the
+// centre of mass stands above the edge, and every pass is such a pose; vertices are relative to the
+// centre of mass. The mesh bounds the true pass by height * (1 + spacing^2 / 8) (the landscape is a
+// maximum of linear functions, so it sags between neighbours); of the edges nearby, the highest
+// within that bound is taken. Nothing where no edge qualifies.
+std::optional<PosePass> refine_pass(const PosePass& found, std::span<const Vec3> vertices,
+                                    double spacing);
+
+}  // namespace topple::physics

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "topple/input.h"
+
+// Rigid tipping over the edges of a support polygon, in the horizontal plane. Grid frame, metres.
+namespace topple::physics {
+
+// Where a centre of mass stands in a convex polygon of contact.
+struct Footing {
+    double margin_m = 0;  // signed distance to the polygon's border, > 0 inside
+    Vec3 away{};  // outside: unit direction in which it falls; zero if it stands on the border
+    struct Edge {
+        double distance_m = 0;  // of the centre of mass from the edge's line
+        Vec3 outward{};         // unit
+    };
+    std::vector<Edge> edges;  // inside only
+};
+// polygon: counter-clockwise, convex, at least one point; one or two points, or points on a line,
+// give a footing without an inside.
+Footing footing(std::span<const std::array<double, 2>> polygon, double x, double y);
+
+// Convex hull of points, counter-clockwise, strict corners only, from the lowest (x, y) on.
+std::vector<std::array<double, 2>> convex_polygon(std::vector<std::array<double, 2>> points);
+
+}  // namespace topple::physics
