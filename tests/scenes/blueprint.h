@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenes/random.h"
+#include "scenes/scene.h"
+
+// Objects before they stand anywhere: in their own frame, resting on z = 0, front towards +y. Parts
+// touch where they are joined and never overlap, so that volumes add up.
+namespace topple::scenes {
+
+// A level rectangle that other objects may stand on.
+struct Surface {
+    int part = -1;
+    double x = 0, y = 0, half_x = 0, half_y = 0;
+    double clearance = 0;  // free height above
+    std::string where;
+};
+
+struct Blueprint {
+    explicit Blueprint(std::string object_name) : name(std::move(object_name)) {}
+
+    std::string name;
+    std::vector<Part> parts;
+    std::vector<std::pair<int, int>> joints;  // fixed to one another
+    std::vector<int> feet;                    // what rests on the supporter
+    std::vector<int> wall_parts;              // what is fixed to the wall behind (at y = back())
+    std::vector<Surface> surfaces;
+
+    // Each adds a part whose lowest point is at `bottom` and returns its index.
+    int box(const char* part, double x, double y, double bottom, const Vec3& size, double yaw = 0);
+    int cylinder(const char* part, double x, double y, double bottom, double diameter,
+                 double height);
+    int lying(const char* part, double x, double y, double bottom, double length, double diameter,
+              double yaw = 0);
+    int sphere(const char* part, double x, double y, double bottom, double diameter);
+    int cone(const char* part, double x, double y, double bottom, double diameter, double height,
+             double top_ratio);
+    void join(int a, int b) { joints.emplace_back(a, b); }
+    // The whole top of a part, less a rim.
+    void stand_on(int part, double clearance, const char* where, double rim = 0.01);
+
+    std::array<Vec3, 2> bounds() const;
+    double height() const { return bounds()[1][2]; }
+    double back() const { return bounds()[0][1]; }
+};
+
+// Furniture.
+Blueprint make_table(Random& random);
+Blueprint make_pedestal_table(Random& random);
+Blueprint make_desk(Random& random);
+Blueprint make_chair(Random& random);
+Blueprint make_stool(Random& random);
+Blueprint make_bench(Random& random);
+Blueprint make_shelf(Random& random);
+Blueprint make_dresser(Random& random);
+Blueprint make_sofa(Random& random);
+Blueprint make_bed(Random& random);
+Blueprint make_wall_cabinet(Random& random);
+Blueprint make_wall_shelf(Random& random);
+Blueprint make_floor_lamp(Random& random);
+Blueprint make_plant(Random& random);
+Blueprint make_bin(Random& random);
+Blueprint make_crate(Random& random);
+Blueprint make_roll(Random& random);
+Blueprint make_marker(Random& random);
+
+// Things that stand on other things, at most `height` high and with a footprint radius of at most
+// `radius`. Returns one blueprint, or several that stand on one another, lowest first.
+std::vector<Blueprint> make_item(Random& random, double height, double radius);
+
+}  // namespace topple::scenes

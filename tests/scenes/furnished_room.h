@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "scenes/scene.h"
+
+namespace topple::scenes {
+
+struct RoomOptions {
+    std::uint64_t seed = 1;
+    double tilt_deg = 0;  // turns the input's frame against the room's, about a random axis
+    double clutter = 1;   // scales the number of small things; 0: furniture only
+};
+
+// A furnished room: floor, walls, perhaps a pillar; furniture along the walls and what stands on
+// it, with a free middle (half extents free_middle() of the room's). Solids never overlap, and
+// different objects touch only where one carries the other or is fixed to a wall. The same options
+// give the same room everywhere.
+World furnished_room(const RoomOptions& options);
+
+// Half extents of the middle of the room that stays free, metres.
+std::array<double, 2> free_middle(const World& world);
+
+}  // namespace topple::scenes

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+// The scenes' own random numbers: the same seed gives the same scene with every compiler and
+// library, which std:: distributions do not promise.
+namespace topple::scenes {
+
+// Finaliser of splitmix64 (Steele, Lea & Flood 2014): a bijection that scatters its input.
+constexpr std::uint64_t scatter(std::uint64_t v) {
+    v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    v = (v ^ (v >> 27)) * 0x94d049bb133111ebULL;
+    return v ^ (v >> 31);
+}
+
+// splitmix64. Two streams from different seeds, or different `stream` numbers, are unrelated.
+class Random {
+  public:
+    explicit constexpr Random(std::uint64_t seed, std::uint64_t stream = 0)
+        : state_(scatter(scatter(seed + 0x9e3779b97f4a7c15ULL) ^
+                         (stream * 0xd1342543de82ef95ULL + 1))) {}
+
+    constexpr std::uint64_t next() { return scatter(state_ += 0x9e3779b97f4a7c15ULL); }
+    // In [0, 1).
+    constexpr double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+    constexpr double uniform(double low, double high) { return low + (high - low) * uniform(); }
+    // In [low, high], both included; the bias of the scaling is below 2^-32.
+    constexpr int integer(int low, int high) {
+        const auto span = static_cast<std::uint64_t>(high - low) + 1;
+        return low + static_cast<int>(((next() >> 32) * span) >> 32);
+    }
+    constexpr bool chance(double probability) { return uniform() < probability; }
+    // Approximately standard normal: twelve 10-bit uniforms summed, so that no library's log or cos
+    // enters. Variance 1 to 1e-6; never beyond 6.
+    constexpr double normal() {
+        std::uint32_t sum = 0;
+        for (int word = 0; word < 2; ++word) {
+            const std::uint64_t bits = next();
+            for (int k = 0; k < 6; ++k) sum += static_cast<std::uint32_t>(bits >> (10 * k)) & 1023u;
+        }
+        return (static_cast<double>(sum) - 12 * 511.5) / 1024.0;
+    }
+
+  private:
+    std::uint64_t state_;
+};
+
+}  // namespace topple::scenes
