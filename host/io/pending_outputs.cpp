@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "io/pending_outputs.h"
+
+#include <fcntl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <climits>
+#include <cstdint>
+#include <cstring>
+
+#include "io/output_folder.h"
+
+namespace topple::io {
+namespace {
+
+enum State : int { free_slot, changing, pending };
+
+struct Slot {
+    std::atomic<int> state{free_slot};
+    int parents = 0;
+    char path[PATH_MAX];
+};
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not wait for a lock");
+
+std::array<Slot, 16> slots;
+
+// What getdents64 fills in; the C library has no name for it.
+struct Entry {
+    std::uint64_t inode;
+    std::int64_t offset;
+    unsigned short length;
+    unsigned char type;
+    char name[1];
+};
+
+void unlink_all(int folder) {
+    alignas(Entry) char buffer[4096];
+    for (;;) {
+        const long bytes = ::syscall(SYS_getdents64, folder, buffer, sizeof(buffer));
+        if (bytes <= 0) return;
+        for (long at = 0; at < bytes;) {
+            const auto* entry = reinterpret_cast<const Entry*>(buffer + at);
+            const char* name = buffer + at + offsetof(Entry, name);
+            const bool dots = name[0] == '.' && (name[1] == 0 || (name[1] == '.' && name[2] == 0));
+            if (!dots) ::unlinkat(folder, name, 0);
+            at += entry->length;
+        }
+    }
+}
+
+}  // namespace
+
+int add_pending(const std::filesystem::path& folder, int parents) noexcept {
+    const auto& text = folder.native();
+    if (text.size() >= PATH_MAX) return -1;
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+        int expected = free_slot;
+        if (!slots[i].state.compare_exchange_strong(expected, changing)) continue;
+        std::memcpy(slots[i].path, text.c_str(), text.size() + 1);
+        slots[i].parents = parents;
+        slots[i].state.store(pending);
+        return static_cast<int>(i);
+    }
+    return -1;
+}
+
+void forget_pending(int slot) noexcept {
+    if (slot >= 0) slots[static_cast<std::size_t>(slot)].state.store(free_slot);
+}
+
+void remove_flat_folder(const char* path) noexcept {
+    // Another thread may add a file while we remove: look again a few times.
+    for (int attempt = 0; attempt < 3; ++attempt) {
+        const int folder = ::open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+        if (folder < 0) return;
+        unlink_all(folder);
+        ::close(folder);
+        if (::rmdir(path) == 0) return;
+    }
+}
+
+void remove_pending_outputs() noexcept {
+    for (auto& slot : slots) {
+        if (slot.state.load() != pending) continue;
+        remove_flat_folder(slot.path);
+        for (int i = 0; i < slot.parents; ++i) {
+            char* end = std::strrchr(slot.path, '/');
+            if (!end || end == slot.path) break;
+            *end = 0;
+            ::rmdir(slot.path);
+        }
+    }
+}
+
+}  // namespace topple::io

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+#include "io/scene_json.h"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "io/file_writer.h"
+#include "io/text.h"
+
+namespace topple::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* schema = "topple.scene/1";
+
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json vector(const Vec3& v) {
+    return Json::array({number(v[0]), number(v[1]), number(v[2])});
+}
+
+Json numbers(const std::vector<double>& values) {
+    auto json = Json::array();
+    for (const double value : values) json.push_back(number(value));
+    return json;
+}
+
+template <class T, class Convert>
+Json list(const std::vector<T>& items, Convert convert) {
+    auto json = Json::array();
+    for (const auto& item : items) json.push_back(convert(item));
+    return json;
+}
+
+Json matrix(const Mat4& m) {
+    auto rows = Json::array();
+    for (std::size_t row = 0; row < 4; ++row) {
+        auto values = Json::array();
+        for (std::size_t column = 0; column < 4; ++column)
+            values.push_back(number(m[row * 4 + column]));
+        rows.push_back(std::move(values));
+    }
+    return rows;
+}
+
+Json to_json(const Primitive& p) {
+    return {{"id", p.id},
+            {"object", p.object},
+            {"model", p.model},
+            {"points", p.points},
+            {"solid_voxels", p.solid_voxels},
+            {"volume_m3", number(p.volume_m3)},
+            {"mass_kg", number(p.mass_kg)},
+            {"center_of_mass_m", vector(p.center_of_mass_m)}};
+}
+
+Json to_json(const Object& o) {
+    auto risk = Json::object();
+    for (const auto& [disturbance, value] : o.risk_J) risk[disturbance] = number(value);
+    return {
+        {"id", o.id},
+        {"primitives", o.primitives},
+        {"grounded", o.grounded},
+        {"mass_kg", number(o.mass_kg)},
+        {"center_of_mass_m", vector(o.center_of_mass_m)},
+        {"barrier_J", number(o.barrier_J)},
+        {"release_J", number(o.release_J)},
+        {"mode", o.mode},
+        {"direction", vector(o.direction)},
+        {"instability", list(o.instability,
+                             [](const InstabilityStep& step) {
+                                 return Json{{"W_J", number(step.W_J)}, {"S_J", number(step.S_J)}};
+                             })},
+        {"risk_J", std::move(risk)},
+        {"unsafety", number(o.unsafety)}};
+}
+
+Json to_json(const Contact& c) {
+    return {{"a", c.a},
+            {"b", c.b},
+            {"area_m2", number(c.area_m2)},
+            {"normal", vector(c.normal)},
+            {"relation", c.relation},
+            {"probability", number(c.probability)}};
+}
+
+Json to_json(const Support& s) {
+    return {{"supporter", s.supporter}, {"supported", s.supported}, {"area_m2", number(s.area_m2)}};
+}
+
+double number_of(const Json& json) {
+    return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+double number_at(const Json& json, const char* key) {
+    return number_of(json.at(key));
+}
+
+Vec3 vector_at(const Json& json, const char* key) {
+    const auto& v = json.at(key);
+    return {number_of(v.at(0)), number_of(v.at(1)), number_of(v.at(2))};
+}
+
+Primitive primitive_of(const Json& json) {
+    Primitive p;
+    p.id = json.at("id").get<std::int32_t>();
+    p.object = json.at("object").get<std::int32_t>();
+    p.model = json.at("model").get<std::string>();
+    p.points = json.at("points").get<std::uint64_t>();
+    p.solid_voxels = json.at("solid_voxels").get<std::uint64_t>();
+    p.volume_m3 = number_at(json, "volume_m3");
+    p.mass_kg = number_at(json, "mass_kg");
+    p.center_of_mass_m = vector_at(json, "center_of_mass_m");
+    return p;
+}
+
+Object object_of(const Json& json) {
+    Object o;
+    o.id = json.at("id").get<std::int32_t>();
+    o.primitives = json.at("primitives").get<std::vector<std::int32_t>>();
+    o.grounded = json.at("grounded").get<bool>();
+    o.mass_kg = number_at(json, "mass_kg");
+    o.center_of_mass_m = vector_at(json, "center_of_mass_m");
+    o.barrier_J = number_at(json, "barrier_J");
+    o.release_J = number_at(json, "release_J");
+    o.mode = json.at("mode").get<std::string>();
+    o.direction = vector_at(json, "direction");
+    for (const auto& step : json.at("instability")) {
+        o.instability.push_back({number_at(step, "W_J"), number_at(step, "S_J")});
+    }
+    for (const auto& [disturbance, value] : json.at("risk_J").items()) {
+        o.risk_J[disturbance] = number_of(value);
+    }
+    o.unsafety = number_at(json, "unsafety");
+    return o;
+}
+
+Contact contact_of(const Json& json) {
+    Contact c;
+    c.a = json.at("a").get<std::int32_t>();
+    c.b = json.at("b").get<std::int32_t>();
+    c.area_m2 = number_at(json, "area_m2");
+    c.normal = vector_at(json, "normal");
+    c.relation = json.at("relation").get<std::string>();
+    c.probability = number_at(json, "probability");
+    return c;
+}
+
+Scene scene_of(const Json& json) {
+    Scene scene;
+    scene.source = json.at("source").get<std::string>();
+    scene.topple_version = json.at("topple_version").get<std::string>();
+    scene.backend = json.at("backend").get<std::string>();
+    scene.device = json.at("device").get<std::string>();
+    scene.seed = json.at("seed").get<std::uint64_t>();
+    scene.voxel_size_m = number_at(json, "voxel_size_m");
+    scene.up = vector_at(json, "up");
+    scene.up_method = json.at("up_method").get<std::string>();
+    scene.manhattan_found = json.at("manhattan_found").get<bool>();
+    for (std::size_t i = 0; i < 16; ++i) {
+        scene.manhattan_from_input[i] =
+            number_of(json.at("manhattan_from_input").at(i / 4).at(i % 4));
+    }
+    scene.density_kg_m3 = number_at(json, "density_kg_m3");
+    scene.friction = number_at(json, "friction");
+    for (const auto& item : json.at("primitives")) scene.primitives.push_back(primitive_of(item));
+    for (const auto& item : json.at("objects")) scene.objects.push_back(object_of(item));
+    for (const auto& item : json.at("contacts")) scene.contacts.push_back(contact_of(item));
+    for (const auto& item : json.at("supports")) {
+        scene.supports.push_back({item.at("supporter").get<std::int32_t>(),
+                                  item.at("supported").get<std::int32_t>(),
+                                  number_at(item, "area_m2")});
+    }
+    for (const auto& [stage, seconds] : json.at("timings_s").items()) {
+        scene.timings_s.emplace_back(stage, number_of(seconds));
+    }
+    for (const auto& value : json.at("swc_energy")) scene.swc_energy.push_back(number_of(value));
+    scene.notes = json.at("notes").get<std::vector<std::string>>();
+    return scene;
+}
+
+}  // namespace
+
+std::string scene_json(const Scene& scene) {
+    Json json;
+    json["schema"] = schema;
+    json["source"] = scene.source;
+    json["topple_version"] = scene.topple_version;
+    json["backend"] = scene.backend;
+    json["device"] = scene.device;
+    json["seed"] = scene.seed;
+    json["voxel_size_m"] = number(scene.voxel_size_m);
+    json["up"] = vector(scene.up);
+    json["up_method"] = scene.up_method;
+    json["manhattan_found"] = scene.manhattan_found;
+    json["manhattan_from_input"] = matrix(scene.manhattan_from_input);
+    json["density_kg_m3"] = number(scene.density_kg_m3);
+    json["friction"] = number(scene.friction);
+    json["primitives"] = list(scene.primitives, [](const Primitive& p) { return to_json(p); });
+    json["objects"] = list(scene.objects, [](const Object& o) { return to_json(o); });
+    json["contacts"] = list(scene.contacts, [](const Contact& c) { return to_json(c); });
+    json["supports"] = list(scene.supports, [](const Support& s) { return to_json(s); });
+    auto timings = Json::object();
+    // A stage that ran twice counts once, with its sum.
+    for (const auto& [stage, seconds] : scene.timings_s) {
+        const auto before = timings.find(stage);
+        const double sum =
+            seconds + (before == timings.end() || before->is_null() ? 0.0 : before->get<double>());
+        timings[stage] = number(sum);
+    }
+    json["timings_s"] = std::move(timings);
+    json["swc_energy"] = numbers(scene.swc_energy);
+    json["notes"] = scene.notes;
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_scene_json(const std::filesystem::path& file, const Scene& scene) {
+    write_file(file, scene_json(scene));
+}
+
+Scene read_scene_json(const std::filesystem::path& file) {
+    const auto bytes = read_file(file);
+    const auto text = bytes.text();
+    try {
+        const auto json = Json::parse(text.begin(), text.end());
+        if (json.at("schema") != schema) {
+            fail(file, "its schema is not " + std::string(schema));
+        }
+        return scene_of(json);
+    } catch (const Json::exception& error) {
+        fail(file, "is no scene.json: " + printable(error.what(), 200));
+    }
+}
+
+}  // namespace topple::io
