@@ -161,9 +161,9 @@ struct {camel} {{
 def native(kernel):
     """The C++ form, with the bindings spelled out for the prelude's macros."""
     const = {'IN': 'const ', 'OUT': '', 'INOUT': ''}
-    load = ' '.join(f'auto* __restrict {n} = static_cast<{const[a]}{t}*>(args.buffers[{i}]); (void){n};'
+    load = ' '.join(f'auto* __restrict {n} = static_cast<{const[a]}{t}*>(args_.buffers[{i}]); (void){n};'
                     for i, (a, t, n) in enumerate(kernel.bindings))
-    load += (f' {kernel.params_type} {kernel.params_name}; std::memcpy(&{kernel.params_name}, args.params, '
+    load += (f' {kernel.params_type} {kernel.params_name}; std::memcpy(&{kernel.params_name}, args_.params, '
              f'sizeof({kernel.params_name}));')
     parameters = ''.join(f'{const[a]}{t}* __restrict {n}, ' for a, t, n in kernel.bindings)
     parameters += f'const {kernel.params_type} {kernel.params_name},'

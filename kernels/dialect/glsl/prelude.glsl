@@ -25,10 +25,28 @@
 #define GROUP_ID gl_WorkGroupID.x
 
 #define ATOMIC_ADD(lvalue, v) atomicAdd(lvalue, v)
-#define ATOMIC_MIN(lvalue, v) atomicMin(lvalue, v)
 #define ATOMIC_OR(lvalue, v) atomicOr(lvalue, v)
+#define ATOMIC_AND(lvalue, v) atomicAnd(lvalue, v)
+#define ATOMIC_MIN(lvalue, v) atomicMin(lvalue, v)
+#define ATOMIC_MAX(lvalue, v) atomicMax(lvalue, v)
 #define SHARED_ADD(lvalue, v) atomicAdd(lvalue, v)
 #define SHARED_OR(lvalue, v) atomicOr(lvalue, v)
+#define SHARED_MIN(lvalue, v) atomicMin(lvalue, v)
+#define SHARED_MAX(lvalue, v) atomicMax(lvalue, v)
 
 #define float_bits(v) floatBitsToUint(v)
 #define bits_float(v) uintBitsToFloat(v)
+
+// GLSL leaves open which of two zeros min and max give; the dialect takes the first.
+float topple_min(float a, float b) { return b < a ? b : a; }
+float topple_max(float a, float b) { return a < b ? b : a; }
+int topple_min(int a, int b) { return min(a, b); }
+int topple_max(int a, int b) { return max(a, b); }
+uint topple_min(uint a, uint b) { return min(a, b); }
+uint topple_max(uint a, uint b) { return max(a, b); }
+float topple_clamp(float v, float lo, float hi) { return topple_min(topple_max(v, lo), hi); }
+int topple_clamp(int v, int lo, int hi) { return min(max(v, lo), hi); }
+uint topple_clamp(uint v, uint lo, uint hi) { return min(max(v, lo), hi); }
+#define min(a, b) topple_min(a, b)
+#define max(a, b) topple_max(a, b)
+#define clamp(v, lo, hi) topple_clamp(v, lo, hi)

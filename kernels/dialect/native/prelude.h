@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "device/kernel.h"
 
@@ -31,66 +32,108 @@ using uint = std::uint32_t;
 #define PARAMS(T, n)
 #define SHARED(T, n, count)
 
-#define BEGIN                                                                                       \
-    FN void lane_(BINDING_PARAMETERS const uint global_id_, const uint local_id_,                   \
-                  const uint group_id_) {                                                           \
+// Names that end in an underscore belong to the dialect: a kernel may call its arrays what it likes.
+#define BEGIN                                                                                  \
+    FN void lane_(BINDING_PARAMETERS const uint global_id_, const uint local_id_,              \
+                  const uint group_id_) {                                                      \
         (void)global_id_, (void)local_id_, (void)group_id_;
-#define END                                                                                         \
-    }                                                                                               \
-    void RUN_NAME(const device::NativeArgs& args, uint first, uint last) {                               \
-        LOAD_BINDINGS                                                                               \
-        for (uint group = first; group < last; ++group) {                                           \
-            _Pragma("GCC ivdep") for (uint lane = 0; lane < group_size_; ++lane) {                  \
-                lane_(BINDING_ARGUMENTS group * group_size_ + lane, lane, group);                   \
-            }                                                                                       \
-        }                                                                                           \
-    }                                                                                               \
+#define END                                                                                    \
+    }                                                                                          \
+    void RUN_NAME(const device::NativeArgs& args_, uint first_group_, uint last_group_) {      \
+        LOAD_BINDINGS                                                                          \
+        for (uint group_id_ = first_group_; group_id_ < last_group_; ++group_id_) {            \
+            EACH_LANE_(local_id_) {                                                            \
+                lane_(BINDING_ARGUMENTS group_id_* group_size_ + local_id_, local_id_,         \
+                      group_id_);                                                              \
+            }                                                                                  \
+        }                                                                                      \
+    }                                                                                          \
     }
 
 // Kernels with barriers: what stands between LANES and END_LANES runs for every lane of the group,
 // then all lanes wait; what stands outside is uniform over the group.
-#define BEGIN_GROUP                                                                                 \
-    void RUN_NAME(const device::NativeArgs& args, uint first, uint last) {                               \
-        LOAD_BINDINGS                                                                               \
-        for (uint group_id_ = first; group_id_ < last; ++group_id_) {                               \
+#define BEGIN_GROUP                                                                            \
+    void RUN_NAME(const device::NativeArgs& args_, uint first_group_, uint last_group_) {      \
+        LOAD_BINDINGS                                                                          \
+        for (uint group_id_ = first_group_; group_id_ < last_group_; ++group_id_) {            \
             SHARED_ARRAYS
 #define END_GROUP \
     }             \
     }             \
     }
-#ifdef TOPPLE_REVERSE_LANES  // finds races between lanes: the result must not depend on their order
-#define LANES                                                                      \
-    for (uint down_ = group_size_; down_ > 0; --down_) {                           \
-        const uint local_id_ = down_ - 1, global_id_ = group_id_ * group_size_ + local_id_; \
+#define LANES                                                        \
+    EACH_LANE_(local_id_) {                                          \
+        const uint global_id_ = group_id_ * group_size_ + local_id_; \
         (void)global_id_;
-#else
-#define LANES                                                                      \
-    _Pragma("GCC ivdep") for (uint local_id_ = 0; local_id_ < group_size_; ++local_id_) { \
-        const uint global_id_ = group_id_ * group_size_ + local_id_;               \
-        (void)global_id_;
-#endif
 #define END_LANES }
+
+// ivdep: no lane reads what another writes between two barriers, so the lanes may be vectorised.
+#ifdef TOPPLE_REVERSE_LANES  // finds races between lanes: the result must not depend on their order
+#define EACH_LANE_(lane) for (uint down_ = group_size_, lane = down_ - 1; down_ > 0; --down_, --lane)
+#else
+#define EACH_LANE_(lane) _Pragma("GCC ivdep") for (uint lane = 0; lane < group_size_; ++lane)
+#endif
 
 #define GLOBAL_ID global_id_
 #define LOCAL_ID local_id_
 #define GROUP_ID group_id_
 
+// All atomics return the value from before.
 #define ATOMIC_ADD(lvalue, v) std::atomic_ref(lvalue).fetch_add(v, std::memory_order_relaxed)
-#define ATOMIC_MIN(lvalue, v) ::topple::kernels::atomic_min_(lvalue, v)
 #define ATOMIC_OR(lvalue, v) std::atomic_ref(lvalue).fetch_or(v, std::memory_order_relaxed)
-// Shared memory belongs to one thread here, so its atomics are plain.
-#define SHARED_ADD(lvalue, v) ((lvalue) += (v))
-#define SHARED_OR(lvalue, v) ((lvalue) |= (v))
+#define ATOMIC_AND(lvalue, v) std::atomic_ref(lvalue).fetch_and(v, std::memory_order_relaxed)
+#define ATOMIC_MIN(lvalue, v) ::topple::kernels::atomic_min_(lvalue, v)
+#define ATOMIC_MAX(lvalue, v) ::topple::kernels::atomic_max_(lvalue, v)
+#define SHARED_ADD(lvalue, v) ::topple::kernels::shared_add_(lvalue, v)
+#define SHARED_OR(lvalue, v) ::topple::kernels::shared_or_(lvalue, v)
+#define SHARED_MIN(lvalue, v) ::topple::kernels::shared_min_(lvalue, v)
+#define SHARED_MAX(lvalue, v) ::topple::kernels::shared_max_(lvalue, v)
 
 namespace topple::kernels {
-FN uint atomic_min_(uint& place, uint value) {
-    std::atomic_ref<uint> a(place);
-    uint seen = a.load(std::memory_order_relaxed);
+template <class T>
+FN T atomic_min_(T& place, std::type_identity_t<T> value) {
+    std::atomic_ref<T> a(place);
+    T seen = a.load(std::memory_order_relaxed);
     while (value < seen && !a.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
     }
     return seen;
 }
-// NaN-free inputs are the kernels' contract; both operands are evaluated once.
+template <class T>
+FN T atomic_max_(T& place, std::type_identity_t<T> value) {
+    std::atomic_ref<T> a(place);
+    T seen = a.load(std::memory_order_relaxed);
+    while (seen < value && !a.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
+    }
+    return seen;
+}
+// Shared memory belongs to one thread here, so its atomics need no lock; volatile, since the lanes'
+// loop must not be vectorised over two lanes that meet in one place.
+template <class T>
+FN T shared_add_(volatile T& place, std::type_identity_t<T> value) {
+    const T seen = place;
+    place = seen + value;
+    return seen;
+}
+template <class T>
+FN T shared_or_(volatile T& place, std::type_identity_t<T> value) {
+    const T seen = place;
+    place = seen | value;
+    return seen;
+}
+template <class T>
+FN T shared_min_(volatile T& place, std::type_identity_t<T> value) {
+    const T seen = place;
+    place = value < seen ? value : seen;
+    return seen;
+}
+template <class T>
+FN T shared_max_(volatile T& place, std::type_identity_t<T> value) {
+    const T seen = place;
+    place = seen < value ? value : seen;
+    return seen;
+}
+// NaN-free inputs are the kernels' contract. Of two zeros the first is taken, on every backend; both
+// operands are evaluated once.
 FN float min(float a, float b) { return b < a ? b : a; }
 FN float max(float a, float b) { return a < b ? b : a; }
 FN int min(int a, int b) { return b < a ? b : a; }
@@ -98,6 +141,8 @@ FN int max(int a, int b) { return a < b ? b : a; }
 FN uint min(uint a, uint b) { return b < a ? b : a; }
 FN uint max(uint a, uint b) { return a < b ? b : a; }
 FN float clamp(float v, float lo, float hi) { return min(max(v, lo), hi); }
+FN int clamp(int v, int lo, int hi) { return min(max(v, lo), hi); }
+FN uint clamp(uint v, uint lo, uint hi) { return min(max(v, lo), hi); }
 FN float sqrt(float v) { return __builtin_sqrtf(v); }
 FN float floor(float v) { return __builtin_floorf(v); }
 FN float abs(float v) { return __builtin_fabsf(v); }

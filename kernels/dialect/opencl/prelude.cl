@@ -26,10 +26,14 @@
 #define GROUP_ID ((uint)get_group_id(0))
 
 #define ATOMIC_ADD(lvalue, v) atomic_add(&(lvalue), v)
-#define ATOMIC_MIN(lvalue, v) atomic_min(&(lvalue), v)
 #define ATOMIC_OR(lvalue, v) atomic_or(&(lvalue), v)
+#define ATOMIC_AND(lvalue, v) atomic_and(&(lvalue), v)
+#define ATOMIC_MIN(lvalue, v) atomic_min(&(lvalue), v)
+#define ATOMIC_MAX(lvalue, v) atomic_max(&(lvalue), v)
 #define SHARED_ADD(lvalue, v) atomic_add(&(lvalue), v)
 #define SHARED_OR(lvalue, v) atomic_or(&(lvalue), v)
+#define SHARED_MIN(lvalue, v) atomic_min(&(lvalue), v)
+#define SHARED_MAX(lvalue, v) atomic_max(&(lvalue), v)
 
 #define float_bits(v) as_uint(v)
 #define bits_float(v) as_float(v)
@@ -39,8 +43,26 @@
 #define int(x) ((int)(x))
 #define uint(x) ((uint)(x))
 #define bool(x) ((bool)(x))
-// GLSL's names for what OpenCL calls otherwise.
+
+// OpenCL has abs for integers only, and leaves open which of two zeros min and max give; the dialect
+// takes the first.
+#define DIALECT_FN static inline __attribute__((overloadable))
+DIALECT_FN float topple_abs(float v) { return fabs(v); }
+DIALECT_FN int topple_abs(int v) { return v < 0 ? -v : v; }
+DIALECT_FN float topple_min(float a, float b) { return b < a ? b : a; }
+DIALECT_FN float topple_max(float a, float b) { return a < b ? b : a; }
+DIALECT_FN int topple_min(int a, int b) { return b < a ? b : a; }
+DIALECT_FN int topple_max(int a, int b) { return a < b ? b : a; }
+DIALECT_FN uint topple_min(uint a, uint b) { return b < a ? b : a; }
+DIALECT_FN uint topple_max(uint a, uint b) { return a < b ? b : a; }
+DIALECT_FN float topple_clamp(float v, float lo, float hi) { return topple_min(topple_max(v, lo), hi); }
+DIALECT_FN int topple_clamp(int v, int lo, int hi) { return topple_min(topple_max(v, lo), hi); }
+DIALECT_FN uint topple_clamp(uint v, uint lo, uint hi) { return topple_min(topple_max(v, lo), hi); }
 #undef abs
-#define abs(x) topple_abs(x)
-float __attribute__((overloadable)) topple_abs(float x) { return fabs(x); }
-int __attribute__((overloadable)) topple_abs(int x) { return x < 0 ? -x : x; }
+#undef min
+#undef max
+#undef clamp
+#define abs(v) topple_abs(v)
+#define min(a, b) topple_min(a, b)
+#define max(a, b) topple_max(a, b)
+#define clamp(v, lo, hi) topple_clamp(v, lo, hi)
