@@ -46,12 +46,13 @@ STRUCT(DisturbanceReachParams) {
 
 // disturbance
 STRUCT(DisturbanceParams) {
-    uint cell_count;    // cells in the tile, a multiple of 64
-    uint entry_first;   // the footprint's first entry
-    uint entry_count;
-    uint band_first;    // height band of the first output plane, 0 to 31
-    uint band_count;    // output planes, 1 to 4
-    uint output_first;  // where the first plane starts in the output
+    uint cell_count;       // cells in the tile, a multiple of 64
+    uint plane_cells;      // stride of the planes of `primary`
+    uint direction_count;
+    uint footprint_first;  // of this part: index into entry_first of its direction 0
+    uint band_first;       // height band of the first output plane, 0 to 31
+    uint band_count;       // output planes per direction
+    uint output_first;     // where the part's planes start in the output
 } STRUCT_END(DisturbanceParams)
 
 // carve_leaves, carve

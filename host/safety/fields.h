@@ -9,6 +9,7 @@
 
 #include "device/device.h"
 #include "physics/bodies.h"
+#include "safety/directions.h"
 #include "topple/scene.h"
 
 // Disturbance fields (paper, 5.1) and the risk they bring (Eq. 7). Grid frame: metres, z up.
@@ -20,11 +21,14 @@ struct RiskObject {
     bool grounded = false;
     double mass_kg = 0;
     double barrier_J = 0;
-    double height_m = 0;       // of the object itself
-    double base_width_m = 0;   // least width of its support polygon
-    double slide_distance_m = -1;  // shortest way to where its support ends; -1: no edge
-    double drop_m = 0;             // fall from there
+    double height_m = 0;                 // of the object itself
+    double base_width_m = 0;             // least width of its support polygon
+    double slide_distance_m = -1;        // shortest way to where its support ends; -1: no edge
+    double drop_m = 0;                   // fall from there
     std::vector<InstabilityStep> curve;  // S(W)
+    // The points that hold it up, as their convex hull (metres, counter-clockwise). Where given, it
+    // tells how far the object reaches each way; else base_width_m stands for all ways.
+    std::vector<std::array<double, 2>> support_polygon;
 };
 
 // Where things are, for the fields: object of each solid cell, -1 for none.
@@ -37,45 +41,111 @@ struct Surroundings {
 struct HumanOptions {
     std::uint64_t seed = 1;
     unsigned paths = 500;
-    double cell_m = 0.05;         // of the walkable map and of the field
+    double cell_m = 0.05;  // of the walkable map and of the field
     double body_radius_m = 0.20;
     double body_height_m = 1.8;
-    double step_height_m = 0.05;  // obstacles up to this height don't stop a walker
+    double step_height_m = 0.05;   // obstacles up to this height don't stop a walker
+    double largest_hole_m = 0.30;  // holes in the scanned floor up to this width are bridged
+    double body_mass_kg = 70;
+    double walking_speed_m_s = 1.3;
+    double wander_m = 0.20;  // how far walkers stray sideways from their path, at most
 };
 struct WindOptions {
     double speed_m_s = 12;
     double air_density_kg_m3 = 1.2, drag_coefficient = 1.3;
+    double friction = 0.3;
+    double shelter_m =
+        1.0;  // length of an obstacle's lee: what stands closer behind it gets no wind
 };
 struct EarthquakeOptions {
     std::uint64_t seed = 1;
-    double pga_m_s2 = 3.0;
+    double pga_m_s2 = 3.0;           // median over the events
+    double spread = 0.5;             // standard deviation of the logarithm of an event's peak
+    double dominant_period_s = 0.5;  // a half-cycle is a rectangular pulse of half this length
     unsigned events = 64;
 };
 
-// One field: samples for the report, and each object's distribution of work: p(W) as weighted samples.
+// One field: samples for the report, and each object's distribution of work: p(W) as weighted
+// samples.
 struct WorkSample {
     double W_J = 0, probability = 0;  // per event
     Vec3 direction{};
 };
 struct Disturbance {
-    std::string name;  // "human" | "wind" | "earthquake"
-    FieldSamples samples;                           // grid frame
-    std::vector<std::vector<WorkSample>> work;      // by object, as in `objects`
-    std::vector<std::string> notes;                 // e.g. no walkable floor was found
+    std::string name;                           // "human" | "wind" | "earthquake"
+    FieldSamples samples;                       // grid frame, at most max_samples
+    std::vector<std::vector<WorkSample>> work;  // by object, as in `objects`; none if grounded
+    std::vector<float> exposure;                // of each solid cell: strikes per walk (human), or
+                                                // share of the directions it is open to (wind) or
+                                                // 1 (earthquake); 0 for grounded objects
+    std::vector<std::string> notes;             // e.g. no walkable floor was found
 };
 
+inline constexpr std::size_t max_samples = 4000;     // arrows per field, for the report
+inline constexpr std::size_t max_work_samples = 64;  // per object and human field
+
+// People who walk between random places (5.1.2): 500 shortest paths give the primary motion, a
+// table of body parts (body_parts.h) the secondary; their convolution (kernels disturbance_reach,
+// disturbance) the passes of each part through each cell per walk, and W = m v^2 / 2 of the part.
+// One event is one walk. Nothing walkable, no object: an empty field, and a note that says why.
 Disturbance human_field(device::Device& device, const Surroundings& surroundings,
-                        std::span<const RiskObject> objects, double friction, const HumanOptions& options);
+                        std::span<const RiskObject> objects, double friction,
+                        const HumanOptions& options);
+// A gale of one speed from each of the 16 horizontal directions, alike in all of the space (5.1.1).
+// F = rho C_d A v^2 / 2 acts on the exposed frontal area A at the height h of its centre. With m g
+// b(dir) / h the force that tips the object and mu m g the force that slides it,
+//     W = F D,  D = E / F_threshold
+// where E is the barrier below the threshold (so W rises as v^2 and reaches the barrier at the
+// threshold, where the object moves), and above it the energy of that very motion, if larger.
+// One event is one gale, from a random direction.
 Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
                        std::span<const RiskObject> objects, const WindOptions& options);
+// Rectangular ground pulses of random direction and peak a (5.1.1), lasting t = period / 2. With
+// half base b(dir) and height h of the centre of mass, an object with b / h < mu rocks once a > g b
+// / h,
+//     W = E_tip 2 eta (eta - 1) (cosh(p t) - 1),  eta = a h / (g b),  p^2 = 3 g / (4 sqrt(b^2 +
+//     h^2)),
+// the work of the pulse on the block relative to its support: W >= E_tip is Housner's (1963)
+// condition for overturning. One with b / h >= mu slides once a > mu g, relative to the support by
+// s = (a - mu g) a t^2 / (2 mu g), and absorbs W = mu m g s. One event is one pulse.
 Disturbance earthquake_field(device::Device& device, const Surroundings& surroundings,
                              std::span<const RiskObject> objects, double friction,
                              const EarthquakeOptions& options);
 
+// The work of one gale on one object (see above): area_m2 of it is exposed, centred at
+// pressure_height_m above its base; its centre of mass is height_m above it.
+struct WindLoad {
+    double area_m2 = 0, pressure_height_m = 0;
+    double half_base_m = 0, height_m = 0;
+};
+double wind_force(const WindLoad& load, const WindOptions& options);  // newtons
+double wind_work(const RiskObject& object, const WindLoad& load, const WindOptions& options);
+
+// The exposed frontal area of one object in wind that blows along direction d (directions.h): by
+// layers of voxels, what the wind's lines meet first of the object, unless another solid stands
+// less than shelter_m in front of it. `cells`: the object's, ascending.
+class Columns;
+struct Frontage {
+    double area_m2 = 0, center_m = 0;  // centre: height in the grid frame
+    std::vector<std::uint32_t> cells;  // exposed, ascending
+};
+Frontage wind_frontage(const physics::SolidCells& solid, const Columns& columns,
+                       std::span<const std::uint32_t> cells, unsigned d, double shelter_m);
+
+// The work of one pulse of `acceleration` m/s^2 and `duration_s` on one object (see above).
+double earthquake_work(const RiskObject& object, double half_base_m, double height_m,
+                       double acceleration, double friction, double duration_s);
+
+// S(W): the last step of the curve whose W_J is at most W; 0 below the first.
+double instability(std::span<const InstabilityStep> curve, double W_J);
+
 // R = sum over p(W) S(W) (Eq. 7), joules per event, for each object.
 std::vector<double> risk(const Disturbance& disturbance, std::span<const RiskObject> objects);
 
-// 1 (safest) to 10 over the scene's objects, by their largest risk.
+// 1 (safest) to 10 over the scene's objects, by their largest risk r over the disturbances (one
+// vector of risks per disturbance): 1 + 9 log(1 + 999 r / r_max) / log(1000). Risks spread over
+// decades: the logarithm keeps three of them apart. No risk is 1, the largest 10; a scene without
+// risk is all 1.
 std::vector<double> unsafety(std::span<const std::vector<double>> risks);
 
 }  // namespace topple::safety

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "safety/columns.h"
+
+#include <algorithm>
+#include <string>
+#include <tuple>
+
+#include "topple/error.h"
+
+namespace topple::safety {
+
+Columns::Columns(const physics::SolidCells& cells) : cells_(cells) {
+    const std::size_t n = cells.size();
+    if (n == 0) return;
+    i0 = cells.i.front();
+    ni = std::int64_t{cells.i.back()} - i0 + 1;
+    const auto [low, high] = std::minmax_element(cells.j.begin(), cells.j.end());
+    j0 = *low;
+    nj = std::int64_t{*high} - j0 + 1;
+    constexpr std::int64_t limit = std::int64_t{1} << 28;
+    if (nj > limit || ni > limit / nj) {
+        throw Error(ErrorKind::input,
+                    "the scene spans " + std::to_string(ni) + " x " + std::to_string(nj) +
+                        " voxels, more than the 2^28 columns that the disturbance "
+                        "fields can take; use a larger --voxel");
+    }
+    first_.assign(static_cast<std::size_t>(ni * nj + 1), 0);
+    for (std::size_t c = 0; c < n; ++c) {
+        if (c && std::tie(cells.i[c], cells.j[c], cells.k[c]) <=
+                     std::tie(cells.i[c - 1], cells.j[c - 1], cells.k[c - 1])) {
+            throw Error(ErrorKind::usage,
+                        "solid cells are not sorted by (i, j, k) at cell " + std::to_string(c));
+        }
+        ++first_[static_cast<std::size_t>((cells.i[c] - i0) * nj + (cells.j[c] - j0)) + 1];
+    }
+    for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
+}
+
+bool Columns::solid(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    if (i < i0 || i >= i0 + ni || j < j0 || j >= j0 + nj) return false;
+    const auto column = static_cast<std::size_t>((i - i0) * nj + (j - j0));
+    const auto begin = cells_.k.begin() + static_cast<std::ptrdiff_t>(first_[column]);
+    const auto end = cells_.k.begin() + static_cast<std::ptrdiff_t>(first_[column + 1]);
+    return std::binary_search(begin, end, k);
+}
+
+}  // namespace topple::safety

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "physics/bodies.h"
+
+namespace topple::safety {
+
+// Looks up solid cells by their place. Holds a reference to the cells.
+class Columns {
+  public:
+    // Throws Error(usage) where the cells are not sorted by (i, j, k), and Error(input) where their
+    // bounds hold more than 2^28 columns.
+    explicit Columns(const physics::SolidCells& cells);
+
+    // Lowest column and number of columns per axis; 0 columns without cells.
+    std::int32_t i0 = 0, j0 = 0;
+    std::int64_t ni = 0, nj = 0;
+
+    // Cell (i, j, k) is solid. Any indices may be asked for.
+    bool solid(std::int64_t i, std::int64_t j, std::int64_t k) const;
+
+  private:
+    const physics::SolidCells& cells_;
+    std::vector<std::uint64_t> first_;  // where each column's cells start, by i, then j
+};
+
+}  // namespace topple::safety

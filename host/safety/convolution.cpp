@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+#include "safety/convolution.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "device/queue.h"
+#include "disturbance.hpp"
+#include "disturbance_reach.hpp"
+
+namespace topple::safety {
+namespace {
+
+constexpr std::uint32_t block = 64;  // cells, as in the kernels
+constexpr std::uint64_t tile_bytes = std::uint64_t{64} << 20;
+constexpr std::uint32_t largest_tile = 16384;  // cells
+
+unsigned all_bands() {
+    unsigned count = 0;
+    for (const BodyPart& part : body_parts) count += bands_of(part).count;
+    return count;
+}
+
+}  // namespace
+
+// A run of active blocks, and what the device made of it.
+struct Convolution::Tile {
+    std::span<const std::uint32_t> starts;  // padded index of each block's first cell
+    std::uint32_t cells = 0;
+    std::array<std::uint32_t, body_parts.size()> output_first{};  // of each part in `density`
+    std::vector<float> density;  // parts x directions x the part's bands x cells
+    std::span<Target> targets;   // those in the tile
+};
+
+Convolution::Convolution(device::Device& device, const WalkableMap& map,
+                         const PrimaryMotion& motion, const Surroundings& surroundings,
+                         std::span<const std::int32_t> object_of_cell, const HumanOptions& options)
+    : device_(device),
+      map_(map),
+      motion_(motion),
+      surroundings_(surroundings),
+      object_of_cell_(object_of_cell),
+      options_(options),
+      band_m_(options.body_height_m / band_count),
+      footprint_(make_footprint(map.cell_m, options)) {
+    // A margin of the footprint's radius on all sides, and a row more above and below for the cells
+    // of a block that lie beside the map.
+    const std::int64_t r = footprint_.radius;
+    width_ = (map.nx + 2 * r + block - 1) / block * block;
+    height_ = map.ny + 2 * r + 2;
+    const SightLines lines = sight_lines(footprint_, static_cast<std::int32_t>(width_));
+    std::vector<std::int32_t> delta;
+    for (const std::uint32_t row : footprint_.row) {
+        const auto& o = footprint_.offsets[row];
+        delta.push_back(o.y * static_cast<std::int32_t>(width_) + o.x);
+    }
+    using device::Buffer;
+    line_first_ = Buffer<std::uint32_t>(device, lines.first, "reach.row_first");
+    step_a_ = Buffer<std::int32_t>(device, lines.a, "reach.step_a");
+    step_b_ = Buffer<std::int32_t>(device, lines.b, "reach.step_b");
+    entry_first_ = Buffer<std::uint32_t>(device, footprint_.first, "footprint.first");
+    entry_delta_ = Buffer<std::int32_t>(device, delta, "footprint.delta");
+    entry_row_ = Buffer<std::uint32_t>(device, footprint_.row, "footprint.row");
+    entry_weight_ = Buffer<float>(device, footprint_.weight, "footprint.weight");
+}
+
+std::uint32_t Convolution::padded(std::size_t map_cell) const {
+    const auto c = static_cast<std::int64_t>(map_cell);
+    const std::int64_t r = footprint_.radius;
+    return static_cast<std::uint32_t>((c / map_.nx + r + 1) * width_ + c % map_.nx + r);
+}
+
+std::vector<float> Convolution::primary(const std::vector<bool>& component) const {
+    const auto plane = static_cast<std::size_t>(width_ * height_);
+    std::vector<float> out(direction_count * plane, 0.0f);
+    for (const std::uint32_t c : map_.walkable) {
+        if (!component[static_cast<std::size_t>(map_.component[c])]) continue;
+        for (unsigned d = 0; d < direction_count; ++d) {
+            out[d * plane + padded(c)] = static_cast<float>(motion_.frequency(d, c, map_.size()));
+        }
+    }
+    return out;
+}
+
+// Bit b of a cell: a solid crosses the plane in the middle of band b. The floor itself is no
+// obstacle to what moves above it.
+std::vector<std::uint32_t> Convolution::solid_bands(double floor_m) const {
+    std::vector<std::uint32_t> out(static_cast<std::size_t>(width_ * height_), 0);
+    const physics::SolidCells& cells = *surroundings_.cells;
+    const double step = std::max(options_.step_height_m, cells.voxel_m) + 1e-6;
+    for (std::size_t v = 0; v < cells.size(); ++v) {
+        const double bottom = cells.k[v] * cells.voxel_m - floor_m, top = bottom + cells.voxel_m;
+        if (is_floor_cell(surroundings_, v) && top <= step) continue;
+        const double first = std::ceil(bottom / band_m_ - 0.5),
+                     last = std::ceil(top / band_m_ - 0.5);
+        std::uint32_t bits = 0;
+        for (double b = std::max(first, 0.0); b < std::min(last, double{band_count}); ++b) {
+            bits |= 1u << static_cast<unsigned>(b);
+        }
+        if (bits) out[padded(map_.cell_of(cells.i[v], cells.j[v]))] |= bits;
+    }
+    return out;
+}
+
+// First cells of the blocks within the footprint's radius of a place that is walked on, ascending.
+std::vector<std::uint32_t> Convolution::active_blocks(const std::vector<bool>& component) const {
+    const std::int64_t blocks_wide = width_ / block, r = footprint_.radius;
+    std::vector<bool> active(static_cast<std::size_t>(blocks_wide * height_));
+    for (const std::uint32_t c : map_.walkable) {
+        if (!component[static_cast<std::size_t>(map_.component[c])]) continue;
+        bool walked = false;
+        for (unsigned d = 0; d < direction_count && !walked; ++d) {
+            walked = motion_.visits[d * map_.size() + c] > 0;
+        }
+        if (!walked) continue;
+        const std::int64_t x = c % map_.nx, y = c / map_.nx;  // padded: x + r, y + r + 1
+        for (std::int64_t ty = std::max<std::int64_t>(y - r, 0); ty <= std::min(y + r, map_.ny - 1);
+             ++ty) {
+            for (std::int64_t b = x / block; b <= std::min(x + 2 * r, map_.nx + r - 1) / block;
+                 ++b) {
+                active[static_cast<std::size_t>((ty + r + 1) * blocks_wide + b)] = true;
+            }
+        }
+    }
+    std::vector<std::uint32_t> starts;
+    for (std::size_t b = 0; b < active.size(); ++b) {
+        if (active[b]) starts.push_back(static_cast<std::uint32_t>(b * block));
+    }
+    return starts;
+}
+
+bool Convolution::target_of(std::size_t voxel, double floor_m, Target& target) const {
+    if (object_of_cell_[voxel] < 0) return false;
+    const physics::SolidCells& cells = *surroundings_.cells;
+    const double band = std::floor(((cells.k[voxel] + 0.5) * cells.voxel_m - floor_m) / band_m_);
+    if (band < 0 || band >= band_count) return false;
+    target = {padded(map_.cell_of(cells.i[voxel], cells.j[voxel])), static_cast<std::uint8_t>(band),
+              object_of_cell_[voxel], 0};
+    return true;
+}
+
+std::vector<Convolution::Target> Convolution::targets(double floor_m) const {
+    std::vector<Target> out;
+    Target target;
+    for (std::size_t v = 0; v < object_of_cell_.size(); ++v) {
+        if (!target_of(v, floor_m, target)) continue;
+        if (out.empty() || out.back().key() != target.key()) out.push_back(target);
+    }
+    std::sort(out.begin(), out.end(),
+              [](const Target& a, const Target& b) { return a.key() < b.key(); });
+    out.erase(std::unique(out.begin(), out.end(),
+                          [](const Target& a, const Target& b) { return a.key() == b.key(); }),
+              out.end());
+    return out;
+}
+
+void Convolution::run(Tile& tile, const device::Buffer<float>& primary,
+                      const device::Buffer<std::uint32_t>& solid) {
+    const auto rows = static_cast<std::uint32_t>(footprint_.offsets.size());
+    const std::uint64_t outputs = std::uint64_t{all_bands()} * direction_count * tile.cells;
+    device::Buffer<std::uint32_t> starts(device_, tile.starts, "tile.block_start");
+    device::Buffer<std::uint32_t> blocked(device_, std::uint64_t{rows} * tile.cells,
+                                          "tile.blocked");
+    device::Buffer<float> density(device_, outputs, "tile.density");
+    device::Queue queue(device_);
+    queue.add<kernels::DisturbanceReach>(std::uint64_t{rows} * tile.cells,
+                                         {.block_start = starts,
+                                          .solid = solid,
+                                          .row_first = line_first_,
+                                          .step_a = step_a_,
+                                          .step_b = step_b_,
+                                          .blocked = blocked},
+                                         {.cell_count = tile.cells, .row_count = rows});
+    std::uint32_t output_first = 0;
+    for (unsigned part = 0; part < body_parts.size(); ++part) {
+        const Bands bands = bands_of(body_parts[part]);
+        tile.output_first[part] = output_first;
+        output_first += direction_count * bands.count * tile.cells;
+        const std::uint64_t quads = (bands.count + 3) / 4;
+        queue.add<kernels::Disturbance>(
+            direction_count * quads * tile.cells,
+            {.block_start = starts,
+             .primary = primary,
+             .blocked = blocked,
+             .entry_first = entry_first_,
+             .entry_delta = entry_delta_,
+             .entry_row = entry_row_,
+             .entry_weight = entry_weight_,
+             .density = density},
+            {.cell_count = tile.cells,
+             .plane_cells = static_cast<std::uint32_t>(width_ * height_),
+             .direction_count = direction_count,
+             .footprint_first = part * direction_count,
+             .band_first = bands.first,
+             .band_count = bands.count,
+             .output_first = tile.output_first[part]});
+    }
+    queue.run();
+    tile.density = density.download();
+}
+
+// Each target takes the larger density of its band and the one above.
+void Convolution::collect_strikes(Tile& tile, std::span<Strikes> strikes) const {
+    for (Target& target : tile.targets) {
+        const auto at = std::upper_bound(tile.starts.begin(), tile.starts.end(), target.cell);
+        if (at == tile.starts.begin() || target.cell - *(at - 1) >= block) continue;  // not active
+        const auto place = static_cast<std::size_t>(at - 1 - tile.starts.begin()) * block +
+                           target.cell - *(at - 1);
+        for (unsigned part = 0; part < body_parts.size(); ++part) {
+            const Bands bands = bands_of(body_parts[part]);
+            for (unsigned d = 0; d < direction_count; ++d) {
+                float most = 0;
+                for (unsigned b = target.band; b <= target.band + 1u; ++b) {
+                    if (b < bands.first || b >= bands.first + bands.count) continue;
+                    const std::size_t plane = d * bands.count + (b - bands.first);
+                    most = std::max(
+                        most, tile.density[tile.output_first[part] + plane * tile.cells + place]);
+                }
+                target.exposure += most;
+                double& strike = strikes[static_cast<std::size_t>(target.object)][part][d];
+                strike = std::max(strike, double{most});
+            }
+        }
+    }
+}
+
+void Convolution::offer_arrows(const Tile& tile, double floor_m, ArrowSample& arrows) const {
+    const std::int64_t r = footprint_.radius;
+    std::vector<std::array<float, 3>> sum(std::size_t{band_count} * tile.cells, {0, 0, 0});
+    for (unsigned part = 0; part < body_parts.size(); ++part) {
+        const Bands bands = bands_of(body_parts[part]);
+        const double speed = body_parts[part].speed * options_.walking_speed_m_s;
+        for (unsigned d = 0; d < direction_count; ++d) {
+            const auto [dx, dy] = direction(d);
+            const auto vx = static_cast<float>(dx * speed), vy = static_cast<float>(dy * speed);
+            for (unsigned b = 0; b < bands.count; ++b) {
+                const float* density = &tile.density[tile.output_first[part] +
+                                                     std::size_t{d * bands.count + b} * tile.cells];
+                auto* to = &sum[std::size_t{bands.first + b} * tile.cells];
+                for (std::uint32_t c = 0; c < tile.cells; ++c) {
+                    to[c][0] += density[c] * vx;
+                    to[c][1] += density[c] * vy;
+                    to[c][2] += density[c];
+                }
+            }
+        }
+    }
+    for (std::uint32_t c = 0; c < tile.cells; ++c) {
+        const std::int64_t at = tile.starts[c / block] + c % block, x = at % width_ - r,
+                           y = at / width_ - r - 1;
+        if (x < 0 || x >= map_.nx || y < 0 || y >= map_.ny) continue;
+        for (unsigned b = 0; b < band_count; ++b) {
+            const auto& s = sum[std::size_t{b} * tile.cells + c];
+            if (s[2] <= 0) continue;
+            arrows.offer({map_.x0 + (static_cast<double>(x) + 0.5) * map_.cell_m,
+                          map_.y0 + (static_cast<double>(y) + 0.5) * map_.cell_m,
+                          floor_m + (b + 0.5) * band_m_},
+                         {double{s[0] / s[2]}, double{s[1] / s[2]}, 0}, double{s[2]});
+        }
+    }
+}
+
+void Convolution::add_level(double floor_m, const std::vector<bool>& component,
+                            std::span<Strikes> strikes, std::span<float> exposure,
+                            ArrowSample& arrows) {
+    const device::Buffer<float> primary_field(device_, primary(component), "primary motion");
+    const device::Buffer<std::uint32_t> solid(device_, solid_bands(floor_m), "solid bands");
+    const std::vector<std::uint32_t> starts = active_blocks(component);
+    std::vector<Target> all = targets(floor_m);
+    std::vector<Strikes> here(strikes.size(), Strikes{});
+
+    const std::uint64_t per_cell =
+        4 * std::max<std::uint64_t>(footprint_.offsets.size(),
+                                    std::uint64_t{all_bands()} * direction_count);
+    const std::uint64_t fits =
+        std::clamp<std::uint64_t>(tile_bytes / per_cell, block, largest_tile);
+    const std::size_t blocks_per_tile = fits / block;
+    for (std::size_t first = 0; first < starts.size(); first += blocks_per_tile) {
+        Tile tile;
+        tile.starts =
+            std::span(starts).subspan(first, std::min(blocks_per_tile, starts.size() - first));
+        tile.cells = static_cast<std::uint32_t>(tile.starts.size() * block);
+        const auto before = [](const Target& t, std::uint32_t cell) { return t.cell < cell; };
+        const auto low = std::lower_bound(all.begin(), all.end(), tile.starts.front(), before);
+        const auto high = std::lower_bound(low, all.end(), tile.starts.back() + block, before);
+        tile.targets = std::span<Target>(low, high);
+        run(tile, primary_field, solid);
+        collect_strikes(tile, here);
+        offer_arrows(tile, floor_m, arrows);
+    }
+    // Walks at different levels are different events.
+    for (std::size_t o = 0; o < strikes.size(); ++o) {
+        for (std::size_t part = 0; part < body_parts.size(); ++part) {
+            for (unsigned d = 0; d < direction_count; ++d) strikes[o][part][d] += here[o][part][d];
+        }
+    }
+    Target target;
+    for (std::size_t v = 0; v < object_of_cell_.size(); ++v) {
+        if (!target_of(v, floor_m, target)) continue;
+        const auto found =
+            std::lower_bound(all.begin(), all.end(), target,
+                             [](const Target& a, const Target& b) { return a.key() < b.key(); });
+        exposure[v] += found->exposure;
+    }
+}
+
+}  // namespace topple::safety

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "device/buffer.h"
+#include "safety/footprint.h"
+#include "safety/objects.h"
+#include "safety/walkable_map.h"
+
+namespace topple::safety {
+
+// Passes of each body part over an object, per walk, by direction: the most that any of its cells
+// gets.
+using Strikes = std::array<std::array<double, direction_count>, body_parts.size()>;
+
+// The probabilities and directions of the strongest strike of one walk; `energy` in joules by part.
+// At most max_work_samples, of total probability at most 1.
+std::vector<WorkSample> strongest_strikes(const Strikes& strikes, std::span<const double> energy);
+
+// Primary motion convolved with the secondary, on the device (kernels disturbance_reach,
+// disturbance). Sparse: blocks of 64 map cells near places that are walked on, in tiles whose
+// buffers stay below 64 MiB. A cell is reached from where the horizontal line from the walker, at
+// the middle of the height band, crosses no solid before the cell; so unreachable cells get exactly
+// 0. A part is as thick as a band: what lies in band b is struck by parts that move at b or at b +
+// 1, as a hand that passes just above a table top strikes the book that lies on it.
+class Convolution {
+  public:
+    Convolution(device::Device& device, const WalkableMap& map, const PrimaryMotion& motion,
+                const Surroundings& surroundings, std::span<const std::int32_t> object_of_cell,
+                const HumanOptions& options);
+
+    double band_m() const { return band_m_; }
+
+    // The walks within the given components, whose floor is at floor_m: adds to the objects'
+    // strikes and to the solid cells' exposure, and offers arrows for the report.
+    void add_level(double floor_m, const std::vector<bool>& component, std::span<Strikes> strikes,
+                   std::span<float> exposure, ArrowSample& arrows);
+
+  private:
+    // A movable object's presence in a map cell and height band.
+    struct Target {
+        std::uint32_t cell;  // of the padded map
+        std::uint8_t band;
+        std::int32_t object;
+        float exposure = 0;
+        auto key() const { return std::tuple(cell, band, object); }
+    };
+    struct Tile;
+
+    std::uint32_t padded(std::size_t map_cell) const;
+    std::vector<float> primary(const std::vector<bool>& component) const;  // a plane per direction
+    std::vector<std::uint32_t> solid_bands(double floor_m) const;
+    std::vector<std::uint32_t> active_blocks(const std::vector<bool>& component) const;
+    bool target_of(std::size_t voxel, double floor_m, Target& target) const;  // false: it is none
+    std::vector<Target> targets(double floor_m) const;
+    void run(Tile& tile, const device::Buffer<float>& primary,
+             const device::Buffer<std::uint32_t>& solid);
+    void collect_strikes(Tile& tile, std::span<Strikes> strikes) const;
+    void offer_arrows(const Tile& tile, double floor_m, ArrowSample& arrows) const;
+
+    device::Device& device_;
+    const WalkableMap& map_;
+    const PrimaryMotion& motion_;
+    const Surroundings& surroundings_;
+    std::span<const std::int32_t> object_of_cell_;
+    HumanOptions options_;
+    double band_m_;
+    Footprint footprint_;
+    std::int64_t width_ = 0, height_ = 0;  // of the padded map, cells; width_ a multiple of 64
+    device::Buffer<std::uint32_t> line_first_, entry_first_, entry_row_;
+    device::Buffer<std::int32_t> step_a_, step_b_, entry_delta_;
+    device::Buffer<float> entry_weight_;
+};
+
+}  // namespace topple::safety

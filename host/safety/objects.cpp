@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include "safety/objects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "core/random.h"
+#include "physics/landscape.h"
+#include "topple/error.h"
+
+namespace topple::safety {
+
+std::vector<std::int32_t> movable_object_of_cells(const Surroundings& surroundings,
+                                                  std::span<const RiskObject> objects) {
+    if (!surroundings.cells || surroundings.object.size() != surroundings.cells->size() ||
+        surroundings.cells->primitive.size() != surroundings.cells->size()) {
+        throw Error(ErrorKind::usage,
+                    "disturbance field: the surroundings need one object and one "
+                    "primitive for each solid cell");
+    }
+    if (surroundings.cells->size() > 0) {
+        check_option("voxel_m", surroundings.cells->voxel_m, 1e-6);
+    }
+    std::map<std::int32_t, std::int32_t> index;
+    for (std::size_t o = 0; o < objects.size(); ++o) {
+        if (!objects[o].grounded) index.emplace(objects[o].id, static_cast<std::int32_t>(o));
+    }
+    std::int32_t last_id = -1, last = -1;  // neighbours mostly belong together
+    std::vector<std::int32_t> out(surroundings.object.size(), -1);
+    for (std::size_t c = 0; c < out.size(); ++c) {
+        const std::int32_t id = surroundings.object[c];
+        if (id < 0) continue;
+        if (id != last_id) {
+            const auto found = index.find(id);
+            last_id = id;
+            last = found == index.end() ? -1 : found->second;
+        }
+        out[c] = last;
+    }
+    return out;
+}
+
+bool is_floor_cell(const Surroundings& surroundings, std::size_t cell) {
+    const std::int32_t primitive = surroundings.cells->primitive[cell];
+    return primitive >= 0 &&
+           static_cast<std::size_t>(primitive) < surroundings.is_floor_primitive.size() &&
+           surroundings.is_floor_primitive[static_cast<std::size_t>(primitive)];
+}
+
+std::vector<std::vector<std::uint32_t>> cells_of_objects(
+    std::span<const std::int32_t> object_of_cell, std::size_t objects) {
+    std::vector<std::vector<std::uint32_t>> out(objects);
+    for (std::size_t c = 0; c < object_of_cell.size(); ++c) {
+        if (object_of_cell[c] >= 0) {
+            out[static_cast<std::size_t>(object_of_cell[c])].push_back(
+                static_cast<std::uint32_t>(c));
+        }
+    }
+    return out;
+}
+
+Stance stance(const physics::SolidCells& cells, std::span<const std::uint32_t> of_object) {
+    Stance out;
+    if (of_object.empty()) return out;
+    double x = 0, y = 0, z = 0;
+    std::int32_t low = cells.k[of_object.front()], high = low;
+    for (const std::uint32_t c : of_object) {
+        x += cells.i[c] + 0.5;
+        y += cells.j[c] + 0.5;
+        z += cells.k[c] + 0.5;
+        low = std::min(low, cells.k[c]);
+        high = std::max(high, cells.k[c]);
+    }
+    const double scale = cells.voxel_m / static_cast<double>(of_object.size());
+    out.center = {x * scale, y * scale, z * scale};
+    out.bottom_m = low * cells.voxel_m;
+    out.top_m = (high + 1.0) * cells.voxel_m;
+    return out;
+}
+
+double half_base(const RiskObject& object, const Stance& stance, double dx, double dy) {
+    const auto& polygon = object.support_polygon;
+    if (polygon.size() < 3) return std::max(0.0, object.base_width_m / 2);
+    // The nearest edge that the ray leaves through; inside a convex polygon that is the way out.
+    double reach = INFINITY;
+    for (std::size_t e = 0; e < polygon.size(); ++e) {
+        const auto& a = polygon[e];
+        const auto& b = polygon[(e + 1) % polygon.size()];
+        const double nx = b[1] - a[1],
+                     ny = a[0] - b[0];  // outward, as the polygon runs counter-clockwise
+        const double along = dx * nx + dy * ny;
+        const double inside = (a[0] - stance.center[0]) * nx + (a[1] - stance.center[1]) * ny;
+        if (along > 0) reach = std::min(reach, inside / along);
+    }
+    return std::isfinite(reach) ? std::max(0.0, reach) : 0.0;
+}
+
+double tipping_energy(double mass_kg, double height_m, double half_base_m) {
+    // sqrt(h^2 + b^2) - h without the cancellation
+    const double diagonal = std::hypot(height_m, half_base_m);
+    const double rise = diagonal > 0 ? half_base_m * half_base_m / (diagonal + height_m) : 0;
+    return mass_kg * physics::gravity * rise;
+}
+
+void check_option(const char* name, double value, double least) {
+    if (std::isfinite(value) && value >= least) return;
+    throw Error(ErrorKind::usage,
+                "disturbance option " + std::string(name) + " is " + std::to_string(value) +
+                    ", but must be a number of at least " + std::to_string(least));
+}
+
+// A heap of the arrows with the smallest random keys, the largest of these first.
+struct ArrowSample::Arrow {
+    std::uint64_t key, order;
+    float x, y, z, vx, vy, vz, density;
+    bool operator<(const Arrow& other) const {
+        return key != other.key ? key < other.key : order < other.order;
+    }
+};
+
+ArrowSample::ArrowSample() = default;
+ArrowSample::~ArrowSample() = default;
+
+void ArrowSample::offer(const Vec3& at, const Vec3& along, double density) {
+    const std::uint64_t order = offered_++;
+    const std::uint64_t key = Random(order).bits();
+    if (heap_.size() == max_samples && heap_.front().key <= key) return;
+    const auto f = [](double v) { return static_cast<float>(v); };
+    heap_.push_back({key, order, f(at[0]), f(at[1]), f(at[2]), f(along[0]), f(along[1]),
+                     f(along[2]), f(density)});
+    std::push_heap(heap_.begin(), heap_.end());
+    if (heap_.size() > max_samples) {
+        std::pop_heap(heap_.begin(), heap_.end());
+        heap_.pop_back();
+    }
+}
+
+FieldSamples ArrowSample::take() {
+    std::sort(heap_.begin(), heap_.end(),
+              [](const Arrow& a, const Arrow& b) { return a.order < b.order; });
+    FieldSamples out;
+    for (const Arrow& a : heap_) {
+        out.x.push_back(a.x);
+        out.y.push_back(a.y);
+        out.z.push_back(a.z);
+        out.vx.push_back(a.vx);
+        out.vy.push_back(a.vy);
+        out.vz.push_back(a.vz);
+        out.density.push_back(a.density);
+    }
+    heap_.clear();
+    return out;
+}
+
+}  // namespace topple::safety

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "safety/fields.h"
+
+// What the three fields ask of the objects' cells.
+namespace topple::safety {
+
+// Index into `objects` of each solid cell's object, -1 for none and for grounded objects.
+// Throws Error(usage) where `surroundings` has no cells or not one object per cell.
+std::vector<std::int32_t> movable_object_of_cells(const Surroundings& surroundings,
+                                                  std::span<const RiskObject> objects);
+
+// The cell belongs to a floor.
+bool is_floor_cell(const Surroundings& surroundings, std::size_t cell);
+
+// The cells of each object, ascending.
+std::vector<std::vector<std::uint32_t>> cells_of_objects(
+    std::span<const std::int32_t> object_of_cell, std::size_t objects);
+
+// How an object stands: centre of its cells, metres, and the height of its lowest cell's underside.
+struct Stance {
+    Vec3 center{};
+    double bottom_m = 0, top_m = 0;
+    double height() const { return center[2] - bottom_m; }  // of the centre, above the base
+};
+Stance stance(const physics::SolidCells& cells, std::span<const std::uint32_t> of_object);
+
+// Half base b in horizontal direction (dx, dy): from below the centre of mass to where the support
+// ends that way, 0 where it has ended already. From the support polygon, or half of base_width_m.
+double half_base(const RiskObject& object, const Stance& stance, double dx, double dy);
+
+// Energy that lifts the centre of mass over the base's edge: m g (sqrt(h^2 + b^2) - h).
+double tipping_energy(double mass_kg, double height_m, double half_base_m);
+
+// Throws Error(usage) naming the option unless it is finite and not below `least`.
+void check_option(const char* name, double value, double least);
+
+// A uniform sample of at most max_samples of the arrows offered, in their order; its own generator
+// makes it the same every time.
+class ArrowSample {
+  public:
+    ArrowSample();
+    ~ArrowSample();
+    void offer(const Vec3& at, const Vec3& along, double density);
+    FieldSamples take();
+
+  private:
+    struct Arrow;
+    std::vector<Arrow> heap_;
+    std::uint64_t offered_ = 0;
+};
+
+}  // namespace topple::safety

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "safety/fields.h"
+#include "topple/error.h"
+
+namespace topple::safety {
+
+double instability(std::span<const InstabilityStep> curve, double W_J) {
+    double release = 0;
+    for (const InstabilityStep& step : curve) {
+        if (step.W_J > W_J) break;  // ascending in W
+        release = std::max(release, step.S_J);
+    }
+    return release;
+}
+
+std::vector<double> risk(const Disturbance& disturbance, std::span<const RiskObject> objects) {
+    if (disturbance.work.size() != objects.size()) {
+        throw Error(ErrorKind::usage, "the " + disturbance.name + " field knows " +
+                                          std::to_string(disturbance.work.size()) +
+                                          " objects, but risk is asked for " +
+                                          std::to_string(objects.size()));
+    }
+    std::vector<double> out(objects.size(), 0.0);
+    for (std::size_t o = 0; o < objects.size(); ++o) {
+        if (objects[o].grounded) continue;
+        for (const WorkSample& sample : disturbance.work[o]) {
+            out[o] += sample.probability * instability(objects[o].curve, sample.W_J);
+        }
+    }
+    return out;
+}
+
+std::vector<double> unsafety(std::span<const std::vector<double>> risks) {
+    std::vector<double> worst;
+    for (const auto& of_disturbance : risks) {
+        worst.resize(std::max(worst.size(), of_disturbance.size()), 0.0);
+        for (std::size_t o = 0; o < of_disturbance.size(); ++o) {
+            if (std::isfinite(of_disturbance[o])) worst[o] = std::max(worst[o], of_disturbance[o]);
+        }
+    }
+    const double most = worst.empty() ? 0 : *std::max_element(worst.begin(), worst.end());
+    std::vector<double> out(worst.size(), 1.0);
+    if (most <= 0) return out;
+    for (std::size_t o = 0; o < out.size(); ++o) {
+        out[o] = 1 + 9 * std::log1p(999 * (worst[o] / most)) / std::log(1000.0);
+    }
+    return out;
+}
+
+}  // namespace topple::safety

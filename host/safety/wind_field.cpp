@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "physics/landscape.h"
+#include "safety/columns.h"
+#include "safety/directions.h"
+#include "safety/fields.h"
+#include "safety/objects.h"
+
+namespace topple::safety {
+namespace {
+
+constexpr double bins_per_voxel = 2;  // lines of wind across a voxel's width
+
+// Lines of wind across one object: for each layer and line, the cell that the wind meets first.
+struct FirstHits {
+    std::int64_t bins = 0, layers = 0;
+    double low = 0;                  // where the first line's bin begins, voxels across the wind
+    std::vector<std::int64_t> cell;  // layers x bins; -1: none
+};
+
+FirstHits first_hits(const physics::SolidCells& solid, std::span<const std::uint32_t> cells,
+                     double dx, double dy) {
+    const auto across = [&](std::uint32_t c) {
+        return (solid.i[c] + 0.5) * -dy + (solid.j[c] + 0.5) * dx;
+    };
+    const auto along = [&](std::uint32_t c) {
+        return (solid.i[c] + 0.5) * dx + (solid.j[c] + 0.5) * dy;
+    };
+    const double half_width =
+        (std::fabs(dx) + std::fabs(dy)) / 2;  // of a voxel, seen along the wind
+    double low = INFINITY, high = -INFINITY;
+    std::int32_t bottom = std::numeric_limits<std::int32_t>::max(),
+                 top = std::numeric_limits<std::int32_t>::min();
+    for (const std::uint32_t c : cells) {
+        low = std::min(low, across(c));
+        high = std::max(high, across(c));
+        bottom = std::min(bottom, solid.k[c]);
+        top = std::max(top, solid.k[c]);
+    }
+    FirstHits hits;
+    hits.low = low - half_width;
+    hits.bins =
+        static_cast<std::int64_t>(std::ceil((high - low + 2 * half_width) * bins_per_voxel)) + 1;
+    hits.layers = std::int64_t{top} - bottom + 1;
+    hits.cell.assign(static_cast<std::size_t>(hits.bins * hits.layers), -1);
+    std::vector<double> depth(hits.cell.size(), INFINITY);
+    for (const std::uint32_t c : cells) {
+        // The lines whose middles cross the voxel; the slack makes a voxel's edges hit the same
+        // lines on either side of it.
+        const double from = (across(c) - half_width - hits.low) * bins_per_voxel - 0.5 - 1e-9;
+        const double to = (across(c) + half_width - hits.low) * bins_per_voxel - 0.5 - 1e-9;
+        for (auto bin = static_cast<std::int64_t>(std::ceil(from)); static_cast<double>(bin) < to;
+             ++bin) {
+            if (bin < 0 || bin >= hits.bins) continue;
+            const auto at = static_cast<std::size_t>((solid.k[c] - bottom) * hits.bins + bin);
+            if (along(c) < depth[at]) {  // cells ascend: the lowest of equals stays
+                depth[at] = along(c);
+                hits.cell[at] = c;
+            }
+        }
+    }
+    return hits;
+}
+
+// Nothing solid stands within `voxels` upwind of a point in the object's front, given in voxels.
+// Half-voxel steps; the first that counts lies outside of the front's own voxel.
+bool open_to_wind(const Columns& columns, double x, double y, std::int32_t k, std::int32_t own_i,
+                  std::int32_t own_j, double dx, double dy, double voxels) {
+    for (double s = 0.5; s <= voxels; s += 0.5) {
+        const auto i = static_cast<std::int64_t>(std::floor(x - s * dx));
+        const auto j = static_cast<std::int64_t>(std::floor(y - s * dy));
+        if (i == own_i && j == own_j) continue;
+        if (columns.solid(i, j, k)) return false;
+    }
+    return true;
+}
+
+void offer_arrows(ArrowSample& arrows, const physics::SolidCells& solid,
+                  std::span<const std::uint32_t> cells,
+                  const std::vector<std::array<float, 3>>& wind, double speed) {
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const std::uint32_t c = cells[n];
+        if (wind[n][2] == 0) continue;
+        arrows.offer({(solid.i[c] + 0.5) * solid.voxel_m, (solid.j[c] + 0.5) * solid.voxel_m,
+                      (solid.k[c] + 0.5) * solid.voxel_m},
+                     {wind[n][0] / wind[n][2] * speed, wind[n][1] / wind[n][2] * speed, 0},
+                     wind[n][2] / direction_count);
+    }
+}
+
+}  // namespace
+
+Frontage wind_frontage(const physics::SolidCells& solid, const Columns& columns,
+                       std::span<const std::uint32_t> cells, unsigned d, double shelter_m) {
+    Frontage out;
+    if (cells.empty()) return out;
+    const auto [dx, dy] = direction(d);
+    const FirstHits hits = first_hits(solid, cells, dx, dy);
+    const double line_area = solid.voxel_m * solid.voxel_m / bins_per_voxel;
+    double moment = 0;
+    for (std::size_t at = 0; at < hits.cell.size(); ++at) {
+        if (hits.cell[at] < 0) continue;
+        const auto c = static_cast<std::uint32_t>(hits.cell[at]);
+        // The line's middle, at the depth of the voxel's centre.
+        const double across =
+            hits.low +
+            (static_cast<double>(at % static_cast<std::size_t>(hits.bins)) + 0.5) / bins_per_voxel;
+        const double along = (solid.i[c] + 0.5) * dx + (solid.j[c] + 0.5) * dy;
+        const double x = along * dx - across * dy, y = along * dy + across * dx;
+        if (!open_to_wind(columns, x, y, solid.k[c], solid.i[c], solid.j[c], dx, dy,
+                          shelter_m / solid.voxel_m)) {
+            continue;
+        }
+        out.area_m2 += line_area;
+        moment += line_area * (solid.k[c] + 0.5) * solid.voxel_m;
+        out.cells.push_back(c);
+    }
+    if (out.area_m2 > 0) out.center_m = moment / out.area_m2;
+    std::sort(out.cells.begin(), out.cells.end());
+    out.cells.erase(std::unique(out.cells.begin(), out.cells.end()), out.cells.end());
+    return out;
+}
+
+double wind_force(const WindLoad& load, const WindOptions& options) {
+    return 0.5 * options.air_density_kg_m3 * options.drag_coefficient * load.area_m2 *
+           options.speed_m_s * options.speed_m_s;
+}
+
+double wind_work(const RiskObject& object, const WindLoad& load, const WindOptions& options) {
+    const double force = wind_force(load, options), weight = object.mass_kg * physics::gravity;
+    if (!(force > 0) || !(weight > 0)) return 0;
+    const auto work = [&](double threshold, double own_energy) {
+        if (threshold <= 0) return std::max(object.barrier_J, own_energy);
+        const double ratio = force / threshold;
+        return ratio * (ratio < 1 ? object.barrier_J : std::max(object.barrier_J, own_energy));
+    };
+    double most = 0;
+    if (load.pressure_height_m > 0) {
+        most = work(weight * load.half_base_m / load.pressure_height_m,
+                    tipping_energy(object.mass_kg, load.height_m, load.half_base_m));
+    }
+    // Sliding matters where there is an edge to slide off.
+    if (object.slide_distance_m >= 0) {
+        const double threshold = options.friction * weight;
+        most = std::max(most, work(threshold, threshold * object.slide_distance_m));
+    }
+    return most;
+}
+
+Disturbance wind_field(device::Device&, const Surroundings& surroundings,
+                       std::span<const RiskObject> objects, const WindOptions& options) {
+    check_option("speed_m_s", options.speed_m_s, 0);
+    check_option("air_density_kg_m3", options.air_density_kg_m3, 0);
+    check_option("drag_coefficient", options.drag_coefficient, 0);
+    check_option("friction", options.friction, 0);
+    check_option("shelter_m", options.shelter_m, 0);
+    Disturbance out;
+    out.name = "wind";
+    out.work.resize(objects.size());
+    const auto object_of_cell = movable_object_of_cells(surroundings, objects);
+    const auto cells = cells_of_objects(object_of_cell, objects.size());
+    out.exposure.assign(object_of_cell.size(), 0.0f);
+    const physics::SolidCells& solid = *surroundings.cells;
+    const Columns columns(solid);
+
+    ArrowSample arrows;
+    for (std::size_t o = 0; o < objects.size(); ++o) {
+        if (cells[o].empty() || objects[o].grounded) continue;
+        const Stance stands = stance(solid, cells[o]);
+        std::vector<std::array<float, 3>> wind(cells[o].size(),
+                                               {0, 0, 0});  // sum of directions, count
+        for (unsigned d = 0; d < direction_count; ++d) {
+            const Frontage front = wind_frontage(solid, columns, cells[o], d, options.shelter_m);
+            if (front.area_m2 <= 0) continue;
+            const auto [dx, dy] = direction(d);
+            for (const std::uint32_t c : front.cells) {
+                const auto n =
+                    std::lower_bound(cells[o].begin(), cells[o].end(), c) - cells[o].begin();
+                auto& sum = wind[static_cast<std::size_t>(n)];
+                sum = {sum[0] + static_cast<float>(dx), sum[1] + static_cast<float>(dy),
+                       sum[2] + 1};
+                out.exposure[c] += 1.0f / direction_count;
+            }
+            const WindLoad load{front.area_m2, front.center_m - stands.bottom_m,
+                                half_base(objects[o], stands, dx, dy), stands.height()};
+            out.work[o].push_back(
+                {wind_work(objects[o], load, options), 1.0 / direction_count, {dx, dy, 0}});
+        }
+        offer_arrows(arrows, solid, cells[o], wind, options.speed_m_s);
+    }
+    out.samples = arrows.take();
+    if (out.samples.x.empty()) out.notes.push_back("No object of the scene stands in the wind.");
+    return out;
+}
+
+}  // namespace topple::safety
