@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include <chrono>
+
+#include "files.h"
+#include "io/read_cloud.h"
+
+namespace topple::io {
+namespace {
+
+using test::expect_input_error;
+
+class Xyz : public test::Files {};
+
+TEST_F(Xyz, separators_comments_and_extra_columns) {
+    for (const char* text : {
+             "# a scan\n1 2 3\n\n4 5 6\n",
+             "1,2,3\n4,5,6",
+             "1;2;3\r\n4;5;6\r\n",
+             "\t1\t2   3 # first\n4, 5, 6 // second\n",
+             "1 2 3 255 0 0 0.5\n4 5 6 0 0 9 0.5\n",
+             "x y z\n1 2 3\n4 5 6\n",
+             "\"X\",\"Y\",\"Z\",\"I\"\n1,2,3,7\n4,5,6,7\n",
+             "id,x,y,z\n7,1,2,3\n8,4,5,6\n",
+             "east north height\n1 2 3\n4 5 6\n",
+             "//X Y Z\n1 2 3\n4 5 6\n",
+             "2\n1 2 3\n4 5 6\n",
+             "\xEF\xBB\xBF"
+             "1 2 3\n4 5 6\n",
+         }) {
+        const auto cloud = read_cloud(write("a.xyz", text));
+        EXPECT_EQ(cloud.x, (std::vector<float>{1, 4})) << text;
+        EXPECT_EQ(cloud.y, (std::vector<float>{2, 5})) << text;
+        EXPECT_EQ(cloud.z, (std::vector<float>{3, 6})) << text;
+        EXPECT_TRUE(cloud.nx.empty()) << text;
+    }
+}
+
+TEST_F(Xyz, six_columns_are_normals_only_where_they_have_unit_length) {
+    const auto normals = read_cloud(write("a.xyz", "1 2 3 0 0 1\n4 5 6 0.6 -0.8 0\n"));
+    EXPECT_EQ(normals.ny, (std::vector<float>{0, -0.8f}));
+    EXPECT_TRUE(read_cloud(write("a.xyz", "1 2 3 255 0 1\n4 5 6 20 80 0\n")).nx.empty());
+    EXPECT_TRUE(read_cloud(write("a.xyz", "1 2 3 0 0 1\n4 5 6 0.2 0.2 0.3\n")).nx.empty());
+    EXPECT_TRUE(read_cloud(write("a.xyz", "x y z r g b\n1 2 3 0 0 1\n4 5 6 0 1 0\n")).nx.empty());
+    EXPECT_TRUE(read_cloud(write("a.xyz", "1 2 3 0 0 1\n4 5 6\n")).nx.empty());
+    EXPECT_EQ(read_cloud(write("a.csv", "nx,ny,nz,x,y,z\n0,0,2,4,5,6\n")).nz,
+              (std::vector<float>{1}));
+}
+
+TEST_F(Xyz, bad_files_are_refused_with_their_reason) {
+    const struct {
+        const char* what;
+        std::string bytes;
+        std::initializer_list<std::string_view> message;
+    } cases[] = {
+        {"a word", "1 2 3\n1 2 three\n", {"line 2", "\"three\""}},
+        {"two columns", "1 2 3\n1 2\n", {"line 2", "2 values", "3 are needed"}},
+        {"no UTF-8", "1 2 3\n1 2 \xff\xfe\n", {"line 2", "\\xff\\xfe"}},
+        {"UTF-16",
+         std::string("\xff\xfe"
+                     "1\0 \0",
+                     6),
+         {"zero bytes"}},
+        {"terminal controls", "1 2 \x1b[2J\n", {"\\x1b[2J"}},
+        {"a long line", "1 2 " + std::string(100000, 'q') + "\n", {"line 1", "..."}},
+        {"only comments", "# nothing\n\n", {"no points"}},
+        {"nothing finite", "nan nan nan\n", {"none of its 1 point "}},
+        {"cut short", "3\n1 2 3\n4 5 6\n", {"3 points", "has 2"}},
+        {"a count beyond reason", "1000000000000\n1 2 3\n", {"1000000000000 points", "has 1"}},
+        {"far away", "1 2 1e300\n", {"1e+300", "units"}},
+    };
+    for (const auto& c : cases) {
+        SCOPED_TRACE(c.what);
+        const auto file = write("a.xyz", c.bytes);
+        expect_input_error([&] { read_cloud(file); }, c.message);
+    }
+}
+
+// Not a time that is gated on: it only catches a reader that is slower than any disk by orders.
+TEST_F(Xyz, reads_many_points) {
+    std::string text;
+    for (int i = 0; i < 200000; ++i) {
+        text += std::to_string(i * 1e-4) + " " + std::to_string(i % 977 * 1e-3) + " 1.25\n";
+    }
+    const auto file = write("a.xyz", text);
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_EQ(read_cloud(file).size(), 200000u);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+}  // namespace
+}  // namespace topple::io
