@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "geometry/manhattan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/manhattan_normals.h"
+#include "geometry/manhattan_up.h"
+
+namespace topple::geometry {
+namespace {
+
+// Clusters to look for: K > 3 (paper, 2.2.1). More than the scene has surfaces' directions does no
+// harm.
+constexpr unsigned cluster_count = 12;
+// Normals this near to an axis count for it.
+constexpr double near_degrees = 10;
+// Directions spread evenly over the sphere leave 1 - cos(10 degrees) = 1.5 % near each axis. An
+// axis of the scene must hold twice that, and all three a quarter of the surface.
+constexpr double least_share = 0.03, least_total_share = 0.25;
+
+struct Triple {
+    std::array<Vec3, 3> axes{};
+    std::array<double, 3> share{};
+    double total = 0;
+};
+
+// The orthonormal axes nearest to three near-orthogonal ones: alternate averaging with the cross
+// products of the others, which converges to the polar factor for small deviations.
+std::array<Vec3, 3> orthogonalise(std::array<Vec3, 3> a) {
+    for (int round = 0; round < 20; ++round) {
+        if (dot(cross(a[0], a[1]), a[2]) < 0) a[2] = {-a[2][0], -a[2][1], -a[2][2]};
+        std::array<Vec3, 3> next{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3 c = unit(cross(a[(i + 1) % 3], a[(i + 2) % 3]));
+            next[i] = unit({a[i][0] + c[0], a[i][1] + c[1], a[i][2] + c[2]});
+        }
+        a = next;
+    }
+    return a;
+}
+
+// The near-orthogonal triple with the largest weight. The third may be the cross product of the
+// other two: a single view often shows only two directions well.
+Triple best_triple(const WeightedNormals& normals, const std::vector<Vec3>& directions) {
+    Triple best;
+    const double most_dot = std::sin(near_degrees * std::numbers::pi / 180);
+    const auto consider = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+        if (std::abs(dot(a, b)) > most_dot || std::abs(dot(a, c)) > most_dot ||
+            std::abs(dot(b, c)) > most_dot) {
+            return;
+        }
+        Triple triple;
+        triple.axes = orthogonalise({a, b, c});
+        for (std::size_t i = 0; i < 3; ++i) {
+            triple.share[i] = weight_near(normals, triple.axes[i], near_degrees) / normals.total;
+            triple.total += triple.share[i];
+        }
+        if (triple.total > best.total) best = triple;
+    };
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        for (std::size_t j = i + 1; j < directions.size(); ++j) {
+            if (std::abs(dot(directions[i], directions[j])) > most_dot) continue;
+            consider(directions[i], directions[j], unit(cross(directions[i], directions[j])));
+            for (std::size_t k = j + 1; k < directions.size(); ++k) {
+                consider(directions[i], directions[j], directions[k]);
+            }
+        }
+    }
+    return best;
+}
+
+// Horizontal axes: the fourfold direction that most upright surfaces follow, found on the normals'
+// azimuth and refined; share: how much of the upright surface follows it.
+Vec3 horizontal_axis(const WeightedNormals& normals, const Vec3& up, const Vec3& guess,
+                     double& share) {
+    const Vec3 e1 = unit({guess[0] - dot(guess, up) * up[0], guess[1] - dot(guess, up) * up[1],
+                          guess[2] - dot(guess, up) * up[2]});
+    const Vec3 e2 = cross(up, e1);
+    constexpr int bins = 90;  // of one degree
+    std::array<double, bins> histogram{};
+    std::vector<std::array<double, 2>> azimuth;  // angle modulo 90 degrees, weight
+    double total = 0;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        const Vec3 n{normals.x[i], normals.y[i], normals.z[i]};
+        if (std::abs(dot(n, up)) > std::sin(near_degrees * std::numbers::pi / 180)) continue;
+        double angle = std::atan2(dot(n, e2), dot(n, e1)) * 180 / std::numbers::pi;
+        angle -= 90 * std::floor(angle / 90);
+        azimuth.push_back({angle, normals.weight[i]});
+        histogram[static_cast<std::size_t>(angle) % bins] += normals.weight[i];
+        total += normals.weight[i];
+    }
+    share = 0;
+    if (!(total > 0)) return e1;
+    int peak = 0;
+    double most = -1;
+    for (int b = 0; b < bins; ++b) {
+        double sum = 0;
+        for (int d = -3; d <= 3; ++d)
+            sum += histogram[static_cast<std::size_t>((b + d + bins) % bins)];
+        if (sum > most) {
+            most = sum;
+            peak = b;
+        }
+    }
+    double centre = peak + 0.5;
+    for (const double window : {10.0, 6.0, 4.0, 4.0}) {
+        double sum = 0, offset = 0;
+        for (const auto& [angle, weight] : azimuth) {
+            const double d = angle - centre - 90 * std::round((angle - centre) / 90);
+            if (std::abs(d) >= window) continue;
+            const double taper = 1 - d * d / (window * window);
+            sum += weight * taper * taper;
+            offset += weight * taper * taper * d;
+        }
+        if (sum > 0) centre += offset / sum;
+    }
+    for (const auto& [angle, weight] : azimuth) {
+        const double d = angle - centre - 90 * std::round((angle - centre) / 90);
+        if (std::abs(d) <= near_degrees) share += weight / total;
+    }
+    const double turn = centre * std::numbers::pi / 180;
+    return {std::cos(turn) * e1[0] + std::sin(turn) * e2[0],
+            std::cos(turn) * e1[1] + std::sin(turn) * e2[1],
+            std::cos(turn) * e1[2] + std::sin(turn) * e2[2]};
+}
+
+// Of the four horizontal directions that a fourfold axis leaves, the one nearest to the input's x,
+// so that the frame turns as little as it must.
+Vec3 nearest_to_x(const Vec3& axis, const Vec3& up) {
+    const Vec3 side = cross(up, axis);
+    Vec3 best = axis;
+    for (const Vec3& v :
+         {Vec3{-axis[0], -axis[1], -axis[2]}, side, Vec3{-side[0], -side[1], -side[2]}}) {
+        if (v[0] > best[0] + 1e-9) best = v;
+    }
+    return best;
+}
+
+Vec3 any_horizontal(const Vec3& up) {
+    const Vec3 e = std::abs(up[0]) < 0.8 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    return unit({e[0] - dot(e, up) * up[0], e[1] - dot(e, up) * up[1], e[2] - dot(e, up) * up[2]});
+}
+
+}  // namespace
+
+SceneFrame find_scene_frame(device::Device& device, const Surfels& surfels,
+                            const FrameHints& hints) {
+    const WeightedNormals normals = weigh_normals(surfels);
+    std::vector<Vec3> directions = cluster_normals(device, surfels, cluster_count).direction;
+    for (Vec3& direction : directions) direction = refine_axis(normals, direction);
+    const Triple triple = best_triple(normals, directions);
+    const bool manhattan =
+        triple.total >= least_total_share &&
+        *std::min_element(triple.share.begin(), triple.share.end()) >= least_share;
+
+    SceneFrame frame;
+    const UpChoice up = choose_up(
+        surfels, normals, directions,
+        manhattan ? std::vector<Vec3>(triple.axes.begin(), triple.axes.end()) : std::vector<Vec3>{},
+        hints);
+    frame.up_method = up.method;
+    frame.axes[2] = up.up;
+    // The best triple may hang on furniture; what counts is that upright surfaces follow two
+    // directions at right angles to up.
+    double share = 0;
+    const Vec3 x = horizontal_axis(normals, up.up, any_horizontal(up.up), share);
+    frame.axes[0] = nearest_to_x(x, up.up);
+    frame.axes[1] = unit(cross(frame.axes[2], frame.axes[0]));
+    double total = 0, least = 1;
+    for (const Vec3& axis : frame.axes) {
+        const double near =
+            normals.total > 0 ? weight_near(normals, axis, near_degrees) / normals.total : 0;
+        total += near;
+        least = std::min(least, near);
+    }
+    frame.found = total >= least_total_share && least >= least_share;
+    if (frame.up_method == "dominant-plane" && frame.found) frame.up_method = "manhattan";
+    if (frame.up_method == "manhattan" && !frame.found) frame.up_method = "dominant-plane";
+    frame.up_share =
+        normals.total > 0 ? weight_near(normals, up.up, near_degrees) / normals.total : 0;
+    return frame;
+}
+
+}  // namespace topple::geometry

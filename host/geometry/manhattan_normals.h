@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geometry/surfels.h"
+
+namespace topple::geometry {
+
+// The defined normals of a set of surfels with a weight each: about the area that a surfel stands
+// for, 0..1, less where its neighbourhood is rougher than most (edges, clutter).
+struct WeightedNormals {
+    std::vector<float> x, y, z, weight;
+    std::vector<std::uint32_t> surfel;
+    double total = 0;  // sum of weight over all surfels
+    std::size_t size() const { return x.size(); }
+};
+WeightedNormals weigh_normals(const Surfels& surfels);
+
+// Weight of the normals within `degrees` of +-axis.
+double weight_near(const WeightedNormals& normals, const Vec3& axis, double degrees);
+
+// The mean of the normals near +-axis, in windows that narrow from 10 to 4 degrees, each repeated
+// until it stands still (iteratively reweighted, biweight). Returns the axis itself where no normal
+// is near.
+Vec3 refine_axis(const WeightedNormals& normals, const Vec3& axis);
+
+inline double dot(const Vec3& a, const Vec3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Vec3 cross(const Vec3& a, const Vec3& b);
+// The unit vector along v; zero where v is (nearly) zero.
+Vec3 unit(const Vec3& v);
+
+}  // namespace topple::geometry
