@@ -39,31 +39,20 @@ std::uint32_t nearest(const SphereMesh& mesh, std::uint32_t v, const Vec3& d) {
     }
 }
 
-// The deepest height that opens to a body leaning towards `way` (unit, horizontal): behind the
-// first pass of the hull that this turn meets. The start's height if it meets none within 120
-// degrees.
-double deepest_towards(const Flooded& f, std::span<const PosePass> passes, const Vec3& way) {
-    std::uint32_t v = 0;
-    const double step = f.spacing / 2;
-    for (double angle = 0; angle < 2.1; angle += step) {
-        const double s = std::sin(angle), c = std::cos(angle);
-        v = nearest(*f.mesh, v, {-s * way[0], -s * way[1], c});
-        if (double{f.level[v]} - f.height[v] <= f.tolerance_m) continue;
-        const auto after =
-            std::upper_bound(passes.begin(), passes.end(), double{f.level[v]},
-                             [](double level, const PosePass& p) { return level < p.height_m; });
-        if (after != passes.begin()) return std::prev(after)->deepest_m;
-    }
-    return f.height[f.start];
-}
+// A pass as the mesh has it, and made exact.
+struct Opening {
+    double mesh_height_m = 0;
+    PosePass pass;
+};
 
 std::vector<Vec3> vertices_of(const SupportTable::Rows& rows, const Candidate& candidate) {
     std::vector<Vec3> all;
     for (const std::int32_t p : candidate.primitives) {
         const auto at = static_cast<std::size_t>(p);
         Vec3 offset{};
-        for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t a = 0; a < 3; ++a) {
             offset[a] = rows.origin[at][a] - candidate.body.center[a];
+        }
         for (const Vec3& v : rows.vertices[at]) {
             all.push_back({v[0] + offset[0], v[1] + offset[1], v[2] + offset[2]});
         }
@@ -71,34 +60,65 @@ std::vector<Vec3> vertices_of(const SupportTable::Rows& rows, const Candidate& c
     return all;
 }
 
-// What the hull's landscape offers: every pass that opens something deeper than lower passes do,
-// and the lowest one in any case.
-void add_passes(const SupportTable::Rows& rows, const Candidate& candidate, const Flooded& f,
-                std::span<const PosePass> passes, std::vector<Way>& ways) {
+// The passes that matter: those that open something deeper than lower ones do, and the lowest.
+std::vector<Opening> openings(const SupportTable::Rows& rows, const Candidate& candidate,
+                              const Flooded& f) {
     const double base = f.height[f.start];
     std::vector<Vec3> vertices;
+    std::vector<Opening> result;
     double deepest = 0;
-    for (std::size_t n = 0; n < passes.size(); ++n) {
-        if (n > 0 && passes[n].deepest_m >= deepest) continue;
-        deepest = passes[n].deepest_m;
-        PosePass pass = passes[n];
-        if (pass.height_m > base) {
-            if (vertices.empty()) vertices = vertices_of(rows, candidate);
-            if (const auto exact = refine_pass(pass, vertices, f.spacing)) pass = *exact;
+    for (const PosePass& found : find_passes(f)) {
+        if (!result.empty() && found.deepest_m >= deepest) continue;
+        deepest = found.deepest_m;
+        if (vertices.empty()) vertices = vertices_of(rows, candidate);
+        Opening opening{found.height_m, found};
+        if (found.height_m > base) {
+            if (const auto exact = refine_pass(found, vertices, f.spacing)) opening.pass = *exact;
+            opening.pass.height_m = std::max(opening.pass.height_m, base);
         }
-        const double height = std::max(pass.height_m, base);
-        const bool deeper = pass.deepest_m < base - f.tolerance_m / 2;
-        ways.push_back({height - base, deeper ? height - pass.deepest_m : 0, lean(pass.direction)});
+        opening.pass.deepest_m = refine_minimum(found.deepest, vertices, f.spacing);
+        result.push_back(opening);
+    }
+    return result;
+}
+
+bool is_deeper(const Flooded& f, double height) {
+    return height < f.height[f.start] - f.resolution_m / 2;
+}
+
+// The deepest height that opens to a body leaning towards `way` (unit, horizontal): behind the
+// first pass of the hull that this turn meets. The start's height if it meets none within 120
+// degrees.
+double deepest_towards(const Flooded& f, std::span<const Opening> passes, const Vec3& way) {
+    std::uint32_t v = 0;
+    const double step = f.spacing / 2;
+    for (double angle = 0; angle < 2.1; angle += step) {
+        const double s = std::sin(angle), c = std::cos(angle);
+        v = nearest(*f.mesh, v, {-s * way[0], -s * way[1], c});
+        if (double{f.level[v]} - f.height[v] <= f.noise_m) continue;
+        const auto after = std::upper_bound(
+            passes.begin(), passes.end(), double{f.level[v]},
+            [](double level, const Opening& p) { return level < p.mesh_height_m; });
+        if (after != passes.begin()) return std::prev(after)->pass.deepest_m;
+    }
+    return f.height[f.start];
+}
+
+void add_passes(const Flooded& f, std::span<const Opening> passes, std::vector<Way>& ways) {
+    const double base = f.height[f.start];
+    for (const auto& [mesh_height, pass] : passes) {
+        ways.push_back({pass.height_m - base,
+                        is_deeper(f, pass.deepest_m) ? pass.height_m - pass.deepest_m : 0,
+                        lean(pass.direction)});
     }
 }
 
 void add_footing(const Candidate& candidate, const Footing& on, const Flooded& f,
-                 std::span<const PosePass> passes, std::vector<Way>& ways) {
+                 std::span<const Opening> passes, std::vector<Way>& ways) {
     const double base = f.height[f.start];
     const auto add = [&](double climb, const Vec3& way) {
         const double deepest = deepest_towards(f, passes, way);
-        const bool deeper = deepest < base - f.tolerance_m / 2;
-        ways.push_back({climb, deeper ? climb + base - deepest : 0, way});
+        ways.push_back({climb, is_deeper(f, deepest) ? climb + base - deepest : 0, way});
     };
     if (on.edges.empty()) return add(0, on.away);
     const double h = candidate.body.center[2] - candidate.support_height_m;
@@ -108,12 +128,12 @@ void add_footing(const Candidate& candidate, const Footing& on, const Flooded& f
 }
 
 // Held by nothing: it falls as its hull lets it.
-void add_fall(const Flooded& f, std::span<const PosePass> passes, std::vector<Way>& ways) {
+void add_fall(const Flooded& f, std::span<const Opening> passes, std::vector<Way>& ways) {
     const double base = f.height[f.start];
     Way fall;
-    for (const PosePass& pass : passes) {
-        if (pass.height_m > base + f.tolerance_m) break;
-        if (pass.deepest_m < base - f.tolerance_m / 2) {
+    for (const auto& [mesh_height, pass] : passes) {
+        if (pass.height_m > base + f.resolution_m) break;
+        if (is_deeper(f, pass.deepest_m)) {
             fall.release_m = base - pass.deepest_m;
             fall.direction = lean(pass.direction);
         }
@@ -168,9 +188,15 @@ Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
     const double radius = *std::max_element(height.begin(), height.end());
     const double weight_N = candidate.body.mass_kg * gravity;
     // Heights are known to a voxel, and to the rounding of their float sums.
-    const Flooded f{&rows.mesh, height,       level,
-                    start,      rows.spacing, rows.resolution_m + 1e-5 * radius};
-    const std::vector<PosePass> passes = find_passes(f);
+    const double resolution = rows.resolution_m + 1e-5 * radius;
+    const Flooded f{&rows.mesh,
+                    height,
+                    level,
+                    start,
+                    rows.spacing,
+                    resolution,
+                    resolution + rows.spacing / 2 * radius};
+    const std::vector<Opening> passes = openings(rows, candidate, f);
 
     Stability result;
     std::vector<Way> ways;
@@ -183,7 +209,7 @@ Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
         result.margin_m = on.margin_m;
         add_footing(candidate, on, f, passes, ways);
     }
-    add_passes(rows, candidate, f, passes, ways);
+    add_passes(f, passes, ways);
     if (rolls(f)) ways.push_back({});
 
     const auto least = std::min_element(

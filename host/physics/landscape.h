@@ -48,17 +48,18 @@ class SupportTable {
 };
 
 // What a group of primitives can do when pushed. Heights are known to one voxel, so a descent
-// behind a pass counts from M g * voxel, and a minimum is deeper than the start from half of that.
-// A body that can turn by 90 degrees within that tolerance (a ball, a lying cylinder) has barrier
-// 0.
+// behind a pass counts from M g (voxel + what the mesh misses: half its spacing times the body's
+// radius), and a minimum is deeper than the start from M g voxel / 2. A body that can turn by 90
+// degrees within the former (a ball, a lying cylinder) has barrier 0.
 struct Stability {
-    double barrier_J =
-        0;  // least energy that takes it out of its basin; 0: it falls or rolls by itself
-    double release_J =
-        0;  // largest release behind that barrier, counted from the pass; 0: none is deeper
-    double margin_m = 0;  // distance of the centre of mass inside the support polygon; < 0 outside;
-                          // minus the body's radius where nothing holds it
-    Vec3 direction{};     // horizontal way it goes, unit, grid frame
+    // Least energy that takes it out of its basin; 0: it falls or rolls by itself.
+    double barrier_J = 0;
+    // Largest release behind that barrier, counted from the pass; 0: nothing there is deeper.
+    double release_J = 0;
+    // Distance of the centre of mass inside the support polygon; < 0 outside; minus the body's
+    // radius where nothing holds it.
+    double margin_m = 0;
+    Vec3 direction{};                    // horizontal way it goes, unit, grid frame
     std::vector<InstabilityStep> curve;  // S(W), ascending in W
 };
 

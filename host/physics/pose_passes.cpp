@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace topple::physics {
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double dot(const Vec3& a, const Vec3& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -44,7 +47,10 @@ std::optional<Balance> balance(const Vec3& a, const Vec3& b) {
     const Vec3 foot{a[0] + t * e[0], a[1] + t * e[1], a[2] + t * e[2]};
     const double height = std::sqrt(dot(foot, foot));
     if (!(height > 0)) return std::nullopt;
-    return Balance{{height, {-foot[0] / height, -foot[1] / height, -foot[2] / height}, 0}, a, b};
+    Balance result{{}, a, b};
+    result.pose.height_m = height;
+    result.pose.direction = {-foot[0] / height, -foot[1] / height, -foot[2] / height};
+    return result;
 }
 
 // Whether the pose rests on the edge alone: no vertex lower, and not on vertices on both sides of
@@ -108,7 +114,7 @@ std::vector<PosePass> find_passes(const Flooded& f) {
     // behind the same pass and deeper.
     std::vector<std::pair<float, std::uint32_t>> behind;
     for (std::uint32_t v = 0; v < f.height.size(); ++v) {
-        if (double{f.level[v]} - f.height[v] > f.tolerance_m && is_minimum(f, v)) {
+        if (double{f.level[v]} - f.height[v] > f.noise_m && is_minimum(f, v)) {
             behind.emplace_back(f.level[v], v);
         }
     }
@@ -118,9 +124,16 @@ std::vector<PosePass> find_passes(const Flooded& f) {
     for (const auto& [level, v] : behind) {
         if (levels.empty() || levels.back() != level) {
             levels.push_back(level);
-            passes.push_back({level, {}, passes.empty() ? f.height[v] : passes.back().deepest_m});
+            PosePass pass;
+            pass.height_m = level;
+            pass.deepest_m = passes.empty() ? infinity : passes.back().deepest_m;
+            if (!passes.empty()) pass.deepest = passes.back().deepest;
+            passes.push_back(pass);
         }
-        passes.back().deepest_m = std::min<double>(passes.back().deepest_m, f.height[v]);
+        if (f.height[v] < passes.back().deepest_m) {
+            passes.back().deepest_m = f.height[v];
+            passes.back().deepest = direction_of(*f.mesh, v);
+        }
     }
     // A level is the height of the pass's own direction.
     std::vector<bool> placed(levels.size(), false);
@@ -138,9 +151,20 @@ std::vector<PosePass> find_passes(const Flooded& f) {
 
 bool rolls(const Flooded& f) {
     const Vec3 start = direction_of(*f.mesh, f.start);
-    const double limit = f.height[f.start] + f.tolerance_m;
-    for (std::size_t v = 0; v < f.height.size(); ++v) {
-        if (f.level[v] <= limit && dot(direction_of(*f.mesh, v), start) <= 0) return true;
+    const double level = f.height[f.start];
+    std::vector<bool> seen(f.height.size(), false);
+    std::vector<std::uint32_t> next{f.start};
+    seen[f.start] = true;
+    while (!next.empty()) {
+        const std::uint32_t v = next.back();
+        next.pop_back();
+        if (dot(direction_of(*f.mesh, v), start) <= 0) return true;
+        for (std::size_t k = 0; k < 6; ++k) {
+            const std::uint32_t w = f.mesh->neighbour[std::size_t{v} * 6 + k];
+            if (seen[w] || std::abs(f.height[w] - level) > f.noise_m) continue;
+            seen[w] = true;
+            next.push_back(w);
+        }
     }
     return false;
 }
@@ -155,10 +179,61 @@ std::optional<PosePass> refine_pass(const PosePass& found, std::span<const Vec3>
     for (const double radius : {1.25 * spacing, std::min(spacing + std::sqrt(spacing), 0.5)}) {
         if (auto exact = search(found, vertices, radius, bound, rounding)) {
             exact->deepest_m = found.deepest_m;
+            exact->deepest = found.deepest;
             return exact;
         }
     }
     return std::nullopt;
+}
+
+double refine_minimum(const Vec3& direction, std::span<const Vec3> vertices, double spacing) {
+    // Only what lies low enough can become the lowest within reach.
+    double low = infinity, reach = 0;
+    for (const Vec3& v : vertices) {
+        low = std::min(low, dot(v, direction));
+        reach = std::max(reach, dot(v, v));
+    }
+    std::vector<Vec3> near;
+    for (const Vec3& v : vertices) {
+        if (dot(v, direction) <= low + 4 * spacing * std::sqrt(reach)) near.push_back(v);
+    }
+    const auto height = [&](const Vec3& d) {
+        double lowest = infinity;
+        for (const Vec3& v : near) lowest = std::min(lowest, dot(v, d));
+        return -lowest;
+    };
+    Vec3 at = direction;
+    double best = height(at);
+    // A basis across the direction, from the axis that it has least of.
+    std::size_t axis = 0;
+    for (std::size_t a = 1; a < 3; ++a) {
+        if (std::abs(at[a]) < std::abs(at[axis])) axis = a;
+    }
+    Vec3 unit{};
+    unit[axis] = 1;
+    const Vec3 u = cross(at, unit), w = cross(at, u);
+    // Moves along creases need fine directions: twelve of them.
+    for (double step = spacing; step > spacing / 100; step /= 2) {
+        for (int moves = 0; moves < 4; ++moves) {
+            Vec3 better = at;
+            for (int k = 0; k < 12; ++k) {
+                const double angle = k * std::numbers::pi / 6, c = step * std::cos(angle),
+                             s = step * std::sin(angle);
+                Vec3 d{};
+                for (std::size_t a = 0; a < 3; ++a) d[a] = at[a] + c * u[a] + s * w[a];
+                const double length = std::sqrt(dot(d, d));
+                for (double& x : d) x /= length;
+                if (dot(d, direction) < std::cos(2 * spacing)) continue;
+                if (const double h = height(d); h < best) {
+                    best = h;
+                    better = d;
+                }
+            }
+            if (better == at) break;
+            at = better;
+        }
+    }
+    return best;
 }
 
 }  // namespace topple::physics

@@ -17,8 +17,12 @@ struct Flooded {
     std::span<const float> height;  // U / (M g) per direction
     std::span<const float> level;   // L / (M g) per direction
     std::uint32_t start = 0;
-    double spacing = 0;      // longest edge of the mesh, radians
-    double tolerance_m = 0;  // a descent of less than this is noise
+    double spacing = 0;       // longest edge of the mesh, radians
+    double resolution_m = 0;  // to which heights are known
+    // A descent of less than this is noise. Beside the resolution it holds what the mesh misses of
+    // a landscape's creases: it samples them up to half a spacing beside their floor, and their
+    // walls rise by at most the body's radius per radian.
+    double noise_m = 0;
 };
 
 // One pass out of the start's basin, and the deepest minimum that it opens beyond those that lower
@@ -27,12 +31,14 @@ struct PosePass {
     double height_m = 0;   // at the pass
     Vec3 direction{};      // up in the body's frame at the pass
     double deepest_m = 0;  // lowest height behind this pass or lower ones
+    Vec3 deepest{};        // and its direction
 };
 
 // All passes by rising height. Two that are within rounding of each other stay two.
 std::vector<PosePass> find_passes(const Flooded& landscape);
 
-// Whether the body can turn by 90 degrees and more while rising by no more than the tolerance.
+// Whether the body can turn by 90 degrees and more with its height all the way within the noise of
+// the start's.
 bool rolls(const Flooded& landscape);
 
 // The exact pass near one found on the mesh. A body balances over an edge of its hull where the
@@ -42,5 +48,9 @@ bool rolls(const Flooded& landscape);
 // within that bound is taken. Nothing where no edge qualifies.
 std::optional<PosePass> refine_pass(const PosePass& found, std::span<const Vec3> vertices,
                                     double spacing);
+
+// Follows the landscape of the vertices down from a minimum of the mesh to the true one beside it,
+// within 2 spacings, by a pattern search that halves its steps. Returns the height reached.
+double refine_minimum(const Vec3& direction, std::span<const Vec3> vertices, double spacing);
 
 }  // namespace topple::physics

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+// Barriers that have closed forms, from exact vertices and from voxels.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "device/devices.h"
+#include "host/physics/solids.h"
+
+namespace topple::physics {
+namespace {
+
+using std::numbers::pi;
+using test::body;
+using test::ring;
+
+class ClosedForms : public ::testing::Test {
+  protected:
+    std::unique_ptr<device::Device> device = device::open_native(2);
+
+    // Barrier of an exact vertex set. With `held` false it stands on the hull's landscape alone:
+    // the polygon given is far wider than the body, so its edges are no way out.
+    Stability exact(const std::vector<Vec3>& vertices, const Body& mass,
+                    std::vector<std::array<double, 2>> polygon, unsigned frequency,
+                    double height = 0) {
+        const std::vector<std::vector<Vec3>> sets{vertices};
+        const SupportTable table(*device, sets, 0, geodesic_sphere(frequency));
+        const Candidate candidate{{0}, mass, std::move(polygon), height};
+        return evaluate(*device, table, std::span(&candidate, 1))[0];
+    }
+    Stability voxels(const SolidCells& cells, unsigned frequency = 16) {
+        const SupportTable table(*device, cells, 1, geodesic_sphere(frequency));
+        const Candidate candidate = test::standing(*device, cells);
+        return evaluate(*device, table, std::span(&candidate, 1))[0];
+    }
+};
+
+// Wide enough that tipping over its edges always costs more than the hull's own passes.
+const std::vector<std::array<double, 2>> everywhere{{-9, -9}, {9, -9}, {9, 9}, {-9, 9}};
+
+std::vector<Vec3> box_vertices(double a, double b, double c) {
+    std::vector<Vec3> v;
+    for (const double x : {-a / 2, a / 2}) {
+        for (const double y : {-b / 2, b / 2}) {
+            for (const double z : {0.0, c}) v.push_back({x, y, z});
+        }
+    }
+    return v;
+}
+
+void expect_share(double value, double truth, double share) {
+    EXPECT_NEAR(value, truth, share * truth) << "off by " << (value / truth - 1) * 100 << " %";
+}
+
+constexpr double box_short = 3.96604, box_long = 8.55630, box_corner = 11.98995;
+
+TEST_F(ClosedForms, BoxOnTheLandscapeAlone) {
+    for (const unsigned frequency : {8U, 16U, 32U, 48U}) {
+        SCOPED_TRACE(frequency);
+        const Stability s =
+            exact(box_vertices(0.3, 0.2, 0.5), body(0.03, {0, 0, 0.25}), everywhere, frequency);
+        expect_share(s.barrier_J, box_short, 0.01);
+        // Across its narrow side, which is y.
+        EXPECT_LT(std::abs(s.direction[0]), 0.1);
+        EXPECT_GT(std::abs(s.direction[1]), 0.99);
+        // From the pass to lying on the 0.5 x 0.3 face, centre 0.1 m up.
+        const double weight = 21 * gravity;
+        expect_share(s.release_J, box_short + weight * (0.25 - 0.1), 0.01);
+    }
+}
+
+TEST_F(ClosedForms, BoxTippingTheLongWay) {
+    // From the pose with the 0.5 x 0.2 face down the long way is over the 0.2 edge.
+    const Stability s = exact(box_vertices(0.3, 0.2, 0.5), body(0.03, {0, 0, 0.25}),
+                              {{-0.15, -9}, {0.15, -9}, {0.15, 9}, {-0.15, 9}}, 16);
+    expect_share(s.barrier_J, box_short, 0.01);  // the hull's own pass across y is still the lowest
+    // A cuboid cannot pass 0.2 wide if y is made long: then x is the weak way.
+    const Stability wide =
+        exact(box_vertices(0.3, 2.0, 0.5), body(0.3, {0, 0, 0.25}), everywhere, 48);
+    expect_share(wide.barrier_J, 10 * box_long, 0.01);
+    EXPECT_GT(std::abs(wide.direction[0]), 0.99);
+}
+
+TEST_F(ClosedForms, BoxCornerIsTheTopOfTheLandscape) {
+    const std::vector<std::vector<Vec3>> sets{box_vertices(0.3, 0.2, 0.5)};
+    // Sampled upward maximum: the height of the centre over a corner, less the start's.
+    const SphereMesh mesh = geodesic_sphere(48);
+    double highest = 0;
+    for (std::size_t v = 0; v < mesh.size(); ++v) {
+        double low = 1e9;
+        for (const Vec3& p : sets[0]) {
+            low = std::min(low, p[0] * mesh.x[v] + p[1] * mesh.y[v] + (p[2] - 0.25) * mesh.z[v]);
+        }
+        highest = std::max(highest, -low);
+    }
+    expect_share(21 * gravity * (highest - 0.25), box_corner, 0.01);
+}
+
+TEST_F(ClosedForms, BoxHeldOnItsBase) {
+    const Stability s = exact(box_vertices(0.3, 0.2, 0.5), body(0.03, {0, 0, 0.25}),
+                              {{-0.15, -0.1}, {0.15, -0.1}, {0.15, 0.1}, {-0.15, 0.1}}, 16);
+    expect_share(s.barrier_J, box_short, 1e-5);
+    EXPECT_NEAR(s.margin_m, 0.1, 1e-9);
+    ASSERT_FALSE(s.curve.empty());
+    EXPECT_NEAR(s.curve[0].W_J, s.barrier_J, 1e-6);
+    for (std::size_t n = 1; n < s.curve.size(); ++n) {
+        EXPECT_GT(s.curve[n].W_J, s.curve[n - 1].W_J);
+        EXPECT_GT(s.curve[n].S_J, s.curve[n - 1].S_J);
+    }
+}
+
+TEST_F(ClosedForms, CylinderOverItsRim) {
+    std::vector<Vec3> v;
+    for (const auto& p : ring(0.04, 256)) {
+        v.push_back({p[0], p[1], 0});
+        v.push_back({p[0], p[1], 0.12});
+    }
+    const double volume = pi * 0.04 * 0.04 * 0.12;
+    expect_share(exact(v, body(volume, {0, 0, 0.06}), everywhere, 48).barrier_J, 0.050148, 0.01);
+    expect_share(exact(v, body(volume, {0, 0, 0.06}), ring(0.04, 256), 16).barrier_J, 0.050148,
+                 0.01);
+}
+
+TEST_F(ClosedForms, ConeOnItsBase) {
+    std::vector<Vec3> v{{0, 0, 0.3}};
+    for (const auto& p : ring(0.1, 256)) v.push_back({p[0], p[1], 0});
+    const Body mass = body(pi * 0.01 * 0.3 / 3, {0, 0, 0.075});
+    const Stability s = exact(v, mass, everywhere, 48);
+    expect_share(s.barrier_J, 1.078297, 0.01);
+    // Lying, its centre is at 0.071151 m: 4 mm deeper than upright.
+    expect_share(s.release_J, s.barrier_J + mass.mass_kg * gravity * (0.075 - 0.071151), 0.01);
+}
+
+std::vector<Vec3> dome(double r, double sign) {
+    std::vector<Vec3> v;
+    for (unsigned band = 0; band < 48; ++band) {
+        const double angle = pi / 2 * band / 48;
+        for (const auto& p : ring(r * std::cos(angle), 96))
+            v.push_back({p[0], p[1], sign * r * std::sin(angle)});
+    }
+    v.push_back({0, 0, sign * r});
+    return v;
+}
+
+TEST_F(ClosedForms, Hemisphere) {
+    const double r = 0.1, volume = 2.0 / 3 * pi * r * r * r;
+    const Stability flat = exact(dome(r, 1), body(volume, {0, 0, 3 * r / 8}), everywhere, 48);
+    expect_share(flat.barrier_J, 0.996348, 0.01);
+    const Stability round =
+        exact(dome(r, -1), body(volume, {0, 0, -3 * r / 8}), everywhere, 48, -r);
+    expect_share(round.barrier_J, 0.636915, 0.01);
+}
+
+TEST_F(ClosedForms, BallAndLyingCylinderAreOneBasin) {
+    std::vector<Vec3> ball = dome(0.1, 1);
+    for (const Vec3& v : dome(0.1, -1)) ball.push_back(v);
+    const double weight = 700 * 4.0 / 3 * pi * 0.001 * gravity;
+    const Stability s = exact(ball, body(4.0 / 3 * pi * 0.001, {0, 0, 0}), everywhere, 32, -0.1);
+    EXPECT_LT(s.barrier_J, 0.01 * weight * 0.1);
+    EXPECT_EQ(s.release_J, 0);
+
+    // Lying along x.
+    std::vector<Vec3> roll;
+    for (const auto& p : ring(0.04, 128)) {
+        roll.push_back({-0.06, p[0], p[1]});
+        roll.push_back({0.06, p[0], p[1]});
+    }
+    const double volume = pi * 0.04 * 0.04 * 0.12;
+    const Stability lying = exact(roll, body(volume, {0, 0, 0}), everywhere, 48, -0.04);
+    EXPECT_LT(lying.barrier_J, 0.02 * 700 * volume * gravity * 0.04);
+    EXPECT_EQ(lying.release_J, 0);
+}
+
+TEST_F(ClosedForms, VoxelisedSolids) {
+    const double voxel = 0.005;
+    expect_share(voxels(test::voxelise({{0, test::box({0, 0, 0}, {0.3, 0.2, 0.5})}}, {0, 0, 0},
+                                       {0.3, 0.2, 0.5}, voxel))
+                     .barrier_J,
+                 box_short, 0.001);
+    const auto cylinder = [](double x, double y, double) { return x * x + y * y < 0.04 * 0.04; };
+    expect_share(
+        voxels(test::voxelise({{0, cylinder}}, {-0.04, -0.04, 0}, {0.04, 0.04, 0.12}, voxel))
+            .barrier_J,
+        0.050148, 0.05);
+    const auto cone = [](double x, double y, double z) {
+        const double r = 0.1 * (1 - z / 0.3);
+        return r > 0 && x * x + y * y < r * r;
+    };
+    expect_share(
+        voxels(test::voxelise({{0, cone}}, {-0.1, -0.1, 0}, {0.1, 0.1, 0.3}, voxel)).barrier_J,
+        1.078297, 0.05);
+    const auto hemisphere = [](double x, double y, double z) {
+        return x * x + y * y + z * z < 0.01;
+    };
+    expect_share(voxels(test::voxelise({{0, hemisphere}}, {-0.1, -0.1, 0}, {0.1, 0.1, 0.1}, voxel))
+                     .barrier_J,
+                 0.996348, 0.05);
+}
+
+TEST_F(ClosedForms, VoxelisedRollersAreFree) {
+    const double voxel = 0.005;
+    const auto ball = [](double x, double y, double z) {
+        return x * x + y * y + (z - 0.1) * (z - 0.1) < 0.01;
+    };
+    const auto roll = [](double, double y, double z) {
+        return y * y + (z - 0.04) * (z - 0.04) < 0.0016;
+    };
+    const Stability a =
+        voxels(test::voxelise({{0, ball}}, {-0.1, -0.1, 0}, {0.1, 0.1, 0.2}, voxel));
+    const Stability b =
+        voxels(test::voxelise({{0, roll}}, {-0.06, -0.04, 0}, {0.06, 0.04, 0.08}, voxel));
+    for (const Stability& s : {a, b}) {
+        EXPECT_EQ(s.barrier_J, 0);
+        EXPECT_EQ(s.release_J, 0);
+    }
+}
+
+}  // namespace
+}  // namespace topple::physics

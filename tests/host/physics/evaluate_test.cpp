@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include "device/devices.h"
+#include "host/physics/solids.h"
+#include "topple/error.h"
+
+namespace topple::physics {
+namespace {
+
+class Evaluate : public ::testing::Test {
+  protected:
+    std::unique_ptr<device::Device> device = device::open_native(2);
+};
+
+TEST_F(Evaluate, OverhangTipsOverTheTable) {
+    // A 0.4 m bar, 0.1 m wide and high, on a table that holds the 0.25 m of it with x < 0.05.
+    const SolidCells cells = test::voxelise({{0, test::box({-0.2, 0, 0}, {0.2, 0.1, 0.1})}},
+                                            {-0.2, 0, 0}, {0.2, 0.1, 0.1}, 0.01);
+    const SupportTable table(*device, cells, 1, geodesic_sphere(16));
+    Candidate bar = test::standing(*device, cells);
+    bar.support_polygon = {{-0.2, 0}, {0.05, 0}, {0.05, 0.1}, {-0.2, 0.1}};
+    Candidate out = bar;
+    out.support_polygon = {{-0.2, 0}, {-0.03, 0}, {-0.03, 0.1}, {-0.2, 0.1}};
+    Candidate none = bar;
+    none.support_polygon.clear();
+    const std::vector<Candidate> candidates{bar, out, none};
+    const std::vector<Stability> s = evaluate(*device, table, candidates);
+    const double weight = bar.body.mass_kg * gravity;
+    EXPECT_NEAR(s[0].barrier_J, weight * (std::sqrt(0.05 * 0.05 + 0.05 * 0.05) - 0.05),
+                1e-6 * weight);
+    EXPECT_NEAR(s[0].margin_m, 0.05, 1e-9);
+    EXPECT_EQ(s[1].barrier_J, 0);
+    EXPECT_NEAR(s[1].margin_m, -0.03, 1e-9);
+    EXPECT_NEAR(s[1].direction[0], 1, 1e-9);
+    EXPECT_EQ(s[2].barrier_J, 0);
+    EXPECT_LT(s[2].margin_m, 0);
+}
+
+TEST_F(Evaluate, GroupsCombineTheirMembersRows) {
+    // A slab on a thin post: on its own the slab is flat and safe, together they tip.
+    const SolidCells cells = test::voxelise({{0, test::box({-0.02, -0.02, 0}, {0.02, 0.02, 0.5})},
+                                             {1, test::box({-0.2, -0.2, 0.5}, {0.2, 0.2, 0.54})}},
+                                            {-0.2, -0.2, 0}, {0.2, 0.2, 0.54}, 0.01);
+    const SupportTable table(*device, cells, 2, geodesic_sphere(16));
+    const std::vector<double> density{700, 700};
+    const std::vector<Body> bodies = mass_properties(*device, cells, 2, density);
+    Candidate both;
+    both.primitives = {0, 1};
+    both.body = combine(bodies);
+    both.support_polygon = {{-0.02, -0.02}, {0.02, -0.02}, {0.02, 0.02}, {-0.02, 0.02}};
+    const Stability s = evaluate(*device, table, std::span(&both, 1))[0];
+    const double h = both.body.center[2], weight = both.body.mass_kg * gravity;
+    EXPECT_NEAR(s.barrier_J, weight * (std::sqrt(h * h + 0.02 * 0.02) - h), 1e-5 * weight);
+    EXPECT_GT(s.release_J, weight * 0.1);  // it comes to lie on the slab's rim
+}
+
+TEST_F(Evaluate, UnevenFeetDoNotRock) {
+    // A stool whose one foot is a voxel short, as scans have it, still stands.
+    const double voxel = 0.02;
+    std::vector<test::Solid> parts{{0, test::box({-0.2, -0.2, 0.4}, {0.2, 0.2, 0.44})}};
+    int foot = 0;
+    for (const double x : {-0.2, 0.16}) {
+        for (const double y : {-0.2, 0.16}) {
+            parts.push_back(
+                {0, test::box({x, y, foot++ == 0 ? voxel : 0.0}, {x + 0.04, y + 0.04, 0.4})});
+        }
+    }
+    const SolidCells cells = test::voxelise(parts, {-0.2, -0.2, 0}, {0.2, 0.2, 0.44}, voxel);
+    const SupportTable table(*device, cells, 1, geodesic_sphere(16));
+    Candidate stool = test::standing(*device, cells);
+    stool.support_polygon = {{-0.2, -0.2}, {0.2, -0.2}, {0.2, 0.2}, {-0.2, 0.2}};
+    const Stability s = evaluate(*device, table, std::span(&stool, 1))[0];
+    const double h = stool.body.center[2], weight = stool.body.mass_kg * gravity;
+    const double over_an_edge = weight * (std::sqrt(h * h + 0.2 * 0.2) - h);
+    EXPECT_NEAR(s.barrier_J, over_an_edge, 0.25 * over_an_edge);
+}
+
+TEST_F(Evaluate, FarFromTheOriginNothingChanges) {
+    const SolidCells near = test::voxelise({{0, test::box({0, 0, 0}, {0.3, 0.2, 0.5})}}, {0, 0, 0},
+                                           {0.3, 0.2, 0.5}, 0.02);
+    SolidCells far = near;
+    for (auto& i : far.i) i += 500000;
+    for (auto& k : far.k) k -= 300000;
+    double barrier[2];
+    for (int n = 0; n < 2; ++n) {
+        const SolidCells& cells = n ? far : near;
+        const SupportTable table(*device, cells, 1, geodesic_sphere(16));
+        const Candidate candidate = test::standing(*device, cells);
+        barrier[n] = evaluate(*device, table, std::span(&candidate, 1))[0].barrier_J;
+    }
+    EXPECT_NEAR(barrier[0], barrier[1], 1e-5 * barrier[0]);
+}
+
+TEST_F(Evaluate, OneVoxelAndNoVoxels) {
+    SolidCells cells;
+    cells.voxel_m = 0.02;
+    cells.i = cells.j = cells.k = {3};
+    cells.primitive = {1};
+    cells.surface = {1};
+    const SupportTable table(*device, cells, 3, geodesic_sphere(16));
+    Candidate nothing, cube;
+    nothing.primitives = {0, 2};
+    cube.primitives = {1, 2};
+    const std::vector<double> density(3, 700.0);
+    cube.body = mass_properties(*device, cells, 3, density)[1];
+    cube.support_polygon = {{0.06, 0.06}, {0.08, 0.06}, {0.08, 0.08}, {0.06, 0.08}};
+    cube.support_height_m = 0.06;
+    const std::vector<Candidate> candidates{nothing, cube, Candidate{}};
+    const std::vector<Stability> s = evaluate(*device, table, candidates);
+    EXPECT_EQ(s[0].barrier_J, 0);
+    EXPECT_EQ(s[2].barrier_J, 0);
+
+    EXPECT_EQ(s[1].barrier_J, 0);  // one voxel may as well be a ball
+    EXPECT_NEAR(s[1].margin_m, 0.01, 1e-12);
+    EXPECT_TRUE(evaluate(*device, table, {}).empty());
+    Candidate wrong;
+    wrong.primitives = {3};
+    EXPECT_THROW(evaluate(*device, table, std::span(&wrong, 1)), Error);
+}
+
+}  // namespace
+}  // namespace topple::physics
