@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "io/output_folder.h"
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "files.h"
+#include "io/file_writer.h"
+
+namespace topple::io {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of_file;
+using test::expect_input_error;
+
+constexpr const char* our_scene = "{\n \"schema\": \"topple.scene/1\"}\n";
+
+// Permissions don't bind root: while this lives, such a process is another user that owns `paths`.
+class NotRoot {
+  public:
+    explicit NotRoot(std::initializer_list<fs::path> paths) : was_root_(geteuid() == 0) {
+        if (!was_root_) return;
+        for (const auto& path : paths) EXPECT_EQ(chown(path.c_str(), 65534, 65534), 0);
+        EXPECT_EQ(seteuid(65534), 0);
+    }
+    ~NotRoot() {
+        if (was_root_) EXPECT_EQ(seteuid(0), 0);
+    }
+    NotRoot(const NotRoot&) = delete;
+    NotRoot& operator=(const NotRoot&) = delete;
+
+  private:
+    bool was_root_;
+};
+
+class Output : public test::Files {
+  protected:
+    void write_result(const OutputFolder& out, const std::string& points) {
+        write_file(out.folder() / "points.ply", points);
+        write_file(out.folder() / "scene.json", our_scene);
+    }
+    std::size_t entries(const fs::path& folder) const {
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+    }
+};
+
+TEST_F(Output, appears_whole_at_commit) {
+    {
+        OutputFolder out(path("out"));
+        write_result(out, "new");
+        EXPECT_FALSE(fs::exists(path("out")));
+        out.commit();
+        EXPECT_EQ(bytes_of_file(path("out/points.ply")), "new");
+    }
+    EXPECT_EQ(entries(path("out")), 2u);
+    EXPECT_EQ(entries(folder_), 1u) << "nothing temporary is left";
+}
+
+TEST_F(Output, leaves_nothing_without_commit) {
+    {
+        OutputFolder out(path("a/b/out"));
+        write_result(out, "new");
+        EXPECT_TRUE(fs::exists(path("a/b")));
+    }
+    EXPECT_EQ(entries(folder_), 0u) << "not even the parents that it made";
+}
+
+TEST_F(Output, makes_missing_parents) {
+    OutputFolder out(path("a/b/out/"));
+    write_result(out, "new");
+    out.commit();
+    EXPECT_EQ(bytes_of_file(path("a/b/out/points.ply")), "new");
+    EXPECT_EQ(entries(path("a/b")), 1u);
+}
+
+TEST_F(Output, replaces_an_earlier_output_and_an_empty_folder) {
+    write("out/scene.json", our_scene);
+    write("out/points.ply", "old");
+    write("out/volume.vdb", "old");
+    {
+        OutputFolder out(path("out"));
+        write_result(out, "new");
+        EXPECT_EQ(bytes_of_file(path("out/points.ply")), "old");
+    }
+    EXPECT_EQ(bytes_of_file(path("out/points.ply")), "old")
+        << "a failed run leaves the earlier output";
+    {
+        OutputFolder out(path("out"));
+        write_result(out, "new");
+        out.commit();
+    }
+    EXPECT_EQ(bytes_of_file(path("out/points.ply")), "new");
+    EXPECT_FALSE(fs::exists(path("out/volume.vdb"))) << "files of the earlier output go with it";
+    EXPECT_EQ(entries(folder_), 1u);
+
+    fs::create_directory(path("empty"));
+    OutputFolder out(path("empty"));
+    write_result(out, "new");
+    out.commit();
+    EXPECT_EQ(bytes_of_file(path("empty/points.ply")), "new");
+}
+
+TEST_F(Output, never_deletes_what_is_not_its_own) {
+    write("photos/cat.jpg", "cat");
+    expect_input_error([&] { OutputFolder out(path("photos")); },
+                       {"photos", "cat.jpg", "no scene.json"});
+    write("game/scene.json", "{\"player\": 1}");
+    expect_input_error([&] { OutputFolder out(path("game")); }, {"game", "scene.json"});
+    write("out/scene.json", our_scene);
+    write("out/my notes.txt", "dear diary");
+    expect_input_error([&] { OutputFolder out(path("out")); }, {"my notes.txt", "move it away"});
+    write("file", "a file");
+    expect_input_error([&] { OutputFolder out(path("file")); }, {"file", "no folder"});
+    EXPECT_EQ(bytes_of_file(path("photos/cat.jpg")), "cat");
+
+    // What appears while the run goes on is as safe.
+    fs::create_directory(path("late"));
+    OutputFolder out(path("late"));
+    write_result(out, "new");
+    write("late/thesis.tex", "years");
+    expect_input_error([&] { out.commit(); }, {"thesis.tex"});
+    EXPECT_EQ(bytes_of_file(path("late/thesis.tex")), "years");
+}
+
+TEST_F(Output, through_a_link_replaces_what_the_link_names) {
+    fs::create_directory(path("real"));
+    fs::create_directory_symlink(path("real"), path("link"));
+    OutputFolder out(path("link"));
+    write_result(out, "new");
+    out.commit();
+    EXPECT_TRUE(fs::is_symlink(path("link")));
+    EXPECT_EQ(bytes_of_file(path("real/points.ply")), "new");
+}
+
+TEST_F(Output, bad_destinations) {
+    expect_input_error([] { OutputFolder out(""); }, {"empty"});
+    expect_input_error([] { OutputFolder out("/"); }, {"/"});
+    write("file", "a file");
+    expect_input_error([&] { OutputFolder out(path("file/out")); }, {"file"});
+    expect_input_error([] { OutputFolder out("/proc/topple-out"); }, {"/proc"});
+    EXPECT_EQ(entries(folder_), 1u);
+}
+
+TEST_F(Output, where_only_the_folder_itself_is_writable) {
+    write("locked/out/scene.json", our_scene);
+    write("locked/out/volume.vdb", "old");
+    fs::permissions(path("locked"), fs::perms::owner_read | fs::perms::owner_exec);
+    const NotRoot not_root({folder_, path("locked"), path("locked/out"),
+                            path("locked/out/scene.json"), path("locked/out/volume.vdb")});
+    expect_input_error([&] { OutputFolder out(path("locked/other")); },
+                       {"locked", "Permission denied"});
+    {
+        OutputFolder out(path("locked/out"));
+        write_result(out, "new");
+        out.commit();
+    }
+    EXPECT_EQ(bytes_of_file(path("locked/out/points.ply")), "new");
+    EXPECT_EQ(entries(path("locked/out")), 2u);
+    fs::permissions(path("locked"), fs::perms::owner_all);
+}
+
+// A child is interrupted while it writes; its handler cleans up.
+TEST_F(Output, an_interrupted_run_leaves_nothing) {
+    const auto destination = path("a/out");
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        signal(SIGINT, [](int) {
+            remove_pending_outputs();
+            _exit(130);
+        });
+        OutputFolder out(destination);
+        write_file(out.folder() / "points.ply", "half");
+        write_file(out.folder() / "volume.vdb", "half");
+        raise(SIGINT);
+        _exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 130);
+    EXPECT_EQ(entries(folder_), 0u);
+}
+
+TEST_F(Output, a_committed_output_is_safe_from_an_interrupt) {
+    OutputFolder out(path("out"));
+    write_result(out, "new");
+    out.commit();
+    remove_pending_outputs();
+    EXPECT_EQ(bytes_of_file(path("out/points.ply")), "new");
+}
+
+}  // namespace
+}  // namespace topple::io

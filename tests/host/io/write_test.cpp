@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+
+#include "files.h"
+#include "io/file_writer.h"
+#include "io/palette.h"
+#include "io/read_cloud.h"
+#include "io/scene_json.h"
+#include "io/write_ply.h"
+
+namespace topple::io {
+namespace {
+
+using test::bytes_of_file;
+using test::expect_input_error;
+
+class Write : public test::Files {};
+
+Scene some_scene() {
+    Scene scene;
+    scene.source = "scans/my \"room\".ply";
+    scene.topple_version = "0.1.0";
+    scene.backend = "native";
+    scene.device = "CPU";
+    scene.seed = 18446744073709551615u;
+    scene.voxel_size_m = 0.02;
+    scene.up = {0.1, 0.2, 0.97};
+    scene.up_method = "manhattan";
+    scene.manhattan_found = true;
+    for (std::size_t i = 0; i < 16; ++i) scene.manhattan_from_input[i] = 0.1 * double(i);
+    scene.primitives = {{0, 1, "plane", 10, 20, 0.5, 350, {1, 2, 3}},
+                        {1, -1, "merged", 1, 0, 0, 0, {}}};
+    Object object;
+    object.id = 0;
+    object.primitives = {0, 1};
+    object.mass_kg = 1.0 / 3.0;
+    object.barrier_J = 0.1;
+    object.release_J = 5;
+    object.mode = "tip";
+    object.direction = {1, 0, 0};
+    object.instability = {{0.1, 5}, {7, 9}};
+    object.risk_J = {{"human", 0.5}, {"wind", 0}};
+    object.unsafety = 10;
+    scene.objects = {object};
+    scene.contacts = {{0, 1, 0.25, {0, 0, 1}, "fixed", 0.97}};
+    scene.supports = {{0, 1, 0.125}};
+    scene.timings_s = {{"ingest", 0.5}, {"normals", 0.25}};
+    scene.swc_energy = {3, 2, 1.5};
+    scene.notes = {"One.", "Zwei: \xc3\xa4."};
+    return scene;
+}
+
+TEST_F(Write, scene_json_reads_back_the_same) {
+    const auto scene = some_scene();
+    write_scene_json(path("scene.json"), scene);
+    const auto back = read_scene_json(path("scene.json"));
+    EXPECT_EQ(scene_json(back), bytes_of_file(path("scene.json")));
+    EXPECT_EQ(back.seed, scene.seed);
+    EXPECT_EQ(back.source, scene.source);
+    EXPECT_EQ(back.objects[0].mass_kg, scene.objects[0].mass_kg);
+    EXPECT_EQ(back.objects[0].risk_J, scene.objects[0].risk_J);
+    EXPECT_EQ(back.objects[0].instability[1].S_J, 9);
+    EXPECT_EQ(back.contacts[0].relation, "fixed");
+    EXPECT_EQ(back.timings_s, scene.timings_s);
+    EXPECT_EQ(back.manhattan_from_input, scene.manhattan_from_input);
+}
+
+// The members that scorers and users rely on, by name.
+TEST_F(Write, scene_json_has_the_fixed_members) {
+    const auto json = nlohmann::json::parse(scene_json(some_scene()));
+    EXPECT_EQ(json["schema"], "topple.scene/1");
+    for (const char* key :
+         {"source", "topple_version", "backend", "device", "seed", "voxel_size_m", "up",
+          "manhattan_from_input", "density_kg_m3", "friction", "primitives", "objects", "contacts",
+          "supports", "timings_s", "up_method", "manhattan_found", "notes", "swc_energy"}) {
+        EXPECT_TRUE(json.contains(key)) << key;
+    }
+    EXPECT_EQ(json["manhattan_from_input"].size(), 4u);
+    EXPECT_EQ(json["manhattan_from_input"][3].size(), 4u);
+    for (const char* key : {"id", "object", "model", "points", "solid_voxels", "volume_m3",
+                            "mass_kg", "center_of_mass_m"}) {
+        EXPECT_TRUE(json["primitives"][0].contains(key)) << key;
+    }
+    for (const char* key :
+         {"id", "primitives", "grounded", "mass_kg", "center_of_mass_m", "barrier_J", "release_J",
+          "mode", "direction", "instability", "risk_J", "unsafety"}) {
+        EXPECT_TRUE(json["objects"][0].contains(key)) << key;
+    }
+    EXPECT_EQ(json["objects"][0]["instability"][0]["W_J"], 0.1);
+    for (const char* key : {"a", "b", "area_m2", "normal", "relation", "probability"}) {
+        EXPECT_TRUE(json["contacts"][0].contains(key)) << key;
+    }
+    EXPECT_EQ(json["supports"][0]["supporter"], 0);
+    EXPECT_EQ(json["timings_s"]["normals"], 0.25);
+}
+
+TEST_F(Write, no_number_that_json_lacks_reaches_scene_json) {
+    auto scene = some_scene();
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 inf = std::numeric_limits<double>::infinity();
+    scene.objects[0].barrier_J = inf;
+    scene.objects[0].risk_J["wind"] = nan;
+    scene.objects[0].instability[0].S_J = -inf;
+    scene.objects[0].direction[1] = nan;
+    scene.up[0] = nan;
+    scene.swc_energy[1] = inf;
+    scene.timings_s[0].second = nan;
+    scene.manhattan_from_input[5] = nan;
+    scene.notes.push_back("no UTF-8: \xff");
+    const auto json = nlohmann::json::parse(scene_json(scene));
+    EXPECT_TRUE(json["objects"][0]["barrier_J"].is_null());
+    EXPECT_TRUE(json["objects"][0]["risk_J"]["wind"].is_null());
+    EXPECT_TRUE(json["up"][0].is_null());
+    EXPECT_TRUE(json["timings_s"]["ingest"].is_null());
+    write_scene_json(path("scene.json"), scene);
+    EXPECT_TRUE(std::isnan(read_scene_json(path("scene.json")).objects[0].barrier_J));
+}
+
+TEST_F(Write, scene_json_that_is_none) {
+    expect_input_error([&] { read_scene_json(write("a.json", "{}")); }, {"a.json", "schema"});
+    expect_input_error([&] { read_scene_json(write("a.json", R"({"schema": "other/1"})")); },
+                       {"topple.scene/1"});
+    expect_input_error([&] { read_scene_json(write("a.json", "nonsense")); }, {"a.json"});
+}
+
+TEST_F(Write, points_ply) {
+    ScenePoints points;
+    points.x = {1, 2};
+    points.y = {3, 4};
+    points.z = {5, 6};
+    points.nx = {0, 1};
+    points.ny = {0, 0};
+    points.nz = {1, 0};
+    points.primitive = {0, -1};
+    points.object = {7, -1};
+    write_points_ply(path("points.ply"), points);
+    const auto cloud = read_cloud(path("points.ply"));
+    EXPECT_EQ(cloud.x, points.x);
+    EXPECT_EQ(cloud.nz, points.nz);
+    // The layout to the byte: 5 words, 3 words, 3 bytes.
+    const auto bytes = bytes_of_file(path("points.ply"));
+    const auto data = bytes.substr(bytes.find("end_header\n") + 11);
+    ASSERT_EQ(data.size(), 2 * 35u);
+    std::string expected;
+    for (const float value : {1.0f, 3.0f, 5.0f}) test::append(expected, value);
+    test::append<std::int32_t>(expected, 0);
+    test::append<std::int32_t>(expected, 7);
+    for (const float value : {0.0f, 0.0f, 1.0f}) test::append(expected, value);
+    for (const auto channel : colour_of(7)) test::append(expected, channel);
+    EXPECT_EQ(data.substr(0, 35), expected);
+
+    points.nx = points.ny = points.nz = {};
+    write_points_ply(path("points.ply"), points);
+    EXPECT_TRUE(read_cloud(path("points.ply")).nx.empty());
+    points.object.pop_back();
+    EXPECT_THROW(write_points_ply(path("points.ply"), points), std::invalid_argument);
+    write_points_ply(path("none.ply"), {});
+    EXPECT_NE(bytes_of_file(path("none.ply")).find("element vertex 0\n"), std::string::npos);
+}
+
+TEST_F(Write, solid_ply) {
+    SolidVoxels voxels;
+    voxels.x = {1};
+    voxels.y = {2};
+    voxels.z = {3};
+    voxels.primitive = {4};
+    voxels.object = {5};
+    voxels.state = {1};
+    write_solid_ply(path("solid.ply"), voxels);
+    EXPECT_EQ(read_cloud(path("solid.ply")).z, voxels.z);
+    const auto bytes = bytes_of_file(path("solid.ply"));
+    EXPECT_EQ(bytes.size() - bytes.find("end_header\n") - 11, 24u);
+    EXPECT_EQ(bytes[bytes.size() - 4], 1) << "the state stands before the colour";
+    for (const char* name : {"primitive", "object", "state"}) {
+        EXPECT_NE(bytes.find(name), std::string::npos) << name;
+    }
+}
+
+TEST_F(Write, colours_of_a_scene_differ) {
+    std::set<std::array<std::uint8_t, 3>> seen;
+    for (int id = -1; id < 100; ++id) seen.insert(colour_of(id));
+    EXPECT_EQ(seen.size(), 101u);
+    for (int id = 0; id < 100; ++id) {
+        const auto a = colour_of(id), b = colour_of(id + 1);
+        int distance = 0;
+        for (std::size_t i = 0; i < 3; ++i) distance += std::abs(int(a[i]) - int(b[i]));
+        EXPECT_GT(distance, 60) << id << " and " << id + 1;
+    }
+}
+
+TEST_F(Write, a_full_disk_is_noticed) {
+    if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+    expect_input_error([] { write_file("/dev/full", "a little"); },
+                       {"/dev/full", "No space left", "free some"});
+    expect_input_error([] { write_file("/dev/full", std::string(3 << 20, 'x')); },
+                       {"No space left"});
+    expect_input_error([&] { write_file(path("missing/file"), "x"); },
+                       {"missing/file", "No such file"});
+}
+
+TEST_F(Write, files_longer_than_the_buffer) {
+    std::string text;
+    for (int i = 0; i < 700000; ++i) text += std::to_string(i);
+    FileWriter writer(path("long"));
+    writer.write(std::string_view(text).substr(0, 1000001));
+    writer.write(std::string_view(text).substr(1000001));
+    writer.close();
+    EXPECT_EQ(bytes_of_file(path("long")), text);
+}
+
+}  // namespace
+}  // namespace topple::io
