@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "physics/slide_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/tipping.h"
+
+namespace topple::physics {
+
+CellColumns::CellColumns(const SolidCells& cells) {
+    const std::size_t n = cells.size();
+    if (n == 0) return;
+    lowest_i_ = cells.i.front();
+    row_first_.assign(static_cast<std::size_t>(std::int64_t{cells.i.back()} - lowest_i_) + 2, 0);
+    for (std::size_t c = 0; c < n; ++c) {
+        if (c > 0 && cells.i[c] == cells.i[c - 1] && cells.j[c] == cells.j[c - 1]) continue;
+        column_j_.push_back(cells.j[c]);
+        column_first_.push_back(c);
+        row_first_[static_cast<std::size_t>(std::int64_t{cells.i[c]} - lowest_i_) + 1] =
+            column_j_.size();
+    }
+    column_first_.push_back(n);
+    for (std::size_t r = 1; r < row_first_.size(); ++r) {
+        row_first_[r] = std::max(row_first_[r], row_first_[r - 1]);
+    }
+}
+
+std::pair<std::size_t, std::size_t> CellColumns::at(std::int32_t i, std::int32_t j) const {
+    const std::int64_t row = std::int64_t{i} - lowest_i_;
+    if (row < 0 || row + 1 >= static_cast<std::int64_t>(row_first_.size())) return {0, 0};
+    const auto begin =
+        column_j_.begin() + static_cast<std::ptrdiff_t>(row_first_[static_cast<std::size_t>(row)]);
+    const auto end = column_j_.begin() +
+                     static_cast<std::ptrdiff_t>(row_first_[static_cast<std::size_t>(row) + 1]);
+    const auto found = std::lower_bound(begin, end, j);
+    if (found == end || *found != j) return {0, 0};
+    const auto c = static_cast<std::size_t>(found - column_j_.begin());
+    return {column_first_[c], column_first_[c + 1]};
+}
+
+SlideMap::SlideMap(const SolidCells& cells, const CellColumns& columns,
+                   std::span<const std::int32_t> object, std::int32_t self, const Footprint& foot,
+                   const Vec3& center, double reach_m)
+    : cells_(cells), columns_(columns), object_(object), self_(self), foot_(foot), center_(center) {
+    start_i_ = static_cast<std::int32_t>(std::floor(center[0] / cells.voxel_m));
+    start_j_ = static_cast<std::int32_t>(std::floor(center[1] / cells.voxel_m));
+    radius_ = static_cast<std::int32_t>(std::clamp(reach_m / cells.voxel_m, 1.0, 1500.0));
+    // The window of columns is wider than that of positions by the footprint.
+    margin_ = 0;
+    for (const Footprint::Column& c : foot.columns) {
+        margin_ = std::max({margin_, std::abs(c.i - start_i_), std::abs(c.j - start_j_)});
+    }
+    margin_ += radius_ + 1;
+    side_ = 2 * margin_ + 1;
+    ground_.resize(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_));
+    const auto positions = static_cast<std::size_t>(2 * radius_ + 1);
+    blocked_.assign(positions * positions, 0);
+    falls_.assign(positions * positions, 0);
+    const auto has = [&](std::int32_t i, std::int32_t j) {
+        const auto at = std::lower_bound(
+            foot.columns.begin(), foot.columns.end(), std::pair{i, j},
+            [](const Footprint::Column& c, const std::pair<std::int32_t, std::int32_t>& p) {
+                return std::pair{c.i, c.j} < p;
+            });
+        return at != foot.columns.end() && at->i == i && at->j == j;
+    };
+    for (std::size_t n = 0; n < foot.columns.size(); ++n) {
+        const Footprint::Column& c = foot.columns[n];
+        if (!has(c.i - 1, c.j) || !has(c.i + 1, c.j) || !has(c.i, c.j - 1) || !has(c.i, c.j + 1)) {
+            outline_.push_back(n);
+        }
+        // What reaches into the outline at the start moves with the object.
+        ground(c.i, c.j);
+        ground_[static_cast<std::size_t>(c.i - start_i_ + margin_) *
+                    static_cast<std::size_t>(side_) +
+                static_cast<std::size_t>(c.j - start_j_ + margin_)]
+            .obstacle = false;
+    }
+}
+
+const SlideMap::Ground& SlideMap::ground(std::int32_t i, std::int32_t j) {
+    const std::int32_t di = i - start_i_ + margin_, dj = j - start_j_ + margin_;
+    if (di < 0 || dj < 0 || di >= side_ || dj >= side_) return outside_;
+    Ground& g = ground_[static_cast<std::size_t>(di) * static_cast<std::size_t>(side_) +
+                        static_cast<std::size_t>(dj)];
+    if (g.known) return g;
+    g.known = true;
+    const auto [first, last] = columns_.at(i, j);
+    for (std::size_t c = first; c < last; ++c) {
+        if (object_[c] == self_) continue;
+        const std::int64_t above = std::int64_t{cells_.k[c]} - foot_.support;
+        if (above < -1) {
+            g.below = static_cast<std::int32_t>(-above);  // the last one is the highest
+        } else if (above <= 1) {
+            g.holds = true;  // a voxel up or down is noise
+        } else if (cells_.k[c] <= foot_.top) {
+            g.obstacle = true;
+        }
+    }
+    return g;
+}
+
+bool SlideMap::blocked(std::int32_t i, std::int32_t j) {
+    const std::int32_t di = i - start_i_, dj = j - start_j_;
+    std::uint8_t& known = blocked_[static_cast<std::size_t>(di + radius_) *
+                                       static_cast<std::size_t>(2 * radius_ + 1) +
+                                   static_cast<std::size_t>(dj + radius_)];
+    if (known) return known == 2;
+    bool hit = false;
+    for (const std::size_t n : outline_) {
+        if (ground(foot_.columns[n].i + di, foot_.columns[n].j + dj).obstacle) {
+            hit = true;
+            break;
+        }
+    }
+    known = hit ? 2 : 1;
+    return hit;
+}
+
+bool SlideMap::bears(std::int32_t shift_i, std::int32_t shift_j) {
+    std::vector<std::array<double, 2>> corners;
+    for (const Footprint::Column& c : foot_.columns) {
+        if (std::int64_t{c.low} - foot_.support > 2) continue;  // not a foot
+        if (!ground(c.i + shift_i, c.j + shift_j).holds) continue;
+        for (int a = 0; a < 2; ++a) {
+            for (int b = 0; b < 2; ++b) {
+                corners.push_back({static_cast<double>(c.i + a), static_cast<double>(c.j + b)});
+            }
+        }
+    }
+    if (corners.empty()) return false;
+    const auto polygon = convex_polygon(std::move(corners));
+    return footing(polygon, center_[0] / cells_.voxel_m, center_[1] / cells_.voxel_m).margin_m > 0;
+}
+
+bool SlideMap::falls(std::int32_t i, std::int32_t j) {
+    const std::int32_t di = i - start_i_, dj = j - start_j_;
+    std::uint8_t& known =
+        falls_[static_cast<std::size_t>(di + radius_) * static_cast<std::size_t>(2 * radius_ + 1) +
+               static_cast<std::size_t>(dj + radius_)];
+    if (known) return known == 2;
+    // The column under the centre decides, but for holes that the foot spans.
+    const bool fall = !ground(i, j).holds && !bears(di, dj);
+    known = fall ? 2 : 1;
+    return fall;
+}
+
+double SlideMap::drop_m(std::int32_t i, std::int32_t j) {
+    return ground(i, j).below * cells_.voxel_m;
+}
+
+}  // namespace topple::physics

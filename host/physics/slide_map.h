@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/sliding.h"
+
+// The ground that one object slides on. For this folder.
+namespace topple::physics {
+
+// Cells by column, for cells sorted by (i, j, k).
+class CellColumns {
+  public:
+    explicit CellColumns(const SolidCells& cells);
+    // Cells of column (i, j): [first, last).
+    std::pair<std::size_t, std::size_t> at(std::int32_t i, std::int32_t j) const;
+
+  private:
+    std::int32_t lowest_i_ = 0;
+    std::vector<std::size_t> row_first_;  // into the columns, per i
+    std::vector<std::int32_t> column_j_;
+    std::vector<std::size_t> column_first_;  // into the cells
+};
+
+// An object's columns, lowest and highest cell of each.
+struct Footprint {
+    struct Column {
+        std::int32_t i, j, low, high;
+    };
+    std::vector<Column> columns;  // sorted by (i, j)
+    std::int32_t top = 0;         // highest cell of the object
+    std::int32_t support = 0;     // highest cell of what it stands on
+    bool stands = false;
+};
+
+// What a column means to the object: looked up once, in a window around its start.
+class SlideMap {
+  public:
+    SlideMap(const SolidCells& cells, const CellColumns& columns,
+             std::span<const std::int32_t> object, std::int32_t self, const Footprint& foot,
+             const Vec3& center, double reach_m);
+
+    std::int32_t start_i() const { return start_i_; }
+    std::int32_t start_j() const { return start_j_; }
+    std::int32_t radius() const { return radius_; }  // of the window of positions, voxels
+
+    // With the centre of mass over column (i, j): can it be there, and does it fall from there?
+    bool blocked(std::int32_t i, std::int32_t j);
+    bool falls(std::int32_t i, std::int32_t j);
+    double drop_m(std::int32_t i,
+                  std::int32_t j);  // below column (i, j); 0: unknown or less than 2 voxels
+
+  private:
+    struct Ground {
+        bool known = false, holds = false, obstacle = false;
+        std::int32_t below = 0;  // drop to the next surface, voxels; 0 unknown
+    };
+    const Ground& ground(std::int32_t i, std::int32_t j);
+    bool bears(std::int32_t shift_i, std::int32_t shift_j);
+
+    const SolidCells& cells_;
+    const CellColumns& columns_;
+    std::span<const std::int32_t> object_;
+    std::int32_t self_;
+    const Footprint& foot_;
+    Vec3 center_;
+    std::int32_t start_i_, start_j_, radius_, margin_, side_;
+    std::vector<Ground> ground_;                 // lookups so far
+    std::vector<std::uint8_t> blocked_, falls_;  // 0 not asked yet, 1 no, 2 yes
+    std::vector<std::size_t> outline_;           // columns of the footprint that touch its outside
+    Ground outside_;
+};
+
+}  // namespace topple::physics

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+#include "physics/sliding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <queue>
+#include <string>
+
+#include "physics/slide_map.h"
+#include "topple/error.h"
+
+namespace topple::physics {
+namespace {
+
+// Columns of every object, in the order of the cells.
+std::vector<Footprint> footprints(const SolidCells& cells, std::span<const std::int32_t> object,
+                                  std::size_t count) {
+    std::vector<Footprint> feet(count);
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        if (object[n] < 0) continue;
+        Footprint& foot = feet[static_cast<std::size_t>(object[n])];
+        foot.top = foot.columns.empty() ? cells.k[n] : std::max(foot.top, cells.k[n]);
+        if (foot.columns.empty() || foot.columns.back().i != cells.i[n] ||
+            foot.columns.back().j != cells.j[n]) {
+            foot.columns.push_back({cells.i[n], cells.j[n], cells.k[n], cells.k[n]});
+        } else {
+            foot.columns.back().high = cells.k[n];
+        }
+    }
+    return feet;
+}
+
+// The level that most of the columns rest on; of equals the higher, where the object would land
+// first.
+void find_support(const SolidCells& cells, const CellColumns& columns,
+                  std::span<const std::int32_t> object, std::int32_t self, unsigned gap,
+                  Footprint& foot) {
+    std::map<std::int32_t, std::size_t> votes;
+    for (const Footprint::Column& c : foot.columns) {
+        const auto [first, last] = columns.at(c.i, c.j);
+        std::size_t below = last;  // the highest cell under the object's lowest here
+        for (std::size_t n = first; n < last && cells.k[n] < c.low; ++n) {
+            if (object[n] != self) below = n;
+        }
+        if (below == last || std::int64_t{c.low} - cells.k[below] > std::int64_t{gap} + 1) continue;
+        ++votes[cells.k[below]];
+    }
+    std::size_t most = 0;
+    for (const auto& [level, count] : votes) {
+        if (count < most) continue;
+        most = count;
+        foot.support = level;
+        foot.stands = true;
+    }
+}
+
+struct Node {
+    double cost;  // voxels
+    std::int32_t i, j;
+    bool operator>(const Node& o) const {
+        if (cost != o.cost) return cost > o.cost;
+        return i != o.i ? i > o.i : j > o.j;
+    }
+};
+
+// Lazy Theta* (Nash, Koenig & Tovey 2010) over positions of the centre of mass, with no goal in
+// mind: the first position that falls is the nearest.
+class Search {
+  public:
+    Search(SlideMap& map, double x, double y) : map_(map), x_(x), y_(y) {
+        side_ = 2 * map.radius() + 1;
+        nodes_.resize(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_));
+    }
+
+    struct Way {
+        bool found = false;
+        double length = 0;    // voxels
+        double x = 0, y = 0;  // end of the first leg
+        std::int32_t i = 0, j = 0;
+    };
+    Way run() {
+        std::priority_queue<Node, std::vector<Node>, std::greater<>> open;
+        const std::int32_t si = map_.start_i(), sj = map_.start_j();
+        if (map_.falls(si, sj)) return exit_at(si, sj);
+        state(si, sj) = {0, si, sj, false};
+        open.push({0, si, sj});
+        while (!open.empty()) {
+            const Node node = open.top();
+            open.pop();
+            State& s = state(node.i, node.j);
+            if (s.closed || node.cost != s.cost) continue;
+            if (!settle(node, s)) {
+                if (std::isfinite(s.cost)) open.push({s.cost, node.i, node.j});
+                continue;
+            }
+            s.closed = true;
+            if (map_.falls(node.i, node.j)) return exit_at(node.i, node.j);
+            expand(node, s, open);
+        }
+        return {};
+    }
+
+  private:
+    struct State {
+        double cost = std::numeric_limits<double>::infinity();
+        std::int32_t parent_i = 0, parent_j = 0;
+        bool closed = false;
+    };
+    State& state(std::int32_t i, std::int32_t j) {
+        return nodes_[static_cast<std::size_t>(i - map_.start_i() + map_.radius()) *
+                          static_cast<std::size_t>(side_) +
+                      static_cast<std::size_t>(j - map_.start_j() + map_.radius())];
+    }
+    bool inside(std::int32_t i, std::int32_t j) const {
+        return std::abs(i - map_.start_i()) <= map_.radius() &&
+               std::abs(j - map_.start_j()) <= map_.radius();
+    }
+    // The object starts where its centre is; elsewhere it moves by whole voxels.
+    std::array<double, 2> place(std::int32_t i, std::int32_t j) const {
+        if (i == map_.start_i() && j == map_.start_j()) return {x_, y_};
+        return {i + 0.5, j + 0.5};
+    }
+    // Straight distance from a position to one to be entered: to its centre, or to its nearest
+    // point where the way ends there.
+    double distance(std::int32_t i, std::int32_t j, std::int32_t to_i, std::int32_t to_j) {
+        const auto from = place(i, j);
+        auto to = place(to_i, to_j);
+        if (map_.falls(to_i, to_j)) {
+            to = {std::clamp<double>(from[0], to_i, to_i + 1),
+                  std::clamp<double>(from[1], to_j, to_j + 1)};
+        }
+        return std::hypot(to[0] - from[0], to[1] - from[1]);
+    }
+    bool passable(std::int32_t i, std::int32_t j) {
+        if (map_.blocked(i, j)) return false;
+        return !map_.falls(i, j) || map_.drop_m(i, j) > 0;
+    }
+    bool sight(std::int32_t i, std::int32_t j, std::int32_t to_i, std::int32_t to_j) {
+        const auto from = place(i, j), to = place(to_i, to_j);
+        const double length = std::hypot(to[0] - from[0], to[1] - from[1]);
+        const int steps = static_cast<int>(std::ceil(length * 2));
+        for (int n = 1; n < steps; ++n) {
+            const double t = static_cast<double>(n) / steps;
+            const auto ci = static_cast<std::int32_t>(std::floor(from[0] + t * (to[0] - from[0])));
+            const auto cj = static_cast<std::int32_t>(std::floor(from[1] + t * (to[1] - from[1])));
+            if (ci == to_i && cj == to_j) return true;
+            if ((ci != map_.start_i() || cj != map_.start_j()) &&
+                (!passable(ci, cj) || map_.falls(ci, cj)))
+                return false;
+        }
+        return true;
+    }
+    // Makes good on a cost that took sight for granted; false if it was wrong, with the cost
+    // mended.
+    bool settle(const Node& node, State& s) {
+        if (sight(s.parent_i, s.parent_j, node.i, node.j)) return true;
+        s.cost = std::numeric_limits<double>::infinity();
+        for (int a = -1; a <= 1; ++a) {
+            for (int b = -1; b <= 1; ++b) {
+                const std::int32_t i = node.i + a, j = node.j + b;
+                if ((a == 0 && b == 0) || !inside(i, j) || !state(i, j).closed) continue;
+                const double cost = state(i, j).cost + distance(i, j, node.i, node.j);
+                if (cost < s.cost) s = {cost, i, j, false};
+            }
+        }
+        return false;
+    }
+    void expand(const Node& node, const State& s,
+                std::priority_queue<Node, std::vector<Node>, std::greater<>>& open) {
+        const State parent = state(s.parent_i, s.parent_j);
+        for (int a = -1; a <= 1; ++a) {
+            for (int b = -1; b <= 1; ++b) {
+                const std::int32_t i = node.i + a, j = node.j + b;
+                if ((a == 0 && b == 0) || !inside(i, j)) continue;
+                State& next = state(i, j);
+                if (next.closed || !passable(i, j)) continue;
+                const double cost = parent.cost + distance(s.parent_i, s.parent_j, i, j);
+                if (cost < next.cost) {
+                    next = {cost, s.parent_i, s.parent_j, false};
+                    open.push({cost, i, j});
+                }
+            }
+        }
+    }
+    Way exit_at(std::int32_t i, std::int32_t j) {
+        Way way{map_.drop_m(i, j) > 0, 0, i + 0.5, j + 0.5, i, j};
+        if (i == map_.start_i() && j == map_.start_j()) return way;
+        way.length = state(i, j).cost;
+        // Back along the parents to the first leg.
+        std::int32_t at_i = i, at_j = j;
+        for (;;) {
+            const State& s = state(at_i, at_j);
+            const bool first = s.parent_i == map_.start_i() && s.parent_j == map_.start_j();
+            if (first) break;
+            at_i = s.parent_i;
+            at_j = s.parent_j;
+        }
+        const auto end = place(at_i, at_j);
+        way.x = end[0];
+        way.y = end[1];
+        if (map_.falls(at_i, at_j)) {
+            way.x = std::clamp<double>(x_, at_i, at_i + 1);
+            way.y = std::clamp<double>(y_, at_j, at_j + 1);
+        }
+        return way;
+    }
+
+    SlideMap& map_;
+    double x_, y_;
+    std::int32_t side_;
+    std::vector<State> nodes_;
+};
+
+SlideResult slide_one(const SolidCells& cells, const CellColumns& columns,
+                      std::span<const std::int32_t> object, std::int32_t self,
+                      const Footprint& foot, const Body& body, double friction,
+                      const SlideOptions& options) {
+    SlideMap map(cells, columns, object, self, foot, body.center, options.reach_m);
+    const double x = body.center[0] / cells.voxel_m, y = body.center[1] / cells.voxel_m;
+    const Search::Way way = Search(map, x, y).run();
+    SlideResult result;
+    if (!way.found || way.length * cells.voxel_m > options.reach_m) return result;
+    const double weight = body.mass_kg * gravity;
+    result.found = true;
+    result.distance_m = way.length * cells.voxel_m;
+    result.drop_m = map.drop_m(way.i, way.j);
+    result.absorbed_J = friction * weight * result.distance_m;
+    result.released_J = weight * result.drop_m;
+    const double dx = way.x - x, dy = way.y - y, length = std::hypot(dx, dy);
+    if (length > 0) result.direction = {dx / length, dy / length, 0};
+    return result;
+}
+
+}  // namespace
+
+std::vector<SlideResult> slide_all(const SolidCells& cells,
+                                   std::span<const std::int32_t> object_of_primitive,
+                                   std::span<const Body> objects, std::span<const double> friction,
+                                   const SlideOptions& options) {
+    if (friction.size() != objects.size()) {
+        throw Error(ErrorKind::usage, "slide_all: " + std::to_string(friction.size()) +
+                                          " friction coefficients for " +
+                                          std::to_string(objects.size()) + " objects");
+    }
+    std::vector<std::int32_t> object(cells.size(), -1);
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const std::int32_t p = cells.primitive[n];
+        if (p < 0) continue;
+        if (static_cast<std::size_t>(p) >= object_of_primitive.size() ||
+            object_of_primitive[static_cast<std::size_t>(p)] >=
+                static_cast<std::int64_t>(objects.size())) {
+            throw Error(ErrorKind::usage, "slide_all: primitive " + std::to_string(p) +
+                                              " has no object among " +
+                                              std::to_string(objects.size()));
+        }
+        object[n] = object_of_primitive[static_cast<std::size_t>(p)];
+    }
+    const CellColumns columns(cells);
+    std::vector<Footprint> feet = footprints(cells, object, objects.size());
+    std::vector<SlideResult> results(objects.size());
+    for (std::size_t o = 0; o < objects.size(); ++o) {
+        const auto self = static_cast<std::int32_t>(o);
+        find_support(cells, columns, object, self, options.gap, feet[o]);
+        if (!feet[o].stands || !(objects[o].mass_kg > 0)) continue;
+        results[o] =
+            slide_one(cells, columns, object, self, feet[o], objects[o], friction[o], options);
+    }
+    return results;
+}
+
+}  // namespace topple::physics

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "physics/bodies.h"
+#include "physics/landscape.h"
+
+// Position landscapes (paper, 3.1 Case II and Eq. 5): what it takes to push an object off its
+// support.
+namespace topple::physics {
+
+// absorbed = mu m g * (shortest way on the support to where it stops holding the object)
+// released = m g * (drop from the support to the next surface below)
+struct SlideResult {
+    double absorbed_J = 0, released_J = 0;
+    double distance_m = 0, drop_m = 0;
+    Vec3 direction{};    // of the way's first leg, horizontal, unit
+    bool found = false;  // false: nothing holds it from below, or no way leads to an edge
+};
+
+struct SlideOptions {
+    unsigned gap = 1;    // empty voxels that still count as contact
+    double reach_m = 3;  // ways longer than this are no longer one push
+};
+
+// For every object, on the voxel columns of its support. The support is the level that most of the
+// object's columns rest on; it holds the object while the centre of mass stands over it, or inside
+// the hull of the columns that still bear (a hole narrower than the foot is no edge). Solids at the
+// object's own height block its outline; what already reaches into its outline moves with it. An
+// edge counts where a surface at least two voxels lower is known beneath it: where the scan ends,
+// nobody knows. Ways are any-angle (lazy Theta*), so they are straight where nothing blocks them.
+//   cells               sorted by (i, j, k)
+//   object_of_primitive -1 for none
+//   objects             mass and centre of each object; those without voxels find nothing
+//   friction            coefficient of each object
+// Throws Error(usage) where the sizes differ or an object is out of range.
+std::vector<SlideResult> slide_all(const SolidCells& cells,
+                                   std::span<const std::int32_t> object_of_primitive,
+                                   std::span<const Body> objects, std::span<const double> friction,
+                                   const SlideOptions& options = {});
+
+// Tipping and sliding taken together.
+struct Instability {
+    double barrier_J = 0, release_J = 0;  // of the mode
+    std::string mode = "none";            // "tip" | "slide" | "none"
+    Vec3 direction{};                     // zero for "none"
+    std::vector<InstabilityStep> curve;   // S(W) of Eq. 6: ascending in W and in S
+};
+
+// The curve is the larger of both at every W. The mode is the one with the least barrier that has
+// something to release, tipping where equal; without any, the barrier is that of tipping.
+Instability combine_curves(const Stability& tip, const SlideResult& slide);
+
+}  // namespace topple::physics

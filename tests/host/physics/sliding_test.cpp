@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "physics/sliding.h"
+
+#include <gtest/gtest.h>
+
+#include "device/devices.h"
+#include "host/physics/solids.h"
+#include "topple/error.h"
+
+namespace topple::physics {
+namespace {
+
+using test::box;
+
+class Sliding : public ::testing::Test {
+  protected:
+    std::unique_ptr<device::Device> device = device::open_native(2);
+    // Each label is an object.
+    std::vector<SlideResult> slide(const std::vector<test::Solid>& solids, const Vec3& low,
+                                   const Vec3& high, double voxel, std::int32_t objects) {
+        const SolidCells cells = test::voxelise(solids, low, high, voxel);
+        const auto n = static_cast<std::size_t>(objects);
+        const std::vector<double> density(n, 700), friction(n, 0.3);
+        std::vector<std::int32_t> own(n);
+        for (std::size_t p = 0; p < n; ++p) own[p] = static_cast<std::int32_t>(p);
+        return slide_all(cells, own, mass_properties(*device, cells, objects, density), friction);
+    }
+    // Floor; a table 1.2 x 0.8 x 0.75 over [0, 1.2] x [0, 0.8]; a 0.1 m cube 0.2 m from the table's
+    // low-x edge.
+    std::vector<test::Solid> room{{0, box({-2, -2, -0.1}, {3, 3, 0})},
+                                  {1, box({0, 0, 0.7}, {1.2, 0.8, 0.75})},
+                                  {1, box({0.5, 0.3, 0}, {0.7, 0.5, 0.7})},
+                                  {2, box({0.15, 0.35, 0.75}, {0.25, 0.45, 0.85})}};
+};
+
+TEST_F(Sliding, CubeOnATable) {
+    for (const double voxel : {0.05, 0.025, 0.0125}) {
+        SCOPED_TRACE(voxel);
+        const SlideResult s = slide(room, {-2, -2, -0.1}, {3, 3, 1}, voxel, 3)[2];
+        ASSERT_TRUE(s.found);
+        // The closed form: 0.3 * 0.7 kg * g * 0.2 m, and 0.7 kg * g * 0.75 m.
+        EXPECT_NEAR(s.absorbed_J, 0.41188, 0.00001);
+        EXPECT_NEAR(s.released_J, 5.14849, 0.00001);
+        EXPECT_NEAR(s.distance_m, 0.2, 1e-9);
+        EXPECT_NEAR(s.direction[0], -1, 1e-6);
+    }
+}
+
+TEST_F(Sliding, FloorsHaveNoEdge) {
+    const auto s = slide(room, {-2, -2, -0.1}, {3, 3, 1}, 0.05, 3);
+    EXPECT_FALSE(s[0].found);  // nothing holds the floor
+    EXPECT_FALSE(s[1].found);  // where the floor ends nothing is known
+}
+
+TEST_F(Sliding, RimsBlockAndAWayAroundIsFound) {
+    // A rim 0.1 m high along the near edge: the next is the low-y edge, 0.4 m away.
+    auto with_rim = room;
+    with_rim.push_back({1, box({0, 0, 0.75}, {0.05, 0.8, 0.85})});
+    const SlideResult around = slide(with_rim, {-2, -2, -0.1}, {3, 3, 1}, 0.025, 3)[2];
+    ASSERT_TRUE(around.found);
+    EXPECT_NEAR(around.distance_m, 0.4, 1e-9);
+    // A wall beside the cube leaves a detour only: up past its end at y = 0.5, then to x = 0. The
+    // cube's outline clears the corner (0.1, 0.5) with its centre at (0.15, 0.55), then (0, 0.55).
+    auto with_wall = room;
+    with_wall.push_back({1, box({0.05, 0, 0.75}, {0.1, 0.5, 0.95})});
+    with_wall.push_back({1, box({0.1, 0, 0.75}, {1.2, 0.3, 0.95})});
+    const SlideResult detour = slide(with_wall, {-2, -2, -0.1}, {3, 3, 1}, 0.025, 3)[2];
+    ASSERT_TRUE(detour.found);
+    const double shortest = std::hypot(0.2 - 0.15, 0.55 - 0.4) + 0.15;
+    EXPECT_GT(detour.distance_m, 0.3);
+    EXPECT_NEAR(detour.distance_m, shortest, 0.05);
+    // Walled in all round: no way.
+    auto pit = room;
+    pit.push_back({1, box({0, 0, 0.75}, {1.2, 0.025, 0.95})});
+    pit.push_back({1, box({0, 0.775, 0.75}, {1.2, 0.8, 0.95})});
+    pit.push_back({1, box({0, 0, 0.75}, {0.025, 0.8, 0.95})});
+    pit.push_back({1, box({1.175, 0, 0.75}, {1.2, 0.8, 0.95})});
+    EXPECT_FALSE(slide(pit, {-2, -2, -0.1}, {3, 3, 1}, 0.025, 3)[2].found);
+}
+
+TEST_F(Sliding, HolesNarrowerThanTheFootAreNoEdge) {
+    const auto drilled = [this](const Vec3& low, const Vec3& high) {
+        auto solids = room;
+        const test::Inside hole = box(low, high), top = box({0, 0, 0.7}, {1.2, 0.8, 0.75});
+        solids[1] = {1,
+                     [=](double x, double y, double z) { return top(x, y, z) && !hole(x, y, z); }};
+        return slide(solids, {-2, -2, -0.1}, {3, 3, 1}, 0.025, 3)[2];
+    };
+    EXPECT_NEAR(drilled({0.3, 0.375, 0.7}, {0.35, 0.425, 0.75}).distance_m, 0.2, 1e-9);
+    // One that it can drop into: the centre leaves the table 0.1 m away.
+    EXPECT_NEAR(drilled({0.3, 0.2, 0.7}, {0.6, 0.6, 0.75}).distance_m, 0.1, 1e-9);
+}
+
+TEST_F(Sliding, CurvesCombine) {
+    Stability tip;
+    tip.barrier_J = 2;
+    tip.release_J = 5;
+    tip.direction = {1, 0, 0};
+    tip.curve = {{2, 5}, {4, 6}};
+    SlideResult way;
+    way.found = true;
+    way.absorbed_J = 1;
+    way.released_J = 5.5;
+    way.direction = {0, 1, 0};
+    Instability both = combine_curves(tip, way);
+    EXPECT_EQ(both.mode, "slide");
+    EXPECT_EQ(both.barrier_J, 1);
+    EXPECT_EQ(both.release_J, 5.5);
+    ASSERT_EQ(both.curve.size(), 2u);
+    EXPECT_EQ(both.curve[0].W_J, 1);
+    EXPECT_EQ(both.curve[1].W_J, 4);
+    way.absorbed_J = 3;
+    both = combine_curves(tip, way);
+    EXPECT_EQ(both.mode, "tip");
+    EXPECT_EQ(both.curve.size(), 3u);
+    const Instability none = combine_curves(Stability{}, SlideResult{});
+    EXPECT_EQ(none.mode, "none");
+    EXPECT_TRUE(none.curve.empty());
+}
+
+TEST_F(Sliding, RefusesWhatDoesNotFit) {
+    SolidCells cells;
+    cells.voxel_m = 0.02;
+    EXPECT_TRUE(slide_all(cells, {}, {}, {}).empty());
+    cells.i = cells.j = cells.k = {0};
+    cells.primitive = {0};
+    const std::vector<double> friction{0.3};
+    const std::vector<Body> bodies(1);
+    EXPECT_THROW(slide_all(cells, {}, bodies, friction), Error);
+    EXPECT_THROW(slide_all(cells, {}, bodies, {}), Error);
+}
+
+}  // namespace
+}  // namespace topple::physics
