@@ -14,6 +14,8 @@ namespace {
 // Clusters to look for: K > 3 (paper, 2.2.1). More than the scene has surfaces' directions does no
 // harm.
 constexpr unsigned cluster_count = 12;
+// Enough normals to find an axis to a hundredth of a degree.
+constexpr std::size_t most_normals = 60'000;
 // Normals this near to an axis count for it.
 constexpr double near_degrees = 10;
 // Directions spread evenly over the sphere leave 1 - cos(10 degrees) = 1.5 % near each axis. An
@@ -147,7 +149,7 @@ Vec3 any_horizontal(const Vec3& up) {
 
 SceneFrame find_scene_frame(device::Device& device, const Surfels& surfels,
                             const FrameHints& hints) {
-    const WeightedNormals normals = weigh_normals(surfels);
+    const WeightedNormals normals = weigh_normals(surfels, most_normals);
     std::vector<Vec3> directions = cluster_normals(device, surfels, cluster_count).direction;
     for (Vec3& direction : directions) direction = refine_axis(normals, direction);
     const Triple triple = best_triple(normals, directions);

@@ -20,18 +20,20 @@ struct SceneFrame {
 };
 
 struct FrameHints {
-    std::optional<Vec3> up;             // the user's: always wins
-    std::optional<Vec3> camera_up;      // mean -y axis of the cameras, if there were any
+    std::optional<Vec3> up;         // the user's: always wins
+    std::optional<Vec3> camera_up;  // mean -y axis of the cameras, if there were any
 };
 
 // Clusters the normals on the sphere (kernel normal_cluster: spherical k-means with antipodes
 // folded), picks three large near-orthogonal clusters, orthogonalises them, chooses as up the axis
 // closest to the hint (without one: the axis whose lowest large plane has the scene above it), and
 // refines up over the normals near it. Deterministic.
-SceneFrame find_scene_frame(device::Device& device, const Surfels& surfels, const FrameHints& hints);
+SceneFrame find_scene_frame(device::Device& device, const Surfels& surfels,
+                            const FrameHints& hints);
 
-// Spherical k-means with antipodes folded; exposed for tests. Returns `k` unit directions by falling
-// weight; weights are sums of surfel weight.
+// Spherical k-means with antipodes folded; exposed for tests. Returns `k` unit directions by
+// falling weight; weights are sums over surfels of 0..1, less where
+// the surface is rough: about the area that faces that way, in cells.
 struct NormalClusters {
     std::vector<Vec3> direction;
     std::vector<double> weight;

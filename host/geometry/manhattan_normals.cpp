@@ -21,9 +21,10 @@ Vec3 unit(const Vec3& v) {
     return {v[0] / length, v[1] / length, v[2] / length};
 }
 
-WeightedNormals weigh_normals(const Surfels& s) {
+WeightedNormals weigh_normals(const Surfels& s, std::size_t most) {
     WeightedNormals normals;
-    for (std::size_t i = 0; i < s.size(); ++i) {
+    const std::size_t step = s.size() / std::max<std::size_t>(most, 1) + 1;
+    for (std::size_t i = 0; i < s.size(); i += step) {
         if (s.nx[i] == 0 && s.ny[i] == 0 && s.nz[i] == 0) continue;
         normals.x.push_back(s.nx[i]);
         normals.y.push_back(s.ny[i]);
@@ -196,20 +197,11 @@ std::vector<std::array<double, 4>> assign(device::Device& device, const device::
 
 NormalClusters cluster_normals(device::Device& device, const Surfels& surfels, unsigned k) {
     NormalClusters result;
-    WeightedNormals normals = weigh_normals(surfels);
+    // As many as fit one binding.
+    const WeightedNormals normals =
+        weigh_normals(surfels, device.info().limits.max_binding_bytes / sizeof(float));
     k = std::min(k, 32u);
     if (normals.size() == 0 || k == 0) return result;
-    // A sample is enough where the normals would not fit one binding.
-    const std::size_t most = device.info().limits.max_binding_bytes / sizeof(float);
-    if (normals.size() > most) {
-        const std::size_t step = (normals.size() + most - 1) / most;
-        std::size_t to = 0;
-        for (std::size_t i = 0; i < normals.size(); i += step, ++to) {
-            for (auto* field : {&normals.x, &normals.y, &normals.z, &normals.weight})
-                (*field)[to] = (*field)[i];
-        }
-        for (auto* field : {&normals.x, &normals.y, &normals.z, &normals.weight}) field->resize(to);
-    }
     std::vector<Vec3> axes = seeds(normals, k);
     const auto buffer = [&](const std::vector<float>& data, const char* name) {
         return device::Buffer<float>(device, std::span<const float>(data), name);

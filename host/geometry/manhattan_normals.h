@@ -13,10 +13,11 @@ namespace topple::geometry {
 struct WeightedNormals {
     std::vector<float> x, y, z, weight;
     std::vector<std::uint32_t> surfel;
-    double total = 0;  // sum of weight over all surfels
+    double total = 0;  // sum of weight
     std::size_t size() const { return x.size(); }
 };
-WeightedNormals weigh_normals(const Surfels& surfels);
+// At most about `most` of them, evenly over the surfels.
+WeightedNormals weigh_normals(const Surfels& surfels, std::size_t most);
 
 // Weight of the normals within `degrees` of +-axis.
 double weight_near(const WeightedNormals& normals, const Vec3& axis, double degrees);

@@ -18,11 +18,11 @@ constexpr double least_plane_share = 0.05;
 
 // The surface across one direction, by where it lies along it.
 struct Profile {
-    double share = 0;         // in large planes, of all surface
-    double plane_height = 0;  // of the largest plane, metres along the direction
-    double facing = 0;        // -1..1: which way the surface in large planes faces, on the whole
-    double above = 0, below = 0;  // share of the other surface on both sides of the largest plane
-    double extent = 0;            // of the scene along the direction, metres, without the outer 1 %
+    double share = 0;   // in large planes, of all surface
+    double facing = 0;  // -1..1: which way the surface in large planes faces, on the whole
+    // -1..1: how far the middle of the surface between the outermost tenths lies below half height.
+    double lowness = 0;
+    double extent = 0;  // of the scene along the direction, metres, without the outer 1 %
 };
 
 Profile profile(const Surfels& s, const WeightedNormals& normals, const Vec3& axis) {
@@ -37,8 +37,9 @@ Profile profile(const Surfels& s, const WeightedNormals& normals, const Vec3& ax
     }
     std::vector<double> sorted = height;
     std::sort(sorted.begin(), sorted.end());
-    const double low = sorted.front();
-    result.extent = sorted[sorted.size() - 1 - sorted.size() / 100] - sorted[sorted.size() / 100];
+    const double low = sorted.front(), bottom = sorted[sorted.size() / 100],
+                 top = sorted[sorted.size() - 1 - sorted.size() / 100];
+    result.extent = top - bottom;
     const auto bins = static_cast<std::size_t>((sorted.back() - low) / bin) + 1;
     std::vector<double> weight(bins + 1), facing(bins + 1);
     for (std::size_t i = 0; i < normals.size(); ++i) {
@@ -49,8 +50,7 @@ Profile profile(const Surfels& s, const WeightedNormals& normals, const Vec3& ax
         facing[b] += d < 0 ? -normals.weight[i] : normals.weight[i];
     }
     // Large: two neighbouring bins hold at least a hundredth of the surface.
-    double largest = 0, faced = 0, flat = 0;
-    std::size_t at = 0;
+    double faced = 0, flat = 0;
     for (std::size_t b = 0; b < bins; ++b) {
         const double pair = weight[b] + weight[b + 1],
                      before = b > 0 ? weight[b - 1] + weight[b] : 0;
@@ -58,31 +58,26 @@ Profile profile(const Surfels& s, const WeightedNormals& normals, const Vec3& ax
             flat += weight[b];
             faced += facing[b];
         }
-        if (pair > largest) {
-            largest = pair;
-            at = b;
-        }
     }
     result.share = flat / normals.total;
     result.facing = flat > 0 ? faced / flat : 0;
-    result.plane_height = low + static_cast<double>(at + 1) * bin;
-    double above = 0, below = 0;
+    double sum = 0, rest = 0;
     for (std::size_t i = 0; i < normals.size(); ++i) {
-        if (height[i] > result.plane_height + bin) above += normals.weight[i];
-        if (height[i] < result.plane_height - bin) below += normals.weight[i];
+        if (height[i] < bottom + 0.1 * result.extent || height[i] > top - 0.1 * result.extent)
+            continue;
+        sum += normals.weight[i] * ((bottom + top) / 2 - height[i]);
+        rest += normals.weight[i];
     }
-    result.above = above / normals.total;
-    result.below = below / normals.total;
+    if (rest > 0 && result.extent > 0) result.lowness = sum / rest / (0.4 * result.extent);
     return result;
 }
 
 // Which way along the axis is up, without a camera: +1 or -1. Large planes face up more than down
-// (ceilings and undersides are seen less), and the scene stands on the largest one.
+// (ceilings and undersides are seen less), and what stands in the scene stands on its lower side.
 double side(const Profile& p, const Vec3& axis) {
-    const double evidence = p.facing + 2 * (p.above - p.below);
     // The input's z breaks what the scene leaves open.
-    const double convention = std::abs(axis[2]) > 0.9 ? (axis[2] > 0 ? 0.7 : -0.7) : 0;
-    return evidence + convention < 0 ? -1 : 1;
+    const double convention = std::abs(axis[2]) > 0.9 ? (axis[2] > 0 ? 1.0 : -1.0) : 0;
+    return p.facing + 2 * p.lowness + convention < 0 ? -1 : 1;
 }
 
 Vec3 times(const Vec3& v, double factor) {
