@@ -104,3 +104,13 @@ STRUCT(LandscapeParams) {
 STRUCT(FloodParams) {
     uint padded_directions;  // row length, a multiple of 128, at most 3072
 } STRUCT_END(FloodParams)
+
+// dialect_probe
+STRUCT(DialectProbeParams) {
+    uint count;  // elements
+} STRUCT_END(DialectProbeParams)
+
+// barrier_probe
+STRUCT(BarrierProbeParams) {
+    uint count;  // elements
+} STRUCT_END(BarrierProbeParams)

@@ -31,10 +31,15 @@ class EachBackend : public ::testing::TestWithParam<const char*> {
     std::unique_ptr<device::Device> device;
 };
 
-inline auto all_backends() { return ::testing::Values("native", "opencl", "vulkan"); }
-inline std::string backend_name(const ::testing::TestParamInfo<const char*>& info) { return info.param; }
+inline auto all_backends() {
+    return ::testing::Values("native", "opencl", "vulkan");
+}
+inline std::string backend_name(const ::testing::TestParamInfo<const char*>& info) {
+    return info.param;
+}
 
 }  // namespace topple::test
 
-#define TOPPLE_ON_EACH_BACKEND(suite) \
-    INSTANTIATE_TEST_SUITE_P(Device, suite, topple::test::all_backends(), topple::test::backend_name)
+#define TOPPLE_ON_EACH_BACKEND(suite)                                     \
+    INSTANTIATE_TEST_SUITE_P(Device, suite, topple::test::all_backends(), \
+                             topple::test::backend_name)
