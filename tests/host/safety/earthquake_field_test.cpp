@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "device/devices.h"
+#include "physics/landscape.h"
+#include "room.h"
+#include "safety/fields.h"
+#include "safety/objects.h"
+#include "topple/error.h"
+
+namespace topple::safety {
+namespace {
+
+using physics::gravity;
+constexpr double mu = 0.3;
+
+RiskObject block(double mass = 1) {
+    RiskObject object;
+    object.mass_kg = mass;
+    return object;
+}
+
+TEST(Earthquake, RockingStartsWhereWestSaysAndOnlyBelowTheFrictionAngle) {
+    const double b = 0.05, h = 0.25, west = gravity * b / h;
+    EXPECT_EQ(earthquake_work(block(), b, h, 0.999 * west, mu, 0.25), 0);
+    EXPECT_GT(earthquake_work(block(), b, h, 1.001 * west, mu, 0.25), 0);
+    // b / h >= mu: it slides instead, and only beyond mu g, however small the work to tip it is.
+    EXPECT_EQ(earthquake_work(block(), 0.31 * h, h, 0.999 * mu * gravity, mu, 0.25), 0);
+    const double sliding = earthquake_work(block(), 0.31 * h, h, 1.2 * mu * gravity, mu, 0.25);
+    EXPECT_EQ(sliding, earthquake_work(block(), 10 * h, h, 1.2 * mu * gravity, mu, 0.25));
+    EXPECT_GT(sliding, 0);
+}
+
+// The pulse that just overturns: p t = ln(eta / (eta - 1)) (Housner 1963), at small slenderness
+// angles.
+TEST(Earthquake, OverturnsAtHousnersPulse) {
+    const double alpha = 0.05, h = 1.0, b = h * std::tan(alpha);
+    const double p = std::sqrt(3 * gravity / (4 * std::hypot(b, h)));
+    for (const double eta : {1.1, 1.5, 2.0, 4.0}) {
+        double low = 0, high = 10;
+        for (int n = 0; n < 100; ++n) {
+            const double t = (low + high) / 2;
+            const bool falls = earthquake_work(block(), b, h, eta * gravity * b / h, mu, t) >=
+                               tipping_energy(1, h, b);
+            (falls ? high : low) = t;
+        }
+        EXPECT_NEAR(p * high, std::log(eta / (eta - 1)), 1e-3 * std::log(eta / (eta - 1)))
+            << "eta " << eta;
+    }
+}
+
+TEST(Earthquake, SlidingWorkMatchesIntegration) {
+    const double a = 5, t1 = 0.25, dt = 1e-6;
+    double v = 0, ground = 0, slip = 0;  // velocities, relative distance
+    for (double t = 0; t < 3; t += dt) {
+        ground += (t < t1 ? a : 0) * dt;
+        v = std::min(ground, v + mu * gravity * dt);
+        slip += (ground - v) * dt;
+    }
+    const double work = earthquake_work(block(2), 1, 0.1, a, mu, t1);
+    EXPECT_NEAR(work, mu * 2 * gravity * slip, 1e-3 * work);
+}
+
+TEST(Earthquake, TippingEnergyOfTheBox) {
+    EXPECT_NEAR(tipping_energy(21, 0.25, 0.10), 3.96604, 1e-4);
+    EXPECT_NEAR(tipping_energy(21, 0.25, 0.15), 8.55630, 1e-4);
+}
+
+class EarthquakeField : public ::testing::Test {
+  protected:
+    double risk_of(double width, double height, double pga) {
+        test::Room room(0.02);
+        room.floor(0, 2, 0, 2);
+        const auto id = static_cast<std::size_t>(
+            room.box(1 - width / 2, 1 + width / 2, 1 - width / 2, 1 + width / 2, 0, height, false));
+        auto& object = room.objects[id];
+        object.barrier_J = tipping_energy(object.mass_kg, height / 2, width / 2);
+        object.curve = {{object.barrier_J, 10}};
+        EarthquakeOptions options;
+        options.pga_m_s2 = pga;
+        return risk(earthquake_field(*device, room.surroundings(), room.objects, mu, options),
+                    room.objects)[id];
+    }
+    std::unique_ptr<device::Device> device = device::open_native(1);
+};
+
+TEST_F(EarthquakeField, TallerNarrowerStrongerIsNotSafer) {
+    double last = 0;
+    for (const double pga : {0.5, 1.0, 2.0, 4.0, 8.0}) {
+        const double r = risk_of(0.12, 0.6, pga);
+        EXPECT_GE(r, last) << "pga " << pga;
+        last = r;
+    }
+    EXPECT_GT(last, 0);
+    EXPECT_EQ(risk_of(0.12, 0.6, 0), 0);
+    last = 0;
+    for (const double height : {0.2, 0.4, 0.6, 0.8}) {
+        const double r = risk_of(0.12, height, 3);
+        EXPECT_GE(r, last) << "height " << height;
+        last = r;
+    }
+    last = 0;
+    for (const double width : {0.32, 0.24, 0.16, 0.08}) {
+        const double r = risk_of(width, 0.6, 3);
+        EXPECT_GE(r, last) << "width " << width;
+        last = r;
+    }
+}
+
+TEST_F(EarthquakeField, SameSeedSameEvents) {
+    test::Room room(0.02);
+    room.floor(0, 1, 0, 1);
+    room.thing(0.5, 0.5, 0);
+    const auto surroundings = room.surroundings();
+    EarthquakeOptions options;
+    const auto a = earthquake_field(*device, surroundings, room.objects, mu, options);
+    const auto b = earthquake_field(*device, surroundings, room.objects, mu, options);
+    ASSERT_EQ(a.work[1].size(), 64u);
+    EXPECT_TRUE(a.work[0].empty()) << "the floor is grounded";
+    EXPECT_NEAR(test::total_probability(a.work[1]), 1, 1e-12);
+    bool other = false;
+    options.seed = 2;
+    const auto c = earthquake_field(*device, surroundings, room.objects, mu, options);
+    for (std::size_t n = 0; n < 64; ++n) {
+        EXPECT_EQ(a.work[1][n].W_J, b.work[1][n].W_J);
+        other = other || a.work[1][n].direction != c.work[1][n].direction;
+    }
+    EXPECT_TRUE(other);
+    EXPECT_FALSE(a.samples.x.empty());
+    options.pga_m_s2 = std::nan("");
+    EXPECT_THROW(earthquake_field(*device, surroundings, room.objects, mu, options), Error);
+}
+
+TEST_F(EarthquakeField, SupportPolygonGivesTheBaseEachWay) {
+    RiskObject object;
+    object.base_width_m = 99;
+    object.support_polygon = {{0, 0}, {0.4, 0}, {0.4, 0.2}, {0, 0.2}};
+    Stance stands;
+    stands.center = {0.1, 0.1, 0};
+    EXPECT_NEAR(half_base(object, stands, 1, 0), 0.3, 1e-12);
+    EXPECT_NEAR(half_base(object, stands, -1, 0), 0.1, 1e-12);
+    EXPECT_NEAR(half_base(object, stands, 0, 1), 0.1, 1e-12);
+    EXPECT_NEAR(half_base(object, stands, std::sqrt(0.5), std::sqrt(0.5)), 0.1 * std::sqrt(2),
+                1e-12);
+    stands.center = {-0.1, 0.1, 0};  // hangs over
+    EXPECT_EQ(half_base(object, stands, -1, 0), 0);
+}
+
+TEST_F(EarthquakeField, NothingToShake) {
+    test::Room room(0.02);
+    auto field = earthquake_field(*device, room.surroundings(), room.objects, mu, {});
+    EXPECT_TRUE(field.work.empty());
+    EXPECT_FALSE(field.notes.empty());
+}
+
+}  // namespace
+}  // namespace topple::safety

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "safety/walkable_map.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "room.h"
+#include "safety/directions.h"
+#include "safety/footprint.h"
+
+namespace topple::safety {
+namespace {
+
+std::size_t cell_at(const WalkableMap& map, double x, double y) {
+    return static_cast<std::size_t>(static_cast<std::int64_t>((y - map.y0) / map.cell_m) * map.nx +
+                                    static_cast<std::int64_t>((x - map.x0) / map.cell_m));
+}
+bool walkable(const WalkableMap& map, double x, double y) {
+    return map.component[cell_at(map, x, y)] >= 0;
+}
+
+TEST(WalkableMap, KeepsTheBodyClearOfWhatStandsInItsWay) {
+    test::Room room(0.02);
+    room.floor(0, 4, 0, 4);
+    room.box(2.0, 2.2, 2.0, 2.2, 0, 1);       // a pillar
+    room.box(1.0, 1.2, 1.0, 1.2, 0, 0.04);    // low enough to step over
+    room.box(3.0, 3.2, 1.0, 1.2, 1.9, 2.1);   // a lamp above the head
+    room.box(3.0, 3.2, 3.0, 3.2, 0.7, 0.74);  // a table top
+    const WalkableMap map = walkable_map(room.surroundings(), {});
+    EXPECT_FALSE(walkable(map, 2.1, 2.1));
+    EXPECT_FALSE(walkable(map, 1.86, 2.1)) << "nearer than the body's radius";
+    EXPECT_TRUE(walkable(map, 1.73, 2.1));
+    EXPECT_TRUE(walkable(map, 1.1, 1.1));
+    EXPECT_TRUE(walkable(map, 3.1, 1.1));
+    EXPECT_FALSE(walkable(map, 3.1, 3.1));
+    EXPECT_EQ(map.components, 1);
+    EXPECT_EQ(map.bridged, 0);
+}
+
+TEST(WalkableMap, BridgesSmallHolesOnlyAndSaysSo) {
+    test::Room room(0.02);
+    room.floor(0, 4, 0, 2);
+    room.remove(0.9, 1.1, 0.9, 1.1, -1, 1);  // 0.2 m
+    room.remove(2.4, 3.2, 0.6, 1.4, -1, 1);  // 0.8 m
+    const WalkableMap map = walkable_map(room.surroundings(), {});
+    EXPECT_TRUE(walkable(map, 1.0, 1.0));
+    EXPECT_FALSE(walkable(map, 2.8, 1.0));
+    EXPECT_GT(map.bridged, 0);
+    ASSERT_EQ(map.notes.size(), 1u);
+    EXPECT_NE(map.notes[0].find("bridged"), std::string::npos);
+}
+
+TEST(WalkableMap, WallsAndStepsSeparate) {
+    test::Room room(0.02);
+    room.floor(0, 2, 0, 2);
+    room.floor(2, 4, 0, 2, 0.3);  // a stage, too high to step on
+    room.box(0, 2, 0.98, 1.02, 0, 2);
+    const WalkableMap map = walkable_map(room.surroundings(), {});
+    EXPECT_EQ(map.components, 3);
+    EXPECT_NE(map.component[cell_at(map, 0.5, 0.5)], map.component[cell_at(map, 0.5, 1.5)]);
+    EXPECT_NEAR(map.floor_m[cell_at(map, 3, 1)], 0.3, 1e-6);
+}
+
+TEST(WalkableMap, FewStraySpecksDoNotBlock) {
+    test::Room room(0.02);
+    room.floor(0, 2, 0, 2);
+    const auto speck = room.box(1.0, 1.02, 1.0, 1.02, 1.0, 1.02);
+    Surroundings surroundings = room.surroundings();
+    EXPECT_FALSE(walkable(walkable_map(surroundings, {}), 1.01, 1.01));
+    physics::SolidCells cells = *surroundings.cells;
+    for (auto& primitive : cells.primitive) primitive = primitive == speck ? -1 : primitive;
+    surroundings.cells = &cells;
+    EXPECT_TRUE(walkable(walkable_map(surroundings, {}), 1.01, 1.01));
+}
+
+TEST(WalkableMap, SaysWhyNobodyWalks) {
+    test::Room room(0.02);
+    EXPECT_EQ(walkable_map(room.surroundings(), {}).notes.size(), 1u);
+    room.box(0, 1, 0, 1, -0.02, 0);
+    EXPECT_NE(walkable_map(room.surroundings(), {}).notes.at(0).find("floor"), std::string::npos);
+    test::Room full(0.02);
+    full.floor(0, 1, 0, 1);
+    full.box(0.2, 0.8, 0.2, 0.8, 0.5, 1);
+    full.box(0, 1, 0, 1, 0.6, 0.7);
+    EXPECT_NE(walkable_map(full.surroundings(), {}).notes.at(0).find("no room"), std::string::npos);
+}
+
+TEST(PrimaryMotion, StaysOnWalkableCellsAndCrowdsThePassage) {
+    test::Room room(0.02);
+    room.floor(0, 4, 0, 4);
+    room.box(0, 1.6, 1.96, 2.04, 0, 2);
+    room.box(2.4, 4, 1.96, 2.04, 0, 2);  // a door of 0.8 m between them
+    const WalkableMap map = walkable_map(room.surroundings(), {});
+    ASSERT_EQ(map.components, 1);
+    const PrimaryMotion motion = primary_motion(map, {});
+    const auto frequency = [&](std::size_t c) {
+        double sum = 0;
+        for (unsigned d = 0; d < direction_count; ++d) sum += motion.frequency(d, c, map.size());
+        return sum;
+    };
+    double through_door = 0, most = 0;
+    for (std::size_t c = 0; c < map.size(); ++c) {
+        EXPECT_LE(frequency(c), 1);
+        if (map.component[c] < 0) {
+            EXPECT_EQ(frequency(c), 0) << "a walk through cell " << c;
+        }
+        most = std::max(most, frequency(c));
+    }
+    const auto row = static_cast<std::int64_t>(2.0 / map.cell_m);
+    for (std::int64_t x = 0; x < map.nx; ++x)
+        through_door += frequency(static_cast<std::size_t>(row * map.nx + x));
+    // Half of all pairs lie on different sides: binomial, 500 trials; a false alarm at 5 sigma.
+    EXPECT_NEAR(through_door, 0.5, 0.12);
+    EXPECT_GT(most, 5 * frequency(cell_at(map, 0.25, 0.25))) << "a corner is not a passage";
+}
+
+TEST(PrimaryMotion, StraightWalksHeadStraight) {
+    test::Room room(0.02);
+    room.floor(0, 6, 0, 0.1);  // two cells wide
+    const WalkableMap map = walkable_map(room.surroundings(), {});
+    const PrimaryMotion motion = primary_motion(map, {});
+    std::uint64_t along = 0, other = 0;
+    for (unsigned d = 0; d < direction_count; ++d) {
+        for (std::size_t c = 0; c < map.size(); ++c) {
+            (d % 8 == 0 ? along : other) += motion.visits[d * map.size() + c];
+        }
+    }
+    EXPECT_GT(along, 20 * other);
+}
+
+TEST(PrimaryMotion, OneSeedOneResult) {
+    test::Room room(0.02);
+    room.floor(0, 2, 0, 2);
+    room.box(0.8, 1.2, 0.8, 1.2, 0, 1);
+    const WalkableMap map = walkable_map(room.surroundings(), {});
+    HumanOptions options;
+    const auto a = primary_motion(map, options), b = primary_motion(map, options);
+    EXPECT_EQ(a.visits, b.visits);
+    options.seed = 2;
+    EXPECT_NE(primary_motion(map, options).visits, a.visits);
+}
+
+TEST(Footprint, OneWalkPastACellIsOnePass) {
+    HumanOptions options;
+    const double cell = 0.05;
+    const Footprint footprint = make_footprint(cell, options);
+    for (unsigned part = 0; part < body_parts.size(); ++part) {
+        for (const unsigned d : {0u, 4u, 8u, 12u}) {  // paths along the grid
+            std::map<int, double> by_side;
+            for (auto e = footprint.first[part * direction_count + d];
+                 e < footprint.first[part * direction_count + d + 1]; ++e) {
+                const auto& o = footprint.offsets[footprint.row[e]];
+                by_side[d % 8 == 0 ? o.y : o.x] += double{footprint.weight[e]};
+            }
+            for (const auto& [side, sum] : by_side) {
+                const double stray =
+                    std::fabs(side * cell) - body_parts[part].reach * options.body_height_m;
+                const double chance = stray <= 0 ? 1 : 1 - stray / options.wander_m;
+                EXPECT_NEAR(sum, body_parts[part].share * chance, 1e-5)
+                    << body_parts[part].name << ", side " << side;
+            }
+            EXPECT_GE(by_side.size(), 7u);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace topple::safety

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "device/devices.h"
+#include "room.h"
+#include "safety/columns.h"
+#include "safety/directions.h"
+#include "safety/fields.h"
+#include "safety/objects.h"
+#include "topple/error.h"
+
+namespace topple::safety {
+namespace {
+
+class WindField : public ::testing::Test {
+  protected:
+    std::unique_ptr<device::Device> device = device::open_native(1);
+
+    // The load of wind along +x on an object of the room.
+    WindLoad load(test::Room& room, std::int32_t id, unsigned d = 0) {
+        const auto surroundings = room.surroundings();
+        const auto cells = cells_of_objects(movable_object_of_cells(surroundings, room.objects),
+                                            room.objects.size());
+        const auto& own = cells[static_cast<std::size_t>(id)];
+        const Columns columns(*surroundings.cells);
+        const Frontage front = wind_frontage(*surroundings.cells, columns, own, d, 1.0);
+        const Stance stands = stance(*surroundings.cells, own);
+        return {front.area_m2, front.center_m - stands.bottom_m,
+                room.objects[static_cast<std::size_t>(id)].base_width_m / 2, stands.height()};
+    }
+};
+
+// Speed at which the work reaches the barrier.
+double critical_speed(const RiskObject& object, const WindLoad& load, WindOptions options) {
+    double low = 0, high = 1000;
+    for (int n = 0; n < 100; ++n) {
+        options.speed_m_s = (low + high) / 2;
+        (wind_work(object, load, options) >= object.barrier_J ? high : low) = options.speed_m_s;
+    }
+    return high;
+}
+
+TEST_F(WindField, ClosedFormsOfTheBox) {
+    test::Room room(0.01);
+    const auto id = room.box(0, 0.2, 0, 0.3, 0, 0.5, false);
+    const WindLoad across = load(room, id);
+    EXPECT_NEAR(across.area_m2, 0.15, 1e-9);
+    EXPECT_NEAR(across.pressure_height_m, 0.25, 1e-9);
+    WindOptions options;
+    RiskObject& box = room.objects[0];
+    box.barrier_J = 3.96604;
+    // v = sqrt(2 rho g d^2 / (rho_air C_d h)) and sqrt(2 mu m g / (rho_air C_d A)).
+    for (const double air : {1.2, 1.225}) {
+        options.air_density_kg_m3 = air;
+        box.base_width_m = 0.2;
+        box.slide_distance_m = -1;
+        const double tips = critical_speed(box, across, options);
+        EXPECT_NEAR(tips, std::sqrt(2 * 700 * 9.80665 * 0.04 / (air * 1.3 * 0.5)), 1e-6);
+        EXPECT_NEAR(tips, 26.26, 0.02 * 26.26);
+        box.slide_distance_m = 0.3;
+        const double slides = critical_speed(box, across, options);
+        EXPECT_NEAR(slides, std::sqrt(2 * 0.3 * 21 * 9.80665 / (air * 1.3 * 0.15)), 1e-6);
+        EXPECT_NEAR(slides, 22.74, 0.02 * 22.74);
+    }
+}
+
+TEST_F(WindField, FrontageFromAllSides) {
+    test::Room room(0.01);
+    const auto id = room.box(0, 0.2, 0, 0.3, 0, 0.5, false);
+    for (unsigned d = 0; d < direction_count; ++d) {
+        const auto [dx, dy] = direction(d);
+        const double area = 0.5 * (0.3 * std::fabs(dx) + 0.2 * std::fabs(dy));
+        EXPECT_NEAR(load(room, id, d).area_m2, area, 0.05 * area) << "direction " << d;
+    }
+}
+
+TEST_F(WindField, WorkGrowsWithSpeedAndReachesTheBarrierAtTheThreshold) {
+    test::Room room(0.02);
+    const auto id = room.box(0, 0.2, 0, 0.3, 0, 0.5, false);
+    const WindLoad front = load(room, id);
+    RiskObject& box = room.objects[0];
+    box.barrier_J = 2;
+    box.slide_distance_m = 1;
+    WindOptions options;
+    double last = 0;
+    const double critical = critical_speed(box, front, options);
+    for (double v = 0; v < 60; v += 0.25) {
+        options.speed_m_s = v;
+        const double work = wind_work(box, front, options);
+        EXPECT_GE(work, last) << v;
+        EXPECT_EQ(work >= box.barrier_J, v >= critical) << v;
+        if (v < critical) {
+            EXPECT_LT(work - last, 0.1) << "a jump at " << v;
+        }
+        last = work;
+    }
+}
+
+TEST_F(WindField, ShelteredFromWhereAWallStands) {
+    test::Room room(0.02);
+    room.floor(-2, 3, -2, 3);
+    const auto cup = room.thing(0.5, 0.5, 0, 0.1, 0.2);
+    const double open = load(room, cup, 0).area_m2;
+    EXPECT_NEAR(open, 0.02, 1e-9);
+    room.box(0.0, 0.1, -1, 2, 0, 1);  // 0.35 m upwind
+    EXPECT_EQ(load(room, cup, 0).area_m2, 0) << "in the lee";
+    EXPECT_NEAR(load(room, cup, 8).area_m2, open, 1e-9) << "from the other side";
+    const auto field = wind_field(*device, room.surroundings(), room.objects, {});
+    EXPECT_LT(test::total_probability(field.work[static_cast<std::size_t>(cup)]), 0.99);
+    EXPECT_GT(test::total_probability(field.work[static_cast<std::size_t>(cup)]), 0.4);
+    EXPECT_FALSE(field.samples.x.empty());
+    test::Room far(0.02);
+    const auto same = far.thing(0.5, 0.5, 0, 0.1, 0.2);
+    far.box(-1.2, -1.1, -1, 2, 0, 1);  // further upwind than the lee is long
+    EXPECT_NEAR(load(far, same, 0).area_m2, open, 1e-9);
+}
+
+TEST_F(WindField, TallerNarrowerStrongerIsNotSafer) {
+    const auto risk_of = [&](double width, double height, double speed) {
+        test::Room room(0.02);
+        const auto id = static_cast<std::size_t>(room.box(0, width, 0, 0.4, 0, height, false));
+        auto& object = room.objects[id];
+        object.base_width_m = width;
+        object.barrier_J = tipping_energy(object.mass_kg, height / 2, width / 2);
+        object.curve = {{object.barrier_J, 7}};
+        WindOptions options;
+        options.speed_m_s = speed;
+        return risk(wind_field(*device, room.surroundings(), room.objects, options),
+                    room.objects)[id];
+    };
+    double last = 0;
+    for (const double speed : {0.0, 5.0, 10.0, 15.0, 20.0, 40.0}) {
+        const double r = risk_of(0.1, 0.6, speed);
+        EXPECT_GE(r, last) << "speed " << speed;
+        last = r;
+    }
+    EXPECT_NEAR(last, 7, 1e-9) << "a storm tips it from every side";
+    last = 0;
+    for (const double height : {0.1, 0.2, 0.4, 0.8}) {
+        const double r = risk_of(0.1, height, 14);
+        EXPECT_GE(r, last) << "height " << height;
+        last = r;
+    }
+    EXPECT_GT(last, 0);
+    last = 0;
+    for (const double width : {0.32, 0.16, 0.08, 0.04}) {
+        const double r = risk_of(width, 0.5, 14);
+        EXPECT_GE(r, last) << "width " << width;
+        last = r;
+    }
+}
+
+TEST_F(WindField, NothingInTheWind) {
+    test::Room room(0.02);
+    EXPECT_FALSE(wind_field(*device, room.surroundings(), room.objects, {}).notes.empty());
+    room.floor(0, 1, 0, 1);
+    const auto field = wind_field(*device, room.surroundings(), room.objects, {});
+    EXPECT_TRUE(field.work[0].empty());
+    EXPECT_FALSE(field.notes.empty());
+    WindOptions bad;
+    bad.speed_m_s = -1;
+    EXPECT_THROW(wind_field(*device, room.surroundings(), room.objects, bad), Error);
+}
+
+}  // namespace
+}  // namespace topple::safety
