@@ -19,20 +19,25 @@ constexpr std::size_t alignment = 64;  // a cache line, and the widest vector re
 
 class NativeMemory final : public Memory {
   public:
-    NativeMemory(std::uint64_t bytes, std::string name) : bytes_(bytes), name_(std::move(name)) {
-        const std::uint64_t padded = (std::max<std::uint64_t>(bytes, 1) + alignment - 1) / alignment * alignment;
+    NativeMemory(const Device& device, std::uint64_t bytes, std::string name)
+        : device_(device), bytes_(bytes), name_(std::move(name)) {
+        const std::uint64_t padded =
+            (std::max<std::uint64_t>(bytes, 1) + alignment - 1) / alignment * alignment;
         data_ = static_cast<std::byte*>(std::aligned_alloc(alignment, padded));
         if (!data_) {
             throw Error(ErrorKind::device, "buffer " + name_ + ": the system has no " +
-                                               std::to_string(bytes) + " bytes left; use a larger --voxel");
+                                               std::to_string(bytes) +
+                                               " bytes left; use a larger --voxel");
         }
     }
     ~NativeMemory() override { std::free(data_); }
     std::uint64_t bytes() const override { return bytes_; }
     const std::string& name() const override { return name_; }
     std::byte* host_address() override { return data_; }
+    const Device& device() const { return device_; }
 
   private:
+    const Device& device_;
     std::uint64_t bytes_;
     std::string name_;
     std::byte* data_;
@@ -79,18 +84,19 @@ class NativeDevice final : public Device {
                                                std::to_string(info_.limits.memory_bytes) +
                                                " bytes; use a larger --voxel");
         }
-        return std::make_unique<NativeMemory>(bytes, name);
+        return std::make_unique<NativeMemory>(*this, bytes, name);
     }
     void write(Memory& to, std::uint64_t offset, std::span<const std::byte> from) override {
-        std::memcpy(to.host_address() + offset, from.data(), from.size());
+        std::memcpy(address(to) + offset, from.data(), from.size());
         counters_.bytes_written += from.size();
     }
     void read(Memory& from, std::uint64_t offset, std::span<std::byte> to) override {
-        std::memcpy(to.data(), from.host_address() + offset, to.size());
+        std::memcpy(to.data(), address(from) + offset, to.size());
         counters_.bytes_read += to.size();
     }
-    void fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word) override {
-        auto* first = reinterpret_cast<std::uint32_t*>(memory.host_address() + offset);
+    void fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
+              std::uint32_t word) override {
+        auto* first = reinterpret_cast<std::uint32_t*>(address(memory) + offset);
         std::fill(first, first + bytes / sizeof(word), word);
     }
     void prepare(const KernelSource&) override {}
@@ -100,7 +106,7 @@ class NativeDevice final : public Device {
             std::vector<void*> addresses;
             addresses.reserve(dispatch.ranges.size());
             for (const BoundRange& range : dispatch.ranges) {
-                addresses.push_back(range.memory->host_address() + range.offset);
+                addresses.push_back(address(*range.memory) + range.offset);
             }
             const NativeEntry entry = best_entry(dispatch.kernel->native);
             const NativeArgs args{addresses.data(), dispatch.params.data()};
@@ -115,11 +121,22 @@ class NativeDevice final : public Device {
     }
 
   private:
+    std::byte* address(Memory& memory) const {
+        auto* mine = dynamic_cast<NativeMemory*>(&memory);
+        if (!mine || &mine->device() != this) {
+            throw Error(ErrorKind::device, "buffer " + memory.name() +
+                                               " belongs to another device than " + info_.name);
+        }
+        return mine->host_address();
+    }
+
     ThreadPool pool_;
 };
 
 }  // namespace
 
-std::unique_ptr<Device> open_native(unsigned threads) { return std::make_unique<NativeDevice>(threads); }
+std::unique_ptr<Device> open_native(unsigned threads) {
+    return std::make_unique<NativeDevice>(threads);
+}
 
 }  // namespace topple::device

@@ -64,6 +64,9 @@ class VulkanDevice final : public Device {
     void run(std::span<const Dispatch> dispatches) override;
     void prepare(const KernelSource& kernel) override;
 
+    // Whether the validation layers watch.
+    bool validates() const { return context_.log != nullptr; }
+
     // What the kernels' arrays lie in, and what copies to and from them pass through.
     VulkanBuffer create_storage(std::uint64_t bytes, const std::string& name) const;
     VulkanBuffer create_staging(std::uint64_t bytes) const;
