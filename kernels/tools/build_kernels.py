@@ -24,8 +24,37 @@ HOST_TYPES = {'float': 'float', 'uint': 'std::uint32_t', 'int': 'std::int32_t'}
 ACCESS = {'IN': 'read', 'OUT': 'write', 'INOUT': 'read_write'}
 
 
+# What compiles somewhere but breaks the promise that all backends give the same bits (docs/dialect.md).
+REFUSED = [
+    (r'(?<![\w.])(?:\d+\.\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])|(?<![\w.])\d+[eE][-+]?\d+(?![\w.])',
+     'is a double in C++ and OpenCL C; write the f behind it'),
+    (r'\b(?:sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|exp|exp2|exp10|log|log2|log10|pow|rsqrt|inversesqrt|'
+     r'cbrt|hypot|erf)\s*\(', 'differs between backends; use a polynomial in kernels/math.h'),
+    (r'\b(?:dot|length|distance|normalize|cross|mix|smoothstep|fma|mad|fmod|mod|fract|round|rint|roundEven)\s*\(',
+     'rounds differently between backends; spell it out with + - * /'),
+    (r'\b(?:double|half|long|short|char|size_t|u?int64_t|float[234]|u?int[234]|[iu]?vec[234])\b',
+     'is not a type of the dialect; it has float, uint, int and bool'),
+    (r'\b(?:float|uint|int)\s*\*\s*\w+\s*[;,=)]', 'is a pointer, which GLSL has not'),
+]
+
+
 def fail(path, message):
     sys.exit(f'{path}: {message}')
+
+
+def check_dialect(name, text):
+    """Refuses, by file and line, what the compilers let pass. Comments don't count."""
+    code = re.sub(r'//[^\n]*', '', text)
+    per_group = 'BEGIN_GROUP' in code
+    for number, line in enumerate(code.split('\n'), 1):
+        if line.lstrip().startswith('#'):
+            continue
+        for pattern, why in REFUSED:
+            found = re.search(pattern, line)
+            if found:
+                fail(f'{name}:{number}', f'{found.group(0).strip()} {why}')
+        if per_group and re.search(r'\breturn\b', line) and not re.search(r'\bFN\b', code):
+            fail(f'{name}:{number}', 'return in a kernel with barriers leaves the other lanes waiting')
 
 
 class Kernel:
@@ -37,6 +66,7 @@ class Kernel:
             self.text = f.read()
         code = re.sub(r'//[^\n]*', '', self.text)
         self.name = os.path.basename(path).rsplit('.', 1)[0]
+        check_dialect(f'kernels/{self.name}.kernel', self.text)
         head = re.findall(r'\bKERNEL\(\s*(\w+)\s*,\s*(\d+)\s*\)', code)
         if len(head) != 1:
             fail(path, f'expected one KERNEL(name, group_size), found {len(head)}')
@@ -254,6 +284,7 @@ def main():
             return f.read()
 
     os.makedirs(options.out, exist_ok=True)
+    check_dialect('kernels/math.h', text('math.h'))
     kernel = Kernel(options.kernel)
     fields = params_fields(text('params.h'), kernel.params_type)
     common = '#line 1 "kernels/params.h"\n' + text('params.h') + '#line 1 "kernels/math.h"\n' + text('math.h')
