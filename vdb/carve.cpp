@@ -159,6 +159,10 @@ std::array<device::Buffer<std::int32_t>, 3> Carver::origins(
 void Carver::classify(const std::vector<std::uint64_t>& leaves) {
     if (leaves.empty()) return;
     const auto origin = origins(leaves);
+    std::vector<std::uint32_t> holds(leaves.size());
+    for (std::size_t n = 0; n < leaves.size(); ++n) holds[n] = has_points(leaves[n]);
+    const device::Buffer<std::uint32_t> points(device_, std::span<const std::uint32_t>(holds),
+                                               "leaves with points");
     std::vector<device::Buffer<std::uint32_t>> mixed_words, front_words;
     params_.leaf_count = static_cast<std::uint32_t>(leaves.size());
     device::Queue queue(device_);
@@ -170,6 +174,7 @@ void Carver::classify(const std::vector<std::uint64_t>& leaves) {
                                         {.leaf_x = origin[0],
                                          .leaf_y = origin[1],
                                          .leaf_z = origin[2],
+                                         .points = points,
                                          .camera = batch.camera,
                                          .pyramid = batch.pyramid,
                                          .mixed = mixed_words.back(),
@@ -196,9 +201,9 @@ void Carver::classify(const std::vector<std::uint64_t>& leaves) {
         }
         const bool changed = through != e.front[leaf];
         e.front[leaf] = static_cast<std::uint16_t>(std::min(through, 65535u));
-        if (through >= options_.through && !has_points(leaf)) {
+        if (through >= options_.through && !holds[n]) {
             make_empty(leaf);
-        } else if (any != 0 || (changed && (has_points(leaf) || e.slot[leaf] >= 0))) {
+        } else if (any != 0 || (changed && (holds[n] || e.slot[leaf] >= 0))) {
             detailed.push_back(leaf);
             for (std::size_t b = 0; b < batches_.size(); ++b)
                 detailed_mixed[b].push_back(mixed[b][n]);

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "six_fill_sweep.hpp"
+
+#include "device/queue.h"
+#include "kernels/device_harness.h"
+#include "oracle/random_depth.h"
+#include "oracle/six_fill_oracle.h"
+
+namespace topple::test {
+namespace {
+
+// A dense random grid of whole leaves; leaf (a, b, c) is leaf number (a * size_b + b) * size_c + c.
+struct SweepCase {
+    std::array<int, 3> leaves;
+    oracle::DenseCells dense;
+    std::vector<std::uint32_t> cells;  // leaf by leaf
+
+    SweepCase(std::uint64_t seed, std::array<int, 3> size) : leaves(size) {
+        oracle::Random random(seed);
+        for (int a = 0; a < 3; ++a) dense.size[a] = 8 * leaves[a];
+        const std::size_t count = std::size_t{512} * leaves[0] * leaves[1] * leaves[2];
+        dense.cell.resize(count);
+        cells.resize(count);
+        for (int x = 0; x < dense.size[0]; ++x) {
+            for (int y = 0; y < dense.size[1]; ++y) {
+                for (int z = 0; z < dense.size[2]; ++z) {
+                    // Mostly fillable, so that rays run across leaves; labels up to the largest.
+                    const std::uint32_t kind = random.below(40);
+                    const std::uint32_t cell = kind == 0   ? 0
+                                               : kind == 1 ? 2 + random.below(5)
+                                               : kind == 2 ? 65535u
+                                                           : 1;
+                    dense.cell[dense.index({x, y, z})] = cell;
+                    cells[address({x, y, z})] = cell;
+                }
+            }
+        }
+    }
+    std::size_t address(const std::array<int, 3>& v) const {
+        const std::size_t leaf =
+            (std::size_t(v[0] / 8) * leaves[1] + v[1] / 8) * leaves[2] + v[2] / 8;
+        return leaf * 512 + std::size_t(v[0] % 8) * 64 + std::size_t(v[1] % 8) * 8 +
+               std::size_t(v[2] % 8);
+    }
+};
+
+class SixFillSweep : public EachBackend {
+  protected:
+    // Backward and forward hits along an axis.
+    std::array<std::vector<std::uint32_t>, 2> run(device::Device& on, const SweepCase& c,
+                                                  int axis) {
+        std::vector<std::uint32_t> first, length, order;
+        const int other = axis == 0 ? 1 : 0, last = axis == 2 ? 1 : 2;
+        for (int a = 0; a < c.leaves[other]; ++a) {
+            for (int b = 0; b < c.leaves[last]; ++b) {
+                first.push_back(static_cast<std::uint32_t>(order.size()));
+                length.push_back(static_cast<std::uint32_t>(c.leaves[axis]));
+                for (int n = 0; n < c.leaves[axis]; ++n) {
+                    std::array<int, 3> v{};
+                    v[axis] = 8 * n, v[other] = 8 * a, v[last] = 8 * b;
+                    order.push_back(static_cast<std::uint32_t>(c.address(v) / 512));
+                }
+            }
+        }
+        using device::Buffer;
+        Buffer<std::uint32_t> b_first(on, std::span(std::as_const(first)), "first"),
+            b_length(on, std::span(std::as_const(length)), "length"),
+            b_order(on, std::span(std::as_const(order)), "order"),
+            cells(on, std::span(c.cells), "cells");
+        Buffer<std::uint32_t> back(on, c.cells.size() + 1, "backward"),
+            forth(on, c.cells.size() + 1, "forward");
+        back.fill(0xdeadbeef);
+        forth.fill(0xdeadbeef);
+        constexpr std::uint32_t stride[3] = {64, 8, 1}, high[3] = {8, 64, 64}, low[3] = {1, 1, 8};
+        device::Queue queue(on);
+        queue.add<kernels::SixFillSweep>(first.size() * 64,
+                                         {.run_first = b_first,
+                                          .run_length = b_length,
+                                          .run_leaf = b_order,
+                                          .cells = cells,
+                                          .backward = back,
+                                          .forward = forth},
+                                         {.run_count = static_cast<std::uint32_t>(first.size()),
+                                          .stride = stride[axis],
+                                          .stride_high = high[axis],
+                                          .stride_low = low[axis]});
+        queue.run();
+        std::array out{back.download(), forth.download()};
+        for (auto& side : out) {
+            EXPECT_EQ(side.back(), 0xdeadbeef) << "guard word";
+            side.pop_back();
+        }
+        return out;
+    }
+};
+
+TEST_P(SixFillSweep, MatchesTheWalk) {
+    const std::array<int, 3> shapes[] = {{0, 0, 0}, {1, 1, 1}, {2, 3, 1}, {1, 2, 5}, {4, 1, 3}};
+    for (const auto& shape : shapes) {
+        const SweepCase c(static_cast<std::uint64_t>(shape[0] * 9 + shape[2] + 1), shape);
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto hits = run(*device, c, axis);
+            std::uint64_t wrong = 0;
+            for (int x = 0; x < c.dense.size[0]; ++x) {
+                for (int y = 0; y < c.dense.size[1]; ++y) {
+                    for (int z = 0; z < c.dense.size[2]; ++z) {
+                        for (int way = 0; way < 2; ++way) {
+                            oracle::SixHit hit;
+                            if (c.dense.cell[c.dense.index({x, y, z})] == 1)
+                                hit = oracle::walk(c.dense, {x, y, z}, 2 * axis + way);
+                            const std::uint32_t expected =
+                                hit.primitive < 0
+                                    ? 0
+                                    : static_cast<std::uint32_t>(hit.primitive + 1) |
+                                          static_cast<std::uint32_t>(hit.distance) << 16;
+                            wrong += hits[static_cast<std::size_t>(way)][c.address({x, y, z})] !=
+                                     expected;
+                        }
+                    }
+                }
+            }
+            EXPECT_EQ(wrong, 0u) << "axis " << axis << ", " << shape[0] << "x" << shape[1] << "x"
+                                 << shape[2] << " leaves";
+        }
+    }
+}
+
+TEST_P(SixFillSweep, SameBitsAsNative) {
+    const SweepCase c(5, {5, 7, 3});
+    const auto native = device::open_device("native");
+    for (int axis = 0; axis < 3; ++axis)
+        EXPECT_EQ(run(*device, c, axis), run(*native, c, axis)) << "axis " << axis;
+}
+
+TOPPLE_ON_EACH_BACKEND(SixFillSweep);
+
+}  // namespace
+}  // namespace topple::test

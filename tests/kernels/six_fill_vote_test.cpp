@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "six_fill_vote.hpp"
+
+#include "device/queue.h"
+#include "kernels/device_harness.h"
+#include "oracle/random_depth.h"
+#include "oracle/six_fill_oracle.h"
+
+namespace topple::test {
+namespace {
+
+struct VoteCase {
+    std::vector<std::uint32_t> cells;
+    std::array<std::vector<std::uint32_t>, 6> hits;
+    VoteCase(std::uint64_t seed, std::uint32_t count) {
+        oracle::Random random(seed);
+        for (std::uint32_t n = 0; n < count; ++n) {
+            cells.push_back(random.below(8) == 0 ? random.below(9) : 1);
+            // Few labels and distances, so that ties are common; now and then the extremes.
+            for (auto& side : hits) {
+                const std::uint32_t label = random.below(30) == 0 ? 65535 : random.below(4);
+                const std::uint32_t distance = random.below(30) == 0 ? 65535 : 1 + random.below(3);
+                side.push_back(label == 0 ? 0 : label | distance << 16);
+            }
+        }
+    }
+};
+
+class SixFillVote : public EachBackend {
+  protected:
+    std::vector<std::uint32_t> run(device::Device& on, const VoteCase& c, std::uint32_t votes) {
+        using device::Buffer;
+        Buffer<std::uint32_t> cells(on, std::span(c.cells), "cells");
+        std::vector<Buffer<std::uint32_t>> hits;
+        for (const auto& side : c.hits) hits.emplace_back(on, std::span(side), "hits");
+        Buffer<std::uint32_t> filled(on, c.cells.size() + 1, "filled");
+        filled.fill(0xdeadbeef);
+        device::Queue queue(on);
+        queue.add<kernels::SixFillVote>(
+            c.cells.size(),
+            {.cells = cells,
+             .hit_0 = hits[0],
+             .hit_1 = hits[1],
+             .hit_2 = hits[2],
+             .hit_3 = hits[3],
+             .hit_4 = hits[4],
+             .hit_5 = hits[5],
+             .filled = filled},
+            {.count = static_cast<std::uint32_t>(c.cells.size()), .votes = votes});
+        queue.run();
+        auto out = filled.download();
+        EXPECT_EQ(out.back(), 0xdeadbeef) << "guard word";
+        out.pop_back();
+        return out;
+    }
+};
+
+TEST_P(SixFillVote, MatchesTheCount) {
+    for (const std::uint32_t count : {0u, 1u, 63u, 64u, 65u, 4999u}) {
+        for (const std::uint32_t votes : {1u, 2u, 3u, 6u}) {
+            const VoteCase c(count + votes, count);
+            const auto filled = run(*device, c, votes);
+            std::uint64_t wrong = 0;
+            for (std::uint32_t n = 0; n < count; ++n) {
+                std::array<oracle::SixHit, 6> hits;
+                for (std::size_t side = 0; side < 6; ++side) {
+                    const std::uint32_t hit = c.hits[side][n];
+                    hits[side] = {static_cast<std::int32_t>(hit & 0xffff) - 1,
+                                  static_cast<int>(hit >> 16)};
+                }
+                const std::int32_t expected =
+                    c.cells[n] == 1 ? oracle::vote(hits, static_cast<int>(votes)) : -1;
+                if (filled[n] != static_cast<std::uint32_t>(expected + 1) && ++wrong < 5) {
+                    ADD_FAILURE() << "voxel " << n << ": " << filled[n] << ", expected "
+                                  << expected + 1;
+                }
+            }
+            EXPECT_EQ(wrong, 0u) << count << " voxels, " << votes << " votes";
+        }
+    }
+}
+
+TEST_P(SixFillVote, SameBitsAsNative) {
+    const VoteCase c(1, 100003);
+    EXPECT_EQ(run(*device, c, 2), run(*device::open_device("native"), c, 2));
+}
+
+TOPPLE_ON_EACH_BACKEND(SixFillVote);
+
+}  // namespace
+}  // namespace topple::test
