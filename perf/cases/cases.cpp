@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include "perf/cases/cases.h"
+
+namespace topple::perf {
+
+std::span<const Case> all_cases() {
+    static constexpr Case cases[] = {
+        {"triad", triad},
+        {"multiply_add", multiply_add},
+        {"voxel_normals", voxel_normals},
+        {"normal_cluster", normal_cluster},
+        {"carve_leaves", carve_leaves},
+        {"carve", carve},
+        {"six_fill_sweep", six_fill_sweep},
+        {"six_fill_vote", six_fill_vote},
+        {"segmented_sum", segmented_sum},
+        {"support_function", support_function},
+        {"group_landscape", group_landscape},
+        {"barrier_flood", barrier_flood},
+        {"disturbance_reach", disturbance_reach},
+        {"disturbance", disturbance},
+    };
+    return cases;
+}
+
+}  // namespace topple::perf

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "perf/case.h"
+
+namespace topple::perf {
+
+// One for each kernel, in the file of its name or of its group.
+Prepared triad(device::Device& device);
+Prepared multiply_add(device::Device& device);
+Prepared voxel_normals(device::Device& device);
+Prepared normal_cluster(device::Device& device);
+Prepared carve_leaves(device::Device& device);
+Prepared carve(device::Device& device);
+Prepared six_fill_sweep(device::Device& device);
+Prepared six_fill_vote(device::Device& device);
+Prepared segmented_sum(device::Device& device);
+Prepared support_function(device::Device& device);
+Prepared group_landscape(device::Device& device);
+Prepared barrier_flood(device::Device& device);
+Prepared disturbance_reach(device::Device& device);
+Prepared disturbance(device::Device& device);
+
+}  // namespace topple::perf

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <memory>
+
+#include "normal_cluster.hpp"
+#include "perf/cases/cases.h"
+#include "scenes/random.h"
+#include "voxel_normals.hpp"
+
+namespace topple::perf {
+namespace {
+
+using scenes::Random;
+
+// Cell height of a rolling surface over a plane of cells.
+int height(int x, int y) {
+    return (x / 3 + y / 5 + (x % 64 < 32 ? x % 32 : 32 - x % 32) / 4) % 1024;
+}
+
+}  // namespace
+
+// A sheet of 448 x 448 cells, as surfaces are: each query finds its 25 columns in a few cache
+// lines.
+Prepared voxel_normals(device::Device& device) {
+    constexpr int side = 448, radius = 2, width = 2 * radius + 1;
+    constexpr std::uint32_t count = side * side;
+    Random random(4);
+    std::vector<float> cells(10 * std::size_t{count}), query(3 * std::size_t{count}),
+        prior(3 * std::size_t{count}, 0.0f);
+    std::vector<std::int32_t> cell_z(count);
+    std::vector<std::uint32_t> columns(std::size_t{width * width} * count), query_cell(count);
+    double pairs = 0;
+    for (std::uint32_t n = 0; n < count; ++n) {
+        const int x = static_cast<int>(n) / side, y = static_cast<int>(n) % side;
+        cell_z[n] = height(x, y);
+        query_cell[n] = n;
+        cells[n] = static_cast<float>(random.integer(1, 9));
+        for (std::uint32_t k = 1; k < 4; ++k) {
+            cells[k * count + n] = static_cast<float>(random.uniform(-0.4, 0.4));
+            query[(k - 1) * count + n] = cells[k * count + n];
+        }
+        for (std::uint32_t k = 4; k < 10; ++k) cells[k * count + n] = k < 7 ? 0.05f : 0.0f;
+        for (int c = 0; c < width * width; ++c) {
+            const int a = x + c / width - radius, b = y + c % width - radius;
+            const bool in = a >= 0 && b >= 0 && a < side && b < side &&
+                            std::abs(height(a, b) - cell_z[n]) <= radius;
+            columns[static_cast<std::size_t>(c) * count + n] =
+                in ? static_cast<std::uint32_t>(a * side + b) | 1u << 29 : 0u;
+            pairs += in;
+        }
+    }
+    struct Buffers {
+        device::Buffer<float> cells;
+        device::Buffer<std::int32_t> cell_z;
+        device::Buffer<std::uint32_t> columns, query_cell;
+        device::Buffer<float> query, prior, fit;
+    };
+    auto on = std::make_shared<Buffers>(Buffers{upload(device, cells, "cells"),
+                                                upload(device, cell_z, "cell_z"),
+                                                upload(device, columns, "columns"),
+                                                upload(device, query_cell, "query_cell"),
+                                                upload(device, query, "query"),
+                                                upload(device, prior, "prior"),
+                                                {device, 6 * std::uint64_t{count}, "fit"}});
+    // 50 operations for each cell in reach; 15 rotations of 45 and 60 more for each query.
+    return {{count, "queries", count * 4.0 * (10 + 1 + width * width + 1 + 3 + 6),
+             50 * pairs + (15 * 45 + 60.0) * count},
+            [on](device::Queue& queue) {
+                constexpr float reach = radius + 0.5f;
+                queue.add<kernels::VoxelNormals>(count,
+                                                 {.cells = on->cells,
+                                                  .cell_z = on->cell_z,
+                                                  .columns = on->columns,
+                                                  .query_cell = on->query_cell,
+                                                  .query = on->query,
+                                                  .prior = on->prior,
+                                                  .fit = on->fit},
+                                                 {.query_count = count,
+                                                  .cell_count = count,
+                                                  .column_first = 0,
+                                                  .column_count = count,
+                                                  .radius = radius,
+                                                  .inverse_reach2 = 1 / (reach * reach),
+                                                  .use_prior = 0});
+            },
+            {},
+            [on] { return Hash().add(on->fit.download()).value(); }};
+}
+
+// A million normals, most of them near three axes, against 12 of them.
+Prepared normal_cluster(device::Device& device) {
+    constexpr std::uint32_t count = 1u << 20, clusters = 12;
+    Random random(5);
+    std::vector<float> n[3], weight(count, 1.0f), axes;
+    for (auto& axis : n) axis.resize(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        double v[3];
+        for (double& c : v) c = 0.1 * random.normal();
+        v[random.integer(0, 2)] += random.chance(0.5) ? 1 : -1;
+        const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        for (int k = 0; k < 3; ++k) n[k][i] = static_cast<float>(v[k] / length);
+    }
+    for (std::uint32_t c = 0; c < clusters; ++c) {
+        for (int k = 0; k < 3; ++k) axes.push_back(n[k][c * 7919]);
+    }
+    const std::uint64_t groups =
+        count / (64 * device.items_per_lane(kernels::NormalCluster::source()));
+    struct Buffers {
+        device::Buffer<float> nx, ny, nz, weight, axes;
+        device::Buffer<std::int32_t> partial;
+        device::Buffer<std::uint32_t> cluster;
+    };
+    auto on = std::make_shared<Buffers>(Buffers{upload(device, n[0], "nx"),
+                                                upload(device, n[1], "ny"),
+                                                upload(device, n[2], "nz"),
+                                                upload(device, weight, "weight"),
+                                                upload(device, axes, "axes"),
+                                                {device, groups * clusters * 4, "partial"},
+                                                {device, count, "cluster"}});
+    // 7 operations for each axis, then 4 for each sum that a normal might join.
+    return {
+        {count, "normals", 20.0 * count, (7.0 * clusters + 4.0 * 4 * clusters) * count},
+        [on, groups](device::Queue& queue) {
+            queue.add<kernels::NormalCluster>(groups,
+                                              {.nx = on->nx,
+                                               .ny = on->ny,
+                                               .nz = on->nz,
+                                               .weight = on->weight,
+                                               .axes = on->axes,
+                                               .partial = on->partial,
+                                               .cluster = on->cluster},
+                                              {.count = count, .cluster_count = clusters});
+        },
+        {},
+        [on] { return Hash().add(on->partial.download()).add(on->cluster.download()).value(); }};
+}
+
+}  // namespace topple::perf

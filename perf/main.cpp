@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "device/devices.h"
+#include "perf/measure.h"
+#include "perf/pipeline_case.h"
+#include "perf/report.h"
+#include "topple/error.h"
+
+namespace topple::perf {
+namespace {
+
+struct Arguments {
+    std::vector<std::string> backends;
+    std::vector<std::string> filters;
+    std::string json, csv;
+    MeasureOptions measure;
+    PipelineOptions pipeline;
+    unsigned threads = 0;
+    bool list = false;
+};
+
+bool is_probe(const std::string& name) {
+    return name == "triad" || name == "multiply_add";
+}
+
+bool wanted(const Arguments& a, const std::string& name) {
+    return a.filters.empty() ||
+           std::any_of(a.filters.begin(), a.filters.end(),
+                       [&](const std::string& f) { return name.find(f) != std::string::npos; });
+}
+
+std::vector<Result> measure_backend(device::Device& device, const Arguments& a) {
+    std::vector<Result> results;
+    const bool any_kernel = std::any_of(all_cases().begin(), all_cases().end(),
+                                        [&](const Case& c) { return wanted(a, c.name); });
+    for (const Case& test : all_cases()) {
+        // The probes are the yardstick of all others.
+        if (!wanted(a, test.name) && !(any_kernel && is_probe(test.name))) continue;
+        results.push_back(measure(device, test, a.measure));
+    }
+    apply_roofline(results);
+    print_results(results);
+    if (wanted(a, "pipeline") && a.pipeline.runs > 0) {
+        scenes::Score score;
+        const auto stages = measure_pipeline(device, a.pipeline, score);
+        print_results(stages);
+        print_score(score);
+        results.insert(results.end(), stages.begin(), stages.end());
+    }
+    return results;
+}
+
+// Every backend must have computed the same.
+bool hashes_agree(const std::vector<Result>& results) {
+    std::map<std::string, const Result*> first;
+    bool agree = true;
+    for (const Result& r : results) {
+        const auto [at, is_new] = first.emplace(r.name, &r);
+        if (is_new || at->second->hash == r.hash) continue;
+        std::fprintf(stderr, "topple_perf: %s: the result on %s differs from the one on %s\n",
+                     r.name.c_str(), r.backend.c_str(), at->second->backend.c_str());
+        agree = false;
+    }
+    return agree;
+}
+
+int run(const Arguments& a) {
+    if (a.list) {
+        for (const Case& test : all_cases()) std::printf("%s\n", test.name);
+        std::printf("pipeline\n");
+        return 0;
+    }
+    const bool all = a.backends.empty() || a.backends.front() == "all";
+    const std::vector<std::string> names =
+        all ? std::vector<std::string>{"native", "opencl", "vulkan"} : a.backends;
+    std::vector<Result> results;
+    for (const std::string& name : names) {
+        std::unique_ptr<device::Device> device;
+        try {
+            device = device::open_device(name, a.threads);
+        } catch (const Error& error) {
+            if (!all) throw;
+            std::printf("%s: skipped: %s\n", name.c_str(), error.what());
+            continue;
+        }
+        const auto one = measure_backend(*device, a);
+        results.insert(results.end(), one.begin(), one.end());
+    }
+    if (!a.json.empty()) write_json(a.json, results);
+    if (!a.csv.empty()) write_csv(a.csv, results);
+    return hashes_agree(results) ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace topple::perf
+
+int main(int argc, char** argv) {
+    using namespace topple;
+    CLI::App app{
+        "Measures every kernel on every backend, as throughput and as share of what the backend "
+        "can do, and the "
+        "whole pipeline by stage."};
+    perf::Arguments a;
+    app.add_option("--filter", a.filters, "Only cases whose name contains this; may be repeated");
+    app.add_option("--backend", a.backends, "native, opencl, vulkan or all")
+        ->delimiter(',')
+        ->default_str("all");
+    app.add_option("--json", a.json, "Write all samples, counts and hashes to this file");
+    app.add_option("--csv", a.csv, "Write one line per case to this file");
+    app.add_option("--runs", a.measure.runs,
+                   "Samples of each kernel (default: 7 to 100, for --seconds)");
+    app.add_option("--seconds", a.measure.seconds, "Time for each kernel")->capture_default_str();
+    app.add_option("--pipeline-runs", a.pipeline.runs, "Parses of the whole room; 0: none")
+        ->capture_default_str();
+    app.add_option("--pipeline-frames", a.pipeline.frames, "Frames of the walk through the room")
+        ->capture_default_str();
+    app.add_option("--seed", a.pipeline.seed, "Seed of the room")->capture_default_str();
+    app.add_option("--threads", a.threads, "Threads of the native backend (0: all cores)")
+        ->capture_default_str();
+    app.add_flag("--list", a.list, "Print the names of the cases");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        return perf::run(a);
+    } catch (const Error& error) {
+        std::fprintf(stderr, "topple_perf: %s\n", error.what());
+        return error.kind() == ErrorKind::input ? 1 : error.kind() == ErrorKind::usage ? 2 : 3;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "topple_perf: %s\n", error.what());
+        return 1;
+    }
+}

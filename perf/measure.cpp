@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "perf/measure.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace topple::perf {
+namespace {
+
+double seconds_of(device::Queue& queue) {
+    const auto start = std::chrono::steady_clock::now();
+    queue.run();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+device::Counters operator-(const device::Counters& a, const device::Counters& b) {
+    return {a.dispatches - b.dispatches, a.submits - b.submits, a.kernel_builds - b.kernel_builds,
+            a.bytes_written - b.bytes_written, a.bytes_read - b.bytes_read};
+}
+
+}  // namespace
+
+double Result::best() const {
+    return *std::min_element(samples_s.begin(), samples_s.end());
+}
+double Result::worst() const {
+    return *std::max_element(samples_s.begin(), samples_s.end());
+}
+double Result::median() const {
+    auto sorted = samples_s;
+    std::sort(sorted.begin(), sorted.end());
+    const std::size_t half = sorted.size() / 2;
+    return sorted.size() % 2 ? sorted[half] : (sorted[half - 1] + sorted[half]) / 2;
+}
+
+Result measure(device::Device& device, const Case& test, const MeasureOptions& options) {
+    const device::Counters before = device.counters();
+    const Prepared prepared = test.prepare(device);
+    device::Queue queue(device);
+    if (prepared.reset) prepared.reset();
+    prepared.enqueue(queue);
+    const double first = seconds_of(queue);  // builds the kernel
+    Result result;
+    result.backend = device::to_string(device.info().backend);
+    result.device = device.info().name;
+    result.name = test.name;
+    result.work = prepared.work;
+    result.hash = prepared.hash();
+    result.counters = device.counters() - before;
+
+    unsigned batch = 1;
+    if (!prepared.reset) {
+        prepared.enqueue(queue);
+        const double once = std::min(first, seconds_of(queue));
+        batch = static_cast<unsigned>(std::clamp(std::ceil(0.005 / once), 1.0, 1000.0));
+    }
+    double spent = 0;
+    const unsigned most = options.runs ? options.runs : 100;
+    for (unsigned n = 0; n < most; ++n) {
+        if (!options.runs && n >= 7 && spent >= options.seconds) break;
+        if (prepared.reset) prepared.reset();
+        for (unsigned k = 0; k < batch; ++k) prepared.enqueue(queue);
+        const double sample = seconds_of(queue);
+        spent += sample;
+        result.samples_s.push_back(sample / batch);
+    }
+    return result;
+}
+
+void apply_roofline(std::vector<Result>& results) {
+    const auto probe = [&](const std::string& backend, const char* name) -> const Result* {
+        for (const Result& r : results) {
+            if (r.backend == backend && r.name == name) return &r;
+        }
+        return nullptr;
+    };
+    for (Result& r : results) {
+        const Result* memory = probe(r.backend, "triad");
+        const Result* arithmetic = probe(r.backend, "multiply_add");
+        if (!memory || !arithmetic || r.work.bytes == 0) continue;
+        const double by_memory = r.work.bytes * memory->best() / memory->work.bytes;
+        const double by_arithmetic =
+            r.work.operations * arithmetic->best() / arithmetic->work.operations;
+        r.bound = by_memory >= by_arithmetic ? "memory" : "arithmetic";
+        r.share = std::max(by_memory, by_arithmetic) / r.best();
+    }
+}
+
+}  // namespace topple::perf

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "device/device.h"
+#include "perf/case.h"
+
+namespace topple::perf {
+
+struct MeasureOptions {
+    unsigned runs = 0;     // samples of each case; 0: as many as fit into `seconds`, 7 to 100
+    double seconds = 1.0;  // for each case
+};
+
+// Figures of one case on one backend, or of one stage of the pipeline.
+struct Result {
+    std::string backend, device, name;
+    Work work;
+    std::vector<double> samples_s;  // wall time of one run each, in the order taken
+    std::uint64_t hash = 0;
+    device::Counters counters;  // of one run: what can be gated exactly
+    double share = 0;           // of the roofline; 0 where there is none
+    const char* bound = "";  // what the roofline's least time comes from: "memory" | "arithmetic"
+
+    double best() const;
+    double median() const;
+    double worst() const;
+};
+
+// Runs the case once to warm up, then takes samples. Short runs are batched, several dispatches for
+// each wait, so that a sample lasts at least 5 ms (where the case may repeat without a reset).
+Result measure(device::Device& device, const Case& test, const MeasureOptions& options);
+
+// Fills in share and bound: least time that the backend's own triad bandwidth and multiply-add rate
+// allow for the work, over the best time. Needs the backend's two probes among the results.
+void apply_roofline(std::vector<Result>& results);
+
+}  // namespace topple::perf

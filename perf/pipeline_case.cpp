@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "perf/pipeline_case.h"
+
+#include <stdlib.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "scenes/depth_camera.h"
+#include "scenes/furnished_room.h"
+#include "topple/parse.h"
+
+namespace topple::perf {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder that goes away with its owner.
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::string name = (fs::temp_directory_path() / "topple_perf_XXXXXX").string();
+        if (!::mkdtemp(name.data())) throw Error(ErrorKind::input, name + ": can't be made");
+        path_ = name;
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    const fs::path& path() const { return path_; }
+
+  private:
+    fs::path path_;
+};
+
+std::uint64_t hash_of(const Scene& scene) {
+    Hash hash;
+    hash.add(scene.points.primitive)
+        .add(scene.points.object)
+        .add(scene.solid.primitive)
+        .add(scene.solid.object);
+    for (const Object& object : scene.objects)
+        hash.word(std::bit_cast<std::uint32_t>(static_cast<float>(object.barrier_J)));
+    return hash.value();
+}
+
+}  // namespace
+
+std::vector<Result> measure_pipeline(device::Device& device, const PipelineOptions& options,
+                                     scenes::Score& score) {
+    const scenes::World world = scenes::furnished_room({.seed = options.seed});
+    scenes::CameraOptions camera;
+    camera.frames = options.frames;
+    camera.seed = options.seed;
+    const TemporaryFolder folder;
+    scenes::write_sequence(folder.path(), world, scenes::walk(world, camera));
+
+    std::vector<Result> results;
+    const auto result = [&](const std::string& name) -> Result& {
+        for (Result& r : results) {
+            if (r.name == name) return r;
+        }
+        results.emplace_back();
+        results.back().backend = device::to_string(device.info().backend);
+        results.back().device = device.info().name;
+        results.back().name = name;
+        return results.back();
+    };
+    for (unsigned run = 0; run < options.runs; ++run) {
+        const device::Counters before = device.counters();
+        const auto start = std::chrono::steady_clock::now();
+        const ParseResult parsed = parse(device, folder.path());
+        const double all =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const device::Counters after = device.counters();
+        Result& whole = result("pipeline");
+        whole.samples_s.push_back(all);
+        whole.hash = hash_of(parsed.scene);
+        if (run == 0) {
+            whole.counters = {after.dispatches - before.dispatches, after.submits - before.submits,
+                              after.kernel_builds - before.kernel_builds,
+                              after.bytes_written - before.bytes_written,
+                              after.bytes_read - before.bytes_read};
+        }
+        whole.work = {static_cast<double>(parsed.scene.points.x.size()), "points", 0, 0};
+        for (const auto& [stage, seconds] : parsed.scene.timings_s) {
+            Result& r = result("pipeline/" + stage);
+            r.samples_s.push_back(seconds);
+            r.work = {static_cast<double>(parsed.scene.points.x.size()), "points", 0, 0};
+        }
+        if (run + 1 == options.runs) score = scenes::score(world, parsed.scene);
+    }
+    return results;
+}
+
+}  // namespace topple::perf
