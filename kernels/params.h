@@ -47,6 +47,7 @@ STRUCT(DisturbanceReachParams) {
 // disturbance
 STRUCT(DisturbanceParams) {
     uint cell_count;       // cells in the tile, a multiple of 64
+    uint row_count;        // rows of `blocked` per block
     uint plane_cells;      // stride of the planes of `primary`
     uint direction_count;
     uint footprint_first;  // of this part: index into entry_first of its direction 0

@@ -130,6 +130,7 @@ std::vector<float> run_convolution(device::Device& device, const Case& c,
                                      .entry_weight = weight,
                                      .density = density},
                                     {.cell_count = c.cells(),
+                                     .row_count = c.rows,
                                      .plane_cells = Case::width * Case::height,
                                      .direction_count = c.directions,
                                      .footprint_first = 0,
@@ -156,19 +157,22 @@ TEST_P(DisturbanceKernels, ReachIsExact) {
         const Case& c = shape(n);
         const auto got = run_reach(*device, c);
         std::size_t wrong = 0, at = 0, shut = 0;
-        for (std::uint32_t row = 0; row < c.rows; ++row) {
-            for (std::uint32_t cell = 0; cell < c.cells(); ++cell, ++at) {
-                const int x = static_cast<int>(c.map_cell(cell) % Case::width);
-                const int y = static_cast<int>(c.map_cell(cell) / Case::width);
+        for (std::uint32_t cell = 0; cell < c.cells(); ++cell) {
+            const int x = static_cast<int>(c.map_cell(cell) % Case::width);
+            const int y = static_cast<int>(c.map_cell(cell) / Case::width);
+            for (std::uint32_t row = 0; row < c.rows; ++row) {
                 const auto [ox, oy] = c.offsets[row];
                 // Lines that leave the map's rows wrap around; the host never uses those cells.
                 if (x + ox < 0 || x + ox >= Case::width) continue;
                 const std::uint32_t want = oracle::shut_between(c.grid, x, y, x + ox, y + oy);
+                const std::uint32_t word =
+                    got[(std::size_t{cell / 64} * c.rows + row) * 64 + cell % 64];
                 shut += want != 0;
-                wrong += got[at] != want;
-                ASSERT_EQ(got[at], want) << "case " << n << ", row " << row << ", cell " << cell;
+                wrong += word != want;
+                ASSERT_EQ(word, want) << "case " << n << ", row " << row << ", cell " << cell;
             }
         }
+        at = std::size_t{c.rows} * c.cells();
         EXPECT_EQ(wrong, 0u);
         if (c.rows >= 3 && c.blocks > 0) {
             EXPECT_GT(shut, 0u) << "case " << n << " tests nothing";
@@ -195,7 +199,7 @@ TEST_P(DisturbanceKernels, DensityWithinItsBound) {
                 for (std::uint32_t cell = 0; cell < c.cells(); ++cell, ++at) {
                     const std::size_t from =
                         std::size_t{d} * Case::width * Case::height + c.map_cell(cell);
-                    const double want = oracle::gather(entries, c.primary, from, blocked, c.cells(),
+                    const double want = oracle::gather(entries, c.primary, from, blocked, c.rows,
                                                        cell, c.band_first + b);
                     if (want == 0) {
                         ASSERT_EQ(got[at], 0.0f) << "case " << n << ": unreached, but not zero";

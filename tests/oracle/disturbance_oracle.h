@@ -73,10 +73,10 @@ struct Entry {
 };
 inline double gather(const std::vector<Entry>& entries, const std::vector<float>& primary,
                      std::size_t map_cell, const std::vector<std::uint32_t>& blocked,
-                     std::size_t cell_count, std::size_t cell, unsigned band) {
+                     std::size_t rows, std::size_t cell, unsigned band) {
     double sum = 0;
     for (const Entry& e : entries) {
-        if (blocked[e.row * cell_count + cell] >> band & 1u) continue;
+        if (blocked[(cell / 64 * rows + e.row) * 64 + cell % 64] >> band & 1u) continue;
         sum += double{e.weight} * double{primary[map_cell + static_cast<std::size_t>(e.delta)]};
     }
     return sum;
