@@ -190,6 +190,9 @@ FusedCloud FrameFusion::finish() {
     std::sort(fused.cells.begin(), fused.cells.end(),
               [](const CellSums& a, const CellSums& b) { return a.key < b.key; });
     drop_weak(fused, cells_->viewpoints.size());
+    // Twice: a first plane through the outer layers leans towards them, since half of the surface's
+    // readings lie beyond its reach.
+    flatten_layers(fused);
     flatten_layers(fused);
 
     FusedCloud result;

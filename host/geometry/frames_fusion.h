@@ -39,7 +39,9 @@ class FrameFusion {
 
 // The depth frame that an organised cloud was made from, with the intrinsics recovered by least
 // squares from its points; depth_scale is chosen to keep sub-millimetre depth where it fits.
-// Returns false where the points are no pinhole image (residual above one pixel).
+// The camera looks along z with y down or, where the points say so, along -z with y up: its upward
+// axis is the frame's -y axis (camera_to_world), the hint for find_scene_frame. Returns false where
+// the points are no pinhole image (residual above one pixel).
 bool frame_of_organised_cloud(const PointCloud& cloud, Intrinsics& intrinsics, DepthFrame& frame);
 
 // For a cloud without poses: depth images as a sensor would have taken them from inside the scene,

@@ -47,19 +47,23 @@ bool frame_of_organised_cloud(const PointCloud& cloud, Intrinsics& intrinsics, D
         cloud.pixel.size() != cloud.size() || cloud.size() < least_points) {
         return false;
     }
-    // The camera stands at the viewpoint and looks along z: organised clouds are kept in its frame.
+    // The camera stands at the viewpoint and looks along z with y down, or (as graphics has it)
+    // along -z with y up: organised clouds are kept in its frame.
     const Vec3 eye = cloud.has_viewpoint ? cloud.viewpoint : Vec3{0, 0, 0};
+    std::size_t ahead = 0;
+    for (const float z : cloud.z) ahead += z > eye[2];
+    const double side = 2 * ahead >= cloud.size() ? 1 : -1;
     std::vector<double> sx, sy, u, v;
     double farthest = 0;
     std::size_t behind = 0;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
-        const double z = cloud.z[i] - eye[2];
+        const double z = side * (cloud.z[i] - eye[2]);
         if (!(z > 0) || cloud.pixel[i] >= pixels) {
             ++behind;
             continue;
         }
         sx.push_back((cloud.x[i] - eye[0]) / z);
-        sy.push_back((cloud.y[i] - eye[1]) / z);
+        sy.push_back(side * (cloud.y[i] - eye[1]) / z);
         u.push_back(cloud.pixel[i] % cloud.width);
         v.push_back(static_cast<double>(cloud.pixel[i] / cloud.width));
         farthest = std::max(farthest, z);
@@ -78,9 +82,9 @@ bool frame_of_organised_cloud(const PointCloud& cloud, Intrinsics& intrinsics, D
     intrinsics.depth_scale = std::min(10000.0, 65535 / farthest);
     if (intrinsics.depth_scale > 1) intrinsics.depth_scale = std::floor(intrinsics.depth_scale);
     frame.depth.assign(pixels, 0);
-    frame.camera_to_world = {1, 0, 0, eye[0], 0, 1, 0, eye[1], 0, 0, 1, eye[2], 0, 0, 0, 1};
+    frame.camera_to_world = {1, 0, 0, eye[0], 0, side, 0, eye[1], 0, 0, side, eye[2], 0, 0, 0, 1};
     for (std::size_t i = 0; i < cloud.size(); ++i) {
-        const double z = cloud.z[i] - eye[2];
+        const double z = side * (cloud.z[i] - eye[2]);
         if (!(z > 0) || cloud.pixel[i] >= pixels) continue;
         const double stored = std::round(z * intrinsics.depth_scale);
         frame.depth[cloud.pixel[i]] = static_cast<std::uint16_t>(std::clamp(stored, 1.0, 65535.0));

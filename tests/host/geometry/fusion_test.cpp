@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/depth_noise.h"
+#include "geometry/frames_fusion.h"
+#include "geometry_random.h"
+#include "topple/error.h"
+
+namespace topple::geometry {
+namespace {
+
+constexpr Intrinsics camera{160, 120, 140, 140, 79.5, 59.5, 1000};
+
+// A wall at 3 m with a box's face at 1.5 m before it, with the sensor's noise.
+DepthFrame view(std::uint64_t seed, double shift) {
+    test::Random random(seed);
+    DepthFrame frame;
+    frame.camera_to_world[3] = shift;
+    for (std::uint32_t v = 0; v < camera.height; ++v) {
+        for (std::uint32_t u = 0; u < camera.width; ++u) {
+            const double x = (u - camera.cx) / camera.fx * 1.5 + shift;
+            const double z = std::abs(x) < 0.2 ? 1.5 : 3.0;
+            frame.depth.push_back(static_cast<std::uint16_t>(
+                std::lround(1000 * (z + depth_sigma(z) * random.normal()))));
+        }
+    }
+    return frame;
+}
+
+TEST(Fusion, WallBecomesThinAndStraysGo) {
+    FrameFusion fusion(camera, 0.01);
+    for (int i = 0; i < 12; ++i) {
+        DepthFrame frame = view(static_cast<std::uint64_t>(i), 0.02 * i - 0.12);
+        frame.depth[60 * 160 + 20] = 1200;  // flying
+        fusion.add(frame);
+    }
+    const FusedCloud fused = fusion.finish();
+    ASSERT_EQ(fused.viewpoints.size(), 12u);
+    ASSERT_EQ(fused.viewpoint_of_point.size(), fused.cloud.size());
+    std::vector<double> off;
+    for (std::size_t i = 0; i < fused.cloud.size(); ++i) {
+        EXPECT_LT(fused.viewpoint_of_point[i], 12u);
+        const double z = fused.cloud.z[i];
+        off.push_back(std::min(std::abs(z - 3), std::abs(z - 1.5)));
+    }
+    std::sort(off.begin(), off.end());
+    ASSERT_GT(off.size(), 20'000u);
+    EXPECT_LT(off[off.size() / 2], 0.003);  // sigma of one reading: 14 mm
+    EXPECT_LT(off[off.size() * 95 / 100], 0.01);
+    EXPECT_LT(off.back(), 0.1);  // nothing between the two surfaces
+}
+
+TEST(Fusion, OrderOfFramesDoesNotMatter) {
+    FrameFusion forth(camera, 0.01), back(camera, 0.01);
+    for (int i = 0; i < 5; ++i) forth.add(view(static_cast<std::uint64_t>(i), 0.02 * i));
+    for (int i = 5; i-- > 0;) back.add(view(static_cast<std::uint64_t>(i), 0.02 * i));
+    const FusedCloud a = forth.finish(), b = back.finish();
+    EXPECT_EQ(a.cloud.x, b.cloud.x);
+    EXPECT_EQ(a.cloud.y, b.cloud.y);
+    EXPECT_EQ(a.cloud.z, b.cloud.z);
+}
+
+TEST(Fusion, RefusesWhatIsNoFrame) {
+    FrameFusion fusion(camera, 0.01);
+    DepthFrame frame;
+    EXPECT_THROW(fusion.add(frame), Error);
+    frame = view(1, 0);
+    frame.camera_to_world[0] = std::nan("");
+    EXPECT_THROW(fusion.add(frame), Error);
+    EXPECT_EQ(fusion.finish().cloud.size(), 0u);
+    EXPECT_THROW(FrameFusion(camera, 0), Error);
+    // Far beyond the grid's reach: readings are counted, not placed.
+    FrameFusion far(camera, 0.01);
+    frame = view(1, 0);
+    frame.camera_to_world[3] = 1e12;
+    far.add(frame);
+    const FusedCloud none = far.finish();
+    EXPECT_EQ(none.cloud.size(), 0u);
+    EXPECT_GT(none.cloud.dropped, 10'000u);
+}
+
+TEST(Organised, GivesItsFrameBack) {
+    for (const double side : {1.0, -1.0}) {  // z forward with y down, and the graphics convention
+        PointCloud cloud;
+        cloud.width = camera.width;
+        cloud.height = camera.height;
+        const DepthFrame want = view(1, 0);
+        for (std::uint32_t i = 0; i < want.depth.size(); i += 3) {
+            const double z = want.depth[i] / 1000.0;
+            cloud.x.push_back(static_cast<float>((i % camera.width - camera.cx) / camera.fx * z));
+            cloud.y.push_back(
+                static_cast<float>(side * (i / camera.width - camera.cy) / camera.fy * z));
+            cloud.z.push_back(static_cast<float>(side * z));
+            cloud.pixel.push_back(i);
+        }
+        Intrinsics k;
+        DepthFrame frame;
+        ASSERT_TRUE(frame_of_organised_cloud(cloud, k, frame));
+        EXPECT_NEAR(k.fx, camera.fx, 0.01);
+        EXPECT_NEAR(k.cy, camera.cy, 0.01);
+        EXPECT_EQ(frame.camera_to_world[5], side);
+        for (std::uint32_t i = 0; i < want.depth.size(); i += 3) {
+            ASSERT_NEAR(frame.depth[i] / k.depth_scale, want.depth[i] / 1000.0, 1e-4);
+        }
+        for (std::size_t i = 0; i < cloud.size(); ++i) cloud.x[i] = static_cast<float>(i % 7);
+        EXPECT_FALSE(frame_of_organised_cloud(cloud, k, frame));
+    }
+}
+
+// A closed room of 4 x 3 x 2.5 m: its virtual views are closed too, and every ray ends on a wall.
+TEST(Virtual, NoRayLeaksFromARoom) {
+    PointCloud cloud;
+    const std::array<double, 3> size{4, 3, 2.5};
+    test::Random random(1);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (int i = 0; i < 200; ++i) {
+            for (int j = 0; j < 200; ++j) {
+                for (int side = 0; side < 2; ++side) {
+                    std::array<double, 3> p{};
+                    p[(axis + 1) % 3] = (i + random.uniform()) / 200 * size[(axis + 1) % 3];
+                    p[(axis + 2) % 3] = (j + random.uniform()) / 200 * size[(axis + 2) % 3];
+                    p[axis] = side * size[axis];
+                    cloud.x.push_back(static_cast<float>(p[0]));
+                    cloud.y.push_back(static_cast<float>(p[1]));
+                    cloud.z.push_back(static_cast<float>(p[2]));
+                }
+            }
+        }
+    }
+    Intrinsics k;
+    std::vector<DepthFrame> frames;
+    virtual_frames(cloud, 0.02, 3, k, frames);
+    ASSERT_EQ(frames.size(), 18u);
+    std::size_t pixels = 0, leaks = 0, wrong = 0;
+    for (const DepthFrame& frame : frames) {
+        const Mat4& m = frame.camera_to_world;
+        const double det = m[0] * (m[5] * m[10] - m[6] * m[9]) -
+                           m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+        ASSERT_EQ(det, 1);
+        for (std::uint32_t v = 0; v < k.height; ++v) {
+            for (std::uint32_t u = 0; u < k.width; ++u) {
+                ++pixels;
+                const double z = frame.depth[v * k.width + u] / k.depth_scale;
+                if (z == 0) {
+                    ++leaks;
+                    continue;
+                }
+                double off = 1;  // of the ray's end from the nearest wall
+                for (std::size_t a = 0; a < 3; ++a) {
+                    const double p = (m[4 * a] * (u - k.cx) / k.fx +
+                                      m[4 * a + 1] * (v - k.cy) / k.fy + m[4 * a + 2]) *
+                                         z +
+                                     m[4 * a + 3];
+                    off = std::min({off, std::abs(p), std::abs(p - size[a])});
+                }
+                wrong += off > 0.06;
+            }
+        }
+    }
+    EXPECT_LT(static_cast<double>(leaks), 1e-4 * static_cast<double>(pixels));
+    EXPECT_LT(static_cast<double>(wrong), 0.01 * static_cast<double>(pixels));
+    virtual_frames({}, 0.02, 3, k, frames);
+    EXPECT_TRUE(frames.empty());
+}
+
+}  // namespace
+}  // namespace topple::geometry

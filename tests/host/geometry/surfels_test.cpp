@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "geometry/surfels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "device/devices.h"
+#include "geometry_random.h"
+#include "topple/error.h"
+
+namespace topple::geometry {
+namespace {
+
+using test::Random;
+
+void add(PointCloud& cloud, double x, double y, double z) {
+    cloud.x.push_back(static_cast<float>(x));
+    cloud.y.push_back(static_cast<float>(y));
+    cloud.z.push_back(static_cast<float>(z));
+}
+
+// A box of 1 x 0.8 x 0.6 m seen from inside, with noise along the faces' normals.
+PointCloud room(double noise, std::uint64_t seed) {
+    Random random(seed);
+    PointCloud cloud;
+    const std::array<double, 3> size{1, 0.8, 0.6};
+    for (int i = 0; i < 60'000; ++i) {
+        const std::size_t axis = random.word() % 3;
+        std::array<double, 3> p{random.uniform() * size[0], random.uniform() * size[1],
+                                random.uniform() * size[2]};
+        p[axis] = (random.word() & 1) != 0 ? 0 : size[axis];
+        p[axis] += noise * random.normal();
+        add(cloud, p[0], p[1], p[2]);
+    }
+    return cloud;
+}
+
+class SurfelsTest : public ::testing::Test {
+  protected:
+    std::unique_ptr<device::Device> device = device::open_native();
+};
+
+TEST_F(SurfelsTest, NormalsOfARoomPointInside) {
+    for (const double noise : {0.0, 0.003}) {
+        const PointCloud cloud = room(noise, 1);
+        const Vec3 eye{0.5, 0.4, 0.3};
+        const Surfels s = make_surfels(*device, cloud, 0.02, {&eye, 1}, {});
+        ASSERT_EQ(s.of_point.size(), cloud.size());
+        std::size_t inner = 0, straight = 0;
+        double worst = 0;
+        for (std::size_t i = 0; i < s.size(); ++i) {
+            const double length =
+                std::sqrt(s.nx[i] * s.nx[i] + s.ny[i] * s.ny[i] + s.nz[i] * s.nz[i]);
+            ASSERT_NEAR(length, 1, 1e-4);
+            const Vec3 to_eye{eye[0] - s.x[i], eye[1] - s.y[i], eye[2] - s.z[i]};
+            ASSERT_GE(s.nx[i] * to_eye[0] + s.ny[i] * to_eye[1] + s.nz[i] * to_eye[2], 0);
+            // Away from the edges a face's normal is an axis.
+            int near = 0;
+            const std::array<double, 3> p{s.x[i], s.y[i], s.z[i]}, size{1, 0.8, 0.6};
+            for (std::size_t a = 0; a < 3; ++a) near += std::min(p[a], size[a] - p[a]) < 0.06;
+            if (near != 1) continue;
+            ++inner;
+            const double along =
+                std::max({std::abs(s.nx[i]), std::abs(s.ny[i]), std::abs(s.nz[i])});
+            straight += along > std::cos(6 * M_PI / 180);
+            for (std::size_t a = 0; a < 3; ++a) {
+                if (std::min(p[a], size[a] - p[a]) < 0.06)
+                    worst = std::max(worst, std::min(std::abs(p[a]), std::abs(p[a] - size[a])));
+            }
+        }
+        EXPECT_GT(inner, 3000u);
+        EXPECT_GT(static_cast<double>(straight), 0.99 * static_cast<double>(inner));
+        EXPECT_LE(worst, 2 * noise + 1e-5);
+    }
+}
+
+TEST_F(SurfelsTest, NoiseThickerThanACellLeavesOneLayer) {
+    Random random(3);
+    PointCloud cloud;
+    // Offset by half a cell, so that the plane does not lie on a border between cells.
+    for (int i = 0; i < 40'000; ++i) {
+        add(cloud, random.uniform(), random.uniform(), 0.01 + 0.008 * random.normal());
+    }
+    const Surfels s = make_surfels(*device, cloud, 0.02, {}, {});
+    EXPECT_LT(s.size(), 2500u * 12 / 10);  // 50 x 50 cells
+    double square = 0;
+    for (std::size_t i = 0; i < s.size(); ++i)
+        square += std::pow(s.z[i] - 0.01, 2) / static_cast<double>(s.size());
+    EXPECT_LT(std::sqrt(square), 0.004);
+}
+
+TEST_F(SurfelsTest, ThinBoardKeepsItsTwoSides) {
+    Random random(4);
+    PointCloud cloud;
+    std::vector<Vec3> eyes{{0.5, 0.5, 2}, {0.5, 0.5, -2}};
+    std::vector<std::uint32_t> eye_of;
+    for (int i = 0; i < 40'000; ++i) {
+        const bool top = (i & 1) == 0;
+        add(cloud, random.uniform(), random.uniform(), top ? 0.03 : -0.01);
+        eye_of.push_back(top ? 0 : 1);
+    }
+    const Surfels s = make_surfels(*device, cloud, 0.02, eyes, eye_of);
+    std::size_t right = 0;
+    for (std::size_t i = 0; i < s.size(); ++i)
+        right += s.z[i] > 0.01 ? s.nz[i] > 0.95 : s.nz[i] < -0.95;
+    EXPECT_GT(static_cast<double>(right), 0.97 * static_cast<double>(s.size()));
+}
+
+TEST_F(SurfelsTest, FieldsAreConsistentAndOrderFree) {
+    PointCloud cloud = room(0.002, 5), reversed = cloud;
+    for (auto* axis : {&reversed.x, &reversed.y, &reversed.z})
+        std::reverse(axis->begin(), axis->end());
+    const Vec3 eye{0.5, 0.4, 0.3};
+    const Surfels a = make_surfels(*device, cloud, 0.02, {&eye, 1}, {});
+    const Surfels b = make_surfels(*device, reversed, 0.02, {&eye, 1}, {});
+    EXPECT_EQ(a.cx, b.cx);
+    EXPECT_EQ(a.cy, b.cy);
+    EXPECT_EQ(a.cz, b.cz);
+    double points = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        points += a.weight[i];
+        EXPECT_NEAR(a.x[i], (a.cx[i] + 0.5) * 0.02, 0.0101);
+        if (i > 0) {
+            EXPECT_LT(std::tie(a.cx[i - 1], a.cy[i - 1], a.cz[i - 1]),
+                      std::tie(a.cx[i], a.cy[i], a.cz[i]));
+        }
+        for (std::uint32_t k = a.neighbour_first[i]; k < a.neighbour_first[i + 1]; ++k) {
+            const std::uint32_t j = a.neighbours[k];
+            EXPECT_TRUE(j != i && std::abs(a.cx[i] - a.cx[j]) <= 1 &&
+                        std::abs(a.cy[i] - a.cy[j]) <= 1 && std::abs(a.cz[i] - a.cz[j]) <= 1);
+            if (k > a.neighbour_first[i]) {
+                EXPECT_LT(a.neighbours[k - 1], j);
+            }
+        }
+    }
+    EXPECT_EQ(points, static_cast<double>(cloud.size()));
+}
+
+TEST_F(SurfelsTest, OddInputs) {
+    EXPECT_EQ(make_surfels(*device, {}, 0.02, {}, {}).size(), 0u);
+    PointCloud one;
+    add(one, 1, 2, 3);
+    const Surfels s = make_surfels(*device, one, 0.02, {}, {});
+    ASSERT_EQ(s.size(), 1u);
+    EXPECT_EQ(s.nx[0], 0);
+    for (int i = 0; i < 100; ++i) add(one, 1, 2, 3);  // duplicates
+    EXPECT_EQ(make_surfels(*device, one, 0.02, {}, {}).weight[0], 101);
+    EXPECT_EQ(point_spacing(one), 0);
+    PointCloud line;
+    for (int i = 0; i < 1000; ++i) add(line, 0.001 * i, 0, 0);
+    for (const float n : make_surfels(*device, line, 0.02, {}, {}).nx) EXPECT_EQ(n, 0);
+    EXPECT_NEAR(point_spacing(line), 0.001, 1e-5);
+    PointCloud far = line;
+    add(far, 1e9, 0, 0);
+    EXPECT_THROW(make_surfels(*device, far, 0.02, {}, {}), Error);
+    EXPECT_THROW(make_surfels(*device, line, 0, {}, {}), Error);
+    EXPECT_THROW(make_surfels(*device, line, std::numeric_limits<double>::quiet_NaN(), {}, {}),
+                 Error);
+}
+
+}  // namespace
+}  // namespace topple::geometry
