@@ -40,13 +40,35 @@ class Merger {
             if (length < options_.border_share) continue;
             const double share = inside_share(s_, r_, border, samples_, options_);
             if (share <= options_.delta2) continue;
-            candidates.push_back({share * std::min(length, 4.0), border.a, border.b});
+            candidates.push_back({share * double(border.pairs.size()), border.a, border.b});
         }
         std::stable_sort(
             candidates.begin(), candidates.end(),
             [](const Candidate& x, const Candidate& y) { return x.confidence > y.confidence; });
         for (const Candidate& c : candidates) {
             const std::int32_t a = root(c.a), b = root(c.b);
+            if (a != b && set_concavity(a, b) <= options_.concavity_max) join(a, b);
+        }
+    }
+
+    // The two sides of a board often have no visible edge between them.
+    void merge_sides() {
+        for (const Sides& pair : find_sides(s_, r_, samples_, options_)) {
+            const std::int32_t a = root(pair.a), b = root(pair.b);
+            if (a != b && set_concavity(a, b) <= options_.board_concavity_max) join(a, b);
+        }
+    }
+
+    void merge_wall_pieces() {
+        for (const auto& [i, j] : find_wall_pieces(s_, r_, samples_, options_)) {
+            const std::int32_t a = root(i), b = root(j);
+            if (a != b) join(a, b);
+        }
+    }
+
+    void merge_face_pieces() {
+        for (const auto& [i, j] : find_face_pieces(s_, r_, samples_, options_)) {
+            const std::int32_t a = root(i), b = root(j);
             if (a != b && set_concavity(a, b) <= options_.concavity_max) join(a, b);
         }
     }
@@ -134,7 +156,10 @@ class Merger {
 PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const Vec3&) {
     const MergeOptions options;
     Merger merger(surfels, regions, options);
+    merger.merge_wall_pieces();
     merger.merge_convex_borders();
+    merger.merge_face_pieces();
+    merger.merge_sides();
     return merger.result();
 }
 

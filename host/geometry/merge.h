@@ -24,8 +24,21 @@ struct MergeOptions {
     double concavity_max = 0.12;
     // Points of each region that stand for it when the merged set's convexity is checked.
     std::uint32_t samples = 48;
-    // Opposite faces closer than this are the two sides of one board, metres.
+    // Opposite faces closer than this are the two sides of one board, metres, where this share of
+    // one face has the other right behind it.
     double board_m = 0.06;
+    double board_share = 0.4;
+    // Largest concavity of a set that becomes one by being two sides of a board.
+    double board_concavity_max = 0.2;
+    // Pieces of a plane that bounds the scene (a wall behind furniture) are one where at most this
+    // share of the surfels around them lies behind it; each holds at least this share of all
+    // surfels.
+    double behind_max = 0.01;
+    double wall_piece_min = 0.002;
+    // Pieces of one face with something standing against the gap between them: the widest gap,
+    // metres; how far before the face that thing begins and how far behind it nothing may be,
+    // cells.
+    double gap_m = 0.12, gap_cover_cells = 3;
 };
 
 // What a region looks like from outside: evenly drawn points moved onto the model, with its
@@ -50,5 +63,36 @@ double inside_share(const Surfels& surfels, const Regions& regions, const Border
 
 // Share of point pairs of two regions of which one lies in front of the other's surface.
 double concavity(const RegionSamples& a, const RegionSamples& b);
+
+// Pairs of regions that are the two sides of something thin, with the share of the smaller one's
+// samples behind which, within board_m, the other's surface faces the opposite way.
+struct Sides {
+    double share = 0;
+    std::int32_t a = -1, b = -1;
+};
+std::vector<Sides> find_sides(const Surfels& surfels, const Regions& regions,
+                              const std::vector<RegionSamples>& samples,
+                              const MergeOptions& options);
+
+// Pairs of planes that are pieces of one plane that bounds the scene, such as a wall seen between
+// the boards of a shelf: they lie in each other's plane, face the same way, and nothing around them
+// is behind. Two boxes of equal height are no such pair: their sides are below their tops.
+std::vector<std::pair<std::int32_t, std::int32_t>> find_wall_pieces(
+    const Surfels& surfels, const Regions& regions, const std::vector<RegionSamples>& samples,
+    const MergeOptions& options);
+
+// Pairs of planes that are pieces of one face, parted by something that stands against it: the
+// board between two compartments of a shelf. The gap is covered in front and has nothing close
+// behind.
+std::vector<std::pair<std::int32_t, std::int32_t>> find_face_pieces(
+    const Surfels& surfels, const Regions& regions, const std::vector<RegionSamples>& samples,
+    const MergeOptions& options);
+
+// The surfel in the cell that holds p, or -1.
+std::int64_t surfel_at(const Surfels& surfels, const Eigen::Vector3d& p);
+
+// Whether two planes face the same way and lie in each other's plane.
+bool coplanar(const Regions& regions, const std::vector<RegionSamples>& samples, std::size_t a,
+              std::size_t b, double slack_m);
 
 }  // namespace topple::geometry

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "geometry/algebraic_model.h"
+#include "geometry/merge.h"
+
+// Regions that belong together although the scan does not show them to touch.
+namespace topple::geometry {
+
+namespace {
+
+// The region whose surface lies behind the point within `reach`, facing the opposite way; -1 if
+// none.
+std::int32_t region_behind(const Surfels& s, const Regions& regions, std::int32_t own,
+                           const Eigen::Vector3d& p, const Eigen::Vector3d& n, double reach) {
+    constexpr double opposite = -0.7;  // cosine
+    for (double t = 0.5 * s.cell_m; t <= reach; t += 0.5 * s.cell_m) {
+        const std::int64_t at = surfel_at(s, p - t * n);
+        if (at < 0) continue;
+        const auto i = static_cast<std::size_t>(at);
+        const std::int32_t label = regions.label[i];
+        if (label < 0 || label == own) continue;
+        if (n.dot(Eigen::Vector3d(s.nx[i], s.ny[i], s.nz[i])) < opposite) return label;
+    }
+    return -1;
+}
+
+}  // namespace
+
+// Surfels are sorted by cell.
+std::int64_t surfel_at(const Surfels& s, const Eigen::Vector3d& p) {
+    const auto cell = [&](double v) { return static_cast<std::int32_t>(std::floor(v / s.cell_m)); };
+    const std::tuple<std::int32_t, std::int32_t, std::int32_t> wanted{cell(p.x()), cell(p.y()),
+                                                                      cell(p.z())};
+    std::size_t low = 0, high = s.size();
+    while (low < high) {
+        const std::size_t middle = (low + high) / 2;
+        if (std::tie(s.cx[middle], s.cy[middle], s.cz[middle]) < wanted)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    if (low == s.size() || std::tie(s.cx[low], s.cy[low], s.cz[low]) != wanted) return -1;
+    return static_cast<std::int64_t>(low);
+}
+
+bool coplanar(const Regions& regions, const std::vector<RegionSamples>& samples, std::size_t a,
+              std::size_t b, double slack_m) {
+    if (regions.regions[a].model.degree != 1 || regions.regions[b].model.degree != 1) return false;
+    if (samples[a].points.empty() || samples[b].points.empty()) return false;
+    constexpr double parallel = 0.97;  // cosine
+    if (samples[a].normals.front().dot(samples[b].normals.front()) < parallel) return false;
+    const auto off = [&](std::size_t points, std::size_t plane) {
+        double sum = 0;
+        for (const auto& p : samples[points].points)
+            sum += std::abs(distance(regions.regions[plane].model, p));
+        return sum / static_cast<double>(samples[points].points.size());
+    };
+    const double bound = std::max(samples[a].tolerance_m, samples[b].tolerance_m) + slack_m;
+    return std::min(off(a, b), off(b, a)) <= bound;
+}
+
+std::vector<Sides> find_sides(const Surfels& surfels, const Regions& regions,
+                              const std::vector<RegionSamples>& samples,
+                              const MergeOptions& options) {
+    std::map<std::pair<std::int32_t, std::int32_t>, double> share;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const RegionSamples& own = samples[k];
+        const auto a = static_cast<std::int32_t>(k);
+        for (std::size_t m = 0; m < own.points.size(); ++m) {
+            const std::int32_t b =
+                region_behind(surfels, regions, a, own.points[m], own.normals[m], options.board_m);
+            if (b >= 0) share[{a, b}] += 1.0 / static_cast<double>(own.points.size());
+        }
+    }
+    std::vector<Sides> sides;
+    for (const auto& [pair, value] : share) {
+        const auto back = share.find({pair.second, pair.first});
+        const double other = back == share.end() ? 0 : back->second;
+        // Each pair once, by the better of its two shares.
+        if (value < other || (value == other && pair.first > pair.second)) continue;
+        if (value >= options.board_share) sides.push_back({value, pair.first, pair.second});
+    }
+    std::stable_sort(sides.begin(), sides.end(),
+                     [](const Sides& x, const Sides& y) { return x.share > y.share; });
+    return sides;
+}
+
+std::vector<std::pair<std::int32_t, std::int32_t>> find_wall_pieces(
+    const Surfels& surfels, const Regions& regions, const std::vector<RegionSamples>& samples,
+    const MergeOptions& options) {
+    std::vector<std::size_t> large;
+    for (std::size_t k = 0; k < regions.regions.size(); ++k)
+        if (regions.regions[k].model.degree == 1 &&
+            static_cast<double>(regions.regions[k].surfels) >=
+                options.wall_piece_min * static_cast<double>(surfels.size()))
+            large.push_back(k);
+    const std::size_t step = surfels.size() / 20000 + 1;
+
+    // Whether nothing is behind the plane of `k` within the box around both regions.
+    const auto bounds_scene = [&](std::size_t k, std::size_t other, double tolerance) {
+        const AlgebraicModel& plane = regions.regions[k].model;
+        const Eigen::Vector3d n = samples[k].normals.front();
+        const Eigen::Vector3d u = n.unitOrthogonal(), v = n.cross(u);
+        Eigen::Array2d low(1e30, 1e30), high(-1e30, -1e30);
+        for (const std::size_t r : {k, other})
+            for (const auto& p : samples[r].points) {
+                const Eigen::Array2d q(u.dot(p), v.dot(p));
+                low = low.min(q);
+                high = high.max(q);
+            }
+        std::uint64_t behind = 0, all = 0;
+        for (std::size_t i = 0; i < surfels.size(); i += step) {
+            const Eigen::Vector3d p(surfels.x[i], surfels.y[i], surfels.z[i]);
+            const Eigen::Array2d q(u.dot(p), v.dot(p));
+            if ((q < low).any() || (q > high).any()) continue;
+            ++all;
+            behind += distance(plane, p) < -tolerance;
+        }
+        return static_cast<double>(behind) <= options.behind_max * static_cast<double>(all);
+    };
+
+    std::vector<std::pair<std::int32_t, std::int32_t>> pieces;
+    for (std::size_t x = 0; x < large.size(); ++x)
+        for (std::size_t y = x + 1; y < large.size(); ++y) {
+            if (!coplanar(regions, samples, large[x], large[y], surfels.cell_m)) continue;
+            const double tolerance =
+                std::max(samples[large[x]].tolerance_m, samples[large[y]].tolerance_m);
+            const std::size_t larger =
+                regions.regions[large[x]].surfels >= regions.regions[large[y]].surfels ? large[x]
+                                                                                       : large[y];
+            const std::size_t smaller = larger == large[x] ? large[y] : large[x];
+            if (bounds_scene(larger, smaller, tolerance + 2 * surfels.cell_m))
+                pieces.emplace_back(static_cast<std::int32_t>(large[x]),
+                                    static_cast<std::int32_t>(large[y]));
+        }
+    return pieces;
+}
+
+}  // namespace topple::geometry

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include "host/geometry/split_scenes.h"
+
+namespace topple::geometry {
+namespace {
+
+using Eigen::Vector3d;
+using scenes::Builder;
+using scenes::Majority;
+using scenes::majority;
+
+struct Parsed {
+    Surfels surfels;
+    PrimitiveSet primitives;
+    explicit Parsed(const Builder& scene) : surfels(scene.surfels()) {
+        primitives = merge_convex(surfels, split(surfels), {0, 0, 1});
+    }
+    Majority of(const Builder& scene, int body) const {
+        return majority(scene, surfels, primitives.label, body);
+    }
+};
+
+TEST(Merge, NothingGivesNothing) {
+    Surfels none;
+    none.cell_m = 0.02;
+    none.neighbour_first = {0};
+    const PrimitiveSet primitives = merge_convex(none, split(none), {0, 0, 1});
+    EXPECT_TRUE(primitives.label.empty());
+    EXPECT_TRUE(primitives.regions.empty());
+}
+
+TEST(Merge, ABoxIsOnePrimitive) {
+    Builder scene;
+    scene.noise_m = 0.002;
+    scene.box({0, 0, 0}, {0.4, 0.3, 0.5}, 0);
+    const Parsed parsed(scene);
+    EXPECT_GT(parsed.of(scene, 0).share, 0.97);
+    EXPECT_EQ(parsed.primitives.model.front(), "merged");
+}
+
+TEST(Merge, WhatStandsOnATableStaysApart) {
+    Builder scene;
+    scene.noise_m = 0.002;
+    scene.box({-0.8, -0.5, 0.7}, {1.6, 1, 0.05}, 0);
+    scene.box({-0.5, -0.2, 0.75}, {0.25, 0.2, 0.2}, 1);
+    scene.tube({0.4, 0, 0.75}, 0.05, 0.2, true, 2);
+    const Parsed parsed(scene);
+    std::set<std::int32_t> ids;
+    for (int body = 0; body < 3; ++body) {
+        EXPECT_GT(parsed.of(scene, body).share, 0.85) << "body " << body;
+        ids.insert(parsed.of(scene, body).label);
+    }
+    EXPECT_EQ(ids.size(), 3u);
+}
+
+TEST(Merge, FloorAndWallsOfARoomStayApart) {
+    Builder scene;
+    scene.noise_m = 0.003;
+    scene.face({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, 0);
+    scene.face({0, 0, 0}, {0, 2, 0}, {0, 0, 2}, 1);
+    scene.face({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, 2);
+    const Parsed parsed(scene);
+    std::set<std::int32_t> ids;
+    for (int body = 0; body < 3; ++body) ids.insert(parsed.of(scene, body).label);
+    EXPECT_EQ(ids.size(), 3u);
+}
+
+TEST(Merge, BoxesOfEqualHeightStayApart) {
+    Builder scene;
+    scene.face({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0);
+    scene.box({-0.4, 0, 0}, {0.3, 0.3, 0.3}, 1);
+    scene.box({0.1, 0, 0}, {0.3, 0.3, 0.3}, 2);
+    const Parsed parsed(scene);
+    EXPECT_NE(parsed.of(scene, 1).label, parsed.of(scene, 2).label);
+    EXPECT_NE(parsed.of(scene, 0).label, parsed.of(scene, 1).label);
+    EXPECT_GT(parsed.of(scene, 1).share, 0.9);
+    EXPECT_GT(parsed.of(scene, 2).share, 0.9);
+}
+
+TEST(Merge, TwoSidesOfABoardAreOneWithoutTheirEdge) {
+    Builder scene;
+    scene.face({0, 0, 0.5}, {1, 0, 0}, {0, 0.4, 0}, 0);
+    scene.face({0, 0, 0.46}, {0, 0.4, 0}, {1, 0, 0}, 0);
+    const Parsed parsed(scene);
+    EXPECT_GT(parsed.of(scene, 0).share, 0.98);
+    ASSERT_EQ(parsed.primitives.regions.size(), 1u);
+    EXPECT_EQ(parsed.primitives.regions[0].size(), 2u);
+}
+
+// The air between a shelf's boards is thin too, but their faces look at each other.
+TEST(Merge, FacesThatLookAtEachOtherStayApart) {
+    Builder scene;
+    scene.face({0, 0, 0.46}, {1, 0, 0}, {0, 0.4, 0}, 0);
+    scene.face({0, 0, 0.5}, {0, 0.4, 0}, {1, 0, 0}, 1);
+    const Parsed parsed(scene);
+    EXPECT_NE(parsed.of(scene, 0).label, parsed.of(scene, 1).label);
+}
+
+TEST(Merge, AWallSeenInPiecesIsOne) {
+    Builder scene;
+    scene.face({0, 0, 0}, {0, 1, 0}, {0, 0, 2}, 0);
+    scene.face({0, 1.3, 0}, {0, 1, 0}, {0, 0, 2}, 0);
+    scene.face({0, 0, 0}, {2, 0, 0}, {0, 2.3, 0}, 1);
+    scene.box({0.02, 0.95, 0}, {0.4, 0.4, 2.0}, 2);
+    const Parsed parsed(scene);
+    EXPECT_GT(parsed.of(scene, 0).share, 0.95);
+    EXPECT_NE(parsed.of(scene, 0).label, parsed.of(scene, 1).label);
+    EXPECT_NE(parsed.of(scene, 0).label, parsed.of(scene, 2).label);
+}
+
+TEST(Merge, IdsFallInSizeAndCoverTheRegions) {
+    Builder scene;
+    scene.noise_m = 0.002;
+    scene.face({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0);
+    scene.box({0, 0, 0}, {0.2, 0.2, 0.2}, 1);
+    scene.ball({-0.5, -0.5, 0.1}, 0.1, 2);
+    const Parsed parsed(scene);
+    std::vector<std::uint64_t> count(parsed.primitives.regions.size(), 0);
+    for (const std::int32_t label : parsed.primitives.label)
+        if (label >= 0) ++count[static_cast<std::size_t>(label)];
+    for (std::size_t k = 1; k < count.size(); ++k) EXPECT_GE(count[k - 1], count[k]);
+    EXPECT_EQ(parsed.primitives.model.size(), count.size());
+    EXPECT_EQ(parsed.primitives.model.front(), "plane");
+}
+
+}  // namespace
+}  // namespace topple::geometry
