@@ -31,7 +31,8 @@ std::vector<Offset> disc(double radius) {
     return out;
 }
 
-// The map's frame: cells no finer than the voxels, and no more than 2^20 of them.
+// The map's frame: cells no finer than the voxels, and so few that 16 planes of them, with
+// the margins that the convolution adds, stay within 128 MiB.
 WalkableMap empty_map(const physics::SolidCells& cells, const HumanOptions& options) {
     WalkableMap map;
     map.voxel_m = cells.voxel_m;
@@ -46,7 +47,8 @@ WalkableMap empty_map(const physics::SolidCells& cells, const HumanOptions& opti
         std::max({options.cell_m, cells.voxel_m, 0.02});  // finer than 2 cm tells nothing of people
     const double width = (static_cast<double>(*ih) - *il + 1) * cells.voxel_m;
     const double depth = (static_cast<double>(*jh) - *jl + 1) * cells.voxel_m;
-    while ((width / map.cell_m + 1) * (depth / map.cell_m + 1) > 1048576.0) map.cell_m *= 2;
+    const auto across = [&](double metres, double margin) { return metres / map.cell_m + margin; };
+    while (across(width, 160) * across(depth, 96) > 2097152.0) map.cell_m *= 2;
     if (map.cell_m > options.cell_m * 1.001) {
         map.notes.push_back("The walkable map has cells of " +
                             std::to_string(std::lround(map.cell_m * 1000)) +
