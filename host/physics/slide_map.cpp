@@ -119,17 +119,27 @@ bool SlideMap::blocked(std::int32_t i, std::int32_t j) {
 }
 
 bool SlideMap::bears(std::int32_t shift_i, std::int32_t shift_j) {
+    // Of each row of columns, sorted by (i, j), the outermost that still bear.
     std::vector<std::array<double, 2>> corners;
+    const auto add_row = [&](std::int32_t i, std::int32_t from, std::int32_t to) {
+        for (const std::int32_t x : {i, i + 1}) {
+            corners.push_back({static_cast<double>(x), static_cast<double>(from)});
+            corners.push_back({static_cast<double>(x), static_cast<double>(to + 1)});
+        }
+    };
+    bool any = false;
+    std::int32_t row = 0, from = 0, to = 0;
     for (const Footprint::Column& c : foot_.columns) {
         if (std::int64_t{c.low} - foot_.support > 2) continue;  // not a foot
         if (!ground(c.i + shift_i, c.j + shift_j).holds) continue;
-        for (int a = 0; a < 2; ++a) {
-            for (int b = 0; b < 2; ++b) {
-                corners.push_back({static_cast<double>(c.i + a), static_cast<double>(c.j + b)});
-            }
-        }
+        if (any && c.i != row) add_row(row, from, to);
+        if (!any || c.i != row) from = c.j;
+        any = true;
+        row = c.i;
+        to = c.j;
     }
-    if (corners.empty()) return false;
+    if (!any) return false;
+    add_row(row, from, to);
     const auto polygon = convex_polygon(std::move(corners));
     return footing(polygon, center_[0] / cells_.voxel_m, center_[1] / cells_.voxel_m).margin_m > 0;
 }
@@ -144,6 +154,21 @@ bool SlideMap::falls(std::int32_t i, std::int32_t j) {
     const bool fall = !ground(i, j).holds && !bears(di, dj);
     known = fall ? 2 : 1;
     return fall;
+}
+
+bool SlideMap::passable(std::int32_t i, std::int32_t j) {
+    const Ground& under = ground(i, j);
+    return (under.holds || under.below > 0) && !blocked(i, j);
+}
+
+bool SlideMap::any_edge() {
+    for (std::int32_t i = start_i_ - radius_; i <= start_i_ + radius_; ++i) {
+        for (std::int32_t j = start_j_ - radius_; j <= start_j_ + radius_; ++j) {
+            const Ground& under = ground(i, j);
+            if (!under.holds && under.below > 0) return true;
+        }
+    }
+    return false;
 }
 
 double SlideMap::drop_m(std::int32_t i, std::int32_t j) {

@@ -49,6 +49,10 @@ class SlideMap {
     // With the centre of mass over column (i, j): can it be there, and does it fall from there?
     bool blocked(std::int32_t i, std::int32_t j);
     bool falls(std::int32_t i, std::int32_t j);
+    // Not blocked, and what is below is known: ground, or a drop.
+    bool passable(std::int32_t i, std::int32_t j);
+    // Whether any column in reach lies above a drop.
+    bool any_edge();
     double drop_m(std::int32_t i,
                   std::int32_t j);  // below column (i, j); 0: unknown or less than 2 voxels
 

@@ -83,8 +83,9 @@ class Search {
         std::priority_queue<Node, std::vector<Node>, std::greater<>> open;
         const std::int32_t si = map_.start_i(), sj = map_.start_j();
         if (map_.falls(si, sj)) return exit_at(si, sj);
-        state(si, sj) = {0, si, sj, false};
+        state(si, sj) = {0, si, sj, false, true};
         open.push({0, si, sj});
+        std::size_t settled = 0;
         while (!open.empty()) {
             const Node node = open.top();
             open.pop();
@@ -95,6 +96,8 @@ class Search {
                 continue;
             }
             s.closed = true;
+            // A floor has no edge: worth asking once the search has grown.
+            if (++settled == 4000 && !map_.any_edge()) return {};
             if (map_.falls(node.i, node.j)) return exit_at(node.i, node.j);
             expand(node, s, open);
         }
@@ -106,6 +109,7 @@ class Search {
         double cost = std::numeric_limits<double>::infinity();
         std::int32_t parent_i = 0, parent_j = 0;
         bool closed = false;
+        bool in_sight = false;  // of the parent, as far as it can be: not to be asked again
     };
     State& state(std::int32_t i, std::int32_t j) {
         return nodes_[static_cast<std::size_t>(i - map_.start_i() + map_.radius()) *
@@ -132,10 +136,6 @@ class Search {
         }
         return std::hypot(to[0] - from[0], to[1] - from[1]);
     }
-    bool passable(std::int32_t i, std::int32_t j) {
-        if (map_.blocked(i, j)) return false;
-        return !map_.falls(i, j) || map_.drop_m(i, j) > 0;
-    }
     bool sight(std::int32_t i, std::int32_t j, std::int32_t to_i, std::int32_t to_j) {
         const auto from = place(i, j), to = place(to_i, to_j);
         const double length = std::hypot(to[0] - from[0], to[1] - from[1]);
@@ -146,7 +146,7 @@ class Search {
             const auto cj = static_cast<std::int32_t>(std::floor(from[1] + t * (to[1] - from[1])));
             if (ci == to_i && cj == to_j) return true;
             if ((ci != map_.start_i() || cj != map_.start_j()) &&
-                (!passable(ci, cj) || map_.falls(ci, cj)))
+                (!map_.passable(ci, cj) || map_.falls(ci, cj)))
                 return false;
         }
         return true;
@@ -154,14 +154,14 @@ class Search {
     // Makes good on a cost that took sight for granted; false if it was wrong, with the cost
     // mended.
     bool settle(const Node& node, State& s) {
-        if (sight(s.parent_i, s.parent_j, node.i, node.j)) return true;
+        if (s.in_sight || sight(s.parent_i, s.parent_j, node.i, node.j)) return true;
         s.cost = std::numeric_limits<double>::infinity();
         for (int a = -1; a <= 1; ++a) {
             for (int b = -1; b <= 1; ++b) {
                 const std::int32_t i = node.i + a, j = node.j + b;
                 if ((a == 0 && b == 0) || !inside(i, j) || !state(i, j).closed) continue;
                 const double cost = state(i, j).cost + distance(i, j, node.i, node.j);
-                if (cost < s.cost) s = {cost, i, j, false};
+                if (cost < s.cost) s = {cost, i, j, false, true};
             }
         }
         return false;
@@ -174,10 +174,10 @@ class Search {
                 const std::int32_t i = node.i + a, j = node.j + b;
                 if ((a == 0 && b == 0) || !inside(i, j)) continue;
                 State& next = state(i, j);
-                if (next.closed || !passable(i, j)) continue;
+                if (next.closed || !map_.passable(i, j)) continue;
                 const double cost = parent.cost + distance(s.parent_i, s.parent_j, i, j);
                 if (cost < next.cost) {
-                    next = {cost, s.parent_i, s.parent_j, false};
+                    next = {cost, s.parent_i, s.parent_j, false, false};
                     open.push({cost, i, j});
                 }
             }
