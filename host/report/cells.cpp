@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "report/cells.h"
+
+#include <bit>
+#include <cmath>
+
+namespace topple::report {
+namespace {
+
+constexpr std::uint64_t no_key = UINT64_MAX;
+
+constexpr std::array<std::array<std::int32_t, 3>, 6> faces{
+    {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+
+std::uint64_t key_of(const std::array<std::int32_t, 3>& index) {
+    std::uint64_t key = 0;
+    for (const auto value : index)
+        key = key << 21 | (static_cast<std::uint32_t>(value + (1 << 20)) & 0x1FFFFF);
+    return key;
+}
+
+std::array<std::int32_t, 3> beside(const std::array<std::int32_t, 3>& index, std::size_t face) {
+    return {index[0] + faces[face][0], index[1] + faces[face][1], index[2] + faces[face][2]};
+}
+
+bool unit(std::array<float, 3>& v) {
+    const float length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    if (!(length > 1e-6f)) return false;
+    for (auto& value : v) value /= length;
+    return true;
+}
+
+}  // namespace
+
+CellTable::CellTable(std::size_t capacity) {
+    const auto size = std::bit_ceil(2 * capacity + 2);
+    keys_.assign(size, no_key);
+    values_.assign(size, absent);
+    mask_ = size - 1;
+}
+
+std::size_t CellTable::slot_of(std::uint64_t key) const {
+    auto slot = (key * 0x9E3779B97F4A7C15u) >> 20 & mask_;
+    while (keys_[slot] != no_key && keys_[slot] != key) slot = (slot + 1) & mask_;
+    return slot;
+}
+
+std::uint32_t CellTable::find(const std::array<std::int32_t, 3>& index) const {
+    return values_[slot_of(key_of(index))];
+}
+
+std::uint32_t CellTable::insert(const std::array<std::int32_t, 3>& index, std::uint32_t value) {
+    const auto key = key_of(index);
+    const auto slot = slot_of(key);
+    if (keys_[slot] == no_key) {
+        keys_[slot] = key;
+        values_[slot] = value;
+    }
+    return values_[slot];
+}
+
+std::size_t mark_exposed(std::vector<Cell>& cells, const CellTable& table) {
+    std::size_t count = 0;
+    for (auto& cell : cells) {
+        cell.exposed = 0;
+        for (std::size_t face = 0; face < faces.size(); ++face) {
+            const bool open = table.find(beside(cell.index, face)) == CellTable::absent;
+            cell.exposed = static_cast<std::uint8_t>(cell.exposed | (open ? 1u << face : 0u));
+        }
+        count += cell.exposed != 0;
+    }
+    return count;
+}
+
+void spread_normals(std::vector<Cell>& cells, const CellTable& table,
+                    const std::array<double, 3>& centre) {
+    std::vector<std::uint32_t> missing;
+    for (std::uint32_t i = 0; i < cells.size(); ++i) {
+        if (cells[i].grounded && !unit(cells[i].normal)) {
+            cells[i].normal = {};
+            missing.push_back(i);
+        }
+    }
+    for (int ring = 0; ring < 8 && !missing.empty(); ++ring) {
+        // All of a ring read the ring before: the result does not depend on the order of the cells.
+        std::vector<std::array<float, 3>> found(missing.size());
+        for (std::size_t k = 0; k < missing.size(); ++k) {
+            for (std::size_t face = 0; face < faces.size(); ++face) {
+                const auto other = table.find(beside(cells[missing[k]].index, face));
+                if (other == CellTable::absent || !cells[other].grounded) continue;
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                    found[k][axis] += cells[other].normal[axis];
+            }
+        }
+        std::vector<std::uint32_t> still;
+        for (std::size_t k = 0; k < missing.size(); ++k) {
+            if (unit(found[k])) {
+                cells[missing[k]].normal = found[k];
+            } else {
+                still.push_back(missing[k]);
+            }
+        }
+        if (still.size() == missing.size()) break;
+        missing = std::move(still);
+    }
+    for (const auto i : missing) {
+        std::array<float, 3> inward{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            inward[axis] = static_cast<float>(centre[axis] - cells[i].index[axis]);
+        }
+        if (unit(inward)) cells[i].normal = inward;
+    }
+}
+
+}  // namespace topple::report

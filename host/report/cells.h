@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "topple/input.h"
+
+namespace topple::report {
+
+// One cube of the view: a voxel, or several merged.
+struct Cell {
+    std::array<std::int32_t, 3> index{};
+    std::uint16_t group = 0;
+    bool grounded = false;
+    bool completed = false;
+    std::uint8_t exposed = 0;  // faces with no cell behind them: bits -x +x -y +y -z +z
+    std::array<float, 3> normal{};
+};
+
+// Finds a cell by its index. Open addressing; it answers membership only, so its order reaches
+// nothing.
+class CellTable {
+  public:
+    explicit CellTable(std::size_t capacity);
+    // The slot's value, `absent` where there is none. Indices must be within +-2^20.
+    static constexpr std::uint32_t absent = UINT32_MAX;
+    std::uint32_t find(const std::array<std::int32_t, 3>& index) const;
+    // The value stored for the index, after storing `value` where there was none.
+    std::uint32_t insert(const std::array<std::int32_t, 3>& index, std::uint32_t value);
+
+  private:
+    std::size_t slot_of(std::uint64_t key) const;
+    std::vector<std::uint64_t> keys_;
+    std::vector<std::uint32_t> values_;
+    std::uint64_t mask_;
+};
+
+// Marks which faces of each cell are exposed; returns how many cells have one.
+std::size_t mark_exposed(std::vector<Cell>& cells, const CellTable& table);
+
+// Gives grounded cells without a normal the mean of their neighbours', ring after ring; at last,
+// those that no ring reached point to `centre` (cell units).
+void spread_normals(std::vector<Cell>& cells, const CellTable& table,
+                    const std::array<double, 3>& centre);
+
+}  // namespace topple::report

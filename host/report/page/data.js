@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+'use strict';
+
+// The scene as it was inlined, its records as typed arrays, and what is looked up by id.
+function loadScene() {
+  const scene = JSON.parse(document.getElementById('data').textContent);
+  const view = scene.view;
+  for (const records of [view.voxels, view.points]) {
+    records.cell = new Uint16Array(bytesOf(records.cell));
+    records.aux = new Int8Array(bytesOf(records.aux));
+  }
+  for (const name of Object.keys(view.fields)) {
+    view.fields[name].arrow = new Float32Array(bytesOf(view.fields[name].arrow));
+  }
+  scene.objectById = new Map(scene.objects.map(object => [object.id, object]));
+  scene.disturbances = [];
+  for (const object of scene.objects) {
+    for (const name of Object.keys(object.risk_J)) {
+      if (!scene.disturbances.includes(name)) scene.disturbances.push(name);
+    }
+  }
+  return scene;
+}
+
+function bytesOf(base64) {
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  return bytes.buffer;
+}
+
+const noColour = [168, 172, 178];
+
+function colourOf(scene, id) {
+  return id >= 0 && scene.colours[id] ? scene.colours[id] : noColour;
+}
+
+// Unsafety 1 to 10, pale to dark: lightness alone tells the order.
+const riskStops = [[253, 236, 178], [252, 187, 92], [240, 118, 56], [201, 44, 44], [112, 10, 50]];
+
+function riskColour(unsafety) {
+  const at = Math.min(Math.max((unsafety - 1) / 9, 0), 1) * (riskStops.length - 1);
+  const low = Math.min(Math.floor(at), riskStops.length - 2);
+  return riskStops[low].map((value, i) => Math.round(value + (riskStops[low + 1][i] - value) * (at - low)));
+}
+
+function css(colour) {
+  return 'rgb(' + colour.join(',') + ')';
+}
+
+// Three digits, short; a dash for what has no value.
+function number(value, unit) {
+  if (value === null || value === undefined) return '\u2013';
+  const size = Math.abs(value);
+  let text;
+  if (size === 0) text = '0';
+  else if (size >= 10000 || size < 0.001) text = value.toExponential(1).replace('e+', 'e');
+  else text = String(Number(value.toPrecision(3)));
+  return unit ? text + '\u00a0' + unit : text;
+}
+
+function plural(count, noun) {
+  return count.toLocaleString('en') + ' ' + noun + (count === 1 ? '' : 's');
+}
+
+// An element with text (never markup) and children.
+function element(name, properties, children) {
+  const node = document.createElement(name);
+  for (const key of Object.keys(properties || {})) {
+    if (key === 'text') node.textContent = properties[key];
+    else if (key === 'style') Object.assign(node.style, properties[key]);
+    else if (key in node) node[key] = properties[key];
+    else node.setAttribute(key, properties[key]);
+  }
+  for (const child of children || []) node.append(child);
+  return node;
+}

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+'use strict';
+
+// What voxels and points share: the place of a record, its group's colour, and the look through walls.
+// The palette's alpha says: 1 a movable thing, about 0.5 a grounded one, 0 hidden.
+const recordShader = `
+  attribute vec4 cell;   // x, y, z in steps, group
+  attribute vec4 aux;    // normal / 127, flags
+  uniform vec3 origin, stepSize, eye;
+  uniform sampler2D palette;
+  uniform vec2 paletteSize;
+  uniform float through, picking;
+  varying vec3 shade;
+
+  vec3 place() { return origin + cell.xyz * stepSize; }
+
+  vec4 groupColour() {
+    float row = floor((cell.w + 0.5) / paletteSize.x);
+    float column = cell.w - row * paletteSize.x;
+    return texture2D(palette, (vec2(column, row) + 0.5) / paletteSize);
+  }
+
+  // A wall, floor or ceiling that is seen from behind would hide the room.
+  bool isBehind(vec4 colour, vec3 at) {
+    return through > 0.5 && colour.a < 0.75 && dot(aux.xyz, eye - at) < 0.0;
+  }
+
+  vec3 identity() {
+    float group = cell.w + 1.0;
+    return vec3(mod(group, 256.0), mod(floor(group / 256.0), 256.0), floor(group / 65536.0)) / 255.0;
+  }
+`;
+
+const voxelVertexShader = recordShader + `
+  uniform vec3 faceNormal;
+  uniform float cube;
+  void main() {
+    vec3 centre = place();
+    vec4 colour = groupColour();
+    if (colour.a < 0.1 || isBehind(colour, centre)) {
+      gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+      return;
+    }
+    float light = 0.86 + 0.16 * faceNormal.z - 0.07 * abs(faceNormal.x) + 0.04 * faceNormal.x;
+    if (faceNormal.z < -0.5) light = 0.62;
+    float completed = aux.w >= 64.0 ? 0.9 : 1.0;
+    shade = picking > 0.5 ? identity() : colour.rgb * light * completed;
+    gl_Position = projectionMatrix * viewMatrix * vec4(centre + position * cube, 1.0);
+  }
+`;
+
+const pointVertexShader = recordShader + `
+  uniform float pointScale, pointSize;
+  void main() {
+    vec3 at = place();
+    vec4 colour = groupColour();
+    if (colour.a < 0.1 || isBehind(colour, at)) {
+      gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+      gl_PointSize = 1.0;
+      return;
+    }
+    vec4 seen = viewMatrix * vec4(at, 1.0);
+    float facing = length(aux.xyz) > 10.0 ? abs(dot(normalize(aux.xyz), normalize(eye - at))) : 0.8;
+    shade = picking > 0.5 ? identity() : colour.rgb * (0.55 + 0.45 * facing);
+    gl_Position = projectionMatrix * seen;
+    gl_PointSize = clamp(pointSize * pointScale / max(-seen.z, 0.01), 1.5, 40.0);
+  }
+`;
+
+const recordFragmentShader = `
+  varying vec3 shade;
+  void main() { gl_FragColor = vec4(shade, 1.0); }
+`;
+
+// An arrow along +z of unit length, turned to its direction and scaled.
+const arrowVertexShader = `
+  attribute vec3 offset, direction;
+  attribute float strength;
+  uniform float longest, thickness;
+  uniform vec3 colour;
+  varying vec3 shade;
+  void main() {
+    float speed = length(direction);
+    vec3 along = speed > 0.0 ? direction / speed : vec3(0.0, 0.0, 1.0);
+    vec3 side = normalize(cross(along, abs(along.z) < 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
+    vec3 other = cross(along, side);
+    vec3 at = offset + (position.x * side + position.y * other) * thickness
+            + along * position.z * longest * max(strength, 0.15);
+    shade = mix(vec3(1.0), colour, 0.45 + 0.55 * strength) * (0.75 + 0.25 * normalize(position.x * side + position.y * other + 1e-5).z);
+    gl_Position = projectionMatrix * viewMatrix * vec4(at, 1.0);
+  }
+`;

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+'use strict';
+
+const capital = text => text.charAt(0).toUpperCase() + text.slice(1);
+
+// Object columns: heading, value to sort by, and what stands in the cell.
+function objectColumns(scene) {
+  const columns = [
+    {name: 'Object', value: object => object.id, cell: object => [
+      element('span', {className: 'swatch', style: {background: css(colourOf(scene, object.id))}}), String(object.id)]},
+    {name: 'Grounded', text: true, value: object => object.grounded ? 1 : 0, cell: object => [object.grounded ? 'yes' : 'no']},
+    {name: 'Mass (kg)', value: object => object.mass_kg},
+    {name: 'Barrier (J)', value: object => object.grounded ? Infinity : object.barrier_J, number: object => object.grounded ? null : object.barrier_J},
+    {name: 'Release (J)', value: object => object.grounded ? -1 : object.release_J, number: object => object.grounded ? null : object.release_J},
+    {name: 'Mode', text: true, value: object => object.mode, cell: object => [object.mode === 'none' ? '\u2013' : object.mode]},
+  ];
+  for (const name of scene.disturbances) {
+    columns.push({name: capital(name) + ' risk (J)', value: object => object.risk_J[name]});
+  }
+  columns.push({name: 'Unsafety', value: object => object.unsafety, cell: object => [unsafetyBadge(object)]});
+  return columns;
+}
+
+function unsafetyBadge(object) {
+  if (object.unsafety === null) return '\u2013';
+  const colour = object.grounded ? noColour : riskColour(object.unsafety);
+  const dark = 0.3 * colour[0] + 0.59 * colour[1] + 0.11 * colour[2] < 140;
+  return element('span', {
+    className: 'unsafety', text: object.unsafety.toFixed(1), style: {background: css(colour), color: dark ? '#fff' : '#1d2126'},
+  });
+}
+
+class ObjectTable {
+  constructor(table, scene, choose) {
+    this.scene = scene;
+    this.columns = objectColumns(scene);
+    this.body = table.tBodies[0];
+    this.rows = new Map();
+    this.heads = this.columns.map((column, i) => {
+      const head = element('th', {className: column.text ? 'text' : '', scope: 'col'},
+        [element('button', {type: 'button', text: column.name, onclick: () => this.sort(i)})]);
+      return head;
+    });
+    table.tHead.append(element('tr', {}, this.heads));
+    for (const object of scene.objects) {
+      const cells = this.columns.map(column => element('td', {className: column.text ? 'text' : ''},
+        column.cell ? column.cell(object) : [number(column.number ? column.number(object) : column.value(object))]));
+      const row = element('tr', {tabIndex: 0, onclick: () => choose(object.id), onkeydown: event => {
+        if (event.key === 'Enter' || event.key === ' ') {
+          event.preventDefault();
+          choose(object.id);
+        }
+      }}, cells);
+      this.rows.set(object.id, row);
+    }
+    this.sort(this.columns.length - 1, -1);
+  }
+
+  sort(column, direction) {
+    this.direction = direction || (this.column === column ? -this.direction : 1);
+    this.column = column;
+    const value = this.columns[column].value;
+    const missing = v => v === null || v === undefined;
+    const objects = this.scene.objects.slice().sort((a, b) => {
+      const x = value(a), y = value(b);
+      if (missing(x) || missing(y)) return missing(x) - missing(y) || a.id - b.id;
+      return (x < y ? -1 : x > y ? 1 : 0) * this.direction || a.id - b.id;
+    });
+    this.heads.forEach((head, i) => {
+      if (i === column) head.setAttribute('aria-sort', this.direction > 0 ? 'ascending' : 'descending');
+      else head.removeAttribute('aria-sort');
+    });
+    this.body.append(...objects.map(object => this.rows.get(object.id)));
+  }
+
+  choose(id) {
+    for (const [key, row] of this.rows) row.classList.toggle('chosen', key === id);
+    const row = this.rows.get(id);
+    if (!row) return;
+    const box = row.closest('.scroll');
+    if (row.offsetTop < box.scrollTop + 30 || row.offsetTop + row.offsetHeight > box.scrollTop + box.clientHeight) {
+      box.scrollTop = row.offsetTop - box.clientHeight / 2;
+    }
+  }
+}
+
+// --- the panel of one object --------------------------------------------------------------------------
+
+function numberList(pairs) {
+  const list = element('dl', {className: 'numbers'});
+  for (const [name, value] of pairs) list.append(element('dt', {text: name}), element('dd', {text: value}));
+  return list;
+}
+
+function objectLinks(ids, choose) {
+  return element('div', {className: 'links'}, ids.map(([id, text]) =>
+    element('button', {type: 'button', text: 'object ' + id + (text ? ' \u00b7 ' + text : ''), onclick: () => choose(id)})));
+}
+
+function showObject(panel, scene, id, choose) {
+  panel.replaceChildren();
+  const object = scene.objectById.get(id);
+  if (!object) {
+    showOverview(panel, scene, choose);
+    return;
+  }
+  const heading = element('h2', {}, [element('span', {className: 'swatch', style: {background: css(colourOf(scene, id))}}), 'Object ' + id]);
+  panel.append(heading);
+  const mode = {
+    tip: 'Most easily tipped over.', slide: 'Most easily slid off what carries it.', none: 'It has no way to fall.',
+  }[object.mode] || '';
+  panel.append(element('p', {className: 'hint', text: object.grounded ? 'Part of the ground, or fixed to it: it can\u2019t fall.' : mode}));
+  const pairs = [['Mass', number(object.mass_kg, 'kg')],
+    ['Centre of mass', object.center_of_mass_m.map(v => v === null ? '\u2013' : v.toFixed(2)).join(', ') + ' m']];
+  if (!object.grounded) {
+    pairs.push(['Barrier: energy that moves it', number(object.barrier_J, 'J')], ['It then can release', number(object.release_J, 'J')]);
+  }
+  for (const name of scene.disturbances) pairs.push(['Risk by ' + name, number(object.risk_J[name], 'J')]);
+  pairs.push(['Unsafety, 1 to 10', object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
+  panel.append(numberList(pairs));
+
+  const chart = object.grounded ? null : instabilityChart(object);
+  if (chart) panel.append(element('h3', {text: 'Instability S(W)'}), chart);
+
+  const on = scene.supports.filter(s => s.supported === id).map(s => [s.supporter, areaText(s.area_m2)]);
+  const carries = scene.supports.filter(s => s.supporter === id).map(s => [s.supported, areaText(s.area_m2)]);
+  if (on.length) panel.append(element('h3', {text: 'Rests on'}), objectLinks(on, choose));
+  if (carries.length) panel.append(element('h3', {text: 'Carries'}), objectLinks(carries, choose));
+  panel.append(element('h3', {text: 'Made of'}), primitiveList(scene, object));
+  panel.append(element('p', {className: 'hint'}, [element('button', {type: 'button', text: 'back to the overview', onclick: () => choose(null)})]));
+}
+
+function areaText(area) {
+  return area === null ? '' : area < 0.1 ? number(area * 1e4, 'cm\u00b2') : number(area, 'm\u00b2');
+}
+
+function primitiveList(scene, object) {
+  const list = element('dl', {className: 'numbers'});
+  const parts = scene.primitives.filter(p => p.object === object.id).sort((a, b) => b.volume_m3 - a.volume_m3);
+  for (const part of parts.slice(0, 12)) {
+    list.append(element('dt', {}, [
+      element('span', {className: 'swatch', style: {background: css(colourOf(scene, part.id))}}),
+      'primitive ' + part.id + ' (' + part.model + ')']),
+    element('dd', {text: part.volume_m3 === null ? '\u2013' : number(part.volume_m3 * 1000, 'l')}));
+  }
+  if (parts.length > 12) list.append(element('dt', {text: 'and ' + plural(parts.length - 12, 'more')}), element('dd'));
+  return list;
+}
+
+function showOverview(panel, scene, choose) {
+  const movable = scene.objects.filter(object => !object.grounded);
+  panel.append(element('h2', {text: 'Most likely to fall'}));
+  if (!movable.length) {
+    panel.append(element('p', {className: 'hint', text: 'No object was found that could fall.'}));
+    return;
+  }
+  panel.append(element('p', {className: 'hint', text: 'By unsafety. Choose one here, in the view or in the table.'}));
+  const worst = movable.slice().sort((a, b) => (b.unsafety || 0) - (a.unsafety || 0) || a.id - b.id).slice(0, 8);
+  const list = element('div', {className: 'bars'});
+  for (const object of worst) {
+    const fill = element('div', {className: 'fill', style: {
+      width: 10 * (object.unsafety || 0) + '%', background: css(riskColour(object.unsafety || 1)),
+    }});
+    list.append(element('button', {type: 'button', text: 'object ' + object.id, onclick: () => choose(object.id)}),
+      element('div', {className: 'track'}, [fill]),
+      element('span', {className: 'value', text: object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)}));
+  }
+  panel.append(list);
+}

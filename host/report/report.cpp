@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "report/report.h"
+
+#include <algorithm>
+#include <bit>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "io/file_writer.h"
+#include "io/palette.h"
+#include "io/scene_json.h"
+#include "report/base64.h"
+#include "report/page_parts.h"
+#include "report/view_data.h"
+
+namespace topple::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Typed arrays in the page are little-endian on every machine that runs a browser.
+static_assert(std::endian::native == std::endian::little,
+              "swap the records' bytes before packing them");
+
+template <class T>
+std::string packed(const std::vector<T>& records) {
+    return base64(records.data(), records.size() * sizeof(T));
+}
+
+Json records_json(const Records& records) {
+    return {{"count", records.cell.size()},
+            {"total", records.total},
+            {"cell", packed(records.cell)},
+            {"aux", packed(records.aux)}};
+}
+
+Json view_json(const PackedView& view) {
+    Json groups = Json::array();
+    for (const auto& [primitive, object] : view.groups) groups.push_back({primitive, object});
+    Json fields = Json::object();
+    for (const auto& [name, arrows] : view.fields) {
+        fields[name] = {{"count", arrows.arrow.size()},
+                        {"total", arrows.total},
+                        {"arrow", packed(arrows.arrow)}};
+    }
+    return {{"view_from_input", view.view_from_input},
+            {"origin_m", view.origin_m},
+            {"step_m", view.step_m},
+            {"cube_m", view.cube_m},
+            {"groups", std::move(groups)},
+            {"voxels", records_json(view.voxels)},
+            {"points", records_json(view.points)},
+            {"fields", std::move(fields)}};
+}
+
+// The palette that the .ply files use, for the ids that occur.
+Json colours_json(const PackedView& view) {
+    std::int32_t most = -1;
+    for (const auto& [primitive, object] : view.groups) most = std::max({most, primitive, object});
+    Json colours = Json::array();
+    for (std::int32_t id = 0; id <= std::min(most, 65535); ++id)
+        colours.push_back(io::colour_of(id));
+    return colours;
+}
+
+// JSON that may stand inside <script>: nothing in it can end the element or start a comment.
+std::string script_safe(std::string json) {
+    std::string out;
+    out.reserve(json.size() + json.size() / 64);
+    for (const char c : json) {
+        if (c == '<') {
+            out += "\\u003c";
+        } else {
+            out += c;
+        }
+    }
+    return out;
+}
+
+std::string html_escaped(std::string_view text) {
+    std::string out;
+    for (const char c : text) {
+        switch (c) {
+            case '&':
+                out += "&amp;";
+                break;
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            default:
+                out += c;
+        }
+    }
+    return out;
+}
+
+std::string data_json(const Scene& scene) {
+    Json json = Json::parse(io::scene_json(scene));
+    const auto view = pack_view(scene);
+    json["colours"] = colours_json(view);
+    json["view"] = view_json(view);
+    return script_safe(json.dump());
+}
+
+// Writes the template with its @NAMES@ filled in, one pass: what is filled in is not searched.
+void write_page(io::FileWriter& writer, std::string_view html,
+                std::initializer_list<std::pair<std::string_view, std::string_view>> parts) {
+    for (const auto& [name, text] : parts) {
+        const auto at = html.find(name);
+        if (at == std::string_view::npos)
+            throw std::logic_error("page.html has no " + std::string(name));
+        writer.write(html.substr(0, at));
+        writer.write(text);
+        html.remove_prefix(at + name.size());
+    }
+    writer.write(html);
+}
+
+}  // namespace
+
+void write_report(const std::filesystem::path& file, const Scene& scene) {
+    const auto data = data_json(scene);
+    const auto title = html_escaped(scene.source);
+    io::FileWriter writer(file);
+    write_page(writer, page::html,
+               {{"@TITLE@", title},
+                {"@STYLE@", page::style},
+                {"@DATA@", data},
+                {"@THREE@", page::three},
+                {"@CONTROLS@", page::controls},
+                {"@SCRIPT@", page::script}});
+    writer.close();
+}
+
+}  // namespace topple::report

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+
+#include "topple/scene.h"
+
+namespace topple::report {
+
+// Writes the result as one web page that opens from disk and needs no network: a 3D view of the
+// solid voxels and the scan, the disturbance fields, a table of the objects and the curves behind
+// their figures. Scenes with more voxels or points than a browser draws well are thinned for the
+// view, and the page says so; it stays below 15 MB. Throws Error(input) where the file can't be
+// written.
+void write_report(const std::filesystem::path& file, const Scene& scene);
+
+}  // namespace topple::report

@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: MIT
+#include "report/view_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "report/cells.h"
+
+namespace topple::report {
+namespace {
+
+using Rows = std::array<Vec3, 3>;
+
+double dot(const Vec3& a, const Vec3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Vec3 cross(const Vec3& a, const Vec3& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Rows rows_of(const Mat4& m) {
+    return {Vec3{m[0], m[1], m[2]}, Vec3{m[4], m[5], m[6]}, Vec3{m[8], m[9], m[10]}};
+}
+
+bool is_rotation(const Rows& r) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = i; k < 3; ++k) {
+            if (!(std::abs(dot(r[i], r[k]) - (i == k ? 1.0 : 0.0)) < 1e-3)) return false;
+        }
+    }
+    return dot(cross(r[0], r[1]), r[2]) > 0;
+}
+
+// The scene's own frame where it has one with z up, else any with z up.
+Rows view_frame(const Scene& scene) {
+    const double length = std::sqrt(dot(scene.up, scene.up));
+    const Vec3 up = length > 1e-9
+                        ? Vec3{scene.up[0] / length, scene.up[1] / length, scene.up[2] / length}
+                        : Vec3{0, 0, 1};
+    const auto given = rows_of(scene.manhattan_from_input);
+    if (is_rotation(given) && dot(given[2], up) > 0.9) return given;
+    // The input axis that is farthest from up becomes x.
+    std::size_t least = 0;
+    for (std::size_t axis = 1; axis < 3; ++axis) {
+        if (std::abs(up[axis]) < std::abs(up[least])) least = axis;
+    }
+    Vec3 x{};
+    x[least] = 1;
+    const double along = dot(x, up);
+    for (std::size_t axis = 0; axis < 3; ++axis) x[axis] -= along * up[axis];
+    const double norm = std::sqrt(dot(x, x));
+    for (auto& value : x) value /= norm;
+    return {x, cross(up, x), up};
+}
+
+Vec3 turned(const Rows& r, double x, double y, double z) {
+    const Vec3 p{x, y, z};
+    return {dot(r[0], p), dot(r[1], p), dot(r[2], p)};
+}
+
+struct Box {
+    Vec3 low{1e30, 1e30, 1e30}, high{-1e30, -1e30, -1e30};
+    void add(const Vec3& p) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], p[axis]);
+            high[axis] = std::max(high[axis], p[axis]);
+        }
+    }
+    bool empty() const { return low[0] > high[0]; }
+};
+
+// The pairs of primitive and object that occur, numbered as they come. Group 0 is (-1, -1); what
+// does not fit into 16 bits joins it.
+class Groups {
+  public:
+    explicit Groups(std::vector<std::pair<std::int32_t, std::int32_t>>& pairs) : pairs_(pairs) {
+        of(-1, -1);
+    }
+    std::uint16_t of(std::int32_t primitive, std::int32_t object) {
+        const std::pair pair(std::max(primitive, -1), std::max(object, -1));
+        const auto found = ids_.find(pair);
+        if (found != ids_.end()) return found->second;
+        if (pairs_.size() > 65535) return 0;
+        pairs_.push_back(pair);
+        return ids_[pair] = static_cast<std::uint16_t>(pairs_.size() - 1);
+    }
+
+  private:
+    std::vector<std::pair<std::int32_t, std::int32_t>>& pairs_;
+    std::map<std::pair<std::int32_t, std::int32_t>, std::uint16_t> ids_;
+};
+
+std::int8_t signed_byte(double value) {
+    return static_cast<std::int8_t>(std::lround(std::clamp(value, -1.0, 1.0) * 127));
+}
+
+class Packer {
+  public:
+    Packer(const Scene& scene, const ViewLimits& limits)
+        : scene_(scene), limits_(limits), groups_(view_.groups) {
+        view_.view_from_input = view_frame(scene);
+        for (const auto& object : scene.objects) {
+            if (!object.grounded || object.id < 0) continue;
+            grounded_.resize(std::max(grounded_.size(), static_cast<std::size_t>(object.id) + 1));
+            grounded_[static_cast<std::size_t>(object.id)] = true;
+        }
+    }
+
+    PackedView pack() {
+        measure();
+        pack_voxels();
+        pack_points();
+        for (const auto& [name, field] : scene_.fields) pack_field(field, view_.fields[name]);
+        return std::move(view_);
+    }
+
+  private:
+    bool is_grounded(std::int32_t object) const {
+        return object >= 0 && static_cast<std::size_t>(object) < grounded_.size() &&
+               grounded_[static_cast<std::size_t>(object)];
+    }
+    template <class Cloud>
+    Vec3 place(const Cloud& cloud, std::size_t i) const {
+        return turned(view_.view_from_input, cloud.x[i], cloud.y[i], cloud.z[i]);
+    }
+    static bool finite(const Vec3& p) {
+        return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+    }
+
+    // The box of all that is drawn, and how it divides into 65,535 steps.
+    void measure() {
+        Box all;
+        for (std::size_t i = 0; i < scene_.solid.x.size(); ++i) {
+            if (const auto p = place(scene_.solid, i); finite(p)) {
+                solid_box_.add(p);
+                if (scene_.solid.object[i] >= 0) ++voxels_of_object_[scene_.solid.object[i]];
+                all.add(p);
+            }
+        }
+        for (std::size_t i = 0; i < scene_.points.x.size(); ++i) {
+            if (const auto p = place(scene_.points, i); finite(p)) all.add(p);
+        }
+        if (all.empty()) all.add({0, 0, 0});
+        view_.origin_m = all.low;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            view_.step_m[axis] = std::max(all.high[axis] - all.low[axis], 1e-3) / 65535;
+        }
+    }
+
+    std::array<std::uint16_t, 4> quantised(const Vec3& p, std::uint16_t group) const {
+        std::array<std::uint16_t, 4> cell{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double steps = (p[axis] - view_.origin_m[axis]) / view_.step_m[axis];
+            cell[axis] = static_cast<std::uint16_t>(std::lround(std::clamp(steps, 0.0, 65535.0)));
+        }
+        cell[3] = group;
+        return cell;
+    }
+
+    // Index of the cube of edge `edge` that a place lies in.
+    std::array<std::int32_t, 3> index_of(const Vec3& p, double edge) const {
+        std::array<std::int32_t, 3> index{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double cubes =
+                std::floor((p[axis] - solid_box_.low[axis]) / edge + lattice_shift_);
+            index[axis] = static_cast<std::int32_t>(std::clamp(cubes, -1e6, 1e6));
+        }
+        return index;
+    }
+
+    // The solid voxels as cells of the given edge. A cell that holds voxels of several objects is
+    // the smallest one's, so that no object vanishes where cells are large.
+    std::vector<Cell> cells_of(double edge, CellTable& table) {
+        const auto& solid = scene_.solid;
+        std::vector<Cell> cells;
+        std::vector<std::uint64_t> size_of_owner;
+        for (std::size_t i = 0; i < solid.x.size(); ++i) {
+            const auto p = place(solid, i);
+            if (!finite(p)) continue;
+            Cell cell;
+            cell.index = index_of(p, edge);
+            cell.group = groups_.of(solid.primitive[i], solid.object[i]);
+            cell.grounded = is_grounded(solid.object[i]);
+            cell.completed = solid.state[i] != 0;
+            const auto size = object_size(solid.object[i]);
+            const auto at = table.insert(cell.index, static_cast<std::uint32_t>(cells.size()));
+            if (at == cells.size()) {
+                cells.push_back(cell);
+                size_of_owner.push_back(size);
+            } else if (size < size_of_owner[at]) {
+                cells[at] = cell;
+                size_of_owner[at] = size;
+            }
+        }
+        return cells;
+    }
+
+    // Voxels of an object; what belongs to none counts as largest.
+    std::uint64_t object_size(std::int32_t object) const {
+        const auto found = voxels_of_object_.find(object);
+        return found == voxels_of_object_.end() ? UINT64_MAX : found->second;
+    }
+
+    void pack_voxels() {
+        view_.voxels.total = scene_.solid.x.size();
+        view_.cube_m = scene_.voxel_size_m > 0 ? scene_.voxel_size_m : 0.02;
+        if (solid_box_.empty()) return;
+        for (int merge = 1;; ++merge) {
+            const double edge = view_.cube_m * merge;
+            // The lowest centre lies half a voxel into its cube.
+            lattice_shift_ = 0.5 / merge;
+            CellTable table(scene_.solid.x.size());
+            auto cells = cells_of(edge, table);
+            // A scene that a few strays stretch is not coarsened without end.
+            if (mark_exposed(cells, table) > limits_.voxels && merge < 64) continue;
+            add_normals(cells, table, edge);
+            write_cells(cells, edge);
+            view_.cube_m = edge;
+            return;
+        }
+    }
+
+    void add_normals(std::vector<Cell>& cells, const CellTable& table, double edge) {
+        const auto& points = scene_.points;
+        for (std::size_t i = 0; i < points.nx.size(); ++i) {
+            const auto p = place(points, i);
+            if (!finite(p)) continue;
+            const auto found = table.find(index_of(p, edge));
+            if (found == CellTable::absent || !cells[found].grounded) continue;
+            const auto n = turned(view_.view_from_input, points.nx[i], points.ny[i], points.nz[i]);
+            if (!finite(n)) continue;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                cells[found].normal[axis] += static_cast<float>(n[axis]);
+        }
+        std::array<double, 3> centre{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            centre[axis] = (solid_box_.high[axis] - solid_box_.low[axis]) / edge / 2;
+        spread_normals(cells, table, centre);
+    }
+
+    void write_cells(const std::vector<Cell>& cells, double edge) {
+        auto& out = view_.voxels;
+        for (const auto& cell : cells) {
+            if (cell.exposed == 0 || out.cell.size() == limits_.voxels) continue;
+            Vec3 p;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                p[axis] = solid_box_.low[axis] + (cell.index[axis] + 0.5 - lattice_shift_) * edge;
+            }
+            out.cell.push_back(quantised(p, cell.group));
+            const auto flags = static_cast<std::int8_t>(cell.exposed | (cell.completed ? 64 : 0));
+            out.aux.push_back({signed_byte(cell.normal[0]), signed_byte(cell.normal[1]),
+                               signed_byte(cell.normal[2]), flags});
+        }
+    }
+
+    void pack_points() {
+        const auto& points = scene_.points;
+        auto& out = view_.points;
+        out.total = points.x.size();
+        for (std::size_t i = 0; i < points.x.size(); ++i) {
+            // A hash of the number picks about limits_.points of them, evenly over any order.
+            std::uint64_t hash = (i + 1) * 0x9E3779B97F4A7C15u;
+            hash = (hash ^ (hash >> 30)) * 0xBF58476D1CE4E5B9u;
+            const double draw = static_cast<double>((hash ^ (hash >> 27)) >> 11) * 0x1p-53;
+            if (draw * static_cast<double>(out.total) >= static_cast<double>(limits_.points))
+                continue;
+            const auto p = place(points, i);
+            if (!finite(p)) continue;
+            out.cell.push_back(quantised(p, groups_.of(points.primitive[i], points.object[i])));
+            Vec3 n{};
+            if (!points.nx.empty())
+                n = turned(view_.view_from_input, points.nx[i], points.ny[i], points.nz[i]);
+            if (!finite(n)) n = {};
+            out.aux.push_back({signed_byte(n[0]), signed_byte(n[1]), signed_byte(n[2]), 0});
+        }
+    }
+
+    // The strongest sample of each cube of a grid that is widened until few enough are left.
+    void pack_field(const FieldSamples& field, Arrows& out) const {
+        out.total = field.x.size();
+        Box box;
+        std::vector<std::array<float, 7>> all;
+        for (std::size_t i = 0; i < field.x.size(); ++i) {
+            const auto p = place(field, i);
+            const auto v = turned(view_.view_from_input, field.vx[i], field.vy[i], field.vz[i]);
+            if (!finite(p) || !finite(v)) continue;
+            box.add(p);
+            const float density = std::isfinite(field.density[i]) ? field.density[i] : 0.0f;
+            all.push_back({float(p[0]), float(p[1]), float(p[2]), float(v[0]), float(v[1]),
+                           float(v[2]), density});
+        }
+        out.arrow = all;
+        for (double edge = 2 * view_.cube_m; out.arrow.size() > limits_.arrows; edge *= 1.25) {
+            CellTable table(all.size());
+            out.arrow.clear();
+            for (const auto& a : all) {
+                std::array<std::int32_t, 3> index{};
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    index[axis] = static_cast<std::int32_t>(
+                        std::min((double(a[axis]) - box.low[axis]) / edge, 1e6));
+                }
+                const auto at = table.insert(index, static_cast<std::uint32_t>(out.arrow.size()));
+                if (at == out.arrow.size()) {
+                    out.arrow.push_back(a);
+                } else if (strength(a) > strength(out.arrow[at])) {
+                    out.arrow[at] = a;
+                }
+            }
+        }
+    }
+    static float strength(const std::array<float, 7>& a) {
+        return (a[3] * a[3] + a[4] * a[4] + a[5] * a[5]) * (1 + a[6]);
+    }
+
+    const Scene& scene_;
+    const ViewLimits& limits_;
+    PackedView view_;
+    Groups groups_;
+    std::vector<bool> grounded_;
+    std::map<std::int32_t, std::uint64_t> voxels_of_object_;
+    Box solid_box_;
+    double lattice_shift_ = 0.5;
+};
+
+}  // namespace
+
+PackedView pack_view(const Scene& scene, const ViewLimits& limits) {
+    return Packer(scene, limits).pack();
+}
+
+}  // namespace topple::report

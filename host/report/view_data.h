@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "topple/scene.h"
+
+// What the page draws, packed for it. Everything is in the view's frame: the input's, turned so
+// that z is up and, where the scene has a Manhattan frame, its walls follow the axes.
+namespace topple::report {
+
+// How much the page may hold; 400,000 voxels and 300,000 points take 11 MB.
+struct ViewLimits {
+    std::size_t voxels = 400'000, points = 300'000, arrows = 2'500;
+};
+
+// Records of a voxel or point. cell: x, y, z in steps of PackedView::step_m from origin_m, then the
+// group. aux: the mean normal in 1/127 (grounded things only for voxels; 0 where unknown), then for
+// voxels the exposed faces (bits -x +x -y +y -z +z) and, in bit 6, whether it was completed.
+struct Records {
+    std::vector<std::array<std::uint16_t, 4>> cell;
+    std::vector<std::array<std::int8_t, 4>> aux;
+    std::size_t total = 0;  // how many the scene has
+};
+
+// Arrows of a field: position, direction times strength, density.
+struct Arrows {
+    std::vector<std::array<float, 7>> arrow;
+    std::size_t total = 0;
+};
+
+struct PackedView {
+    std::array<Vec3, 3> view_from_input;
+    Vec3 origin_m{}, step_m{};
+    double cube_m =
+        0;  // edge of the cubes that are drawn; larger than a voxel where those are merged
+    std::vector<std::pair<std::int32_t, std::int32_t>>
+        groups;  // primitive and object of each group
+    Records voxels, points;
+    std::map<std::string, Arrows> fields;
+};
+
+// Never fails; what is not finite is left out.
+PackedView pack_view(const Scene& scene, const ViewLimits& limits = {});
+
+}  // namespace topple::report

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+#include "report/view_data.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <set>
+
+#include "report/base64.h"
+#include "synthetic_scene.h"
+
+namespace topple::report {
+namespace {
+
+// RFC 4648, section 10.
+TEST(Base64, the_standards_own_examples) {
+    for (const auto& [text, encoded] :
+         {std::pair("", ""), std::pair("f", "Zg=="), std::pair("fo", "Zm8="),
+          std::pair("foo", "Zm9v"), std::pair("foob", "Zm9vYg=="), std::pair("fooba", "Zm9vYmE="),
+          std::pair("foobar", "Zm9vYmFy")}) {
+        EXPECT_EQ(base64(text, std::strlen(text)), encoded);
+    }
+    EXPECT_EQ(base64("\xff\xef\xbe", 3), "/+++");
+}
+
+Scene cube_of(int n, double voxel_m) {
+    Scene scene;
+    scene.voxel_size_m = voxel_m;
+    for (int i = 0; i < n * n * n; ++i) {
+        scene.solid.x.push_back(float((i % n + 0.5) * voxel_m - 3));
+        scene.solid.y.push_back(float((i / n % n + 0.5) * voxel_m));
+        scene.solid.z.push_back(float((i / n / n + 0.5) * voxel_m + 1));
+        scene.solid.primitive.push_back(3);
+        scene.solid.object.push_back(2);
+        scene.solid.state.push_back(i % 2 == 0);
+    }
+    return scene;
+}
+
+Vec3 place(const PackedView& view, const std::array<std::uint16_t, 4>& cell) {
+    Vec3 p;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        p[axis] = view.origin_m[axis] + view.step_m[axis] * cell[axis];
+    return p;
+}
+
+TEST(ViewData, only_voxels_with_an_exposed_face) {
+    const auto view = pack_view(cube_of(5, 0.02));
+    EXPECT_EQ(view.voxels.total, 125u);
+    ASSERT_EQ(view.voxels.cell.size(), 125u - 27u);
+    EXPECT_EQ(view.cube_m, 0.02);
+    int faces = 0;
+    for (std::size_t i = 0; i < view.voxels.cell.size(); ++i) {
+        const auto p = place(view, view.voxels.cell[i]);
+        const auto flags = view.voxels.aux[i][3];
+        // A face is exposed exactly on the cube's side.
+        EXPECT_EQ((flags & 1) != 0, p[0] < -3 + 0.02) << i;
+        EXPECT_EQ((flags & 2) != 0, p[0] > -3 + 0.08) << i;
+        EXPECT_EQ((flags & 16) != 0, p[2] < 1.02) << i;
+        EXPECT_EQ((flags & 32) != 0, p[2] > 1.08) << i;
+        for (int face = 0; face < 6; ++face) faces += flags >> face & 1;
+        EXPECT_EQ(view.groups[view.voxels.cell[i][3]],
+                  (std::pair<std::int32_t, std::int32_t>(3, 2)));
+    }
+    EXPECT_EQ(faces, 6 * 25);
+}
+
+TEST(ViewData, places_are_right_to_a_sixty_thousandth) {
+    const auto scene = test::SyntheticScene(0.05).make();
+    const auto view = pack_view(scene);
+    ASSERT_EQ(view.points.cell.size(), scene.points.x.size());
+    const auto& r = view.view_from_input;
+    for (std::size_t i = 0; i < scene.points.x.size(); i += 97) {
+        const auto p = place(view, view.points.cell[i]);
+        const Vec3 in{scene.points.x[i], scene.points.y[i], scene.points.z[i]};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double turned = r[axis][0] * in[0] + r[axis][1] * in[1] + r[axis][2] * in[2];
+            EXPECT_NEAR(p[axis], turned, view.step_m[axis] * 0.51 + 1e-6);
+        }
+    }
+    EXPECT_NEAR(r[0][0], std::cos(0.4), 1e-12) << "the scene's own frame is the view's";
+}
+
+TEST(ViewData, up_becomes_z_where_the_scene_has_no_frame) {
+    for (const Vec3& up :
+         {Vec3{0, 0, 1}, Vec3{0, -1, 0}, Vec3{0.6, 0, -0.8}, Vec3{0, 0, 0}, Vec3{NAN, 0, 0}}) {
+        Scene scene = cube_of(2, 0.1);
+        scene.up = up;
+        const auto r = pack_view(scene).view_from_input;
+        const bool given = up[0] * up[0] + up[1] * up[1] + up[2] * up[2] > 0.5;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            EXPECT_NEAR(r[2][axis], given ? up[axis] : (axis == 2), 1e-12);
+            EXPECT_NEAR(r[axis][0] * r[axis][0] + r[axis][1] * r[axis][1] + r[axis][2] * r[axis][2],
+                        1, 1e-12);
+        }
+        EXPECT_NEAR(r[0][0] * r[1][0] + r[0][1] * r[1][1] + r[0][2] * r[1][2], 0, 1e-12);
+    }
+}
+
+TEST(ViewData, large_scenes_are_thinned_to_the_limits) {
+    auto scene = test::SyntheticScene(0.05).make();
+    const ViewLimits limits{.voxels = 4000, .points = 3000, .arrows = 100};
+    const auto view = pack_view(scene, limits);
+    EXPECT_LE(view.voxels.cell.size(), limits.voxels);
+    EXPECT_GT(view.voxels.cell.size(), limits.voxels / 8);
+    EXPECT_GT(view.cube_m, scene.voxel_size_m);
+    EXPECT_NEAR(double(view.points.cell.size()), 3000, 300);
+    for (const auto& [name, arrows] : view.fields) {
+        EXPECT_LE(arrows.arrow.size(), limits.arrows) << name;
+        EXPECT_GT(arrows.arrow.size(), limits.arrows / 8) << name;
+    }
+    // Every object is still there.
+    std::set<std::int32_t> objects;
+    for (const auto& cell : view.voxels.cell) objects.insert(view.groups[cell[3]].second);
+    EXPECT_EQ(objects.size(), 6u);
+}
+
+// Merged cubes cover what they stand for: each voxel lies in one.
+TEST(ViewData, merged_cubes_lie_where_their_voxels_are) {
+    const auto scene = cube_of(8, 0.02);
+    const auto view = pack_view(scene, {.voxels = 60, .points = 1, .arrows = 1});
+    EXPECT_EQ(view.cube_m, 0.04);
+    ASSERT_EQ(view.voxels.cell.size(), 56u) << "4^3 less its 2^3 inside";
+    for (const auto& cell : view.voxels.cell) {
+        const double x = (place(view, cell)[0] + 3) / 0.04 - 0.5;
+        EXPECT_NEAR(x, std::round(x), 1e-3) << "cubes of 4 cm from the edge on";
+    }
+}
+
+TEST(ViewData, what_is_not_finite_or_out_of_range_is_harmless) {
+    auto scene = cube_of(3, 0.02);
+    const float nan = std::numeric_limits<float>::quiet_NaN(),
+                inf = std::numeric_limits<float>::infinity();
+    scene.solid.x[4] = nan;
+    scene.solid.z[5] = inf;
+    scene.solid.object[6] = -7;
+    scene.solid.primitive[7] = std::numeric_limits<std::int32_t>::min();
+    scene.points = {{nan, 1, 1e30f}, {0, 0, 0}, {0, 0, 0}, {0, nan, 0},
+                    {0, 0, 0},       {1, 1, 1}, {0, 0, 0}, {0, 0, 0}};
+    scene.fields["wind"] = {{0, nan}, {0, 0}, {0, 0}, {inf, 1}, {0, 0}, {0, 0}, {nan, 1}};
+    const auto view = pack_view(scene);
+    EXPECT_LE(view.voxels.cell.size(), 25u);
+    EXPECT_EQ(view.points.cell.size(), 2u);
+    EXPECT_TRUE(view.fields.at("wind").arrow.empty());
+}
+
+TEST(ViewData, nothing_at_all) {
+    const auto view = pack_view(Scene{});
+    EXPECT_TRUE(view.voxels.cell.empty());
+    EXPECT_TRUE(view.points.cell.empty());
+}
+
+// The look through walls goes by normals: those of the points, spread to voxels that have none.
+TEST(ViewData, voxels_of_the_ground_know_which_side_was_seen) {
+    const auto scene = test::SyntheticScene(0.05, 0).make();
+    const auto view = pack_view(scene);
+    int checked = 0;
+    for (std::size_t i = 0; i < view.voxels.cell.size(); ++i) {
+        const auto p = place(view, view.voxels.cell[i]);
+        const auto& aux = view.voxels.aux[i];
+        if (view.groups[view.voxels.cell[i][3]].second != 0) {
+            EXPECT_EQ(std::abs(aux[0]) + std::abs(aux[1]) + std::abs(aux[2]), 0)
+                << "only the ground has them";
+        } else if (p[2] > 2.5 && p[0] > 0.2 && p[0] < 3.8 && p[1] > 0.2 && p[1] < 4.8) {
+            EXPECT_LT(aux[2], -100) << "the ceiling was seen from below";
+            ++checked;
+        }
+    }
+    EXPECT_GT(checked, 1000);
+}
+
+}  // namespace
+}  // namespace topple::report
