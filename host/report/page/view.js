@@ -23,9 +23,9 @@ class View {
     this.makePoints();
     this.makeFields();
     this.makeMarker();
-    this.pixel = new THREE.WebGLRenderTarget(1, 1);
+    this.ids = new THREE.WebGLRenderTarget(1, 1, {magFilter: THREE.NearestFilter, minFilter: THREE.NearestFilter});
+    this.idsStale = true;
     this.show = 'solids';
-    this.drawn = 0;
     new ResizeObserver(() => this.resize()).observe(container);
     this.resize();
     this.reset();
@@ -273,6 +273,7 @@ class View {
   // --- drawing ------------------------------------------------------------------------------------
 
   redraw() {
+    this.idsStale = true;
     if (this.pending) return;
     this.pending = true;
     requestAnimationFrame(() => {
@@ -286,28 +287,50 @@ class View {
     this.uniforms.eye.value.copy(this.camera.position);
     this.uniforms.pointScale.value = height / (2 * Math.tan(this.camera.fov * Math.PI / 360));
     this.renderer.render(this.world, this.camera);
-    ++this.drawn;
+    this.idsStale = true;
+  }
+
+  // Draws each place's group number instead of its colour, once per view, at half the resolution.
+  drawGroups() {
+    const {width, height} = this.renderer.domElement;
+    this.ids.setSize(Math.max(width >> 1, 1), Math.max(height >> 1, 1));
+    const shown = [this.marker, ...Object.values(this.fields)].filter(thing => thing.visible);
+    for (const thing of shown) thing.visible = false;
+    this.uniforms.picking.value = 1;
+    this.renderer.setRenderTarget(this.ids);
+    this.renderer.clear();
+    this.renderer.render(this.world, this.camera);
+    this.renderer.setRenderTarget(null);
+    this.uniforms.picking.value = 0;
+    for (const thing of shown) thing.visible = true;
+    this.idsStale = false;
   }
 
   // The object under a place of the container (CSS pixels): its id, -1 for unassigned, null for none.
   pick(x, y) {
-    const scale = this.renderer.getPixelRatio();
-    const {width, height} = this.renderer.domElement;
-    const shown = [this.marker, ...Object.values(this.fields)].filter(thing => thing.visible);
-    for (const thing of shown) thing.visible = false;
-    this.uniforms.picking.value = 1;
-    this.camera.setViewOffset(width, height, Math.floor(x * scale), Math.floor(y * scale), 1, 1);
-    this.renderer.setRenderTarget(this.pixel);
-    this.renderer.clear();
-    this.renderer.render(this.world, this.camera);
+    if (this.idsStale) this.drawGroups();
+    const column = Math.floor(x / this.container.clientWidth * this.ids.width);
+    const row = Math.floor((1 - y / this.container.clientHeight) * this.ids.height);
     const bytes = new Uint8Array(4);
-    this.renderer.readRenderTargetPixels(this.pixel, 0, 0, 1, 1, bytes);
-    this.renderer.setRenderTarget(null);
-    this.camera.clearViewOffset();
-    this.uniforms.picking.value = 0;
-    for (const thing of shown) thing.visible = true;
-    const group = bytes[0] + 256 * bytes[1] + 65536 * bytes[2] - 1;
+    this.renderer.readRenderTargetPixels(this.ids, column, row, 1, 1, bytes);
+    return this.objectOf(bytes, 0);
+  }
+
+  objectOf(bytes, at) {
+    const group = bytes[at] + 256 * bytes[at + 1] + 65536 * bytes[at + 2] - 1;
     return group >= 0 && group < this.scene.view.groups.length ? this.scene.view.groups[group][1] : null;
+  }
+
+  // How many places of the view each object covers.
+  seen() {
+    if (this.idsStale) this.drawGroups();
+    const {width, height} = this.ids, bytes = new Uint8Array(4 * width * height), count = new Map();
+    this.renderer.readRenderTargetPixels(this.ids, 0, 0, width, height, bytes);
+    for (let at = 0; at < bytes.length; at += 4) {
+      const id = this.objectOf(bytes, at);
+      if (id !== null) count.set(id, (count.get(id) || 0) + 1);
+    }
+    return count;
   }
 }
 

@@ -121,12 +121,12 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
     NEEDS_BROWSER();
     const auto scene = test::SyntheticScene(0.08).make();
     write_report(folder_ / "report.html", scene);
-    // Picks over the whole view, then uses every control, then asks for one object.
+    // Looks which objects cover the view, then uses every control, then asks for one object.
     const auto page = open(folder_ / "report.html", R"(
-        const box = document.getElementById('canvas'), found = new Set();
-        for (let x = 0; x < box.clientWidth; x += 24) for (let y = 0; y < box.clientHeight; y += 24) found.add(toppleView.pick(x, y));
-        document.body.dataset.found = [...found].filter(id => id !== null).sort().join(' ');
-        for (const control of document.querySelectorAll('.toolbar button, .toolbar input')) { control.click(); toppleView.render(); }
+        const seen = toppleView.seen();
+        document.body.dataset.found = [...seen.keys()].filter(id => seen.get(id) > 10).sort().join(' ');
+        document.body.dataset.middle = toppleView.pick(toppleView.container.clientWidth / 2, toppleView.container.clientHeight / 2);
+        for (const control of document.querySelectorAll('.toolbar button, .toolbar input')) control.click();
         document.querySelectorAll('#objects thead button')[2].click();
         document.body.dataset.heaviest = [...document.querySelectorAll('#objects tbody tr')].pop().cells[0].textContent;
         document.querySelectorAll('#objects tbody tr')[0].click();
@@ -140,6 +140,7 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
     EXPECT_EQ(page.data("view"), "(none)") << "the 3D view must work";
     EXPECT_EQ(page.data("rows"), "6");
     EXPECT_EQ(page.data("found"), "0 1 2 3 4 5") << "every object is seen, through the walls";
+    EXPECT_NE(page.data("middle"), "null") << "the scene is in the middle of the view";
     EXPECT_EQ(page.data("heaviest"), "0");
     EXPECT_GT(std::stoi("0" + page.data("faces")), 10000);
     EXPECT_EQ(page.data("points"), std::to_string(scene.points.x.size()));
