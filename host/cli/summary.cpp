@@ -21,7 +21,8 @@ void print_objects(const Scene& scene) {
     std::map<std::int32_t, std::string> rests_on;
     for (const Support& s : scene.supports) {
         std::string& text = rests_on[s.supported];
-        text += (text.empty() ? "" : ",") + std::to_string(s.supporter);
+        if (!text.empty()) text.append(",");
+        text.append(std::to_string(s.supporter));
     }
     std::vector<const Object*> movable;
     for (const Object& o : scene.objects) {

@@ -2,14 +2,13 @@
 #include "graph/contact_graph.h"
 
 #include <algorithm>
-#include <boost/geometry.hpp>
-#include <boost/geometry/geometries/multi_point.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
-#include <boost/geometry/geometries/polygon.hpp>
 #include <limits>
 #include <map>
 #include <numeric>
+#include <tuple>
 #include <utility>
+
+#include "physics/tipping.h"
 
 namespace topple::graph {
 namespace {
@@ -40,19 +39,6 @@ struct Columns {
 };
 
 }  // namespace
-
-std::vector<std::array<double, 2>> convex_outline(std::span<const std::array<double, 2>> points) {
-    namespace bg = boost::geometry;
-    using Point = bg::model::d2::point_xy<double>;
-    bg::model::multi_point<Point> cloud;
-    for (const auto& p : points) bg::append(cloud, Point(p[0], p[1]));
-    bg::model::polygon<Point, false> hull;  // false: counter-clockwise
-    bg::convex_hull(cloud, hull);
-    std::vector<std::array<double, 2>> outline;
-    for (const Point& p : hull.outer()) outline.push_back({p.x(), p.y()});
-    if (outline.size() > 1 && outline.front() == outline.back()) outline.pop_back();
-    return outline;
-}
 
 ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells,
                                  std::int32_t primitives, unsigned gap) {
@@ -97,7 +83,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         graph.carryings.push_back({key.second, key.first,
                                    static_cast<double>(columns.count) * h * h,
                                    columns.height_sum / static_cast<double>(columns.count),
-                                   convex_outline(columns.corners)});
+                                   physics::convex_polygon(columns.corners)});
     }
     for (const auto& [key, empty] : gaps) {
         graph.clearances[static_cast<std::size_t>(key.first)].push_back({key.second, empty * h});

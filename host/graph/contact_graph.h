@@ -41,7 +41,4 @@ struct ContactGraph {
 ContactGraph build_contact_graph(device::Device& device, const physics::SolidCells& cells,
                                  std::int32_t primitives, unsigned gap = 1);
 
-// Convex hull of points in the plane, counter-clockwise, without collinear points.
-std::vector<std::array<double, 2>> convex_outline(std::span<const std::array<double, 2>> points);
-
 }  // namespace topple::graph

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "graph/swendsen_wang.h"
+#include "physics/tipping.h"
 
 namespace topple::graph {
 namespace {
@@ -60,7 +61,7 @@ physics::Candidate candidate_of(const ContactGraph& graph, std::span<const physi
         candidate.support_height_m = std::min(candidate.support_height_m, c.height_m);
     }
     if (points.empty()) candidate.support_height_m = 0;
-    candidate.support_polygon = convex_outline(points);
+    if (!points.empty()) candidate.support_polygon = physics::convex_polygon(points);
     candidate.primitives = std::move(primitives);
     return candidate;
 }

@@ -67,6 +67,13 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
         }
         out.scene->fill(device, options);
     });
+    vdb::SolidCellArrays solid = out.scene->solid_cells();
+    out.cells.voxel_m = voxel_m;
+    for (const vdb::State s : solid.state) out.cells.surface.push_back(s == vdb::State::surface);
+    out.cells.i = std::move(solid.i);
+    out.cells.j = std::move(solid.j);
+    out.cells.k = std::move(solid.k);
+    out.cells.primitive = std::move(solid.primitive);
     return out;
 }
 

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/assemble.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace topple {
+namespace {
+
+// From the grid frame to the input's.
+class ToInput {
+  public:
+    explicit ToInput(const std::array<Vec3, 3>& axes) : axes_(axes) {}
+    Vec3 operator()(const Vec3& g) const {
+        Vec3 out{};
+        for (std::size_t c = 0; c < 3; ++c) out[c] = g[0] * axes_[0][c] + g[1] * axes_[1][c] + g[2] * axes_[2][c];
+        return out;
+    }
+
+  private:
+    const std::array<Vec3, 3>& axes_;
+};
+
+void add_primitives(const GeometryStage& geometry, const ObjectStage& objects, const ToInput& to_input, Scene& scene) {
+    for (std::size_t p = 0; p < objects.bodies.size(); ++p) {
+        const physics::Body& body = objects.bodies[p];
+        Primitive out;
+        out.id = static_cast<std::int32_t>(p);
+        out.object = objects.object_of_primitive[p];
+        out.model = geometry.primitives.model[p];
+        out.solid_voxels = body.voxels;
+        out.volume_m3 = body.volume_m3;
+        out.mass_kg = body.mass_kg;
+        out.center_of_mass_m = to_input(body.center);
+        scene.primitives.push_back(std::move(out));
+    }
+    for (const std::int32_t p : geometry.primitive_of_point) {
+        if (p >= 0) ++scene.primitives[static_cast<std::size_t>(p)].points;
+    }
+}
+
+void add_objects(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input, Scene& scene) {
+    for (std::size_t o = 0; o < objects.objects.size(); ++o) {
+        const StableObject& from = objects.objects[o];
+        Object to;
+        to.id = static_cast<std::int32_t>(o);
+        to.primitives = from.candidate.primitives;
+        to.grounded = from.grounded;
+        to.mass_kg = from.candidate.body.mass_kg;
+        to.center_of_mass_m = to_input(from.candidate.body.center);
+        if (!from.grounded) {
+            to.barrier_J = from.instability.barrier_J;
+            to.release_J = from.instability.release_J;
+            to.mode = from.instability.mode;
+            to.direction = to_input(from.instability.direction);
+            to.instability = from.instability.curve;
+        }
+        for (std::size_t d = 0; d < safety.disturbances.size(); ++d) {
+            to.risk_J[safety.disturbances[d].name] = from.grounded ? 0 : safety.risk_J[d][o];
+        }
+        to.unsafety = from.grounded ? 1 : safety.unsafety[o];
+        scene.objects.push_back(std::move(to));
+    }
+}
+
+void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& scene) {
+    const auto object = [&](std::int32_t p) { return objects.object_of_primitive[static_cast<std::size_t>(p)]; };
+    std::map<std::pair<std::int32_t, std::int32_t>, double> carried;  // (supporter, supported)
+    std::map<std::pair<std::int32_t, std::int32_t>, bool> carries;    // primitives, a < b
+    for (const graph::Carrying& c : objects.contacts.carryings) {
+        if (c.supporter < 0) continue;
+        carries[std::minmax(c.supporter, c.supported)] = true;
+        const auto pair = std::pair(object(c.supporter), object(c.supported));
+        if (pair.first != pair.second) carried[pair] += c.area_m2;
+    }
+    for (const auto& [pair, area] : carried) scene.supports.push_back({pair.first, pair.second, area});
+    for (std::size_t i = 0; i < objects.contacts.pairs.size(); ++i) {
+        const physics::TouchingPair& pair = objects.contacts.pairs[i];
+        Contact c;
+        c.a = pair.a;
+        c.b = pair.b;
+        c.area_m2 = pair.area_m2;
+        c.normal = to_input(pair.normal);
+        const bool same = object(pair.a) == object(pair.b);
+        c.relation = same ? "fixed" : carries.contains({pair.a, pair.b}) ? "support" : "adjacent";
+        c.probability = objects.grouping.pair_probability[i];
+        scene.contacts.push_back(std::move(c));
+    }
+}
+
+void add_points(const Ingested& input, const GeometryStage& geometry, const ObjectStage& objects, Scene& scene) {
+    ScenePoints& out = scene.points;
+    out.x = input.cloud.x;
+    out.y = input.cloud.y;
+    out.z = input.cloud.z;
+    out.primitive = geometry.primitive_of_point;
+    const geometry::Surfels& s = geometry.surfels;
+    for (std::size_t n = 0; n < input.cloud.size(); ++n) {
+        const std::int32_t p = out.primitive[n];
+        out.object.push_back(p < 0 ? -1 : objects.object_of_primitive[static_cast<std::size_t>(p)]);
+        const std::uint32_t surfel = s.of_point[n];
+        out.nx.push_back(s.nx[surfel]);
+        out.ny.push_back(s.ny[surfel]);
+        out.nz.push_back(s.nz[surfel]);
+    }
+}
+
+// Each field's strength at the solid voxels it acts on, for volume.vdb.
+void add_exposures(const SafetyStage& safety, VoxelStage& voxels) {
+    const vdb::Tiles tiles = voxels.scene->tiles();
+    std::map<std::array<std::int32_t, 3>, std::size_t> leaf;
+    for (std::size_t n = 0; n < tiles.size(); ++n) leaf[{tiles.x[n], tiles.y[n], tiles.z[n]}] = n;
+    for (const safety::Disturbance& d : safety.disturbances) {
+        std::vector<float> values(tiles.size() * 512, 0.0f);
+        for (std::size_t c = 0; c < d.exposure.size(); ++c) {
+            const std::int32_t i = voxels.cells.i[c], j = voxels.cells.j[c], k = voxels.cells.k[c];
+            const auto at = leaf.find({i & ~7, j & ~7, k & ~7});
+            if (at == leaf.end()) continue;
+            values[at->second * 512 + static_cast<std::size_t>((i & 7) * 64 + (j & 7) * 8 + (k & 7))] = d.exposure[c];
+        }
+        voxels.scene->add_field(d.name, tiles, values);
+    }
+}
+
+void add_fields(const SafetyStage& safety, const ToInput& to_input, Scene& scene) {
+    for (const safety::Disturbance& d : safety.disturbances) {
+        FieldSamples samples = d.samples;
+        for (std::size_t n = 0; n < samples.x.size(); ++n) {
+            const Vec3 p = to_input({samples.x[n], samples.y[n], samples.z[n]});
+            const Vec3 v = to_input({samples.vx[n], samples.vy[n], samples.vz[n]});
+            samples.x[n] = static_cast<float>(p[0]), samples.vx[n] = static_cast<float>(v[0]);
+            samples.y[n] = static_cast<float>(p[1]), samples.vy[n] = static_cast<float>(v[1]);
+            samples.z[n] = static_cast<float>(p[2]), samples.vz[n] = static_cast<float>(v[2]);
+        }
+        scene.fields[d.name] = std::move(samples);
+        scene.notes.insert(scene.notes.end(), d.notes.begin(), d.notes.end());
+    }
+}
+
+}  // namespace
+
+void assemble(const Ingested& input, const GeometryStage& geometry, VoxelStage& voxels, const ObjectStage& objects,
+              const SafetyStage& safety, Scene& scene) {
+    const std::array<Vec3, 3>& axes = geometry.frame.axes;
+    const ToInput to_input(axes);
+    scene.up = axes[2];
+    scene.up_method = geometry.frame.up_method;
+    scene.manhattan_found = geometry.frame.found;
+    scene.manhattan_from_input = {axes[0][0], axes[0][1], axes[0][2], 0, axes[1][0], axes[1][1], axes[1][2], 0,
+                                  axes[2][0], axes[2][1], axes[2][2], 0, 0, 0, 0, 1};
+    add_primitives(geometry, objects, to_input, scene);
+    add_objects(objects, safety, to_input, scene);
+    add_contacts(objects, to_input, scene);
+    add_points(input, geometry, objects, scene);
+    voxels.scene->set_objects(objects.object_of_primitive);
+    scene.solid = voxels.scene->solid_voxels();
+    add_exposures(safety, voxels);
+    add_fields(safety, to_input, scene);
+    scene.swc_energy = objects.grouping.energy_curve;
+}
+
+}  // namespace topple

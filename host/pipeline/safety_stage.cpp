@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/safety_stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace topple {
+namespace {
+
+// Least width of a convex polygon: over its edges, the reach of the corner furthest from the edge.
+double least_width(const std::vector<std::array<double, 2>>& polygon) {
+    if (polygon.size() < 3) return 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t e = 0; e < polygon.size(); ++e) {
+        const auto& a = polygon[e];
+        const auto& b = polygon[(e + 1) % polygon.size()];
+        const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
+        if (length <= 0) continue;
+        double reach = 0;
+        for (const auto& p : polygon) {
+            reach = std::max(reach, std::abs((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])) / length);
+        }
+        least = std::min(least, reach);
+    }
+    return least;
+}
+
+std::vector<safety::RiskObject> risk_objects(const ObjectStage& objects) {
+    std::vector<safety::RiskObject> out;
+    for (std::size_t i = 0; i < objects.objects.size(); ++i) {
+        const StableObject& o = objects.objects[i];
+        safety::RiskObject r;
+        r.id = static_cast<std::int32_t>(i);
+        r.grounded = o.grounded;
+        r.mass_kg = o.candidate.body.mass_kg;
+        r.barrier_J = o.instability.barrier_J;
+        r.height_m = o.highest_m - o.lowest_m;
+        r.base_width_m = least_width(o.candidate.support_polygon);
+        if (o.sliding.found) {
+            r.slide_distance_m = o.sliding.distance_m;
+            r.drop_m = o.sliding.drop_m;
+        }
+        r.curve = o.instability.curve;
+        r.support_polygon = o.candidate.support_polygon;
+        out.push_back(std::move(r));
+    }
+    return out;
+}
+
+safety::Surroundings surroundings(const GeometryStage& geometry, const VoxelStage& voxels, const ObjectStage& objects) {
+    safety::Surroundings s;
+    s.cells = &voxels.cells;
+    for (const std::int32_t p : voxels.cells.primitive) {
+        s.object.push_back(p < 0 ? -1 : objects.object_of_primitive[static_cast<std::size_t>(p)]);
+    }
+    for (const geometry::Structure p : geometry.structure) {
+        s.is_floor_primitive.push_back(p == geometry::Structure::floor);
+    }
+    return s;
+}
+
+}  // namespace
+
+SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry, const VoxelStage& voxels,
+                          const ObjectStage& objects, const ParseOptions& options, StageClock& stage) {
+    SafetyStage out;
+    const std::vector<safety::RiskObject> at_risk = risk_objects(objects);
+    const safety::Surroundings around = surroundings(geometry, voxels, objects);
+    for (const std::string& name : options.disturbances) {
+        out.disturbances.push_back(stage("field " + name, [&] {
+            if (name == "human") {
+                safety::HumanOptions human;
+                human.seed = options.seed;
+                return safety::human_field(device, around, at_risk, options.friction, human);
+            }
+            if (name == "wind") {
+                safety::WindOptions wind;
+                wind.speed_m_s = options.wind_m_s;
+                wind.friction = options.friction;
+                return safety::wind_field(device, around, at_risk, wind);
+            }
+            safety::EarthquakeOptions earthquake;
+            earthquake.seed = options.seed;
+            earthquake.pga_m_s2 = options.pga_m_s2;
+            return safety::earthquake_field(device, around, at_risk, options.friction, earthquake);
+        }));
+    }
+    stage("risk", [&] {
+        for (const safety::Disturbance& d : out.disturbances) out.risk_J.push_back(safety::risk(d, at_risk));
+        out.unsafety = safety::unsafety(out.risk_J);
+        out.unsafety.resize(at_risk.size(), 1.0);
+    });
+    return out;
+}
+
+}  // namespace topple

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#include "io/output_folder.h"
+#include "io/scene_json.h"
+#include "io/write_ply.h"
+#include "report/report.h"
+#include "topple/parse.h"
+#include "vdb/voxel_scene.h"
+
+namespace topple {
+
+void write_outputs(const ParseResult& result, const std::filesystem::path& folder) {
+    io::OutputFolder out(folder);
+    io::write_points_ply(out.folder() / "points.ply", result.scene.points);
+    io::write_solid_ply(out.folder() / "solid.ply", result.scene.solid);
+    result.voxels->write(out.folder() / "volume.vdb");
+    report::write_report(out.folder() / "report.html", result.scene);
+    io::write_scene_json(out.folder() / "scene.json", result.scene);
+    out.commit();
+}
+
+}  // namespace topple
