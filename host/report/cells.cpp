@@ -76,7 +76,7 @@ void spread_normals(std::vector<Cell>& cells, const CellTable& table,
                     const std::array<double, 3>& centre) {
     std::vector<std::uint32_t> missing;
     for (std::uint32_t i = 0; i < cells.size(); ++i) {
-        if (cells[i].grounded && !unit(cells[i].normal)) {
+        if (cells[i].background && !unit(cells[i].normal)) {
             cells[i].normal = {};
             missing.push_back(i);
         }
@@ -87,7 +87,7 @@ void spread_normals(std::vector<Cell>& cells, const CellTable& table,
         for (std::size_t k = 0; k < missing.size(); ++k) {
             for (std::size_t face = 0; face < faces.size(); ++face) {
                 const auto other = table.find(beside(cells[missing[k]].index, face));
-                if (other == CellTable::absent || !cells[other].grounded) continue;
+                if (other == CellTable::absent || !cells[other].background) continue;
                 for (std::size_t axis = 0; axis < 3; ++axis)
                     found[k][axis] += cells[other].normal[axis];
             }

@@ -14,7 +14,7 @@ namespace topple::report {
 struct Cell {
     std::array<std::int32_t, 3> index{};
     std::uint16_t group = 0;
-    bool grounded = false;
+    bool background = false;  // the ground, or no object's
     bool completed = false;
     std::uint8_t exposed = 0;  // faces with no cell behind them: bits -x +x -y +y -z +z
     std::array<float, 3> normal{};
@@ -41,7 +41,7 @@ class CellTable {
 // Marks which faces of each cell are exposed; returns how many cells have one.
 std::size_t mark_exposed(std::vector<Cell>& cells, const CellTable& table);
 
-// Gives grounded cells without a normal the mean of their neighbours', ring after ring; at last,
+// Gives background cells without a normal the mean of their neighbours', ring after ring; at last,
 // those that no ring reached point to `centre` (cell units).
 void spread_normals(std::vector<Cell>& cells, const CellTable& table,
                     const std::array<double, 3>& centre);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "report/cells.h"
 
@@ -101,9 +102,7 @@ class Packer {
         : scene_(scene), limits_(limits), groups_(view_.groups) {
         view_.view_from_input = view_frame(scene);
         for (const auto& object : scene.objects) {
-            if (!object.grounded || object.id < 0) continue;
-            grounded_.resize(std::max(grounded_.size(), static_cast<std::size_t>(object.id) + 1));
-            grounded_[static_cast<std::size_t>(object.id)] = true;
+            if (object.grounded) grounded_.insert(object.id);
         }
     }
 
@@ -116,9 +115,9 @@ class Packer {
     }
 
   private:
-    bool is_grounded(std::int32_t object) const {
-        return object >= 0 && static_cast<std::size_t>(object) < grounded_.size() &&
-               grounded_[static_cast<std::size_t>(object)];
+    // What is fixed to the ground, or belongs to no object: it may be looked through.
+    bool is_background(std::int32_t object) const {
+        return object < 0 || grounded_.contains(object);
     }
     template <class Cloud>
     Vec3 place(const Cloud& cloud, std::size_t i) const {
@@ -181,7 +180,7 @@ class Packer {
             Cell cell;
             cell.index = index_of(p, edge);
             cell.group = groups_.of(solid.primitive[i], solid.object[i]);
-            cell.grounded = is_grounded(solid.object[i]);
+            cell.background = is_background(solid.object[i]);
             cell.completed = solid.state[i] != 0;
             const auto size = object_size(solid.object[i]);
             const auto at = table.insert(cell.index, static_cast<std::uint32_t>(cells.size()));
@@ -227,7 +226,7 @@ class Packer {
             const auto p = place(points, i);
             if (!finite(p)) continue;
             const auto found = table.find(index_of(p, edge));
-            if (found == CellTable::absent || !cells[found].grounded) continue;
+            if (found == CellTable::absent || !cells[found].background) continue;
             const auto n = turned(view_.view_from_input, points.nx[i], points.ny[i], points.nz[i]);
             if (!finite(n)) continue;
             for (std::size_t axis = 0; axis < 3; ++axis)
@@ -317,7 +316,7 @@ class Packer {
     const ViewLimits& limits_;
     PackedView view_;
     Groups groups_;
-    std::vector<bool> grounded_;
+    std::set<std::int32_t> grounded_;
     std::map<std::int32_t, std::uint64_t> voxels_of_object_;
     Box solid_box_;
     double lattice_shift_ = 0.5;

@@ -81,6 +81,7 @@ class View {
     const records = view.voxels.count ? view.voxels : view.points;
     this.centre = new THREE.Vector3();
     this.reach = 1;
+    this.height = 0;
     if (!records.count) return;
     let sum = 0;
     const stride = Math.max(1, Math.floor(records.count / 20000));
@@ -89,6 +90,7 @@ class View {
       for (let i = 0; i < records.count; i += stride) values.push(records.cell[4 * i + k]);
       values.sort((a, b) => a - b);
       const at = share => view.origin_m[k] + view.step_m[k] * values[Math.floor(share * (values.length - 1))];
+      this.height = at(0.98) - at(0.02);  // of the last axis in the end
       this.centre[axis] = (at(0.02) + at(0.98)) / 2;
       sum += Math.pow(at(0.98) - at(0.02), 2);
     });
@@ -237,10 +239,13 @@ class View {
     this.camera.far = 20 * this.reach;
     // The sphere around the scene fits the narrower side of the window.
     const half = Math.atan(Math.tan(this.camera.fov * Math.PI / 360) * Math.min(1, this.camera.aspect));
-    const distance = 0.46 * this.reach / Math.sin(half);
-    this.camera.position.copy(this.centre).addScaledVector(direction, distance);
+    const distance = 0.53 * this.reach / Math.sin(half);
+    // The near walls and the ceiling are left out, so what shows lies below the middle.
+    const target = this.centre.clone();
+    target.z -= 0.14 * this.height;
+    this.camera.position.copy(target).addScaledVector(direction, distance);
     this.camera.updateProjectionMatrix();
-    this.controls.target.copy(this.centre);
+    this.controls.target.copy(target);
     this.controls.maxDistance = 10 * this.reach;
     this.controls.update();
     this.redraw();
