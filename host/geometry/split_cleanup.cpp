@@ -95,12 +95,12 @@ class Cleaner {
                     }
                 }
             }
-            place(piece, touches, seen);
+            place(piece, touches);
         }
     }
 
     void place(const std::vector<std::uint32_t>& piece,
-               const std::map<std::int32_t, std::uint32_t>& touches, std::vector<bool>&) {
+               const std::map<std::int32_t, std::uint32_t>& touches) {
         std::int32_t label = -1;
         if (piece.size() >= options_.region_min) {
             label = static_cast<std::int32_t>(r_.regions.size());
