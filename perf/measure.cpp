@@ -53,7 +53,7 @@ Result measure(device::Device& device, const Case& test, const MeasureOptions& o
     if (!prepared.reset) {
         prepared.enqueue(queue);
         const double once = std::min(first, seconds_of(queue));
-        batch = static_cast<unsigned>(std::clamp(std::ceil(0.005 / once), 1.0, 1000.0));
+        batch = static_cast<unsigned>(std::clamp(std::ceil(0.001 / once), 1.0, 1000.0));
     }
     double spent = 0;
     const unsigned most = options.runs ? options.runs : 100;

@@ -31,7 +31,7 @@ struct Result {
 };
 
 // Runs the case once to warm up, then takes samples. Short runs are batched, several dispatches for
-// each wait, so that a sample lasts at least 5 ms (where the case may repeat without a reset).
+// each wait, so that a sample lasts at least 1 ms (where the case may repeat without a reset).
 Result measure(device::Device& device, const Case& test, const MeasureOptions& options);
 
 // Fills in share and bound: least time that the backend's own triad bandwidth and multiply-add rate

@@ -31,7 +31,7 @@ Prepared triad(device::Device& device) {
 
 // Small in memory, long in arithmetic.
 Prepared multiply_add(device::Device& device) {
-    constexpr std::uint32_t count = 1u << 18, rounds = 2048;
+    constexpr std::uint32_t count = 1u << 18, rounds = 1024;
     std::vector<float> x(count);
     for (std::uint32_t n = 0; n < count; ++n) x[n] = static_cast<float>(n) * 0.001f;
     auto on = std::make_shared<device::Buffer<float>>(upload(device, x, "x"));
