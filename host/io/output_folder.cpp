@@ -67,12 +67,23 @@ void check_replaceable(const fs::path& folder, const fs::path& ignored) {
 fs::path resolved(const fs::path& destination) {
     if (destination.empty()) throw Error(ErrorKind::input, "the output folder's name is empty");
     std::error_code error;
-    auto path = fs::weakly_canonical(fs::absolute(destination, error), error);
-    if (error) fail(destination, "can't be used as output folder: " + error.message());
+    auto path = fs::absolute(destination, error);
+    if (!error) path = fs::weakly_canonical(path, error);
+    if (error || !path.is_absolute()) {
+        fail(destination,
+             "can't be used as output folder: " +
+                 (error ? error.message() : std::string("the current folder is gone")));
+    }
     if (!path.has_filename()) path = path.parent_path();
     if (!path.has_filename())
         fail(destination, "can't be used as output folder; name a new folder");
     return path;
+}
+
+// Replacing the folder that a shell stands in would leave the shell in a folder that is gone.
+bool is_current_folder(const fs::path& folder) {
+    std::error_code error;
+    return fs::equivalent(folder, fs::current_path(error), error);
 }
 
 // Moves a file, by copy where the two places are on different file systems. The target appears
@@ -111,7 +122,8 @@ void move_files(const fs::path& from, const fs::path& to) {
 OutputFolder::OutputFolder(const fs::path& destination) : destination_(resolved(destination)) {
     check_replaceable(destination_, {});
     std::error_code error;
-    for (auto parent = destination_.parent_path(); !fs::exists(parent, error) && !error;
+    for (auto parent = destination_.parent_path();
+         parent.has_relative_path() && !fs::exists(parent, error) && !error;
          parent = parent.parent_path()) {
         made_parents_.insert(made_parents_.begin(), parent);
     }
@@ -164,7 +176,8 @@ void OutputFolder::commit() {
         }
         temporary_.clear();
         made_parents_.clear();
-    } else if (!inside && ::chmod(temporary_.c_str(), status.st_mode & 07777) == 0 &&
+    } else if (!inside && !is_current_folder(destination_) &&
+               ::chmod(temporary_.c_str(), status.st_mode & 07777) == 0 &&
                ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, destination_.c_str(),
                            RENAME_EXCHANGE) == 0) {
         // The temporary folder is now the earlier output, which goes with it.

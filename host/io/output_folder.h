@@ -12,8 +12,8 @@ namespace topple::io {
 // The destination may be missing, an empty folder, or the output of an earlier run, which is
 // replaced. A folder that holds anything else is refused: nobody's files are deleted. Missing
 // parent folders are made, and taken away again where the run fails. Where the destination can't be
-// replaced by a rename (it is a mount point, or only it and not its parent is writable), commit()
-// moves the files into it one by one, scene.json last.
+// replaced by a rename (it is a mount point or the current folder, or only it and not its parent is
+// writable), commit() moves the files into it one by one, scene.json last.
 //
 // All errors are Error(input) that name the folder and the reason.
 class OutputFolder {

@@ -137,6 +137,46 @@ TEST_F(Output, through_a_link_replaces_what_the_link_names) {
     EXPECT_EQ(bytes_of_file(path("real/points.ply")), "new");
 }
 
+// Stands in a folder while it lives.
+class Standing {
+  public:
+    explicit Standing(const fs::path& in) : before_(fs::current_path()) { fs::current_path(in); }
+    ~Standing() { fs::current_path(before_); }
+    Standing(const Standing&) = delete;
+    Standing& operator=(const Standing&) = delete;
+
+  private:
+    fs::path before_;
+};
+
+TEST_F(Output, names_relative_to_the_current_folder) {
+    fs::create_directory(path("here"));
+    const Standing standing(path("here"));
+    {
+        OutputFolder out(".");
+        write_result(out, "new");
+        out.commit();
+    }
+    EXPECT_EQ(bytes_of_file("points.ply"), "new") << "the current folder is still the same";
+    fs::remove("points.ply");
+    fs::remove("scene.json");
+    for (const char* name : {"out", "./out/", "../here/out"}) {
+        OutputFolder out(name);
+        write_result(out, name);
+        out.commit();
+        EXPECT_EQ(bytes_of_file("out/points.ply"), name);
+    }
+    EXPECT_EQ(entries("."), 1u);
+}
+
+TEST_F(Output, a_current_folder_that_is_gone) {
+    fs::create_directory(path("here"));
+    const Standing standing(path("here"));
+    fs::remove(path("here"));
+    expect_input_error([] { OutputFolder out("out"); }, {"out"});
+    EXPECT_EQ(entries(folder_), 0u);
+}
+
 TEST_F(Output, bad_destinations) {
     expect_input_error([] { OutputFolder out(""); }, {"empty"});
     expect_input_error([] { OutputFolder out("/"); }, {"/"});
