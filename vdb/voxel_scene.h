@@ -94,6 +94,13 @@ class VoxelScene {
     };
     std::uint64_t fill(device::Device& device, const FillOptions& options);
 
+    // Joins neighbouring primitives through what no frame saw: gaps of up to `longest_gap`
+    // invisible voxels along an axis between two primitives are completed, each voxel by the nearer
+    // of the two. Legs meet their table top where the edge above hides it. A gap with a voxel that
+    // was seen to be empty stays; so does one beside, not below or above, a primitive in `hollow`.
+    // Returns voxels completed.
+    std::uint64_t bridge(unsigned longest_gap, const std::vector<bool>& hollow);
+
     // The leaves that hold solid voxels, or that `all` asks for, and their voxels, flattened.
     Tiles tiles(bool all = false) const;
     std::vector<std::uint8_t> states(const Tiles& tiles) const;

@@ -21,13 +21,15 @@ struct Arguments {
 
 int run(const Arguments& a) {
     if (a.camera.frames < 1 || a.camera.frames > 10000) {
-        throw Error(ErrorKind::usage, "--frames " + std::to_string(a.camera.frames) + ": expected 1 to 10000");
+        throw Error(ErrorKind::usage,
+                    "--frames " + std::to_string(a.camera.frames) + ": expected 1 to 10000");
     }
     const scenes::World world = scenes::furnished_room(a.room);
     const scenes::Sequence sequence = scenes::walk(world, a.camera);
     scenes::write_sequence(a.out, world, sequence);
-    std::printf("%s: %zu frames, %zu fused points, %zu parts, %zu objects\n", a.out.c_str(), sequence.frames.size(),
-                sequence.cloud.size(), world.parts.size(), world.objects.size());
+    std::printf("%s: %zu frames, %zu fused points, %zu parts, %zu objects\n", a.out.c_str(),
+                sequence.frames.size(), sequence.cloud.size(), world.parts.size(),
+                world.objects.size());
     return 0;
 }
 
@@ -35,10 +37,15 @@ int run(const Arguments& a) {
 
 Command add_generate(CLI::App& app) {
     auto a = std::make_shared<Arguments>();
-    app.add_option("OUT", a->out, "Folder for the depth frames, poses, fused cloud and truth.json")->required();
-    app.add_option("--seed", a->room.seed, "Seed of the room and of the sensor's noise")->capture_default_str();
-    app.add_option("--frames", a->camera.frames, "Depth frames of the walk through the room")->capture_default_str();
-    app.add_option("--tilt", a->room.tilt_deg, "Tilt of the input's frame against the room, degrees")->capture_default_str();
+    app.add_option("OUT", a->out, "Folder for the depth frames, poses, fused cloud and truth.json")
+        ->required();
+    app.add_option("--seed", a->room.seed, "Seed of the room and of the sensor's noise")
+        ->capture_default_str();
+    app.add_option("--frames", a->camera.frames, "Depth frames of the walk through the room")
+        ->capture_default_str();
+    app.add_option("--tilt", a->room.tilt_deg,
+                   "Tilt of the input's frame against the room, degrees")
+        ->capture_default_str();
     app.add_flag("--single", a->camera.single, "One frame only, without a trajectory");
     return [a] {
         a->camera.seed = a->room.seed;

@@ -21,7 +21,9 @@ namespace {
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-void interrupt(int) { interrupted.store(true); }
+void interrupt(int) {
+    interrupted.store(true);
+}
 
 struct Arguments {
     std::string input, out, backend = "auto", up, disturbance = "human,wind,earthquake", max_memory;
@@ -38,7 +40,10 @@ std::vector<std::string> split_commas(const std::string& text) {
 }
 
 Vec3 parse_up(const std::string& text) {
-    const auto bad = [&] { return Error(ErrorKind::usage, "--up " + text + ": expected three numbers X,Y,Z, not all zero"); };
+    const auto bad = [&] {
+        return Error(ErrorKind::usage,
+                     "--up " + text + ": expected three numbers X,Y,Z, not all zero");
+    };
     const std::vector<std::string> parts = split_commas(text);
     if (parts.size() != 3) throw bad();
     Vec3 up{};
@@ -67,14 +72,15 @@ std::uint64_t parse_size(const std::string& text) {
         used = 0;
     }
     const std::string unit = text.substr(used);
-    const double factor = unit.empty() || unit == "B"     ? 1
-                          : unit == "K" || unit == "KiB"  ? 0x1p10
-                          : unit == "M" || unit == "MiB"  ? 0x1p20
-                          : unit == "G" || unit == "GiB"  ? 0x1p30
+    const double factor = unit.empty() || unit == "B"    ? 1
+                          : unit == "K" || unit == "KiB" ? 0x1p10
+                          : unit == "M" || unit == "MiB" ? 0x1p20
+                          : unit == "G" || unit == "GiB" ? 0x1p30
                           : unit == "T" || unit == "TiB" ? 0x1p40
-                                                          : 0;
+                                                         : 0;
     if (used == 0 || factor == 0 || !(value > 0) || value * factor > 0x1p60) {
-        throw Error(ErrorKind::usage, "--max-memory " + text + ": expected a size such as 500M or 4G");
+        throw Error(ErrorKind::usage,
+                    "--max-memory " + text + ": expected a size such as 500M or 4G");
     }
     return static_cast<std::uint64_t>(value * factor);
 }
@@ -114,7 +120,8 @@ int run(Arguments& a) {
     if (!a.up.empty()) a.options.up = parse_up(a.up);
     if (!a.max_memory.empty()) a.options.max_memory_bytes = parse_size(a.max_memory);
     a.options.disturbances = split_commas(a.disturbance);
-    const std::filesystem::path out = a.out.empty() ? default_output(a.input) : std::filesystem::path(a.out);
+    const std::filesystem::path out =
+        a.out.empty() ? default_output(a.input) : std::filesystem::path(a.out);
     std::signal(SIGINT, interrupt);
     std::signal(SIGTERM, interrupt);
     const auto device = device::open_device(a.backend, a.threads);
@@ -142,21 +149,32 @@ int run(Arguments& a) {
 
 Command add_parse(CLI::App& app) {
     auto a = std::make_shared<Arguments>();
-    app.add_option("INPUT", a->input,
-                   "A point cloud (.ply, .pcd, .xyz), a sequence folder (depth/*.png, intrinsics.json,\n"
-                   "trajectory.txt), or the same folder without a trajectory: a single frame")
+    app.add_option(
+           "INPUT", a->input,
+           "A point cloud (.ply, .pcd, .xyz), a sequence folder (depth/*.png, intrinsics.json,\n"
+           "trajectory.txt), or the same folder without a trajectory: a single frame")
         ->required();
-    app.add_option("-o,--output", a->out, "Folder for the results (default: INPUT's name with -parsed, in the current folder)");
-    app.add_option("--backend", a->backend, "auto (a real GPU if there is one, else native), native, opencl, vulkan")
+    app.add_option(
+        "-o,--output", a->out,
+        "Folder for the results (default: INPUT's name with -parsed, in the current folder)");
+    app.add_option("--backend", a->backend,
+                   "auto (a real GPU if there is one, else native), native, opencl, vulkan")
         ->capture_default_str();
-    app.add_option("--voxel", a->options.voxel_m, "Edge of a solid voxel in metres (default: from the scan's resolution)");
-    app.add_option("--up", a->up, "Up in the input's frame, X,Y,Z, as from an IMU (default: found from the scan)");
-    app.add_option("--disturbance", a->disturbance, "Which to reckon with: human, wind, earthquake, separated by commas")
+    app.add_option("--voxel", a->options.voxel_m,
+                   "Edge of a solid voxel in metres (default: from the scan's resolution)");
+    app.add_option("--up", a->up,
+                   "Up in the input's frame, X,Y,Z, as from an IMU (default: found from the scan)");
+    app.add_option("--disturbance", a->disturbance,
+                   "Which to reckon with: human, wind, earthquake, separated by commas")
         ->capture_default_str();
     app.add_option("--wind", a->options.wind_m_s, "Wind speed in m/s")->capture_default_str();
-    app.add_option("--pga", a->options.pga_m_s2, "Peak ground acceleration of the earthquake in m/s^2")->capture_default_str();
-    app.add_option("--density", a->options.density_kg_m3, "Density of all objects in kg/m^3")->capture_default_str();
-    app.add_option("--friction", a->options.friction, "Coefficient of friction")->capture_default_str();
+    app.add_option("--pga", a->options.pga_m_s2,
+                   "Peak ground acceleration of the earthquake in m/s^2")
+        ->capture_default_str();
+    app.add_option("--density", a->options.density_kg_m3, "Density of all objects in kg/m^3")
+        ->capture_default_str();
+    app.add_option("--friction", a->options.friction, "Coefficient of friction")
+        ->capture_default_str();
     app.add_option("--seed", a->options.seed, "Seed of everything random")->capture_default_str();
     app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
     app.add_option("--max-memory", a->max_memory, "Refuse a scan that would need more, such as 4G");

@@ -30,15 +30,16 @@ void print_objects(const Scene& scene) {
     }
     std::stable_sort(movable.begin(), movable.end(),
                      [](const Object* a, const Object* b) { return a->unsafety > b->unsafety; });
-    std::printf("\n%6s %8s %8s %9s %9s %6s %10s %10s %10s  %s\n", "object", "unsafety", "mass kg", "barrier J",
-                "release J", "mode", "human J", "wind J", "quake J", "rests on");
+    std::printf("\n%6s %8s %8s %9s %9s %6s %10s %10s %10s  %s\n", "object", "unsafety", "mass kg",
+                "barrier J", "release J", "mode", "human J", "wind J", "quake J", "rests on");
     for (std::size_t i = 0; i < std::min(rows_shown, movable.size()); ++i) {
         const Object& o = *movable[i];
-        std::printf("%6d %8.1f %8.3g %9.3g %9.3g %6s %10.3g %10.3g %10.3g  %s\n", o.id, o.unsafety, o.mass_kg, o.barrier_J,
-                    o.release_J, o.mode.c_str(), risk_of(o, "human"), risk_of(o, "wind"), risk_of(o, "earthquake"),
-                    rests_on[o.id].c_str());
+        std::printf("%6d %8.1f %8.3g %9.3g %9.3g %6s %10.3g %10.3g %10.3g  %s\n", o.id, o.unsafety,
+                    o.mass_kg, o.barrier_J, o.release_J, o.mode.c_str(), risk_of(o, "human"),
+                    risk_of(o, "wind"), risk_of(o, "earthquake"), rests_on[o.id].c_str());
     }
-    if (movable.size() > rows_shown) std::printf("   ... and %zu more in scene.json\n", movable.size() - rows_shown);
+    if (movable.size() > rows_shown)
+        std::printf("   ... and %zu more in scene.json\n", movable.size() - rows_shown);
 }
 
 }  // namespace
@@ -48,9 +49,11 @@ void print_summary(const Scene& scene, const std::filesystem::path& out) {
     for (const auto& [stage, s] : scene.timings_s) seconds += s;
     std::size_t grounded = 0;
     for (const Object& o : scene.objects) grounded += o.grounded;
-    std::printf("%zu points, %zu primitives, %zu objects (%zu fixed to the ground), %zu supports; %.1f s on %s (%s)\n",
-                scene.points.x.size(), scene.primitives.size(), scene.objects.size(), grounded, scene.supports.size(),
-                seconds, scene.backend.c_str(), scene.device.c_str());
+    std::printf(
+        "%zu points, %zu primitives, %zu objects (%zu fixed to the ground), %zu supports; %.1f s "
+        "on %s (%s)\n",
+        scene.points.x.size(), scene.primitives.size(), scene.objects.size(), grounded,
+        scene.supports.size(), seconds, scene.backend.c_str(), scene.device.c_str());
     print_objects(scene);
     for (const std::string& note : scene.notes) std::printf("Note: %s\n", note.c_str());
     std::printf("\nReport: %s\n", (out / "report.html").c_str());

@@ -27,8 +27,8 @@ struct Region {
     std::uint64_t surfels = 0;
 };
 
-// Over-segmentation into planar and quadric regions (paper, 2.1.1). label: region of each surfel, -1
-// for surfels that fit none.
+// Over-segmentation into planar and quadric regions (paper, 2.1.1). label: region of each surfel,
+// -1 for surfels that fit none.
 struct Regions {
     std::vector<std::int32_t> label;
     std::vector<Region> regions;

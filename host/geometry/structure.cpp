@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace topple::geometry {
 namespace {
@@ -12,6 +13,10 @@ constexpr double vertical_sin = 0.3;    // within 17 degrees of level
 // A shell plane is no smaller than this share of the largest plane of its kind.
 constexpr double floor_share = 0.1, wall_share = 0.05;
 constexpr double floor_area_m2 = 0.02, wall_area_m2 = 0.3;
+// A scrap is smaller than this share of its shell plane, faces the same way to within 60 degrees
+// (the normals of noise are noisy), and lies with this share of itself within the slack of the
+// plane.
+constexpr double scrap_share = 0.05, scrap_cos = 0.5, scrap_inside = 0.9, shell_slack_cells = 2;
 // Share of the scene's surfels that may lie behind a wall: windows, mirrors, open doors.
 constexpr double behind_share = 0.02;
 
@@ -94,6 +99,53 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
         }
     }
     return out;
+}
+
+void absorb_into_shell(const Surfels& s, PrimitiveSet& primitives,
+                       std::vector<Structure>& structure) {
+    const std::vector<Face> face = faces(s, primitives);
+    const double slack = shell_slack_cells * s.cell_m;
+    std::vector<std::int32_t> home(face.size(), -1);
+    for (std::size_t shell = 0; shell < face.size(); ++shell) {
+        if (structure[shell] == Structure::none) continue;
+        const Face& f = face[shell];
+        std::vector<std::uint64_t> near(face.size(), 0), all(face.size(), 0);
+        for (std::size_t n = 0; n < s.size(); ++n) {
+            if (primitives.label[n] < 0) continue;
+            const auto p = static_cast<std::size_t>(primitives.label[n]);
+            ++all[p];
+            near[p] += std::abs((s.x[n] - f.px) * f.nx + (s.y[n] - f.py) * f.ny +
+                                (s.z[n] - f.pz) * f.nz) < slack;
+        }
+        for (std::size_t p = 0; p < face.size(); ++p) {
+            const double along = face[p].nx * f.nx + face[p].ny * f.ny + face[p].nz * f.nz;
+            if (home[p] < 0 && structure[p] == Structure::none &&
+                face[p].area_m2 < scrap_share * f.area_m2 && along > scrap_cos &&
+                static_cast<double>(near[p]) >= scrap_inside * static_cast<double>(all[p])) {
+                home[p] = static_cast<std::int32_t>(shell);
+            }
+        }
+    }
+    std::vector<std::int32_t> number(face.size(), -1);
+    std::size_t next = 0;
+    for (std::size_t p = 0; p < face.size(); ++p) {
+        if (home[p] >= 0) continue;
+        number[p] = static_cast<std::int32_t>(next);
+        if (next != p) {
+            primitives.model[next] = std::move(primitives.model[p]);
+            primitives.regions[next] = std::move(primitives.regions[p]);
+            structure[next] = structure[p];
+        }
+        ++next;
+    }
+    primitives.model.resize(next);
+    primitives.regions.resize(next);
+    structure.resize(next);
+    for (std::int32_t& l : primitives.label) {
+        if (l < 0) continue;
+        const std::int32_t to = home[static_cast<std::size_t>(l)];
+        l = number[static_cast<std::size_t>(to >= 0 ? to : l)];
+    }
 }
 
 }  // namespace topple::geometry

@@ -9,8 +9,8 @@
 #include "device/device.h"
 #include "topple/input.h"
 
-// Everything in this folder works in the grid frame of vdb::VoxelFrame: metres, z up, voxel (i, j, k)
-// spans [i, i+1] * voxel_m per axis.
+// Everything in this folder works in the grid frame of vdb::VoxelFrame: metres, z up, voxel (i, j,
+// k) spans [i, i+1] * voxel_m per axis.
 namespace topple::physics {
 
 // The solid voxels of a scene, one array per field, sorted by (i, j, k).
@@ -31,8 +31,8 @@ struct Body {
 
 // Mass properties of `count` labels over the cells (kernel segmented_sum; exact integer sums).
 // density_kg_m3: one value per label.
-std::vector<Body> mass_properties(device::Device& device, const SolidCells& cells, std::int32_t count,
-                                  std::span<const double> density_kg_m3);
+std::vector<Body> mass_properties(device::Device& device, const SolidCells& cells,
+                                  std::int32_t count, std::span<const double> density_kg_m3);
 
 Body combine(std::span<const Body> bodies);
 

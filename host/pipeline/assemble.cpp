@@ -15,7 +15,8 @@ class ToInput {
     explicit ToInput(const std::array<Vec3, 3>& axes) : axes_(axes) {}
     Vec3 operator()(const Vec3& g) const {
         Vec3 out{};
-        for (std::size_t c = 0; c < 3; ++c) out[c] = g[0] * axes_[0][c] + g[1] * axes_[1][c] + g[2] * axes_[2][c];
+        for (std::size_t c = 0; c < 3; ++c)
+            out[c] = g[0] * axes_[0][c] + g[1] * axes_[1][c] + g[2] * axes_[2][c];
         return out;
     }
 
@@ -23,7 +24,8 @@ class ToInput {
     const std::array<Vec3, 3>& axes_;
 };
 
-void add_primitives(const GeometryStage& geometry, const ObjectStage& objects, const ToInput& to_input, Scene& scene) {
+void add_primitives(const GeometryStage& geometry, const ObjectStage& objects,
+                    const ToInput& to_input, Scene& scene) {
     for (std::size_t p = 0; p < objects.bodies.size(); ++p) {
         const physics::Body& body = objects.bodies[p];
         Primitive out;
@@ -41,7 +43,8 @@ void add_primitives(const GeometryStage& geometry, const ObjectStage& objects, c
     }
 }
 
-void add_objects(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input, Scene& scene) {
+void add_objects(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,
+                 Scene& scene) {
     for (std::size_t o = 0; o < objects.objects.size(); ++o) {
         const StableObject& from = objects.objects[o];
         Object to;
@@ -66,7 +69,9 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
 }
 
 void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& scene) {
-    const auto object = [&](std::int32_t p) { return objects.object_of_primitive[static_cast<std::size_t>(p)]; };
+    const auto object = [&](std::int32_t p) {
+        return objects.object_of_primitive[static_cast<std::size_t>(p)];
+    };
     std::map<std::pair<std::int32_t, std::int32_t>, double> carried;  // (supporter, supported)
     std::map<std::pair<std::int32_t, std::int32_t>, bool> carries;    // primitives, a < b
     for (const graph::Carrying& c : objects.contacts.carryings) {
@@ -75,7 +80,8 @@ void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& sc
         const auto pair = std::pair(object(c.supporter), object(c.supported));
         if (pair.first != pair.second) carried[pair] += c.area_m2;
     }
-    for (const auto& [pair, area] : carried) scene.supports.push_back({pair.first, pair.second, area});
+    for (const auto& [pair, area] : carried)
+        scene.supports.push_back({pair.first, pair.second, area});
     for (std::size_t i = 0; i < objects.contacts.pairs.size(); ++i) {
         const physics::TouchingPair& pair = objects.contacts.pairs[i];
         Contact c;
@@ -90,7 +96,8 @@ void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& sc
     }
 }
 
-void add_points(const Ingested& input, const GeometryStage& geometry, const ObjectStage& objects, Scene& scene) {
+void add_points(const Ingested& input, const GeometryStage& geometry, const ObjectStage& objects,
+                Scene& scene) {
     ScenePoints& out = scene.points;
     out.x = input.cloud.x;
     out.y = input.cloud.y;
@@ -118,7 +125,8 @@ void add_exposures(const SafetyStage& safety, VoxelStage& voxels) {
             const std::int32_t i = voxels.cells.i[c], j = voxels.cells.j[c], k = voxels.cells.k[c];
             const auto at = leaf.find({i & ~7, j & ~7, k & ~7});
             if (at == leaf.end()) continue;
-            values[at->second * 512 + static_cast<std::size_t>((i & 7) * 64 + (j & 7) * 8 + (k & 7))] = d.exposure[c];
+            values[at->second * 512 +
+                   static_cast<std::size_t>((i & 7) * 64 + (j & 7) * 8 + (k & 7))] = d.exposure[c];
         }
         voxels.scene->add_field(d.name, tiles, values);
     }
@@ -141,15 +149,16 @@ void add_fields(const SafetyStage& safety, const ToInput& to_input, Scene& scene
 
 }  // namespace
 
-void assemble(const Ingested& input, const GeometryStage& geometry, VoxelStage& voxels, const ObjectStage& objects,
-              const SafetyStage& safety, Scene& scene) {
+void assemble(const Ingested& input, const GeometryStage& geometry, VoxelStage& voxels,
+              const ObjectStage& objects, const SafetyStage& safety, Scene& scene) {
     const std::array<Vec3, 3>& axes = geometry.frame.axes;
     const ToInput to_input(axes);
     scene.up = axes[2];
     scene.up_method = geometry.frame.up_method;
     scene.manhattan_found = geometry.frame.found;
-    scene.manhattan_from_input = {axes[0][0], axes[0][1], axes[0][2], 0, axes[1][0], axes[1][1], axes[1][2], 0,
-                                  axes[2][0], axes[2][1], axes[2][2], 0, 0, 0, 0, 1};
+    scene.manhattan_from_input = {
+        axes[0][0], axes[0][1], axes[0][2], 0, axes[1][0], axes[1][1], axes[1][2], 0,
+        axes[2][0], axes[2][1], axes[2][2], 0, 0,          0,          0,          1};
     add_primitives(geometry, objects, to_input, scene);
     add_objects(objects, safety, to_input, scene);
     add_contacts(objects, to_input, scene);

@@ -12,7 +12,7 @@ namespace topple {
 
 // Gathers what the stages found into the public result, in the input's frame, and hands the objects
 // and fields to the voxel grids.
-void assemble(const Ingested& input, const GeometryStage& geometry, VoxelStage& voxels, const ObjectStage& objects,
-              const SafetyStage& safety, Scene& scene);
+void assemble(const Ingested& input, const GeometryStage& geometry, VoxelStage& voxels,
+              const ObjectStage& objects, const SafetyStage& safety, Scene& scene);
 
 }  // namespace topple

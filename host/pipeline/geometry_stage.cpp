@@ -4,24 +4,43 @@
 #include <algorithm>
 #include <utility>
 
-namespace topple {
+#include "geometry/fragments.h"
 
-GeometryStage find_primitives(device::Device& device, const Ingested& input, const ParseOptions& options,
-                              StageClock& stage) {
+namespace topple {
+namespace {
+
+// Surfels are larger than the cells of the cloud: a surface then has no holes at their resolution
+// even where it is sparsely seen, and each averages the noise of several points. Measured: part
+// mIoU on generated rooms is highest at about twice the point spacing.
+constexpr double surfel_cells = 1.85;
+// A solid shows at least a dozen surfels.
+constexpr std::uint64_t least_surfels = 12;
+
+}  // namespace
+
+GeometryStage find_primitives(device::Device& device, const Ingested& input,
+                              const ParseOptions& options, StageClock& stage) {
     GeometryStage g;
     g.surfels = stage("normals", [&] {
-        return geometry::make_surfels(device, input.cloud, input.cell_m, input.viewpoints, input.viewpoint_of_point);
+        return geometry::make_surfels(device, input.cloud, surfel_cells * input.cell_m,
+                                      input.viewpoints, input.viewpoint_of_point);
     });
     g.frame = stage("frame", [&] {
         return geometry::find_scene_frame(device, g.surfels, {options.up, input.camera_up});
     });
-    const geometry::Regions regions = stage("splitting", [&] { return geometry::split(g.surfels); });
+    const geometry::Regions regions =
+        stage("splitting", [&] { return geometry::split(g.surfels); });
     g.primitives = stage("merging", [&] {
-        return geometry::merge_convex(g.surfels, regions, g.frame.axes[2]);
+        geometry::PrimitiveSet primitives =
+            geometry::merge_convex(g.surfels, regions, g.frame.axes[2]);
+        geometry::absorb_fragments(g.surfels, least_surfels, primitives);
+        return primitives;
     });
     g.structure = geometry::find_structure(g.surfels, g.primitives, g.frame.axes[2]);
+    geometry::absorb_into_shell(g.surfels, g.primitives, g.structure);
     g.primitive_of_point.reserve(input.cloud.size());
-    for (const std::uint32_t s : g.surfels.of_point) g.primitive_of_point.push_back(g.primitives.label[s]);
+    for (const std::uint32_t s : g.surfels.of_point)
+        g.primitive_of_point.push_back(g.primitives.label[s]);
     return g;
 }
 
@@ -56,9 +75,11 @@ graph::NormalVariation normal_variation(const GeometryStage& g) {
             const std::uint32_t m = s.neighbours[k];
             const std::int32_t b = g.primitives.label[m];
             if (m <= n || b < 0) continue;
-            graph::NormalVariation::Sum& sum = a == b ? out.inside[static_cast<std::size_t>(a)]
-                                                      : out.between[{std::min(a, b), std::max(a, b)}];
-            sum.sum += 1 - (double{s.nx[n]} * s.nx[m] + double{s.ny[n]} * s.ny[m] + double{s.nz[n]} * s.nz[m]);
+            graph::NormalVariation::Sum& sum = a == b
+                                                   ? out.inside[static_cast<std::size_t>(a)]
+                                                   : out.between[{std::min(a, b), std::max(a, b)}];
+            sum.sum += 1 - (double{s.nx[n]} * s.nx[m] + double{s.ny[n]} * s.ny[m] +
+                            double{s.nz[n]} * s.nz[m]);
             ++sum.pairs;
         }
     }

@@ -19,12 +19,12 @@ struct GeometryStage {
     geometry::Surfels surfels;
     geometry::SceneFrame frame;
     geometry::PrimitiveSet primitives;
-    std::vector<geometry::Structure> structure;   // by primitive
+    std::vector<geometry::Structure> structure;  // by primitive
     std::vector<std::int32_t> primitive_of_point;
 };
 
-GeometryStage find_primitives(device::Device& device, const Ingested& input, const ParseOptions& options,
-                              StageClock& stage);
+GeometryStage find_primitives(device::Device& device, const Ingested& input,
+                              const ParseOptions& options, StageClock& stage);
 
 // Drops the primitives for which `keep` is false and renumbers the others in their order.
 void keep_primitives(GeometryStage& geometry, const std::vector<bool>& keep);

@@ -47,8 +47,8 @@ Vec3 position(const DepthFrame& frame) {
     return {m[3], m[7], m[11]};
 }
 
-// The cell that suits a depth camera: about the spacing of its pixels at the scene's typical depth, but
-// not below its noise there, which only smears points over more cells.
+// The cell that suits a depth camera: about the spacing of its pixels at the scene's typical depth,
+// but not below its noise there, which only smears points over more cells.
 double cell_for_frames(const FrameStream& frames) {
     std::vector<double> depths;
     const Intrinsics& k = frames.intrinsics();
@@ -60,7 +60,8 @@ double cell_for_frames(const FrameStream& frames) {
         }
     }
     if (depths.empty()) return 0.01;
-    std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+    std::nth_element(depths.begin(),
+                     depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
     const double z = depths[depths.size() / 2];
     const double beyond = std::max(0.0, z - 0.4);
     const double noise = 0.0012 + 0.0019 * beyond * beyond;
@@ -73,7 +74,8 @@ double distance_to(const PointCloud& cloud, std::size_t n, const DepthFrame& fra
 }
 
 // Whether the point is in the frame's view and nothing in the frame hides it.
-bool sees(const DepthFrame& frame, const Intrinsics& k, const PointCloud& cloud, std::size_t n, double tolerance_m) {
+bool sees(const DepthFrame& frame, const Intrinsics& k, const PointCloud& cloud, std::size_t n,
+          double tolerance_m) {
     const Mat4& m = frame.camera_to_world;
     const double dx = cloud.x[n] - m[3], dy = cloud.y[n] - m[7], dz = cloud.z[n] - m[11];
     const double z = m[2] * dx + m[6] * dy + m[10] * dz;
@@ -81,7 +83,8 @@ bool sees(const DepthFrame& frame, const Intrinsics& k, const PointCloud& cloud,
     const double u = k.fx * (m[0] * dx + m[4] * dy + m[8] * dz) / z + k.cx;
     const double v = k.fy * (m[1] * dx + m[5] * dy + m[9] * dz) / z + k.cy;
     if (!(u > -0.5 && v > -0.5 && u < k.width - 0.5 && v < k.height - 0.5)) return false;
-    const auto pixel = static_cast<std::size_t>(std::lround(v)) * k.width + static_cast<std::size_t>(std::lround(u));
+    const auto pixel = static_cast<std::size_t>(std::lround(v)) * k.width +
+                       static_cast<std::size_t>(std::lround(u));
     const double depth = frame.depth[pixel] / k.depth_scale;
     return depth > 0 && z <= depth + tolerance_m;
 }
@@ -116,13 +119,16 @@ Ingested ingest_frames(io::FrameSequence sequence, const ParseOptions& options) 
     for (std::size_t f = 0; f < out.frames->size(); ++f) {
         if (options.cancelled && options.cancelled()) throw Error(ErrorKind::input, "cancelled");
         fusion.add(out.frames->load(f));
-        if (options.progress) options.progress("ingest", static_cast<double>(f + 1) / static_cast<double>(out.frames->size()));
+        if (options.progress)
+            options.progress("ingest",
+                             static_cast<double>(f + 1) / static_cast<double>(out.frames->size()));
     }
     geometry::FusedCloud fused = fusion.finish();
     out.cloud = std::move(fused.cloud);
     out.viewpoints = std::move(fused.viewpoints);
     out.viewpoint_of_point = std::move(fused.viewpoint_of_point);
-    if (!posed) out.notes.push_back("A single frame: what it does not show is completed by shape alone.");
+    if (!posed)
+        out.notes.push_back("A single frame: what it does not show is completed by shape alone.");
     return out;
 }
 
@@ -133,12 +139,14 @@ Ingested ingest_cloud(PointCloud cloud, const ParseOptions&) {
     const double spacing = geometry::point_spacing(cloud);
     // A little above the spacing, so that a surface has no holes at this resolution.
     out.cell_m = std::clamp(1.25 * spacing, least_cell_m, largest_cell_m);
+    out.notes = cloud.notes;
     out.cloud = std::move(cloud);
     Intrinsics intrinsics;
     DepthFrame frame;
     if (out.cloud.height > 1 && geometry::frame_of_organised_cloud(out.cloud, intrinsics, frame)) {
         out.viewpoints = {position(frame)};
-        out.camera_up = Vec3{0, -1, 0};
+        const Mat4& pose = frame.camera_to_world;
+        out.camera_up = Vec3{-pose[1], -pose[5], -pose[9]};
         std::vector<DepthFrame> frames;
         frames.push_back(std::move(frame));
         out.frames = std::make_unique<MemoryStream>(intrinsics, std::move(frames));
@@ -148,7 +156,8 @@ Ingested ingest_cloud(PointCloud cloud, const ParseOptions&) {
     std::vector<DepthFrame> frames;
     geometry::virtual_frames(out.cloud, spacing, virtual_positions, intrinsics, frames);
     if (frames.empty()) {
-        out.notes.push_back("No free space could be seen from inside of the cloud; nothing was carved.");
+        out.notes.push_back(
+            "No free space could be seen from inside of the cloud; nothing was carved.");
         return out;
     }
     if (out.viewpoints.empty() && out.cloud.nx.empty()) {
@@ -157,14 +166,16 @@ Ingested ingest_cloud(PointCloud cloud, const ParseOptions&) {
     }
     out.frames = std::make_unique<MemoryStream>(intrinsics, std::move(frames));
     out.notes.push_back(
-        "The cloud has no sensor poses: free space was estimated from viewpoints inside of it, and is less "
+        "The cloud has no sensor poses: free space was estimated from viewpoints inside of it, and "
+        "is less "
         "certain than from depth frames.");
     return out;
 }
 
 Ingested ingest(const std::filesystem::path& input, const ParseOptions& options) {
     if (options.progress) options.progress("ingest", 0);
-    if (io::looks_like_sequence(input)) return ingest_frames(io::FrameSequence::open(input), options);
+    if (io::looks_like_sequence(input))
+        return ingest_frames(io::FrameSequence::open(input), options);
     return ingest_cloud(io::read_cloud(input), options);
 }
 

@@ -28,7 +28,7 @@ struct Ingested {
     std::vector<std::uint32_t> viewpoint_of_point;  // of each point, or empty: viewpoint 0 for all
     std::unique_ptr<FrameStream> frames;            // what carves the free space; null: nothing can
     std::optional<Vec3> camera_up;
-    double cell_m = 0;   // working resolution, from the point spacing and the sensor's noise
+    double cell_m = 0;  // working resolution, from the point spacing and the sensor's noise
     std::vector<std::string> notes;
 };
 

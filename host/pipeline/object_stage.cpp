@@ -13,7 +13,8 @@ constexpr unsigned sphere_frequency = 16;
 
 std::vector<bool> shell(const GeometryStage& geometry) {
     std::vector<bool> ground;
-    for (const geometry::Structure s : geometry.structure) ground.push_back(s != geometry::Structure::none);
+    for (const geometry::Structure s : geometry.structure)
+        ground.push_back(s != geometry::Structure::none);
     return ground;
 }
 
@@ -28,7 +29,8 @@ void collect_objects(ObjectStage& out) {
     }
     std::vector<std::vector<std::int32_t>> members(static_cast<std::size_t>(objects));
     for (std::size_t p = 0; p < group.size(); ++p) {
-        members[static_cast<std::size_t>(out.object_of_primitive[p])].push_back(static_cast<std::int32_t>(p));
+        members[static_cast<std::size_t>(out.object_of_primitive[p])].push_back(
+            static_cast<std::int32_t>(p));
     }
     for (std::size_t o = 0; o < members.size(); ++o) {
         StableObject object;
@@ -37,8 +39,10 @@ void collect_objects(ObjectStage& out) {
         object.lowest_m = std::numeric_limits<double>::infinity();
         object.highest_m = -object.lowest_m;
         for (const std::int32_t p : object.candidate.primitives) {
-            object.lowest_m = std::min(object.lowest_m, out.contacts.lowest_m[static_cast<std::size_t>(p)]);
-            object.highest_m = std::max(object.highest_m, out.contacts.highest_m[static_cast<std::size_t>(p)]);
+            object.lowest_m =
+                std::min(object.lowest_m, out.contacts.lowest_m[static_cast<std::size_t>(p)]);
+            object.highest_m =
+                std::max(object.highest_m, out.contacts.highest_m[static_cast<std::size_t>(p)]);
         }
         out.objects.push_back(std::move(object));
     }
@@ -46,31 +50,37 @@ void collect_objects(ObjectStage& out) {
 
 }  // namespace
 
-ObjectStage find_objects(device::Device& device, const GeometryStage& geometry, const VoxelStage& voxels,
-                         const ParseOptions& options, StageClock& stage) {
+ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
+                         const VoxelStage& voxels, const ParseOptions& options, StageClock& stage) {
     ObjectStage out;
     const auto count = static_cast<std::int32_t>(geometry.primitives.model.size());
     const std::vector<double> density(static_cast<std::size_t>(count), options.density_kg_m3);
-    out.bodies = stage("bodies", [&] { return physics::mass_properties(device, voxels.cells, count, density); });
-    out.contacts = stage("contacts", [&] { return graph::build_contact_graph(device, voxels.cells, count); });
+    out.bodies = stage(
+        "bodies", [&] { return physics::mass_properties(device, voxels.cells, count, density); });
+    out.contacts =
+        stage("contacts", [&] { return graph::build_contact_graph(device, voxels.cells, count); });
     const physics::SupportTable table = stage("supports", [&] {
-        return physics::SupportTable(device, voxels.cells, count, physics::geodesic_sphere(sphere_frequency));
+        return physics::SupportTable(device, voxels.cells, count,
+                                     physics::geodesic_sphere(sphere_frequency));
     });
     stage("grouping", [&] {
         graph::GroupingOptions grouping;
         grouping.seed = options.seed;
         grouping.cancelled = options.cancelled;
-        out.grouping = graph::group_primitives(device, table, out.contacts, out.bodies, normal_variation(geometry),
-                                               shell(geometry), grouping);
+        out.grouping =
+            graph::group_primitives(device, table, out.contacts, out.bodies,
+                                    normal_variation(geometry), shell(geometry), grouping);
     });
     stage("barriers", [&] {
         collect_objects(out);
         std::vector<physics::Candidate> candidates;
         for (const StableObject& o : out.objects) candidates.push_back(o.candidate);
-        const std::vector<physics::Stability> tipping = physics::evaluate(device, table, candidates);
+        const std::vector<physics::Stability> tipping =
+            physics::evaluate(device, table, candidates);
         std::vector<physics::Body> bodies;
         // What is fixed to the ground does not slide: no mass, nothing to search.
-        for (const StableObject& o : out.objects) bodies.push_back(o.grounded ? physics::Body{} : o.candidate.body);
+        for (const StableObject& o : out.objects)
+            bodies.push_back(o.grounded ? physics::Body{} : o.candidate.body);
         const std::vector<double> friction(candidates.size(), options.friction);
         const std::vector<physics::SlideResult> sliding =
             physics::slide_all(voxels.cells, out.object_of_primitive, bodies, friction);

@@ -33,7 +33,7 @@ struct ObjectStage {
     std::vector<StableObject> objects;
 };
 
-ObjectStage find_objects(device::Device& device, const GeometryStage& geometry, const VoxelStage& voxels,
-                         const ParseOptions& options, StageClock& stage);
+ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
+                         const VoxelStage& voxels, const ParseOptions& options, StageClock& stage);
 
 }  // namespace topple

@@ -17,7 +17,8 @@ namespace {
 
 void check_positive(const char* option, double value, double highest) {
     if (value > 0 && value <= highest) return;  // false for NaN
-    throw Error(ErrorKind::usage, std::string(option) + " " + std::to_string(value) + ": expected a number above 0 and at most " +
+    throw Error(ErrorKind::usage, std::string(option) + " " + std::to_string(value) +
+                                      ": expected a number above 0 and at most " +
                                       std::to_string(highest));
 }
 
@@ -29,7 +30,8 @@ void check(const ParseOptions& o) {
     check_positive("--pga", o.pga_m_s2, 50);
     for (const std::string& d : o.disturbances) {
         if (d != "human" && d != "wind" && d != "earthquake") {
-            throw Error(ErrorKind::usage, "--disturbance " + d + ": expected human, wind or earthquake");
+            throw Error(ErrorKind::usage,
+                        "--disturbance " + d + ": expected human, wind or earthquake");
         }
     }
 }
@@ -50,15 +52,16 @@ void check_memory(const PointCloud& cloud, double voxel_m, const ParseOptions& o
     if (options.max_memory_bytes == 0) return;
     const std::uint64_t need = estimated_bytes(cloud, voxel_m);
     if (need > options.max_memory_bytes) {
-        throw Error(ErrorKind::input, std::to_string(cloud.size()) + " points at voxels of " + std::to_string(voxel_m) +
-                                          " m would need about " + std::to_string(need >> 20) + " MiB, more than the " +
+        throw Error(ErrorKind::input, std::to_string(cloud.size()) + " points at voxels of " +
+                                          std::to_string(voxel_m) + " m would need about " +
+                                          std::to_string(need >> 20) + " MiB, more than the " +
                                           std::to_string(options.max_memory_bytes >> 20) +
                                           " MiB of --max-memory; use a larger --voxel");
     }
 }
 
-ParseResult parse_ingested(device::Device& device, const Ingested& input, const ParseOptions& options, Scene scene,
-                           StageClock& stage) {
+ParseResult parse_ingested(device::Device& device, const Ingested& input,
+                           const ParseOptions& options, Scene scene, StageClock& stage) {
     const double voxel_m = options.voxel_m > 0 ? options.voxel_m : voxel_for_cell(input.cell_m);
     check_memory(input.cloud, voxel_m, options);
     scene.topple_version = version;
@@ -70,16 +73,18 @@ ParseResult parse_ingested(device::Device& device, const Ingested& input, const 
     scene.friction = options.friction;
     scene.notes.insert(scene.notes.end(), input.notes.begin(), input.notes.end());
 
-    GeometryStage geometry = find_primitives(device, input, options, stage);            // 2.1
-    VoxelStage voxels = make_solids(device, input, geometry, voxel_m, stage);           // 2.2
-    const ObjectStage objects = find_objects(device, geometry, voxels, options, stage); // 3, 4
-    const SafetyStage safety = assess_safety(device, geometry, voxels, objects, options, stage);  // 5
+    GeometryStage geometry = find_primitives(device, input, options, stage);             // 2.1
+    VoxelStage voxels = make_solids(device, input, geometry, voxel_m, stage);            // 2.2
+    const ObjectStage objects = find_objects(device, geometry, voxels, options, stage);  // 3, 4
+    const SafetyStage safety =
+        assess_safety(device, geometry, voxels, objects, options, stage);  // 5
     stage("assembly", [&] { assemble(input, geometry, voxels, objects, safety, scene); });
     return {std::move(scene), std::move(voxels.scene)};
 }
 
 template <class Ingest>
-ParseResult run(device::Device& device, const std::string& source, const ParseOptions& options, Ingest ingest_input) {
+ParseResult run(device::Device& device, const std::string& source, const ParseOptions& options,
+                Ingest ingest_input) {
     check(options);
     // The clock writes into a list of its own: the scene moves while stages are still running.
     std::vector<std::pair<std::string, double>> timings;
@@ -94,7 +99,8 @@ ParseResult run(device::Device& device, const std::string& source, const ParseOp
 
 }  // namespace
 
-ParseResult parse(device::Device& device, const std::filesystem::path& input, const ParseOptions& options) {
+ParseResult parse(device::Device& device, const std::filesystem::path& input,
+                  const ParseOptions& options) {
     return run(device, input.string(), options, [&] { return ingest(input, options); });
 }
 

@@ -19,7 +19,9 @@ double least_width(const std::vector<std::array<double, 2>>& polygon) {
         if (length <= 0) continue;
         double reach = 0;
         for (const auto& p : polygon) {
-            reach = std::max(reach, std::abs((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])) / length);
+            reach = std::max(
+                reach,
+                std::abs((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])) / length);
         }
         least = std::min(least, reach);
     }
@@ -48,7 +50,8 @@ std::vector<safety::RiskObject> risk_objects(const ObjectStage& objects) {
     return out;
 }
 
-safety::Surroundings surroundings(const GeometryStage& geometry, const VoxelStage& voxels, const ObjectStage& objects) {
+safety::Surroundings surroundings(const GeometryStage& geometry, const VoxelStage& voxels,
+                                  const ObjectStage& objects) {
     safety::Surroundings s;
     s.cells = &voxels.cells;
     for (const std::int32_t p : voxels.cells.primitive) {
@@ -62,8 +65,9 @@ safety::Surroundings surroundings(const GeometryStage& geometry, const VoxelStag
 
 }  // namespace
 
-SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry, const VoxelStage& voxels,
-                          const ObjectStage& objects, const ParseOptions& options, StageClock& stage) {
+SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
+                          const VoxelStage& voxels, const ObjectStage& objects,
+                          const ParseOptions& options, StageClock& stage) {
     SafetyStage out;
     const std::vector<safety::RiskObject> at_risk = risk_objects(objects);
     const safety::Surroundings around = surroundings(geometry, voxels, objects);
@@ -87,7 +91,8 @@ SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
         }));
     }
     stage("risk", [&] {
-        for (const safety::Disturbance& d : out.disturbances) out.risk_J.push_back(safety::risk(d, at_risk));
+        for (const safety::Disturbance& d : out.disturbances)
+            out.risk_J.push_back(safety::risk(d, at_risk));
         out.unsafety = safety::unsafety(out.risk_J);
         out.unsafety.resize(at_risk.size(), 1.0);
     });

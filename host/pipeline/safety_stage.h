@@ -17,7 +17,8 @@ struct SafetyStage {
     std::vector<double> unsafety;             // by object, 1 to 10
 };
 
-SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry, const VoxelStage& voxels,
-                          const ObjectStage& objects, const ParseOptions& options, StageClock& stage);
+SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
+                          const VoxelStage& voxels, const ObjectStage& objects,
+                          const ParseOptions& options, StageClock& stage);
 
 }  // namespace topple

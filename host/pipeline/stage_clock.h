@@ -39,7 +39,8 @@ class StageClock {
 
   private:
     void book(const std::string& name, std::chrono::steady_clock::time_point start) {
-        const double s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const double s =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         for (auto& [n, t] : timings_) {
             if (n == name) {
                 t += s;

@@ -10,6 +10,10 @@ namespace {
 // Frames are carved in batches of this many bytes of depth, so that any number of them fits.
 constexpr std::uint64_t batch_bytes = 16u << 20;
 
+// Hidden gaps up to this long are taken for joints: what occlusion and dropped edge pixels leave
+// open.
+constexpr unsigned hidden_gap_voxels = 3;
+
 std::vector<bool> present(const vdb::VoxelScene& scene, std::size_t primitives) {
     std::vector<bool> seen(primitives, false);
     for (const std::int32_t p : scene.primitives(scene.tiles())) {
@@ -18,10 +22,12 @@ std::vector<bool> present(const vdb::VoxelScene& scene, std::size_t primitives) 
     return seen;
 }
 
-void carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScene& scene, StageClock& stage) {
+void carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScene& scene,
+               StageClock& stage) {
     const Intrinsics& k = frames.intrinsics();
     const std::uint64_t frame_bytes = std::uint64_t{2} * k.width * k.height;
-    const std::size_t per_batch = static_cast<std::size_t>(std::clamp<std::uint64_t>(batch_bytes / frame_bytes, 1, 64));
+    const std::size_t per_batch =
+        static_cast<std::size_t>(std::clamp<std::uint64_t>(batch_bytes / frame_bytes, 1, 64));
     std::vector<DepthFrame> batch;
     for (std::size_t f = 0; f < frames.size(); ++f) {
         batch.push_back(frames.load(f));
@@ -42,13 +48,14 @@ double voxel_for_cell(double cell_m) {
     return 2 * cell_m;
 }
 
-VoxelStage make_solids(device::Device& device, const Ingested& input, GeometryStage& geometry, double voxel_m,
-                       StageClock& stage) {
+VoxelStage make_solids(device::Device& device, const Ingested& input, GeometryStage& geometry,
+                       double voxel_m, StageClock& stage) {
     VoxelStage out;
     const vdb::VoxelFrame frame{voxel_m, geometry.frame.axes};
     stage("voxels", [&] {
         const auto build = [&] {
-            out.scene = std::make_shared<vdb::VoxelScene>(frame, input.cloud, geometry.primitive_of_point);
+            out.scene =
+                std::make_shared<vdb::VoxelScene>(frame, input.cloud, geometry.primitive_of_point);
         };
         build();
         const std::vector<bool> keep = present(*out.scene, geometry.primitives.model.size());
@@ -63,9 +70,11 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
     stage("filling", [&] {
         vdb::VoxelScene::FillOptions options;
         for (const geometry::Structure s : geometry.structure) {
-            options.hollow.push_back(s == geometry::Structure::wall || s == geometry::Structure::ceiling);
+            options.hollow.push_back(s == geometry::Structure::wall ||
+                                     s == geometry::Structure::ceiling);
         }
         out.scene->fill(device, options);
+        out.scene->bridge(hidden_gap_voxels, options.hollow);
     });
     vdb::SolidCellArrays solid = out.scene->solid_cells();
     out.cells.voxel_m = voxel_m;

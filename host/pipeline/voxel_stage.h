@@ -22,7 +22,7 @@ struct VoxelStage {
 double voxel_for_cell(double cell_m);
 
 // Voxels, carving and filling. Primitives that win no voxel are dropped from `geometry`.
-VoxelStage make_solids(device::Device& device, const Ingested& input, GeometryStage& geometry, double voxel_m,
-                       StageClock& stage);
+VoxelStage make_solids(device::Device& device, const Ingested& input, GeometryStage& geometry,
+                       double voxel_m, StageClock& stage);
 
 }  // namespace topple

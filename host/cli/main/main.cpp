@@ -12,21 +12,26 @@ namespace {
 
 int exit_code(topple::ErrorKind kind) {
     switch (kind) {
-        case topple::ErrorKind::input: return 1;
-        case topple::ErrorKind::usage: return 2;
-        case topple::ErrorKind::device: return 3;
+        case topple::ErrorKind::input:
+            return 1;
+        case topple::ErrorKind::usage:
+            return 2;
+        case topple::ErrorKind::device:
+            return 3;
     }
     return 1;
 }
 
 int run(int argc, char** argv) {
     CLI::App app{
-        "topple tells which things in a 3D scan of a room are one solid object, what holds what up,\n"
+        "topple tells which things in a 3D scan of a room are one solid object, what holds what "
+        "up,\n"
         "and what may fall: when someone walks by, in wind, in an earthquake."};
     app.set_version_flag("--version", std::string("topple ") + topple::version);
     app.require_subcommand(1);
     app.footer(
-        "Exit codes: 0 done; 1 the input can't be parsed, or the output can't be written; 2 wrong usage;\n"
+        "Exit codes: 0 done; 1 the input can't be parsed, or the output can't be written; 2 wrong "
+        "usage;\n"
         "3 the asked-for backend or device can't be used.");
     std::map<CLI::App*, topple::cli::Command> commands;
     const auto add = [&](const char* name, const char* what, auto define) {
@@ -34,8 +39,10 @@ int run(int argc, char** argv) {
         commands[sub] = define(*sub);
     };
     add("parse", "Parse a scan into solid objects, supports and risks", topple::cli::add_parse);
-    add("devices", "List every device of every backend, or why one is missing", topple::cli::add_devices);
-    add("generate", "Make a scan of a furnished room, with its ground truth", topple::cli::add_generate);
+    add("devices", "List every device of every backend, or why one is missing",
+        topple::cli::add_devices);
+    add("generate", "Make a scan of a furnished room, with its ground truth",
+        topple::cli::add_generate);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& done) {
@@ -56,7 +63,9 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "topple: %s\n", error.what());
         return exit_code(error.kind());
     } catch (const std::bad_alloc&) {
-        std::fprintf(stderr, "topple: out of memory; use a larger --voxel or set --max-memory to be told earlier\n");
+        std::fprintf(
+            stderr,
+            "topple: out of memory; use a larger --voxel or set --max-memory to be told earlier\n");
         return 1;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "topple: %s\n", error.what());

@@ -17,8 +17,7 @@ enum class ErrorKind {
 // the object (file, option, kernel), the value, the limit it broke and the mend.
 class Error : public std::runtime_error {
   public:
-    Error(ErrorKind kind, const std::string& message)
-        : std::runtime_error(message), kind_(kind) {}
+    Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
     ErrorKind kind() const noexcept { return kind_; }
 
   private:

@@ -27,7 +27,7 @@ struct PointCloud {
     // unorganised cloud, or any organised cloud).
     bool has_viewpoint = false;
     Vec3 viewpoint{0, 0, 0};
-    std::string source;  // path, for messages
+    std::string source;              // path, for messages
     std::vector<std::string> notes;  // what looks odd but is no error (units), in sentences
 
     std::size_t size() const { return x.size(); }

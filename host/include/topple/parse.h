@@ -23,8 +23,8 @@ class VoxelScene;
 namespace topple {
 
 struct ParseOptions {
-    double voxel_m = 0;              // edge of a solid voxel, metres; 0: found from the data
-    std::optional<Vec3> up;          // up in the input's frame (from an IMU, say); else found
+    double voxel_m = 0;      // edge of a solid voxel, metres; 0: found from the data
+    std::optional<Vec3> up;  // up in the input's frame (from an IMU, say); else found
     std::vector<std::string> disturbances{"human", "wind", "earthquake"};
     std::uint64_t seed = 1;
     std::uint64_t max_memory_bytes = 0;  // refuse inputs that would need more; 0: no limit
@@ -32,7 +32,8 @@ struct ParseOptions {
     double friction = 0.3;
     double wind_m_s = 12;
     double pga_m_s2 = 3;  // peak ground acceleration
-    // Called when a stage starts and while it goes on: its name, and how much of it is done, 0 to 1.
+    // Called when a stage starts and while it goes on: its name, and how much of it is done, 0
+    // to 1.
     std::function<void(const std::string&, double)> progress;
     // Polled now and then; true stops the parse with Error(input) "cancelled".
     std::function<bool()> cancelled;
@@ -44,16 +45,19 @@ struct ParseResult {
     std::shared_ptr<const vdb::VoxelScene> voxels;
 };
 
-// Parses a scan: a point cloud (.ply, .pcd, .xyz), a sequence folder of depth frames with poses, or a
-// folder with a single frame. The device is the caller's and is used from the calling thread only.
-// Throws Error: input (can't be parsed into a scene), usage (an option is out of range), device.
-ParseResult parse(device::Device& device, const std::filesystem::path& input, const ParseOptions& options = {});
+// Parses a scan: a point cloud (.ply, .pcd, .xyz), a sequence folder of depth frames with poses, or
+// a folder with a single frame. The device is the caller's and is used from the calling thread
+// only. Throws Error: input (can't be parsed into a scene), usage (an option is out of range),
+// device.
+ParseResult parse(device::Device& device, const std::filesystem::path& input,
+                  const ParseOptions& options = {});
 
 // The same on a cloud in memory. Frame and units: metres, any right-handed frame.
-ParseResult parse(device::Device& device, const PointCloud& cloud, const ParseOptions& options = {});
+ParseResult parse(device::Device& device, const PointCloud& cloud,
+                  const ParseOptions& options = {});
 
-// Writes points.ply, solid.ply, volume.vdb, scene.json and report.html into the folder, which appears
-// whole or not at all. Throws Error(input) naming the path where it can't be written.
+// Writes points.ply, solid.ply, volume.vdb, scene.json and report.html into the folder, which
+// appears whole or not at all. Throws Error(input) naming the path where it can't be written.
 void write_outputs(const ParseResult& result, const std::filesystem::path& folder);
 
 }  // namespace topple

@@ -39,10 +39,10 @@ struct Object {
     bool grounded = false;  // holds the floor, or is fixed to what does
     double mass_kg = 0;
     Vec3 center_of_mass_m{};
-    double barrier_J = 0;  // least energy that moves it out of its basin
-    double release_J = 0;  // what it can release then
+    double barrier_J = 0;       // least energy that moves it out of its basin
+    double release_J = 0;       // what it can release then
     std::string mode = "none";  // "tip" | "slide" | "none"
-    Vec3 direction{};  // weakest horizontal direction, unit, or zero for "none"
+    Vec3 direction{};           // weakest horizontal direction, unit, or zero for "none"
     std::vector<InstabilityStep> instability;
     std::map<std::string, double> risk_J;  // by disturbance, joules per event
     double unsafety = 1;                   // 1 (safest) to 10, by risk, over the scene's objects
@@ -52,8 +52,9 @@ struct Object {
 struct Contact {
     std::int32_t a = -1, b = -1;
     double area_m2 = 0;
-    Vec3 normal{};         // unit, from a to b
-    std::string relation;  // "fixed" (one object) | "support" (a carries b, or b carries a) | "adjacent"
+    Vec3 normal{};  // unit, from a to b
+    std::string
+        relation;  // "fixed" (one object) | "support" (a carries b, or b carries a) | "adjacent"
     double probability = 0;  // that the joint is fixed, over the sampler's states
 };
 
