@@ -19,7 +19,8 @@ struct Claim {
 
 class Bridging {
   public:
-    Bridging(const SolidCellArrays& cells, const openvdb::Int32Grid& state, const std::vector<bool>& hollow)
+    Bridging(const SolidCellArrays& cells, const openvdb::Int32Grid& state,
+             const std::vector<bool>& hollow)
         : cells_(cells), state_(state.getConstAccessor()), hollow_(hollow) {}
 
     // Claims all voxels of the gaps along one axis.
@@ -37,16 +38,19 @@ class Bridging {
             const std::size_t a = order[n - 1], b = order[n];
             if (u[a] != u[b] || v[a] != v[b]) continue;
             if (w[b] - w[a] - 1 < 1 || w[b] - w[a] - 1 > longest) continue;
-            if (joins(cells_.primitive[a], cells_.primitive[b], axis)) claim(a, b, axis, w[b] - w[a] - 1);
+            if (joins(cells_.primitive[a], cells_.primitive[b], axis))
+                claim(a, b, axis, w[b] - w[a] - 1);
         }
     }
 
     // Of several claims on a voxel the nearest stands, then the lowest primitive.
     std::vector<Claim> settled() {
-        std::sort(claims_.begin(), claims_.end(), [](const Claim& a, const Claim& b) { return a.order() < b.order(); });
-        claims_.erase(std::unique(claims_.begin(), claims_.end(),
-                                  [](const Claim& a, const Claim& b) { return a.voxel == b.voxel; }),
-                      claims_.end());
+        std::sort(claims_.begin(), claims_.end(),
+                  [](const Claim& a, const Claim& b) { return a.order() < b.order(); });
+        claims_.erase(
+            std::unique(claims_.begin(), claims_.end(),
+                        [](const Claim& a, const Claim& b) { return a.voxel == b.voxel; }),
+            claims_.end());
         return std::move(claims_);
     }
 
@@ -68,7 +72,8 @@ class Bridging {
                 return;
             }
             const std::int32_t to_b = gap + 1 - step;
-            const bool first = step < to_b || (step == to_b && cells_.primitive[a] < cells_.primitive[b]);
+            const bool first =
+                step < to_b || (step == to_b && cells_.primitive[a] < cells_.primitive[b]);
             claims_.push_back({voxel, std::min(step, to_b), cells_.primitive[first ? a : b]});
         }
     }
@@ -85,7 +90,8 @@ std::uint64_t VoxelScene::bridge(unsigned longest_gap, const std::vector<bool>& 
     Grids& g = *grids_;
     const SolidCellArrays cells = solid_cells();
     Bridging bridging(cells, *g.state, hollow);
-    for (int axis = 0; axis < 3; ++axis) bridging.along(axis, static_cast<std::int32_t>(longest_gap));
+    for (int axis = 0; axis < 3; ++axis)
+        bridging.along(axis, static_cast<std::int32_t>(longest_gap));
     const std::vector<Claim> claims = bridging.settled();
     auto state = g.state->getAccessor();
     auto primitive = g.primitive->getAccessor();

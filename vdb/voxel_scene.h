@@ -101,6 +101,10 @@ class VoxelScene {
     // Returns voxels completed.
     std::uint64_t bridge(unsigned longest_gap, const std::vector<bool>& hollow);
 
+    // Primitive p becomes number[p]; -1: its voxels stay solid, but belong to no primitive. Throws
+    // Error(usage) for a primitive beyond the span.
+    void relabel(std::span<const std::int32_t> number);
+
     // The leaves that hold solid voxels, or that `all` asks for, and their voxels, flattened.
     Tiles tiles(bool all = false) const;
     std::vector<std::uint8_t> states(const Tiles& tiles) const;

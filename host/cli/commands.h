@@ -2,13 +2,23 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
+#include <string>
 
 // Each command adds its options to the parser and returns what runs it. A command's result is the
 // program's exit code; errors leave it as topple::Error.
 namespace topple::cli {
 
 using Command = std::function<int()>;
+
+// For options of unsigned type: the parser takes "-1" for 2^64 - 1. Returns what is wrong.
+inline std::string whole_number(const std::string& text) {
+    const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+    const bool whole =
+        !text.empty() && text.size() < 20 && std::all_of(text.begin(), text.end(), digit);
+    return whole ? "" : text + " is no whole number from 0 to 10^19";
+}
 
 Command add_parse(CLI::App& app);
 Command add_devices(CLI::App& app);

@@ -40,6 +40,7 @@ Command add_generate(CLI::App& app) {
     app.add_option("OUT", a->out, "Folder for the depth frames, poses, fused cloud and truth.json")
         ->required();
     app.add_option("--seed", a->room.seed, "Seed of the room and of the sensor's noise")
+        ->check(whole_number)
         ->capture_default_str();
     app.add_option("--frames", a->camera.frames, "Depth frames of the walk through the room")
         ->capture_default_str();

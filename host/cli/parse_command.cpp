@@ -6,28 +6,34 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 #include <string>
 
 #include "cli/commands.h"
 #include "cli/summary.h"
 #include "device/devices.h"
+#include "io/output_folder.h"
 #include "topple/parse.h"
 
 namespace topple::cli {
 namespace {
 
-// Set by SIGINT and SIGTERM; the parse polls it, so that its cleaning-up runs as after any error.
-std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
+// The signal, SIGINT or SIGTERM, that came. The parse polls it, so that its cleaning-up runs as
+// after any error; who signals again does not want to wait for that.
+std::atomic<int> interrupted{0};
+static_assert(std::atomic<int>::is_always_lock_free);
 
-void interrupt(int) {
-    interrupted.store(true);
+void interrupt(int signal) {
+    if (interrupted.exchange(signal) == 0) return;
+    io::remove_pending_outputs();
+    _exit(128 + signal);
 }
 
 struct Arguments {
     std::string input, out, backend = "auto", up, disturbance = "human,wind,earthquake", max_memory;
     ParseOptions options;
+    std::optional<double> voxel_m;
     unsigned threads = 0;
     bool quiet = false;
 };
@@ -116,18 +122,34 @@ class Progress {
     std::string last_;
 };
 
-int run(Arguments& a) {
+// Everything that can be wrong with the options is told before a long parse.
+void read_options(Arguments& a) {
+    if (a.voxel_m) {
+        // In the library 0 means "from the data"; who writes it here hardly means that.
+        if (*a.voxel_m == 0)
+            throw Error(ErrorKind::usage,
+                        "--voxel 0: expected a number above 0; leave it out to have the voxels' "
+                        "size found from the scan");
+        a.options.voxel_m = *a.voxel_m;
+    }
     if (!a.up.empty()) a.options.up = parse_up(a.up);
     if (!a.max_memory.empty()) a.options.max_memory_bytes = parse_size(a.max_memory);
     a.options.disturbances = split_commas(a.disturbance);
+    check_options(a.options);
+}
+
+int run(Arguments& a) {
+    read_options(a);
     const std::filesystem::path out =
         a.out.empty() ? default_output(a.input) : std::filesystem::path(a.out);
     std::signal(SIGINT, interrupt);
     std::signal(SIGTERM, interrupt);
+    // Throws now, not after the parse, where nothing can be written there.
+    { const io::OutputFolder probe(out); }
     const auto device = device::open_device(a.backend, a.threads);
     Progress progress(a.quiet);
     a.options.progress = [&](const std::string& stage, double done) { progress(stage, done); };
-    a.options.cancelled = [] { return interrupted.load(); };
+    a.options.cancelled = [] { return interrupted.load() != 0; };
     try {
         const ParseResult result = parse(*device, a.input, a.options);
         progress("output", 0);
@@ -136,9 +158,9 @@ int run(Arguments& a) {
         if (!a.quiet) print_summary(result.scene, out);
     } catch (...) {
         progress.finish();
-        if (interrupted.load()) {
+        if (const int signal = interrupted.load()) {
             std::fprintf(stderr, "topple: interrupted; nothing was written\n");
-            return 130;
+            return 128 + signal;
         }
         throw;
     }
@@ -160,7 +182,7 @@ Command add_parse(CLI::App& app) {
     app.add_option("--backend", a->backend,
                    "auto (a real GPU if there is one, else native), native, opencl, vulkan")
         ->capture_default_str();
-    app.add_option("--voxel", a->options.voxel_m,
+    app.add_option("--voxel", a->voxel_m,
                    "Edge of a solid voxel in metres (default: from the scan's resolution)");
     app.add_option("--up", a->up,
                    "Up in the input's frame, X,Y,Z, as from an IMU (default: found from the scan)");
@@ -175,7 +197,9 @@ Command add_parse(CLI::App& app) {
         ->capture_default_str();
     app.add_option("--friction", a->options.friction, "Coefficient of friction")
         ->capture_default_str();
-    app.add_option("--seed", a->options.seed, "Seed of everything random")->capture_default_str();
+    app.add_option("--seed", a->options.seed, "Seed of everything random")
+        ->check(whole_number)
+        ->capture_default_str();
     app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
     app.add_option("--max-memory", a->max_memory, "Refuse a scan that would need more, such as 4G");
     app.add_flag("--quiet", a->quiet, "Print errors only");

@@ -11,7 +11,8 @@ namespace {
 // Border of each fragment with each solid: neighbouring pairs of surfels.
 using Borders = std::map<std::pair<std::int32_t, std::int32_t>, std::uint64_t>;
 
-Borders borders(const Surfels& s, const std::vector<std::int32_t>& label, const std::vector<bool>& solid) {
+Borders borders(const Surfels& s, const std::vector<std::int32_t>& label,
+                const std::vector<bool>& solid) {
     Borders out;
     for (std::size_t n = 0; n < s.size(); ++n) {
         const std::int32_t a = label[n];
@@ -24,8 +25,8 @@ Borders borders(const Surfels& s, const std::vector<std::int32_t>& label, const 
     return out;
 }
 
-// One ring of unlabelled surfels takes the label that most of its labelled neighbours have, the lowest
-// of equals. Returns whether any did.
+// One ring of unlabelled surfels takes the label that most of its labelled neighbours have, the
+// lowest of equals. Returns whether any did.
 bool grow_labels(const Surfels& s, std::vector<std::int32_t>& label) {
     std::vector<std::pair<std::size_t, std::int32_t>> taken;
     for (std::size_t n = 0; n < s.size(); ++n) {
@@ -48,7 +49,8 @@ bool grow_labels(const Surfels& s, std::vector<std::int32_t>& label) {
 
 }  // namespace
 
-void absorb_fragments(const Surfels& surfels, std::uint64_t least_surfels, PrimitiveSet& primitives) {
+void absorb_fragments(const Surfels& surfels, std::uint64_t least_surfels,
+                      PrimitiveSet& primitives) {
     std::vector<std::uint64_t> size(primitives.model.size(), 0);
     for (const std::int32_t l : primitives.label) {
         if (l >= 0) ++size[static_cast<std::size_t>(l)];
@@ -57,7 +59,8 @@ void absorb_fragments(const Surfels& surfels, std::uint64_t least_surfels, Primi
     for (const std::uint64_t s : size) solid.push_back(s >= least_surfels);
     // Each round takes in the fragments that touch a solid; what they touched in turn is next.
     for (;;) {
-        std::map<std::int32_t, std::pair<std::uint64_t, std::int32_t>> best;  // fragment: border, solid
+        std::map<std::int32_t, std::pair<std::uint64_t, std::int32_t>>
+            best;  // fragment: border, solid
         for (const auto& [pair, border] : borders(surfels, primitives.label, solid)) {
             auto& [most, home] = best.try_emplace(pair.first, 0, -1).first->second;
             if (border > most) most = border, home = pair.second;

@@ -40,6 +40,12 @@ struct Columns {
 
 }  // namespace
 
+std::span<const Carrying> ContactGraph::carriers_of(std::int32_t primitive) const {
+    const auto [first, last] =
+        std::ranges::equal_range(carryings, primitive, {}, &Carrying::supported);
+    return {first, last};
+}
+
 ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells,
                                  std::int32_t primitives, unsigned gap) {
     ContactGraph graph;

@@ -35,6 +35,9 @@ struct ContactGraph {
     std::vector<std::array<double, 3>> silhouette_m2;  // by primitive: area seen along x, y, z
     std::vector<std::vector<Clearance>> clearances;    // by primitive, sorted by `below`
     std::vector<double> lowest_m, highest_m;           // by primitive
+
+    // What carries one primitive: a range of `carryings`.
+    std::span<const Carrying> carriers_of(std::int32_t primitive) const;
 };
 
 // Gaps of up to `gap` empty voxels count as contact: sensor noise leaves such gaps.

@@ -46,14 +46,15 @@ class ScenePrior {
 
   private:
     struct Freedom {
-        std::int32_t supporter, supported;
+        std::int32_t supporter;
         double lost;
     };
     const NormalVariation& variation_;
     Weights weights_;
     std::vector<double> volume_share_;
-    std::vector<Freedom> freedoms_;  // sorted by supported
-    const std::vector<bool>& ground_;
+    std::vector<std::vector<Freedom>> freedoms_;  // by supported primitive
+    // Variation across borders, by the lower primitive of the pair: the higher, and the sum.
+    std::vector<std::vector<std::pair<std::int32_t, NormalVariation::Sum>>> between_;
 };
 
 }  // namespace topple::graph

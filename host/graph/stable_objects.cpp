@@ -52,13 +52,12 @@ physics::Candidate candidate_of(const ContactGraph& graph, std::span<const physi
     candidate.body = physics::combine(parts);
     std::vector<std::array<double, 2>> points;
     candidate.support_height_m = std::numeric_limits<double>::infinity();
-    for (const Carrying& c : graph.carryings) {
-        const auto in = [&](std::int32_t p) {
-            return std::binary_search(primitives.begin(), primitives.end(), p);
-        };
-        if (!in(c.supported) || in(c.supporter)) continue;
-        points.insert(points.end(), c.outline.begin(), c.outline.end());
-        candidate.support_height_m = std::min(candidate.support_height_m, c.height_m);
+    for (const std::int32_t p : primitives) {
+        for (const Carrying& c : graph.carriers_of(p)) {
+            if (std::binary_search(primitives.begin(), primitives.end(), c.supporter)) continue;
+            points.insert(points.end(), c.outline.begin(), c.outline.end());
+            candidate.support_height_m = std::min(candidate.support_height_m, c.height_m);
+        }
     }
     if (points.empty()) candidate.support_height_m = 0;
     if (!points.empty()) candidate.support_polygon = physics::convex_polygon(points);
@@ -111,9 +110,10 @@ Grouping group_primitives(device::Device& device, const physics::SupportTable& t
     };
     SwendsenWangOptions sampler;
     sampler.seed = options.seed;
-    // Enough flips that every node is tried many times on every chain.
+    // Enough flips that every node is tried many times over all chains, within seconds.
+    sampler.chains = 4;
     sampler.anneal_steps =
-        static_cast<unsigned>(std::clamp<std::int64_t>(60 * graph.primitives, 500, 20000));
+        static_cast<unsigned>(std::clamp<std::int64_t>(10 * graph.primitives, 500, 5000));
     sampler.sample_steps = sampler.anneal_steps / 2;
     sampler.cancelled = options.cancelled;
     const std::vector<Edge> edges = edges_of(graph, options.turn_on_temperature);

@@ -13,8 +13,8 @@ namespace {
 // even where it is sparsely seen, and each averages the noise of several points. Measured: part
 // mIoU on generated rooms is highest at about twice the point spacing.
 constexpr double surfel_cells = 1.85;
-// A solid shows at least a dozen surfels.
-constexpr std::uint64_t least_surfels = 12;
+// A solid shows at least this many surfels: a patch of five by five.
+constexpr std::uint64_t least_surfels = 25;
 
 }  // namespace
 
@@ -44,7 +44,7 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
     return g;
 }
 
-void keep_primitives(GeometryStage& g, const std::vector<bool>& keep) {
+std::vector<std::int32_t> keep_primitives(GeometryStage& g, const std::vector<bool>& keep) {
     std::vector<std::int32_t> number(keep.size(), -1);
     std::int32_t next = 0;
     for (std::size_t p = 0; p < keep.size(); ++p) {
@@ -62,6 +62,7 @@ void keep_primitives(GeometryStage& g, const std::vector<bool>& keep) {
     for (auto* labels : {&g.primitives.label, &g.primitive_of_point}) {
         for (std::int32_t& l : *labels) l = l < 0 ? -1 : number[static_cast<std::size_t>(l)];
     }
+    return number;
 }
 
 graph::NormalVariation normal_variation(const GeometryStage& g) {

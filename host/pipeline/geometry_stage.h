@@ -26,8 +26,9 @@ struct GeometryStage {
 GeometryStage find_primitives(device::Device& device, const Ingested& input,
                               const ParseOptions& options, StageClock& stage);
 
-// Drops the primitives for which `keep` is false and renumbers the others in their order.
-void keep_primitives(GeometryStage& geometry, const std::vector<bool>& keep);
+// Drops the primitives for which `keep` is false and renumbers the others in their order. Returns
+// the new number of each, -1 for the dropped.
+std::vector<std::int32_t> keep_primitives(GeometryStage& geometry, const std::vector<bool>& keep);
 
 // How much the surface normals vary inside primitives and across their borders (for Eq. 9, f2).
 graph::NormalVariation normal_variation(const GeometryStage& geometry);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "pipeline/assemble.h"
@@ -15,25 +16,28 @@
 namespace topple {
 namespace {
 
-void check_positive(const char* option, double value, double highest) {
-    if (value > 0 && value <= highest) return;  // false for NaN
-    throw Error(ErrorKind::usage, std::string(option) + " " + std::to_string(value) +
-                                      ": expected a number above 0 and at most " +
-                                      std::to_string(highest));
+// The finest voxel: below the noise of every sensor of rooms, and far above what overflows.
+constexpr double least_voxel_m = 0.001;
+
+void check_range(const char* option, double value, double lowest, double highest) {
+    if (value > 0 && value >= lowest && value <= highest) return;  // false for NaN
+    const auto text = [](double v) {
+        char digits[32];
+        std::snprintf(digits, sizeof(digits), "%g", v);
+        return std::string(digits);
+    };
+    throw Error(ErrorKind::usage,
+                std::string(option) + " " + text(value) + ": expected a number " +
+                    (lowest > 0 ? "from " + text(lowest) + " to " : "above 0 and at most ") +
+                    text(highest));
 }
 
-void check(const ParseOptions& o) {
-    if (o.voxel_m != 0) check_positive("--voxel", o.voxel_m, 1.0);
-    check_positive("--density", o.density_kg_m3, 30000);
-    check_positive("--friction", o.friction, 10);
-    check_positive("--wind", o.wind_m_s, 150);
-    check_positive("--pga", o.pga_m_s2, 50);
-    for (const std::string& d : o.disturbances) {
-        if (d != "human" && d != "wind" && d != "earthquake") {
-            throw Error(ErrorKind::usage,
-                        "--disturbance " + d + ": expected human, wind or earthquake");
-        }
-    }
+// "3 MiB", "512 B".
+std::string size_text(std::uint64_t bytes) {
+    const char* const units[] = {" B", " KiB", " MiB"};
+    std::size_t unit = 0;
+    for (; unit < 2 && bytes >= 1024; ++unit) bytes >>= 10;
+    return std::to_string(bytes) + units[unit];
 }
 
 // What the stages after ingest will hold at their peak, bytes: measured at about 400 per point
@@ -54,9 +58,9 @@ void check_memory(const PointCloud& cloud, double voxel_m, const ParseOptions& o
     if (need > options.max_memory_bytes) {
         throw Error(ErrorKind::input, std::to_string(cloud.size()) + " points at voxels of " +
                                           std::to_string(voxel_m) + " m would need about " +
-                                          std::to_string(need >> 20) + " MiB, more than the " +
-                                          std::to_string(options.max_memory_bytes >> 20) +
-                                          " MiB of --max-memory; use a larger --voxel");
+                                          size_text(need) + ", more than the " +
+                                          size_text(options.max_memory_bytes) +
+                                          " of --max-memory; use a larger --voxel");
     }
 }
 
@@ -85,7 +89,7 @@ ParseResult parse_ingested(device::Device& device, const Ingested& input,
 template <class Ingest>
 ParseResult run(device::Device& device, const std::string& source, const ParseOptions& options,
                 Ingest ingest_input) {
-    check(options);
+    check_options(options);
     // The clock writes into a list of its own: the scene moves while stages are still running.
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options);
@@ -98,6 +102,20 @@ ParseResult run(device::Device& device, const std::string& source, const ParseOp
 }
 
 }  // namespace
+
+void check_options(const ParseOptions& o) {
+    if (o.voxel_m != 0) check_range("--voxel", o.voxel_m, least_voxel_m, 1.0);
+    check_range("--density", o.density_kg_m3, 0, 30000);
+    check_range("--friction", o.friction, 0, 10);
+    check_range("--wind", o.wind_m_s, 0, 150);
+    check_range("--pga", o.pga_m_s2, 0, 50);
+    for (const std::string& d : o.disturbances) {
+        if (d != "human" && d != "wind" && d != "earthquake") {
+            throw Error(ErrorKind::usage,
+                        "--disturbance " + d + ": expected human, wind or earthquake");
+        }
+    }
+}
 
 ParseResult parse(device::Device& device, const std::filesystem::path& input,
                   const ParseOptions& options) {

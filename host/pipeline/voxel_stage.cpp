@@ -14,12 +14,19 @@ constexpr std::uint64_t batch_bytes = 16u << 20;
 // open.
 constexpr unsigned hidden_gap_voxels = 3;
 
-std::vector<bool> present(const vdb::VoxelScene& scene, std::size_t primitives) {
-    std::vector<bool> seen(primitives, false);
-    for (const std::int32_t p : scene.primitives(scene.tiles())) {
-        if (p >= 0) seen[static_cast<std::size_t>(p)] = true;
+// A solid has at least the volume of a cube of three voxels; less is a scrap that noise left, and
+// too little to tell how it stands.
+constexpr std::uint64_t least_voxels = 27;
+
+// Primitives that are solids, by their voxels.
+std::vector<bool> solids(const vdb::VoxelScene& scene, std::size_t primitives) {
+    std::vector<std::uint64_t> voxels(primitives, 0);
+    for (const std::int32_t p : scene.solid_cells().primitive) {
+        if (p >= 0) ++voxels[static_cast<std::size_t>(p)];
     }
-    return seen;
+    std::vector<bool> keep;
+    for (const std::uint64_t count : voxels) keep.push_back(count >= least_voxels);
+    return keep;
 }
 
 void carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScene& scene,
@@ -53,16 +60,8 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
     VoxelStage out;
     const vdb::VoxelFrame frame{voxel_m, geometry.frame.axes};
     stage("voxels", [&] {
-        const auto build = [&] {
-            out.scene =
-                std::make_shared<vdb::VoxelScene>(frame, input.cloud, geometry.primitive_of_point);
-        };
-        build();
-        const std::vector<bool> keep = present(*out.scene, geometry.primitives.model.size());
-        if (std::find(keep.begin(), keep.end(), false) != keep.end()) {
-            keep_primitives(geometry, keep);
-            build();
-        }
+        out.scene =
+            std::make_shared<vdb::VoxelScene>(frame, input.cloud, geometry.primitive_of_point);
     });
     stage("carving", [&] {
         if (input.frames) carve_all(device, *input.frames, *out.scene, stage);
@@ -75,6 +74,8 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
         }
         out.scene->fill(device, options);
         out.scene->bridge(hidden_gap_voxels, options.hollow);
+        out.scene->relabel(
+            keep_primitives(geometry, solids(*out.scene, geometry.primitives.model.size())));
     });
     vdb::SolidCellArrays solid = out.scene->solid_cells();
     out.cells.voxel_m = voxel_m;

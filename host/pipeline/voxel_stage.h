@@ -21,7 +21,8 @@ struct VoxelStage {
 // Edge of a solid voxel for a scan of this resolution: about two cells, rounded to a handy value.
 double voxel_for_cell(double cell_m);
 
-// Voxels, carving and filling. Primitives that win no voxel are dropped from `geometry`.
+// Voxels, carving, filling and joining. Primitives too small to be solids are dropped from
+// `geometry`; their points and voxels stay, unassigned.
 VoxelStage make_solids(device::Device& device, const Ingested& input, GeometryStage& geometry,
                        double voxel_m, StageClock& stage);
 

@@ -27,6 +27,9 @@ int run(int argc, char** argv) {
         "topple tells which things in a 3D scan of a room are one solid object, what holds what "
         "up,\n"
         "and what may fall: when someone walks by, in wind, in an earthquake."};
+    // One help for all: with the options of every command.
+    app.set_help_flag();
+    app.set_help_all_flag("-h,--help", "Print this help and exit");
     app.set_version_flag("--version", std::string("topple ") + topple::version);
     app.require_subcommand(1);
     app.footer(

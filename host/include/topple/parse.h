@@ -39,6 +39,9 @@ struct ParseOptions {
     std::function<bool()> cancelled;
 };
 
+// Throws Error(usage) that names the option that is out of its range. Every parse does so first.
+void check_options(const ParseOptions& options);
+
 // A parsed scene, with the voxel grids behind it.
 struct ParseResult {
     Scene scene;
