@@ -31,8 +31,9 @@ void interrupt(int signal) {
 }
 
 struct Arguments {
-    std::string input, out, backend = "auto", up, disturbance = "human,wind,earthquake", max_memory;
+    std::string input, backend = "auto", up, disturbance = "human,wind,earthquake", max_memory;
     ParseOptions options;
+    std::optional<std::string> out;
     std::optional<double> voxel_m;
     unsigned threads = 0;
     bool quiet = false;
@@ -141,7 +142,7 @@ void read_options(Arguments& a) {
 int run(Arguments& a) {
     read_options(a);
     const std::filesystem::path out =
-        a.out.empty() ? default_output(a.input) : std::filesystem::path(a.out);
+        a.out ? std::filesystem::path(*a.out) : default_output(a.input);
     std::signal(SIGINT, interrupt);
     std::signal(SIGTERM, interrupt);
     // Throws now, not after the parse, where nothing can be written there.

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include <limits>
+
+#include "cli/program.h"
+#include "scenes/depth_camera.h"
+#include "scenes/furnished_room.h"
+
+// Inputs that are damaged, or odd, or hardly there.
+namespace topple::test {
+namespace {
+
+class Input : public Program {
+  protected:
+    // Fails with 1 and names the file and what is wrong with it.
+    void refused(const std::string& file, std::vector<std::string> parts = {}) const {
+        parts.push_back(file);
+        expect_failure(1, {"parse", file, "-o", "out", "--quiet"}, parts);
+    }
+    // Parses; nothing on either stream, and OUT whole.
+    void parsed(const std::string& file) const {
+        SCOPED_TRACE(file);
+        const Finished finished = run({"parse", file, "-o", "out", "--quiet"});
+        EXPECT_EQ(finished.code, 0);
+        EXPECT_EQ(finished.out, "");
+        EXPECT_EQ(finished.err, "");
+        for (const char* name :
+             {"points.ply", "solid.ply", "volume.vdb", "report.html", "scene.json"}) {
+            EXPECT_TRUE(std::filesystem::exists(in("out") / name)) << name;
+        }
+    }
+    // A small sequence of depth images of a room.
+    void put_sequence(const std::string& name, unsigned frames) const {
+        scenes::CameraOptions camera;
+        camera.intrinsics = {80, 60, 69, 69, 39.5, 29.5, 1000};
+        camera.frames = frames;
+        const auto world = scenes::furnished_room({});
+        scenes::write_sequence(in(name), world, scenes::walk(world, camera));
+    }
+    std::filesystem::path depth_image(const std::string& sequence, std::size_t n) const {
+        std::vector<std::filesystem::path> images;
+        for (const auto& entry : std::filesystem::directory_iterator(in(sequence) / "depth"))
+            images.push_back(entry.path());
+        std::sort(images.begin(), images.end());
+        return images.at(n);
+    }
+};
+
+std::string ply_header(const std::string& vertices) {
+    return "ply\nformat binary_little_endian 1.0\nelement vertex " + vertices +
+           "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+}
+
+std::string pcd_header(const std::string& points) {
+    return "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
+           points + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + points + "\nDATA binary\n";
+}
+
+std::string floats(std::size_t count, float value) {
+    std::string bytes;
+    for (std::size_t i = 0; i < count; ++i) append(bytes, value);
+    return bytes;
+}
+
+TEST_F(Input, missing_or_of_no_known_kind) {
+    refused("missing.ply", {"No such file"});
+    put("scan.obj", "v 0 0 0\n");
+    refused("scan.obj", {".ply"});
+    std::filesystem::create_directory(in("folder"));
+    refused("folder", {"depth"});
+}
+
+TEST_F(Input, empty) {
+    for (const char* name : {"empty.ply", "empty.pcd", "empty.xyz"}) {
+        put(name, "");
+        refused(name, {"empty"});
+    }
+}
+
+TEST_F(Input, truncated) {
+    put("cut.ply", ply_header("1000") + floats(3 * 999 + 2, 1.0f));
+    refused("cut.ply", {"1000"});
+    put("cut-header.ply", ply_header("1000").substr(0, 60));
+    refused("cut-header.ply");
+    put("cut.pcd", pcd_header("1000") + floats(3 * 999 + 2, 1.0f));
+    refused("cut.pcd", {"1000"});
+    put("cut-header.pcd", pcd_header("1000").substr(0, 60));
+    refused("cut-header.pcd");
+}
+
+TEST_F(Input, wrong_magic) {
+    put("image.ply", "\x89PNG\r\n\x1a\n and more");
+    refused("image.ply", {"ply"});
+    put("image.pcd", std::string("\x89PNG\r\n\x1a\n\0\1\2", 11));
+    refused("image.pcd");
+    put("image.xyz", std::string("\x89PNG\r\n\x1a\n\0\1\2", 11));
+    refused("image.xyz");
+}
+
+TEST_F(Input, a_header_that_promises_a_million_million_points) {
+    put("huge.ply", ply_header("1000000000000") + floats(3, 1.0f));
+    refused("huge.ply", {"1000000000000"});
+    put("huge.pcd", pcd_header("1000000000000") + floats(3, 1.0f));
+    refused("huge.pcd");
+    put("overflow.ply", ply_header("99999999999999999999999") + floats(3, 1.0f));
+    refused("overflow.ply");
+}
+
+TEST_F(Input, no_finite_point) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    put("nan.ply", ply_header("100") + floats(300, nan));
+    refused("nan.ply", {"finite"});
+    put("inf.pcd", pcd_header("100") + floats(300, std::numeric_limits<float>::infinity()));
+    refused("inf.pcd", {"finite"});
+}
+
+TEST_F(Input, hardly_any_point) {
+    put("one.xyz", "1 2 3\n");
+    parsed("one.xyz");
+    put("two.xyz", "1 2 3\n1.5 2 3\n");
+    parsed("two.xyz");
+    put("far.xyz", "0 0 0\n100000 0 0\n");
+    parsed("far.xyz");
+}
+
+TEST_F(Input, the_same_point_over_and_over) {
+    put("same.ply", ply_header("5000") + floats(15000, 0.7f));
+    parsed("same.ply");
+}
+
+TEST_F(Input, one_plane_only) {
+    put_plane("plane.xyz");
+    parsed("plane.xyz");
+    // The plane is the floor, and that is all there is.
+    const auto scene = bytes_of_file(in("out/scene.json"));
+    EXPECT_NE(scene.find("\"grounded\": true"), std::string::npos);
+    EXPECT_EQ(scene.find("\"grounded\": false"), std::string::npos);
+}
+
+TEST_F(Input, a_sequence_with_a_damaged_frame) {
+    put_sequence("scan", 4);
+    const auto image = depth_image("scan", 2);
+    std::ofstream(image, std::ios::binary) << "no image";
+    refused("scan", {image.filename().string()});
+    std::filesystem::remove(image);
+    refused("scan", {"trajectory.txt", "3"});
+}
+
+TEST_F(Input, a_sequence_without_intrinsics) {
+    put_sequence("scan", 2);
+    std::filesystem::remove(in("scan/intrinsics.json"));
+    refused("scan", {"intrinsics.json"});
+}
+
+TEST_F(Input, a_sequence_without_trajectory) {
+    put_sequence("scan", 2);
+    std::filesystem::remove(in("scan/trajectory.txt"));
+    refused("scan", {"trajectory.txt"});
+}
+
+TEST_F(Input, a_scan_that_needs_too_much_memory) {
+    put_plane("plane.xyz");
+    expect_failure(1, {"parse", "plane.xyz", "-o", "out", "--quiet", "--max-memory", "1K"},
+                   {"need", "1 KiB", "--max-memory"});
+}
+
+}  // namespace
+}  // namespace topple::test

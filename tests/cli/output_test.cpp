@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "cli/program.h"
+#include "scenes/depth_camera.h"
+#include "scenes/furnished_room.h"
+
+// Where results go, and what is left where there are none.
+namespace topple::test {
+namespace {
+
+using Output = Program;
+
+const std::set<std::string> whole_output{
+    "out",           "out/points.ply", "out/report.html", "out/scene.json",
+    "out/solid.ply", "out/volume.vdb", "plane.xyz"};
+
+// Not quiet: an output that can't be written is told before the parse begins.
+TEST_F(Output, refused_before_the_parse) {
+    put_plane("plane.xyz");
+    put("file", "mine");
+    expect_failure(1, {"parse", "plane.xyz", "-o", "file/out"}, {"file"});
+    expect_failure(1, {"parse", "plane.xyz", "-o", "file"}, {"file", "no folder"});
+    put("mine/notes.txt", "mine");
+    expect_failure(1, {"parse", "plane.xyz", "-o", "mine"}, {"mine", "notes.txt"});
+    expect_failure(1, {"parse", "plane.xyz", "-o", ""}, {"output"});
+    EXPECT_EQ(bytes_of_file(in("mine/notes.txt")), "mine");
+    EXPECT_EQ(bytes_of_file(in("file")), "mine");
+}
+
+TEST_F(Output, a_folder_that_may_not_be_written) {
+    if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+    put_plane("plane.xyz");
+    std::filesystem::create_directory(in("locked"));
+    std::filesystem::permissions(
+        in("locked"), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+    expect_failure(1, {"parse", "plane.xyz", "-o", "locked/out"}, {"locked"});
+}
+
+TEST_F(Output, stages_then_the_summary_unless_quiet) {
+    put_plane("plane.xyz");
+    const Finished loud = run({"parse", "plane.xyz", "-o", "out"});
+    EXPECT_EQ(loud.code, 0) << loud.err;
+    EXPECT_TRUE(loud.err.starts_with("ingest\n")) << loud.err;
+    EXPECT_TRUE(loud.err.ends_with("output\n")) << loud.err;
+    EXPECT_EQ(loud.err.find('\r'), std::string::npos) << "that is for terminals";
+    EXPECT_NE(loud.out.find("10000 points"), std::string::npos) << loud.out;
+    EXPECT_NE(loud.out.find("out/report.html"), std::string::npos) << loud.out;
+    EXPECT_EQ(everything(), whole_output);
+
+    const Finished quiet = run({"parse", "plane.xyz", "-o", "out", "--quiet"});
+    EXPECT_EQ(quiet.code, 0);
+    EXPECT_EQ(quiet.out, "");
+    EXPECT_EQ(quiet.err, "");
+    EXPECT_EQ(everything(), whole_output);
+}
+
+TEST_F(Output, is_named_after_the_input_where_no_name_is_given) {
+    put_plane("scans/my plane.xyz");
+    EXPECT_EQ(run({"parse", "scans/my plane.xyz", "--quiet"}).code, 0);
+    EXPECT_TRUE(std::filesystem::exists(in("my plane-parsed/scene.json")));
+}
+
+TEST_F(Output, an_earlier_one_outlives_a_failure) {
+    put_plane("plane.xyz");
+    EXPECT_EQ(run({"parse", "plane.xyz", "-o", "out", "--quiet"}).code, 0);
+    const auto earlier = bytes_of_file(in("out/scene.json"));
+    expect_failure(1, {"parse", "missing.xyz", "-o", "out", "--quiet"}, {"missing.xyz"});
+    EXPECT_EQ(bytes_of_file(in("out/scene.json")), earlier);
+}
+
+// One signal in an early, a middle and a late stage.
+class Interrupted : public Program,
+                    public ::testing::WithParamInterface<std::pair<const char*, int>> {};
+
+TEST_P(Interrupted, leaves_nothing) {
+    scenes::CameraOptions camera;
+    camera.frames = 12;
+    const auto world = scenes::furnished_room({});
+    scenes::write_sequence(in("scan"), world, scenes::walk(world, camera));
+    const auto before = everything();
+    const auto [stage, expected] = GetParam();
+    std::chrono::steady_clock::time_point sent;
+    const Finished finished =
+        run({"parse", "scan", "-o", "made/for/out", "--backend", "native"},
+            [&, name = std::string(stage) + "\n", number = expected](const std::string& err) {
+                if (err.find(name) == std::string::npos) return 0;
+                sent = std::chrono::steady_clock::now();
+                return number;
+            });
+    EXPECT_EQ(finished.code, 128 + expected) << finished.err;
+    EXPECT_TRUE(finished.err.ends_with("topple: interrupted; nothing was written\n"))
+        << finished.err;
+    EXPECT_EQ(finished.err.find("output\n"), std::string::npos) << finished.err;
+    EXPECT_EQ(everything(), before);
+    EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(30));
+}
+
+INSTANTIATE_TEST_SUITE_P(At, Interrupted,
+                         ::testing::Values(std::pair("ingest", SIGINT),
+                                           std::pair("splitting", SIGINT),
+                                           std::pair("supports", SIGTERM)),
+                         [](const auto& at) { return std::string(at.param.first); });
+
+}  // namespace
+}  // namespace topple::test

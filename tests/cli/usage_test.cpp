@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "cli/program.h"
+
+// What can be told from the command line alone, without looking into the input.
+namespace topple::test {
+namespace {
+
+using Usage = Program;
+
+TEST_F(Usage, says_what_is_missing_or_unknown) {
+    expect_failure(2, {}, {"subcommand", "--help"});
+    expect_failure(2, {"prase"}, {"--help"});
+    expect_failure(2, {"parse"}, {"INPUT"});
+    put_plane("plane.xyz");
+    expect_failure(2, {"parse", "plane.xyz", "--colour"}, {"--colour"});
+    expect_failure(2, {"parse", "plane.xyz", "more.xyz"}, {"more.xyz"});
+    expect_failure(2, {"parse", "plane.xyz", "-o"}, {"--output"});
+}
+
+// Not quiet: the name of a stage on stderr would show that the parse had begun.
+TEST_F(Usage, refuses_values_before_it_parses) {
+    put_plane("plane.xyz");
+    const std::vector<std::vector<std::string>> bad{
+        {"--voxel", "0"},         {"--voxel", "-1"},
+        {"--voxel", "nan"},       {"--voxel", "inf"},
+        {"--voxel", "1e-9"},      {"--voxel", "50"},
+        {"--voxel", "2cm"},       {"--up", "0,0,0"},
+        {"--up", "0,0"},          {"--up", "0,0,1,0"},
+        {"--up", "0,0,nan"},      {"--up", "up"},
+        {"--up", "0,0,1e400"},    {"--disturbance", "flood"},
+        {"--backend", "cuda"},    {"--disturbance", "human,flood"},
+        {"--wind", "-3"},         {"--wind", "nan"},
+        {"--pga", "0"},           {"--density", "-700"},
+        {"--friction", "0"},      {"--max-memory", "much"},
+        {"--max-memory", "-1G"},  {"--max-memory", "nan"},
+        {"--max-memory", "5 GB"}, {"--max-memory", "1e30T"},
+        {"--seed", "-1"},         {"--seed", "99999999999999999999"},
+        {"--threads", "-1"},      {"--threads", "many"}};
+    for (const auto& option : bad) {
+        // The value as it was given, or for numbers as it was understood.
+        expect_failure(2, {"parse", "plane.xyz", option[0], option[1]}, {option[0]});
+    }
+    expect_failure(2, {"parse", "plane.xyz", "--voxel", "-1"}, {"-1"});
+    expect_failure(2, {"parse", "plane.xyz", "--disturbance", "flood"}, {"flood", "earthquake"});
+    expect_failure(2, {"parse", "plane.xyz", "--backend", "cuda"}, {"cuda", "vulkan"});
+    // Wrong usage counts before a backend that may be missing.
+    expect_failure(2, {"parse", "plane.xyz", "--backend", "opencl", "--voxel", "0"}, {"--voxel"});
+    expect_failure(2, {"generate", "scan", "--frames", "0"}, {"--frames"});
+    expect_failure(2, {"generate", "scan", "--seed", "-1"}, {"--seed"});
+}
+
+TEST_F(Usage, help_names_every_command_and_option) {
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"--help"}, {"-h"}, {"parse", "--help"}}) {
+        const Finished help = run(arguments);
+        EXPECT_EQ(help.code, 0);
+        EXPECT_EQ(help.err, "");
+        for (const char* option :
+             {"INPUT",        "--output", "--backend", "--voxel",    "--up",   "--disturbance",
+              "--wind",       "--pga",    "--density", "--friction", "--seed", "--threads",
+              "--max-memory", "--quiet",  "native",    "opencl",     "vulkan", "human",
+              "earthquake",   ".ply",     ".pcd",      ".xyz"}) {
+            EXPECT_NE(help.out.find(option), std::string::npos) << option << " in\n" << help.out;
+        }
+        if (arguments.size() > 1) continue;
+        for (const char* name : {"parse", "devices", "generate", "--version", "Exit codes"}) {
+            EXPECT_NE(help.out.find(name), std::string::npos) << name << " in\n" << help.out;
+        }
+    }
+}
+
+TEST_F(Usage, version) {
+    const Finished finished = run({"--version"});
+    EXPECT_EQ(finished.code, 0);
+    EXPECT_EQ(finished.err, "");
+    EXPECT_TRUE(finished.out.starts_with("topple ")) << finished.out;
+    EXPECT_EQ(std::count(finished.out.begin(), finished.out.end(), '.'), 2) << finished.out;
+}
+
+// Every backend has a line, usable or not.
+TEST_F(Usage, devices_of_all_three_backends) {
+    const Finished finished = run({"devices"});
+    EXPECT_EQ(finished.code, 0) << finished.err;
+    for (const std::string backend : {"native", "opencl", "vulkan"}) {
+        EXPECT_NE(("\n" + finished.out).find("\n" + backend + " "), std::string::npos)
+            << backend << " in\n"
+            << finished.out;
+    }
+    EXPECT_NE(finished.out.find("driver"), std::string::npos) << finished.out;
+    EXPECT_TRUE(everything().empty());
+}
+
+}  // namespace
+}  // namespace topple::test
