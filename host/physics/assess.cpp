@@ -104,12 +104,18 @@ double deepest_towards(const Flooded& f, std::span<const Opening> passes, const 
     return f.height[f.start];
 }
 
+// A pass that is the scanned pose itself leans nowhere: what matters is where it leads.
+Vec3 way_over(const PosePass& pass) {
+    const Vec3 way = lean(pass.direction);
+    return way == Vec3{} ? lean(pass.deepest) : way;
+}
+
 void add_passes(const Flooded& f, std::span<const Opening> passes, std::vector<Way>& ways) {
     const double base = f.height[f.start];
     for (const auto& [mesh_height, pass] : passes) {
         ways.push_back({pass.height_m - base,
                         is_deeper(f, pass.deepest_m) ? pass.height_m - pass.deepest_m : 0,
-                        lean(pass.direction)});
+                        way_over(pass)});
     }
 }
 
@@ -135,10 +141,23 @@ void add_fall(const Flooded& f, std::span<const Opening> passes, std::vector<Way
         if (pass.height_m > base + f.resolution_m) break;
         if (is_deeper(f, pass.deepest_m)) {
             fall.release_m = base - pass.deepest_m;
-            fall.direction = lean(pass.direction);
+            fall.direction = way_over(pass);
         }
     }
     ways.push_back(fall);
+}
+
+// The easiest way that releases anything, of equal ones the one that releases most: the first step
+// of the curve. The lowest pass of all may lead nowhere deeper, and a body that rolls has no way.
+Vec3 release_direction(const std::vector<Way>& ways) {
+    const Way* first = nullptr;
+    for (const Way& way : ways) {
+        if (!(way.release_m > 0)) continue;
+        if (!first || way.climb_m < first->climb_m ||
+            (way.climb_m == first->climb_m && way.release_m > first->release_m))
+            first = &way;
+    }
+    return first ? first->direction : Vec3{};
 }
 
 // S(W) of Eq. 6: the largest release over all ways with a climb of at most W.
@@ -223,6 +242,7 @@ Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
     result.barrier_J = weight_N * least->climb_m;
     result.release_J = weight_N * taken->release_m;
     result.direction = taken->direction;
+    result.release_direction = release_direction(ways);
     result.curve = curve_of(std::move(ways), weight_N);
     return result;
 }

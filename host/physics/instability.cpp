@@ -37,7 +37,7 @@ Instability combine_curves(const Stability& tip, const SlideResult& slide) {
         result.barrier_J = first->W_J;
         result.release_J = first->S_J;
         result.mode = "tip";
-        result.direction = tip.direction;
+        result.direction = tip.release_direction;
     }
     return result;
 }

@@ -60,6 +60,7 @@ struct Stability {
     // radius where nothing holds it.
     double margin_m = 0;
     Vec3 direction{};                    // horizontal way it goes, unit, grid frame
+    Vec3 release_direction{};            // the same of the first step of the curve, or zero
     std::vector<InstabilityStep> curve;  // S(W), ascending in W
 };
 
