@@ -104,10 +104,14 @@ double deepest_towards(const Flooded& f, std::span<const Opening> passes, const 
     return f.height[f.start];
 }
 
-// A pass that is the scanned pose itself leans nowhere: what matters is where it leads.
+// A pass that is the scanned pose itself leans nowhere: what matters is where it leads. Upside down
+// all ways are as far.
 Vec3 way_over(const PosePass& pass) {
-    const Vec3 way = lean(pass.direction);
-    return way == Vec3{} ? lean(pass.deepest) : way;
+    for (const Vec3& up : {pass.direction, pass.deepest}) {
+        const Vec3 way = lean(up);
+        if (way != Vec3{}) return way;
+    }
+    return {1, 0, 0};
 }
 
 void add_passes(const Flooded& f, std::span<const Opening> passes, std::vector<Way>& ways) {
