@@ -24,28 +24,55 @@ struct CellSums {
 
 inline constexpr std::int64_t key_bias = std::int64_t{1} << 20;
 
-// Open-addressing table from cells to their sums.
+// Occupied cells and their sums, found through blocks of 4 x 4 x 4 cells: the readings of a frame
+// stay within few blocks for long, so that most lookups touch memory just touched.
 class CellTable {
   public:
+    struct Block {
+        std::uint64_t key = 0;
+        std::uint32_t count = 0;             // of occupied cells
+        std::array<std::uint32_t, 64> at{};  // by cell, z fastest: place in cells() + 1, or 0
+    };
+    static std::uint64_t block_of(std::uint64_t key) { return key >> 2 & block_mask; }
     void add(const CellSums& sums);
     const std::vector<CellSums>& cells() const { return cells_; }
+    const std::vector<Block>& blocks() const { return blocks_; }
 
   private:
-    void grow();
+    // The upper 19 of the 21 bits of each axis, where they lie in a key shifted by 2.
+    static constexpr std::uint64_t block_mask = 0x7FFFFu * (1 + (1ull << 21) + (1ull << 42));
     static std::uint64_t hash(std::uint64_t key) { return key * 0x9E3779B97F4A7C15u >> 20; }
-    struct Slot {
-        std::uint64_t key = 0;
-        std::uint32_t at = 0;  // cell + 1, 0 for an empty slot
-    };
-    std::vector<Slot> slots_;
+    Block& find(std::uint64_t key);
+    void grow();
+    std::vector<std::uint32_t> slots_;  // open addressing: place in blocks_ + 1, or 0
+    std::vector<Block> blocks_;
     std::vector<CellSums> cells_;
+    std::size_t last_ = 0;  // the block found last
 };
 
-// Cells share out over shards by key; each shard has one writer at a time.
-struct FrameFusion::Cells {
-    static constexpr std::size_t shard_count = 16, block_count = 16;
-    device::ThreadPool pool{0};
+// Cells shared out over tables by block, so that several threads may fill them, one per table.
+struct CellTables {
+    static constexpr std::size_t shard_count = 16;
+    static std::size_t shard_of(std::uint64_t key) {
+        return CellTable::block_of(key) * 0xD6E8FEB86659FD93u >> 60;
+    }
     std::array<CellTable, shard_count> shards;
+    // Calls body(shard, table) once for each, one thread to a table.
+    template <class Body>
+    void for_each_shard(device::ThreadPool& pool, const Body& body) {
+        pool.run(shard_count, 1, [&](std::uint64_t first, std::uint64_t last) {
+            for (std::uint64_t s = first; s < last; ++s)
+                body(static_cast<std::size_t>(s), shards[s]);
+        });
+    }
+    // All cells by ascending key.
+    std::vector<CellSums> sorted(device::ThreadPool& pool) const;
+};
+
+struct FrameFusion::Cells {
+    static constexpr std::size_t shard_count = CellTables::shard_count, block_count = 16;
+    device::ThreadPool pool{0};
+    CellTables tables;
     // Per block of image rows and shard: runs of readings in one cell.
     std::array<std::array<std::vector<CellSums>, shard_count>, block_count> runs;
     std::vector<Vec3> viewpoints;
@@ -60,8 +87,9 @@ struct FusedCells {
     std::vector<CellSums> cells;
 };
 // Drops cells of stray readings.
-void drop_weak(FusedCells& fused, std::size_t frames);
-// One step of moving least squares, then bins anew; see flatten_noise.
-void flatten_layers(FusedCells& fused);
+void drop_weak(FusedCells& fused, std::size_t frames, device::ThreadPool& pool);
+// One step of moving least squares, then bins anew: readings spread to both sides of a surface by
+// their noise become one layer. Cells whose readings spread by less than least_sigma_m stay.
+void flatten_layers(FusedCells& fused, double least_sigma_m, device::ThreadPool& pool);
 
 }  // namespace topple::geometry

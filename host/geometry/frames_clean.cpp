@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "device/devices.h"
 #include "geometry/cell_grid.h"
@@ -12,144 +13,219 @@ namespace topple::geometry {
 namespace {
 
 constexpr std::array<unsigned, 3> key_shift{42, 21, 0};
-constexpr int most_levels = 3;
+constexpr std::uint8_t most_levels = 3, stays = 255;
+constexpr std::uint64_t chunk = 1 << 15;  // cells handed to a thread at once
 
-void indices(const FusedCells& fused, CellGrid& grid) {
+// Runs body(i) for each i of [0, count).
+template <class Body>
+void for_each(device::ThreadPool& pool, std::size_t count, const Body& body) {
+    pool.run(count, chunk, [&](std::uint64_t first, std::uint64_t last) {
+        for (std::uint64_t i = first; i < last; ++i) body(static_cast<std::size_t>(i));
+    });
+}
+
+// What lies in the 27 cells around a cell, its own among them.
+struct Around {
+    std::uint64_t cells = 0, count = 0, weight = 0;
+};
+
+// Calls visit(cell, around) for each cell. Each of the nine columns of three is a run of sorted
+// cells whose ends only move up, and the difference of two running sums is what it holds.
+template <class Visit>
+void visit_surroundings(const FusedCells& fused, device::ThreadPool& pool, const Visit& visit) {
+    const std::size_t n = fused.cells.size();
+    std::vector<std::uint64_t> key(n), count(n + 1), weight(n + 1);
+    for (std::size_t i = 0; i < n; ++i) {
+        key[i] = fused.cells[i].key;
+        count[i + 1] = count[i] + fused.cells[i].count;
+        weight[i + 1] = weight[i] + fused.cells[i].weight;
+    }
+    pool.run(n, chunk, [&](std::uint64_t first, std::uint64_t last) {
+        std::array<std::uint64_t, 9> lowest{};  // of each column, relative to the cell's key
+        std::array<std::size_t, 9> lo{}, hi{};
+        for (std::size_t c = 0; c < 9; ++c) {
+            lowest[c] = ((c / 3) << key_shift[0]) + ((c % 3) << key_shift[1]) -
+                        ((1ull << key_shift[0]) + (1ull << key_shift[1]) + 1);
+            lo[c] = hi[c] = static_cast<std::size_t>(
+                std::lower_bound(key.begin(), key.end(), key[first] + lowest[c]) - key.begin());
+        }
+        for (std::uint64_t i = first; i < last; ++i) {
+            Around around;
+            for (std::size_t c = 0; c < 9; ++c) {
+                const std::uint64_t low = key[i] + lowest[c];
+                while (lo[c] < n && key[lo[c]] < low) ++lo[c];
+                hi[c] = std::max(hi[c], lo[c]);
+                while (hi[c] < n && key[hi[c]] < low + 3) ++hi[c];
+                around.cells += hi[c] - lo[c];
+                around.count += count[hi[c]] - count[lo[c]];
+                around.weight += weight[hi[c]] - weight[lo[c]];
+            }
+            visit(static_cast<std::size_t>(i), around);
+        }
+    });
+}
+
+// The level of the grid, from 0 for its own cells, at which each cell's plane is fitted. Readings
+// spread by sigma to both sides; a neighbourhood must be wider than that to see which way the
+// surface runs. Coarser grids give the wider ones.
+std::uint8_t level_for(double sigma, double cell_m) {
+    std::uint8_t level = 0;
+    while (level < most_levels && 3 * sigma > 2.5 * cell_m * (1 << level)) ++level;
+    return level;
+}
+
+CellGrid grid_of(const FusedCells& fused, device::ThreadPool& pool) {
+    CellGrid grid;
     grid.cell_m = fused.cell_m;
     grid.resize(fused.cells.size());
-    for (std::size_t i = 0; i < fused.cells.size(); ++i) {
-        const auto index = [&](unsigned shift) {
-            return static_cast<std::int32_t>(
-                static_cast<std::int64_t>(fused.cells[i].key >> shift & 0x1FFFFF) - key_bias);
-        };
-        grid.x[i] = index(key_shift[0]);
-        grid.y[i] = index(key_shift[1]);
-        grid.z[i] = index(key_shift[2]);
-    }
-}
-
-// Standard deviation of the readings in and around each cell, metres.
-std::vector<float> noise_around(const FusedCells& fused, const std::vector<std::uint32_t>& first,
-                                const std::vector<std::uint32_t>& neighbours) {
-    std::vector<float> sigma(fused.cells.size());
-    for (std::size_t i = 0; i < sigma.size(); ++i) {
-        double count = fused.cells[i].count, weight = static_cast<double>(fused.cells[i].weight);
-        for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
-            count += fused.cells[neighbours[k]].count;
-            weight += static_cast<double>(fused.cells[neighbours[k]].weight);
-        }
-        sigma[i] = static_cast<float>(least_depth_sigma * std::sqrt(65535 * count / weight));
-    }
-    return sigma;
-}
-
-}  // namespace
-
-void drop_weak(FusedCells& fused, std::size_t frames) {
-    CellGrid grid;
-    indices(fused, grid);
-    std::vector<std::uint32_t> first, neighbours;
-    cell_neighbours(grid.x, grid.y, grid.z, first, neighbours);
-    std::vector<CellSums> kept;
-    for (std::size_t i = 0; i < fused.cells.size(); ++i) {
+    for_each(pool, fused.cells.size(), [&](std::size_t i) {
         const CellSums& cell = fused.cells[i];
-        double count = 0, weight = 0;
-        for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
-            count += fused.cells[neighbours[k]].count;
-            weight += static_cast<double>(fused.cells[neighbours[k]].weight);
-        }
-        const double around = first[i + 1] - first[i];
-        const bool lonely = around == 0 && cell.count == 1 && frames > 1;
-        // Below a tenth of its surroundings by readings and by certainty.
-        const bool weak = around > 0 && 10.0 * cell.count < count / around &&
-                          10.0 * static_cast<double>(cell.weight) < weight / around;
-        if (!lonely && !weak) kept.push_back(cell);
-    }
-    fused.cells = std::move(kept);
-}
-
-void flatten_layers(FusedCells& fused) {
-    const std::size_t n = fused.cells.size();
-    if (n == 0) return;
-    CellGrid grid;
-    indices(fused, grid);
-    std::vector<float> sigma;
-    {
-        std::vector<std::uint32_t> first, neighbours;
-        cell_neighbours(grid.x, grid.y, grid.z, first, neighbours);
-        sigma = noise_around(fused, first, neighbours);
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-        const CellSums& cell = fused.cells[i];
+        const std::array<std::int32_t*, 3> index{&grid.x[i], &grid.y[i], &grid.z[i]};
         for (std::size_t a = 0; a < 3; ++a) {
+            *index[a] = static_cast<std::int32_t>(
+                static_cast<std::int64_t>(cell.key >> key_shift[a] & 0x1FFFFF) - key_bias);
             grid.mean[a][i] = static_cast<float>(static_cast<double>(cell.offset[a]) /
                                                      static_cast<double>(cell.weight) / 65536 -
                                                  0.5);
         }
         grid.weight[i] = static_cast<float>(static_cast<double>(cell.weight) / 65535);
-    }
-    // Readings spread by sigma to both sides; a neighbourhood must be wider than that to see which
-    // way the surface runs. Coarser grids give the wider ones.
-    const std::unique_ptr<device::Device> device = device::open_native();
-    std::array<std::vector<double>, 3> moved;
+    });
+    return grid;
+}
+
+// Where a cell's mean lies, in cells from the grid's lowest corner.
+std::array<double, 3> mean_of(const CellSums& cell) {
+    std::array<double, 3> at{};
     for (std::size_t a = 0; a < 3; ++a) {
-        const auto& index = a == 0 ? grid.x : a == 1 ? grid.y : grid.z;
-        moved[a].resize(n);
-        for (std::size_t i = 0; i < n; ++i) moved[a][i] = index[i] + 0.5 + grid.mean[a][i];
+        at[a] = static_cast<double>(cell.key >> key_shift[a] & 0x1FFFFF) +
+                static_cast<double>(cell.offset[a]) / static_cast<double>(cell.weight) / 65536;
     }
-    std::vector<std::uint32_t> cell_of(n);
-    for (std::size_t i = 0; i < n; ++i) cell_of[i] = static_cast<std::uint32_t>(i);
-    CellGrid level_grid = grid;
-    for (int level = 0; level <= most_levels; ++level) {
+    return at;
+}
+
+void move_to(CellSums& cell, const std::array<double, 3>& at) {
+    cell.key = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const double whole = std::floor(at[a]);
+        cell.key |= static_cast<std::uint64_t>(whole) << key_shift[a];
+        cell.offset[a] = cell.weight * static_cast<std::uint64_t>((at[a] - whole) * 65536);
+    }
+}
+
+// Moves the cells `which` onto the planes fitted in the grid of one level, whose cell is cell_of
+// for each. A plane is fitted at the mean of a level's cell and serves all that it was made from:
+// that mean lies nearer the surface than its outer layers do, and there are far fewer.
+void flatten_level(FusedCells& fused, const CellGrid& grid, double scale,
+                   const std::vector<std::uint32_t>& which,
+                   const std::vector<std::uint32_t>& cell_of, const std::vector<float>& sigma,
+                   device::Device& device, device::ThreadPool& pool) {
+    std::vector<std::uint32_t> query_of(grid.size());
+    for (const std::uint32_t i : which) query_of[cell_of[i]] = 1;
+    PlaneQueries queries;
+    for (std::size_t cell = 0; cell < grid.size(); ++cell) {
+        if (query_of[cell] == 0) continue;
+        query_of[cell] = static_cast<std::uint32_t>(queries.cell.size());
+        queries.cell.push_back(static_cast<std::uint32_t>(cell));
+        for (std::size_t a = 0; a < 3; ++a) queries.at[a].push_back(grid.mean[a][cell]);
+    }
+    const PlaneFit fit = fit_planes(device, grid, queries, {});
+    for_each(pool, which.size(), [&](std::size_t k) {
+        CellSums& cell = fused.cells[which[k]];
+        const std::uint32_t home = cell_of[which[k]], q = query_of[home];
+        const std::array<std::int32_t, 3> index{grid.x[home], grid.y[home], grid.z[home]};
+        const std::array<double, 3> at = mean_of(cell);
+        double offset = fit.offset[q];  // from the cell to the plane, cells of the level
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double from_query = (at[a] - static_cast<double>(key_bias)) / scale -
+                                      (index[a] + 0.5 + double{grid.mean[a][home]});
+            offset -= double{fit.normal[a][q]} * from_query;
+        }
+        const double noise = sigma[which[k]] / grid.cell_m;
+        // An edge or a small thing is rougher than the readings' noise, and stays.
+        if (fit.rms[q] > 1.5 * noise + 0.1 || std::abs(offset) > 3 * noise + 0.1) return;
+        std::array<double, 3> moved = at;
+        for (std::size_t a = 0; a < 3; ++a) moved[a] += double{fit.normal[a][q]} * offset * scale;
+        move_to(cell, moved);
+    });
+}
+
+// Sorts the cells by key and sums up those of one key.
+void bin_anew(FusedCells& fused, device::ThreadPool& pool) {
+    CellTables tables;
+    const std::size_t n = fused.cells.size(), blocks = (n + chunk - 1) / chunk;
+    std::vector<std::array<std::vector<std::uint32_t>, CellTables::shard_count>> parts(blocks);
+    pool.run(n, chunk, [&](std::uint64_t first, std::uint64_t last) {
+        for (std::uint64_t i = first; i < last; ++i) {
+            parts[first / chunk][CellTables::shard_of(fused.cells[i].key)].push_back(
+                static_cast<std::uint32_t>(i));
+        }
+    });
+    tables.for_each_shard(pool, [&](std::size_t shard, CellTable& table) {
+        for (const auto& part : parts) {
+            for (const std::uint32_t i : part[shard]) table.add(fused.cells[i]);
+        }
+    });
+    parts = {};
+    fused.cells = {};
+    fused.cells = tables.sorted(pool);
+}
+
+}  // namespace
+
+void drop_weak(FusedCells& fused, std::size_t frames, device::ThreadPool& pool) {
+    std::vector<std::uint8_t> drop(fused.cells.size());
+    visit_surroundings(fused, pool, [&](std::size_t i, const Around& all) {
+        const CellSums& cell = fused.cells[i];
+        const auto around = static_cast<double>(all.cells - 1),
+                   count = static_cast<double>(all.count - cell.count),
+                   weight = static_cast<double>(all.weight - cell.weight);
+        const bool lonely = around == 0 && cell.count == 1 && frames > 1;
+        // Below a tenth of its surroundings by readings and by certainty.
+        const bool weak = around > 0 && 10.0 * cell.count < count / around &&
+                          10.0 * static_cast<double>(cell.weight) < weight / around;
+        drop[i] = lonely || weak;
+    });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < drop.size(); ++i) {
+        if (drop[i] == 0) fused.cells[kept++] = fused.cells[i];
+    }
+    fused.cells.resize(kept);
+}
+
+void flatten_layers(FusedCells& fused, double least_sigma_m, device::ThreadPool& pool) {
+    const std::size_t n = fused.cells.size();
+    std::vector<float> sigma(n);  // of the readings in and around each cell, metres
+    std::vector<std::uint8_t> level_of(n);
+    visit_surroundings(fused, pool, [&](std::size_t i, const Around& around) {
+        const double s = least_depth_sigma * std::sqrt(65535 * static_cast<double>(around.count) /
+                                                       static_cast<double>(around.weight));
+        sigma[i] = static_cast<float>(s);
+        level_of[i] = s < least_sigma_m ? stays : level_for(s, fused.cell_m);
+    });
+    std::array<std::vector<std::uint32_t>, most_levels + 1> which;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (level_of[i] != stays) which[level_of[i]].push_back(static_cast<std::uint32_t>(i));
+    }
+    std::size_t left = 0;
+    for (const auto& cells : which) left += cells.size();
+    if (left == 0) return;
+    const std::unique_ptr<device::Device> device = device::open_native();
+    CellGrid grid = grid_of(fused, pool);
+    std::vector<std::uint32_t> cell_of(n);  // the level's cell of each cell
+    std::iota(cell_of.begin(), cell_of.end(), 0u);
+    for (std::size_t level = 0; left > 0; ++level) {
         if (level > 0) {
             std::vector<std::uint32_t> parent;
-            level_grid = coarsen(level_grid, parent);
-            for (std::uint32_t& cell : cell_of) cell = parent[cell];
+            grid = coarsen(grid, parent);
+            for_each(pool, n, [&](std::size_t i) { cell_of[i] = parent[cell_of[i]]; });
         }
-        const double reach_m = 2.5 * level_grid.cell_m, scale = level_grid.cell_m / grid.cell_m;
-        PlaneQueries queries;
-        std::vector<std::uint32_t> which;
-        for (std::size_t i = 0; i < n; ++i) {
-            const bool fits = 3 * sigma[i] <= reach_m;
-            const bool fitted_before = level > 0 && 3 * sigma[i] <= reach_m / 2;
-            if (!(fits || level == most_levels) || fitted_before) continue;
-            const std::uint32_t cell = cell_of[i];
-            which.push_back(static_cast<std::uint32_t>(i));
-            queries.cell.push_back(cell);
-            queries.at[0].push_back(
-                static_cast<float>(moved[0][i] / scale - (level_grid.x[cell] + 0.5)));
-            queries.at[1].push_back(
-                static_cast<float>(moved[1][i] / scale - (level_grid.y[cell] + 0.5)));
-            queries.at[2].push_back(
-                static_cast<float>(moved[2][i] / scale - (level_grid.z[cell] + 0.5)));
-        }
-        const PlaneFit fit = fit_planes(*device, level_grid, queries, {});
-        for (std::size_t k = 0; k < which.size(); ++k) {
-            const std::uint32_t i = which[k];
-            const double noise = sigma[i] / level_grid.cell_m;
-            // An edge or a small thing is rougher than the readings' noise, and stays.
-            if (fit.rms[k] > 1.5 * noise + 0.1 || std::abs(fit.offset[k]) > 3 * noise + 0.1)
-                continue;
-            for (std::size_t a = 0; a < 3; ++a) {
-                moved[a][i] += double{fit.normal[a][k]} * fit.offset[k] * scale;
-            }
-        }
+        if (which[level].empty()) continue;
+        flatten_level(fused, grid, static_cast<double>(1 << level), which[level], cell_of, sigma,
+                      *device, pool);
+        left -= which[level].size();
     }
-    CellTable table;
-    for (std::size_t i = 0; i < n; ++i) {
-        CellSums cell = fused.cells[i];
-        cell.key = 0;
-        for (std::size_t a = 0; a < 3; ++a) {
-            const double at = moved[a][i] + static_cast<double>(key_bias);
-            const double whole = std::floor(at);
-            cell.key |= static_cast<std::uint64_t>(whole) << key_shift[a];
-            cell.offset[a] = cell.weight * static_cast<std::uint64_t>((at - whole) * 65536);
-        }
-        table.add(cell);
-    }
-    fused.cells = table.cells();
-    std::sort(fused.cells.begin(), fused.cells.end(),
-              [](const CellSums& a, const CellSums& b) { return a.key < b.key; });
+    grid = {};
+    bin_anew(fused, pool);
 }
 
 }  // namespace topple::geometry

@@ -11,40 +11,6 @@
 
 namespace topple::geometry {
 
-void CellSums::add(const CellSums& other) {
-    for (std::size_t a = 0; a < 3; ++a) offset[a] += other.offset[a];
-    weight += other.weight;
-    count += other.count;
-    if (other.best_weight > best_weight ||
-        (other.best_weight == best_weight && other.best_frame < best_frame)) {
-        best_weight = other.best_weight;
-        best_frame = other.best_frame;
-    }
-}
-
-void CellTable::add(const CellSums& sums) {
-    if (2 * (cells_.size() + 1) > slots_.size()) grow();
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t at = hash(sums.key) & mask;
-    while (slots_[at].at != 0 && slots_[at].key != sums.key) at = (at + 1) & mask;
-    if (slots_[at].at == 0) {
-        cells_.push_back(sums);
-        slots_[at] = {sums.key, static_cast<std::uint32_t>(cells_.size())};
-    } else {
-        cells_[slots_[at].at - 1].add(sums);
-    }
-}
-
-void CellTable::grow() {
-    slots_.assign(std::max<std::size_t>(2 * slots_.size(), 1024), Slot{});
-    const std::size_t mask = slots_.size() - 1;
-    for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
-        std::size_t at = hash(cells_[cell].key) & mask;
-        while (slots_[at].at != 0) at = (at + 1) & mask;
-        slots_[at] = {cells_[cell].key, static_cast<std::uint32_t>(cell + 1)};
-    }
-}
-
 namespace {
 
 // Beyond this angle between the ray and the surface's normal, neighbouring readings say little
@@ -123,7 +89,7 @@ void FrameFusion::add(const DepthFrame& frame) {
     c.viewpoints.push_back({m[3], m[7], m[11]});
     const double per_cell = 1 / cell_m_;
 
-    c.pool.run(Cells::block_count, 1, [&](std::uint64_t block, std::uint64_t) {
+    const auto add_rows = [&](std::uint64_t block) {
         auto& runs = c.runs[block];
         for (auto& list : runs) list.clear();
         const auto first = static_cast<std::uint32_t>(block * k.height / Cells::block_count);
@@ -132,7 +98,7 @@ void FrameFusion::add(const DepthFrame& frame) {
             const double dy = (v - k.cy) / k.fy;
             CellSums run;
             const auto flush = [&] {
-                if (run.count) runs[(run.key * 0xD6E8FEB86659FD93u) >> 60].push_back(run);
+                if (run.count) runs[CellTables::shard_of(run.key)].push_back(run);
             };
             const std::uint16_t* row = frame.depth.data() + std::size_t{v} * k.width;
             for (std::uint32_t u = 0; u < k.width; ++u) {
@@ -172,10 +138,14 @@ void FrameFusion::add(const DepthFrame& frame) {
             }
             flush();
         }
+    };
+    // A pool without threads of its own hands out all blocks at once.
+    c.pool.run(Cells::block_count, 1, [&](std::uint64_t begin, std::uint64_t end) {
+        for (std::uint64_t block = begin; block < end; ++block) add_rows(block);
     });
-    c.pool.run(Cells::shard_count, 1, [&](std::uint64_t shard, std::uint64_t) {
+    c.tables.for_each_shard(c.pool, [&](std::size_t shard, CellTable& table) {
         for (const auto& block : c.runs) {
-            for (const CellSums& run : block[shard]) c.shards[shard].add(run);
+            for (const CellSums& run : block[shard]) table.add(run);
         }
     });
 }
@@ -183,17 +153,14 @@ void FrameFusion::add(const DepthFrame& frame) {
 FusedCloud FrameFusion::finish() {
     FusedCells fused;
     fused.cell_m = cell_m_;
-    for (const CellTable& shard : cells_->shards) {
-        fused.cells.insert(fused.cells.end(), shard.cells().begin(), shard.cells().end());
-    }
-    cells_->shards = {};
-    std::sort(fused.cells.begin(), fused.cells.end(),
-              [](const CellSums& a, const CellSums& b) { return a.key < b.key; });
-    drop_weak(fused, cells_->viewpoints.size());
+    fused.cells = cells_->tables.sorted(cells_->pool);
+    cells_->tables = {};
+    cells_->runs = {};
+    drop_weak(fused, cells_->viewpoints.size(), cells_->pool);
     // Twice: a first plane through the outer layers leans towards them, since half of the surface's
-    // readings lie beyond its reach.
-    flatten_layers(fused);
-    flatten_layers(fused);
+    // readings lie beyond its reach. Where the noise stays within a cell there are no such layers.
+    flatten_layers(fused, 0, cells_->pool);
+    flatten_layers(fused, 0.5 * cell_m_, cells_->pool);
 
     FusedCloud result;
     result.viewpoints = std::move(cells_->viewpoints);
