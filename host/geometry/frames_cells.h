@@ -71,7 +71,8 @@ struct CellTables {
 
 struct FrameFusion::Cells {
     static constexpr std::size_t shard_count = CellTables::shard_count, block_count = 16;
-    device::ThreadPool pool{0};
+    explicit Cells(unsigned threads) : pool(threads) {}
+    device::ThreadPool pool;
     CellTables tables;
     // Per block of image rows and shard: runs of readings in one cell.
     std::array<std::array<std::vector<CellSums>, shard_count>, block_count> runs;

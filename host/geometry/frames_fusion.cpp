@@ -61,8 +61,8 @@ bool flying(const std::uint16_t* depth, std::uint32_t u, std::uint32_t v, const 
 
 }  // namespace
 
-FrameFusion::FrameFusion(const Intrinsics& intrinsics, double cell_m)
-    : cells_(std::make_unique<Cells>()), intrinsics_(intrinsics), cell_m_(cell_m) {
+FrameFusion::FrameFusion(const Intrinsics& intrinsics, double cell_m, unsigned threads)
+    : cells_(std::make_unique<Cells>(threads)), intrinsics_(intrinsics), cell_m_(cell_m) {
     check(intrinsics, cell_m);
     // One entry per stored depth: what depends on depth alone.
     cells_->sigma_limit.resize(65536);

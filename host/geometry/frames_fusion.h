@@ -24,7 +24,8 @@ struct FusedCloud {
 // does not depend on the order of the frames beyond rounding.
 class FrameFusion {
   public:
-    FrameFusion(const Intrinsics& intrinsics, double cell_m);
+    // threads: 0 for one per core. The result does not depend on it.
+    FrameFusion(const Intrinsics& intrinsics, double cell_m, unsigned threads = 0);
     ~FrameFusion();
     FrameFusion(FrameFusion&&) noexcept;
     void add(const DepthFrame& frame);

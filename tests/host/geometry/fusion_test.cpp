@@ -63,6 +63,22 @@ TEST(Fusion, OrderOfFramesDoesNotMatter) {
     EXPECT_EQ(a.cloud.z, b.cloud.z);
 }
 
+TEST(Fusion, NumberOfThreadsDoesNotMatter) {
+    FusedCloud one;
+    for (const unsigned threads : {1u, 2u, 5u}) {
+        FrameFusion fusion(camera, 0.01, threads);
+        for (int i = 0; i < 5; ++i) fusion.add(view(static_cast<std::uint64_t>(i), 0.02 * i));
+        FusedCloud fused = fusion.finish();
+        if (threads == 1) one = std::move(fused);
+        ASSERT_GT(one.cloud.size(), 20'000u);
+        if (threads == 1) continue;
+        EXPECT_EQ(one.cloud.x, fused.cloud.x);
+        EXPECT_EQ(one.cloud.y, fused.cloud.y);
+        EXPECT_EQ(one.cloud.z, fused.cloud.z);
+        EXPECT_EQ(one.viewpoint_of_point, fused.viewpoint_of_point);
+    }
+}
+
 TEST(Fusion, RefusesWhatIsNoFrame) {
     FrameFusion fusion(camera, 0.01);
     DepthFrame frame;
