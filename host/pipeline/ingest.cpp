@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "geometry/depth_noise.h"
 #include "geometry/frames_fusion.h"
 #include "geometry/surfels.h"
 #include "io/frame_sequence.h"
@@ -63,8 +64,7 @@ double cell_for_frames(const FrameStream& frames) {
     std::nth_element(depths.begin(),
                      depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
     const double z = depths[depths.size() / 2];
-    const double beyond = std::max(0.0, z - 0.4);
-    const double noise = 0.0012 + 0.0019 * beyond * beyond;
+    const double noise = geometry::depth_sigma(z);
     return std::clamp(std::max(1.5 * z / k.fx, 1.2 * noise), least_cell_m, 0.015);
 }
 
