@@ -7,13 +7,16 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "device/devices.h"
 #include "perf/measure.h"
+#include "perf/peers.h"
 #include "perf/pipeline_case.h"
 #include "perf/report.h"
+#include "perf/stage_cases.h"
 #include "topple/error.h"
 
 namespace topple::perf {
@@ -26,6 +29,8 @@ struct Arguments {
     MeasureOptions measure;
     PipelineOptions pipeline;
     unsigned threads = 0;
+    unsigned stage_runs = 5;
+    bool peers = true;
     bool list = false;
 };
 
@@ -39,23 +44,58 @@ bool wanted(const Arguments& a, const std::string& name) {
                        [&](const std::string& f) { return name.find(f) != std::string::npos; });
 }
 
-std::vector<Result> measure_backend(device::Device& device, const Arguments& a) {
+// The stages' scene is made once, on the first device; the peers then stand beside that device.
+class Stages {
+  public:
+    explicit Stages(const Arguments& arguments) : a_(arguments) {}
+
+    bool wanted() const {
+        const auto names = stage_names();
+        return a_.stage_runs > 0 && std::any_of(names.begin(), names.end(), [&](const auto& name) {
+                   return perf::wanted(a_, name);
+               });
+    }
+    std::vector<Result> measure(device::Device& device) {
+        if (!scene_) scene_ = make_stage_scene(device);
+        StageRun run = measure_stages(device, *scene_, a_.stage_runs);
+        std::vector<Result> results = run.results;
+        std::erase_if(results, [&](const Result& r) { return !perf::wanted(a_, r.name); });
+        if (first_.results.empty()) first_ = std::move(run);
+        return results;
+    }
+    std::vector<Result> peers() const {
+        if (!a_.peers || first_.results.empty()) return {};
+        return compare_with_peers(*scene_, first_);
+    }
+
+  private:
+    const Arguments& a_;
+    std::optional<StageScene> scene_;
+    StageRun first_;
+};
+
+std::vector<Result> measure_backend(device::Device& device, const Arguments& a, Stages& stages) {
     std::vector<Result> results;
-    const bool any_kernel = std::any_of(all_cases().begin(), all_cases().end(),
-                                        [&](const Case& c) { return wanted(a, c.name); });
+    const bool any_kernel =
+        stages.wanted() || std::any_of(all_cases().begin(), all_cases().end(),
+                                       [&](const Case& c) { return wanted(a, c.name); });
     for (const Case& test : all_cases()) {
         // The probes are the yardstick of all others.
         if (!wanted(a, test.name) && !(any_kernel && is_probe(test.name))) continue;
         results.push_back(measure(device, test, a.measure));
     }
+    if (stages.wanted()) {
+        const auto whole = stages.measure(device);
+        results.insert(results.end(), whole.begin(), whole.end());
+    }
     apply_roofline(results);
     print_results(results);
     if (wanted(a, "pipeline") && a.pipeline.runs > 0) {
         scenes::Score score;
-        const auto stages = measure_pipeline(device, a.pipeline, score);
-        print_results(stages);
+        const auto whole = measure_pipeline(device, a.pipeline, score);
+        print_results(whole);
         print_score(score);
-        results.insert(results.end(), stages.begin(), stages.end());
+        results.insert(results.end(), whole.begin(), whole.end());
     }
     return results;
 }
@@ -77,6 +117,7 @@ bool hashes_agree(const std::vector<Result>& results) {
 int run(const Arguments& a) {
     if (a.list) {
         for (const Case& test : all_cases()) std::printf("%s\n", test.name);
+        for (const std::string& name : stage_names()) std::printf("%s\n", name.c_str());
         std::printf("pipeline\n");
         return 0;
     }
@@ -84,6 +125,7 @@ int run(const Arguments& a) {
     const std::vector<std::string> names =
         all ? std::vector<std::string>{"native", "opencl", "vulkan"} : a.backends;
     std::vector<Result> results;
+    Stages stages(a);
     for (const std::string& name : names) {
         std::unique_ptr<device::Device> device;
         try {
@@ -93,9 +135,11 @@ int run(const Arguments& a) {
             std::printf("%s: skipped: %s\n", name.c_str(), error.what());
             continue;
         }
-        const auto one = measure_backend(*device, a);
+        const auto one = measure_backend(*device, a, stages);
         results.insert(results.end(), one.begin(), one.end());
     }
+    const auto peers = stages.peers();
+    results.insert(results.end(), peers.begin(), peers.end());
     if (!a.json.empty()) write_json(a.json, results);
     if (!a.csv.empty()) write_csv(a.csv, results);
     return hashes_agree(results) ? 0 : 1;
@@ -120,6 +164,9 @@ int main(int argc, char** argv) {
     app.add_option("--runs", a.measure.runs,
                    "Samples of each kernel (default: 7 to 100, for --seconds)");
     app.add_option("--seconds", a.measure.seconds, "Time for each kernel")->capture_default_str();
+    app.add_option("--stage-runs", a.stage_runs, "Runs of the stages; 0: none")
+        ->capture_default_str();
+    app.add_flag("!--no-peers", a.peers, "Leave out PCL and OctoMap beside the stages");
     app.add_option("--pipeline-runs", a.pipeline.runs, "Parses of the whole room; 0: none")
         ->capture_default_str();
     app.add_option("--pipeline-frames", a.pipeline.frames, "Frames of the walk through the room")

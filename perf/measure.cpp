@@ -14,12 +14,13 @@ double seconds_of(device::Queue& queue) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-device::Counters operator-(const device::Counters& a, const device::Counters& b) {
-    return {a.dispatches - b.dispatches, a.submits - b.submits, a.kernel_builds - b.kernel_builds,
-            a.bytes_written - b.bytes_written, a.bytes_read - b.bytes_read};
-}
-
 }  // namespace
+
+device::Counters operator-(const device::Counters& a, const device::Counters& b) {
+    return {a.dispatches - b.dispatches,       a.submits - b.submits,
+            a.kernel_builds - b.kernel_builds, a.bytes_written - b.bytes_written,
+            a.bytes_read - b.bytes_read,       a.bytes_bound - b.bytes_bound};
+}
 
 double Result::best() const {
     return *std::min_element(samples_s.begin(), samples_s.end());

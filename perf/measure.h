@@ -30,6 +30,9 @@ struct Result {
     double worst() const;
 };
 
+// What was counted from b to a.
+device::Counters operator-(const device::Counters& a, const device::Counters& b);
+
 // Runs the case once to warm up, then takes samples. Short runs are batched, several dispatches for
 // each wait, so that a sample lasts at least 1 ms (where the case may repeat without a reset).
 Result measure(device::Device& device, const Case& test, const MeasureOptions& options);

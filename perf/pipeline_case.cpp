@@ -79,10 +79,7 @@ std::vector<Result> measure_pipeline(device::Device& device, const PipelineOptio
         whole.samples_s.push_back(all);
         whole.hash = hash_of(parsed.scene);
         if (run == 0) {
-            whole.counters = {after.dispatches - before.dispatches, after.submits - before.submits,
-                              after.kernel_builds - before.kernel_builds,
-                              after.bytes_written - before.bytes_written,
-                              after.bytes_read - before.bytes_read};
+            whole.counters = after - before;
         }
         whole.work = {static_cast<double>(parsed.scene.points.x.size()), "points", 0, 0};
         for (const auto& [stage, seconds] : parsed.scene.timings_s) {

@@ -103,7 +103,8 @@ void write_json(const std::string& path, const std::vector<Result>& results) {
                           {"submits", r.counters.submits},
                           {"kernel_builds", r.counters.kernel_builds},
                           {"bytes_written", r.counters.bytes_written},
-                          {"bytes_read", r.counters.bytes_read}}}});
+                          {"bytes_read", r.counters.bytes_read},
+                          {"bytes_bound", r.counters.bytes_bound}}}});
     }
     const nlohmann::json root{
         {"schema", "topple.perf/1"},
@@ -116,14 +117,14 @@ void write_csv(const std::string& path, const std::vector<Result>& results) {
     std::ostringstream out;
     out << "backend,case,best_ms,median_ms,worst_ms,samples,items,unit,bytes,operations,share,"
            "bound,dispatches,"
-           "bytes_written,bytes_read,kernel_builds,hash\n";
+           "bytes_written,bytes_read,bytes_bound,kernel_builds,hash\n";
     for (const Result& r : results) {
         out << r.backend << ',' << r.name << ',' << 1e3 * r.best() << ',' << 1e3 * r.median() << ','
             << 1e3 * r.worst() << ',' << r.samples_s.size() << ',' << r.work.items << ','
             << r.work.unit << ',' << r.work.bytes << ',' << r.work.operations << ',' << r.share
             << ',' << r.bound << ',' << r.counters.dispatches << ',' << r.counters.bytes_written
-            << ',' << r.counters.bytes_read << ',' << r.counters.kernel_builds << ',' << hex(r.hash)
-            << '\n';
+            << ',' << r.counters.bytes_read << ',' << r.counters.bytes_bound << ','
+            << r.counters.kernel_builds << ',' << hex(r.hash) << '\n';
     }
     write_text(path, out.str());
 }

@@ -29,6 +29,14 @@ std::uint32_t Device::items_per_lane(const KernelSource& kernel) const {
     return 1;
 }
 
+void Device::count(std::span<const Dispatch> dispatches) {
+    counters_.dispatches += dispatches.size();
+    ++counters_.submits;
+    for (const Dispatch& dispatch : dispatches) {
+        for (const BoundRange& range : dispatch.ranges) counters_.bytes_bound += range.bytes;
+    }
+}
+
 std::uint64_t Queue::groups_for(const KernelSource& kernel, std::uint64_t count) const {
     if (kernel.per_group) return count;
     const std::uint64_t per_group =

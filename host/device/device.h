@@ -68,6 +68,7 @@ struct Dispatch {
 struct Counters {
     std::uint64_t dispatches = 0, submits = 0, kernel_builds = 0;
     std::uint64_t bytes_written = 0, bytes_read = 0;  // host to device, device to host
+    std::uint64_t bytes_bound = 0;  // ranges that the dispatches bound: each in or out once
 };
 
 class Device {
@@ -94,6 +95,9 @@ class Device {
     std::uint32_t items_per_lane(const KernelSource& kernel) const;
 
   protected:
+    // Books a batch that was run.
+    void count(std::span<const Dispatch> dispatches);
+
     DeviceInfo info_;
     Counters counters_;
 };

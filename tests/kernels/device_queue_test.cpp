@@ -139,6 +139,7 @@ TEST_P(DeviceQueue, BuildsEachKernelOnceAndWaitsOnce) {
     }
     EXPECT_EQ(device->counters().submits, 2u);
     EXPECT_EQ(device->counters().dispatches, 10u);
+    EXPECT_EQ(device->counters().bytes_bound, 10u * 3 * 10 * 4);
     EXPECT_LE(device->counters().kernel_builds, 1u);
 }
 

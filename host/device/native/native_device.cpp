@@ -116,8 +116,7 @@ class NativeDevice final : public Device {
                 entry(args, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
             });
         }
-        counters_.dispatches += dispatches.size();
-        ++counters_.submits;
+        count(dispatches);
     }
 
   private:

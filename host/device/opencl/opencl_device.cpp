@@ -230,8 +230,7 @@ void OpenClDevice::run(std::span<const Dispatch> dispatches) {
     cl_check(clFinish(context_.queue), dispatches.empty() ? "empty batch"
                                                           : std::string("batch ending in kernel ") +
                                                                 dispatches.back().kernel->name);
-    counters_.dispatches += dispatches.size();
-    ++counters_.submits;
+    count(dispatches);
 }
 
 }  // namespace topple::device

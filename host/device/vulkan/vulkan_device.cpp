@@ -262,8 +262,7 @@ void VulkanDevice::run_batch(std::span<const Dispatch> dispatches) {
                ? std::string("kernel ") + dispatches[0].kernel->name
                : "batch of " + std::to_string(dispatches.size()) +
                      " dispatches, the last of kernel " + dispatches.back().kernel->name);
-    counters_.dispatches += dispatches.size();
-    ++counters_.submits;
+    count(dispatches);
 }
 
 void VulkanDevice::run(std::span<const Dispatch> dispatches) {
