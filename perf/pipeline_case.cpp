@@ -1,39 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "perf/pipeline_case.h"
 
-#include <stdlib.h>
-
 #include <chrono>
-#include <filesystem>
 
 #include "scenes/depth_camera.h"
 #include "scenes/furnished_room.h"
+#include "scenes/temporary_folder.h"
 #include "topple/parse.h"
 
 namespace topple::perf {
 namespace {
-
-namespace fs = std::filesystem;
-
-// A folder that goes away with its owner.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string name = (fs::temp_directory_path() / "topple_perf_XXXXXX").string();
-        if (!::mkdtemp(name.data())) throw Error(ErrorKind::input, name + ": can't be made");
-        path_ = name;
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    const fs::path& path() const { return path_; }
-
-  private:
-    fs::path path_;
-};
 
 std::uint64_t hash_of(const Scene& scene) {
     Hash hash;
@@ -54,7 +30,7 @@ std::vector<Result> measure_pipeline(device::Device& device, const PipelineOptio
     scenes::CameraOptions camera;
     camera.frames = options.frames;
     camera.seed = options.seed;
-    const TemporaryFolder folder;
+    const scenes::TemporaryFolder folder("topple_perf");
     scenes::write_sequence(folder.path(), world, scenes::walk(world, camera));
 
     std::vector<Result> results;

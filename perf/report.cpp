@@ -77,8 +77,9 @@ void print_score(const scenes::Score& s) {
         "       volume precision %.3f, recall %.3f; fixed recall %.3f, precision %.3f; support "
         "recall %.3f, precision %.3f; "
         "gravity %.2f deg\n",
-        s.volume_precision.value, s.volume_recall.value, s.fixed_recall.value,
-        s.fixed_precision.value, s.support_recall.value, s.support_precision.value, s.gravity_deg);
+        s.volume.precision.value, s.volume.recall.value, s.relations.fixed_recall.value,
+        s.relations.fixed_precision.value, s.relations.support_recall.value,
+        s.relations.support_precision.value, s.gravity_deg);
     std::fflush(stdout);
 }
 

@@ -23,5 +23,6 @@ inline std::string whole_number(const std::string& text) {
 Command add_parse(CLI::App& app);
 Command add_devices(CLI::App& app);
 Command add_generate(CLI::App& app);
+Command add_evaluate(CLI::App& app);
 
 }  // namespace topple::cli

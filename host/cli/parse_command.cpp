@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <unistd.h>
 
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -11,6 +9,7 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/summary.h"
 #include "device/devices.h"
 #include "io/output_folder.h"
@@ -18,17 +17,6 @@
 
 namespace topple::cli {
 namespace {
-
-// The signal, SIGINT or SIGTERM, that came. The parse polls it, so that its cleaning-up runs as
-// after any error; who signals again does not want to wait for that.
-std::atomic<int> interrupted{0};
-static_assert(std::atomic<int>::is_always_lock_free);
-
-void interrupt(int signal) {
-    if (interrupted.exchange(signal) == 0) return;
-    io::remove_pending_outputs();
-    _exit(128 + signal);
-}
 
 struct Arguments {
     std::string input, backend = "auto", up, disturbance = "human,wind,earthquake", max_memory;
@@ -143,14 +131,13 @@ int run(Arguments& a) {
     read_options(a);
     const std::filesystem::path out =
         a.out ? std::filesystem::path(*a.out) : default_output(a.input);
-    std::signal(SIGINT, interrupt);
-    std::signal(SIGTERM, interrupt);
+    catch_interrupts();
     // Throws now, not after the parse, where nothing can be written there.
     { const io::OutputFolder probe(out); }
     const auto device = device::open_device(a.backend, a.threads);
     Progress progress(a.quiet);
     a.options.progress = [&](const std::string& stage, double done) { progress(stage, done); };
-    a.options.cancelled = [] { return interrupted.load() != 0; };
+    a.options.cancelled = [] { return interrupted() != 0; };
     try {
         const ParseResult result = parse(*device, a.input, a.options);
         progress("output", 0);
@@ -159,10 +146,7 @@ int run(Arguments& a) {
         if (!a.quiet) print_summary(result.scene, out);
     } catch (...) {
         progress.finish();
-        if (const int signal = interrupted.load()) {
-            std::fprintf(stderr, "topple: interrupted; nothing was written\n");
-            return 128 + signal;
-        }
+        if (interrupted() != 0) return interrupted_exit();
         throw;
     }
     return 0;

@@ -103,6 +103,7 @@ void add_points(const Ingested& input, const GeometryStage& geometry, const Obje
     out.y = input.cloud.y;
     out.z = input.cloud.z;
     out.primitive = geometry.primitive_of_point;
+    out.region = geometry.region_of_point;
     const geometry::Surfels& s = geometry.surfels;
     for (std::size_t n = 0; n < input.cloud.size(); ++n) {
         const std::int32_t p = out.primitive[n];

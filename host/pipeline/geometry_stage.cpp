@@ -38,9 +38,12 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
     });
     g.structure = geometry::find_structure(g.surfels, g.primitives, g.frame.axes[2]);
     geometry::absorb_into_shell(g.surfels, g.primitives, g.structure);
+    g.region_of_point.reserve(input.cloud.size());
     g.primitive_of_point.reserve(input.cloud.size());
-    for (const std::uint32_t s : g.surfels.of_point)
+    for (const std::uint32_t s : g.surfels.of_point) {
+        g.region_of_point.push_back(regions.label[s]);
         g.primitive_of_point.push_back(g.primitives.label[s]);
+    }
     return g;
 }
 

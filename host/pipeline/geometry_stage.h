@@ -20,7 +20,7 @@ struct GeometryStage {
     geometry::SceneFrame frame;
     geometry::PrimitiveSet primitives;
     std::vector<geometry::Structure> structure;  // by primitive
-    std::vector<std::int32_t> primitive_of_point;
+    std::vector<std::int32_t> region_of_point, primitive_of_point;
 };
 
 GeometryStage find_primitives(device::Device& device, const Ingested& input,

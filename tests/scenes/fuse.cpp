@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "scenes/depth_camera.h"
+#include "scenes/majority.h"
 
 namespace topple::scenes {
 namespace {
@@ -11,23 +12,6 @@ struct Reading {
     std::int64_t cell[3];
     std::uint32_t at;
 };
-
-// The label that most of `labels` have, the lowest of equals.
-std::int32_t majority(std::vector<std::int32_t>& labels) {
-    std::sort(labels.begin(), labels.end());
-    std::int32_t best = -1;
-    std::size_t most = 0;
-    for (std::size_t k = 0; k < labels.size();) {
-        std::size_t end = k;
-        while (end < labels.size() && labels[end] == labels[k]) ++end;
-        if (end - k > most) {
-            most = end - k;
-            best = labels[k];
-        }
-        k = end;
-    }
-    return best;
-}
 
 }  // namespace
 

@@ -46,6 +46,8 @@ int run(int argc, char** argv) {
         topple::cli::add_devices);
     add("generate", "Make a scan of a furnished room, with its ground truth",
         topple::cli::add_generate);
+    add("evaluate", "Parse generated rooms and judge the results against the truth",
+        topple::cli::add_evaluate);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& done) {

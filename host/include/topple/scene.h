@@ -68,6 +68,7 @@ struct Support {
 struct ScenePoints {
     std::vector<float> x, y, z, nx, ny, nz;
     std::vector<std::int32_t> primitive, object;
+    std::vector<std::int32_t> region{};  // smooth piece of surface that primitives are merged of
 };
 
 // Solid voxels at their centres.

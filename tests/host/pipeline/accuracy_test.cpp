@@ -28,7 +28,7 @@ TEST_P(SlowAccuracy, of_a_walk_through_a_room) {
     const scenes::Score score = scenes::score(scan.world, result.scene);
     std::printf("part mIoU %.3f, object mIoU %.3f, gravity %.3f deg, volume %.3f / %.3f\n",
                 score.parts.miou, score.objects.miou, score.gravity_deg,
-                score.volume_precision.value, score.volume_recall.value);
+                score.volume.precision.value, score.volume.recall.value);
     EXPECT_GE(score.parts.miou, 0.5);
     EXPECT_LE(score.gravity_deg, 2);
 }

@@ -131,17 +131,18 @@ TEST(Score, PerfectParse) {
     const Score s = score(world, perfect(world));
     EXPECT_DOUBLE_EQ(s.parts.miou, 1);
     EXPECT_DOUBLE_EQ(s.parts.hamming, 0);
+    EXPECT_DOUBLE_EQ(s.parts.cut_discrepancy, 0);
     EXPECT_NEAR(s.objects.weighted_iou, 0.87, 0.13);  // the cabinet counts as the wall's
     EXPECT_EQ(s.parts.segments, 7u);
-    EXPECT_EQ(s.volume_precision.value, 1);
-    EXPECT_EQ(s.volume_recall.value, 1);
-    EXPECT_GT(s.volume_recall.of, 5000u);
-    EXPECT_EQ(s.fixed_recall.value, 1);
-    EXPECT_EQ(s.fixed_recall.of, 3u);
-    EXPECT_EQ(s.fixed_precision.value, 1);
-    EXPECT_EQ(s.support_recall.value, 1);
-    EXPECT_EQ(s.support_recall.of, 3u);
-    EXPECT_EQ(s.support_precision.value, 1);
+    EXPECT_EQ(s.volume.precision.value, 1);
+    EXPECT_EQ(s.volume.recall.value, 1);
+    EXPECT_GT(s.volume.recall.of, 5000u);
+    EXPECT_EQ(s.relations.fixed_recall.value, 1);
+    EXPECT_EQ(s.relations.fixed_recall.of, 3u);
+    EXPECT_EQ(s.relations.fixed_precision.value, 1);
+    EXPECT_EQ(s.relations.support_recall.value, 1);
+    EXPECT_EQ(s.relations.support_recall.of, 3u);
+    EXPECT_EQ(s.relations.support_precision.value, 1);
     EXPECT_NEAR(s.gravity_deg, 0, 1e-5);
 }
 
@@ -155,26 +156,26 @@ TEST(Score, NoticesEachMistake) {
     EXPECT_GT(score(world, s).parts.false_alarm, good.parts.false_alarm + 0.02);
     s = flawless;
     for (auto& o : s.points.object) o = o == 2 ? 1 : o;
-    EXPECT_EQ(score(world, s).support_recall.value, 2.0 / 3);
-    EXPECT_EQ(score(world, s).fixed_precision.value, 3.0 / 4);
+    EXPECT_EQ(score(world, s).relations.support_recall.value, 2.0 / 3);
+    EXPECT_EQ(score(world, s).relations.fixed_precision.value, 3.0 / 4);
     s = flawless;
     s.supports.push_back({2, 3, 0.01});
-    EXPECT_EQ(score(world, s).support_precision.value, 3.0 / 4);
+    EXPECT_EQ(score(world, s).relations.support_precision.value, 3.0 / 4);
     s.supports.clear();
-    EXPECT_EQ(score(world, s).support_recall.value, 0);
-    EXPECT_TRUE(std::isnan(score(world, s).support_precision.value));
+    EXPECT_EQ(score(world, s).relations.support_recall.value, 0);
+    EXPECT_TRUE(std::isnan(score(world, s).relations.support_precision.value));
     s = flawless;
     for (std::size_t n = 0; n < s.points.x.size(); ++n) {
         if (s.points.primitive[n] == 3) s.points.object[n] = 7;
     }
-    EXPECT_EQ(score(world, s).fixed_recall.value, 2.0 / 3);
+    EXPECT_EQ(score(world, s).relations.fixed_recall.value, 2.0 / 3);
     s = flawless;
     s.solid = {};
-    EXPECT_EQ(score(world, s).volume_recall.value, 0);
+    EXPECT_EQ(score(world, s).volume.recall.value, 0);
     s = flawless;
     s.solid.x.push_back(2.5f), s.solid.y.push_back(0.5f), s.solid.z.push_back(1.0f);
     s.solid.primitive.push_back(0), s.solid.object.push_back(0), s.solid.state.push_back(1);
-    EXPECT_LT(score(world, s).volume_precision.value, 1);
+    EXPECT_LT(score(world, s).volume.precision.value, 1);
     s = flawless;
     s.up = world.to_input({0, std::sin(0.1), std::cos(0.1)});
     EXPECT_NEAR(score(world, s).gravity_deg, 0.1 * 180 / 3.14159265358979, 1e-6);
@@ -193,6 +194,89 @@ TEST(Score, SegmentationByHand) {
     EXPECT_EQ(s.segments, 3u);
     EXPECT_EQ(segmentation_score({}, {}).segments, 0u);
     EXPECT_THROW(segmentation_score(truth, {}), Error);
+}
+
+// Ten cells of 2 cm in a row; the truth cuts between the third and fourth, the prediction between
+// the fifth and sixth. Cells 2 and 3 against 4 and 5 (from 0): 2 is 2 cells from 4, 3 is 1, and so
+// back, 1.5 cells in the mean. The mean distance from the middle is 2.5 cells: 2 * 1.5 / 2.5.
+TEST(CutDiscrepancy, OfARowByHand) {
+    std::vector<float> x, y, z;
+    std::vector<std::int32_t> truth, predicted;
+    for (int n = 0; n < 10; ++n) {
+        x.push_back(0.01f + 0.02f * static_cast<float>(n));
+        y.push_back(0.01f);
+        z.push_back(0.01f);
+        truth.push_back(n < 3 ? 4 : 7);
+        predicted.push_back(n < 5 ? -1 : 2);
+    }
+    const Positions points{x, y, z};
+    EXPECT_NEAR(cut_discrepancy(points, truth, predicted, 0.02), 2 * 1.5 / 2.5, 1e-5);
+    EXPECT_EQ(cut_discrepancy(points, truth, truth, 0.02), 0);
+    // No cut at all in one of them: each cut of the other is as far as the mean radius.
+    const std::vector<std::int32_t> one(10, 0);
+    EXPECT_NEAR(cut_discrepancy(points, truth, one, 0.02), 1, 1e-12);
+    EXPECT_EQ(cut_discrepancy(points, one, one, 0.02), 0);
+    EXPECT_THROW(cut_discrepancy(points, truth, one, 0), Error);
+    EXPECT_THROW(cut_discrepancy(points, truth, {}, 0.02), Error);
+}
+
+// Two sheets 6 cm apart: a cut in the one is not near the cut in the other, through the air.
+TEST(CutDiscrepancy, WaysGoAlongTheSurface) {
+    std::vector<float> x, y, z;
+    std::vector<std::int32_t> truth, predicted;
+    for (int sheet = 0; sheet < 2; ++sheet) {
+        for (int n = 0; n < 400; ++n) {
+            x.push_back(0.01f + 0.02f * static_cast<float>(n % 20));
+            y.push_back(0.01f + 0.02f * static_cast<float>(n / 20));
+            z.push_back(0.01f + 0.06f * static_cast<float>(sheet));
+            truth.push_back(2 * sheet + (sheet == 0 && n % 20 < 10));
+            predicted.push_back(2 * sheet + (sheet == 1 && n % 20 < 10));
+        }
+    }
+    EXPECT_NEAR(cut_discrepancy({x, y, z}, truth, predicted, 0.02), 2, 1e-12);
+}
+
+// Points that are nobody's count neither as a part nor as a border.
+TEST(CutDiscrepancy, PointsWithoutTruthAreLeftOut) {
+    const std::vector<float> x{0.01f, 0.03f, 0.05f, 0.07f}, same(4, 0.01f);
+    const std::vector<std::int32_t> truth{1, 1, -1, -1}, predicted{0, 0, 1, 2};
+    EXPECT_EQ(cut_discrepancy({x, same, same}, truth, predicted, 0.02), 0);
+    EXPECT_EQ(segmentation_score(truth, predicted).segments, 1u);
+    EXPECT_EQ(segmentation_score(truth, predicted).hamming, 0);
+}
+
+// A box of 20 x 10 x 10 voxels of 2 cm, half of them seen and 5 strays in the air: 1005 voxels of
+// which 1000 are right, and those true ones found that are solid or beside a solid one.
+TEST(VolumeScore, ByHand) {
+    World world;
+    world.objects = {{"room", "room"}, {"box", "floor"}};
+    world.parts.push_back({Shape::box, {0, 0, -0.1}, {4, 4, 0.2}, 0, 0, 0, "floor"});
+    world.parts.push_back({Shape::box, {0.2, 0.1, 0.1}, {0.4, 0.2, 0.2}, 0, 0, 1, "box"});
+    SolidVoxels solid;
+    const auto put = [&](int i, int j, int k) {
+        solid.x.push_back(0.02f * (static_cast<float>(i) + 0.5f));
+        solid.y.push_back(0.02f * (static_cast<float>(j) + 0.5f));
+        solid.z.push_back(0.02f * (static_cast<float>(k) + 0.5f));
+    };
+    for (int i = 0; i < 10; ++i) {
+        for (int j = 0; j < 10; ++j) {
+            for (int k = 0; k < 10; ++k) put(i, j, k);
+        }
+    }
+    for (int n = 0; n < 5; ++n) put(40, 40, 20 + n);
+    for (int n = 0; n < 7; ++n) put(40 + n, 40, -1);  // the floor's: not judged
+    const VolumeScore all = volume_score(world, solid, 0.02);
+    EXPECT_EQ(all.precision.of, 1005u);
+    EXPECT_DOUBLE_EQ(all.precision.value, 1000.0 / 1005);
+    EXPECT_EQ(all.recall.of, 2000u);
+    EXPECT_DOUBLE_EQ(all.recall.value, 1100.0 / 2000);
+    // Judged only where x < 0.1: the strays and half of what was found are out of it.
+    const VolumeScore part =
+        volume_score(world, solid, 0.02, [](const Vec3& p) { return p[0] < 0.1; });
+    EXPECT_EQ(part.precision.of, 500u);
+    EXPECT_EQ(part.precision.value, 1);
+    EXPECT_EQ(part.recall.of, 500u);
+    EXPECT_TRUE(std::isnan(volume_score(world, {}, 0.02).precision.value));
 }
 
 TEST(Score, RefusesAnEmptyParse) {
@@ -272,12 +356,12 @@ TEST(Score, AgreesWithTheOutsideScorer) {
             same(group, "wiou", s.weighted_iou);
             same(group, "segments", static_cast<double>(s.segments));
         }
-        same("volume", "precision", ours.volume_precision.value);
-        same("volume", "recall", ours.volume_recall.value);
-        same("relations", "fixed_recall", ours.fixed_recall.value);
-        same("relations", "fixed_precision", ours.fixed_precision.value);
-        same("relations", "support_recall", ours.support_recall.value);
-        same("relations", "support_precision", ours.support_precision.value);
+        same("volume", "precision", ours.volume.precision.value);
+        same("volume", "recall", ours.volume.recall.value);
+        same("relations", "fixed_recall", ours.relations.fixed_recall.value);
+        same("relations", "fixed_precision", ours.relations.fixed_precision.value);
+        same("relations", "support_recall", ours.relations.support_recall.value);
+        same("relations", "support_precision", ours.relations.support_precision.value);
         same("gravity", "angle_deg", ours.gravity_deg);
     }
 }

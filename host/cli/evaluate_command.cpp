@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "device/devices.h"
+#include "evaluation/pictures.h"
+#include "evaluation/room.h"
+#include "evaluation/tables.h"
+#include "topple/error.h"
+
+namespace topple::cli {
+namespace {
+
+struct Arguments {
+    std::string backend = "auto", out = "evaluation";
+    evaluation::RoomOptions options;
+    unsigned seeds = 8, first = 1;
+};
+
+void check(const Arguments& a) {
+    const auto in_range = [](const char* option, unsigned value, unsigned most) {
+        if (value >= 1 && value <= most) return;
+        throw Error(ErrorKind::usage, std::string(option) + " " + std::to_string(value) +
+                                          ": expected 1 to " + std::to_string(most));
+    };
+    in_range("--seeds", a.seeds, 1000);
+    in_range("--frames", a.options.camera.frames, 1000);
+    check_options(a.options.parse);
+}
+
+void make_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw Error(ErrorKind::input, folder.string() + ": " + error.message());
+}
+
+void write(const std::filesystem::path& path, const std::string& text) {
+    std::ofstream out(path, std::ios::binary);
+    out << text;
+    out.flush();
+    if (!out) throw Error(ErrorKind::input, path.string() + ": can't be written");
+}
+
+int run(Arguments& a) {
+    check(a);
+    make_folder(a.out);
+    const std::filesystem::path out = a.out;
+    catch_interrupts();
+    const auto device = device::open_device(a.backend);
+    a.options.parse.cancelled = [] { return interrupted() != 0; };
+    std::vector<evaluation::RoomScore> scores;
+    std::optional<evaluation::Room> first;
+    try {
+        for (unsigned n = 0; n < a.seeds; ++n) {
+            a.options.room.seed = a.options.camera.seed = a.first + n;
+            std::fprintf(stderr, "room %u of %u\n", n + 1, a.seeds);
+            evaluation::Room room = evaluation::scan_and_parse(*device, a.options);
+            scores.push_back(evaluation::judge(room));
+            if (!first) first = std::move(room);
+        }
+    } catch (const Error&) {
+        if (interrupted() != 0) return interrupted_exit();
+        throw;
+    }
+    const std::string tables = evaluation::tables(scores);
+    std::fputs(tables.c_str(), stdout);
+    write(out / "tables.txt", tables);
+    write(out / "scores.csv", evaluation::csv(scores));
+    evaluation::draw_segments(*first, out / "segments.png");
+    evaluation::draw_slices(*first, out / "slices.png");
+    evaluation::draw_segmentation_chart(scores, out / "segmentation.svg");
+    evaluation::draw_volume_chart(scores, out / "volume.svg");
+    std::printf("\nPictures of the first room, charts and all figures: %s\n", a.out.c_str());
+    return 0;
+}
+
+}  // namespace
+
+Command add_evaluate(CLI::App& app) {
+    auto a = std::make_shared<Arguments>();
+    a->options.camera.frames = 40;
+    a->options.parse.voxel_m = 0.02;
+    // No score depends on the disturbances; wind is the quickest.
+    a->options.parse.disturbances = {"wind"};
+    app.add_option("-o,--output", a->out, "Folder for tables, charts and pictures")
+        ->capture_default_str();
+    app.add_option("--seeds", a->seeds, "How many rooms")->capture_default_str();
+    app.add_option("--first", a->first, "Seed of the first room; the others follow")
+        ->capture_default_str();
+    app.add_option("--frames", a->options.camera.frames, "Depth frames of each room")
+        ->capture_default_str();
+    app.add_option("--tilt", a->options.room.tilt_deg,
+                   "Tilt of the input's frame against the room, degrees")
+        ->capture_default_str();
+    app.add_option("--voxel", a->options.parse.voxel_m, "Edge of a solid voxel in metres")
+        ->capture_default_str();
+    app.add_option("--backend", a->backend,
+                   "auto (a real GPU if there is one, else native), native, opencl, vulkan")
+        ->capture_default_str();
+    return [a] { return run(*a); };
+}
+
+}  // namespace topple::cli

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "cli/program.h"
+
+// The command that judges parses of generated rooms.
+namespace topple::test {
+namespace {
+
+using Evaluate = Program;
+
+TEST_F(Evaluate, refuses_what_it_cannot_do) {
+    expect_failure(2, {"evaluate", "--seeds", "0"}, {"--seeds 0", "1 to"});
+    expect_failure(2, {"evaluate", "--frames", "0"}, {"--frames 0", "1 to"});
+    expect_failure(2, {"evaluate", "--voxel", "-1"}, {"--voxel"});
+    put("file", "not a folder");
+    expect_failure(1, {"evaluate", "-o", "file/below"}, {"file/below"});
+}
+
+TEST_F(Evaluate, prints_tables_and_draws_pictures) {
+    const Finished done = run({"evaluate", "--seeds", "1", "--first", "4", "--frames", "6",
+                               "--voxel", "0.04", "--backend", "native", "-o", "judged"});
+    ASSERT_EQ(done.code, 0) << done.err;
+    for (const char* part : {"Fig. 14", "Table 2", "94.1", "Table 3", "81.8", "after filling",
+                             "cut discr.", "false alarm"})
+        EXPECT_NE(done.out.find(part), std::string::npos) << part << " in:\n" << done.out;
+    EXPECT_EQ(everything(),
+              (std::set<std::string>{"judged", "judged/scores.csv", "judged/segmentation.svg",
+                                     "judged/segments.png", "judged/slices.png",
+                                     "judged/tables.txt", "judged/volume.svg"}));
+    EXPECT_TRUE(done.out.starts_with(bytes_of_file(in("judged/tables.txt"))));
+}
+
+TEST_F(Evaluate, leaves_nothing_when_interrupted) {
+    bool sent = false;
+    const Finished done = run({"evaluate", "--seeds", "3", "--frames", "20", "-o", "judged"},
+                              [&](const std::string& err) {
+                                  if (sent || err.find("room 1") == std::string::npos) return 0;
+                                  sent = true;
+                                  return SIGINT;
+                              });
+    EXPECT_EQ(done.code, 128 + SIGINT) << done.err;
+    EXPECT_EQ(everything(), std::set<std::string>{"judged"});
+}
+
+}  // namespace
+}  // namespace topple::test

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "evaluation/room.h"
+
+#include "evaluation/view.h"
+#include "scenes/temporary_folder.h"
+
+namespace topple::evaluation {
+
+Room scan_and_parse(device::Device& device, const RoomOptions& options) {
+    Room room;
+    room.world = scenes::furnished_room(options.room);
+    room.camera = options.camera;
+    room.sequence = scenes::walk(room.world, options.camera);
+    const scenes::TemporaryFolder folder("topple_evaluate");
+    scenes::write_sequence(folder.path(), room.world, room.sequence);
+    room.parse = parse(device, folder.path(), options.parse);
+    room.part = scenes::true_parts(room.world, room.parse.scene.points);
+    return room;
+}
+
+RoomScore judge(const Room& room) {
+    const Scene& scene = room.parse.scene;
+    const ScenePoints& points = scene.points;
+    const auto object = scenes::true_objects(room.world, room.part);
+    RoomScore out;
+    out.seed = room.world.seed;
+    out.points = points.x.size();
+    out.parts = room.world.parts.size();
+    out.objects = room.world.objects.size();
+    const auto agreement = [&](const auto& truth, const auto& found) {
+        return scenes::segmentation_score(points, truth, found);
+    };
+    out.parts_by_region = agreement(room.part, points.region);
+    out.parts_by_primitive = agreement(room.part, points.primitive);
+    out.objects_by_region = agreement(object, points.region);
+    out.objects_by_primitive = agreement(object, points.primitive);
+    out.objects_by_object = agreement(object, points.object);
+    const scenes::Domain domain = in_view(room.world, room.camera, room.sequence);
+    const auto volume = [&](const SolidVoxels& solid) {
+        return scenes::volume_score(room.world, solid, scene.voxel_size_m, domain);
+    };
+    out.surface = volume(surface_alone(scene.solid));
+    out.invisible = volume(never_seen_empty(*room.parse.voxels, room.world, domain));
+    out.completed = volume(scene.solid);
+    out.relations = scenes::relation_score(room.world, scene, room.part);
+    out.gravity_deg = scenes::gravity_error_deg(room.world, scene);
+    for (const auto& [stage, seconds] : scene.timings_s) out.parse_s += seconds;
+    return out;
+}
+
+}  // namespace topple::evaluation

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "scenes/scene.h"
+#include "scenes/share.h"
+#include "topple/scene.h"
+
+namespace topple::scenes {
+
+// Joints and supports, part by part. Parts with fewer than 60 points were not seen and don't count.
+struct RelationScore {
+    // Of true joints, those whose parts came out as one object; of touching parts in one object,
+    // those truly joined, directly or not.
+    Share fixed_recall, fixed_precision;
+    // Of true supports, those found between the parts' objects; of found ones, those between
+    // objects of which one truly carries the other.
+    Share support_recall, support_precision;
+};
+
+// part: the true part of each of the parse's points, -1 for none.
+RelationScore relation_score(const World& truth, const Scene& parse,
+                             std::span<const std::int32_t> part);
+
+}  // namespace topple::scenes
