@@ -84,6 +84,7 @@ STRUCT(SixFillSweepParams) {
 STRUCT(SixFillVoteParams) {
     uint count;  // voxels
     uint votes;  // directions that must agree
+    uint columns;  // 1: what lies hidden under a top, down to where it stands, is filled, too
 } STRUCT_END(SixFillVoteParams)
 
 // segmented_sum

@@ -14,7 +14,7 @@
 namespace topple::vdb {
 namespace {
 
-constexpr std::int32_t max_primitives = 65534;  // labels travel as 16 bits
+constexpr std::int32_t max_primitives = 65533;  // cells travel as 16 bits
 
 struct Box {
     std::array<std::int32_t, 3> low{1, 1, 1}, high{0, 0, 0};
@@ -27,6 +27,11 @@ struct Box {
         }
     }
 };
+
+bool uniformly_empty(const openvdb::Int32Grid::ConstAccessor& state, const LeafTable::Leaf& leaf) {
+    return !state.probeConstLeaf(origin_of(leaf)) &&
+           state.getValue(origin_of(leaf)) == static_cast<std::int32_t>(State::empty);
+}
 
 // The leaves of the boxes around the primitives that fill. That is enough: where two rays of a
 // voxel hit the same primitive, the voxel and both rays lie inside that primitive's bounding box.
@@ -66,10 +71,7 @@ std::vector<LeafTable::Leaf> leaves_to_sweep(const VoxelScene::Grids& g,
     for (std::uint64_t n = 0; n < wanted.size(); ++n) {
         if (!wanted[n]) continue;
         const auto leaf = g.leaves.leaf_at(n);
-        const bool uniform_empty =
-            !accessor.probeConstLeaf(origin_of(leaf)) &&
-            accessor.getValue(origin_of(leaf)) == static_cast<std::int32_t>(State::empty);
-        if (!uniform_empty) leaves.push_back(leaf);
+        if (!uniformly_empty(accessor, leaf)) leaves.push_back(leaf);
     }
     return leaves;
 }
@@ -88,8 +90,8 @@ std::vector<std::uint32_t> cells_of(const VoxelScene::Grids& g,
             std::uint32_t cell = 0;
             if (state->isValueOn(v)) {
                 const std::int32_t p = label->getValue(v);
-                if (p >= 0 && fills[static_cast<std::size_t>(p)])
-                    cell = static_cast<std::uint32_t>(p) + 2;
+                const bool votes = p >= 0 && fills[static_cast<std::size_t>(p)];
+                cell = votes ? static_cast<std::uint32_t>(p) + 3 : 2;
             }
             cells[n * 512 + v] = cell;
         }
@@ -97,11 +99,11 @@ std::vector<std::uint32_t> cells_of(const VoxelScene::Grids& g,
     return cells;
 }
 
-// Runs of leaves that follow one another along an axis.
+// Runs of leaves that follow one another along an axis, and what lies beyond them.
 struct Runs {
-    std::vector<std::uint32_t> first, length, leaf;
+    std::vector<std::uint32_t> first, length, leaf, ends;
 };
-Runs runs_along(const std::vector<LeafTable::Leaf>& leaves, int axis) {
+Runs runs_along(const VoxelScene::Grids& g, const std::vector<LeafTable::Leaf>& leaves, int axis) {
     const int other = axis == 0 ? 1 : 0, last = axis == 2 ? 1 : 2;
     Runs runs;
     runs.leaf.resize(leaves.size());
@@ -124,27 +126,38 @@ Runs runs_along(const std::vector<LeafTable::Leaf>& leaves, int axis) {
         runs.first.push_back(n);
         runs.length.push_back(1);
     }
+    const auto state = g.state->getConstAccessor();
+    for (std::size_t r = 0; r < runs.first.size(); ++r) {
+        auto before = leaves[runs.leaf[runs.first[r]]];
+        auto after = leaves[runs.leaf[runs.first[r] + runs.length[r] - 1]];
+        --before[axis];
+        ++after[axis];
+        runs.ends.push_back((uniformly_empty(state, before) ? 0u : 1u) |
+                            (uniformly_empty(state, after) ? 0u : 2u));
+    }
     return runs;
 }
 
-std::vector<std::uint32_t> sweep_and_vote(device::Device& device,
+std::vector<std::uint32_t> sweep_and_vote(device::Device& device, const VoxelScene::Grids& g,
                                           const std::vector<LeafTable::Leaf>& leaves,
-                                          std::span<const std::uint32_t> cells, unsigned votes) {
+                                          std::span<const std::uint32_t> cells,
+                                          const VoxelScene::FillOptions& options) {
     const device::Buffer<std::uint32_t> cell_words(device, cells, "fill cells");
     std::vector<device::Buffer<std::uint32_t>> hits, keep;
     for (int side = 0; side < 6; ++side) hits.emplace_back(device, cells.size(), "fill hits");
     const device::Buffer<std::uint32_t> filled(device, cells.size(), "filled voxels");
     device::Queue queue(device);
     for (int axis = 0; axis < 3; ++axis) {
-        const Runs runs = runs_along(leaves, axis);
+        const Runs runs = runs_along(g, leaves, axis);
         const auto buffer =
             [&](const std::vector<std::uint32_t>& data) -> device::Buffer<std::uint32_t>& {
             return keep.emplace_back(device, std::span<const std::uint32_t>(data), "fill runs");
         };
-        keep.reserve(9);
+        keep.reserve(12);
         const auto& first = buffer(runs.first);
         const auto& length = buffer(runs.length);
         const auto& order = buffer(runs.leaf);
+        const auto& ends = buffer(runs.ends);
         const std::size_t side = static_cast<std::size_t>(axis) * 2;
         constexpr std::uint32_t stride[3] = {64, 8, 1}, high[3] = {8, 64, 64}, low[3] = {1, 1, 8};
         queue.add<kernels::SixFillSweep>(
@@ -152,6 +165,7 @@ std::vector<std::uint32_t> sweep_and_vote(device::Device& device,
             {.run_first = first,
              .run_length = length,
              .run_leaf = order,
+             .run_ends = ends,
              .cells = cell_words,
              .backward = hits[side],
              .forward = hits[side + 1]},
@@ -160,17 +174,18 @@ std::vector<std::uint32_t> sweep_and_vote(device::Device& device,
              .stride_high = high[axis],
              .stride_low = low[axis]});
     }
-    queue.add<kernels::SixFillVote>(
-        cells.size(),
-        {.cells = cell_words,
-         .hit_0 = hits[0],
-         .hit_1 = hits[1],
-         .hit_2 = hits[2],
-         .hit_3 = hits[3],
-         .hit_4 = hits[4],
-         .hit_5 = hits[5],
-         .filled = filled},
-        {.count = static_cast<std::uint32_t>(cells.size()), .votes = votes});
+    queue.add<kernels::SixFillVote>(cells.size(),
+                                    {.cells = cell_words,
+                                     .hit_0 = hits[0],
+                                     .hit_1 = hits[1],
+                                     .hit_2 = hits[2],
+                                     .hit_3 = hits[3],
+                                     .hit_4 = hits[4],
+                                     .hit_5 = hits[5],
+                                     .filled = filled},
+                                    {.count = static_cast<std::uint32_t>(cells.size()),
+                                     .votes = options.votes,
+                                     .columns = options.columns ? 1u : 0u});
     queue.run();
     return filled.download();
 }
@@ -198,10 +213,10 @@ std::uint64_t VoxelScene::fill(device::Device& device, const FillOptions& option
     for (std::size_t p = 0; p < std::min(fills.size(), options.hollow.size()); ++p)
         fills[p] = !options.hollow[p];
 
-    const auto leaves = leaves_to_sweep(g, fills, options.votes == 1);
+    const auto leaves = leaves_to_sweep(g, fills, options.votes == 1 || options.columns);
     if (leaves.empty()) return 0;
     const auto cells = cells_of(g, leaves, fills);
-    const auto filled = sweep_and_vote(device, leaves, cells, options.votes);
+    const auto filled = sweep_and_vote(device, g, leaves, cells, options);
     std::uint64_t count = 0;
     for (std::size_t n = 0; n < leaves.size(); ++n) {
         const auto* from = filled.data() + n * 512;

@@ -87,9 +87,13 @@ class VoxelScene {
     // voxel takes the primitive that at least `votes` of the rays along its six axes hit first; of
     // several the one hit most often, then the nearest, then the lowest. Rays end at seen-empty
     // voxels and at surfaces. Primitives in `hollow` (walls, floors: large planes) stop rays, but
-    // neither fill nor are filled. Returns voxels completed.
+    // neither fill nor are filled. With `columns`, for scenes seen from around, the ray upwards
+    // alone suffices where neither the ray downwards nor more than two of the four to the sides
+    // end in space seen to be empty: the inside of a sofa whose back stands at a wall. Returns
+    // voxels completed.
     struct FillOptions {
         unsigned votes = 2;        // directions that must agree
+        bool columns = false;      // fill what hides under a top, down to where it stands
         std::vector<bool> hollow;  // by primitive
     };
     std::uint64_t fill(device::Device& device, const FillOptions& options);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "pipeline/view_coverage.h"
+
 namespace topple {
 namespace {
 
@@ -29,8 +31,10 @@ std::vector<bool> solids(const vdb::VoxelScene& scene, std::size_t primitives) {
     return keep;
 }
 
-void carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScene& scene,
+// Returns whether the frames show the scene from around.
+bool carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScene& scene,
                StageClock& stage) {
+    ViewCoverage coverage(scene.frame().grid_from_input);
     const Intrinsics& k = frames.intrinsics();
     const std::uint64_t frame_bytes = std::uint64_t{2} * k.width * k.height;
     const std::size_t per_batch =
@@ -38,11 +42,13 @@ void carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScen
     std::vector<DepthFrame> batch;
     for (std::size_t f = 0; f < frames.size(); ++f) {
         batch.push_back(frames.load(f));
+        coverage.add(batch.back().camera_to_world);
         if (batch.size() < per_batch && f + 1 < frames.size()) continue;
         scene.carve(device, k, batch);
         batch.clear();
         stage.progress("carving", static_cast<double>(f + 1) / static_cast<double>(frames.size()));
     }
+    return coverage.from_around();
 }
 
 }  // namespace
@@ -63,11 +69,13 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
         out.scene =
             std::make_shared<vdb::VoxelScene>(frame, input.cloud, geometry.primitive_of_point);
     });
+    bool around = false;
     stage("carving", [&] {
-        if (input.frames) carve_all(device, *input.frames, *out.scene, stage);
+        if (input.frames) around = carve_all(device, *input.frames, *out.scene, stage);
     });
     stage("filling", [&] {
         vdb::VoxelScene::FillOptions options;
+        options.columns = around;
         for (const geometry::Structure s : geometry.structure) {
             options.hollow.push_back(s == geometry::Structure::wall ||
                                      s == geometry::Structure::ceiling);

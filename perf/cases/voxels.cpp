@@ -197,10 +197,10 @@ Prepared six_fill_sweep(device::Device& device) {
     Words cells(std::size_t{512} * leaves);
     for (std::uint32_t& cell : cells) {
         const int kind = random.integer(0, 29);
-        cell = kind == 0 ? 0u : kind == 1 ? static_cast<std::uint32_t>(random.integer(2, 60)) : 1u;
+        cell = kind == 0 ? 0u : kind == 1 ? static_cast<std::uint32_t>(random.integer(2, 63)) : 1u;
     }
     struct Axis {
-        device::Buffer<std::uint32_t> first, length, leaf;
+        device::Buffer<std::uint32_t> first, length, leaf, ends;
         std::uint32_t runs;
     };
     struct Buffers {
@@ -226,6 +226,7 @@ Prepared six_fill_sweep(device::Device& device) {
         }
         on->axes.push_back({upload(device, first, "first"), upload(device, length, "length"),
                             upload(device, order, "leaf"),
+                            upload(device, Words(first.size(), 3), "ends"),
                             static_cast<std::uint32_t>(first.size())});
         on->hits.emplace_back(device, cells.size(), "backward");
         on->hits.emplace_back(device, cells.size(), "forward");
@@ -241,6 +242,7 @@ Prepared six_fill_sweep(device::Device& device) {
                                                      {.run_first = axis.first,
                                                       .run_length = axis.length,
                                                       .run_leaf = axis.leaf,
+                                                      .run_ends = axis.ends,
                                                       .cells = on->cells,
                                                       .backward = on->hits[2 * a],
                                                       .forward = on->hits[2 * a + 1]},
@@ -290,7 +292,7 @@ Prepared six_fill_vote(device::Device& device) {
                                                  .hit_4 = on->hit[4],
                                                  .hit_5 = on->hit[5],
                                                  .filled = on->filled},
-                                                {.count = count, .votes = 2});
+                                                {.count = count, .votes = 2, .columns = 1});
             },
             {},
             [on] { return Hash().add(on->filled.download()).value(); }};

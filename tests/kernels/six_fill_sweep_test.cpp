@@ -27,7 +27,7 @@ struct SweepCase {
                     // Mostly fillable, so that rays run across leaves; labels up to the largest.
                     const std::uint32_t kind = random.below(40);
                     const std::uint32_t cell = kind == 0   ? 0
-                                               : kind == 1 ? 2 + random.below(5)
+                                               : kind == 1 ? 2 + random.below(6)
                                                : kind == 2 ? 65535u
                                                            : 1;
                     dense.cell[dense.index({x, y, z})] = cell;
@@ -44,17 +44,36 @@ struct SweepCase {
     }
 };
 
+// What lies beyond the run through a voxel, as SixFillSweep::run sets it: seen empty or not.
+bool empty_beyond(const std::array<int, 3>& v, int axis, int way) {
+    const int a = v[axis == 0 ? 1 : 0] / 8, b = v[axis == 2 ? 1 : 2] / 8;
+    return (((a + 2 * b) & 3) >> way & 1) == 0;
+}
+
+std::uint32_t expected_hit(const SweepCase& c, const std::array<int, 3>& v, int axis, int way) {
+    if (c.dense.cell[c.dense.index(v)] != 1) return 0;
+    const oracle::SixHit hit = oracle::walk(c.dense, v, 2 * axis + way, empty_beyond(v, axis, way));
+    std::uint32_t cell = static_cast<std::uint32_t>(hit.primitive + 3);
+    if (hit.primitive < 0) {
+        std::array<int, 3> end = v;
+        end[axis] += way ? hit.distance : -hit.distance;
+        cell = hit.empty ? 0 : c.dense.inside(end) ? 2 : 1;
+    }
+    return cell | static_cast<std::uint32_t>(hit.distance) << 16;
+}
+
 class SixFillSweep : public EachBackend {
   protected:
     // Backward and forward hits along an axis.
     std::array<std::vector<std::uint32_t>, 2> run(device::Device& on, const SweepCase& c,
                                                   int axis) {
-        std::vector<std::uint32_t> first, length, order;
+        std::vector<std::uint32_t> first, length, order, ends;
         const int other = axis == 0 ? 1 : 0, last = axis == 2 ? 1 : 2;
         for (int a = 0; a < c.leaves[other]; ++a) {
             for (int b = 0; b < c.leaves[last]; ++b) {
                 first.push_back(static_cast<std::uint32_t>(order.size()));
                 length.push_back(static_cast<std::uint32_t>(c.leaves[axis]));
+                ends.push_back(static_cast<std::uint32_t>(a + 2 * b) & 3u);
                 for (int n = 0; n < c.leaves[axis]; ++n) {
                     std::array<int, 3> v{};
                     v[axis] = 8 * n, v[other] = 8 * a, v[last] = 8 * b;
@@ -66,6 +85,7 @@ class SixFillSweep : public EachBackend {
         Buffer<std::uint32_t> b_first(on, std::span(std::as_const(first)), "first"),
             b_length(on, std::span(std::as_const(length)), "length"),
             b_order(on, std::span(std::as_const(order)), "order"),
+            b_ends(on, std::span(std::as_const(ends)), "ends"),
             cells(on, std::span(c.cells), "cells");
         Buffer<std::uint32_t> back(on, c.cells.size() + 1, "backward"),
             forth(on, c.cells.size() + 1, "forward");
@@ -77,6 +97,7 @@ class SixFillSweep : public EachBackend {
                                          {.run_first = b_first,
                                           .run_length = b_length,
                                           .run_leaf = b_order,
+                                          .run_ends = b_ends,
                                           .cells = cells,
                                           .backward = back,
                                           .forward = forth},
@@ -105,14 +126,7 @@ TEST_P(SixFillSweep, MatchesTheWalk) {
                 for (int y = 0; y < c.dense.size[1]; ++y) {
                     for (int z = 0; z < c.dense.size[2]; ++z) {
                         for (int way = 0; way < 2; ++way) {
-                            oracle::SixHit hit;
-                            if (c.dense.cell[c.dense.index({x, y, z})] == 1)
-                                hit = oracle::walk(c.dense, {x, y, z}, 2 * axis + way);
-                            const std::uint32_t expected =
-                                hit.primitive < 0
-                                    ? 0
-                                    : static_cast<std::uint32_t>(hit.primitive + 1) |
-                                          static_cast<std::uint32_t>(hit.distance) << 16;
+                            const std::uint32_t expected = expected_hit(c, {x, y, z}, axis, way);
                             wrong += hits[static_cast<std::size_t>(way)][c.address({x, y, z})] !=
                                      expected;
                         }

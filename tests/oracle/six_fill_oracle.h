@@ -10,7 +10,8 @@
 // Six-direction filling (paper, 2.2.3) by walking from each voxel, on a dense grid.
 namespace topple::oracle {
 
-// cell: 0 stops a ray, 1 can be filled, n + 2 is the surface of primitive n.
+// cell: 0 seen empty, 1 can be filled, 2 a surface without a vote, n + 3 the surface of primitive
+// n.
 struct DenseCells {
     std::array<int, 3> size{};
     std::vector<std::uint32_t> cell;
@@ -26,19 +27,20 @@ struct DenseCells {
 };
 
 struct SixHit {
-    std::int32_t primitive = -1;  // -1: nothing
+    std::int32_t primitive = -1;  // -1: none
     int distance = 0;             // voxels
+    bool empty = false;           // ends in space seen to be empty
 };
 
-// side: -x +x -y +y -z +z.
-inline SixHit walk(const DenseCells& grid, std::array<int, 3> at, int side) {
+// side: -x +x -y +y -z +z; beyond: whether what lies outside of the grid was seen to be empty.
+inline SixHit walk(const DenseCells& grid, std::array<int, 3> at, int side, bool beyond = false) {
     for (int distance = 1;; ++distance) {
         at[side / 2] += side % 2 ? 1 : -1;
-        if (!grid.inside(at)) return {};
+        if (!grid.inside(at)) return {-1, distance, beyond};
         const std::uint32_t cell = grid.cell[grid.index(at)];
         if (cell == 1) continue;
-        if (cell == 0) return {};
-        return {static_cast<std::int32_t>(cell) - 2, distance};
+        if (cell <= 2) return {-1, distance, cell == 0};
+        return {static_cast<std::int32_t>(cell) - 3, distance, false};
     }
 }
 
@@ -63,11 +65,21 @@ inline std::int32_t vote(const std::array<SixHit, 6>& hits, int votes) {
     return best;
 }
 
-inline std::int32_t six_fill(const DenseCells& grid, const std::array<int, 3>& at, int votes) {
+// What hides under a top: the primitive above where nothing below was seen to be empty, nor more
+// than two of the four sides.
+inline std::int32_t column(const std::array<SixHit, 6>& hits) {
+    int open = 0;
+    for (int side = 0; side < 4; ++side) open += hits[side].empty;
+    return open <= 2 && !hits[4].empty ? hits[5].primitive : -1;
+}
+
+inline std::int32_t six_fill(const DenseCells& grid, const std::array<int, 3>& at, int votes,
+                             bool columns = false) {
     if (grid.cell[grid.index(at)] != 1) return -1;
     std::array<SixHit, 6> hits;
     for (int side = 0; side < 6; ++side) hits[side] = walk(grid, at, side);
-    return vote(hits, votes);
+    const std::int32_t voted = vote(hits, votes);
+    return voted < 0 && columns ? column(hits) : voted;
 }
 
 }  // namespace topple::oracle

@@ -97,7 +97,8 @@ TEST_P(Scenes, FillEqualsTheWalkOnADenseGrid) {
         const auto before = scene.states(tiles);
         const auto labels = scene.primitives(tiles);
         for (const unsigned votes : {1u, 2u, 3u}) {
-            scene.fill(*device, {.votes = votes, .hollow = hollow});
+            const bool columns = votes > 1;
+            scene.fill(*device, {.votes = votes, .columns = columns, .hollow = hollow});
             const auto after = scene.states(tiles);
             const auto filled = scene.primitives(tiles);
             oracle::DenseCells dense;
@@ -122,13 +123,14 @@ TEST_P(Scenes, FillEqualsTheWalkOnADenseGrid) {
                 const bool votes_here = before[n] == 1 && labels[n] >= 0 && labels[n] != 1;
                 dense.cell[dense.index(place(n))] = before[n] == 2 ? 1
                                                     : votes_here
-                                                        ? static_cast<std::uint32_t>(labels[n]) + 2
-                                                        : 0;
+                                                        ? static_cast<std::uint32_t>(labels[n]) + 3
+                                                    : before[n] == 0 ? 0
+                                                                     : 2;
             }
             std::uint64_t wrong = 0, completed = 0;
             for (std::size_t n = 0; n < before.size(); ++n) {
                 const std::int32_t expected =
-                    oracle::six_fill(dense, place(n), static_cast<int>(votes));
+                    oracle::six_fill(dense, place(n), static_cast<int>(votes), columns);
                 completed += expected >= 0;
                 wrong += expected >= 0 ? after[n] != 3 || filled[n] != expected
                                        : after[n] != before[n] || filled[n] != labels[n];
