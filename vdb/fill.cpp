@@ -79,9 +79,13 @@ std::vector<LeafTable::Leaf> leaves_to_sweep(const VoxelScene::Grids& g,
 // What six_fill_sweep calls cells.
 std::vector<std::uint32_t> cells_of(const VoxelScene::Grids& g,
                                     const std::vector<LeafTable::Leaf>& leaves,
-                                    const std::vector<bool>& fills) {
+                                    const std::vector<bool>& fills, std::int32_t lowest) {
     std::vector<std::uint32_t> cells(leaves.size() * 512, 1);
     for (std::size_t n = 0; n < leaves.size(); ++n) {
+        for (std::size_t v = 0; v < 512; ++v) {
+            if (leaves[n][2] * 8 + static_cast<std::int32_t>(v & 7) < lowest)
+                cells[n * 512 + v] = 2;
+        }
         const auto* state = g.state->tree().probeConstLeaf(origin_of(leaves[n]));
         if (!state) continue;
         const auto* label = g.primitive->tree().probeConstLeaf(origin_of(leaves[n]));
@@ -215,7 +219,7 @@ std::uint64_t VoxelScene::fill(device::Device& device, const FillOptions& option
 
     const auto leaves = leaves_to_sweep(g, fills, options.votes == 1 || options.columns);
     if (leaves.empty()) return 0;
-    const auto cells = cells_of(g, leaves, fills);
+    const auto cells = cells_of(g, leaves, fills, options.lowest);
     const auto filled = sweep_and_vote(device, g, leaves, cells, options);
     std::uint64_t count = 0;
     for (std::size_t n = 0; n < leaves.size(); ++n) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <span>
@@ -92,8 +93,10 @@ class VoxelScene {
     // end in space seen to be empty: the inside of a sofa whose back stands at a wall. Returns
     // voxels completed.
     struct FillOptions {
-        unsigned votes = 2;        // directions that must agree
-        bool columns = false;      // fill what hides under a top, down to where it stands
+        unsigned votes = 2;    // directions that must agree
+        bool columns = false;  // fill what hides under a top, down to where it stands
+        // Voxels with k below this one, the floor's, stay as they are and stop rays.
+        std::int32_t lowest = std::numeric_limits<std::int32_t>::min();
         std::vector<bool> hollow;  // by primitive
     };
     std::uint64_t fill(device::Device& device, const FillOptions& options);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "pipeline/view_coverage.h"
 
@@ -29,6 +30,22 @@ std::vector<bool> solids(const vdb::VoxelScene& scene, std::size_t primitives) {
     std::vector<bool> keep;
     for (const std::uint64_t count : voxels) keep.push_back(count >= least_voxels);
     return keep;
+}
+
+// The k of the voxels in which most of the floor lies; the lowest number where there is no floor.
+std::int32_t floor_level(const vdb::VoxelScene& scene,
+                         const std::vector<geometry::Structure>& structure) {
+    const vdb::SolidCellArrays cells = scene.solid_cells();
+    std::vector<std::int32_t> k;
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const std::int32_t p = cells.primitive[n];
+        if (p >= 0 && structure[static_cast<std::size_t>(p)] == geometry::Structure::floor)
+            k.push_back(cells.k[n]);
+    }
+    if (k.empty()) return std::numeric_limits<std::int32_t>::min();
+    const auto middle = k.begin() + static_cast<std::ptrdiff_t>(k.size() / 2);
+    std::nth_element(k.begin(), middle, k.end());
+    return *middle;
 }
 
 // Returns whether the frames show the scene from around.
@@ -76,6 +93,7 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
     stage("filling", [&] {
         vdb::VoxelScene::FillOptions options;
         options.columns = around;
+        options.lowest = floor_level(*out.scene, geometry.structure);
         for (const geometry::Structure s : geometry.structure) {
             options.hollow.push_back(s == geometry::Structure::wall ||
                                      s == geometry::Structure::ceiling);

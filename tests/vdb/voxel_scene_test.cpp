@@ -63,6 +63,18 @@ TEST_P(Scenes, BoxesAreFilledAndDoNotLeak) {
     EXPECT_EQ(scene.state_at(9999, 0, 0), State::invisible);  // outside of the bounds
 }
 
+TEST_P(Scenes, NothingFillsBelowTheFloor) {
+    const Boxes boxes = Boxes::on_a_floor();
+    VoxelScene scene({}, boxes.cloud, boxes.label);
+    scene.carve(*device, boxes.intrinsics, boxes.frames);
+    constexpr std::int32_t lowest = 5;  // as if the floor ran through the boxes
+    EXPECT_GT(scene.fill(*device, {.columns = true, .lowest = lowest, .hollow = {true}}), 500u);
+    const auto cells = scene.solid_cells();
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        EXPECT_FALSE(cells.state[n] == State::completed && cells.k[n] < lowest);
+    }
+}
+
 TEST_P(Scenes, FillEqualsTheWalkOnADenseGrid) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         oracle::Random random(seed);
