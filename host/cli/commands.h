@@ -20,6 +20,16 @@ inline std::string whole_number(const std::string& text) {
     return whole ? "" : text + " is no whole number from 0 to 10^19";
 }
 
+// Adds --furniture, which sets whether generated rooms are the varied ones.
+inline void add_furniture(CLI::App& app, bool& varied) {
+    app.add_option_function<std::string>(
+           "--furniture", [&varied](const std::string& kind) { varied = kind == "varied"; },
+           "plain (boxes, cylinders, cones), or varied (turned, hollow, rounded, splayed, leaning\n"
+           "and piled things, levels, a ceiling)")
+        ->check(CLI::IsMember({"plain", "varied"}))
+        ->default_str("plain");
+}
+
 Command add_parse(CLI::App& app);
 Command add_devices(CLI::App& app);
 Command add_generate(CLI::App& app);

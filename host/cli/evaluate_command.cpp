@@ -97,6 +97,7 @@ Command add_evaluate(CLI::App& app) {
         ->capture_default_str();
     app.add_option("--frames", a->options.camera.frames, "Depth frames of each room")
         ->capture_default_str();
+    add_furniture(app, a->options.room.varied);
     app.add_option("--tilt", a->options.room.tilt_deg,
                    "Tilt of the input's frame against the room, degrees")
         ->capture_default_str();

@@ -47,6 +47,7 @@ Command add_generate(CLI::App& app) {
     app.add_option("--tilt", a->room.tilt_deg,
                    "Tilt of the input's frame against the room, degrees")
         ->capture_default_str();
+    add_furniture(app, a->room.varied);
     app.add_flag("--single", a->camera.single, "One frame only, without a trajectory");
     return [a] {
         a->camera.seed = a->room.seed;

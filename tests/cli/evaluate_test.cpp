@@ -11,13 +11,16 @@ TEST_F(Evaluate, refuses_what_it_cannot_do) {
     expect_failure(2, {"evaluate", "--seeds", "0"}, {"--seeds 0", "1 to"});
     expect_failure(2, {"evaluate", "--frames", "0"}, {"--frames 0", "1 to"});
     expect_failure(2, {"evaluate", "--voxel", "-1"}, {"--voxel"});
+    expect_failure(2, {"evaluate", "--furniture", "odd"}, {"--furniture", "varied"});
+    expect_failure(2, {"generate", "room", "--furniture", "odd"}, {"--furniture", "plain"});
     put("file", "not a folder");
     expect_failure(1, {"evaluate", "-o", "file/below"}, {"file/below"});
 }
 
 TEST_F(Evaluate, prints_tables_and_draws_pictures) {
-    const Finished done = run({"evaluate", "--seeds", "1", "--first", "4", "--frames", "6",
-                               "--voxel", "0.04", "--backend", "native", "-o", "judged"});
+    const Finished done =
+        run({"evaluate", "--seeds", "1", "--first", "4", "--frames", "6", "--voxel", "0.04",
+             "--furniture", "varied", "--backend", "native", "-o", "judged"});
     ASSERT_EQ(done.code, 0) << done.err;
     for (const char* part : {"Fig. 14", "Table 2", "94.1", "Table 3", "81.8", "after filling",
                              "cut discr.", "false alarm"})

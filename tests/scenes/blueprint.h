@@ -28,6 +28,8 @@ struct Blueprint {
     std::vector<std::pair<int, int>> joints;  // fixed to one another
     std::vector<int> feet;                    // what rests on the supporter
     std::vector<int> wall_parts;              // what is fixed to the wall behind (at y = back())
+    std::vector<int> leans;                   // what touches that wall without being fixed
+    bool underfoot = false;                   // may lie where people walk
     std::vector<Surface> surfaces;
 
     // Each adds a part whose lowest point is at `bottom` and returns its index.
@@ -39,6 +41,28 @@ struct Blueprint {
     int sphere(const char* part, double x, double y, double bottom, double diameter);
     int cone(const char* part, double x, double y, double bottom, double diameter, double height,
              double top_ratio);
+    int rounded(const char* part, double x, double y, double bottom, const Vec3& size,
+                double rounding);
+    // The profile's heights are above `bottom`.
+    int revolved(const char* part, double x, double y, double bottom, solids::Profile profile);
+    // A box with its top towards -y (before the yaw); (x, y) is the middle of its lowest edge.
+    int leaning(const char* part, double x, double y, double bottom, const Vec3& size, double lean,
+                double yaw = 0);
+    // A round bar whose axis runs between two points.
+    int bar(const char* part, const Vec3& from, const Vec3& to, double diameter);
+    // A round leg that reaches from z = `bottom` to `top`, its upper end's middle at (x, y), its
+    // foot further on by `heading` (0: towards +x), `lean` from the vertical.
+    int leg(const char* part, double x, double y, double bottom, double top, double diameter,
+            double lean, double heading);
+    // Round rungs from one leaning box to another beside it, evenly up their length.
+    void rungs(int left, int right, int count, double diameter);
+    // A lamp's arm: from a ball that stands at `from` on part `base`, bars with a ball after each,
+    // and a shade that hangs from the last. Bars lean towards +y.
+    struct Segment {
+        double length, lean;
+    };
+    void arm(int base, const Vec3& from, const std::vector<Segment>& segments, double thickness,
+             double shade);
     void join(int a, int b) { joints.emplace_back(a, b); }
     // The whole top of a part, less a rim.
     void stand_on(int part, double clearance, const char* where, double rim = 0.01);

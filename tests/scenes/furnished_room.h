@@ -11,12 +11,15 @@ struct RoomOptions {
     std::uint64_t seed = 1;
     double tilt_deg = 0;  // turns the input's frame against the room's, about a random axis
     double clutter = 1;   // scales the number of small things; 0: furniture only
+    // Turned, hollow, rounded, splayed, leaning and piled things, levels and a ceiling, instead of
+    // the plain furniture.
+    bool varied = false;
 };
 
 // A furnished room: floor, walls, perhaps a pillar; furniture along the walls and what stands on
-// it, with a free middle (half extents free_middle() of the room's). Solids never overlap, and
-// different objects touch only where one carries the other or is fixed to a wall. The same options
-// give the same room everywhere.
+// it, with a free middle (half extents free_middle() of the room's) where at most a rug lies.
+// Solids never overlap, and different objects touch only where one carries the other, is fixed to a
+// wall or leans against it. The same options give the same room everywhere.
 World furnished_room(const RoomOptions& options);
 
 // Half extents of the middle of the room that stays free, metres.

@@ -12,8 +12,8 @@ namespace {
 using nlohmann::json;
 
 Shape shape_of(const std::string& kind) {
-    for (const Shape shape :
-         {Shape::box, Shape::cylinder, Shape::lying_cylinder, Shape::sphere, Shape::cone}) {
+    for (const Shape shape : {Shape::box, Shape::rounded_box, Shape::cylinder,
+                              Shape::lying_cylinder, Shape::sphere, Shape::cone, Shape::revolved}) {
         if (kind == to_string(shape)) return shape;
     }
     throw Error(ErrorKind::input, "ground truth: a part is of the unknown kind \"" + kind + "\"");
@@ -40,6 +40,9 @@ World from_json(const json& root) {
         part.size = p.at("size").get<Vec3>();
         part.yaw = p.at("yaw").get<double>();
         part.top_ratio = p.value("top_ratio", 0.0);
+        part.lean = p.value("lean", 0.0);
+        part.rounding = p.value("rounding", 0.0);
+        part.profile = p.value("profile", solids::Profile{});
         part.object = p.at("object").get<std::int32_t>();
         part.name = p.at("name").get<std::string>();
         if (part.object < 0 || static_cast<std::size_t>(part.object) >= world.objects.size()) {
@@ -81,6 +84,9 @@ void write_truth(const std::filesystem::path& path, const World& world) {
                          {"object", p.object},
                          {"name", p.name},
                          {"volume", p.volume()}});
+        if (p.lean != 0) parts.back()["lean"] = p.lean;
+        if (p.shape == Shape::rounded_box) parts.back()["rounding"] = p.rounding;
+        if (p.shape == Shape::revolved) parts.back()["profile"] = p.profile;
     }
     for (std::size_t k = 0; k < world.objects.size(); ++k) {
         objects.push_back(

@@ -8,8 +8,9 @@
 namespace topple::scenes {
 
 // The truth about a scene as JSON: seed, tilt (3x3), room, parts (id, kind, center, size, yaw,
-// top_ratio, object, name, volume), objects (id, name, where), fixed and support as pairs of part
-// ids. Kinds: box, cyl, lying, sph, cone. Throws Error(input) where it can't be written.
+// top_ratio, object, name, volume; lean, rounding, profile where there are such), objects (id,
+// name, where), fixed and support as pairs of part ids. Kinds: box, rounded, cyl, lying, sph, cone,
+// revolved. Throws Error(input) where it can't be written.
 void write_truth(const std::filesystem::path& path, const World& world);
 
 // Reads what write_truth wrote; keys that it does not know are ignored. Throws Error(input) where

@@ -56,8 +56,12 @@ std::map<std::string, std::string> contents(const fs::path& folder) {
 
 // Without noise every pixel's point lies on the part that the pixel shows: within the rounding of a
 // depth to a millimetre, times the ray's slant.
-TEST(DepthCamera, PixelsLieOnTheirParts) {
-    const World world = furnished_room({.seed = 5, .tilt_deg = 12});
+class EachFurniture : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(DepthCamera, EachFurniture, ::testing::Bool(),
+                         [](const auto& kind) { return kind.param ? "varied" : "plain"; });
+
+TEST_P(EachFurniture, PixelsLieOnTheirParts) {
+    const World world = furnished_room({.seed = 5, .tilt_deg = 12, .varied = GetParam()});
     CameraOptions options;
     options.noise = false;
     options.frames = 6;
@@ -80,8 +84,8 @@ TEST(DepthCamera, PixelsLieOnTheirParts) {
 }
 
 // Culling must not lose parts: the same image ray by ray over all parts.
-TEST(DepthCamera, CullingLosesNothing) {
-    const World world = furnished_room({.seed = 9});
+TEST_P(EachFurniture, CullingLosesNothing) {
+    const World world = furnished_room({.seed = 9, .varied = GetParam()});
     CameraOptions options;
     options.noise = false;
     const auto& k = options.intrinsics;

@@ -12,6 +12,13 @@
 namespace topple::scenes {
 namespace {
 
+// A bowl: its wall is 2 cm thick on a floor of 3 cm.
+const solids::Profile bowl{{0, -0.1},   {0.1, -0.1},   {0.2, 0.1},
+                           {0.18, 0.1}, {0.08, -0.07}, {0, -0.07}};
+// A bottle.
+const solids::Profile bottle{{0, -0.2},    {0.1, -0.2}, {0.1, 0.05},
+                             {0.03, 0.12}, {0.03, 0.2}, {0, 0.2}};
+
 std::vector<Part> all_shapes() {
     return {
         {Shape::box, {0.3, -0.2, 1.1}, {0.4, 0.25, 0.6}, 0.7, 0, 0, "box"},
@@ -21,6 +28,13 @@ std::vector<Part> all_shapes() {
         {Shape::cone, {0.2, 0.2, 0.3}, {0.3, 0.3, 0.4}, 0, 0, 0, "pointed"},
         {Shape::cone, {0.2, 0.2, 0.3}, {0.3, 0.3, 0.4}, 0, 0.5, 0, "frustum"},
         {Shape::cone, {0.2, 0.2, 0.3}, {0.2, 0.2, 0.4}, 0, 1.6, 0, "pot"},
+        {Shape::box, {0.3, -0.2, 1.1}, {0.4, 0.15, 0.6}, 0.7, 0, 0, "leaning", 0.5},
+        {Shape::cylinder, {0, 0.2, 0.4}, {0.2, 0.2, 0.6}, 2.5, 0, 0, "splayed", -0.4},
+        {Shape::cone, {0.2, 0.2, 0.3}, {0.3, 0.3, 0.4}, -1.1, 0.4, 0, "shade", 2.2},
+        {Shape::rounded_box, {0.1, 0, 0.3}, {0.5, 0.3, 0.2}, 0.4, 0, 0, "cushion", 0.3, 0.07},
+        {Shape::rounded_box, {0.1, 0, 0.3}, {0.5, 0.2, 0.2}, 0, 0, 0, "capsule", 0, 0.1},
+        {Shape::revolved, {0.1, 0.3, 0.2}, {0.4, 0.4, 0.2}, 0, 0, 0, "bowl", 0, 0, bowl},
+        {Shape::revolved, {0.1, 0.3, 0.2}, {0.2, 0.2, 0.4}, 0.8, 0, 0, "bottle", 1.2, 0, bottle},
     };
 }
 
@@ -31,9 +45,8 @@ Vec3 in_box(Random& random, const std::array<Vec3, 2>& box, double grow) {
 }
 
 // Volume and centre of mass of {distance <= 0} from 400,000 samples in the bounds. With share q of
-// them inside, the volume's standard deviation is sqrt((1 - q) / (q n)) of itself: below 0.14 %
-// here (q >= 0.3), so that 0.7 % is five of them: one false alarm in 10^6 runs, and the seed is
-// fixed.
+// them inside, the volume's standard deviation is sqrt((1 - q) / (q n)) of itself; five of them
+// mean one false alarm in 10^6 runs, and the seed is fixed.
 TEST(Part, VolumeAndCentreAgreeWithTheDistance) {
     for (const Part& part : all_shapes()) {
         Random random(11);
@@ -49,7 +62,10 @@ TEST(Part, VolumeAndCentreAgreeWithTheDistance) {
             ++hits;
             for (std::size_t k = 0; k < 3; ++k) sum[k] += p[k];
         }
-        EXPECT_NEAR(all * hits / samples, part.volume(), 0.007 * part.volume()) << part.name;
+        const double share = part.volume() / all;
+        EXPECT_NEAR(all * hits / samples, part.volume(),
+                    5 * std::sqrt((1 - share) / (share * samples)) * part.volume())
+            << part.name;
         const Vec3 com = part.center_of_mass();
         for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(sum[k] / hits, com[k], 0.003) << part.name;
     }
@@ -69,6 +85,45 @@ TEST(Part, NothingIsInsideBeyondTheBounds) {
             }
         }
     }
+}
+
+// The bounds touch the part on all six sides.
+TEST(Part, BoundsAreTight) {
+    for (const Part& part : all_shapes()) {
+        const auto box = part.bounds();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (const std::size_t side : {0u, 1u}) {
+                Part slab{Shape::box, part.center, {3, 3, 3}, 0, 0, 0, "slab"};
+                slab.size[axis] = 0.1;
+                slab.center[axis] = box[side][axis] + (side == 0 ? -0.05 : 0.05);
+                EXPECT_NEAR(gap(part, slab), 0, 1e-3) << part.name << " axis " << axis;
+            }
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_LE(box[1][k] - part.center[k], part.bounding_radius() + 1e-12);
+            EXPECT_LE(part.center[k] - box[0][k], part.bounding_radius() + 1e-12);
+        }
+    }
+}
+
+// A bowl is empty inside; its hull is not, and is what keeps its distance from others.
+TEST(Part, ABowlIsHollowAndItsHullIsNot) {
+    const Part part{Shape::revolved, {0, 0, 0.1}, {0.4, 0.4, 0.2}, 0, 0, 0, "bowl", 0, 0, bowl};
+    const Part hull = part.hull();
+    EXPECT_NEAR(part.distance({0, 0, 0.15}), std::min(0.12, part.distance({0, 0, 0.15})), 1e-12);
+    EXPECT_GT(part.distance({0, 0, 0.15}), 0.1);
+    EXPECT_LT(hull.distance({0, 0, 0.15}), -0.04);
+    EXPECT_LT(part.distance({0, 0, 0.015}), 0);
+    EXPECT_GT(hull.volume(), 2 * part.volume());
+    // pi h / 3 (r^2 + r R + R^2)
+    EXPECT_NEAR(hull.volume(), std::numbers::pi * 0.2 / 3 * (0.01 + 0.02 + 0.04), 1e-12);
+    Random random(3);
+    for (int n = 0; n < 20000; ++n) {
+        const Vec3 p = in_box(random, part.bounds(), 0.1);
+        EXPECT_LE(hull.distance(p), part.distance(p) + 1e-12);
+    }
+    const Part ball{Shape::sphere, {0, 0, 0.35}, {0.2, 0.2, 0.2}, 0, 0, 0, "ball"};
+    EXPECT_NEAR(gap(part, ball), 0.05, 1e-3);  // to the plane of the rim
 }
 
 // A true distance: never more than the way to any surface point, and attained by walking along its
