@@ -97,6 +97,8 @@ Command add_evaluate(CLI::App& app) {
         ->capture_default_str();
     app.add_option("--frames", a->options.camera.frames, "Depth frames of each room")
         ->capture_default_str();
+    app.add_flag("--single", a->options.camera.single,
+                 "One frame of each room, without its pose, as in the paper's 6.1 and 6.2");
     add_furniture(app, a->options.room.varied);
     app.add_option("--tilt", a->options.room.tilt_deg,
                    "Tilt of the input's frame against the room, degrees")

@@ -1,10 +1,38 @@
 // SPDX-License-Identifier: MIT
 #include "evaluation/room.h"
 
+#include "evaluation/rigid.h"
 #include "evaluation/view.h"
 #include "scenes/temporary_folder.h"
 
 namespace topple::evaluation {
+namespace {
+
+template <class Points>
+void move(const Mat4& m, Points& points) {
+    for (std::size_t n = 0; n < points.x.size(); ++n) {
+        const Vec3 p = moved(m, {points.x[n], points.y[n], points.z[n]});
+        points.x[n] = static_cast<float>(p[0]);
+        points.y[n] = static_cast<float>(p[1]);
+        points.z[n] = static_cast<float>(p[2]);
+    }
+}
+
+// From the camera's frame, which is all that a single frame knows, to the input's.
+void move(const Mat4& m, Scene& scene) {
+    move(m, scene.points);
+    move(m, scene.solid);
+    ScenePoints& points = scene.points;
+    for (std::size_t n = 0; n < points.nx.size(); ++n) {
+        const Vec3 v = turned(m, {points.nx[n], points.ny[n], points.nz[n]});
+        points.nx[n] = static_cast<float>(v[0]);
+        points.ny[n] = static_cast<float>(v[1]);
+        points.nz[n] = static_cast<float>(v[2]);
+    }
+    scene.up = turned(m, scene.up);
+}
+
+}  // namespace
 
 Room scan_and_parse(device::Device& device, const RoomOptions& options) {
     Room room;
@@ -14,6 +42,10 @@ Room scan_and_parse(device::Device& device, const RoomOptions& options) {
     const scenes::TemporaryFolder folder("topple_evaluate");
     scenes::write_sequence(folder.path(), room.world, room.sequence);
     room.parse = parse(device, folder.path(), options.parse);
+    if (options.camera.single) {
+        room.input_from_grid = room.sequence.frames.front().camera_to_world;
+        move(room.input_from_grid, room.parse.scene);
+    }
     room.part = scenes::true_parts(room.world, room.parse.scene.points);
     return room;
 }
@@ -40,7 +72,7 @@ RoomScore judge(const Room& room) {
         return scenes::volume_score(room.world, solid, scene.voxel_size_m, domain);
     };
     out.surface = volume(surface_alone(scene.solid));
-    out.invisible = volume(never_seen_empty(*room.parse.voxels, room.world, domain));
+    out.invisible = volume(never_seen_empty(room, domain));
     out.completed = volume(scene.solid);
     out.relations = scenes::relation_score(room.world, scene, room.part);
     out.gravity_deg = scenes::gravity_error_deg(room.world, scene);

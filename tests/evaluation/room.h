@@ -23,7 +23,10 @@ struct Room {
     scenes::World world;
     scenes::CameraOptions camera;
     scenes::Sequence sequence;
+    // The scene's points, solid voxels and up are in the world's input frame. The voxel grid is in
+    // the frame of what was parsed: the camera's, where that was a single frame.
     ParseResult parse;
+    Mat4 input_from_grid{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     std::vector<std::int32_t> part;  // the true part of each point, -1 for none
 };
 

@@ -7,6 +7,7 @@
 
 #include "evaluation/canvas.h"
 #include "evaluation/pictures.h"
+#include "evaluation/rigid.h"
 #include "scenes/measure.h"
 #include "scenes/parallel.h"
 #include "vdb/voxel_scene.h"
@@ -23,7 +24,7 @@ constexpr Colour seen_empty{1, 1, 1}, unseen{0.83, 0.83, 0.83}, surface{0.2, 0.2
 class Probe {
   public:
     explicit Probe(const Room& room)
-        : world_(room.world), voxels_(*room.parse.voxels), parts_(scenes::measures(room.world)) {}
+        : room_(room), voxels_(*room.parse.voxels), parts_(scenes::measures(room.world)) {}
 
     Colour at(const Vec3& p) const {
         const double h = voxels_.frame().voxel_m;
@@ -52,7 +53,7 @@ class Probe {
         return best;
     }
     vdb::State state(const Vec3& p) const {
-        const Vec3 q = world_.to_input(p);
+        const Vec3 q = moved_back(room_.input_from_grid, room_.world.to_input(p));
         const vdb::VoxelFrame& frame = voxels_.frame();
         std::array<std::int32_t, 3> at{};
         for (std::size_t a = 0; a < 3; ++a) {
@@ -63,7 +64,7 @@ class Probe {
         return voxels_.state_at(at[0], at[1], at[2]);
     }
 
-    const scenes::World& world_;
+    const Room& room_;
     const vdb::VoxelScene& voxels_;
     std::vector<scenes::Measure> parts_;
 };

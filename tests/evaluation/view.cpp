@@ -3,6 +3,9 @@
 
 #include <cstdint>
 
+#include "evaluation/rigid.h"
+#include "vdb/voxel_scene.h"
+
 namespace topple::evaluation {
 namespace {
 
@@ -43,8 +46,8 @@ scenes::Domain in_view(const World& world, const scenes::CameraOptions& camera,
     };
 }
 
-SolidVoxels never_seen_empty(const vdb::VoxelScene& voxels, const World& world,
-                             const scenes::Domain& domain) {
+SolidVoxels never_seen_empty(const Room& room, const scenes::Domain& domain) {
+    const vdb::VoxelScene& voxels = *room.parse.voxels;
     const vdb::Tiles tiles = voxels.tiles(true);
     const std::vector<std::uint8_t> states = voxels.states(tiles);
     const auto& axes = voxels.frame().grid_from_input;
@@ -56,12 +59,13 @@ SolidVoxels never_seen_empty(const vdb::VoxelScene& voxels, const World& world,
         const double g[3] = {tiles.x[leaf] + (local >> 6) + 0.5,
                              tiles.y[leaf] + (local >> 3 & 7) + 0.5,
                              tiles.z[leaf] + (local & 7) + 0.5};
-        Vec3 p{};
+        Vec3 own{};
         for (std::size_t c = 0; c < 3; ++c) {
-            p[c] = voxels.frame().voxel_m *
-                   (g[0] * axes[0][c] + g[1] * axes[1][c] + g[2] * axes[2][c]);
+            own[c] = voxels.frame().voxel_m *
+                     (g[0] * axes[0][c] + g[1] * axes[1][c] + g[2] * axes[2][c]);
         }
-        if (!domain(world.to_room(p))) continue;
+        const Vec3 p = moved(room.input_from_grid, own);
+        if (!domain(room.world.to_room(p))) continue;
         put(out, static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
     }
     return out;

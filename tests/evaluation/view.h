@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "evaluation/room.h"
 #include "scenes/depth_camera.h"
 #include "scenes/volume_score.h"
 #include "topple/scene.h"
-#include "vdb/voxel_scene.h"
 
 // What a camera could have seen of a room, and what it did not.
 namespace topple::evaluation {
@@ -14,10 +14,9 @@ namespace topple::evaluation {
 scenes::Domain in_view(const scenes::World& world, const scenes::CameraOptions& camera,
                        const scenes::Sequence& sequence);
 
-// All voxels within the scan's bounds and the domain that were not seen to be empty. Every voxel
-// has state 0 and no primitive.
-SolidVoxels never_seen_empty(const vdb::VoxelScene& voxels, const scenes::World& world,
-                             const scenes::Domain& domain);
+// All voxels within the scan's bounds and the domain that were not seen to be empty, in the world's
+// input frame. Every voxel has state 0 and no primitive.
+SolidVoxels never_seen_empty(const Room& room, const scenes::Domain& domain);
 
 // The voxels whose state is 0.
 SolidVoxels surface_alone(const SolidVoxels& solid);

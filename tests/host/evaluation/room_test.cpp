@@ -8,12 +8,14 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <memory>
 
 #include "device/devices.h"
 #include "evaluation/pictures.h"
 #include "evaluation/view.h"
 #include "scenes/temporary_folder.h"
 #include "topple/error.h"
+#include "vdb/voxel_scene.h"
 
 namespace topple::evaluation {
 namespace {
@@ -83,11 +85,14 @@ TEST(NeverSeenEmpty, IsWhatNoRayPassed) {
         frame.grid_from_input[a] = w.to_input(axis);
     }
     const std::vector<std::int32_t> label(sequence.cloud.size(), 0);
-    vdb::VoxelScene voxels(frame, sequence.cloud, label);
+    const auto voxels = std::make_shared<vdb::VoxelScene>(frame, sequence.cloud, label);
     const auto device = device::open_device("native");
-    voxels.carve(*device, sequence.intrinsics, sequence.frames);
+    voxels->carve(*device, sequence.intrinsics, sequence.frames);
     const auto sees = in_view(w, camera, sequence);
-    const SolidVoxels hidden = never_seen_empty(voxels, w, sees);
+    Room room;
+    room.world = w;
+    room.parse.voxels = voxels;
+    const SolidVoxels hidden = never_seen_empty(room, sees);
     std::size_t in_front = 0, inside = 0, outside = 0;
     for (std::size_t n = 0; n < hidden.x.size(); ++n) {
         const Vec3 p = w.to_room({hidden.x[n], hidden.y[n], hidden.z[n]});
@@ -113,6 +118,27 @@ TEST(SurfaceAlone, KeepsWhatWasSeen) {
     const SolidVoxels seen = surface_alone(solid);
     EXPECT_EQ(seen.x, std::vector<float>{2});
     EXPECT_EQ(seen.z, std::vector<float>{2});
+}
+
+// A single frame knows neither where the camera stood nor how it was turned: the result is judged
+// in the room's frame all the same.
+TEST(Room, OfASingleFrameIsJudgedInTheRoom) {
+    RoomOptions options;
+    options.room.seed = options.camera.seed = 2;
+    options.room.tilt_deg = 10;
+    options.camera.single = true;
+    options.parse.voxel_m = 0.03;
+    options.parse.disturbances = {"wind"};
+    const Room room = scan_and_parse(*device::open_device("native"), options);
+    const auto nobodys = std::count(room.part.begin(), room.part.end(), -1);
+    EXPECT_LT(nobodys, static_cast<std::ptrdiff_t>(room.part.size() / 20));
+    const RoomScore score = judge(room);
+    EXPECT_LT(score.gravity_deg, 5);
+    EXPECT_GT(score.surface.precision.value, 0.9);
+    EXPECT_GT(score.invisible.recall.value, 0.95);
+    EXPECT_LT(score.invisible.precision.value, 0.9);
+    const scenes::TemporaryFolder folder("topple_single");
+    draw_slices(room, folder.path() / "slices.png");
 }
 
 // A parse that says what is true, of a scan of few frames: judged as such, and drawn.
