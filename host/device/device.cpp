@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "device/device.h"
 
+#include "device/native/thread_pool.h"
 #include "device/queue.h"
 
 namespace topple::device {
@@ -15,6 +16,14 @@ const char* to_string(Backend backend) {
             return "vulkan";
     }
     return "?";
+}
+
+Device::Device() = default;
+Device::~Device() = default;
+
+ThreadPool& Device::threads() {
+    if (!threads_) threads_ = std::make_unique<ThreadPool>(0);
+    return *threads_;
 }
 
 std::uint32_t Device::items_per_lane(const KernelSource& kernel) const {

@@ -16,6 +16,8 @@
 // from one thread at a time.
 namespace topple::device {
 
+class ThreadPool;
+
 enum class Backend : std::uint8_t { native, opencl, vulkan };
 const char* to_string(Backend backend);
 
@@ -73,7 +75,8 @@ struct Counters {
 
 class Device {
   public:
-    virtual ~Device() = default;
+    Device();
+    virtual ~Device();
     const DeviceInfo& info() const { return info_; }
     const Counters& counters() const { return counters_; }
 
@@ -92,6 +95,10 @@ class Device {
     // Builds a kernel ahead of its first use, so that timings don't contain it.
     virtual void prepare(const KernelSource& kernel) = 0;
 
+    // Threads for what the host does beside the device; the native backend's own, else one per
+    // core.
+    virtual ThreadPool& threads();
+
     std::uint32_t items_per_lane(const KernelSource& kernel) const;
 
   protected:
@@ -100,6 +107,9 @@ class Device {
 
     DeviceInfo info_;
     Counters counters_;
+
+  private:
+    std::unique_ptr<ThreadPool> threads_;  // made when first asked for
 };
 
 }  // namespace topple::device

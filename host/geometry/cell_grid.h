@@ -2,27 +2,53 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "device/native/thread_pool.h"
+
 namespace topple::geometry {
 
-// The order that sorts keys ascending; equal keys keep their order. Radix sort over the bytes in
+// The order that sorts keys ascending; equal keys keep their order. Radix sort over the bits in
 // use.
 std::vector<std::uint32_t> sorted_order(std::span<const std::uint64_t> keys);
 
-// Cell indices packed so that comparing keys compares x, then y, then z. `lowest` is the lowest
-// index per axis of the cells that will be packed; indices may lie up to 2^21 - 1 above it.
-struct CellPacking {
-    std::array<std::int32_t, 3> lowest{};
-    std::uint64_t operator()(std::int64_t x, std::int64_t y, std::int64_t z) const {
-        return static_cast<std::uint64_t>(x - lowest[0]) << 42 |
-               static_cast<std::uint64_t>(y - lowest[1]) << 21 |
-               static_cast<std::uint64_t>(z - lowest[2]);
+// Equal keys together, by ascending key; within a group the places in `keys` ascend.
+struct KeyGroups {
+    std::vector<std::uint32_t> order;  // places in `keys`
+    std::vector<std::uint32_t> first;  // CSR over groups, size() + 1: their parts of `order`
+    std::size_t size() const { return first.size() - 1; }
+    std::span<const std::uint32_t> group(std::size_t g) const {
+        return std::span(order).subspan(first[g], first[g + 1] - first[g]);
     }
 };
-inline constexpr std::int64_t max_cells_per_axis = std::int64_t{1} << 21;
+KeyGroups group_keys(std::span<const std::uint64_t> keys);
+
+inline constexpr std::int64_t max_cells_per_axis = (std::int64_t{1} << 21) - 8;
+
+// Cell indices packed so that comparing keys compares x, then y, then z, in as few bits as do.
+// lowest, highest: bounds of the cells that will be packed, highest - lowest < max_cells_per_axis.
+// Cells up to `reach` (3 at most) beyond the bounds can be packed too; and a key plus
+// offset(dx, dy, dz) is that of the cell so far away.
+class CellPacking {
+  public:
+    CellPacking(const std::array<std::int64_t, 3>& lowest,
+                const std::array<std::int64_t, 3>& highest, int reach = 0);
+    std::uint64_t operator()(std::int64_t x, std::int64_t y, std::int64_t z) const {
+        return offset(x - lowest_[0], y - lowest_[1], z - lowest_[2]);
+    }
+    // Negative steps wrap around, which adding to a key undoes.
+    std::uint64_t offset(std::int64_t dx, std::int64_t dy, std::int64_t dz) const {
+        return (static_cast<std::uint64_t>(dx) << shift_x_) +
+               (static_cast<std::uint64_t>(dy) << shift_y_) + static_cast<std::uint64_t>(dz);
+    }
+
+  private:
+    std::array<std::int64_t, 3> lowest_{};
+    int shift_x_ = 0, shift_y_ = 0;
+};
 
 // The occupied cells of a cubic grid, sorted by x, then y, then z, and the moments of what is in
 // them. Lengths in cells, relative to each cell's centre, so that floats do.
@@ -37,17 +63,57 @@ struct CellGrid {
 };
 
 // The grid of twice the cell size: cells merged by weight. parent: coarse cell of each fine one.
-CellGrid coarsen(const CellGrid& grid, std::vector<std::uint32_t>& parent);
+CellGrid coarsen(const CellGrid& grid, device::ThreadPool& threads,
+                 std::vector<std::uint32_t>& parent);
 
-// For the cells [first, last): where the occupied cells of each neighbouring column start and how
-// many lie within `radius` in z; (2 radius + 1)^2 planes of last - first, x offset slowest. An
-// entry is the first cell + (count << 29); see kernel voxel_normals.
-std::vector<std::uint32_t> column_table(const CellGrid& grid, int radius, std::size_t first,
-                                        std::size_t last, std::size_t base);
+// Neighbouring columns of sorted cells: for each cell and each (dx, dy) within the radius (3 at
+// most), the run of occupied cells within the radius in z.
+class ColumnSweep {
+  public:
+    ColumnSweep(std::span<const std::int32_t> x, std::span<const std::int32_t> y,
+                std::span<const std::int32_t> z, int radius);
+
+    // Calls visit(cell, column, lo, hi) for each cell of [first, last) and each of the
+    // (2 radius + 1)^2 columns, x offset slowest: its cells within reach are [lo, hi), ascending.
+    template <class Visit>
+    void run(std::size_t first, std::size_t last, const Visit& visit) const;
+    std::size_t columns() const { return lowest_.size(); }
+
+  private:
+    static constexpr std::size_t most_columns = 49;
+    std::vector<std::uint64_t> keys_;    // one more than cells, the last above all
+    std::vector<std::uint64_t> lowest_;  // of each column's run, relative to the cell's key
+    std::uint64_t height_ = 0;           // keys of a run
+    std::size_t first_at(std::uint64_t key) const;
+};
+
+// A sweep's runs for the cells [first, last), a plane of last - first entries for each column: the
+// first cell, counted from `base`, + (count << 29); see kernel voxel_normals.
+std::vector<std::uint32_t> column_table(const ColumnSweep& sweep, std::size_t first,
+                                        std::size_t last, std::size_t base,
+                                        device::ThreadPool& threads);
 
 // CSR of the occupied cells among the 26 around each, ascending.
 void cell_neighbours(std::span<const std::int32_t> x, std::span<const std::int32_t> y,
-                     std::span<const std::int32_t> z, std::vector<std::uint32_t>& first,
-                     std::vector<std::uint32_t>& neighbours);
+                     std::span<const std::int32_t> z, device::ThreadPool& threads,
+                     std::vector<std::uint32_t>& first, std::vector<std::uint32_t>& neighbours);
+
+template <class Visit>
+void ColumnSweep::run(std::size_t first, std::size_t last, const Visit& visit) const {
+    // Cells are sorted, so both ends of every run only move up; the first ones are searched for.
+    std::array<std::size_t, most_columns> lo{}, hi{};
+    const std::size_t columns = lowest_.size();
+    if (first == last) return;
+    for (std::size_t c = 0; c < columns; ++c) lo[c] = hi[c] = first_at(keys_[first] + lowest_[c]);
+    for (std::size_t cell = first; cell < last; ++cell) {
+        for (std::size_t c = 0; c < columns; ++c) {
+            const std::uint64_t low = keys_[cell] + lowest_[c];
+            while (keys_[lo[c]] < low) ++lo[c];
+            if (hi[c] < lo[c]) hi[c] = lo[c];
+            while (keys_[hi[c]] < low + height_) ++hi[c];
+            visit(cell, c, lo[c], hi[c]);
+        }
+    }
+}
 
 }  // namespace topple::geometry

@@ -133,7 +133,6 @@ CellGrid part_of(const CellGrid& grid, std::size_t first, std::size_t last) {
 // tables take a few hundred bytes per cell. A slab sees what is within the fit's radius of it.
 PlaneFit fit_in_slabs(device::Device& device, const CellGrid& grid, const PlaneQueries& queries) {
     constexpr std::size_t slab_cells = std::size_t{1} << 18;
-    const PlaneFitOptions options;
     const auto lower = [&](std::int64_t x) {
         return static_cast<std::size_t>(std::lower_bound(grid.x.begin(), grid.x.end(), x) -
                                         grid.x.begin());
@@ -142,14 +141,15 @@ PlaneFit fit_in_slabs(device::Device& device, const CellGrid& grid, const PlaneQ
     for (std::size_t begin = 0, end = 0; begin < queries.cell.size(); begin = end) {
         const std::size_t limit = queries.cell[begin] + slab_cells;
         PlaneQueries some;
-        const std::size_t first = lower(grid.x[queries.cell[begin]] - std::int64_t{options.radius});
+        const std::size_t first =
+            lower(grid.x[queries.cell[begin]] - std::int64_t{PlaneFitter::default_radius});
         for (; end < queries.cell.size() && queries.cell[end] < limit; ++end) {
             some.cell.push_back(queries.cell[end] - static_cast<std::uint32_t>(first));
             for (std::size_t a = 0; a < 3; ++a) some.at[a].push_back(queries.at[a][end]);
         }
         const std::size_t last =
-            lower(grid.x[queries.cell[end - 1]] + std::int64_t{options.radius} + 1);
-        const PlaneFit found = fit_planes(device, part_of(grid, first, last), some, options);
+            lower(grid.x[queries.cell[end - 1]] + std::int64_t{PlaneFitter::default_radius} + 1);
+        const PlaneFit found = fit_planes(device, part_of(grid, first, last), some);
         const auto append = [](auto& to, const auto& from) {
             to.insert(to.end(), from.begin(), from.end());
         };
@@ -265,7 +265,7 @@ void flatten_layers(FusedCells& fused, double least_sigma_m, device::ThreadPool&
     for (std::size_t level = 0; left > 0; ++level) {
         if (level > 0) {
             std::vector<std::uint32_t> parent;
-            grid = coarsen(grid, parent);
+            grid = coarsen(grid, pool, parent);
             for_each(pool, n, [&](std::size_t i) { cell_of[i] = parent[cell_of[i]]; });
         }
         if (which[level].empty()) continue;

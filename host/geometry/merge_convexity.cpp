@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "geometry/algebraic_model.h"
@@ -13,28 +14,46 @@ Eigen::Vector3d position(const Surfels& s, std::size_t i) {
     return {s.x[i], s.y[i], s.z[i]};
 }
 
+// Surfels, each once, in the order in which they were added.
+class Reached {
+  public:
+    explicit Reached(std::size_t most) : slots_(std::bit_ceil(2 * most)) {}
+    void clear() {
+        list_.clear();
+        std::fill(slots_.begin(), slots_.end(), 0u);
+    }
+    void add(std::uint32_t i) {
+        std::size_t at = i * 0x9E3779B9u & (slots_.size() - 1);
+        for (; slots_[at] != 0; at = (at + 1) & (slots_.size() - 1))
+            if (slots_[at] == i + 1) return;
+        slots_[at] = i + 1;
+        list_.push_back(i);
+    }
+    const std::vector<std::uint32_t>& list() const { return list_; }
+
+  private:
+    std::vector<std::uint32_t> slots_;  // open addressing: surfel + 1, or 0
+    std::vector<std::uint32_t> list_;
+};
+
 // The surfel farthest from `from` among those that `steps` steps inside the region reach.
 std::uint32_t set_back(const Surfels& s, const Regions& regions, std::uint32_t start,
-                       const Eigen::Vector3d& from, int steps,
-                       std::vector<std::uint32_t>& reached) {
+                       const Eigen::Vector3d& from, int steps, Reached& reached) {
     const std::int32_t label = regions.label[start];
-    reached.assign(1, start);
+    reached.clear();
+    reached.add(start);
     std::size_t head = 0;
     for (int step = 0; step < steps; ++step) {
-        const std::size_t ring_end = reached.size();
+        const std::size_t ring_end = reached.list().size();
         for (; head < ring_end; ++head) {
-            const std::uint32_t i = reached[head];
-            for (auto e = s.neighbour_first[i]; e < s.neighbour_first[i + 1]; ++e) {
-                const std::uint32_t j = s.neighbours[e];
-                if (regions.label[j] != label) continue;
-                if (std::find(reached.begin(), reached.end(), j) == reached.end())
-                    reached.push_back(j);
-            }
+            const std::uint32_t i = reached.list()[head];
+            for (auto e = s.neighbour_first[i]; e < s.neighbour_first[i + 1]; ++e)
+                if (regions.label[s.neighbours[e]] == label) reached.add(s.neighbours[e]);
         }
     }
     std::uint32_t best = start;
     double best_d = -1;
-    for (const std::uint32_t i : reached) {
+    for (const std::uint32_t i : reached.list()) {
         const double d = (position(s, i) - from).squaredNorm();
         if (d > best_d || (d == best_d && i < best)) best_d = d, best = i;
     }
@@ -103,7 +122,8 @@ double inside_share(const Surfels& surfels, const Regions& regions, const Border
     const auto a = static_cast<std::size_t>(border.a), b = static_cast<std::size_t>(border.b);
     const AlgebraicModel& fa = regions.regions[a].model;
     const AlgebraicModel& fb = regions.regions[b].model;
-    std::vector<std::uint32_t> reached;
+    const auto side = static_cast<std::size_t>(2 * options.set_back_cells + 1);
+    Reached reached(side * side * side);
     std::uint64_t inside = 0, all = 0;
     const std::size_t lines = std::min<std::size_t>(options.segments, border.pairs.size());
     for (std::size_t line = 0; line < lines; ++line) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -53,30 +54,35 @@ std::vector<std::pair<std::int32_t, std::int32_t>> find_face_pieces(
     constexpr std::size_t starts = 5;
     const std::size_t count = regions.regions.size();
     std::vector<Points> members(count);
+    std::vector<Eigen::AlignedBox3d> box(count);
     for (std::size_t i = 0; i < surfels.size(); ++i) {
         if (regions.label[i] < 0) continue;
         const auto k = static_cast<std::size_t>(regions.label[i]);
         if (regions.regions[k].model.degree == 1 && regions.regions[k].surfels >= least)
             members[k].emplace_back(surfels.x[i], surfels.y[i], surfels.z[i]);
     }
+    for (std::size_t k = 0; k < count; ++k)
+        for (const auto& p : members[k]) box[k].extend(p);
+    // The widest gap that closed_gap() looks into, and a little for rounding.
+    const double reach = 1.001 * (options.gap_m + surfels.cell_m);
     std::vector<std::pair<std::int32_t, std::int32_t>> pieces;
     for (std::size_t a = 0; a < count; ++a) {
         if (members[a].empty()) continue;
         for (std::size_t b = a + 1; b < count; ++b) {
-            if (members[b].empty()) continue;
+            if (members[b].empty() || box[a].exteriorDistance(box[b]) > reach) continue;
             if (!coplanar(regions, samples, a, b, 0.25 * surfels.cell_m)) continue;
-            std::size_t closed = 0;
+            std::size_t open = 0;
             const bool swap = members[a].size() > members[b].size();
             const Points &small = members[swap ? b : a], &large = members[swap ? a : b];
-            for (std::size_t k = 0; k < starts; ++k) {
+            for (std::size_t k = 0; k < starts && open < 2; ++k) {
                 Eigen::Vector3d p = small[k * (small.size() - 1) / (starts - 1)], q = p;
                 for (int round = 0; round < 3; ++round) {
                     q = large[nearest(large, p)];
                     p = small[nearest(small, q)];
                 }
-                closed += closed_gap(surfels, p, q, samples[a].normals.front(), options);
+                open += !closed_gap(surfels, p, q, samples[a].normals.front(), options);
             }
-            if (closed + 1 >= starts)
+            if (open < 2)
                 pieces.emplace_back(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
         }
     }

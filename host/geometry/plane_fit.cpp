@@ -13,11 +13,9 @@ namespace topple::geometry {
 namespace {
 
 constexpr std::size_t cell_planes = 10, fit_planes_count = 6;
+constexpr std::uint64_t query_chunk = 1 << 15;  // queries handed to a thread at once
 
-// The cells [first, last) that a tile answers for, and [halo_first, halo_last) that it looks at.
-struct Tile {
-    std::size_t first, last, halo_first, halo_last;
-};
+using Tile = PlaneFitter::Tile;
 
 std::vector<Tile> make_tiles(const CellGrid& grid, int radius, std::uint64_t binding_bytes) {
     const auto side = static_cast<std::size_t>(2 * radius + 1);
@@ -53,15 +51,29 @@ std::vector<Tile> make_tiles(const CellGrid& grid, int radius, std::uint64_t bin
     return tiles;
 }
 
-std::vector<float> planes_of(std::span<const std::span<const float>> planes, std::size_t first,
-                             std::size_t last) {
-    std::vector<float> all;
-    all.reserve(planes.size() * (last - first));
+using Planes = std::initializer_list<std::span<const float>>;
+
+// The elements [first, last) of each plane, one plane after the other.
+device::Buffer<float> upload_planes(device::Device& device, const Planes& planes, std::size_t first,
+                                    std::size_t last, const char* name) {
+    device::Buffer<float> buffer(device, planes.size() * (last - first), name);
+    std::size_t to = 0;
     for (const auto& plane : planes) {
-        all.insert(all.end(), plane.begin() + static_cast<std::ptrdiff_t>(first),
-                   plane.begin() + static_cast<std::ptrdiff_t>(last));
+        buffer.upload(plane.subspan(first, last - first), to);
+        to += last - first;
     }
-    return all;
+    return buffer;
+}
+
+void resize(PlaneFit& fit, std::size_t count) {
+    for (auto& plane : fit.normal) plane.resize(count);
+    fit.rms.resize(count);
+    fit.offset.resize(count);
+    fit.used.resize(count);
+}
+
+std::array<std::span<float>, fit_planes_count> planes_of(PlaneFit& fit) {
+    return {fit.normal[0], fit.normal[1], fit.normal[2], fit.rms, fit.offset, fit.used};
 }
 
 }  // namespace
@@ -74,56 +86,63 @@ PlaneQueries queries_at_means(const CellGrid& grid) {
     return queries;
 }
 
-namespace {
+// What the kernel needs of a tile, whatever the queries.
+struct PlaneFitter::OnDevice {
+    device::Buffer<float> cells;
+    device::Buffer<std::int32_t> cell_z;
+    device::Buffer<std::uint32_t> columns;
+};
 
-void resize(PlaneFit& fit, std::size_t count) {
-    for (auto& plane : fit.normal) plane.resize(count);
-    fit.rms.resize(count);
-    fit.offset.resize(count);
-    fit.used.resize(count);
+PlaneFitter::PlaneFitter(device::Device& device, const CellGrid& grid, int radius)
+    : device_(device), grid_(grid), radius_(radius), sweep_(grid.x, grid.y, grid.z, radius) {
+    tiles_ = make_tiles(grid, radius, device.info().limits.max_binding_bytes);
+}
+PlaneFitter::~PlaneFitter() = default;
+
+const PlaneFitter::OnDevice& PlaneFitter::prepare(const Tile& tile) {
+    if (prepared_ && prepared_tile_ == &tile) return *prepared_;
+    prepared_.reset();  // before the next is made: one tile's memory at a time
+    prepared_tile_ = &tile;
+    const CellGrid& g = grid_;
+    const std::size_t first = tile.halo_first, last = tile.halo_last;
+    const std::vector<std::uint32_t> table =
+        column_table(sweep_, tile.first, tile.last, first, device_.threads());
+    prepared_ = std::make_unique<OnDevice>(
+        OnDevice{upload_planes(device_,
+                               {g.weight, g.mean[0], g.mean[1], g.mean[2], g.spread[0], g.spread[1],
+                                g.spread[2], g.spread[3], g.spread[4], g.spread[5]},
+                               first, last, "cells"),
+                 {device_, std::span(g.z).subspan(first, last - first), "cell_z"},
+                 {device_, std::span<const std::uint32_t>(table), "columns"}});
+    return *prepared_;
 }
 
-// Fits the queries order[begin, end), whose cells lie in the tile.
-void fit_tile(device::Device& device, const CellGrid& grid, const PlaneQueries& queries,
-              const PlaneFitOptions& options, const Tile& tile,
-              std::span<const std::uint32_t> order, PlaneFit& fit) {
+void PlaneFitter::fit_tile(const Tile& tile, const PlaneQueries& queries, const PlanePrior& prior,
+                           std::span<const std::uint32_t> order, PlaneFit& fit) {
+    const OnDevice& on = prepare(tile);
     const std::size_t count = order.size();
+    const bool guided = !prior.x.empty();
     std::vector<std::uint32_t> home(count);
     std::vector<float> at(3 * count);
-    for (std::size_t i = 0; i < count; ++i) {
+    device_.threads().each(count, query_chunk, [&](std::size_t i) {
         home[i] = queries.cell[order[i]] - static_cast<std::uint32_t>(tile.first);
         for (std::size_t a = 0; a < 3; ++a) at[a * count + i] = queries.at[a][order[i]];
-    }
-    const std::array<std::span<const float>, cell_planes> moments{
-        grid.weight,    grid.mean[0],   grid.mean[1],   grid.mean[2],   grid.spread[0],
-        grid.spread[1], grid.spread[2], grid.spread[3], grid.spread[4], grid.spread[5]};
-    const std::vector<float> cells = planes_of(moments, tile.halo_first, tile.halo_last);
-    const std::span<const std::int32_t> z(grid.z.data() + tile.halo_first,
-                                          tile.halo_last - tile.halo_first);
-    const std::vector<std::uint32_t> table =
-        column_table(grid, options.radius, tile.first, tile.last, tile.halo_first);
-    std::vector<float> prior{0.0f};
-    const bool guided = !options.prior_x.empty();
-    if (guided) {
-        const std::array<std::span<const float>, 3> planes{options.prior_x, options.prior_y,
-                                                           options.prior_z};
-        prior = planes_of(planes, tile.halo_first, tile.halo_last);
-    }
-    using device::Buffer;
-    const Buffer<float> d_cells(device, std::span<const float>(cells), "cells");
-    const Buffer<std::int32_t> d_z(device, z, "cell_z");
-    const Buffer<std::uint32_t> d_table(device, std::span<const std::uint32_t>(table), "columns");
-    const Buffer<std::uint32_t> d_home(device, std::span<const std::uint32_t>(home), "query_cell");
-    const Buffer<float> d_at(device, std::span<const float>(at), "query");
-    const Buffer<float> d_prior(device, std::span<const float>(prior), "prior");
-    const Buffer<float> d_fit(device, fit_planes_count * count, "fit");
-    const float reach = static_cast<float>(options.radius) + 0.5f;
-    device::Queue queue(device);
+    });
+    const device::Buffer<std::uint32_t> d_home(device_, std::span<const std::uint32_t>(home),
+                                               "query_cell");
+    const device::Buffer<float> d_at(device_, std::span<const float>(at), "query");
+    const device::Buffer<float> d_prior =
+        guided ? upload_planes(device_, {prior.x, prior.y, prior.z}, tile.halo_first,
+                               tile.halo_last, "prior")
+               : device::Buffer<float>(device_, 1, "prior");
+    const device::Buffer<float> d_fit(device_, fit_planes_count * count, "fit");
+    const float reach = static_cast<float>(radius_) + 0.5f;
+    device::Queue queue(device_);
     queue.add<kernels::VoxelNormals>(
         count,
-        {.cells = d_cells,
-         .cell_z = d_z,
-         .columns = d_table,
+        {.cells = on.cells,
+         .cell_z = on.cell_z,
+         .columns = on.columns,
          .query_cell = d_home,
          .query = d_at,
          .prior = d_prior,
@@ -132,48 +151,47 @@ void fit_tile(device::Device& device, const CellGrid& grid, const PlaneQueries& 
          .cell_count = static_cast<std::uint32_t>(tile.halo_last - tile.halo_first),
          .column_first = static_cast<std::uint32_t>(tile.first - tile.halo_first),
          .column_count = static_cast<std::uint32_t>(tile.last - tile.first),
-         .radius = options.radius,
+         .radius = radius_,
          .inverse_reach2 = 1.0f / (reach * reach),
          .use_prior = guided ? 1u : 0u});
     queue.run();
     const std::vector<float> out = d_fit.download();
-    for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t a = 0; a < 3; ++a) fit.normal[a][order[i]] = out[a * count + i];
-        fit.rms[order[i]] = out[3 * count + i];
-        fit.offset[order[i]] = out[4 * count + i];
-        fit.used[order[i]] = out[5 * count + i];
-    }
+    const auto planes = planes_of(fit);
+    device_.threads().each(count, query_chunk, [&](std::size_t i) {
+        for (std::size_t a = 0; a < fit_planes_count; ++a) planes[a][order[i]] = out[a * count + i];
+    });
 }
 
-}  // namespace
-
-PlaneFit fit_planes(device::Device& device, const CellGrid& grid, const PlaneQueries& queries,
-                    const PlaneFitOptions& options) {
+PlaneFit PlaneFitter::fit(const PlaneQueries& queries, const PlanePrior& prior) {
     PlaneFit fit;
     const std::size_t count = queries.cell.size();
     resize(fit, count);
     std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
     if (!std::is_sorted(queries.cell.begin(), queries.cell.end())) {
-        std::vector<std::uint64_t> keys(queries.cell.begin(), queries.cell.end());
+        const std::vector<std::uint64_t> keys(queries.cell.begin(), queries.cell.end());
         order = sorted_order(keys);
     }
     // Queries per dispatch are bounded too: their planes travel as one binding each.
-    const std::uint64_t binding = device.info().limits.max_binding_bytes;
-    const std::size_t most_queries = std::max<std::size_t>(binding / (4 * fit_planes_count), 1);
+    const std::size_t most_queries =
+        std::max<std::size_t>(device_.info().limits.max_binding_bytes / (4 * fit_planes_count), 1);
     std::size_t begin = 0;
-    for (const Tile& tile : make_tiles(grid, options.radius, binding)) {
+    for (const Tile& tile : tiles_) {
         while (begin < count && queries.cell[order[begin]] < tile.last) {
             std::size_t end = begin;
             while (end < count && end - begin < most_queries &&
                    queries.cell[order[end]] < tile.last)
                 ++end;
-            fit_tile(device, grid, queries, options, tile,
+            fit_tile(tile, queries, prior,
                      std::span<const std::uint32_t>(order).subspan(begin, end - begin), fit);
             begin = end;
         }
     }
     return fit;
+}
+
+PlaneFit fit_planes(device::Device& device, const CellGrid& grid, const PlaneQueries& queries) {
+    return PlaneFitter(device, grid).fit(queries, {});
 }
 
 }  // namespace topple::geometry

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "device/native/thread_pool.h"
 #include "geometry/surfels.h"
 
 namespace topple::geometry {
@@ -33,7 +34,8 @@ struct Regions {
     std::vector<std::int32_t> label;
     std::vector<Region> regions;
 };
-Regions split(const Surfels& surfels);
+Regions split(const Surfels& surfels, device::ThreadPool& threads);
+Regions split(const Surfels& surfels);  // on threads of its own, one per core
 
 // Convexly connected regions merged into primitives (paper, 2.1.2, Eq. 3). label: primitive of each
 // surfel, -1 for none; ids by falling size. model: "plane" | "quadric" | "merged".

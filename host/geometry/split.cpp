@@ -2,7 +2,9 @@
 #include "geometry/split.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "geometry/algebraic_model.h"
 
@@ -17,17 +19,28 @@ float quantile(std::vector<float> values, double q) {
     return *at;
 }
 
-// The lower quartile of each surfel's neighbourhood, itself included.
-std::vector<float> lower_neighbours(const Surfels& s, const std::vector<float>& value) {
-    std::vector<float> out(value.size()), around;
-    for (std::size_t i = 0; i < value.size(); ++i) {
-        around.assign(1, value[i]);
-        for (auto e = s.neighbour_first[i]; e < s.neighbour_first[i + 1]; ++e)
-            around.push_back(value[s.neighbours[e]]);
-        const auto at = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 4);
-        std::nth_element(around.begin(), at, around.end());
-        out[i] = *at;
-    }
+constexpr std::uint64_t chunk = 1 << 13;  // surfels handed to a thread at once
+
+// The lower quartile of each surfel's neighbourhood, itself included: at most 27 values.
+std::vector<float> lower_neighbours(const Surfels& s, const std::vector<float>& value,
+                                    device::ThreadPool& threads) {
+    std::vector<float> out(value.size());
+    threads.each(value.size(), chunk, [&](std::size_t i) {
+        const auto first = s.neighbour_first[i], last = s.neighbour_first[i + 1];
+        const std::size_t kept = (1 + last - first) / 4 + 1;
+        // The least ones so far, ascending.
+        std::array<float, 7> least{};
+        least.fill(std::numeric_limits<float>::infinity());
+        const auto add = [&](float v) {
+            if (!(v < least[kept - 1])) return;
+            std::size_t at = kept - 1;
+            for (; at > 0 && v < least[at - 1]; --at) least[at] = least[at - 1];
+            least[at] = v;
+        };
+        add(value[i]);
+        for (auto e = first; e < last; ++e) add(value[s.neighbours[e]]);
+        out[i] = least[kept - 1];
+    });
     return out;
 }
 
@@ -49,27 +62,56 @@ double normal_noise(const Surfels& s, float smooth_m) {
 
 }  // namespace
 
-SplitScale measure_scale(const Surfels& surfels, const SplitOptions& options) {
+SplitScale measure_scale(const Surfels& surfels, const SplitOptions& options,
+                         device::ThreadPool& threads) {
     SplitScale scale;
     scale.layer_m = options.layer_cells * surfels.cell_m;
     const float typical = quantile(surfels.roughness_m, 0.5);
     const float rough = quantile(surfels.roughness_m, 0.75);
-    std::vector<float> noise = lower_neighbours(surfels, surfels.roughness_m);
-    noise = lower_neighbours(surfels, noise);
+    std::vector<float> noise = lower_neighbours(surfels, surfels.roughness_m, threads);
+    noise = lower_neighbours(surfels, noise, threads);
     const double floor_m = options.cell_noise_share * surfels.cell_m;
     scale.tolerance_m.resize(surfels.size());
-    for (std::size_t i = 0; i < surfels.size(); ++i) {
+    threads.each(surfels.size(), chunk, [&](std::size_t i) {
         const double sigma = std::clamp(noise[i], 0.5f * typical, rough);
         scale.tolerance_m[i] =
             static_cast<float>(options.tolerance_sigma * std::hypot(sigma, floor_m));
-    }
+    });
     const double degree = EIGEN_PI / 180;
     scale.angle_rad = std::clamp(options.angle_factor * normal_noise(surfels, typical),
                                  options.angle_min_deg * degree, options.angle_max_deg * degree);
     return scale;
 }
 
-void refit_regions(const Surfels& surfels, const SplitScale& scale, Regions& regions) {
+namespace {
+
+void refit(const Surfels& surfels, const SplitScale& scale, const std::vector<std::uint32_t>& list,
+           Region& region) {
+    if (region.model.degree == 1) {
+        PlaneMoments moments;
+        for (const std::uint32_t i : list) moments.add(position(surfels, i), normal(surfels, i));
+        region.model = fit_plane(moments, scale.layer_m);
+    } else {
+        std::vector<Eigen::Vector3d> points, normals;
+        for (const std::uint32_t i : list) {
+            points.push_back(position(surfels, i));
+            normals.push_back(normal(surfels, i));
+        }
+        region.model = fit_quadric(points, normals, scale.layer_m);
+    }
+    double sum = 0;
+    for (const std::uint32_t i : list) {
+        const double d = distance(region.model, position(surfels, i));
+        sum += d * d;
+    }
+    region.surfels = list.size();
+    region.residual_m = std::sqrt(sum / static_cast<double>(list.size()));
+}
+
+}  // namespace
+
+void refit_regions(const Surfels& surfels, const SplitScale& scale, device::ThreadPool& threads,
+                   Regions& regions) {
     std::vector<std::vector<std::uint32_t>> members(regions.regions.size());
     std::vector<std::int32_t> order;  // old ids by lowest surfel
     for (std::size_t i = 0; i < surfels.size(); ++i) {
@@ -79,46 +121,29 @@ void refit_regions(const Surfels& surfels, const SplitScale& scale, Regions& reg
         if (list.empty()) order.push_back(label);
         list.push_back(static_cast<std::uint32_t>(i));
     }
-    std::vector<Region> kept;
-    std::vector<Eigen::Vector3d> points, normals;
-    for (const std::int32_t old : order) {
-        const auto& list = members[static_cast<std::size_t>(old)];
-        Region region = regions.regions[static_cast<std::size_t>(old)];
-        PlaneMoments moments;
-        points.clear();
-        normals.clear();
-        for (const std::uint32_t i : list) {
-            if (region.model.degree == 1) {
-                moments.add(position(surfels, i), normal(surfels, i));
-            } else {
-                points.push_back(position(surfels, i));
-                normals.push_back(normal(surfels, i));
-            }
-        }
-        region.model = region.model.degree == 1 ? fit_plane(moments, scale.layer_m)
-                                                : fit_quadric(points, normals, scale.layer_m);
-        double sum = 0;
-        for (const std::uint32_t i : list) {
-            const double d = distance(region.model, position(surfels, i));
-            sum += d * d;
-        }
-        region.surfels = list.size();
-        region.residual_m = std::sqrt(sum / static_cast<double>(list.size()));
-        const auto id = static_cast<std::int32_t>(kept.size());
-        for (const std::uint32_t i : list) regions.label[i] = id;
-        kept.push_back(region);
-    }
+    std::vector<Region> kept(order.size());
+    threads.each(order.size(), 1, [&](std::size_t id) {
+        const auto old = static_cast<std::size_t>(order[id]);
+        kept[id] = regions.regions[old];
+        refit(surfels, scale, members[old], kept[id]);
+        for (const std::uint32_t i : members[old]) regions.label[i] = static_cast<std::int32_t>(id);
+    });
     regions.regions = std::move(kept);
 }
 
-Regions split(const Surfels& surfels) {
+Regions split(const Surfels& surfels, device::ThreadPool& threads) {
     const SplitOptions options;
     if (surfels.size() == 0) return {};
-    const SplitScale scale = measure_scale(surfels, options);
+    const SplitScale scale = measure_scale(surfels, options, threads);
     Regions regions = grow_regions(surfels, scale, options);
-    refit_regions(surfels, scale, regions);
-    clean_regions(surfels, scale, options, regions);
+    refit_regions(surfels, scale, threads, regions);
+    clean_regions(surfels, scale, options, threads, regions);
     return regions;
+}
+
+Regions split(const Surfels& surfels) {
+    device::ThreadPool threads(0);
+    return split(surfels, threads);
 }
 
 }  // namespace topple::geometry

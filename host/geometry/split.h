@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "device/native/thread_pool.h"
 #include "geometry/segmentation.h"
 
 // The steps of split() (paper, 2.1.1): regions grow from smooth seeds, first as planes, then, where
@@ -43,7 +44,8 @@ struct SplitScale {
 
 // Noise of each surfel: the roughness of the smoothest surfels around it, bounded by the scan's own
 // distribution so that an edge or a thin rod is not taken for noise.
-SplitScale measure_scale(const Surfels& surfels, const SplitOptions& options);
+SplitScale measure_scale(const Surfels& surfels, const SplitOptions& options,
+                         device::ThreadPool& threads);
 
 // Grows regions from seeds by rising roughness (ties by index).
 Regions grow_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options);
@@ -51,11 +53,12 @@ Regions grow_regions(const Surfels& surfels, const SplitScale& scale, const Spli
 // Gives surfels without a region to the neighbouring region that explains them best, makes regions
 // of connected leftovers, lets neighbours take regions that they explain, smooths the borders.
 void clean_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
-                   Regions& regions);
+                   device::ThreadPool& threads, Regions& regions);
 
 // Refits every region to its surfels (degree kept, residual and count set); drops empty regions and
 // renumbers by lowest surfel.
-void refit_regions(const Surfels& surfels, const SplitScale& scale, Regions& regions);
+void refit_regions(const Surfels& surfels, const SplitScale& scale, device::ThreadPool& threads,
+                   Regions& regions);
 
 inline Eigen::Vector3d position(const Surfels& s, std::size_t i) {
     return {s.x[i], s.y[i], s.z[i]};

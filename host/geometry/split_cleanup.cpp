@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <queue>
@@ -15,22 +16,23 @@ namespace {
 constexpr double kReach = 2.0;  // tolerances within which a leftover still belongs to a model
 constexpr double kNeighbourVote = 2.0;  // weight of all neighbours agreeing, against the fit's cost
 constexpr int kSmoothingPasses = 3;
+constexpr std::uint64_t kChunk = 1 << 13;  // surfels handed to a thread at once
 constexpr std::uint32_t kAbsorbBelow =
     40;  // surfels under which a region may be taken by a neighbour
 
 class Cleaner {
   public:
     Cleaner(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
-            Regions& regions)
-        : s_(surfels), scale_(scale), options_(options), r_(regions) {}
+            device::ThreadPool& threads, Regions& regions)
+        : s_(surfels), scale_(scale), options_(options), threads_(threads), r_(regions) {}
 
     void run() {
         hand_out(kReach);
         make_regions_of_leftovers();
-        refit_regions(s_, scale_, r_);
+        refit_regions(s_, scale_, threads_, r_);
         absorb_small();
         smooth_borders();
-        refit_regions(s_, scale_, r_);
+        refit_regions(s_, scale_, threads_, r_);
     }
 
   private:
@@ -152,47 +154,52 @@ class Cleaner {
 
     // Each surfel at a border takes the label that fits best given its neighbours, all at once.
     void smooth_borders() {
-        std::vector<std::int32_t> next;
-        std::vector<std::pair<std::int32_t, int>> votes;
+        std::vector<std::int32_t> next(r_.label.size());
         for (int pass = 0; pass < kSmoothingPasses; ++pass) {
-            next = r_.label;
-            for (std::uint32_t i = 0; i < s_.size(); ++i) {
-                const auto first = s_.neighbour_first[i], last = s_.neighbour_first[i + 1];
-                votes.clear();
-                for (auto e = first; e < last; ++e) {
-                    const std::int32_t label = r_.label[s_.neighbours[e]];
-                    if (label < 0) continue;
-                    auto at = std::find_if(votes.begin(), votes.end(),
-                                           [&](const auto& v) { return v.first == label; });
-                    if (at == votes.end())
-                        votes.emplace_back(label, 1);
-                    else
-                        ++at->second;
-                }
-                if (votes.empty() || (votes.size() == 1 && votes[0].first == r_.label[i])) continue;
-                std::sort(votes.begin(), votes.end());
-                double best = 1e9;
-                for (const auto& [label, count] : votes) {
-                    const double cost = std::min(misfit(label, i), 4.0) -
-                                        kNeighbourVote * count / double(last - first);
-                    if (cost < best) best = cost, next[i] = label;
-                }
-            }
+            threads_.each(s_.size(), kChunk, [&](std::size_t i) {
+                next[i] = smoothed_label(static_cast<std::uint32_t>(i));
+            });
             r_.label.swap(next);
         }
+    }
+
+    std::int32_t smoothed_label(std::uint32_t i) const {
+        const auto first = s_.neighbour_first[i], last = s_.neighbour_first[i + 1];
+        std::array<std::pair<std::int32_t, int>, 26> votes;  // label, neighbours that have it
+        std::size_t labels = 0;
+        for (auto e = first; e < last; ++e) {
+            const std::int32_t label = r_.label[s_.neighbours[e]];
+            if (label < 0) continue;
+            std::size_t at = 0;
+            while (at < labels && votes[at].first != label) ++at;
+            if (at == labels) votes[labels++] = {label, 0};
+            ++votes[at].second;
+        }
+        std::int32_t chosen = r_.label[i];
+        if (labels == 0 || (labels == 1 && votes[0].first == chosen)) return chosen;
+        std::sort(votes.begin(), votes.begin() + static_cast<std::ptrdiff_t>(labels));
+        double best = 1e9;
+        for (std::size_t k = 0; k < labels; ++k) {
+            const auto [label, count] = votes[k];
+            const double cost = std::min(misfit(label, i), 4.0) -
+                                kNeighbourVote * count / static_cast<double>(last - first);
+            if (cost < best) best = cost, chosen = label;
+        }
+        return chosen;
     }
 
     const Surfels& s_;
     const SplitScale& scale_;
     const SplitOptions& options_;
+    device::ThreadPool& threads_;
     Regions& r_;
 };
 
 }  // namespace
 
 void clean_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
-                   Regions& regions) {
-    Cleaner(surfels, scale, options, regions).run();
+                   device::ThreadPool& threads, Regions& regions) {
+    Cleaner(surfels, scale, options, threads, regions).run();
 }
 
 }  // namespace topple::geometry

@@ -41,56 +41,66 @@ void check(const PointCloud& cloud, double cell_m, std::span<const Vec3> viewpoi
     }
 }
 
-// The cells of the points and their moments.
-CellGrid bin(const PointCloud& cloud, double cell_m, std::vector<std::uint32_t>& of_point,
-             std::vector<float>& count) {
-    const std::array<const std::vector<float>*, 3> p{&cloud.x, &cloud.y, &cloud.z};
-    const std::size_t n = cloud.size();
-    CellGrid grid;
-    grid.cell_m = cell_m;
-    of_point.resize(n);
-    if (n == 0) return grid;
-    std::array<std::int64_t, 3> lowest{};
-    for (std::size_t a = 0; a < 3; ++a) {
+constexpr std::uint64_t chunk = 1 << 14;  // points or cells handed to a thread at once
+
+using Axes = std::array<const std::vector<float>*, 3>;
+
+// Lowest and highest cell per axis. Throws Error(input) where they lie too far apart.
+CellPacking packing_of(const PointCloud& cloud, const Axes& p, double cell_m,
+                       device::ThreadPool& threads) {
+    std::array<std::array<float, 2>, 3> range{};
+    threads.each(3, 1, [&](std::size_t a) {
         const auto [low, high] = std::minmax_element(p[a]->begin(), p[a]->end());
-        const double lo = std::floor(*low / cell_m), hi = std::floor(*high / cell_m);
+        range[a] = {*low, *high};
+    });
+    std::array<std::int64_t, 3> lowest{}, highest{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        const double lo = std::floor(range[a][0] / cell_m), hi = std::floor(range[a][1] / cell_m);
         constexpr double most_index = 1 << 30;
         if (!(std::abs(lo) < most_index && std::abs(hi) < most_index &&
               hi - lo < static_cast<double>(max_cells_per_axis))) {
             throw Error(ErrorKind::input, cloud.source + ": the cloud reaches from " +
-                                              std::to_string(*low) + " to " +
-                                              std::to_string(*high) + " m, more than " +
+                                              std::to_string(range[a][0]) + " to " +
+                                              std::to_string(range[a][1]) + " m, more than " +
                                               std::to_string(max_cells_per_axis) + " cells of " +
                                               std::to_string(cell_m) +
                                               " m; remove stray points or use a larger --voxel");
         }
         lowest[a] = static_cast<std::int64_t>(lo);
+        highest[a] = static_cast<std::int64_t>(hi);
     }
-    CellPacking pack{{static_cast<std::int32_t>(lowest[0]), static_cast<std::int32_t>(lowest[1]),
-                      static_cast<std::int32_t>(lowest[2])}};
-    std::vector<std::uint64_t> keys(n);
+    return {lowest, highest};
+}
+
+// The cells of the points and their moments.
+CellGrid bin(const PointCloud& cloud, double cell_m, device::ThreadPool& threads,
+             std::vector<std::uint32_t>& of_point, std::vector<float>& count) {
+    const Axes p{&cloud.x, &cloud.y, &cloud.z};
+    const std::size_t n = cloud.size();
+    CellGrid grid;
+    grid.cell_m = cell_m;
+    of_point.resize(n);
+    if (n == 0) return grid;
+    const CellPacking pack = packing_of(cloud, p, cell_m, threads);
     const auto index = [&](float v) { return static_cast<std::int64_t>(std::floor(v / cell_m)); };
-    for (std::size_t i = 0; i < n; ++i) {
+    std::vector<std::uint64_t> keys(n);
+    threads.each(n, chunk, [&](std::size_t i) {
         keys[i] = pack(index(cloud.x[i]), index(cloud.y[i]), index(cloud.z[i]));
-    }
-    const std::vector<std::uint32_t> order = sorted_order(keys);
-    std::size_t cells = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-        cells += k == 0 || keys[order[k]] != keys[order[k - 1]];
-        of_point[order[k]] = static_cast<std::uint32_t>(cells - 1);
-    }
-    grid.resize(cells);
-    count.assign(cells, 0);
-    for (std::size_t begin = 0, end = 0, cell = 0; begin < n; begin = end, ++cell) {
+    });
+    const KeyGroups cells = group_keys(keys);
+    grid.resize(cells.size());
+    count.assign(cells.size(), 0);
+    threads.each(cells.size(), chunk, [&](std::size_t cell) {
+        const auto points = cells.group(cell);
+        const std::array<std::int64_t, 3> at{index(cloud.x[points[0]]), index(cloud.y[points[0]]),
+                                             index(cloud.z[points[0]])};
         std::array<double, 3> first{};
         std::array<double, 6> second{};
-        const std::uint32_t one = order[begin];
-        const std::array<std::int64_t, 3> at{index(cloud.x[one]), index(cloud.y[one]),
-                                             index(cloud.z[one])};
-        for (; end < n && keys[order[end]] == keys[one]; ++end) {
+        for (const std::uint32_t i : points) {
+            of_point[i] = static_cast<std::uint32_t>(cell);
             std::array<double, 3> d{};
             for (std::size_t a = 0; a < 3; ++a) {
-                d[a] = (*p[a])[order[end]] / cell_m - (static_cast<double>(at[a]) + 0.5);
+                d[a] = (*p[a])[i] / cell_m - (static_cast<double>(at[a]) + 0.5);
                 first[a] += d[a];
                 second[a] += d[a] * d[a];
             }
@@ -98,7 +108,7 @@ CellGrid bin(const PointCloud& cloud, double cell_m, std::vector<std::uint32_t>&
             second[4] += d[0] * d[2];
             second[5] += d[1] * d[2];
         }
-        const double size = static_cast<double>(end - begin);
+        const double size = static_cast<double>(points.size());
         for (double& v : first) v /= size;
         for (double& v : second) v /= size;
         grid.x[cell] = static_cast<std::int32_t>(at[0]);
@@ -113,7 +123,7 @@ CellGrid bin(const PointCloud& cloud, double cell_m, std::vector<std::uint32_t>&
         grid.spread[5][cell] = static_cast<float>(second[5] - first[1] * first[2]);
         count[cell] = static_cast<float>(size);
         grid.weight[cell] = fit_weight(size);
-    }
+    });
     return grid;
 }
 
@@ -144,8 +154,7 @@ void fill_from_coarser(device::Device& device, const CellGrid& fine, Surfels& s)
     CellGrid grid = fine;
     for (int level = 1; level <= most_levels && !left.empty(); ++level) {
         std::vector<std::uint32_t> parent;
-        CellGrid coarse = coarsen(grid, parent);
-        grid = std::move(coarse);
+        grid = coarsen(grid, device.threads(), parent);
         for (std::uint32_t& cell : cell_of) cell = parent[cell];
         PlaneQueries queries;
         for (const std::uint32_t i : left) {
@@ -158,7 +167,7 @@ void fill_from_coarser(device::Device& device, const CellGrid& fine, Surfels& s)
             queries.at[2].push_back(
                 static_cast<float>(s.z[i] / grid.cell_m - (grid.z[cell] + 0.5)));
         }
-        set_normals(s, fit_planes(device, grid, queries, {}), &left, grid.cell_m);
+        set_normals(s, fit_planes(device, grid, queries), &left, grid.cell_m);
         std::erase_if(left, [&](std::uint32_t i) { return !undefined(s, i); });
     }
 }
@@ -188,7 +197,7 @@ Surfels make_surfels(device::Device& device, const PointCloud& cloud, double cel
     check(cloud, cell_m, viewpoints, viewpoint_of_point);
     std::vector<std::uint32_t> of_point;
     std::vector<float> count;
-    CellGrid grid = bin(cloud, cell_m, of_point, count);
+    CellGrid grid = bin(cloud, cell_m, device.threads(), of_point, count);
     if (grid.size() == 0) {
         Surfels none;
         none.cell_m = cell_m;
@@ -199,19 +208,17 @@ Surfels make_surfels(device::Device& device, const PointCloud& cloud, double cel
     Surfels s = from_grid(grid);
     s.weight = std::move(count);
     s.of_point = std::move(of_point);
-    cell_neighbours(s.cx, s.cy, s.cz, s.neighbour_first, s.neighbours);
+    cell_neighbours(s.cx, s.cy, s.cz, device.threads(), s.neighbour_first, s.neighbours);
 
     const PlaneQueries queries = queries_at_means(grid);
-    set_normals(s, fit_planes(device, grid, queries, {}), nullptr, cell_m);
-    const Orientation towards = sensor_side(s, cloud, viewpoints, viewpoint_of_point);
+    PlaneFitter fitter(device, grid);
+    set_normals(s, fitter.fit(queries, {}), nullptr, cell_m);
+    const Orientation towards =
+        sensor_side(s, cloud, viewpoints, viewpoint_of_point, device.threads());
     orient(s, towards);
     // The second pass knows which side each cell faces and leaves the others out.
-    PlaneFitOptions guided;
     const std::vector<float> px = s.nx, py = s.ny, pz = s.nz;
-    guided.prior_x = px;
-    guided.prior_y = py;
-    guided.prior_z = pz;
-    PlaneFit sharp = fit_planes(device, grid, queries, guided);
+    PlaneFit sharp = fitter.fit(queries, {px, py, pz});
     for (std::size_t i = 0; i < s.size(); ++i) {
         // Where too few agree, the first pass stands.
         if (sharp.normal[0][i] == 0 && sharp.normal[1][i] == 0 && sharp.normal[2][i] == 0) {

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "geometry/plane_fit.h"
 
 namespace topple::geometry {
 namespace {
+
+constexpr std::uint64_t chunk = 1 << 14;  // cells handed to a thread at once
 
 // Roughness of most cells: the noise, as long as most of the scene is smooth.
 float median_rms(const PlaneFit& fit) {
@@ -47,16 +50,17 @@ std::array<double, 6> in_plane(const CellGrid& grid, const PlaneFit& fit, std::s
 
 void flatten_noise(device::Device& device, CellGrid& grid, std::vector<float>& count,
                    std::vector<std::uint32_t>& of_point) {
-    const PlaneFit fit = fit_planes(device, grid, queries_at_means(grid), {});
+    const PlaneFit fit = fit_planes(device, grid, queries_at_means(grid));
     const float noise = median_rms(fit);
     const std::size_t n = grid.size();
+    device::ThreadPool& threads = device.threads();
     // Positions in cells from the grid's origin, and the in-cell covariance, after the move.
     std::array<std::vector<double>, 3> moved;
     for (auto& axis : moved) axis.resize(n);
     std::vector<std::array<double, 6>> spread(n);
     const std::array<const std::vector<std::int32_t>*, 3> index{&grid.x, &grid.y, &grid.z};
-    bool any = false;
-    for (std::size_t i = 0; i < n; ++i) {
+    std::atomic<bool> any = false;
+    threads.each(n, chunk, [&](std::size_t i) {
         const bool flat = fit.rms[i] <= 2.5f * noise && std::abs(fit.offset[i]) <= 3 * noise &&
                           fit.used[i] >= 6 &&
                           (fit.normal[0][i] != 0 || fit.normal[1][i] != 0 || fit.normal[2][i] != 0);
@@ -64,44 +68,41 @@ void flatten_noise(device::Device& device, CellGrid& grid, std::vector<float>& c
             moved[a][i] = (*index[a])[i] + 0.5 + grid.mean[a][i];
             if (flat) moved[a][i] += double{fit.normal[a][i]} * fit.offset[i];
         }
-        any |= flat;
         if (flat) {
+            any.store(true, std::memory_order_relaxed);
             spread[i] = in_plane(grid, fit, i);
         } else {
             for (std::size_t a = 0; a < 6; ++a) spread[i][a] = grid.spread[a][i];
         }
-    }
+    });
     if (!any) return;
 
-    CellPacking pack;
-    for (std::size_t a = 0; a < 3; ++a) {
-        pack.lowest[a] = static_cast<std::int32_t>(
-            std::floor(*std::min_element(moved[a].begin(), moved[a].end())));
-    }
     const auto cell = [](double v) { return static_cast<std::int64_t>(std::floor(v)); };
+    std::array<std::int64_t, 3> lowest{}, highest{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto [low, high] = std::minmax_element(moved[a].begin(), moved[a].end());
+        lowest[a] = cell(*low);
+        highest[a] = cell(*high);
+    }
+    const CellPacking pack(lowest, highest);
     std::vector<std::uint64_t> keys(n);
-    for (std::size_t i = 0; i < n; ++i) {
+    threads.each(n, chunk, [&](std::size_t i) {
         keys[i] = pack(cell(moved[0][i]), cell(moved[1][i]), cell(moved[2][i]));
-    }
-    const std::vector<std::uint32_t> order = sorted_order(keys);
+    });
+    const KeyGroups cells = group_keys(keys);
     std::vector<std::uint32_t> now(n);
-    std::size_t cells = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-        cells += k == 0 || keys[order[k]] != keys[order[k - 1]];
-        now[order[k]] = static_cast<std::uint32_t>(cells - 1);
-    }
     CellGrid merged;
     merged.cell_m = grid.cell_m;
-    merged.resize(cells);
-    std::vector<float> merged_count(cells);
-    for (std::size_t begin = 0, end = 0, to = 0; begin < n; begin = end, ++to) {
-        const std::uint32_t one = order[begin];
+    merged.resize(cells.size());
+    std::vector<float> merged_count(cells.size());
+    threads.each(cells.size(), chunk, [&](std::size_t to) {
+        const auto group = cells.group(to);
         std::array<double, 3> at{}, first{};
-        for (std::size_t a = 0; a < 3; ++a) at[a] = std::floor(moved[a][one]);
+        for (std::size_t a = 0; a < 3; ++a) at[a] = std::floor(moved[a][group[0]]);
         std::array<double, 6> second{};
         double sum = 0;
-        for (; end < n && keys[order[end]] == keys[one]; ++end) {
-            const std::uint32_t i = order[end];
+        for (const std::uint32_t i : group) {
+            now[i] = static_cast<std::uint32_t>(to);
             const double w = count[i];
             std::array<double, 3> d{};
             for (std::size_t a = 0; a < 3; ++a) {
@@ -126,7 +127,7 @@ void flatten_noise(device::Device& device, CellGrid& grid, std::vector<float>& c
         }
         merged_count[to] = static_cast<float>(sum);
         merged.weight[to] = fit_weight(sum);
-    }
+    });
     grid = std::move(merged);
     count = std::move(merged_count);
     for (std::uint32_t& point : of_point) point = now[point];

@@ -74,24 +74,37 @@ void orient_by_neighbours(Surfels& s) {
 }  // namespace
 
 Orientation sensor_side(const Surfels& s, const PointCloud& cloud, std::span<const Vec3> viewpoints,
-                        std::span<const std::uint32_t> viewpoint_of_point) {
+                        std::span<const std::uint32_t> viewpoint_of_point,
+                        device::ThreadPool& threads) {
     Orientation result;
     const bool stored = viewpoints.empty() && !cloud.nx.empty();
     if (viewpoints.empty() && !stored) return result;
     for (auto& axis : result.towards) axis.assign(s.size(), 0.0f);
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-        std::array<double, 3> d{};
-        if (stored) {
-            d = {cloud.nx[i], cloud.ny[i], cloud.nz[i]};
-        } else {
-            const Vec3& eye = viewpoints[viewpoint_of_point.empty() ? 0 : viewpoint_of_point[i]];
-            d = {eye[0] - cloud.x[i], eye[1] - cloud.y[i], eye[2] - cloud.z[i]};
+    // The directions in parallel, their sums in the order of the points; block by block, since all
+    // of them would take as much memory as the cloud.
+    constexpr std::size_t block = 1 << 16;
+    std::vector<std::array<float, 3>> unit(std::min(block, cloud.size()));
+    for (std::size_t begin = 0; begin < cloud.size(); begin += block) {
+        const std::size_t size = std::min(block, cloud.size() - begin);
+        threads.each(size, size / 16 + 1, [&](std::size_t k) {
+            const std::size_t i = begin + k;
+            std::array<double, 3> d{};
+            if (stored) {
+                d = {cloud.nx[i], cloud.ny[i], cloud.nz[i]};
+            } else {
+                const Vec3& eye =
+                    viewpoints[viewpoint_of_point.empty() ? 0 : viewpoint_of_point[i]];
+                d = {eye[0] - cloud.x[i], eye[1] - cloud.y[i], eye[2] - cloud.z[i]};
+            }
+            const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+            const bool known = length > 0 && std::isfinite(length);
+            for (std::size_t a = 0; a < 3; ++a)
+                unit[k][a] = known ? static_cast<float>(d[a] / length) : 0.0f;
+        });
+        for (std::size_t k = 0; k < size; ++k) {
+            const std::uint32_t at = s.of_point[begin + k];
+            for (std::size_t a = 0; a < 3; ++a) result.towards[a][at] += unit[k][a];
         }
-        const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-        if (!(length > 0) || !std::isfinite(length)) continue;
-        const std::uint32_t at = s.of_point[i];
-        for (std::size_t a = 0; a < 3; ++a)
-            result.towards[a][at] += static_cast<float>(d[a] / length);
     }
     return result;
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "device/native/thread_pool.h"
 #include "geometry/surfels.h"
 
 namespace topple::geometry {
@@ -17,7 +18,8 @@ struct Orientation {
 };
 Orientation sensor_side(const Surfels& surfels, const PointCloud& cloud,
                         std::span<const Vec3> viewpoints,
-                        std::span<const std::uint32_t> viewpoint_of_point);
+                        std::span<const std::uint32_t> viewpoint_of_point,
+                        device::ThreadPool& threads);
 
 // Flips normals to the known side. Where no side is known, signs spread over each connected piece
 // from neighbour to neighbour, the most parallel first (Hoppe et al. 1992), and the piece as a

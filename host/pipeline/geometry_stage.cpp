@@ -29,7 +29,7 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
         return geometry::find_scene_frame(device, g.surfels, {options.up, input.camera_up});
     });
     const geometry::Regions regions =
-        stage("splitting", [&] { return geometry::split(g.surfels); });
+        stage("splitting", [&] { return geometry::split(g.surfels, device.threads()); });
     g.primitives = stage("merging", [&] {
         geometry::PrimitiveSet primitives =
             geometry::merge_convex(g.surfels, regions, g.frame.axes[2]);

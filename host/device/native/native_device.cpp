@@ -100,6 +100,7 @@ class NativeDevice final : public Device {
         std::fill(first, first + bytes / sizeof(word), word);
     }
     void prepare(const KernelSource&) override {}
+    ThreadPool& threads() override { return pool_; }
 
     void run(std::span<const Dispatch> dispatches) override {
         for (const Dispatch& dispatch : dispatches) {

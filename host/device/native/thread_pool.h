@@ -27,6 +27,14 @@ class ThreadPool {
     void run(std::uint64_t count, std::uint64_t chunk,
              const std::function<void(std::uint64_t, std::uint64_t)>& body);
 
+    // The same with body(i) for each i of [0, count).
+    template <class Body>
+    void each(std::uint64_t count, std::uint64_t chunk, const Body& body) {
+        run(count, chunk, [&](std::uint64_t first, std::uint64_t last) {
+            for (std::uint64_t i = first; i < last; ++i) body(static_cast<std::size_t>(i));
+        });
+    }
+
   private:
     void work();
     void take_chunks();
