@@ -105,16 +105,18 @@ void draw_segmentation_chart(const std::vector<RoomScore>& rooms,
     const double most = std::max(greatest(rooms, by_object), greatest(rooms, by_part));
     const double step = most > 0.5 ? 0.2 : most > 0.2 ? 0.1 : 0.05;
     const double top = step * std::ceil(1.08 * most / step);
-    const std::string over = " (median and range of " + std::to_string(rooms.size()) + " rooms)";
-    const auto panel = [&](double x, double width, const char* title, const auto& methods) {
-        canvas.text(x, 28, title + over, Align::left, {.size = 15, .bold = true});
+    const auto panel = [&](double x, double width, const std::string& title, const auto& methods) {
+        canvas.text(x, 28, title, Align::left, {.size = 15, .bold = true});
         draw_legend(canvas, x, 54, methods);
         const Axes axes{x, 74, width, 310, top};
         draw_grid(canvas, axes, step);
         draw_bars(canvas, axes, rooms, methods);
     };
-    panel(60, 580, "Errors against true objects", by_object);
-    panel(700, 400, "Against true parts", by_part);
+    panel(60, 580,
+          "Errors against true objects: median and range of " + std::to_string(rooms.size()) +
+              " rooms",
+          by_object);
+    panel(700, 400, "Errors against true parts", by_part);
     canvas.save();
 }
 
