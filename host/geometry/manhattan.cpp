@@ -163,6 +163,7 @@ SceneFrame find_scene_frame(device::Device& device, const Surfels& surfels,
         manhattan ? std::vector<Vec3>(triple.axes.begin(), triple.axes.end()) : std::vector<Vec3>{},
         hints);
     frame.up_method = up.method;
+    frame.note = up.note;
     frame.axes[2] = up.up;
     // The best triple may hang on furniture; what counts is that upright surfaces follow two
     // directions at right angles to up.

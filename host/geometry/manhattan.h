@@ -15,8 +15,10 @@ namespace topple::geometry {
 struct SceneFrame {
     std::array<Vec3, 3> axes;  // orthonormal, right-handed, input frame; axes[2] is up
     bool found = false;        // three near-orthogonal directions carry the scene's surfaces
-    std::string up_method;     // "given" | "manhattan" | "dominant-plane" | "assumed"
-    double up_share = 0;       // share of surfels whose normal is within 10 degrees of +-up
+    std::string
+        up_method;     // "given" | "manhattan" | "dominant-plane" | "upright-surfaces" | "assumed"
+    std::string note;  // what to know before trusting up, in a sentence; empty where it is sure
+    double up_share = 0;  // share of surfels whose normal is within 10 degrees of +-up
 };
 
 struct FrameHints {
@@ -25,9 +27,8 @@ struct FrameHints {
 };
 
 // Clusters the normals on the sphere (kernel normal_cluster: spherical k-means with antipodes
-// folded), picks three large near-orthogonal clusters, orthogonalises them, chooses as up the axis
-// closest to the hint (without one: the axis whose lowest large plane has the scene above it), and
-// refines up over the normals near it. Deterministic.
+// folded), picks three large near-orthogonal clusters, orthogonalises them, chooses up among them
+// (manhattan_up.h), and refines it over the normals near it. Deterministic.
 SceneFrame find_scene_frame(device::Device& device, const Surfels& surfels,
                             const FrameHints& hints);
 

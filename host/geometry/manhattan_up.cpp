@@ -1,87 +1,159 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/manhattan_up.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "geometry/manhattan_profile.h"
+
 namespace topple::geometry {
 namespace {
 
-// Surface within this angle of a direction can lie in a plane across it.
-constexpr double plane_degrees = 10;
-// A camera's up and the scene's differ by the camera's pitch, which passes this only when it looks
-// nearly straight down.
-constexpr double most_pitch_degrees = 75;
-// The dominant plane must hold this share of the surface to decide on up.
-constexpr double least_plane_share = 0.05;
+// Planes must hold this share of the surface to decide on up; less where a camera's up is near.
+constexpr double least_plane_share = 0.05, least_share_near_camera = 0.02, near_camera_degrees = 45;
+// Cameras are held level but for their pitch, which is seldom twice this.
+constexpr double usual_pitch_degrees = 30, most_pitch_degrees = 95;
+// A camera that is pitched by more than this looks straight down on a floor or table, which fills
+// its view; else the plane is a wall.
+constexpr double steep_degrees = 60, least_share_from_above = 0.6;
+// A plane that faces down (a ceiling, or a wall in a camera's view that is taken for one) tells
+// less of up than one that faces up.
+constexpr double facing_down = 0.25;
+// Surface faces its sensor: where it faces -z by this much on the whole, and no other way, the
+// input's axes are those of a camera, z ahead and y down, and not those of a room with z up.
+constexpr double camera_facing = 0.6, camera_axis_cos = 0.9;
+// Upright surfaces decide on up where they hold this share of all surface.
+constexpr double least_upright_share = 0.3;
+// How the scene's evidence for which end of an axis is up adds up.
+constexpr double clutter_weight = 2, lone_end_weight = 0.5;
+// The input's z is up more often than not, give or take a tilt.
+constexpr double convention_degrees = 25, convention = 2;
 
-// The surface across one direction, by where it lies along it.
-struct Profile {
-    double share = 0;   // in large planes, of all surface
-    double facing = 0;  // -1..1: which way the surface in large planes faces, on the whole
-    // -1..1: how far the middle of the surface between the outermost tenths lies below half height.
-    double lowness = 0;
-    double extent = 0;  // of the scene along the direction, metres, without the outer 1 %
-};
+constexpr auto seen_from_above =
+    "Up was taken to be across a plane that the camera looks straight at, as from above; if it is "
+    "a wall, give --up.";
+constexpr auto by_looks =
+    "Nothing in the input says where up is, and it is not z: it was chosen by how the surfaces "
+    "lie; if it is wrong, give --up.";
+constexpr auto by_walls =
+    "No level surface was found: up is the direction along the upright ones that is nearest to the "
+    "camera's; if it is wrong, give --up.";
+constexpr auto not_found =
+    "Up could not be found, as no large level or upright surface was seen: it is the camera's or "
+    "the input's own; if it is wrong, give --up.";
 
-Profile profile(const Surfels& s, const WeightedNormals& normals, const Vec3& axis) {
-    Profile result;
-    const double least = std::cos(plane_degrees * std::numbers::pi / 180);
-    // Three cells: a plane that is off by 10 degrees over a small table still falls in few bins.
-    const double bin = 3 * s.cell_m;
-    std::vector<double> height(normals.size());
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-        const std::uint32_t k = normals.surfel[i];
-        height[i] = s.x[k] * axis[0] + s.y[k] * axis[1] + s.z[k] * axis[2];
-    }
-    std::vector<double> sorted = height;
-    std::sort(sorted.begin(), sorted.end());
-    const double low = sorted.front(), bottom = sorted[sorted.size() / 100],
-                 top = sorted[sorted.size() - 1 - sorted.size() / 100];
-    result.extent = top - bottom;
-    const auto bins = static_cast<std::size_t>((sorted.back() - low) / bin) + 1;
-    std::vector<double> weight(bins + 1), facing(bins + 1);
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-        const double d = normals.x[i] * axis[0] + normals.y[i] * axis[1] + normals.z[i] * axis[2];
-        if (std::abs(d) < least) continue;
-        const auto b = static_cast<std::size_t>((height[i] - low) / bin);
-        weight[b] += normals.weight[i];
-        facing[b] += d < 0 ? -normals.weight[i] : normals.weight[i];
-    }
-    // Large: two neighbouring bins hold at least a hundredth of the surface.
-    double faced = 0, flat = 0;
-    for (std::size_t b = 0; b < bins; ++b) {
-        const double pair = weight[b] + weight[b + 1],
-                     before = b > 0 ? weight[b - 1] + weight[b] : 0;
-        if (std::max(pair, before) >= 0.01 * normals.total) {
-            flat += weight[b];
-            faced += facing[b];
-        }
-    }
-    result.share = flat / normals.total;
-    result.facing = flat > 0 ? faced / flat : 0;
-    double sum = 0, rest = 0;
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-        if (height[i] < bottom + 0.1 * result.extent || height[i] > top - 0.1 * result.extent)
-            continue;
-        sum += normals.weight[i] * ((bottom + top) / 2 - height[i]);
-        rest += normals.weight[i];
-    }
-    if (rest > 0 && result.extent > 0) result.lowness = sum / rest / (0.4 * result.extent);
-    return result;
-}
-
-// Which way along the axis is up, without a camera: +1 or -1. Large planes face up more than down
-// (ceilings and undersides are seen less), and what stands in the scene stands on its lower side.
-double side(const Profile& p, const Vec3& axis) {
-    // The input's z breaks what the scene leaves open.
-    const double convention = std::abs(axis[2]) > 0.9 ? (axis[2] > 0 ? 1.0 : -1.0) : 0;
-    return p.facing + 2 * p.lowness + convention < 0 ? -1 : 1;
+double degrees_between(const Vec3& a, const Vec3& b) {
+    return std::acos(std::clamp(dot(a, b), -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
 Vec3 times(const Vec3& v, double factor) {
     return {v[0] * factor, v[1] * factor, v[2] * factor};
+}
+
+// A direction that may be up.
+struct Candidate {
+    Vec3 up{};
+    bool manhattan = false;
+    double score = 0;
+    const char* doubt = "";  // as UpChoice::note
+};
+
+void keep_better(Candidate& best, const Candidate& other) {
+    if (other.score > best.score) best = other;
+}
+
+// The evidence of planes across a direction, weighed by how near it is to the camera's up.
+Candidate with_camera(const Surfels& surfels, const WeightedNormals& normals,
+                      const std::vector<Candidate>& candidates, const Vec3& camera_up) {
+    Candidate best;
+    for (Candidate c : candidates) {
+        if (dot(c.up, camera_up) < 0) c.up = times(c.up, -1);
+        const Profile p = profile_along(surfels, normals, c.up);
+        for (const bool flipped : {false, true}) {
+            const double up = flipped ? p.against : p.along, down = flipped ? p.along : p.against;
+            Candidate option = c;
+            if (flipped) option.up = times(c.up, -1);
+            const double pitch = degrees_between(option.up, camera_up);
+            if (pitch > most_pitch_degrees) continue;
+            const bool steep = pitch > steep_degrees;
+            if (steep ? up < least_share_from_above
+                      : up + down < (pitch < near_camera_degrees ? least_share_near_camera
+                                                                 : least_plane_share)) {
+                continue;
+            }
+            const double off = pitch / usual_pitch_degrees;
+            if (steep) option.doubt = seen_from_above;
+            option.score = (up + facing_down * down) * std::exp(-off * off / 2) * c.score;
+            keep_better(best, option);
+        }
+    }
+    return best;
+}
+
+// Without a camera: rooms are wider than high, tables wider than what stands on them; which way
+// along the axis is up is told by what faces up and lies low.
+Candidate without_camera(const Surfels& surfels, const WeightedNormals& normals,
+                         const std::vector<Candidate>& candidates) {
+    const Vec3 z{0, 0, 1};
+    Candidate best;
+    for (Candidate c : candidates) {
+        if (c.up[2] < 0) c.up = times(c.up, -1);
+        const Profile p = profile_along(surfels, normals, c.up);
+        if (p.along + p.against < least_plane_share) continue;
+        const bool customary = degrees_between(c.up, z) < convention_degrees;
+        c.score *= (p.along + p.against) / std::max(p.extent_m, 10 * surfels.cell_m) *
+                   (customary ? convention : 1);
+        const double side = p.level_facing + clutter_weight * p.clutter_low +
+                            lone_end_weight * p.lone_end + (customary ? convention : 0);
+        if (side < 0) c.up = times(c.up, -1);
+        if (!customary) c.doubt = by_looks;
+        keep_better(best, c);
+    }
+    return best;
+}
+
+// Near the camera's up, the direction that upright surfaces leave (Gupta et al. 2013): the least
+// eigenvector of the sum of w n n^T over normals across it, in windows that narrow. What those
+// leave open, as one wall does, stays as the camera has it. Returns whether they are enough.
+bool up_from_uprights(const WeightedNormals& normals, Vec3& up) {
+    constexpr double camera_weight = 0.01;
+    const Vec3 camera = up;
+    double share = 0;
+    for (const double window : {40.0, 20.0, 10.0, 10.0}) {
+        const double widest = std::sin(window * std::numbers::pi / 180);
+        Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+        double weight = 0;
+        for (std::size_t i = 0; i < normals.size(); ++i) {
+            const Eigen::Vector3d n(normals.x[i], normals.y[i], normals.z[i]);
+            if (std::abs(n[0] * up[0] + n[1] * up[1] + n[2] * up[2]) > widest) continue;
+            sum += normals.weight[i] * n * n.transpose();
+            weight += normals.weight[i];
+        }
+        share = weight / normals.total;
+        if (!(weight > 0)) return false;
+        const Eigen::Vector3d c(camera[0], camera[1], camera[2]);
+        sum = sum / weight - camera_weight * c * c.transpose();
+        const Eigen::Vector3d least =
+            Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvectors().col(0);
+        const double side = least.dot(c) < 0 ? -1 : 1;
+        up = unit({side * least[0], side * least[1], side * least[2]});
+    }
+    return share >= least_upright_share;
+}
+
+// The up of a camera whose frame the input's axes seem to be.
+std::optional<Vec3> implied_camera(const WeightedNormals& normals) {
+    Vec3 sum{};
+    double size = 0;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        const double w = normals.weight[i];
+        sum = {sum[0] + w * normals.x[i], sum[1] + w * normals.y[i], sum[2] + w * normals.z[i]};
+        size += w * std::abs(normals.z[i]);
+    }
+    const bool ahead = sum[2] < -camera_facing * size && unit(sum)[2] < -camera_axis_cos;
+    return ahead ? std::optional(Vec3{0, -1, 0}) : std::nullopt;
 }
 
 }  // namespace
@@ -89,42 +161,27 @@ Vec3 times(const Vec3& v, double factor) {
 UpChoice choose_up(const Surfels& surfels, const WeightedNormals& normals,
                    const std::vector<Vec3>& directions, const std::vector<Vec3>& manhattan,
                    const FrameHints& hints) {
-    if (hints.up && dot(*hints.up, *hints.up) > 0) return {unit(*hints.up), "given"};
-    const bool camera = hints.camera_up && dot(*hints.camera_up, *hints.camera_up) > 0;
-    const Vec3 hint = camera ? unit(*hints.camera_up) : Vec3{0, 0, 1};
-    const UpChoice assumed{hint, "assumed"};
+    if (hints.up && dot(*hints.up, *hints.up) > 0) return {unit(*hints.up), "given", ""};
+    std::optional<Vec3> camera;
+    if (hints.camera_up && dot(*hints.camera_up, *hints.camera_up) > 0)
+        camera = unit(*hints.camera_up);
+    if (!camera && normals.size() > 0) camera = implied_camera(normals);
+    const UpChoice assumed{camera.value_or(Vec3{0, 0, 1}), "assumed", not_found};
     if (normals.size() == 0) return assumed;
 
-    std::vector<Vec3> candidates = manhattan;
-    candidates.insert(candidates.end(), directions.begin(), directions.end());
-    double best_score = 0;
-    Vec3 best{};
-    Profile best_profile;
-    bool in_manhattan = false;
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-        const Profile p = profile(surfels, normals, candidates[i]);
-        if (p.share < least_plane_share) continue;
-        const double along = std::abs(dot(candidates[i], hint));
-        double score = p.share;
-        if (camera) {
-            if (along < std::cos(most_pitch_degrees * std::numbers::pi / 180)) continue;
-            score *= along * along;
-        } else {
-            score /= std::max(p.extent, 10 * surfels.cell_m);
-            score *= along > 0.9 ? 2 : 1;
-        }
-        // An axis of the best triple goes before a single direction that is no better.
-        if (i < manhattan.size()) score *= 1.1;
-        if (score > best_score) {
-            best_score = score;
-            best = candidates[i];
-            best_profile = p;
-            in_manhattan = i < manhattan.size();
-        }
+    std::vector<Candidate> candidates;
+    // An axis of the best triple goes before a single direction that is no better.
+    for (const Vec3& axis : manhattan) candidates.push_back({axis, true, 1.1});
+    for (const Vec3& axis : directions) candidates.push_back({axis, false, 1.0});
+    const Candidate best = camera ? with_camera(surfels, normals, candidates, *camera)
+                                  : without_camera(surfels, normals, candidates);
+    if (best.score > 0) {
+        return {refine_axis(normals, best.up), best.manhattan ? "manhattan" : "dominant-plane",
+                best.doubt};
     }
-    if (best_score == 0) return assumed;
-    const double sign = camera ? (dot(best, hint) < 0 ? -1 : 1) : side(best_profile, best);
-    return {refine_axis(normals, times(best, sign)), in_manhattan ? "manhattan" : "dominant-plane"};
+    Vec3 up = assumed.up;
+    if (camera && up_from_uprights(normals, up)) return {up, "upright-surfaces", by_walls};
+    return assumed;
 }
 
 }  // namespace topple::geometry

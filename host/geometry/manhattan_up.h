@@ -12,14 +12,21 @@ namespace topple::geometry {
 struct UpChoice {
     Vec3 up{0, 0, 1};
     std::string method;  // as SceneFrame::up_method
+    std::string note;    // as SceneFrame::note
 };
 
 // Which of the scene's directions is up, and which way along it. A direction's evidence is the
-// share of the surface that lies in large planes across it (floors, tables, shelves, ceilings); a
-// camera's up weighs it by how near it is, and rules out what is too far off. Without a camera, the
-// evidence is weighed by how flat the scene lies across the direction (rooms are wider than high,
-// tables wider than what stands on them), and by convention: clouds without poses have z up more
-// often than not.
+// share of the surface that lies in large planes across it (floors, tables, shelves, ceilings).
+//
+// A camera's up weighs it by how near it is, for cameras are held level but for their pitch; planes
+// that face up count more than those that face down, which keeps walls, seen by a camera that looks
+// down a little, from passing for floors. Where there is no such plane, upright surfaces (Gupta,
+// Arbelaez, Malik 2013) turn the camera's up.
+//
+// Without a camera, the evidence is weighed by how flat the scene lies across the direction (rooms
+// are wider than high, tables wider than what stands on them), and by convention: clouds without
+// poses have z up more often than not. Where all surface faces -z, the input's axes are taken for
+// those of a camera.
 UpChoice choose_up(const Surfels& surfels, const WeightedNormals& normals,
                    const std::vector<Vec3>& directions, const std::vector<Vec3>& manhattan,
                    const FrameHints& hints);

@@ -91,7 +91,8 @@ struct Scene {
     std::uint64_t seed = 1;
     double voxel_size_m = 0;
     Vec3 up{0, 0, 1};
-    std::string up_method;  // "given" | "manhattan" | "dominant-plane" | "assumed"
+    // "given" | "manhattan" | "dominant-plane" | "upright-surfaces" | "assumed"
+    std::string up_method;
     bool manhattan_found = false;
     Mat4 manhattan_from_input{};
     double density_kg_m3 = 700, friction = 0.3;

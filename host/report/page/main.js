@@ -11,7 +11,7 @@ function fillHeader(scene) {
     `${loose} of them can move, the others are the ground or fixed to it.`;
   const up = {
     given: 'given by the user', manhattan: 'from the room\u2019s three main directions',
-    'dominant-plane': 'from the largest plane', assumed: 'assumed',
+    'dominant-plane': 'from the largest plane', 'upright-surfaces': 'along the walls', assumed: 'assumed',
   };
   const facts = [
     ['topple', scene.topple_version],

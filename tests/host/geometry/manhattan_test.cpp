@@ -121,6 +121,87 @@ TEST_F(Manhattan, NothingToGoBy) {
     EXPECT_FALSE(find_scene_frame(*device, make_surfels(*device, ball, 0.03, {}, {}), {}).found);
 }
 
+// A rectangle with corner `at` and sides `a`, `b`, sampled every centimetre, seen from the origin.
+void add_rectangle(PointCloud& cloud, const Vector3d& at, const Vector3d& a, const Vector3d& b) {
+    for (double u = 0; u < a.norm(); u += 0.01) {
+        for (double v = 0; v < b.norm(); v += 0.01) {
+            const Vector3d p = at + u * a.normalized() + v * b.normalized();
+            cloud.x.push_back(static_cast<float>(p[0]));
+            cloud.y.push_back(static_cast<float>(p[1]));
+            cloud.z.push_back(static_cast<float>(p[2]));
+        }
+    }
+}
+
+// Turns a view along +y with z up into the frame of a camera that looks `pitch` degrees down.
+Eigen::Matrix3d to_camera(double pitch) {
+    Eigen::Matrix3d level;
+    level << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+    return tilt(pitch, {1, 0, 0}) * level;
+}
+
+PointCloud turned(PointCloud cloud, const Eigen::Matrix3d& turn) {
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const Vector3d p = turn * Vector3d(cloud.x[i], cloud.y[i], cloud.z[i]);
+        cloud.x[i] = static_cast<float>(p[0]);
+        cloud.y[i] = static_cast<float>(p[1]);
+        cloud.z[i] = static_cast<float>(p[2]);
+    }
+    return cloud;
+}
+
+TEST_F(Manhattan, AWallDoesNotPassForTheFloor) {
+    PointCloud view;  // a large wall ahead, and a strip of the floor before it
+    add_rectangle(view, {-1.5, 2, -1.2}, {3, 0, 0}, {0, 0, 2.4});
+    add_rectangle(view, {-1.5, 1.7, -1.2}, {3, 0, 0}, {0, 0.3, 0});
+    const Eigen::Matrix3d turn = to_camera(20);
+    const Vec3 eye{0, 0, 0};
+    const Surfels s = make_surfels(*device, turned(view, turn), 0.02, {&eye, 1}, {});
+    const SceneFrame frame = find_scene_frame(*device, s, {.up = {}, .camera_up = Vec3{0, -1, 0}});
+    EXPECT_LT(degrees_off(frame.axes[2], turn * Vector3d(0, 0, 1)), 0.5);
+}
+
+TEST_F(Manhattan, WallsAloneGiveUp) {
+    PointCloud view;  // a corner: two walls, no level surface
+    add_rectangle(view, {0, 2, -0.8}, {-1.2, -1.2, 0}, {0, 0, 1.6});
+    add_rectangle(view, {0, 2, -0.8}, {1.2, -1.2, 0}, {0, 0, 1.6});
+    const Eigen::Matrix3d turn = to_camera(20);
+    const Vec3 eye{0, 0, 0};
+    const Surfels s = make_surfels(*device, turned(view, turn), 0.02, {&eye, 1}, {});
+    const SceneFrame frame = find_scene_frame(*device, s, {.up = {}, .camera_up = Vec3{0, -1, 0}});
+    EXPECT_EQ(frame.up_method, "upright-surfaces");
+    EXPECT_FALSE(frame.note.empty());
+    EXPECT_LT(degrees_off(frame.axes[2], turn * Vector3d(0, 0, 1)), 1.0);
+}
+
+TEST_F(Manhattan, ATableSeenStraightFromAboveIsLevel) {
+    PointCloud view;
+    add_rectangle(view, {-0.6, -0.4, -1}, {1.2, 0, 0}, {0, 0.8, 0});
+    const Eigen::Matrix3d turn = to_camera(90);
+    const Vec3 eye{0, 0, 0};
+    const Surfels s = make_surfels(*device, turned(view, turn), 0.02, {&eye, 1}, {});
+    const SceneFrame frame = find_scene_frame(*device, s, {.up = {}, .camera_up = Vec3{0, -1, 0}});
+    EXPECT_LT(degrees_off(frame.axes[2], turn * Vector3d(0, 0, 1)), 0.5);
+    EXPECT_FALSE(frame.note.empty());  // it may be a wall
+}
+
+TEST_F(Manhattan, NormalsTellACamerasAxes) {
+    PointCloud view;  // as in AWallDoesNotPassForTheFloor, but with normals instead of a camera
+    add_rectangle(view, {-1.5, 2, -1.2}, {3, 0, 0}, {0, 0, 2.4});
+    const std::size_t wall = view.size();
+    add_rectangle(view, {-1.5, 1.2, -1.2}, {3, 0, 0}, {0, 0.8, 0});
+    const Eigen::Matrix3d turn = to_camera(5);
+    PointCloud cloud = turned(view, turn);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const Vector3d n = turn * (i < wall ? Vector3d(0, -1, 0) : Vector3d(0, 0, 1));
+        cloud.nx.push_back(static_cast<float>(n[0]));
+        cloud.ny.push_back(static_cast<float>(n[1]));
+        cloud.nz.push_back(static_cast<float>(n[2]));
+    }
+    const Surfels s = make_surfels(*device, cloud, 0.02, {}, {});
+    EXPECT_LT(degrees_off(find_scene_frame(*device, s, {}).axes[2], turn * Vector3d(0, 0, 1)), 0.5);
+}
+
 TEST_F(Manhattan, ClustersFoldAntipodes) {
     const Surfels s = surfels(Eigen::Matrix3d::Identity(), true);
     const NormalClusters clusters = cluster_normals(*device, s, 3);

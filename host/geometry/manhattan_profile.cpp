@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "geometry/manhattan_profile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace topple::geometry {
+namespace {
+
+// Two neighbouring bins with this share of the surface make a large plane.
+constexpr double large_share = 0.01;
+// A bin: a plane that is off by 10 degrees over a small table still falls in few of them.
+constexpr double bin_cells = 3;
+// Slanted: neither level nor upright, by this much.
+constexpr double slant_degrees = 20;
+// Of the scene's extent, at either end: where floor and ceiling lie.
+constexpr double end_share = 0.1;
+// With less than this share of the other, one of them is not there.
+constexpr double lone_share = 0.1;
+// Less surface than this share of all tells nothing of which end is up.
+constexpr double telling_share = 0.005;
+
+struct Balance {
+    double sum = 0, weight = 0;
+    void add(double value, double w) {
+        sum += value * w;
+        weight += w;
+    }
+    double mean(double least_weight) const { return weight > least_weight ? sum / weight : 0; }
+};
+
+}  // namespace
+
+Profile profile_along(const Surfels& s, const WeightedNormals& normals, const Vec3& axis) {
+    Profile result;
+    if (normals.size() == 0) return result;
+    const auto cosine = [](double degrees) { return std::cos(degrees * std::numbers::pi / 180); };
+    const double level_cos = cosine(plane_degrees), slant_high = cosine(slant_degrees),
+                 slant_low = cosine(90 - slant_degrees);
+    std::vector<double> height(normals.size()), facing(normals.size());
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        const std::uint32_t k = normals.surfel[i];
+        height[i] = s.x[k] * axis[0] + s.y[k] * axis[1] + s.z[k] * axis[2];
+        facing[i] = normals.x[i] * axis[0] + normals.y[i] * axis[1] + normals.z[i] * axis[2];
+    }
+    std::vector<double> sorted = height;
+    std::sort(sorted.begin(), sorted.end());
+    const double low = sorted.front(), bottom = sorted[sorted.size() / 100],
+                 top = sorted[sorted.size() - 1 - sorted.size() / 100];
+    result.extent_m = top - bottom;
+    const double bin = bin_cells * s.cell_m;
+    const auto bin_of = [&](double h) { return static_cast<std::size_t>((h - low) / bin); };
+    std::vector<double> level(bin_of(sorted.back()) + 2);
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        if (std::abs(facing[i]) >= level_cos) level[bin_of(height[i])] += normals.weight[i];
+    }
+    const auto large = [&](std::size_t b) {
+        const double pair = level[b] + level[b + 1], before = b > 0 ? level[b - 1] + level[b] : 0;
+        return std::max(pair, before) >= large_share * normals.total;
+    };
+    Balance middle, clutter;
+    double floor = 0, ceiling = 0;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        const double w = normals.weight[i], f = std::abs(facing[i]);
+        const double part = result.extent_m > 0 ? (height[i] - bottom) / result.extent_m : 0.5;
+        const bool inner = part > end_share && part < 1 - end_share;
+        if (f >= level_cos) {
+            if (large(bin_of(height[i]))) (facing[i] > 0 ? result.along : result.against) += w;
+            if (inner) {
+                middle.add(facing[i] > 0 ? 1 : -1, w);
+            } else {
+                (facing[i] > 0 ? floor : ceiling) += w;
+            }
+        } else if (f < slant_high && f > slant_low && part >= 0 && part <= 1) {
+            clutter.add(1 - 2 * part, w);
+        }
+    }
+    result.along /= normals.total;
+    result.against /= normals.total;
+    const double least = telling_share * normals.total;
+    result.level_facing = middle.mean(least);
+    const bool one = std::min(floor, ceiling) < lone_share * std::max(floor, ceiling);
+    if (one && floor + ceiling > least) result.lone_end = floor > ceiling ? 1 : -1;
+    result.clutter_low = clutter.mean(least);
+    return result;
+}
+
+}  // namespace topple::geometry

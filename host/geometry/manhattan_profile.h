@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "geometry/manhattan_normals.h"
+
+namespace topple::geometry {
+
+// Normals this near to an axis count for planes across it, degrees.
+inline constexpr double plane_degrees = 10;
+
+// How the surface lies along an axis that may be vertical.
+struct Profile {
+    // Shares of all surface that lie in large planes across the axis and face along it / against
+    // it.
+    double along = 0, against = 0;
+    double extent_m = 0;  // of the scene along the axis, without the outer 1 %
+    // What tells the axis' ends apart, -1..1, positive where the axis points up:
+    double level_facing = 0;  // of level surface between the outermost tenths: tables face up
+    double clutter_low = 0;   // how far below half height slanted surface lies: things lie low
+    double lone_end = 0;      // 1: of floor and ceiling only a floor is there, -1: only a ceiling
+};
+Profile profile_along(const Surfels& surfels, const WeightedNormals& normals, const Vec3& axis);
+
+}  // namespace topple::geometry
