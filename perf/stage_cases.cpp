@@ -117,7 +117,7 @@ StageScene make_stage_scene(device::Device& device) {
     camera.fuse_m = 0.0098;
     StageScene scene;
     scene.sequence = scenes::walk(scenes::furnished_room({.seed = 1}), camera);
-    scene.ingested = ingest_cloud(scene.sequence.cloud, {});
+    scene.ingested = ingest_cloud(device, scene.sequence.cloud, {});
     Timings ignored;
     scene.geometry = segment(device, scene, ignored);
     return scene;

@@ -45,11 +45,4 @@ class FrameFusion {
 // the points are no pinhole image (residual above one pixel).
 bool frame_of_organised_cloud(const PointCloud& cloud, Intrinsics& intrinsics, DepthFrame& frame);
 
-// For a cloud without poses: depth images as a sensor would have taken them from inside the scene,
-// rendered from the points (six views of 90 degrees from each of `count` positions chosen where
-// there is most free space). The carving they give is an estimate, and said to be one in the
-// result.
-void virtual_frames(const PointCloud& cloud, double spacing_m, std::uint32_t count,
-                    Intrinsics& intrinsics, std::vector<DepthFrame>& frames);
-
 }  // namespace topple::geometry

@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdio>
+#include <optional>
+#include <thread>
 #include <utility>
 
 #include "geometry/depth_noise.h"
 #include "geometry/frames_fusion.h"
+#include "geometry/single_scan.h"
 #include "geometry/surfels.h"
+#include "geometry/virtual_views.h"
 #include "io/frame_sequence.h"
 #include "io/read_cloud.h"
 
@@ -17,7 +21,9 @@ namespace {
 
 // Working resolution stays within what indoor sensors deliver and what furniture needs.
 constexpr double least_cell_m = 0.003, largest_cell_m = 0.05;
-constexpr std::uint32_t virtual_positions = 6;
+// Virtual views are drawn with surfels this wide: coarse enough that noise does not blur which side
+// of a surface is which.
+constexpr double view_cells = 3;
 
 class SequenceStream final : public FrameStream {
   public:
@@ -42,6 +48,12 @@ class MemoryStream final : public FrameStream {
     Intrinsics intrinsics_;
     std::vector<DepthFrame> frames_;
 };
+
+std::string position_text(const Vec3& p) {
+    char text[96];
+    std::snprintf(text, sizeof(text), "(%.2f, %.2f, %.2f)", p[0], p[1], p[2]);
+    return text;
+}
 
 Vec3 position(const DepthFrame& frame) {
     const Mat4& m = frame.camera_to_world;
@@ -68,47 +80,6 @@ double cell_for_frames(const FrameStream& frames) {
     return std::clamp(std::max(1.5 * z / k.fx, 1.2 * noise), least_cell_m, 0.015);
 }
 
-double distance_to(const PointCloud& cloud, std::size_t n, const DepthFrame& frame) {
-    const Mat4& m = frame.camera_to_world;
-    return std::hypot(cloud.x[n] - m[3], cloud.y[n] - m[7], cloud.z[n] - m[11]);
-}
-
-// Whether the point is in the frame's view and nothing in the frame hides it.
-bool sees(const DepthFrame& frame, const Intrinsics& k, const PointCloud& cloud, std::size_t n,
-          double tolerance_m) {
-    const Mat4& m = frame.camera_to_world;
-    const double dx = cloud.x[n] - m[3], dy = cloud.y[n] - m[7], dz = cloud.z[n] - m[11];
-    const double z = m[2] * dx + m[6] * dy + m[10] * dz;
-    if (z <= 0) return false;
-    const double u = k.fx * (m[0] * dx + m[4] * dy + m[8] * dz) / z + k.cx;
-    const double v = k.fy * (m[1] * dx + m[5] * dy + m[9] * dz) / z + k.cy;
-    if (!(u > -0.5 && v > -0.5 && u < k.width - 0.5 && v < k.height - 0.5)) return false;
-    const auto pixel = static_cast<std::size_t>(std::lround(v)) * k.width +
-                       static_cast<std::size_t>(std::lround(u));
-    const double depth = frame.depth[pixel] / k.depth_scale;
-    return depth > 0 && z <= depth + tolerance_m;
-}
-
-// For each point the nearest of the frames that see it; the nearest of all where none does.
-std::vector<std::uint32_t> seen_from(const PointCloud& cloud, const Intrinsics& k,
-                                     const std::vector<DepthFrame>& frames, double tolerance_m) {
-    std::vector<std::uint32_t> best(cloud.size(), 0);
-    for (std::size_t n = 0; n < cloud.size(); ++n) {
-        double best_distance = std::numeric_limits<double>::infinity();
-        bool best_seen = false;
-        for (std::size_t f = 0; f < frames.size(); ++f) {
-            const double distance = distance_to(cloud, n, frames[f]);
-            if (best_seen && distance >= best_distance) continue;
-            const bool seen = sees(frames[f], k, cloud, n, tolerance_m);
-            if (seen == best_seen ? distance >= best_distance : !seen) continue;
-            best[n] = static_cast<std::uint32_t>(f);
-            best_distance = distance;
-            best_seen = seen;
-        }
-    }
-    return best;
-}
-
 Ingested ingest_frames(io::FrameSequence sequence, const ParseOptions& options) {
     Ingested out;
     const bool posed = sequence.posed();
@@ -132,9 +103,51 @@ Ingested ingest_frames(io::FrameSequence sequence, const ParseOptions& options) 
     return out;
 }
 
+// Virtual views of a cloud without poses, and which side of its surfaces was seen.
+void look_from_free_places(device::Device& device, const std::optional<geometry::SingleScan>& scan,
+                           Ingested& out) {
+    geometry::VirtualViewOptions options;
+    if (scan) {
+        options.known_eyes = {scan->eye};
+        options.eyes = 1;
+        out.camera_up = scan->up;
+        out.notes.push_back("The cloud has no sensor poses, but hides nothing from " +
+                            position_text(scan->eye) +
+                            ": it was taken for a single scan from there.");
+    } else if (out.cloud.has_viewpoint) {
+        options.known_eyes = {out.cloud.viewpoint};
+    }
+    options.sides_known = !options.known_eyes.empty() || !out.cloud.nx.empty();
+    const geometry::Surfels surfels =
+        geometry::make_surfels(device, out.cloud, view_cells * out.cell_m, options.known_eyes, {});
+    device::ThreadPool pool(std::max(1u, std::thread::hardware_concurrency()));
+    geometry::VirtualViews views = geometry::virtual_views(surfels, options, pool);
+    if (views.frames.empty()) {
+        out.notes.push_back(
+            "No free space could be seen from inside of the cloud; nothing was carved.");
+        return;
+    }
+    const std::size_t eyes = views.eyes.size();
+    if (scan) {
+        out.viewpoints = {scan->eye};
+    } else if (out.cloud.has_viewpoint) {
+        out.viewpoints = {out.cloud.viewpoint};
+    } else if (out.cloud.nx.empty()) {
+        out.viewpoints = std::move(views.eyes);
+        for (const std::uint32_t s : surfels.of_point)
+            out.viewpoint_of_point.push_back(views.eye_of_surfel[s]);
+    }
+    if (!scan) {
+        out.notes.push_back("The cloud has no sensor poses: free space was estimated from " +
+                            std::to_string(eyes) +
+                            " viewpoints within it, and is less certain than from depth frames.");
+    }
+    out.frames = std::make_unique<MemoryStream>(views.intrinsics, std::move(views.frames));
+}
+
 }  // namespace
 
-Ingested ingest_cloud(PointCloud cloud, const ParseOptions&) {
+Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions&) {
     Ingested out;
     const double spacing = geometry::point_spacing(cloud);
     // A little above the spacing, so that a surface has no holes at this resolution.
@@ -152,31 +165,18 @@ Ingested ingest_cloud(PointCloud cloud, const ParseOptions&) {
         out.frames = std::make_unique<MemoryStream>(intrinsics, std::move(frames));
         return out;
     }
-    if (out.cloud.has_viewpoint) out.viewpoints = {out.cloud.viewpoint};
-    std::vector<DepthFrame> frames;
-    geometry::virtual_frames(out.cloud, spacing, virtual_positions, intrinsics, frames);
-    if (frames.empty()) {
-        out.notes.push_back(
-            "No free space could be seen from inside of the cloud; nothing was carved.");
-        return out;
-    }
-    if (out.viewpoints.empty() && out.cloud.nx.empty()) {
-        for (const DepthFrame& f : frames) out.viewpoints.push_back(position(f));
-        out.viewpoint_of_point = seen_from(out.cloud, intrinsics, frames, 3 * out.cell_m);
-    }
-    out.frames = std::make_unique<MemoryStream>(intrinsics, std::move(frames));
-    out.notes.push_back(
-        "The cloud has no sensor poses: free space was estimated from viewpoints inside of it, and "
-        "is less "
-        "certain than from depth frames.");
+    const auto scan = geometry::find_single_scan(
+        out.cloud, out.cloud.has_viewpoint ? out.cloud.viewpoint : Vec3{0, 0, 0});
+    look_from_free_places(device, scan, out);
     return out;
 }
 
-Ingested ingest(const std::filesystem::path& input, const ParseOptions& options) {
+Ingested ingest(device::Device& device, const std::filesystem::path& input,
+                const ParseOptions& options) {
     if (options.progress) options.progress("ingest", 0);
     if (io::looks_like_sequence(input))
         return ingest_frames(io::FrameSequence::open(input), options);
-    return ingest_cloud(io::read_cloud(input), options);
+    return ingest_cloud(device, io::read_cloud(input), options);
 }
 
 }  // namespace topple

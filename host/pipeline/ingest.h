@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "device/device.h"
 #include "topple/input.h"
 #include "topple/parse.h"
 
@@ -32,7 +33,8 @@ struct Ingested {
     std::vector<std::string> notes;
 };
 
-Ingested ingest(const std::filesystem::path& input, const ParseOptions& options);
-Ingested ingest_cloud(PointCloud cloud, const ParseOptions& options);
+Ingested ingest(device::Device& device, const std::filesystem::path& input,
+                const ParseOptions& options);
+Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options);
 
 }  // namespace topple

@@ -77,7 +77,8 @@ ParseResult parse_ingested(device::Device& device, const Ingested& input,
     scene.friction = options.friction;
     scene.notes.insert(scene.notes.end(), input.notes.begin(), input.notes.end());
 
-    GeometryStage geometry = find_primitives(device, input, options, stage);             // 2.1
+    GeometryStage geometry = find_primitives(device, input, options, stage);  // 2.1
+    if (!geometry.frame.note.empty()) scene.notes.push_back(geometry.frame.note);
     VoxelStage voxels = make_solids(device, input, geometry, voxel_m, stage);            // 2.2
     const ObjectStage objects = find_objects(device, geometry, voxels, options, stage);  // 3, 4
     const SafetyStage safety =
@@ -119,11 +120,11 @@ void check_options(const ParseOptions& o) {
 
 ParseResult parse(device::Device& device, const std::filesystem::path& input,
                   const ParseOptions& options) {
-    return run(device, input.string(), options, [&] { return ingest(input, options); });
+    return run(device, input.string(), options, [&] { return ingest(device, input, options); });
 }
 
 ParseResult parse(device::Device& device, const PointCloud& cloud, const ParseOptions& options) {
-    return run(device, cloud.source, options, [&] { return ingest_cloud(cloud, options); });
+    return run(device, cloud.source, options, [&] { return ingest_cloud(device, cloud, options); });
 }
 
 }  // namespace topple

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "geometry/surfels.h"
+
+namespace topple::geometry {
+
+// The space around a scene in coarse cubic cells, to find places in that a sensor could have stood
+// at. Input frame, metres.
+class FreePlaces {
+  public:
+    // Cells of a 48th of the scene's longest side, or three surfels where that is more, with a
+    // margin on all sides to look in from. Surfels of the outer thousandth on each side don't
+    // count.
+    explicit FreePlaces(const Surfels& surfels);
+
+    double cell_m() const { return cell_m_; }
+    double longest_m() const;  // longest side of the grid
+    // Cells that something may stand in: two steps from anything occupied. For each its middle.
+    std::size_t size() const { return middle_.size(); }
+    const Vec3& middle(std::size_t place) const { return middle_[place]; }
+
+    // Marks places that are known to be free: only these are chosen from then on.
+    void set_free(std::size_t place) { free_[place] = true; }
+    bool is_free(std::size_t place) const { return free_[place]; }
+
+    // The place with the most room around it that sees the most of the scene around it, far from
+    // those chosen before; size() where there is none left. `anywhere`: also of places that are
+    // not known to be free.
+    std::size_t choose(bool anywhere);
+    // Places near this one are not chosen again.
+    void leave_out(const Vec3& chosen);
+
+  private:
+    void occupy(const Surfels& surfels);
+    void find_places();
+    double enclosure(const std::array<int, 3>& from) const;
+    bool inside(const std::array<int, 3>& c) const;
+    std::size_t at(const std::array<int, 3>& c) const;
+
+    Vec3 low_{};
+    double cell_m_ = 0;
+    std::array<int, 3> size_{};
+    std::vector<bool> occupied_;
+    std::vector<Vec3> middle_;       // of each place
+    std::vector<double> clearance_;  // steps along the axes to the nearest occupied cell, metres
+    std::vector<double> enclosure_;  // share of 26 directions in which something is seen
+    std::vector<double> apart_;      // from the nearest chosen one
+    std::vector<bool> free_;
+};
+
+}  // namespace topple::geometry

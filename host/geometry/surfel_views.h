@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "device/native/thread_pool.h"
+#include "geometry/surfels.h"
+
+namespace topple::geometry {
+
+// What is seen from one place in all directions: six square images of 90 degrees, along +x, -x, +y,
+// -y, +z, -z of the input's frame. Image 2 f + s looks along axis f (negative for s = 1); its
+// columns run along axis (f + 1) % 3, reversed for s = 1, its rows along axis (f + 2) % 3.
+struct CubeView {
+    static constexpr std::uint32_t side = 320;
+    static constexpr double focal = side / 2.0, centre = (side - 1) / 2.0;
+    static constexpr std::uint32_t nothing = 0xffffffff;
+
+    Vec3 eye{};
+    // Of each pixel, row by row: the nearest surfel, and its depth along the image's axis, metres.
+    std::array<std::vector<std::uint32_t>, 6> surfel;
+    std::array<std::vector<float>, 6> depth;
+
+    // The pixel of a point in one image, and its depth there.
+    struct Pixel {
+        std::size_t index = 0;
+        double depth = 0;
+        bool inside = false;
+    };
+    Pixel pixel_of(std::size_t image, const Vec3& point) const;
+    // The image that the point lies in.
+    std::size_t image_of(const Vec3& point) const;
+    // Camera to world of one image; x right, y down, z forward.
+    Mat4 pose(std::size_t image) const;
+};
+
+// Draws surfels as discs in their planes, wide enough to leave no gaps between neighbours; those
+// without a normal as discs across the line of sight.
+CubeView view_surfels(const Surfels& surfels, const Vec3& eye, device::ThreadPool& pool);
+
+}  // namespace topple::geometry

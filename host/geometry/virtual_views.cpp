@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+#include "geometry/virtual_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "geometry/free_places.h"
+#include "geometry/surfel_views.h"
+
+namespace topple::geometry {
+namespace {
+
+constexpr std::uint32_t no_eye = 0xffffffff;
+// A surfel's side shows where it is seen no more obliquely than this (cosine), and is known to be
+// seen from behind from here on.
+constexpr double side_cos = 0.25, behind_cos = 0.1;
+// Rougher than this share of its cell, a surfel may be both faces of a thin board, or an edge.
+constexpr double two_sided_cells = 0.25;
+// Places tried as the first, and the share of surfels that must face it.
+constexpr unsigned first_tries = 8;
+constexpr double least_facing = 0.5;
+
+class Looking {
+  public:
+    Looking(const Surfels& surfels, const VirtualViewOptions& options, device::ThreadPool& pool)
+        : s_(surfels), pool_(pool), places_(surfels), side_(surfels.size(), 0) {
+        if (options.sides_known) know_sides();
+        out_.eye_of_surfel.assign(surfels.size(), no_eye);
+        out_.intrinsics = {CubeView::side,
+                           CubeView::side,
+                           CubeView::focal,
+                           CubeView::focal,
+                           CubeView::centre,
+                           CubeView::centre,
+                           1000};
+        // No depth within the grid is longer than its diagonal.
+        out_.intrinsics.depth_scale = std::min(10000.0, 65535 / (2 * places_.longest_m()));
+    }
+
+    void look_around(const VirtualViewOptions& options) {
+        for (const Vec3& eye : options.known_eyes) look(view_surfels(s_, eye, pool_));
+        if (options.known_eyes.empty()) look_first(options.sides_known);
+        while (!out_.eyes.empty() && out_.eyes.size() < options.eyes) {
+            const std::size_t place = places_.choose(false);
+            if (place == places_.size()) break;
+            look(view_surfels(s_, places_.middle(place), pool_));
+        }
+    }
+
+    VirtualViews finish() {
+        if (out_.eyes.empty()) {
+            out_.eye_of_surfel.clear();
+            return std::move(out_);
+        }
+        spread_sides();
+        for (std::size_t i = 0; i < s_.size(); ++i) {
+            if (out_.eye_of_surfel[i] == no_eye) out_.eye_of_surfel[i] = nearest_eye(i);
+        }
+        return std::move(out_);
+    }
+
+  private:
+    bool has_normal(std::size_t i) const { return s_.nx[i] != 0 || s_.ny[i] != 0 || s_.nz[i] != 0; }
+    void know_sides() {
+        for (std::size_t i = 0; i < s_.size(); ++i) side_[i] = has_normal(i) ? 1 : 0;
+    }
+    // Cosine between the surfel's normal and the direction to the eye.
+    double facing(std::size_t i, const Vec3& eye) const {
+        const Vec3 d{eye[0] - s_.x[i], eye[1] - s_.y[i], eye[2] - s_.z[i]};
+        const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        return length > 0 ? (s_.nx[i] * d[0] + s_.ny[i] * d[1] + s_.nz[i] * d[2]) / length : 0;
+    }
+    bool one_sided(std::size_t i) const {
+        return has_normal(i) && s_.roughness_m[i] <= two_sided_cells * s_.cell_m;
+    }
+    bool from_behind(std::size_t i, const Vec3& eye) const {
+        return one_sided(i) && side_[i] * facing(i, eye) < -behind_cos;
+    }
+
+    // Share of the seen surfels with a side that face the eye.
+    double share_facing(const CubeView& view) const {
+        std::size_t front = 0, all = 0;
+        for (const auto& image : view.surfel) {
+            for (const std::uint32_t i : image) {
+                if (i == CubeView::nothing || !one_sided(i) || side_[i] == 0) continue;
+                ++all;
+                front += side_[i] * facing(i, view.eye) > 0;
+            }
+        }
+        return all > 0 ? static_cast<double>(front) / static_cast<double>(all) : 0;
+    }
+
+    void look_first(bool sides_known) {
+        std::optional<CubeView> best;
+        for (unsigned n = 0; n < first_tries; ++n) {
+            const std::size_t place = places_.choose(true);
+            if (place == places_.size()) break;
+            CubeView view = view_surfels(s_, places_.middle(place), pool_);
+            const bool fits = !sides_known || share_facing(view) >= least_facing;
+            if (fits || !best) best = std::move(view);
+            if (fits) return look(*best);
+            places_.leave_out(places_.middle(place));
+        }
+        if (!best) return;
+        std::fill(side_.begin(), side_.end(), std::int8_t{0});
+        look(*best);
+    }
+
+    void look(const CubeView& view) {
+        const auto eye = static_cast<std::uint32_t>(out_.eyes.size());
+        out_.eyes.push_back(view.eye);
+        for (const auto& image : view.surfel) {
+            for (const std::uint32_t i : image) {
+                if (i == CubeView::nothing || out_.eye_of_surfel[i] != no_eye) continue;
+                const double f = facing(i, view.eye);
+                if (has_normal(i) && std::abs(f) < side_cos) continue;
+                if (side_[i] == 0) side_[i] = f > 0 ? 1 : -1;
+                if (side_[i] * f >= 0) out_.eye_of_surfel[i] = eye;
+            }
+        }
+        for (std::size_t image = 0; image < 6; ++image) add_frame(view, image);
+        for (std::size_t p = 0; p < places_.size(); ++p) {
+            if (!places_.is_free(p) && sees_through(view, places_.middle(p))) places_.set_free(p);
+        }
+        places_.leave_out(view.eye);
+    }
+
+    void add_frame(const CubeView& view, std::size_t image) {
+        DepthFrame frame;
+        frame.camera_to_world = view.pose(image);
+        frame.depth.assign(view.depth[image].size(), 0);
+        bool any = false;
+        for (std::size_t at = 0; at < frame.depth.size(); ++at) {
+            const std::uint32_t i = view.surfel[image][at];
+            if (i == CubeView::nothing || from_behind(i, view.eye)) continue;
+            const double stored = std::round(view.depth[image][at] * out_.intrinsics.depth_scale);
+            if (!(stored <= 65535)) continue;
+            frame.depth[at] = static_cast<std::uint16_t>(std::max(stored, 1.0));
+            any = true;
+        }
+        if (any) out_.frames.push_back(std::move(frame));
+    }
+
+    bool sees_through(const CubeView& view, const Vec3& point) const {
+        const std::size_t image = view.image_of(point);
+        const CubeView::Pixel pixel = view.pixel_of(image, point);
+        if (!pixel.inside) return false;
+        const std::uint32_t i = view.surfel[image][pixel.index];
+        return i != CubeView::nothing && !from_behind(i, view.eye) &&
+               pixel.depth + places_.cell_m() < view.depth[image][pixel.index];
+    }
+
+    // From the surfels whose side is known to their neighbours, nearest first.
+    void spread_sides() {
+        std::vector<std::uint32_t> queue;
+        for (std::size_t i = 0; i < s_.size(); ++i) {
+            if (side_[i] != 0) queue.push_back(static_cast<std::uint32_t>(i));
+        }
+        for (std::size_t at = 0; at < queue.size(); ++at) {
+            const std::uint32_t i = queue[at];
+            for (std::uint32_t k = s_.neighbour_first[i]; k < s_.neighbour_first[i + 1]; ++k) {
+                const std::uint32_t j = s_.neighbours[k];
+                if (side_[j] != 0 || !has_normal(j)) continue;
+                const float along = s_.nx[i] * s_.nx[j] + s_.ny[i] * s_.ny[j] + s_.nz[i] * s_.nz[j];
+                side_[j] = static_cast<std::int8_t>(along < 0 ? -side_[i] : side_[i]);
+                queue.push_back(j);
+            }
+        }
+    }
+
+    // The nearest eye on the surfel's side; the nearest of all where none is.
+    std::uint32_t nearest_eye(std::size_t i) const {
+        std::uint32_t best = 0;
+        double best_distance = std::numeric_limits<double>::infinity();
+        bool best_fits = false;
+        for (std::size_t e = 0; e < out_.eyes.size(); ++e) {
+            const Vec3& eye = out_.eyes[e];
+            const bool fits = side_[i] * facing(i, eye) >= 0;
+            const double distance =
+                std::hypot(eye[0] - s_.x[i], eye[1] - s_.y[i], eye[2] - s_.z[i]);
+            if (fits == best_fits ? distance >= best_distance : !fits) continue;
+            best = static_cast<std::uint32_t>(e);
+            best_distance = distance;
+            best_fits = fits;
+        }
+        return best;
+    }
+
+    const Surfels& s_;
+    device::ThreadPool& pool_;
+    FreePlaces places_;
+    // 1: the normal points to the free side, -1: away from it, 0: not known.
+    std::vector<std::int8_t> side_;
+    VirtualViews out_;
+};
+
+}  // namespace
+
+VirtualViews virtual_views(const Surfels& surfels, const VirtualViewOptions& options,
+                           device::ThreadPool& pool) {
+    if (surfels.size() == 0) return {};
+    Looking looking(surfels, options, pool);
+    looking.look_around(options);
+    return looking.finish();
+}
+
+}  // namespace topple::geometry

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "device/native/thread_pool.h"
+#include "geometry/surfels.h"
+#include "topple/input.h"
+
+namespace topple::geometry {
+
+struct VirtualViewOptions {
+    std::vector<Vec3> known_eyes;  // where a sensor is known to have been
+    unsigned eyes = 12;            // places to look from, the known ones among them
+    bool sides_known = false;      // the surfels' normals point to the side that was free
+};
+
+// Depth images as a sensor would have taken them from free places of the scene.
+struct VirtualViews {
+    Intrinsics intrinsics;
+    std::vector<DepthFrame> frames;
+    std::vector<Vec3> eyes;
+    // For each surfel an eye on the side from which it is seen; empty where no eye was found.
+    std::vector<std::uint32_t> eye_of_surfel;
+};
+
+// For a cloud without poses. The first place is the one with the most free space around it that
+// sees much of the scene; the others are chosen among what the earlier ones saw to be free, inside
+// of a room or around a single thing. What a place sees for the first time faces it; a surface that
+// is later seen from behind ends no ray, since the way to it leads through what nobody scanned.
+// Where sides are known, the first place must see most surfaces from the front; where none does,
+// the sides are not believed.
+VirtualViews virtual_views(const Surfels& surfels, const VirtualViewOptions& options,
+                           device::ThreadPool& pool);
+
+}  // namespace topple::geometry

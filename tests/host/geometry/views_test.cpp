@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "device/devices.h"
+#include "geometry/single_scan.h"
+#include "geometry/virtual_views.h"
+#include "geometry_random.h"
+
+namespace topple::geometry {
+namespace {
+
+void add(PointCloud& cloud, const Vec3& p) {
+    cloud.x.push_back(static_cast<float>(p[0]));
+    cloud.y.push_back(static_cast<float>(p[1]));
+    cloud.z.push_back(static_cast<float>(p[2]));
+}
+
+// What a camera at the origin sees: a wall two metres ahead and a ball before it, z ahead.
+PointCloud scan() {
+    PointCloud cloud;
+    for (int v = -100; v < 100; ++v) {
+        for (int u = -140; u < 140; ++u) {
+            const double x = u / 250.0, y = v / 250.0;
+            const double a = x * x + y * y + 1, b = 1.2, c = 1.2 * 1.2 - 0.2 * 0.2;
+            const double inside = b * b - a * c;
+            const double z = inside > 0 ? (b - std::sqrt(inside)) / a : 2;
+            add(cloud, {x * z, y * z, z});
+        }
+    }
+    return cloud;
+}
+
+TEST(SingleScan, IsFoundByWhatItHides) {
+    const PointCloud cloud = scan();
+    const auto found = find_single_scan(cloud, {0, 0, 0});
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->spacing, 1 / 250.0, 0.001);
+    ASSERT_TRUE(found->up);
+    EXPECT_EQ(*found->up, (Vec3{0, -1, 0}));
+    EXPECT_FALSE(find_single_scan(cloud, {0.6, 0, 0}));  // the ball hides the wall it did not
+    PointCloud away = cloud;                             // normals that face away from the origin
+    away.nx.assign(cloud.size(), 0);
+    away.ny.assign(cloud.size(), 0);
+    away.nz.assign(cloud.size(), 1);
+    EXPECT_FALSE(find_single_scan(away, {0, 0, 0}));
+    EXPECT_FALSE(find_single_scan({}, {0, 0, 0}));
+}
+
+class Views : public ::testing::Test {
+  protected:
+    // A closed room of 4 x 3 x 2.5 m; with_box: in it the top and four sides of a box on the floor
+    // whose inside nobody can have seen.
+    Surfels room(bool with_box) {
+        PointCloud cloud;
+        test::Random random(1);
+        const auto face = [&](Vec3 low, const Vec3& high, std::size_t axis, double at) {
+            const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
+            const double area = (high[a] - low[a]) * (high[b] - low[b]);
+            for (int n = 0; n < static_cast<int>(area * 4000); ++n) {
+                Vec3 p{};
+                p[a] = low[a] + random.uniform() * (high[a] - low[a]);
+                p[b] = low[b] + random.uniform() * (high[b] - low[b]);
+                p[axis] = at;
+                add(cloud, p);
+            }
+        };
+        const Vec3 size{4, 3, 2.5};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            face({0, 0, 0}, size, axis, 0);
+            face({0, 0, 0}, size, axis, size[axis]);
+        }
+        if (with_box) {
+            face(box_low, box_high, 2, box_high[2]);
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                face(box_low, box_high, axis, box_low[axis]);
+                if (axis == 0) face(box_low, box_high, axis, box_high[axis]);
+            }
+        }
+        return make_surfels(*device, cloud, 0.05, {}, {});
+    }
+    static constexpr Vec3 box_low{1.5, 2.1, 0}, box_high{2.5, 3, 0.8};
+    std::unique_ptr<device::Device> device = device::open_native();
+    device::ThreadPool pool{2};
+};
+
+// Its views are closed, and every ray ends on a wall.
+TEST_F(Views, NoRayLeaksFromARoom) {
+    const VirtualViews views = virtual_views(room(false), {.known_eyes = {}, .eyes = 3}, pool);
+    ASSERT_EQ(views.frames.size(), 18u);
+    const Intrinsics& k = views.intrinsics;
+    std::size_t pixels = 0, leaks = 0, wrong = 0;
+    for (const DepthFrame& frame : views.frames) {
+        const Mat4& m = frame.camera_to_world;
+        for (std::uint32_t v = 0; v < k.height; ++v) {
+            for (std::uint32_t u = 0; u < k.width; ++u) {
+                ++pixels;
+                const double z = frame.depth[v * k.width + u] / k.depth_scale;
+                leaks += z == 0;
+                if (z == 0) continue;
+                double off = 1;
+                const Vec3 size{4, 3, 2.5};
+                for (std::size_t a = 0; a < 3; ++a) {
+                    const double p = (m[4 * a] * (u - k.cx) / k.fx +
+                                      m[4 * a + 1] * (v - k.cy) / k.fy + m[4 * a + 2]) *
+                                         z +
+                                     m[4 * a + 3];
+                    off = std::min({off, std::abs(p), std::abs(p - size[a])});
+                }
+                wrong += off > 0.06;
+            }
+        }
+    }
+    EXPECT_LT(static_cast<double>(leaks), 0.01 * static_cast<double>(pixels));
+    EXPECT_LT(static_cast<double>(wrong), 0.01 * static_cast<double>(pixels));
+}
+
+TEST_F(Views, EyesStayInFreeSpaceAndFaceWhatTheySee) {
+    const Surfels s = room(true);
+    const VirtualViews views = virtual_views(s, {}, pool);
+    EXPECT_EQ(views.eyes.size(), 12u);
+    for (const Vec3& eye : views.eyes) {
+        const bool in_box = eye[0] > box_low[0] && eye[0] < box_high[0] && eye[1] > box_low[1] &&
+                            eye[2] < box_high[2];
+        EXPECT_FALSE(in_box);
+        EXPECT_TRUE(eye[0] > 0 && eye[0] < 4 && eye[1] > 0 && eye[1] < 3 && eye[2] > 0 &&
+                    eye[2] < 2.5);
+    }
+    ASSERT_EQ(views.eye_of_surfel.size(), s.size());
+    EXPECT_TRUE(virtual_views({}, {}, pool).frames.empty());
+}
+
+// A plane with normals, looked at from both sides: only what it faces is taken for free.
+TEST_F(Views, WhatIsSeenFromBehindEndsNoRay) {
+    PointCloud cloud;
+    for (int i = 0; i < 100; ++i) {
+        for (int j = 0; j < 100; ++j) {
+            add(cloud, {i * 0.02, j * 0.02, 0});
+            cloud.nx.push_back(0);
+            cloud.ny.push_back(0);
+            cloud.nz.push_back(1);
+        }
+    }
+    const Surfels s = make_surfels(*device, cloud, 0.05, {}, {});
+    const VirtualViews above =
+        virtual_views(s, {.known_eyes = {{1, 1, 1}}, .eyes = 1, .sides_known = true}, pool);
+    EXPECT_FALSE(above.frames.empty());
+    const VirtualViews below =
+        virtual_views(s, {.known_eyes = {{1, 1, -1}}, .eyes = 1, .sides_known = true}, pool);
+    EXPECT_TRUE(below.frames.empty());
+}
+
+}  // namespace
+}  // namespace topple::geometry
