@@ -13,18 +13,64 @@ namespace {
 // Regions joined so far. The root of a set is its lowest region.
 class Merger {
   public:
-    Merger(const Surfels& surfels, const Regions& regions, const MergeOptions& options)
+    Merger(const Surfels& surfels, const FlushCuts& cuts, const FreeSpace& free,
+           const MergeOptions& options)
         : s_(surfels),
-          r_(regions),
+          cuts_(cuts),
+          free_(free),
+          r_(cuts.regions),
           options_(options),
-          samples_(sample_regions(surfels, regions, options)),
-          parent_(regions.regions.size()),
-          members_(regions.regions.size()) {
+          samples_(sample_regions(surfels, r_, options)),
+          parent_(r_.regions.size()),
+          members_(r_.regions.size()) {
         std::iota(parent_.begin(), parent_.end(), 0);
         for (std::size_t k = 0; k < members_.size(); ++k)
             members_[k].assign(1, static_cast<std::int32_t>(k));
     }
 
+    void merge_all() {
+        merge_wall_pieces();
+        merge_convex_borders();
+        merge_face_pieces();
+        merge_sides();
+    }
+
+    // The solid of each region: its root.
+    std::vector<std::int32_t> solids() {
+        std::vector<std::int32_t> out;
+        for (std::size_t k = 0; k < parent_.size(); ++k)
+            out.push_back(root(static_cast<std::int32_t>(k)));
+        return out;
+    }
+
+    PrimitiveSet result() {
+        std::vector<std::uint64_t> size(parent_.size(), 0);
+        for (const std::int32_t label : r_.label)
+            if (label >= 0) ++size[static_cast<std::size_t>(root(label))];
+        std::vector<std::int32_t> order;
+        for (std::size_t k = 0; k < size.size(); ++k)
+            if (size[k] > 0) order.push_back(static_cast<std::int32_t>(k));
+        std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+            return size[static_cast<std::size_t>(a)] > size[static_cast<std::size_t>(b)];
+        });
+        PrimitiveSet out;
+        std::vector<std::int32_t> id(size.size(), -1);
+        for (const std::int32_t k : order) {
+            id[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(out.regions.size());
+            auto regions = members_[static_cast<std::size_t>(k)];
+            std::sort(regions.begin(), regions.end());
+            const bool single = regions.size() == 1;
+            const int degree = r_.regions[static_cast<std::size_t>(k)].model.degree;
+            out.model.push_back(!single ? "merged" : degree == 1 ? "plane" : "quadric");
+            out.regions.push_back(std::move(regions));
+        }
+        out.label.resize(r_.label.size(), -1);
+        for (std::size_t i = 0; i < r_.label.size(); ++i)
+            if (r_.label[i] >= 0) out.label[i] = id[static_cast<std::size_t>(root(r_.label[i]))];
+        return out;
+    }
+
+  private:
     void merge_convex_borders() {
         struct Candidate {
             double confidence;
@@ -38,7 +84,9 @@ class Merger {
             const double side = std::sqrt(static_cast<double>(smaller));
             const double length = static_cast<double>(border.pairs.size()) / side;
             if (length < options_.border_share) continue;
-            const double share = inside_share(s_, r_, border, samples_, options_);
+            if (cuts_.parted(a, b)) continue;
+            const double share = inside_share(
+                s_, r_, border, {samples_[a].tolerance_m, samples_[b].tolerance_m}, options_);
             if (share <= options_.delta2) continue;
             candidates.push_back({share * double(border.pairs.size()), border.a, border.b});
         }
@@ -73,34 +121,6 @@ class Merger {
         }
     }
 
-    PrimitiveSet result() {
-        std::vector<std::uint64_t> size(parent_.size(), 0);
-        for (const std::int32_t label : r_.label)
-            if (label >= 0) ++size[static_cast<std::size_t>(root(label))];
-        std::vector<std::int32_t> order;
-        for (std::size_t k = 0; k < size.size(); ++k)
-            if (size[k] > 0) order.push_back(static_cast<std::int32_t>(k));
-        std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-            return size[static_cast<std::size_t>(a)] > size[static_cast<std::size_t>(b)];
-        });
-        PrimitiveSet out;
-        std::vector<std::int32_t> id(size.size(), -1);
-        for (const std::int32_t k : order) {
-            id[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(out.regions.size());
-            auto regions = members_[static_cast<std::size_t>(k)];
-            std::sort(regions.begin(), regions.end());
-            const bool single = regions.size() == 1;
-            const int degree = r_.regions[static_cast<std::size_t>(k)].model.degree;
-            out.model.push_back(!single ? "merged" : degree == 1 ? "plane" : "quadric");
-            out.regions.push_back(std::move(regions));
-        }
-        out.label.resize(r_.label.size(), -1);
-        for (std::size_t i = 0; i < r_.label.size(); ++i)
-            if (r_.label[i] >= 0) out.label[i] = id[static_cast<std::size_t>(root(r_.label[i]))];
-        return out;
-    }
-
-  private:
     std::int32_t root(std::int32_t k) {
         while (parent_[static_cast<std::size_t>(k)] != k) {
             auto& up = parent_[static_cast<std::size_t>(k)];
@@ -122,9 +142,11 @@ class Merger {
     double region_concavity(std::int32_t a, std::int32_t b) {
         const auto key = std::minmax(a, b);
         const auto [at, fresh] = concavity_.try_emplace(key, 0.0);
-        if (fresh)
-            at->second = concavity(samples_[static_cast<std::size_t>(key.first)],
-                                   samples_[static_cast<std::size_t>(key.second)]);
+        if (fresh) {
+            const auto i = static_cast<std::size_t>(key.first),
+                       j = static_cast<std::size_t>(key.second);
+            at->second = cuts_.parted(i, j) ? 1 : concavity(samples_[i], samples_[j], free_);
+        }
         return at->second;
     }
 
@@ -143,6 +165,8 @@ class Merger {
     }
 
     const Surfels& s_;
+    const FlushCuts& cuts_;
+    const FreeSpace& free_;
     const Regions& r_;
     const MergeOptions& options_;
     std::vector<RegionSamples> samples_;
@@ -153,14 +177,20 @@ class Merger {
 
 }  // namespace
 
-PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const Vec3&) {
+PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const Vec3& up,
+                          const FreeSpace& free) {
     const MergeOptions options;
-    Merger merger(surfels, regions, options);
-    merger.merge_wall_pieces();
-    merger.merge_convex_borders();
-    merger.merge_face_pieces();
-    merger.merge_sides();
-    return merger.result();
+    FlushCuts cuts;
+    cuts.regions = regions;
+    cut_flush_faces(surfels, up, {}, options, cuts);
+    // What the faces of a merged solid tell of one another may part some more.
+    for (;;) {
+        const std::uint32_t before = cuts.count;
+        Merger merger(surfels, cuts, free, options);
+        merger.merge_all();
+        cut_flush_faces(surfels, up, merger.solids(), options, cuts);
+        if (cuts.count == before) return merger.result();
+    }
 }
 
 }  // namespace topple::geometry

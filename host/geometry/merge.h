@@ -2,9 +2,11 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "geometry/free_space.h"
 #include "geometry/segmentation.h"
 
 // The steps of merge_convex() (paper, 2.1.2).
@@ -39,6 +41,17 @@ struct MergeOptions {
     // metres; how far before the face that thing begins and how far behind it nothing may be,
     // cells.
     double gap_m = 0.12, gap_cover_cells = 3;
+    // Cutting faces of different solids that happen to be flush: the least part, in surfels; how
+    // far in front of a face a surfel can't belong to its solid, in cells beyond the noise; the
+    // cosine above which two faces are no crease; how many times its own surfels a face may have in
+    // front of it; the longest cut, as a multiple of the side of a square as large as the smaller
+    // part, unless that part is so many cells thick and this share of it is in front of the face;
+    // how much shorter a level cut counts;
+    // what a surfel that nothing speaks against costs when it is cut off, in cells of cut times the
+    // side of a square as large as the whole face.
+    std::uint32_t piece_min = 12;
+    double front_cells = 1.5, crease_cos = 0.7, front_share = 4, neck_max = 1.5, thickness_min = 4,
+           proven_min = 0.8, level_bias = 0.15, pull = 2;
 };
 
 // What a region looks like from outside: evenly drawn points moved onto the model, with its
@@ -58,11 +71,31 @@ struct Border {
 std::vector<Border> find_borders(const Surfels& surfels, const Regions& regions);
 
 // Share of the points on segments across the border that lie inside both models (Eq. 3).
+// tolerance_m: of the regions a and b, beyond what noise moves a point.
 double inside_share(const Surfels& surfels, const Regions& regions, const Border& border,
-                    const std::vector<RegionSamples>& samples, const MergeOptions& options);
+                    const std::array<double, 2>& tolerance_m, const MergeOptions& options);
 
-// Share of point pairs of two regions of which one lies in front of the other's surface.
-double concavity(const RegionSamples& a, const RegionSamples& b);
+// Regions with their flush faces cut. sides: for each region the cuts that made it, and which side
+// of each it lies on.
+struct FlushCuts {
+    Regions regions;
+    std::vector<std::vector<std::pair<std::uint32_t, bool>>> sides;
+    std::uint32_t count = 0;
+    // Whether a cut parts two regions.
+    bool parted(std::size_t a, std::size_t b) const;
+};
+
+// The side of a chair's back, the edge of its seat and its legs often lie in one plane, as one
+// region: not convex, so it can't be a face of one solid. Where a plane meets a solid in a convex
+// edge and yet goes on in front of a face of it, it is cut between the two along its shortest neck.
+// solid: which solid each region was merged to, or empty where nothing was merged yet: then each
+// face stands for itself.
+void cut_flush_faces(const Surfels& surfels, const Vec3& up, const std::vector<std::int32_t>& solid,
+                     const MergeOptions& options, FlushCuts& cuts);
+
+// Share of point pairs of two regions that no convex solid has both on its surface: one lies in
+// front of the other's surface, or free space lies between them.
+double concavity(const RegionSamples& a, const RegionSamples& b, const FreeSpace& free);
 
 // Pairs of regions that are the two sides of something thin, with the share of the smaller one's
 // samples behind which, within board_m, the other's surface faces the opposite way.

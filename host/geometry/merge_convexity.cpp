@@ -118,7 +118,7 @@ std::vector<Border> find_borders(const Surfels& surfels, const Regions& regions)
 }
 
 double inside_share(const Surfels& surfels, const Regions& regions, const Border& border,
-                    const std::vector<RegionSamples>& samples, const MergeOptions& options) {
+                    const std::array<double, 2>& tolerance_m, const MergeOptions& options) {
     const auto a = static_cast<std::size_t>(border.a), b = static_cast<std::size_t>(border.b);
     const AlgebraicModel& fa = regions.regions[a].model;
     const AlgebraicModel& fb = regions.regions[b].model;
@@ -138,23 +138,31 @@ double inside_share(const Surfels& surfels, const Regions& regions, const Border
             const double t = k / (options.points_per_segment + 1.0);
             const Eigen::Vector3d r = p + t * (q - p);
             ++all;
-            inside += distance(fa, r) < 0.5 * samples[a].tolerance_m &&
-                      distance(fb, r) < 0.5 * samples[b].tolerance_m;
+            inside +=
+                distance(fa, r) < 0.5 * tolerance_m[0] && distance(fb, r) < 0.5 * tolerance_m[1];
         }
     }
     return all ? static_cast<double>(inside) / static_cast<double>(all) : 0;
 }
 
-double concavity(const RegionSamples& a, const RegionSamples& b) {
+double concavity(const RegionSamples& a, const RegionSamples& b, const FreeSpace& free) {
     const double tolerance = std::max(a.tolerance_m, b.tolerance_m);
-    std::uint64_t in_front = 0;
+    constexpr std::size_t lines = 12;  // points of each region that lines are drawn between
+    const std::size_t step_a = a.points.size() / lines + 1, step_b = b.points.size() / lines + 1;
+    std::uint64_t in_front = 0, tried = 0, apart = 0;
     for (std::size_t i = 0; i < a.points.size(); ++i)
         for (std::size_t j = 0; j < b.points.size(); ++j) {
             const Eigen::Vector3d d = b.points[j] - a.points[i];
-            in_front += a.normals[i].dot(d) > tolerance || b.normals[j].dot(d) < -tolerance;
+            const bool front = a.normals[i].dot(d) > tolerance || b.normals[j].dot(d) < -tolerance;
+            in_front += front;
+            if (i % step_a != 0 || j % step_b != 0) continue;
+            ++tried;
+            apart += front || free.between(a.points[i], b.points[j]);
         }
     const double all = static_cast<double>(a.points.size() * b.points.size());
-    return all > 0 ? static_cast<double>(in_front) / all : 0;
+    if (all == 0) return 0;
+    return std::max(static_cast<double>(in_front) / all,
+                    static_cast<double>(apart) / static_cast<double>(tried));
 }
 
 }  // namespace topple::geometry

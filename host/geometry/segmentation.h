@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "device/native/thread_pool.h"
+#include "geometry/free_space.h"
 #include "geometry/surfels.h"
 
 namespace topple::geometry {
@@ -38,12 +39,16 @@ Regions split(const Surfels& surfels, device::ThreadPool& threads);
 Regions split(const Surfels& surfels);  // on threads of its own, one per core
 
 // Convexly connected regions merged into primitives (paper, 2.1.2, Eq. 3). label: primitive of each
-// surfel, -1 for none; ids by falling size. model: "plane" | "quadric" | "merged".
+// surfel, -1 for none; ids by falling size. model: "plane" | "quadric" | "merged". Planes that
+// belong to several solids whose faces happen to be flush are cut first: the regions of a primitive
+// are counted after that. up: towards which things stand on one another, unit. free: where the
+// sensor looked through.
 struct PrimitiveSet {
     std::vector<std::int32_t> label;
     std::vector<std::string> model;
     std::vector<std::vector<std::int32_t>> regions;  // of each primitive
 };
-PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const Vec3& up);
+PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const Vec3& up,
+                          const FreeSpace& free = {});
 
 }  // namespace topple::geometry

@@ -31,8 +31,10 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
     const geometry::Regions regions =
         stage("splitting", [&] { return geometry::split(g.surfels, device.threads()); });
     g.primitives = stage("merging", [&] {
+        const geometry::FreeSpace free(g.surfels, input.cloud, input.viewpoints,
+                                       input.viewpoint_of_point);
         geometry::PrimitiveSet primitives =
-            geometry::merge_convex(g.surfels, regions, g.frame.axes[2]);
+            geometry::merge_convex(g.surfels, regions, g.frame.axes[2], free);
         geometry::absorb_fragments(g.surfels, least_surfels, primitives);
         return primitives;
     });

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/surfels.h"
+
+namespace topple::geometry {
+
+// Where the sensor looked through: a coarse grid of the cells that lines of sight crossed on their
+// way to the surfels. It tells merging what no surface shows: that the space under a table is no
+// part of a solid. Input frame, metres.
+class FreeSpace {
+  public:
+    // Nothing is known to be free.
+    FreeSpace() = default;
+
+    // One line of sight for each surfel, of a fixed sample where there are many. Cells with surfels
+    // are not free, and a line through one of them tells nothing: viewpoints may be estimates.
+    // Arguments as for make_surfels; no viewpoints: nothing is known.
+    FreeSpace(const Surfels& surfels, const PointCloud& cloud, std::span<const Vec3> viewpoints,
+              std::span<const std::uint32_t> viewpoint_of_point);
+
+    bool known() const { return !crossed_.empty(); }
+    double cell_m() const { return cell_m_; }
+    // Whether the cell around a point is free.
+    bool at(const Eigen::Vector3d& p) const;
+    // Whether the straight line between two points crosses free space.
+    bool between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
+
+  private:
+    std::int64_t index(const Eigen::Vector3d& p) const;  // -1 outside of the grid
+    void cross(const Eigen::Vector3d& eye, const Eigen::Vector3d& p);
+
+    double cell_m_ = 0;
+    Eigen::Vector3d low_ = Eigen::Vector3d::Zero();
+    std::array<std::int64_t, 3> size_{};
+    std::vector<std::uint8_t> crossed_;  // lines through each cell, up to the number that counts
+};
+
+}  // namespace topple::geometry

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+
+#include "geometry/algebraic_model.h"
+#include "geometry/merge.h"
+#include "geometry/minimum_cut.h"
+#include "geometry/split.h"
+
+namespace topple::geometry {
+
+namespace {
+
+using Members = std::vector<std::uint32_t>;
+// What is known of a face that meets a solid in a convex edge: the solid lies behind all of its
+// faces. `inside` lie at that edge; `outside` lie in front of another face: they belong to
+// something else.
+struct Contradiction {
+    Members inside, outside;  // places in the list of members
+};
+
+struct Division {
+    Members inside, outside;  // surfels
+    double neck = 0;          // length of the cut over the side of a square of the smaller part
+    double thickness = 0;     // surfels outside over the length of the cut: cells
+};
+
+class Cutter {
+  public:
+    Cutter(const Surfels& surfels, const Vec3& up, const std::vector<std::int32_t>& solid,
+           const MergeOptions& options, FlushCuts& cuts)
+        : s_(surfels),
+          up_(up[0], up[1], up[2]),
+          options_(options),
+          out_(cuts),
+          solid_(solid),
+          members_(cuts.regions.regions.size()),
+          place_(surfels.size(), 0) {
+        for (std::uint32_t i = 0; i < s_.size(); ++i)
+            if (label(i) >= 0) members_[static_cast<std::size_t>(label(i))].push_back(i);
+        for (std::size_t k = 0; k < solid_.size(); ++k) {
+            const auto of = static_cast<std::size_t>(solid_[k]);
+            if (faces_.size() <= of) faces_.resize(of + 1);
+            faces_[of].push_back(k);
+        }
+        stale_.assign(faces_.size(), false);
+    }
+
+    void run() {
+        // Pieces are appended, and come to their turn.
+        for (std::size_t k = 0; k < members_.size(); ++k)
+            while (cut(k)) {
+            }
+    }
+
+  private:
+    std::int32_t label(std::uint32_t i) const { return out_.regions.label[i]; }
+    const Region& region(std::size_t k) const { return out_.regions.regions[k]; }
+    Eigen::Vector3d direction(std::size_t k) const {
+        const auto& c = region(k).model.coefficients;
+        return {c[1], c[2], c[3]};
+    }
+
+    bool cut(std::size_t k) {
+        if (region(k).model.degree != 1 || members_[k].size() < 2 * options_.piece_min)
+            return false;
+        std::optional<Division> best;
+        for (const Contradiction& c : contradictions(k)) {
+            Division d = divide(members_[k], c);
+            if (std::min(d.inside.size(), d.outside.size()) < options_.piece_min) continue;
+            const bool block = d.thickness >= options_.thickness_min &&
+                               static_cast<double>(c.outside.size()) >=
+                                   options_.proven_min * static_cast<double>(d.outside.size());
+            if (d.neck > options_.neck_max && !block) continue;
+            if (!best || d.neck < best->neck) best = std::move(d);
+        }
+        if (best) apply(k, std::move(*best));
+        return best.has_value();
+    }
+
+    // The borders of a face at which it bounds one solid with its neighbour, longest first.
+    std::vector<Border> convex_edges(std::size_t k) const {
+        std::map<std::int32_t, Border> found;
+        for (const std::uint32_t i : members_[k])
+            for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
+                const std::uint32_t j = s_.neighbours[e];
+                if (label(j) < 0 || label(j) == static_cast<std::int32_t>(k)) continue;
+                Border& border = found[label(j)];
+                border.a = static_cast<std::int32_t>(k);
+                border.b = label(j);
+                border.pairs.emplace_back(i, j);
+            }
+        std::vector<Border> out;
+        for (auto& [other, border] : found)
+            if (convex_edge(border)) out.push_back(std::move(border));
+        std::stable_sort(out.begin(), out.end(), [](const Border& x, const Border& y) {
+            return x.pairs.size() > y.pairs.size();
+        });
+        return out;
+    }
+
+    bool convex_edge(const Border& border) const {
+        const auto a = static_cast<std::size_t>(border.a), b = static_cast<std::size_t>(border.b);
+        if (region(b).model.degree != 1 || region(b).surfels < options_.piece_min) return false;
+        if (std::abs(direction(a).dot(direction(b))) > options_.crease_cos) return false;
+        const double side = std::sqrt(static_cast<double>(region(b).surfels));
+        if (static_cast<double>(border.pairs.size()) < options_.border_share * side) return false;
+        return inside_share(s_, out_.regions, border, {tolerance(a), tolerance(b)}, options_) >
+               options_.delta2;
+    }
+
+    double tolerance(std::size_t k) const { return 2 * region(k).residual_m + 0.25 * s_.cell_m; }
+    double reach(std::size_t k) const { return tolerance(k) + options_.front_cells * s_.cell_m; }
+
+    bool same_plane(std::size_t a, std::size_t b) const {
+        if (direction(a).dot(direction(b)) < 0.97) return false;
+        const auto& o = region(b).model.origin;
+        const double off = distance(region(a).model, {o[0], o[1], o[2]});
+        return std::abs(off) < tolerance(a) + tolerance(b);
+    }
+
+    // Whether two neighbours of a face speak of the same solid: as merged before, or as faces in
+    // one plane.
+    bool same_solid(std::size_t a, std::size_t b) const {
+        if (a < solid_.size() && b < solid_.size()) return solid_[a] == solid_[b];
+        return same_plane(a, b);
+    }
+
+    // Whether a face of the solid was cut since: what else is known of it may no longer hold.
+    bool stale(std::size_t k) const {
+        return k < solid_.size() && stale_[static_cast<std::size_t>(solid_[k])];
+    }
+
+    // The faces of the solid that a neighbour belongs to, but `k`.
+    std::vector<std::size_t> faces_with(std::size_t neighbour, std::size_t k) const {
+        if (neighbour >= solid_.size()) return {neighbour};
+        std::vector<std::size_t> out;
+        for (const std::size_t f : faces_[static_cast<std::size_t>(solid_[neighbour])])
+            if (f != k && region(f).model.degree == 1 && region(f).surfels >= options_.piece_min)
+                out.push_back(f);
+        return out;
+    }
+
+    std::vector<Contradiction> contradictions(std::size_t k) {
+        const Members& own = members_[k];
+        for (std::uint32_t m = 0; m < own.size(); ++m) place_[own[m]] = m;
+        const std::vector<Border> edges = convex_edges(k);
+        std::vector<bool> used(edges.size(), false), front(own.size());
+        std::vector<Contradiction> out;
+        for (std::size_t e = 0; e < edges.size(); ++e) {
+            if (used[e] || stale(static_cast<std::size_t>(edges[e].b))) continue;
+            const auto neighbour = static_cast<std::size_t>(edges[e].b);
+            std::fill(front.begin(), front.end(), false);
+            for (const std::size_t f : faces_with(neighbour, k))
+                mark_front(own, f, f == neighbour, front);
+            Contradiction c;
+            for (std::uint32_t m = 0; m < own.size(); ++m)
+                if (front[m]) c.outside.push_back(m);
+            if (c.outside.size() < options_.piece_min) continue;
+            for (std::size_t f = e; f < edges.size(); ++f) {
+                if (!same_solid(neighbour, static_cast<std::size_t>(edges[f].b))) continue;
+                used[f] = true;
+                for (const auto& [i, j] : edges[f].pairs)
+                    if (!front[place_[i]]) c.inside.push_back(place_[i]);
+            }
+            if (!c.inside.empty()) out.push_back(std::move(c));
+        }
+        return out;
+    }
+
+    // A face that is not itself at the edge tells of surfels in front of it only where it is no
+    // scrap beside them.
+    void mark_front(const Members& own, std::size_t f, bool at_edge,
+                    std::vector<bool>& front) const {
+        const AlgebraicModel& plane = region(f).model;
+        const double far = reach(f);
+        std::vector<std::uint32_t> found;
+        for (std::uint32_t m = 0; m < own.size(); ++m)
+            if (distance(plane, position(s_, own[m])) > far) found.push_back(m);
+        if (!at_edge && static_cast<double>(found.size()) >
+                            options_.front_share * static_cast<double>(region(f).surfels))
+            return;
+        for (const std::uint32_t m : found) front[m] = true;
+    }
+
+    // The shortest cut through the face that parts the one from the other: a minimum cut of the
+    // graph of neighbouring surfels, in cells. Level cuts count a little less: things stand on one
+    // another.
+    Division divide(const Members& members, const Contradiction& c) const {
+        // Noise may spread a face over two layers of cells: a surfel counts as the share of a
+        // cell's area that it covers.
+        std::vector<double> area(members.size());
+        for (std::size_t m = 0; m < members.size(); ++m) area[m] = covered(members[m]);
+        const double pull = (solid_.empty() ? 0 : options_.pull) /
+                            std::sqrt(std::accumulate(area.begin(), area.end(), 0.0));
+        std::vector<CutNode> nodes(members.size());
+        for (std::size_t m = 0; m < members.size(); ++m) nodes[m].from_source = pull * area[m];
+        for (const std::uint32_t m : c.inside) nodes[m].from_source = cut_never;
+        for (const std::uint32_t m : c.outside) nodes[m] = {0, cut_never};
+        std::vector<CutEdge> edges;
+        for (std::uint32_t m = 0; m < members.size(); ++m) {
+            const std::uint32_t i = members[m];
+            for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
+                const std::uint32_t j = s_.neighbours[e];
+                if (j > i && label(j) == label(i))
+                    edges.push_back({m, place_[j], area[m] * area[place_[j]] * weight(i, j)});
+            }
+        }
+        const std::vector<bool> within = minimum_cut(nodes, edges);
+        Division out;
+        double length = 0, inside = 0, outside = 0;
+        for (std::size_t m = 0; m < members.size(); ++m) {
+            (within[m] ? out.inside : out.outside).push_back(members[m]);
+            (within[m] ? inside : outside) += area[m];
+        }
+        for (const CutEdge& e : edges)
+            if (within[e.a] != within[e.b]) length += e.weight;
+        out.neck = length / std::sqrt(std::max(std::min(inside, outside), 1.0));
+        double proven = 0;
+        for (const std::uint32_t m : c.outside) proven += area[m];
+        out.thickness = proven / std::max(length, 1.0);
+        return out;
+    }
+
+    // Cells of its face's area that a surfel stands for: in a single layer it has eight neighbours.
+    double covered(std::uint32_t i) const {
+        int neighbours = 0;
+        for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e)
+            neighbours += label(s_.neighbours[e]) == label(i);
+        return neighbours > 8 ? 8.0 / neighbours : 1.0;
+    }
+
+    // Share of a cell's width of cut between two neighbours: straight and diagonal neighbours in a
+    // plane add up to 1 across each cell.
+    double weight(std::uint32_t i, std::uint32_t j) const {
+        const Eigen::Vector3d d = position(s_, i) - position(s_, j);
+        const double length = std::max(d.norm(), 0.5 * s_.cell_m);
+        const double level = options_.level_bias * std::abs(d.dot(up_)) / length;
+        return s_.cell_m / length / (1 + EIGEN_PI / 2 - 0.15) * (1 - level);
+    }
+
+    void apply(std::size_t k, Division d) {
+        if (k < solid_.size()) stale_[static_cast<std::size_t>(solid_[k])] = true;
+        const auto fresh = static_cast<std::int32_t>(members_.size());
+        for (const std::uint32_t i : d.outside) out_.regions.label[i] = fresh;
+        out_.regions.regions.push_back(region(k));
+        out_.sides.push_back(out_.sides[k]);
+        out_.sides[k].emplace_back(out_.count, false);
+        out_.sides.back().emplace_back(out_.count, true);
+        ++out_.count;
+        members_[k] = std::move(d.inside);
+        members_.push_back(std::move(d.outside));
+        refit(k);
+        refit(members_.size() - 1);
+    }
+
+    void refit(std::size_t k) {
+        PlaneMoments moments;
+        for (const std::uint32_t i : members_[k]) moments.add(position(s_, i), normal(s_, i));
+        Region& r = out_.regions.regions[k];
+        r.model = fit_plane(moments, s_.cell_m);
+        double sum = 0;
+        for (const std::uint32_t i : members_[k]) {
+            const double d = distance(r.model, position(s_, i));
+            sum += d * d;
+        }
+        r.surfels = members_[k].size();
+        r.residual_m = std::sqrt(sum / static_cast<double>(r.surfels));
+    }
+
+    const Surfels& s_;
+    Eigen::Vector3d up_;
+    const MergeOptions& options_;
+    FlushCuts& out_;
+    std::vector<std::int32_t> solid_;              // of each region, as merged before
+    std::vector<std::vector<std::size_t>> faces_;  // of each solid
+    std::vector<bool> stale_;                      // of each solid
+    std::vector<Members> members_;                 // of each region
+    Members place_;                                // of a surfel in its region's list
+};
+
+}  // namespace
+
+bool FlushCuts::parted(std::size_t a, std::size_t b) const {
+    for (const auto& [cut, side] : sides[a])
+        for (const auto& [other, other_side] : sides[b])
+            if (cut == other && side != other_side) return true;
+    return false;
+}
+
+void cut_flush_faces(const Surfels& surfels, const Vec3& up, const std::vector<std::int32_t>& solid,
+                     const MergeOptions& options, FlushCuts& cuts) {
+    cuts.sides.resize(cuts.regions.regions.size());
+    Cutter(surfels, up, solid, options, cuts).run();
+}
+
+}  // namespace topple::geometry
