@@ -16,14 +16,6 @@ constexpr std::array<unsigned, 3> key_shift{42, 21, 0};
 constexpr std::uint8_t most_levels = 3, stays = 255;
 constexpr std::uint64_t chunk = 1 << 15;  // cells handed to a thread at once
 
-// Runs body(i) for each i of [0, count).
-template <class Body>
-void for_each(device::ThreadPool& pool, std::size_t count, const Body& body) {
-    pool.run(count, chunk, [&](std::uint64_t first, std::uint64_t last) {
-        for (std::uint64_t i = first; i < last; ++i) body(static_cast<std::size_t>(i));
-    });
-}
-
 // What lies in the 27 cells around a cell, its own among them.
 struct Around {
     std::uint64_t cells = 0, count = 0, weight = 0;
@@ -78,7 +70,7 @@ CellGrid grid_of(const FusedCells& fused, device::ThreadPool& pool) {
     CellGrid grid;
     grid.cell_m = fused.cell_m;
     grid.resize(fused.cells.size());
-    for_each(pool, fused.cells.size(), [&](std::size_t i) {
+    pool.each(fused.cells.size(), chunk, [&](std::size_t i) {
         const CellSums& cell = fused.cells[i];
         const std::array<std::int32_t*, 3> index{&grid.x[i], &grid.y[i], &grid.z[i]};
         for (std::size_t a = 0; a < 3; ++a) {
@@ -178,7 +170,7 @@ void flatten_level(FusedCells& fused, const CellGrid& grid, double scale,
         for (std::size_t a = 0; a < 3; ++a) queries.at[a].push_back(grid.mean[a][cell]);
     }
     const PlaneFit fit = fit_in_slabs(device, grid, queries);
-    for_each(pool, which.size(), [&](std::size_t k) {
+    pool.each(which.size(), chunk, [&](std::size_t k) {
         CellSums& cell = fused.cells[which[k]];
         const std::uint32_t home = cell_of[which[k]], q = query_of[home];
         const std::array<std::int32_t, 3> index{grid.x[home], grid.y[home], grid.z[home]};
@@ -266,7 +258,7 @@ void flatten_layers(FusedCells& fused, double least_sigma_m, device::ThreadPool&
         if (level > 0) {
             std::vector<std::uint32_t> parent;
             grid = coarsen(grid, pool, parent);
-            for_each(pool, n, [&](std::size_t i) { cell_of[i] = parent[cell_of[i]]; });
+            pool.each(n, chunk, [&](std::size_t i) { cell_of[i] = parent[cell_of[i]]; });
         }
         if (which[level].empty()) continue;
         flatten_level(fused, grid, static_cast<double>(1 << level), which[level], cell_of, sigma,

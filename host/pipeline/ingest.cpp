@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "geometry/depth_noise.h"
@@ -120,8 +119,7 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
     options.sides_known = !options.known_eyes.empty() || !out.cloud.nx.empty();
     const geometry::Surfels surfels =
         geometry::make_surfels(device, out.cloud, view_cells * out.cell_m, options.known_eyes, {});
-    device::ThreadPool pool(std::max(1u, std::thread::hardware_concurrency()));
-    geometry::VirtualViews views = geometry::virtual_views(surfels, options, pool);
+    geometry::VirtualViews views = geometry::virtual_views(surfels, options, device.threads());
     if (views.frames.empty()) {
         out.notes.push_back(
             "No free space could be seen from inside of the cloud; nothing was carved.");
