@@ -2,6 +2,7 @@
 #include "geometry/free_space.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "geometry/split.h"
@@ -14,16 +15,19 @@ constexpr double most_cells = 64e6;
 constexpr std::size_t most_lines = 100'000;
 // A line ends this many cells before its surfel: noise, and surfaces that it only grazes.
 constexpr double stop_cells = 1.5;
-// Lines that must have crossed a cell: one alone may be a stray reading.
-constexpr std::uint8_t least_lines = 2;
-constexpr std::uint8_t occupied = 255;
+// What is noted of a cell while lines are drawn, in any order: two must have crossed it, for one
+// alone may be a stray reading.
+constexpr std::uint8_t crossed_once = 1, crossed_twice = 2, occupied = 255;
+// And what is known of it in the end.
+constexpr std::uint8_t is_free = 1;
 // Points on a line between two points that must be free, half a cell apart.
 constexpr int least_free = 2;
 
 }  // namespace
 
 FreeSpace::FreeSpace(const Surfels& s, const PointCloud& cloud, std::span<const Vec3> viewpoints,
-                     std::span<const std::uint32_t> viewpoint_of_point) {
+                     std::span<const std::uint32_t> viewpoint_of_point,
+                     device::ThreadPool& threads) {
     if (s.size() == 0 || viewpoints.empty()) return;
     // The lowest viewpoint of each surfel's points, whatever their order.
     std::vector<std::uint32_t> seen_from(s.size(), 0);
@@ -50,62 +54,71 @@ FreeSpace::FreeSpace(const Surfels& s, const PointCloud& cloud, std::span<const 
     while (cells() > most_cells) cell_m_ *= 1.25;
     for (int a = 0; a < 3; ++a)
         size_[static_cast<std::size_t>(a)] = static_cast<std::int64_t>(extent[a] / cell_m_) + 1;
-    crossed_.assign(static_cast<std::size_t>(cells()), 0);
+    cell_.assign(static_cast<std::size_t>(cells()), 0);
     for (std::size_t i = 0; i < s.size(); ++i)
-        crossed_[static_cast<std::size_t>(index(position(s, i)))] = occupied;
+        cell_[static_cast<std::size_t>(index(in_cells(position(s, i))))] = occupied;
     const std::size_t step = s.size() / most_lines + 1;
-    for (std::size_t i = 0; i < s.size(); i += step) {
+    threads.each((s.size() + step - 1) / step, 256, [&](std::size_t line) {
+        const std::size_t i = line * step;
         const Vec3& eye = viewpoints[seen_from[i]];
         cross({eye[0], eye[1], eye[2]}, position(s, i));
-    }
+    });
+    for (std::uint8_t& c : cell_)
+        if (c != occupied) c = (c & crossed_twice) != 0 ? is_free : 0;
     // A cell beside a surface may reach into the solid behind it.
     for (std::size_t i = 0; i < s.size(); ++i)
         for (int a = 0; a < 3; ++a)
             for (const double side : {-cell_m_, cell_m_}) {
-                const std::int64_t at = index(position(s, i) + side * Eigen::Vector3d::Unit(a));
+                const std::int64_t at =
+                    index(in_cells(position(s, i) + side * Eigen::Vector3d::Unit(a)));
                 if (at < 0) continue;
-                std::uint8_t& beside = crossed_[static_cast<std::size_t>(at)];
+                std::uint8_t& beside = cell_[static_cast<std::size_t>(at)];
                 if (beside != occupied) beside = 0;
             }
 }
 
-std::int64_t FreeSpace::index(const Eigen::Vector3d& p) const {
-    std::int64_t at = 0;
-    for (int a = 0; a < 3; ++a) {
-        const double c = std::floor((p[a] - low_[a]) / cell_m_);
-        const std::int64_t size = size_[static_cast<std::size_t>(a)];
-        if (!(c >= 0 && c < static_cast<double>(size))) return -1;
-        at = at * size + static_cast<std::int64_t>(c);
-    }
-    return at;
+std::int64_t FreeSpace::index(const Eigen::Vector3d& cells) const {
+    for (int a = 0; a < 3; ++a)
+        if (!(cells[a] >= 0 && cells[a] < static_cast<double>(size_[static_cast<std::size_t>(a)])))
+            return -1;
+    return (static_cast<std::int64_t>(cells[0]) * size_[1] + static_cast<std::int64_t>(cells[1])) *
+               size_[2] +
+           static_cast<std::int64_t>(cells[2]);
 }
 
 void FreeSpace::cross(const Eigen::Vector3d& eye, const Eigen::Vector3d& p) {
     const Eigen::Vector3d d = p - eye;
     const double length = d.norm();
+    const Eigen::Vector3d from = in_cells(eye), along = d / length / cell_m_;
     std::vector<std::size_t> cells;
     for (double t = length - stop_cells * cell_m_; t > 0; t -= 0.5 * cell_m_) {
-        const std::int64_t at = index(eye + t / length * d);
+        const std::int64_t at = index(from + t * along);
         if (at < 0) continue;
         const auto cell = static_cast<std::size_t>(at);
-        if (crossed_[cell] == occupied) return;
+        if (std::atomic_ref(cell_[cell]).load(std::memory_order_relaxed) == occupied) return;
         if (cells.empty() || cells.back() != cell) cells.push_back(cell);
     }
-    for (const std::size_t cell : cells) crossed_[cell] += crossed_[cell] < least_lines;
+    for (const std::size_t cell : cells) {
+        const std::atomic_ref c(cell_[cell]);
+        if ((c.load(std::memory_order_relaxed) & crossed_twice) != 0) continue;
+        if ((c.fetch_or(crossed_once, std::memory_order_relaxed) & crossed_once) != 0)
+            c.fetch_or(crossed_twice, std::memory_order_relaxed);
+    }
 }
 
 bool FreeSpace::at(const Eigen::Vector3d& p) const {
-    const std::int64_t i = known() ? index(p) : -1;
-    return i >= 0 && crossed_[static_cast<std::size_t>(i)] == least_lines;
+    const std::int64_t i = known() ? index(in_cells(p)) : -1;
+    return i >= 0 && cell_[static_cast<std::size_t>(i)] == is_free;
 }
 
 bool FreeSpace::between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
     if (!known()) return false;
-    const Eigen::Vector3d d = b - a;
-    const double steps = std::ceil(2 * d.norm() / cell_m_);
+    const double steps = std::ceil(2 * (b - a).norm() / cell_m_);
+    const Eigen::Vector3d from = in_cells(a), step = (in_cells(b) - from) / steps;
     int free = 0;
     for (double k = 1; k < steps; ++k) {
-        free += at(a + k / steps * d);
+        const std::int64_t at = index(from + k * step);
+        free += at >= 0 && cell_[static_cast<std::size_t>(at)] == is_free;
         if (free >= least_free) return true;
     }
     return false;

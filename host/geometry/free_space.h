@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "device/native/thread_pool.h"
 #include "geometry/surfels.h"
 
 namespace topple::geometry {
@@ -23,9 +24,9 @@ class FreeSpace {
     // are not free, and a line through one of them tells nothing: viewpoints may be estimates.
     // Arguments as for make_surfels; no viewpoints: nothing is known.
     FreeSpace(const Surfels& surfels, const PointCloud& cloud, std::span<const Vec3> viewpoints,
-              std::span<const std::uint32_t> viewpoint_of_point);
+              std::span<const std::uint32_t> viewpoint_of_point, device::ThreadPool& threads);
 
-    bool known() const { return !crossed_.empty(); }
+    bool known() const { return !cell_.empty(); }
     double cell_m() const { return cell_m_; }
     // Whether the cell around a point is free.
     bool at(const Eigen::Vector3d& p) const;
@@ -33,13 +34,14 @@ class FreeSpace {
     bool between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
   private:
-    std::int64_t index(const Eigen::Vector3d& p) const;  // -1 outside of the grid
+    Eigen::Vector3d in_cells(const Eigen::Vector3d& p) const { return (p - low_) / cell_m_; }
+    std::int64_t index(const Eigen::Vector3d& cells) const;  // -1 outside of the grid
     void cross(const Eigen::Vector3d& eye, const Eigen::Vector3d& p);
 
     double cell_m_ = 0;
     Eigen::Vector3d low_ = Eigen::Vector3d::Zero();
     std::array<std::int64_t, 3> size_{};
-    std::vector<std::uint8_t> crossed_;  // lines through each cell, up to the number that counts
+    std::vector<std::uint8_t> cell_;  // what is known of each
 };
 
 }  // namespace topple::geometry

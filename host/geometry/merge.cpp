@@ -6,6 +6,8 @@
 #include <map>
 #include <numeric>
 
+#include "geometry/region_facts.h"
+
 namespace topple::geometry {
 
 namespace {
@@ -13,14 +15,13 @@ namespace {
 // Regions joined so far. The root of a set is its lowest region.
 class Merger {
   public:
-    Merger(const Surfels& surfels, const FlushCuts& cuts, const FreeSpace& free,
+    Merger(const Surfels& surfels, const CutRegions& cuts, RegionFacts& facts,
            const MergeOptions& options)
         : s_(surfels),
           cuts_(cuts),
-          free_(free),
+          facts_(facts),
           r_(cuts.regions),
           options_(options),
-          samples_(sample_regions(surfels, r_, options)),
           parent_(r_.regions.size()),
           members_(r_.regions.size()) {
         std::iota(parent_.begin(), parent_.end(), 0);
@@ -77,47 +78,66 @@ class Merger {
             std::int32_t a, b;
         };
         std::vector<Candidate> candidates;
-        for (const Border& border : find_borders(s_, r_)) {
+        for (const auto& [pair, border] : facts_.borders()) {
             const auto a = static_cast<std::size_t>(border.a),
                        b = static_cast<std::size_t>(border.b);
-            const auto smaller = std::min(r_.regions[a].surfels, r_.regions[b].surfels);
-            const double side = std::sqrt(static_cast<double>(smaller));
-            const double length = static_cast<double>(border.pairs.size()) / side;
-            if (length < options_.border_share) continue;
-            if (cuts_.parted(a, b)) continue;
-            const double share = inside_share(
-                s_, r_, border, {samples_[a].tolerance_m, samples_[b].tolerance_m}, options_);
-            if (share <= options_.delta2) continue;
-            candidates.push_back({share * double(border.pairs.size()), border.a, border.b});
+            if (border.length < options_.border_share || border.inside_share <= options_.delta2 ||
+                cuts_.parted(a, b))
+                continue;
+            candidates.push_back(
+                {border.inside_share * double(border.pairs.size()), border.a, border.b});
         }
         std::stable_sort(
             candidates.begin(), candidates.end(),
             [](const Candidate& x, const Candidate& y) { return x.confidence > y.confidence; });
         for (const Candidate& c : candidates) {
             const std::int32_t a = root(c.a), b = root(c.b);
-            if (a != b && set_concavity(a, b) <= options_.concavity_max) join(a, b);
+            if (a != b && convex(a, b, options_.concavity_max)) join(a, b);
         }
     }
 
-    // The two sides of a board often have no visible edge between them.
+    // The two sides of a board often have no visible edge between them: pairs of regions where, of
+    // the one's samples, this share has the other's opposite face right behind it.
     void merge_sides() {
-        for (const Sides& pair : find_sides(s_, r_, samples_, options_)) {
+        struct Sides {
+            double share;
+            std::int32_t a, b;
+        };
+        std::map<std::pair<std::int32_t, std::int32_t>, double> share;
+        for (std::size_t k = 0; k < parent_.size(); ++k) {
+            const std::vector<std::int64_t>& behind = facts_.behind(k);
+            for (const std::int64_t at : behind)
+                if (at >= 0)
+                    share[{static_cast<std::int32_t>(k), r_.label[static_cast<std::size_t>(at)]}] +=
+                        1.0 / static_cast<double>(behind.size());
+        }
+        std::vector<Sides> sides;
+        for (const auto& [pair, value] : share) {
+            const auto back = share.find({pair.second, pair.first});
+            const double other = back == share.end() ? 0 : back->second;
+            // Each pair once, by the better of its two shares.
+            if (value < other || (value == other && pair.first > pair.second)) continue;
+            if (value >= options_.board_share) sides.push_back({value, pair.first, pair.second});
+        }
+        std::stable_sort(sides.begin(), sides.end(),
+                         [](const Sides& x, const Sides& y) { return x.share > y.share; });
+        for (const Sides& pair : sides) {
             const std::int32_t a = root(pair.a), b = root(pair.b);
-            if (a != b && set_concavity(a, b) <= options_.board_concavity_max) join(a, b);
+            if (a != b && convex(a, b, options_.board_concavity_max)) join(a, b);
         }
     }
 
     void merge_wall_pieces() {
-        for (const auto& [i, j] : find_wall_pieces(s_, r_, samples_, options_)) {
+        for (const auto& [i, j] : find_wall_pieces(s_, r_, facts_.samples(), options_)) {
             const std::int32_t a = root(i), b = root(j);
             if (a != b) join(a, b);
         }
     }
 
     void merge_face_pieces() {
-        for (const auto& [i, j] : find_face_pieces(s_, r_, samples_, options_)) {
+        for (const auto& [i, j] : facts_.face_pieces()) {
             const std::int32_t a = root(i), b = root(j);
-            if (a != b && set_concavity(a, b) <= options_.concavity_max) join(a, b);
+            if (a != b && convex(a, b, options_.concavity_max)) join(a, b);
         }
     }
 
@@ -135,60 +155,65 @@ class Merger {
         parent_[static_cast<std::size_t>(b)] = a;
         auto& from = members_[static_cast<std::size_t>(b)];
         auto& to = members_[static_cast<std::size_t>(a)];
-        to.insert(to.end(), from.begin(), from.end());
+        std::vector<std::int32_t> both;
+        std::merge(from.begin(), from.end(), to.begin(), to.end(), std::back_inserter(both),
+                   [&](std::int32_t i, std::int32_t j) {
+                       return surfels(i) != surfels(j) ? surfels(i) > surfels(j) : i < j;
+                   });
+        to = std::move(both);
         from.clear();
     }
 
-    double region_concavity(std::int32_t a, std::int32_t b) {
-        const auto key = std::minmax(a, b);
-        const auto [at, fresh] = concavity_.try_emplace(key, 0.0);
-        if (fresh) {
-            const auto i = static_cast<std::size_t>(key.first),
-                       j = static_cast<std::size_t>(key.second);
-            at->second = cuts_.parted(i, j) ? 1 : concavity(samples_[i], samples_[j], free_);
-        }
-        return at->second;
+    // Whether the merged set of two would have at most this concavity: the mean over pairs of
+    // regions, each by its size. Large regions come first: they often settle it.
+    bool convex(std::int32_t a, std::int32_t b, double most) {
+        const auto &of_a = members_[static_cast<std::size_t>(a)],
+                   &of_b = members_[static_cast<std::size_t>(b)];
+        const double all = surfels(of_a) * surfels(of_b);
+        double sum = 0, left = all;
+        for (const std::int32_t i : of_a)
+            for (const std::int32_t j : of_b) {
+                if (sum > most * all) return false;
+                if (sum + left <= most * all) return true;
+                const double weight = surfels(i) * surfels(j);
+                sum += weight * facts_.concavity(i, j);
+                left -= weight;
+            }
+        return sum <= most * all;
     }
 
-    // The merged set's concavity: mean over pairs of regions, each by its size.
-    double set_concavity(std::int32_t a, std::int32_t b) {
-        double sum = 0, weight = 0;
-        for (const std::int32_t i : members_[static_cast<std::size_t>(a)])
-            for (const std::int32_t j : members_[static_cast<std::size_t>(b)]) {
-                const double w =
-                    static_cast<double>(r_.regions[static_cast<std::size_t>(i)].surfels) *
-                    static_cast<double>(r_.regions[static_cast<std::size_t>(j)].surfels);
-                sum += w * region_concavity(i, j);
-                weight += w;
-            }
-        return weight > 0 ? sum / weight : 0;
+    double surfels(std::int32_t k) const {
+        return static_cast<double>(r_.regions[static_cast<std::size_t>(k)].surfels);
+    }
+    double surfels(const std::vector<std::int32_t>& set) const {
+        double sum = 0;
+        for (const std::int32_t k : set) sum += surfels(k);
+        return sum;
     }
 
     const Surfels& s_;
-    const FlushCuts& cuts_;
-    const FreeSpace& free_;
+    const CutRegions& cuts_;
+    RegionFacts& facts_;
     const Regions& r_;
     const MergeOptions& options_;
-    std::vector<RegionSamples> samples_;
     std::vector<std::int32_t> parent_;
-    std::vector<std::vector<std::int32_t>> members_;
-    std::map<std::pair<std::int32_t, std::int32_t>, double> concavity_;
+    std::vector<std::vector<std::int32_t>> members_;  // of each root, by falling size
 };
 
 }  // namespace
 
 PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const Vec3& up,
-                          const FreeSpace& free) {
+                          const FreeSpace& free, device::ThreadPool& threads) {
     const MergeOptions options;
-    FlushCuts cuts;
-    cuts.regions = regions;
-    cut_flush_faces(surfels, up, {}, options, cuts);
+    CutRegions cuts(regions);
+    RegionFacts facts(surfels, cuts, free, options, threads);
+    cut_flush_faces(surfels, up, {}, options, cuts, facts);
     // What the faces of a merged solid tell of one another may part some more.
     for (;;) {
         const std::uint32_t before = cuts.count;
-        Merger merger(surfels, cuts, free, options);
+        Merger merger(surfels, cuts, facts, options);
         merger.merge_all();
-        cut_flush_faces(surfels, up, merger.solids(), options, cuts);
+        cut_flush_faces(surfels, up, merger.solids(), options, cuts, facts);
         if (cuts.count == before) return merger.result();
     }
 }

@@ -54,58 +54,57 @@ struct MergeOptions {
            proven_min = 0.8, level_bias = 0.15, pull = 2;
 };
 
+// Regions with their flush faces cut. members: the surfels of each region, ascending. sides: for
+// each region the cuts that made it, and which side of each it lies on.
+struct CutRegions {
+    Regions regions;
+    std::vector<std::vector<std::uint32_t>> members;
+    std::vector<std::vector<std::pair<std::uint32_t, bool>>> sides;
+    std::uint32_t count = 0;
+    // Nothing is cut yet.
+    explicit CutRegions(const Regions& regions);
+    // Whether a cut parts two regions.
+    bool parted(std::size_t a, std::size_t b) const;
+};
+
 // What a region looks like from outside: evenly drawn points moved onto the model, with its
 // normals.
 struct RegionSamples {
     std::vector<Eigen::Vector3d> points, normals;
     double tolerance_m = 0;  // beyond what noise moves a point
 };
-std::vector<RegionSamples> sample_regions(const Surfels& surfels, const Regions& regions,
-                                          const MergeOptions& options);
+RegionSamples sample_region(const Surfels& surfels, const CutRegions& cuts, std::size_t region,
+                            const MergeOptions& options);
 
-// Two regions that touch. a < b; `pairs` are adjacent surfels, the first in a, the second in b.
+// Two regions that touch. a < b; `pairs` are adjacent surfels, the first in a, the second in b,
+// ascending. length: number of the pairs as a multiple of the square root of the smaller region's
+// surfels. inside_share: 0 where the border is shorter than MergeOptions::border_share.
 struct Border {
     std::int32_t a = -1, b = -1;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    double length = 0, inside_share = 0;
 };
-std::vector<Border> find_borders(const Surfels& surfels, const Regions& regions);
 
 // Share of the points on segments across the border that lie inside both models (Eq. 3).
 // tolerance_m: of the regions a and b, beyond what noise moves a point.
 double inside_share(const Surfels& surfels, const Regions& regions, const Border& border,
                     const std::array<double, 2>& tolerance_m, const MergeOptions& options);
 
-// Regions with their flush faces cut. sides: for each region the cuts that made it, and which side
-// of each it lies on.
-struct FlushCuts {
-    Regions regions;
-    std::vector<std::vector<std::pair<std::uint32_t, bool>>> sides;
-    std::uint32_t count = 0;
-    // Whether a cut parts two regions.
-    bool parted(std::size_t a, std::size_t b) const;
-};
-
-// The side of a chair's back, the edge of its seat and its legs often lie in one plane, as one
-// region: not convex, so it can't be a face of one solid. Where a plane meets a solid in a convex
-// edge and yet goes on in front of a face of it, it is cut between the two along its shortest neck.
-// solid: which solid each region was merged to, or empty where nothing was merged yet: then each
-// face stands for itself.
-void cut_flush_faces(const Surfels& surfels, const Vec3& up, const std::vector<std::int32_t>& solid,
-                     const MergeOptions& options, FlushCuts& cuts);
-
 // Share of point pairs of two regions that no convex solid has both on its surface: one lies in
 // front of the other's surface, or free space lies between them.
 double concavity(const RegionSamples& a, const RegionSamples& b, const FreeSpace& free);
 
-// Pairs of regions that are the two sides of something thin, with the share of the smaller one's
-// samples behind which, within board_m, the other's surface faces the opposite way.
-struct Sides {
-    double share = 0;
-    std::int32_t a = -1, b = -1;
-};
-std::vector<Sides> find_sides(const Surfels& surfels, const Regions& regions,
-                              const std::vector<RegionSamples>& samples,
-                              const MergeOptions& options);
+// For each sample of a region the nearest surfel of another region right behind it, within
+// MergeOptions::board_m, whose surface faces the opposite way; -1 if none.
+std::vector<std::int64_t> surfels_behind(const Surfels& surfels, const Regions& regions,
+                                         const RegionSamples& samples, std::size_t region,
+                                         const MergeOptions& options);
+
+// Whether two planes are pieces of one face, parted by something that stands against it: the board
+// between two compartments of a shelf. The gap is covered in front and has nothing close behind.
+bool are_face_pieces(const Surfels& surfels, const CutRegions& cuts,
+                     const std::vector<RegionSamples>& samples, std::size_t a, std::size_t b,
+                     const MergeOptions& options);
 
 // Pairs of planes that are pieces of one plane that bounds the scene, such as a wall seen between
 // the boards of a shelf: they lie in each other's plane, face the same way, and nothing around them
@@ -114,12 +113,14 @@ std::vector<std::pair<std::int32_t, std::int32_t>> find_wall_pieces(
     const Surfels& surfels, const Regions& regions, const std::vector<RegionSamples>& samples,
     const MergeOptions& options);
 
-// Pairs of planes that are pieces of one face, parted by something that stands against it: the
-// board between two compartments of a shelf. The gap is covered in front and has nothing close
-// behind.
-std::vector<std::pair<std::int32_t, std::int32_t>> find_face_pieces(
-    const Surfels& surfels, const Regions& regions, const std::vector<RegionSamples>& samples,
-    const MergeOptions& options);
+// The side of a chair's back, the edge of its seat and its legs often lie in one plane, as one
+// region: not convex, so it can't be a face of one solid. Where a plane meets a solid in a convex
+// edge and yet goes on in front of a face of it, it is cut between the two along its shortest neck.
+// solid: which solid each region was merged to, or empty where nothing was merged yet: then each
+// face stands for itself. facts: of `cuts`, and kept true to them.
+class RegionFacts;
+void cut_flush_faces(const Surfels& surfels, const Vec3& up, const std::vector<std::int32_t>& solid,
+                     const MergeOptions& options, CutRegions& cuts, RegionFacts& facts);
 
 // The surfel in the cell that holds p, or -1.
 std::int64_t surfel_at(const Surfels& surfels, const Eigen::Vector3d& p);

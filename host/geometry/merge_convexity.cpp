@@ -5,34 +5,34 @@
 
 #include "geometry/algebraic_model.h"
 #include "geometry/merge.h"
+#include "geometry/split.h"
 
 namespace topple::geometry {
 
 namespace {
-
-Eigen::Vector3d position(const Surfels& s, std::size_t i) {
-    return {s.x[i], s.y[i], s.z[i]};
-}
 
 // Surfels, each once, in the order in which they were added.
 class Reached {
   public:
     explicit Reached(std::size_t most) : slots_(std::bit_ceil(2 * most)) {}
     void clear() {
+        for (const std::size_t at : taken_) slots_[at] = 0;
+        taken_.clear();
         list_.clear();
-        std::fill(slots_.begin(), slots_.end(), 0u);
     }
     void add(std::uint32_t i) {
-        std::size_t at = i * 0x9E3779B9u & (slots_.size() - 1);
+        std::size_t at = (i * 0x9E3779B9u >> 7) & (slots_.size() - 1);
         for (; slots_[at] != 0; at = (at + 1) & (slots_.size() - 1))
             if (slots_[at] == i + 1) return;
         slots_[at] = i + 1;
+        taken_.push_back(at);
         list_.push_back(i);
     }
     const std::vector<std::uint32_t>& list() const { return list_; }
 
   private:
     std::vector<std::uint32_t> slots_;  // open addressing: surfel + 1, or 0
+    std::vector<std::size_t> taken_;    // slots
     std::vector<std::uint32_t> list_;
 };
 
@@ -68,53 +68,20 @@ Eigen::Vector3d onto(const AlgebraicModel& model, const Eigen::Vector3d& p) {
 
 }  // namespace
 
-std::vector<RegionSamples> sample_regions(const Surfels& surfels, const Regions& regions,
-                                          const MergeOptions& options) {
-    std::vector<RegionSamples> out(regions.regions.size());
-    std::vector<std::uint64_t> seen(out.size(), 0);
-    for (std::size_t i = 0; i < surfels.size(); ++i) {
-        const std::int32_t label = regions.label[i];
-        if (label < 0) continue;
-        const auto k = static_cast<std::size_t>(label);
-        const Region& region = regions.regions[k];
-        // Sample number m stands at surfel m * count / samples of the region.
-        const std::uint64_t count = std::max<std::uint64_t>(region.surfels, 1);
-        const std::uint64_t wanted = std::min<std::uint64_t>(count, options.samples);
-        const bool take = seen[k] * wanted / count != (seen[k] + 1) * wanted / count;
-        ++seen[k];
-        if (!take) continue;
-        const Eigen::Vector3d p = onto(region.model, position(surfels, i));
-        out[k].points.push_back(p);
-        out[k].normals.push_back(gradient(region.model, p).normalized());
+RegionSamples sample_region(const Surfels& surfels, const CutRegions& cuts, std::size_t region,
+                            const MergeOptions& options) {
+    const Region& of = cuts.regions.regions[region];
+    const std::vector<std::uint32_t>& members = cuts.members[region];
+    RegionSamples out;
+    out.tolerance_m = 2 * of.residual_m + 0.25 * surfels.cell_m;
+    const std::size_t count = std::min<std::size_t>(members.size(), options.samples);
+    for (std::size_t n = 1; n <= count; ++n) {
+        const std::size_t m = (n * members.size() + count - 1) / count - 1;
+        const Eigen::Vector3d p = onto(of.model, position(surfels, members[m]));
+        out.points.push_back(p);
+        out.normals.push_back(gradient(of.model, p).normalized());
     }
-    for (std::size_t k = 0; k < out.size(); ++k)
-        out[k].tolerance_m = 2 * regions.regions[k].residual_m + 0.25 * surfels.cell_m;
     return out;
-}
-
-std::vector<Border> find_borders(const Surfels& surfels, const Regions& regions) {
-    struct Pair {
-        std::int32_t a, b;
-        std::uint32_t i, j;
-        auto operator<=>(const Pair&) const = default;
-    };
-    std::vector<Pair> pairs;
-    for (std::uint32_t i = 0; i < surfels.size(); ++i) {
-        if (regions.label[i] < 0) continue;
-        for (auto e = surfels.neighbour_first[i]; e < surfels.neighbour_first[i + 1]; ++e) {
-            const std::uint32_t j = surfels.neighbours[e];
-            if (regions.label[j] > regions.label[i])
-                pairs.push_back({regions.label[i], regions.label[j], i, j});
-        }
-    }
-    std::sort(pairs.begin(), pairs.end());
-    std::vector<Border> borders;
-    for (const Pair& p : pairs) {
-        if (borders.empty() || borders.back().a != p.a || borders.back().b != p.b)
-            borders.push_back({p.a, p.b, {}});
-        borders.back().pairs.emplace_back(p.i, p.j);
-    }
-    return borders;
 }
 
 double inside_share(const Surfels& surfels, const Regions& regions, const Border& border,

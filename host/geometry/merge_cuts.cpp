@@ -8,6 +8,7 @@
 #include "geometry/algebraic_model.h"
 #include "geometry/merge.h"
 #include "geometry/minimum_cut.h"
+#include "geometry/region_facts.h"
 #include "geometry/split.h"
 
 namespace topple::geometry {
@@ -31,16 +32,14 @@ struct Division {
 class Cutter {
   public:
     Cutter(const Surfels& surfels, const Vec3& up, const std::vector<std::int32_t>& solid,
-           const MergeOptions& options, FlushCuts& cuts)
+           const MergeOptions& options, CutRegions& cuts, RegionFacts& facts)
         : s_(surfels),
           up_(up[0], up[1], up[2]),
           options_(options),
           out_(cuts),
+          facts_(facts),
           solid_(solid),
-          members_(cuts.regions.regions.size()),
           place_(surfels.size(), 0) {
-        for (std::uint32_t i = 0; i < s_.size(); ++i)
-            if (label(i) >= 0) members_[static_cast<std::size_t>(label(i))].push_back(i);
         for (std::size_t k = 0; k < solid_.size(); ++k) {
             const auto of = static_cast<std::size_t>(solid_[k]);
             if (faces_.size() <= of) faces_.resize(of + 1);
@@ -51,7 +50,7 @@ class Cutter {
 
     void run() {
         // Pieces are appended, and come to their turn.
-        for (std::size_t k = 0; k < members_.size(); ++k)
+        for (std::size_t k = 0; k < out_.members.size(); ++k)
             while (cut(k)) {
             }
     }
@@ -65,11 +64,11 @@ class Cutter {
     }
 
     bool cut(std::size_t k) {
-        if (region(k).model.degree != 1 || members_[k].size() < 2 * options_.piece_min)
+        if (region(k).model.degree != 1 || out_.members[k].size() < 2 * options_.piece_min)
             return false;
         std::optional<Division> best;
         for (const Contradiction& c : contradictions(k)) {
-            Division d = divide(members_[k], c);
+            Division d = divide(out_.members[k], c);
             if (std::min(d.inside.size(), d.outside.size()) < options_.piece_min) continue;
             const bool block = d.thickness >= options_.thickness_min &&
                                static_cast<double>(c.outside.size()) >=
@@ -81,38 +80,37 @@ class Cutter {
         return best.has_value();
     }
 
-    // The borders of a face at which it bounds one solid with its neighbour, longest first.
-    std::vector<Border> convex_edges(std::size_t k) const {
-        std::map<std::int32_t, Border> found;
-        for (const std::uint32_t i : members_[k])
-            for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
-                const std::uint32_t j = s_.neighbours[e];
-                if (label(j) < 0 || label(j) == static_cast<std::int32_t>(k)) continue;
-                Border& border = found[label(j)];
-                border.a = static_cast<std::int32_t>(k);
-                border.b = label(j);
-                border.pairs.emplace_back(i, j);
-            }
-        std::vector<Border> out;
-        for (auto& [other, border] : found)
-            if (convex_edge(border)) out.push_back(std::move(border));
-        std::stable_sort(out.begin(), out.end(), [](const Border& x, const Border& y) {
-            return x.pairs.size() > y.pairs.size();
-        });
+    // A face's neighbour at which the two bound one solid, and the surfels of the face there.
+    struct Edge {
+        std::size_t neighbour;
+        Members own;
+    };
+
+    // The convex edges of a face, longest first.
+    std::vector<Edge> convex_edges(std::size_t k) const {
+        std::vector<Edge> out;
+        for (const std::int32_t other : facts_.touching(k)) {
+            const auto b = static_cast<std::size_t>(other);
+            const Border& border = facts_.border(static_cast<std::int32_t>(k), other);
+            if (!convex_edge(border, k, b)) continue;
+            Edge edge{b, {}};
+            for (const auto& [i, j] : border.pairs) edge.own.push_back(b > k ? i : j);
+            out.push_back(std::move(edge));
+        }
+        std::stable_sort(out.begin(), out.end(),
+                         [](const Edge& x, const Edge& y) { return x.own.size() > y.own.size(); });
         return out;
     }
 
-    bool convex_edge(const Border& border) const {
-        const auto a = static_cast<std::size_t>(border.a), b = static_cast<std::size_t>(border.b);
+    bool convex_edge(const Border& border, std::size_t a, std::size_t b) const {
         if (region(b).model.degree != 1 || region(b).surfels < options_.piece_min) return false;
         if (std::abs(direction(a).dot(direction(b))) > options_.crease_cos) return false;
         const double side = std::sqrt(static_cast<double>(region(b).surfels));
-        if (static_cast<double>(border.pairs.size()) < options_.border_share * side) return false;
-        return inside_share(s_, out_.regions, border, {tolerance(a), tolerance(b)}, options_) >
-               options_.delta2;
+        return static_cast<double>(border.pairs.size()) >= options_.border_share * side &&
+               border.inside_share > options_.delta2;
     }
 
-    double tolerance(std::size_t k) const { return 2 * region(k).residual_m + 0.25 * s_.cell_m; }
+    double tolerance(std::size_t k) const { return facts_.samples()[k].tolerance_m; }
     double reach(std::size_t k) const { return tolerance(k) + options_.front_cells * s_.cell_m; }
 
     bool same_plane(std::size_t a, std::size_t b) const {
@@ -145,14 +143,14 @@ class Cutter {
     }
 
     std::vector<Contradiction> contradictions(std::size_t k) {
-        const Members& own = members_[k];
+        const Members& own = out_.members[k];
         for (std::uint32_t m = 0; m < own.size(); ++m) place_[own[m]] = m;
-        const std::vector<Border> edges = convex_edges(k);
+        const std::vector<Edge> edges = convex_edges(k);
         std::vector<bool> used(edges.size(), false), front(own.size());
         std::vector<Contradiction> out;
         for (std::size_t e = 0; e < edges.size(); ++e) {
-            if (used[e] || stale(static_cast<std::size_t>(edges[e].b))) continue;
-            const auto neighbour = static_cast<std::size_t>(edges[e].b);
+            const std::size_t neighbour = edges[e].neighbour;
+            if (used[e] || stale(neighbour)) continue;
             std::fill(front.begin(), front.end(), false);
             for (const std::size_t f : faces_with(neighbour, k))
                 mark_front(own, f, f == neighbour, front);
@@ -161,9 +159,9 @@ class Cutter {
                 if (front[m]) c.outside.push_back(m);
             if (c.outside.size() < options_.piece_min) continue;
             for (std::size_t f = e; f < edges.size(); ++f) {
-                if (!same_solid(neighbour, static_cast<std::size_t>(edges[f].b))) continue;
+                if (!same_solid(neighbour, edges[f].neighbour)) continue;
                 used[f] = true;
-                for (const auto& [i, j] : edges[f].pairs)
+                for (const std::uint32_t i : edges[f].own)
                     if (!front[place_[i]]) c.inside.push_back(place_[i]);
             }
             if (!c.inside.empty()) out.push_back(std::move(c));
@@ -244,47 +242,54 @@ class Cutter {
 
     void apply(std::size_t k, Division d) {
         if (k < solid_.size()) stale_[static_cast<std::size_t>(solid_[k])] = true;
-        const auto fresh = static_cast<std::int32_t>(members_.size());
+        const auto fresh = static_cast<std::int32_t>(out_.members.size());
         for (const std::uint32_t i : d.outside) out_.regions.label[i] = fresh;
         out_.regions.regions.push_back(region(k));
         out_.sides.push_back(out_.sides[k]);
         out_.sides[k].emplace_back(out_.count, false);
         out_.sides.back().emplace_back(out_.count, true);
         ++out_.count;
-        members_[k] = std::move(d.inside);
-        members_.push_back(std::move(d.outside));
+        out_.members[k] = std::move(d.inside);
+        out_.members.push_back(std::move(d.outside));
         refit(k);
-        refit(members_.size() - 1);
+        refit(static_cast<std::size_t>(fresh));
+        facts_.update({static_cast<std::int32_t>(k), fresh});
     }
 
     void refit(std::size_t k) {
         PlaneMoments moments;
-        for (const std::uint32_t i : members_[k]) moments.add(position(s_, i), normal(s_, i));
+        for (const std::uint32_t i : out_.members[k]) moments.add(position(s_, i), normal(s_, i));
         Region& r = out_.regions.regions[k];
         r.model = fit_plane(moments, s_.cell_m);
         double sum = 0;
-        for (const std::uint32_t i : members_[k]) {
+        for (const std::uint32_t i : out_.members[k]) {
             const double d = distance(r.model, position(s_, i));
             sum += d * d;
         }
-        r.surfels = members_[k].size();
+        r.surfels = out_.members[k].size();
         r.residual_m = std::sqrt(sum / static_cast<double>(r.surfels));
     }
 
     const Surfels& s_;
     Eigen::Vector3d up_;
     const MergeOptions& options_;
-    FlushCuts& out_;
+    CutRegions& out_;
+    RegionFacts& facts_;
     std::vector<std::int32_t> solid_;              // of each region, as merged before
     std::vector<std::vector<std::size_t>> faces_;  // of each solid
     std::vector<bool> stale_;                      // of each solid
-    std::vector<Members> members_;                 // of each region
     Members place_;                                // of a surfel in its region's list
 };
 
 }  // namespace
 
-bool FlushCuts::parted(std::size_t a, std::size_t b) const {
+CutRegions::CutRegions(const Regions& all)
+    : regions(all), members(all.regions.size()), sides(all.regions.size()) {
+    for (std::uint32_t i = 0; i < all.label.size(); ++i)
+        if (all.label[i] >= 0) members[static_cast<std::size_t>(all.label[i])].push_back(i);
+}
+
+bool CutRegions::parted(std::size_t a, std::size_t b) const {
     for (const auto& [cut, side] : sides[a])
         for (const auto& [other, other_side] : sides[b])
             if (cut == other && side != other_side) return true;
@@ -292,9 +297,9 @@ bool FlushCuts::parted(std::size_t a, std::size_t b) const {
 }
 
 void cut_flush_faces(const Surfels& surfels, const Vec3& up, const std::vector<std::int32_t>& solid,
-                     const MergeOptions& options, FlushCuts& cuts) {
+                     const MergeOptions& options, CutRegions& cuts, RegionFacts& facts) {
     cuts.sides.resize(cuts.regions.regions.size());
-    Cutter(surfels, up, solid, options, cuts).run();
+    Cutter(surfels, up, solid, options, cuts, facts).run();
 }
 
 }  // namespace topple::geometry

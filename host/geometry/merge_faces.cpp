@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: MIT
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
 
 #include "geometry/merge.h"
+#include "geometry/split.h"
 
 namespace topple::geometry {
 
 namespace {
 
-using Points = std::vector<Eigen::Vector3d>;
-
-std::size_t nearest(const Points& points, const Eigen::Vector3d& p) {
-    std::size_t best = 0;
+// The surfel among `members` closest to p.
+Eigen::Vector3d nearest(const Surfels& s, const std::vector<std::uint32_t>& members,
+                        const Eigen::Vector3d& p) {
+    Eigen::Vector3d best = p;
     double least = 1e300;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const double d = (points[i] - p).squaredNorm();
-        if (d < least) least = d, best = i;
+    for (const std::uint32_t i : members) {
+        const Eigen::Vector3d q = position(s, i);
+        const double d = (q - p).squaredNorm();
+        if (d < least) least = d, best = q;
     }
     return best;
 }
@@ -47,46 +46,23 @@ bool closed_gap(const Surfels& s, const Eigen::Vector3d& a, const Eigen::Vector3
 
 }  // namespace
 
-std::vector<std::pair<std::int32_t, std::int32_t>> find_face_pieces(
-    const Surfels& surfels, const Regions& regions, const std::vector<RegionSamples>& samples,
-    const MergeOptions& options) {
-    constexpr std::uint64_t least = 12;  // surfels that a piece must have
+bool are_face_pieces(const Surfels& surfels, const CutRegions& cuts,
+                     const std::vector<RegionSamples>& samples, std::size_t a, std::size_t b,
+                     const MergeOptions& options) {
     constexpr std::size_t starts = 5;
-    const std::size_t count = regions.regions.size();
-    std::vector<Points> members(count);
-    std::vector<Eigen::AlignedBox3d> box(count);
-    for (std::size_t i = 0; i < surfels.size(); ++i) {
-        if (regions.label[i] < 0) continue;
-        const auto k = static_cast<std::size_t>(regions.label[i]);
-        if (regions.regions[k].model.degree == 1 && regions.regions[k].surfels >= least)
-            members[k].emplace_back(surfels.x[i], surfels.y[i], surfels.z[i]);
-    }
-    for (std::size_t k = 0; k < count; ++k)
-        for (const auto& p : members[k]) box[k].extend(p);
-    // The widest gap that closed_gap() looks into, and a little for rounding.
-    const double reach = 1.001 * (options.gap_m + surfels.cell_m);
-    std::vector<std::pair<std::int32_t, std::int32_t>> pieces;
-    for (std::size_t a = 0; a < count; ++a) {
-        if (members[a].empty()) continue;
-        for (std::size_t b = a + 1; b < count; ++b) {
-            if (members[b].empty() || box[a].exteriorDistance(box[b]) > reach) continue;
-            if (!coplanar(regions, samples, a, b, 0.25 * surfels.cell_m)) continue;
-            std::size_t open = 0;
-            const bool swap = members[a].size() > members[b].size();
-            const Points &small = members[swap ? b : a], &large = members[swap ? a : b];
-            for (std::size_t k = 0; k < starts && open < 2; ++k) {
-                Eigen::Vector3d p = small[k * (small.size() - 1) / (starts - 1)], q = p;
-                for (int round = 0; round < 3; ++round) {
-                    q = large[nearest(large, p)];
-                    p = small[nearest(small, q)];
-                }
-                open += !closed_gap(surfels, p, q, samples[a].normals.front(), options);
-            }
-            if (open < 2)
-                pieces.emplace_back(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
+    if (!coplanar(cuts.regions, samples, a, b, 0.25 * surfels.cell_m)) return false;
+    const bool swap = cuts.members[a].size() > cuts.members[b].size();
+    const auto &small = cuts.members[swap ? b : a], &large = cuts.members[swap ? a : b];
+    int open = 0;
+    for (std::size_t k = 0; k < starts && open < 2; ++k) {
+        Eigen::Vector3d p = position(surfels, small[k * (small.size() - 1) / (starts - 1)]), q = p;
+        for (int round = 0; round < 3; ++round) {
+            q = nearest(surfels, large, p);
+            p = nearest(surfels, small, q);
         }
+        open += !closed_gap(surfels, p, q, samples[a].normals.front(), options);
     }
-    return pieces;
+    return open < 2;
 }
 
 }  // namespace topple::geometry

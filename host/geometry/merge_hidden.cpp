@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <tuple>
 
 #include "geometry/algebraic_model.h"
@@ -9,26 +8,6 @@
 
 // Regions that belong together although the scan does not show them to touch.
 namespace topple::geometry {
-
-namespace {
-
-// The region whose surface lies behind the point within `reach`, facing the opposite way; -1 if
-// none.
-std::int32_t region_behind(const Surfels& s, const Regions& regions, std::int32_t own,
-                           const Eigen::Vector3d& p, const Eigen::Vector3d& n, double reach) {
-    constexpr double opposite = -0.7;  // cosine
-    for (double t = 0.5 * s.cell_m; t <= reach; t += 0.5 * s.cell_m) {
-        const std::int64_t at = surfel_at(s, p - t * n);
-        if (at < 0) continue;
-        const auto i = static_cast<std::size_t>(at);
-        const std::int32_t label = regions.label[i];
-        if (label < 0 || label == own) continue;
-        if (n.dot(Eigen::Vector3d(s.nx[i], s.ny[i], s.nz[i])) < opposite) return label;
-    }
-    return -1;
-}
-
-}  // namespace
 
 // Surfels are sorted by cell.
 std::int64_t surfel_at(const Surfels& s, const Eigen::Vector3d& p) {
@@ -63,30 +42,25 @@ bool coplanar(const Regions& regions, const std::vector<RegionSamples>& samples,
     return std::min(off(a, b), off(b, a)) <= bound;
 }
 
-std::vector<Sides> find_sides(const Surfels& surfels, const Regions& regions,
-                              const std::vector<RegionSamples>& samples,
-                              const MergeOptions& options) {
-    std::map<std::pair<std::int32_t, std::int32_t>, double> share;
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-        const RegionSamples& own = samples[k];
-        const auto a = static_cast<std::int32_t>(k);
-        for (std::size_t m = 0; m < own.points.size(); ++m) {
-            const std::int32_t b =
-                region_behind(surfels, regions, a, own.points[m], own.normals[m], options.board_m);
-            if (b >= 0) share[{a, b}] += 1.0 / static_cast<double>(own.points.size());
+std::vector<std::int64_t> surfels_behind(const Surfels& s, const Regions& regions,
+                                         const RegionSamples& samples, std::size_t region,
+                                         const MergeOptions& options) {
+    constexpr double opposite = -0.7;  // cosine
+    std::vector<std::int64_t> out;
+    for (std::size_t m = 0; m < samples.points.size(); ++m) {
+        const Eigen::Vector3d &p = samples.points[m], &n = samples.normals[m];
+        std::int64_t found = -1;
+        for (double t = 0.5 * s.cell_m; t <= options.board_m && found < 0; t += 0.5 * s.cell_m) {
+            const std::int64_t at = surfel_at(s, p - t * n);
+            if (at < 0) continue;
+            const auto i = static_cast<std::size_t>(at);
+            const std::int32_t label = regions.label[i];
+            if (label < 0 || static_cast<std::size_t>(label) == region) continue;
+            if (n.dot(Eigen::Vector3d(s.nx[i], s.ny[i], s.nz[i])) < opposite) found = at;
         }
+        out.push_back(found);
     }
-    std::vector<Sides> sides;
-    for (const auto& [pair, value] : share) {
-        const auto back = share.find({pair.second, pair.first});
-        const double other = back == share.end() ? 0 : back->second;
-        // Each pair once, by the better of its two shares.
-        if (value < other || (value == other && pair.first > pair.second)) continue;
-        if (value >= options.board_share) sides.push_back({value, pair.first, pair.second});
-    }
-    std::stable_sort(sides.begin(), sides.end(),
-                     [](const Sides& x, const Sides& y) { return x.share > y.share; });
-    return sides;
+    return out;
 }
 
 std::vector<std::pair<std::int32_t, std::int32_t>> find_wall_pieces(

@@ -49,6 +49,6 @@ struct PrimitiveSet {
     std::vector<std::vector<std::int32_t>> regions;  // of each primitive
 };
 PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const Vec3& up,
-                          const FreeSpace& free = {});
+                          const FreeSpace& free, device::ThreadPool& threads);
 
 }  // namespace topple::geometry

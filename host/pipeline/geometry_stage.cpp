@@ -32,9 +32,9 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
         stage("splitting", [&] { return geometry::split(g.surfels, device.threads()); });
     g.primitives = stage("merging", [&] {
         const geometry::FreeSpace free(g.surfels, input.cloud, input.viewpoints,
-                                       input.viewpoint_of_point);
+                                       input.viewpoint_of_point, device.threads());
         geometry::PrimitiveSet primitives =
-            geometry::merge_convex(g.surfels, regions, g.frame.axes[2], free);
+            geometry::merge_convex(g.surfels, regions, g.frame.axes[2], free, device.threads());
         geometry::absorb_fragments(g.surfels, least_surfels, primitives);
         return primitives;
     });

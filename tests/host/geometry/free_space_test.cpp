@@ -26,7 +26,8 @@ PointCloud cloud_of(const Builder& scene) {
 TEST(FreeSpace, WithoutViewpointsNothingIsKnown) {
     Builder scene;
     scene.face({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
-    const FreeSpace free(scene.surfels(), cloud_of(scene), {}, {});
+    device::ThreadPool threads(2);
+    const FreeSpace free(scene.surfels(), cloud_of(scene), {}, {}, threads);
     EXPECT_FALSE(free.known());
     EXPECT_FALSE(free.at({0.5, 0.5, 0.5}));
     EXPECT_FALSE(FreeSpace().between({0, 0, 1}, {1, 1, 1}));
@@ -38,7 +39,8 @@ TEST(FreeSpace, ReachesFromTheSensorToTheSurfaceAndNoFurther) {
     scene.box({-0.2, -0.2, 0.0}, {0.4, 0.4, 0.6}, 1);
     scene.face({1, -1, 0}, {0, 0, 1.5}, {0, 2, 0}, 2);
     const Vec3 eye{0, 0, 2};
-    const FreeSpace free(scene.surfels(), cloud_of(scene), {&eye, 1}, {});
+    device::ThreadPool threads(2);
+    const FreeSpace free(scene.surfels(), cloud_of(scene), {&eye, 1}, {}, threads);
     EXPECT_TRUE(free.known());
     EXPECT_TRUE(free.at({0, 0, 0.9}));
     EXPECT_TRUE(free.at({0.7, 0, 0.3}));
@@ -56,7 +58,8 @@ TEST(FreeSpace, LinesThroughASurfaceTellNothing) {
     scene.face({-0.6, -0.6, 1}, {1.2, 0, 0}, {0, 1.2, 0}, 1);
     scene.face({0.7, -1, 0}, {0, 0, 1.8}, {0, 2, 0}, 2);
     const Vec3 eye{0, 0, 2};
-    const FreeSpace free(scene.surfels(), cloud_of(scene), {&eye, 1}, {});
+    device::ThreadPool threads(2);
+    const FreeSpace free(scene.surfels(), cloud_of(scene), {&eye, 1}, {}, threads);
     EXPECT_TRUE(free.at({0, 0, 1.4}));
     EXPECT_FALSE(free.at({0, 0, 0.5}));
 }
@@ -68,10 +71,11 @@ TEST(FreeSpace, TheOrderOfPointsAndTheirViewpointsDoesNotMatter) {
     std::vector<std::uint32_t> seen_from;
     for (std::size_t i = 0; i < scene.points.size(); ++i)
         seen_from.push_back(static_cast<std::uint32_t>(i % 2));
-    const FreeSpace free(scene.surfels(), cloud_of(scene), eyes, seen_from);
+    device::ThreadPool threads(2);
+    const FreeSpace free(scene.surfels(), cloud_of(scene), eyes, seen_from, threads);
     std::reverse(scene.points.begin(), scene.points.end());
     std::reverse(seen_from.begin(), seen_from.end());
-    const FreeSpace turned(scene.surfels(), cloud_of(scene), eyes, seen_from);
+    const FreeSpace turned(scene.surfels(), cloud_of(scene), eyes, seen_from, threads);
     for (double x = -1; x < 1; x += 0.07)
         for (double z = 0; z < 2; z += 0.07)
             EXPECT_EQ(free.at({x, 0.01, z}), turned.at({x, 0.01, z})) << x << ' ' << z;

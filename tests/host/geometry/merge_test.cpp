@@ -11,11 +11,16 @@ using scenes::Builder;
 using scenes::Majority;
 using scenes::majority;
 
+PrimitiveSet merged(const Surfels& surfels, const FreeSpace& free = {}) {
+    device::ThreadPool threads(2);
+    return merge_convex(surfels, split(surfels, threads), {0, 0, 1}, free, threads);
+}
+
 struct Parsed {
     Surfels surfels;
     PrimitiveSet primitives;
     explicit Parsed(const Builder& scene) : surfels(scene.surfels()) {
-        primitives = merge_convex(surfels, split(surfels), {0, 0, 1});
+        primitives = merged(surfels);
     }
     Majority of(const Builder& scene, int body) const {
         return majority(scene, surfels, primitives.label, body);
@@ -26,7 +31,7 @@ TEST(Merge, NothingGivesNothing) {
     Surfels none;
     none.cell_m = 0.02;
     none.neighbour_first = {0};
-    const PrimitiveSet primitives = merge_convex(none, split(none), {0, 0, 1});
+    const PrimitiveSet primitives = merged(none);
     EXPECT_TRUE(primitives.label.empty());
     EXPECT_TRUE(primitives.regions.empty());
 }
@@ -167,8 +172,9 @@ TEST(Merge, ALegSeenFromOutsideStaysApartFromItsTable) {
     }
     const Surfels s = scene.surfels();
     const Vec3 eye{1.8, -1.2, 1.0};
-    const FreeSpace free(s, cloud, {&eye, 1}, {});
-    const PrimitiveSet apart = merge_convex(s, split(s), {0, 0, 1}, free);
+    device::ThreadPool threads(2);
+    const FreeSpace free(s, cloud, {&eye, 1}, {}, threads);
+    const PrimitiveSet apart = merged(s, free);
     EXPECT_NE(majority(scene, s, apart.label, 0).label, majority(scene, s, apart.label, 1).label);
     EXPECT_GT(majority(scene, s, apart.label, 0).share, 0.9);
     EXPECT_GT(majority(scene, s, apart.label, 1).share, 0.9);
