@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "device/devices.h"
 #include "perf/measure.h"
 #include "perf/peers.h"
 #include "perf/pipeline_case.h"
 #include "perf/report.h"
 #include "perf/stage_cases.h"
+#include "topple/device.h"
 #include "topple/error.h"
 
 namespace topple::perf {
@@ -74,7 +74,8 @@ class Stages {
     StageRun first_;
 };
 
-std::vector<Result> measure_backend(device::Device& device, const Arguments& a, Stages& stages) {
+std::vector<Result> measure_backend(const std::shared_ptr<device::Device>& device,
+                                    const Arguments& a, Stages& stages) {
     std::vector<Result> results;
     const bool any_kernel =
         stages.wanted() || std::any_of(all_cases().begin(), all_cases().end(),
@@ -82,10 +83,10 @@ std::vector<Result> measure_backend(device::Device& device, const Arguments& a, 
     for (const Case& test : all_cases()) {
         // The probes are the yardstick of all others.
         if (!wanted(a, test.name) && !(any_kernel && is_probe(test.name))) continue;
-        results.push_back(measure(device, test, a.measure));
+        results.push_back(measure(*device, test, a.measure));
     }
     if (stages.wanted()) {
-        const auto whole = stages.measure(device);
+        const auto whole = stages.measure(*device);
         results.insert(results.end(), whole.begin(), whole.end());
     }
     apply_roofline(results);
@@ -127,7 +128,7 @@ int run(const Arguments& a) {
     std::vector<Result> results;
     Stages stages(a);
     for (const std::string& name : names) {
-        std::unique_ptr<device::Device> device;
+        std::shared_ptr<device::Device> device;
         try {
             device = device::open_device(name, a.threads);
         } catch (const Error& error) {
@@ -135,7 +136,7 @@ int run(const Arguments& a) {
             std::printf("%s: skipped: %s\n", name.c_str(), error.what());
             continue;
         }
-        const auto one = measure_backend(*device, a, stages);
+        const auto one = measure_backend(device, a, stages);
         results.insert(results.end(), one.begin(), one.end());
     }
     const auto peers = stages.peers();

@@ -24,8 +24,8 @@ std::uint64_t hash_of(const Scene& scene) {
 
 }  // namespace
 
-std::vector<Result> measure_pipeline(device::Device& device, const PipelineOptions& options,
-                                     scenes::Score& score) {
+std::vector<Result> measure_pipeline(const std::shared_ptr<device::Device>& device,
+                                     const PipelineOptions& options, scenes::Score& score) {
     const scenes::World world = scenes::furnished_room({.seed = options.seed});
     scenes::CameraOptions camera;
     camera.frames = options.frames;
@@ -33,24 +33,26 @@ std::vector<Result> measure_pipeline(device::Device& device, const PipelineOptio
     const scenes::TemporaryFolder folder("topple_perf");
     scenes::write_sequence(folder.path(), world, scenes::walk(world, camera));
 
+    ParseOptions parse_options;
+    parse_options.device = device;
     std::vector<Result> results;
     const auto result = [&](const std::string& name) -> Result& {
         for (Result& r : results) {
             if (r.name == name) return r;
         }
         results.emplace_back();
-        results.back().backend = device::to_string(device.info().backend);
-        results.back().device = device.info().name;
+        results.back().backend = device::to_string(device->info().backend);
+        results.back().device = device->info().name;
         results.back().name = name;
         return results.back();
     };
     for (unsigned run = 0; run < options.runs; ++run) {
-        const device::Counters before = device.counters();
+        const device::Counters before = device->counters();
         const auto start = std::chrono::steady_clock::now();
-        const ParseResult parsed = parse(device, folder.path());
+        const ParseResult parsed = parse(folder.path(), parse_options);
         const double all =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        const device::Counters after = device.counters();
+        const device::Counters after = device->counters();
         Result& whole = result("pipeline");
         whole.samples_s.push_back(all);
         whole.hash = hash_of(parsed.scene);

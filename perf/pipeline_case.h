@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "perf/measure.h"
@@ -18,7 +18,7 @@ struct PipelineOptions {
 // The whole parse of a generated room, read from a sequence folder: one result for each stage,
 // named "pipeline/<stage>", and "pipeline" for all. The score of the last parse goes to `score`.
 // The hash is of the labels of points and voxels, and of every object's barrier.
-std::vector<Result> measure_pipeline(device::Device& device, const PipelineOptions& options,
-                                     scenes::Score& score);
+std::vector<Result> measure_pipeline(const std::shared_ptr<device::Device>& device,
+                                     const PipelineOptions& options, scenes::Score& score);
 
 }  // namespace topple::perf

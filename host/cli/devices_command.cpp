@@ -3,7 +3,7 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "device/devices.h"
+#include "topple/device.h"
 
 namespace topple::cli {
 namespace {

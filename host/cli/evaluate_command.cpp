@@ -10,10 +10,10 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "device/devices.h"
 #include "evaluation/pictures.h"
 #include "evaluation/room.h"
 #include "evaluation/tables.h"
+#include "topple/device.h"
 #include "topple/error.h"
 
 namespace topple::cli {
@@ -54,7 +54,7 @@ int run(Arguments& a) {
     make_folder(a.out);
     const std::filesystem::path out = a.out;
     catch_interrupts();
-    const auto device = device::open_device(a.backend);
+    a.options.parse.device = device::open_device(a.backend);
     a.options.parse.cancelled = [] { return interrupted() != 0; };
     std::vector<evaluation::RoomScore> scores;
     std::optional<evaluation::Room> first;
@@ -62,7 +62,7 @@ int run(Arguments& a) {
         for (unsigned n = 0; n < a.seeds; ++n) {
             a.options.room.seed = a.options.camera.seed = a.first + n;
             std::fprintf(stderr, "room %u of %u\n", n + 1, a.seeds);
-            evaluation::Room room = evaluation::scan_and_parse(*device, a.options);
+            evaluation::Room room = evaluation::scan_and_parse(a.options);
             scores.push_back(evaluation::judge(room));
             if (!first) first = std::move(room);
         }

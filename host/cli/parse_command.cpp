@@ -11,8 +11,8 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/summary.h"
-#include "device/devices.h"
 #include "io/output_folder.h"
+#include "topple/device.h"
 #include "topple/parse.h"
 
 namespace topple::cli {
@@ -134,12 +134,12 @@ int run(Arguments& a) {
     catch_interrupts();
     // Throws now, not after the parse, where nothing can be written there.
     { const io::OutputFolder probe(out); }
-    const auto device = device::open_device(a.backend, a.threads);
+    a.options.device = device::open_device(a.backend, a.threads);
     Progress progress(a.quiet);
     a.options.progress = [&](const std::string& stage, double done) { progress(stage, done); };
     a.options.cancelled = [] { return interrupted() != 0; };
     try {
-        const ParseResult result = parse(*device, a.input, a.options);
+        const ParseResult result = parse(a.input, a.options);
         progress("output", 0);
         write_outputs(result, out);
         progress.finish();

@@ -18,6 +18,10 @@ const char* to_string(Backend backend) {
     return "?";
 }
 
+const DeviceInfo& describe(const Device& device) {
+    return device.info();
+}
+
 Device::Device() = default;
 Device::~Device() = default;
 

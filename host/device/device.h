@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "device/kernel.h"
+#include "topple/device.h"
 
 // The whole device abstraction: a Device allocates Memory and runs lists of Dispatches. The typed
 // faces that the rest of the host uses are Buffer<T> (buffer.h) and Queue (queue.h).
@@ -17,25 +18,6 @@
 namespace topple::device {
 
 class ThreadPool;
-
-enum class Backend : std::uint8_t { native, opencl, vulkan };
-const char* to_string(Backend backend);
-
-struct Limits {
-    std::uint64_t max_binding_bytes = 0;     // largest range that one kernel binding may span
-    std::uint64_t max_allocation_bytes = 0;  // largest single Memory
-    std::uint64_t memory_bytes = 0;          // all memory of the device
-    std::uint32_t max_group_size = 0;
-    std::uint32_t shared_bytes = 0;  // per work-group
-};
-
-struct DeviceInfo {
-    Backend backend = Backend::native;
-    std::string name;
-    std::string driver;  // driver or platform name and version
-    bool gpu = false;    // a real GPU, not a CPU behind a GPU's interface
-    Limits limits;
-};
 
 // Offsets of bound ranges are multiples of this, on every backend. Vulkan asks for 256 at most,
 // some OpenCL GPUs for 512.

@@ -39,7 +39,7 @@ std::vector<Listing> list_devices() {
     return all;
 }
 
-std::unique_ptr<Device> open_device(const std::string& backend, unsigned threads) {
+std::shared_ptr<Device> open_device(const std::string& backend, unsigned threads) {
     if (backend == "auto") return open_best(threads);
     if (backend == "native") return open_native(threads);
     if (backend == "opencl") return open_opencl();

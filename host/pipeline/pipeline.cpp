@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "device/device.h"
 #include "pipeline/assemble.h"
 #include "pipeline/geometry_stage.h"
 #include "pipeline/ingest.h"
@@ -88,16 +89,16 @@ ParseResult parse_ingested(device::Device& device, const Ingested& input,
 }
 
 template <class Ingest>
-ParseResult run(device::Device& device, const std::string& source, const ParseOptions& options,
-                Ingest ingest_input) {
+ParseResult run(const std::string& source, const ParseOptions& options, Ingest ingest_input) {
     check_options(options);
+    const auto device = options.device ? options.device : device::open_device("auto");
     // The clock writes into a list of its own: the scene moves while stages are still running.
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options);
-    const Ingested input = stage("ingest", ingest_input);
+    const Ingested input = stage("ingest", [&] { return ingest_input(*device); });
     Scene scene;
     scene.source = source;
-    ParseResult result = parse_ingested(device, input, options, std::move(scene), stage);
+    ParseResult result = parse_ingested(*device, input, options, std::move(scene), stage);
     result.scene.timings_s = std::move(timings);
     return result;
 }
@@ -118,13 +119,14 @@ void check_options(const ParseOptions& o) {
     }
 }
 
-ParseResult parse(device::Device& device, const std::filesystem::path& input,
-                  const ParseOptions& options) {
-    return run(device, input.string(), options, [&] { return ingest(device, input, options); });
+ParseResult parse(const std::filesystem::path& input, const ParseOptions& options) {
+    return run(input.string(), options,
+               [&](device::Device& device) { return ingest(device, input, options); });
 }
 
-ParseResult parse(device::Device& device, const PointCloud& cloud, const ParseOptions& options) {
-    return run(device, cloud.source, options, [&] { return ingest_cloud(device, cloud, options); });
+ParseResult parse(const PointCloud& cloud, const ParseOptions& options) {
+    return run(cloud.source, options,
+               [&](device::Device& device) { return ingest_cloud(device, cloud, options); });
 }
 
 }  // namespace topple

@@ -34,14 +34,14 @@ void move(const Mat4& m, Scene& scene) {
 
 }  // namespace
 
-Room scan_and_parse(device::Device& device, const RoomOptions& options) {
+Room scan_and_parse(const RoomOptions& options) {
     Room room;
     room.world = scenes::furnished_room(options.room);
     room.camera = options.camera;
     room.sequence = scenes::walk(room.world, options.camera);
     const scenes::TemporaryFolder folder("topple_evaluate");
     scenes::write_sequence(folder.path(), room.world, room.sequence);
-    room.parse = parse(device, folder.path(), options.parse);
+    room.parse = parse(folder.path(), options.parse);
     if (options.camera.single) {
         room.input_from_grid = room.sequence.frames.front().camera_to_world;
         move(room.input_from_grid, room.parse.scene);

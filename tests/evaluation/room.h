@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "device/device.h"
 #include "scenes/depth_camera.h"
 #include "scenes/furnished_room.h"
 #include "scenes/score.h"
@@ -31,7 +30,7 @@ struct Room {
 };
 
 // Throws what generating and parsing throw.
-Room scan_and_parse(device::Device& device, const RoomOptions& options);
+Room scan_and_parse(const RoomOptions& options);
 
 // The measures of the paper's Section 6.
 struct RoomScore {

@@ -2,10 +2,10 @@
 #include <CL/cl.h>
 #include <vulkan/vulkan.h>
 
-#include "device/embed.h"
 #include "device/queue.h"
 #include "device_compare.h"
 #include "device_harness.h"
+#include "topple/embed.h"
 #include "triad.hpp"
 
 // Running on handles that the caller made, keeps and destroys.
@@ -100,6 +100,7 @@ TEST_F(DeviceAdopt, VulkanHandlesStayTheCallers) {
         EXPECT_EQ(device->info().backend, device::Backend::vulkan);
         use(*device);
     }
+    EXPECT_THROW(device::adopt_vulkan({instance, devices[0], handle, queue, family_count}), Error);
     EXPECT_EQ(vkDeviceWaitIdle(handle), VK_SUCCESS);
     vkDestroyDevice(handle, nullptr);
     vkDestroyInstance(instance, nullptr);

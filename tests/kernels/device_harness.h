@@ -28,7 +28,7 @@ class EachBackend : public ::testing::TestWithParam<const char*> {
         }
         ASSERT_STREQ(device::to_string(device->info().backend), GetParam());
     }
-    std::unique_ptr<device::Device> device;
+    std::shared_ptr<device::Device> device;
 };
 
 inline auto all_backends() {

@@ -3,9 +3,9 @@
 #include <cstdio>
 
 #include "device/devices.h"
-#include "device/embed.h"
 #include "device/opencl/opencl_device.h"
 #include "device/opencl/opencl_error.h"
+#include "topple/embed.h"
 #include "topple/error.h"
 
 namespace topple::device {
@@ -148,7 +148,7 @@ std::unique_ptr<Device> open_opencl() {
     return std::make_unique<OpenClDevice>(make_context(best));
 }
 
-std::unique_ptr<Device> adopt_opencl(const OpenClHandles& handles) {
+std::shared_ptr<Device> adopt_opencl(const OpenClHandles& handles) {
     OpenClContext given;
     given.context = static_cast<cl_context>(handles.context);
     given.device = static_cast<cl_device_id>(handles.device_id);
@@ -167,7 +167,7 @@ std::unique_ptr<Device> adopt_opencl(const OpenClHandles& handles) {
     if (const std::string problem = problem_of(given.device); !problem.empty()) {
         throw Error(ErrorKind::device, "adopt_opencl: the device can't be used: " + problem);
     }
-    return std::make_unique<OpenClDevice>(std::move(given));
+    return std::make_shared<OpenClDevice>(std::move(given));
 }
 
 }  // namespace topple::device

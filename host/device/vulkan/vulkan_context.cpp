@@ -113,15 +113,32 @@ VkPhysicalDeviceProperties properties_of(VkPhysicalDevice physical) {
     return properties;
 }
 
-std::string problem_of(VkPhysicalDevice physical) {
-    if (properties_of(physical).apiVersion < VK_API_VERSION_1_1)
-        return "it offers less than Vulkan 1.1";
-    if (compute_family(physical) < 0) return "it has no queue that computes";
-    return {};
+std::vector<VkQueueFamilyProperties> families_of(VkPhysicalDevice physical) {
+    std::uint32_t count = 0;
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+    return families;
+}
+
+bool computes(const VkQueueFamilyProperties& family) {
+    return family.queueCount > 0 && (family.queueFlags & VK_QUEUE_COMPUTE_BIT);
+}
+
+// The family that computes, one without graphics first; -1 where there is none.
+std::int64_t compute_family(VkPhysicalDevice physical) {
+    const auto families = families_of(physical);
+    std::int64_t any = -1;
+    for (std::size_t i = 0; i < families.size(); ++i) {
+        if (!computes(families[i])) continue;
+        if (!(families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT)) return static_cast<std::int64_t>(i);
+        if (any < 0) any = static_cast<std::int64_t>(i);
+    }
+    return any;
 }
 
 int rank(VkPhysicalDevice physical) {
-    if (!problem_of(physical).empty()) return 9;
+    if (!vulkan_problem(physical).empty()) return 9;
     switch (properties_of(physical).deviceType) {
         case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
             return 0;
@@ -171,19 +188,16 @@ VulkanContext::~VulkanContext() {
     if (instance) vkDestroyInstance(instance, nullptr);
 }
 
-std::int64_t compute_family(VkPhysicalDevice physical) {
-    std::uint32_t count = 0;
-    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
-    std::int64_t any = -1;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        if (families[i].queueCount == 0 || !(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT))
-            continue;
-        if (!(families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT)) return i;
-        if (any < 0) any = i;
-    }
-    return any;
+std::string vulkan_problem(VkPhysicalDevice physical) {
+    if (properties_of(physical).apiVersion < VK_API_VERSION_1_1)
+        return "it offers less than Vulkan 1.1";
+    if (compute_family(physical) < 0) return "it has no queue that computes";
+    return {};
+}
+
+bool family_computes(VkPhysicalDevice physical, std::uint32_t family) {
+    const auto families = families_of(physical);
+    return family < families.size() && computes(families[family]);
 }
 
 DeviceInfo describe_vulkan(VkPhysicalDevice physical) {
@@ -232,7 +246,7 @@ VulkanContext open_vulkan_context() {
     std::stable_sort(devices.begin(), devices.end(),
                      [](VkPhysicalDevice a, VkPhysicalDevice b) { return rank(a) < rank(b); });
     context.physical = devices.front();
-    if (const std::string problem = problem_of(context.physical); !problem.empty()) {
+    if (const std::string problem = vulkan_problem(context.physical); !problem.empty()) {
         throw Error(ErrorKind::device, std::string("Vulkan device ") +
                                            properties_of(context.physical).deviceName +
                                            " can't be used: " + problem + mend);
@@ -251,7 +265,7 @@ std::vector<Listing> list_vulkan() {
             Listing listing;
             listing.backend = Backend::vulkan;
             listing.info = describe_vulkan(physical);
-            listing.problem = problem_of(physical);
+            listing.problem = vulkan_problem(physical);
             listing.usable = listing.problem.empty();
             listings.push_back(listing);
         }

@@ -44,7 +44,10 @@ VulkanContext open_vulkan_context();
 // What a device says of itself.
 DeviceInfo describe_vulkan(VkPhysicalDevice physical);
 
-// The family that computes, one without graphics first; -1 where there is none.
-std::int64_t compute_family(VkPhysicalDevice physical);
+// Why a physical device can't be used; empty where it can.
+std::string vulkan_problem(VkPhysicalDevice physical);
+
+// Whether the device has this family of queues, and the family computes.
+bool family_computes(VkPhysicalDevice physical, std::uint32_t family);
 
 }  // namespace topple::device

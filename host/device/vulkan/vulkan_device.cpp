@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "device/devices.h"
-#include "device/embed.h"
 #include "device/vulkan/vulkan_error.h"
+#include "topple/embed.h"
 #include "topple/error.h"
 
 namespace topple::device {
@@ -283,7 +283,7 @@ std::unique_ptr<Device> open_vulkan() {
     return std::make_unique<VulkanDevice>(open_vulkan_context());
 }
 
-std::unique_ptr<Device> adopt_vulkan(const VulkanHandles& handles) {
+std::shared_ptr<Device> adopt_vulkan(const VulkanHandles& handles) {
     VulkanContext given;
     given.instance = static_cast<VkInstance>(handles.instance);
     given.physical = static_cast<VkPhysicalDevice>(handles.physical_device);
@@ -295,7 +295,15 @@ std::unique_ptr<Device> adopt_vulkan(const VulkanHandles& handles) {
                     "adopt_vulkan needs an instance, a physical device, a device and a queue, none "
                     "of them null");
     }
-    return std::make_unique<VulkanDevice>(std::move(given));
+    if (const std::string problem = vulkan_problem(given.physical); !problem.empty()) {
+        throw Error(ErrorKind::device, "adopt_vulkan: the device can't be used: " + problem);
+    }
+    if (!family_computes(given.physical, given.queue_family)) {
+        throw Error(ErrorKind::device, "adopt_vulkan: queue family " +
+                                           std::to_string(given.queue_family) +
+                                           " does not compute; give a queue of one that does");
+    }
+    return std::make_shared<VulkanDevice>(std::move(given));
 }
 
 }  // namespace topple::device

@@ -9,13 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "topple/device.h"
 #include "topple/error.h"
 #include "topple/input.h"
 #include "topple/scene.h"
 
-namespace topple::device {
-class Device;
-}
 namespace topple::vdb {
 class VoxelScene;
 }
@@ -23,6 +21,9 @@ class VoxelScene;
 namespace topple {
 
 struct ParseOptions {
+    // What to compute on, from topple/device.h or topple/embed.h; one parse at a time uses it.
+    // Null: what open_device("auto") gives, opened for this parse alone.
+    std::shared_ptr<device::Device> device;
     double voxel_m = 0;      // edge of a solid voxel, metres; 0: found from the data
     std::optional<Vec3> up;  // up in the input's frame (from an IMU, say); else found
     std::vector<std::string> disturbances{"human", "wind", "earthquake"};
@@ -49,15 +50,12 @@ struct ParseResult {
 };
 
 // Parses a scan: a point cloud (.ply, .pcd, .xyz), a sequence folder of depth frames with poses, or
-// a folder with a single frame. The device is the caller's and is used from the calling thread
-// only. Throws Error: input (can't be parsed into a scene), usage (an option is out of range),
-// device.
-ParseResult parse(device::Device& device, const std::filesystem::path& input,
-                  const ParseOptions& options = {});
+// a folder with a single frame. The result does not hold the device. Throws Error: input (can't be
+// parsed into a scene), usage (an option is out of range), device (it can't be opened, or failed).
+ParseResult parse(const std::filesystem::path& input, const ParseOptions& options = {});
 
 // The same on a cloud in memory. Frame and units: metres, any right-handed frame.
-ParseResult parse(device::Device& device, const PointCloud& cloud,
-                  const ParseOptions& options = {});
+ParseResult parse(const PointCloud& cloud, const ParseOptions& options = {});
 
 // Writes points.ply, solid.ply, volume.vdb, scene.json and report.html into the folder, which
 // appears whole or not at all. Throws Error(input) naming the path where it can't be written.

@@ -129,7 +129,8 @@ TEST(Room, OfASingleFrameIsJudgedInTheRoom) {
     options.camera.single = true;
     options.parse.voxel_m = 0.03;
     options.parse.disturbances = {"wind"};
-    const Room room = scan_and_parse(*device::open_device("native"), options);
+    options.parse.device = device::open_device("native");
+    const Room room = scan_and_parse(options);
     const auto nobodys = std::count(room.part.begin(), room.part.end(), -1);
     EXPECT_LT(nobodys, static_cast<std::ptrdiff_t>(room.part.size() / 20));
     const RoomScore score = judge(room);
@@ -148,8 +149,8 @@ TEST(Room, IsScannedParsedJudgedAndDrawn) {
     options.camera.frames = 8;
     options.parse.voxel_m = 0.03;
     options.parse.disturbances = {"wind"};
-    const auto device = device::open_device("native");
-    const Room room = scan_and_parse(*device, options);
+    options.parse.device = device::open_device("native");
+    const Room room = scan_and_parse(options);
     const ScenePoints& points = room.parse.scene.points;
     ASSERT_EQ(room.part.size(), points.x.size());
     ASSERT_EQ(points.region.size(), points.x.size());

@@ -23,8 +23,7 @@ class SlowAccuracy : public Files, public ::testing::WithParamInterface<RoomCase
 TEST_P(SlowAccuracy, of_a_walk_through_a_room) {
     const Scan scan = scan_of_room(GetParam().seed, 30, GetParam().tilt_deg);
     scenes::write_sequence(path("scan"), scan.world, scan.sequence);
-    const auto device = device::open_device("native");
-    const ParseResult result = parse(*device, path("scan"));
+    const ParseResult result = parse(path("scan"), on(device::open_device("native")));
     const scenes::Score score = scenes::score(scan.world, result.scene);
     std::printf("part mIoU %.3f, object mIoU %.3f, gravity %.3f deg, volume %.3f / %.3f\n",
                 score.parts.miou, score.objects.miou, score.gravity_deg,
@@ -42,8 +41,7 @@ TEST_F(SingleFrame, is_parsed_with_a_note) {
     const Scan scan = scan_of_room(2, 1);
     scenes::write_sequence(path("scan"), scan.world, scan.sequence);
     ASSERT_FALSE(std::filesystem::exists(path("scan/trajectory.txt")));
-    const auto device = device::open_device("native");
-    const Scene scene = parse(*device, path("scan")).scene;
+    const Scene scene = parse(path("scan"), on(device::open_device("native"))).scene;
     EXPECT_GT(scene.objects.size(), 1u);
     EXPECT_GT(scene.solid.x.size(), 1000u);
     bool noted = false;
@@ -54,11 +52,10 @@ TEST_F(SingleFrame, is_parsed_with_a_note) {
 // Up may be given, and then counts instead of what the scan looks like.
 TEST_F(SingleFrame, takes_the_up_that_is_given) {
     const Scan scan = scan_of_room(2, 1);
-    ParseOptions options;
+    ParseOptions options = on(device::open_device("native"));
     const Vec3 up = scan.world.to_input({0, 0, 1});
     options.up = up;
-    const auto device = device::open_device("native");
-    const Scene scene = parse(*device, scan.sequence.cloud, options).scene;
+    const Scene scene = parse(scan.sequence.cloud, options).scene;
     EXPECT_EQ(scene.up_method, "given");
     for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(scene.up[c], up[c], 1e-6);
 }

@@ -54,9 +54,9 @@ double share_equal(const std::vector<std::int32_t>& a, const std::vector<std::in
 
 TEST(Threads, change_no_bit) {
     const PointCloud cloud = cloud_of_room(3);
-    const Scene one = parse(*device::open_device("native", 1), cloud).scene;
-    const Scene two = parse(*device::open_device("native", 2), cloud).scene;
-    const Scene five = parse(*device::open_device("native", 5), cloud).scene;
+    const Scene one = parse(cloud, on(device::open_device("native", 1))).scene;
+    const Scene two = parse(cloud, on(device::open_device("native", 2))).scene;
+    const Scene five = parse(cloud, on(device::open_device("native", 5))).scene;
     ASSERT_GT(one.objects.size(), 3u);
     EXPECT_EQ(one.points.primitive, two.points.primitive);
     EXPECT_EQ(one.points.object, two.points.object);
@@ -68,9 +68,9 @@ using SlowBackends = EachBackend;
 
 TEST_P(SlowBackends, agree_on_primitives_and_objects) {
     const PointCloud cloud = cloud_of_room(3);
-    const Scene here = parse(*device, cloud).scene;
+    const Scene here = parse(cloud, on(device)).scene;
     EXPECT_EQ(here.backend, GetParam());
-    const Scene native = parse(*device::open_device("native"), cloud).scene;
+    const Scene native = parse(cloud, on(device::open_device("native"))).scene;
     ASSERT_GT(native.objects.size(), 3u);
     EXPECT_EQ(here.primitives.size(), native.primitives.size());
     EXPECT_EQ(here.objects.size(), native.objects.size());

@@ -214,10 +214,9 @@ using Outputs = Files;
 TEST_F(Outputs, of_depth_frames_obey_their_description) {
     const Scan scan = scan_of_room(5, 12);
     scenes::write_sequence(path("scan"), scan.world, scan.sequence);
-    ParseOptions options;
+    ParseOptions options = on(device::open_device("native"));
     options.seed = 5;
-    const auto device = device::open_device("native");
-    write_outputs(parse(*device, path("scan"), options), path("out"));
+    write_outputs(parse(path("scan"), options), path("out"));
     for (const char* name : {"points.ply", "solid.ply", "volume.vdb", "report.html", "scene.json"})
         EXPECT_GT(std::filesystem::file_size(path("out") / name), 100u) << name;
     EXPECT_FALSE(std::filesystem::is_empty(path("scan"))) << "the input stays";
@@ -264,11 +263,10 @@ TEST_F(Outputs, of_a_bare_cloud_keep_its_points) {
             append(ply, c);
     }
     write("cloud.ply", ply);
-    ParseOptions options;
+    ParseOptions options = on(device::open_device("native"));
     options.seed = 5;
     options.disturbances = {"wind"};
-    const auto device = device::open_device("native");
-    write_outputs(parse(*device, path("cloud.ply"), options), path("out"));
+    write_outputs(parse(path("cloud.ply"), options), path("out"));
 
     const auto points = read_columns(path("out/points.ply"));
     ASSERT_EQ(points.at("x").size(), cloud.size());

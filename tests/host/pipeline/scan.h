@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
 #include <string>
+#include <utility>
 
-#include "device/devices.h"
 #include "host/io/files.h"
 #include "scenes/depth_camera.h"
 #include "scenes/furnished_room.h"
 #include "scenes/score.h"
+#include "topple/device.h"
 #include "topple/parse.h"
 
 // Small scans of a furnished room whose truth is known.
@@ -38,6 +40,13 @@ inline PointCloud cloud_of_room(std::uint64_t seed) {
     camera.fuse_m = 0.025;
     scenes::fuse(camera, scan.sequence);
     return scan.sequence.cloud;
+}
+
+// The default options, on this device.
+inline ParseOptions on(std::shared_ptr<device::Device> device) {
+    ParseOptions options;
+    options.device = std::move(device);
+    return options;
 }
 
 }  // namespace topple::test

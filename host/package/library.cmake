@@ -1,0 +1,34 @@
+# libtopple: what host/include/topple declares and all that it takes, as one library from the objects of
+# the folders' own. Its users see topple::topple, installed or by add_subdirectory (decision 6).
+set(PARTS topple_device topple_geometry topple_graph topple_io topple_kernels topple_physics topple_pipeline
+          topple_report topple_safety topple_vdb)
+foreach(ISA IN ITEMS baseline avx2 avx512)
+  if(TARGET topple_kernels_${ISA})
+    list(APPEND PARTS topple_kernels_${ISA})
+  endif()
+endforeach()
+list(TRANSFORM PARTS REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE OBJECTS)
+add_library(libtopple ${OBJECTS})
+add_library(topple::topple ALIAS libtopple)
+
+# What those objects need when they are linked, by package and target; what they need of others are headers.
+set(TOPPLE_LINKED_PACKAGES Threads PNG liblzf Qhull TBB OpenCL Vulkan)  # and OpenVDB
+target_link_libraries(libtopple PRIVATE Threads::Threads PNG::PNG liblzf::liblzf Qhull::qhull_r OpenVDB::openvdb
+                                        TBB::tbb OpenCL::OpenCL Vulkan::Vulkan)
+
+set(GENERATED_HEADERS ${CMAKE_CURRENT_BINARY_DIR}/include)
+file(GLOB HEADERS CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/include/topple/*.h)
+target_sources(libtopple PUBLIC FILE_SET HEADERS
+               BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR}/include ${GENERATED_HEADERS}
+               FILES ${HEADERS} ${GENERATED_HEADERS}/topple/version.h)
+target_compile_features(libtopple INTERFACE cxx_std_20)
+set_target_properties(libtopple PROPERTIES
+  OUTPUT_NAME topple EXPORT_NAME topple LINKER_LANGUAGE CXX
+  # Before 1.0 a minor version may change the interface.
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+if(BUILD_SHARED_LIBS)
+  # Only the public functions: the templates inside are compiled with flags that a user's may differ from.
+  set(EXPORTS ${CMAKE_CURRENT_SOURCE_DIR}/package/exports.map)
+  target_link_options(libtopple PRIVATE -Wl,--version-script=${EXPORTS} -Wl,--no-undefined)
+  set_target_properties(libtopple PROPERTIES LINK_DEPENDS ${EXPORTS})
+endif()

@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Installs what was built, and uses it as a stranger's project would.
+
+  package_test.py install|example|headers|adopt_opencl --source DIR --build DIR --work DIR ...
+
+`install` comes first: it installs into WORK, moves the whole elsewhere, so that nothing can depend on where
+it was first, and parses a small generated scan with the program there. Each of the others configures, builds
+and runs a project against it. Exits with 77 where a test is skipped.
+"""
+import argparse
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+SKIPPED = 77
+
+
+def run(*command):
+    """What the command prints; it must succeed."""
+    done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode == SKIPPED and os.environ.get('TOPPLE_REQUIRE_BACKENDS') != '1':
+        print(done.stdout)
+        sys.exit(SKIPPED)
+    if done.returncode:
+        sys.exit(f'{" ".join(map(str, command))}: exit code {done.returncode}\n{done.stdout}')
+    return done.stdout
+
+
+def check(holds, message):
+    if not holds:
+        sys.exit(message)
+
+
+class Package:
+    def __init__(self, arguments):
+        self.a = arguments
+        self.prefix = os.path.join(arguments.work, 'prefix')
+        self.scan = os.path.join(arguments.work, 'scan')
+
+    def install(self):
+        shutil.rmtree(self.a.work, ignore_errors=True)
+        first = os.path.join(self.a.work, 'first')
+        run(self.a.cmake, '--install', self.a.build, '--prefix', first)
+        os.rename(first, self.prefix)
+        self.check_paths()
+        topple = os.path.join(self.prefix, 'bin', 'topple')
+        run(topple, 'generate', self.scan, '--seed', 1, '--frames', 8)
+        check(self.parsed('native') > 1, 'the scan holds too few objects to tell anything')
+
+    def check_paths(self):
+        """Nothing installed names this source tree, but for what a debugger reads."""
+        places = [os.path.abspath(place).encode() for place in (self.a.source, self.a.build)]
+        for folder, _, names in os.walk(self.prefix):
+            for name in names:
+                path = os.path.join(folder, name)
+                if self.a.build_type != 'Release' and not path.endswith(('.h', '.cmake')):
+                    continue
+                with open(path, 'rb') as file:
+                    data = file.read()
+                for place in places:
+                    check(place not in data, f'{path} names {place.decode()}')
+
+    def parsed(self, backend):
+        """The number of objects in the scene.json of the installed program."""
+        out = os.path.join(self.a.work, 'parsed-' + backend)
+        if not os.path.exists(out):
+            run(os.path.join(self.prefix, 'bin', 'topple'), 'parse', self.scan, '-o', out, '--backend', backend, '--quiet')
+        with open(os.path.join(out, 'scene.json'), encoding='utf-8') as file:
+            return len(json.load(file)['objects'])
+
+    def build(self, source, name, target):
+        """Configures and builds a project's target; its folder."""
+        folder = os.path.join(self.a.work, name)
+        shutil.rmtree(folder, ignore_errors=True)
+        run(self.a.cmake, '-S', source, '-B', folder, '-G', self.a.generator, '-DCMAKE_PREFIX_PATH=' + self.prefix,
+            '-DCMAKE_CXX_COMPILER=' + self.a.compiler, '-DCMAKE_BUILD_TYPE=' + self.a.build_type)
+        with open(os.path.join(folder, 'CMakeCache.txt'), encoding='utf-8') as file:
+            found = re.search(r'^topple_DIR:PATH=(.*)$', file.read(), re.M).group(1)
+        check(found.startswith(self.prefix), f'found topple in {found}, not below {self.prefix}')
+        run(self.a.cmake, '--build', folder, '--target', target)
+        return folder
+
+    def example(self):
+        """The README's files, as they stand there."""
+        source = os.path.join(self.a.work, 'example')
+        shutil.rmtree(source, ignore_errors=True)
+        os.makedirs(source)
+        with open(os.path.join(self.a.source, 'README.md'), encoding='utf-8') as file:
+            blocks = dict(re.findall(r'^<!-- example: (\S+) -->\n```\w+\n(.*?)^```$', file.read(), re.M | re.S))
+        check(sorted(blocks) == ['CMakeLists.txt', 'main.cpp'], f'README.md has the example blocks {sorted(blocks)}')
+        for name, text in blocks.items():
+            with open(os.path.join(source, name), 'w', encoding='utf-8') as file:
+                file.write(text)
+        program = os.path.join(self.build(source, 'example-build', 'all'), 'myapp')
+        out = os.path.join(self.a.work, 'example-parsed')
+        self.compare(run(program, self.scan, out), 'auto')
+        check(os.path.exists(os.path.join(out, 'report.html')), 'the example wrote no report')
+
+    def headers(self):
+        self.build(os.path.join(self.a.source, 'tests/package/consumer'), 'headers-build', 'headers')
+
+    def adopt_opencl(self):
+        source = os.path.join(self.a.source, 'tests/package/consumer')
+        program = os.path.join(self.build(source, 'adopt-build', 'adopt_opencl'), 'adopt_opencl')
+        self.compare(run(program, self.scan), 'native')
+
+    def compare(self, printed, backend):
+        """The number of objects that was printed is that of `topple parse` on that backend."""
+        print(printed)
+        found = re.search(r'(\d+) objects', printed)
+        check(found, 'no number of objects was printed')
+        check(int(found.group(1)) == self.parsed(backend), f'topple parse finds {self.parsed(backend)} objects')
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument('test', choices=['install', 'example', 'headers', 'adopt_opencl'])
+    for name in ('source', 'build', 'work', 'cmake', 'generator', 'compiler', 'build-type'):
+        parser.add_argument('--' + name, required=True)
+    arguments = parser.parse_args()
+    getattr(Package(arguments), arguments.test)()
+
+
+if __name__ == '__main__':
+    main()
