@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// What every sanitized executable takes as given about libraries that are not instrumented. The
+// sanitizers' runtime calls these functions by name; nothing of topple's own may be listed here.
+
+#if defined(__SANITIZE_ADDRESS__)
+
+// PoCL and its compiler keep their state until the process ends, and so does what cairo chooses
+// fonts with.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() {
+    return "leak:libpocl\n"
+           "leak:libLLVM\n"
+           "leak:libfontconfig\n";
+}
+
+// The loaders unload drivers before leaks are looked for, and a frame of an unloaded library has no
+// name that a suppression could match.
+extern "C" int dlclose(void* handle);
+extern "C" int dlclose(void*) {
+    return 0;
+}
+
+#elif defined(__SANITIZE_THREAD__)
+
+#include <oneapi/tbb/global_control.h>
+
+namespace {
+
+// OpenVDB hands work to libtbb, whose synchronisation cannot be seen, so that its threads would
+// seem to race with whoever reads their results. Without workers there are none; topple's own
+// threads are not libtbb's.
+const oneapi::tbb::global_control no_tbb_workers{
+    oneapi::tbb::global_control::max_allowed_parallelism, 1};
+
+}  // namespace
+
+#endif
