@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
 #include "geometry/split.h"
 
 namespace topple::geometry {
@@ -80,14 +81,14 @@ void RegionFacts::find_borders(const std::vector<std::int32_t>& changed) {
     threads_.each(fresh.size(), 4, [&](std::size_t n) {
         Border& border = *fresh[n];
         const auto a = static_cast<std::size_t>(border.a), b = static_cast<std::size_t>(border.b);
-        const auto smaller = std::min(cuts_.regions.regions[a].surfels,
-                                      cuts_.regions.regions[b].surfels);
-        border.length = static_cast<double>(border.pairs.size()) /
-                        std::sqrt(static_cast<double>(smaller));
+        const auto smaller =
+            std::min(cuts_.regions.regions[a].surfels, cuts_.regions.regions[b].surfels);
+        border.length =
+            static_cast<double>(border.pairs.size()) / std::sqrt(static_cast<double>(smaller));
         if (border.length < options_.border_share) return;
-        border.inside_share = inside_share(s_, cuts_.regions, border,
-                                           {samples_[a].tolerance_m, samples_[b].tolerance_m},
-                                           options_);
+        border.inside_share =
+            inside_share(s_, cuts_.regions, border,
+                         {samples_[a].tolerance_m, samples_[b].tolerance_m}, options_);
     });
 }
 
@@ -111,7 +112,8 @@ void RegionFacts::find_face_pieces(const std::vector<std::int32_t>& changed) {
         }
     });
     for (std::size_t n = 0; n < changed.size(); ++n)
-        for (const std::int32_t other : found[n]) face_pieces_.insert(std::minmax(changed[n], other));
+        for (const std::int32_t other : found[n])
+            face_pieces_.insert(std::minmax(changed[n], other));
 }
 
 double RegionFacts::concavity(std::int32_t a, std::int32_t b) {
