@@ -55,6 +55,7 @@ class Merger {
             return size[static_cast<std::size_t>(a)] > size[static_cast<std::size_t>(b)];
         });
         PrimitiveSet out;
+        out.faces = r_;
         std::vector<std::int32_t> id(size.size(), -1);
         for (const std::int32_t k : order) {
             id[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(out.regions.size());

@@ -5,6 +5,7 @@
 
 #include "geometry/algebraic_model.h"
 #include "geometry/merge.h"
+#include "geometry/split.h"
 
 // Regions that belong together although the scan does not show them to touch.
 namespace topple::geometry {
@@ -40,6 +41,20 @@ bool coplanar(const Regions& regions, const std::vector<RegionSamples>& samples,
     };
     const double bound = std::max(samples[a].tolerance_m, samples[b].tolerance_m) + slack_m;
     return std::min(off(a, b), off(b, a)) <= bound;
+}
+
+bool in_one_surface(const Surfels& surfels, const Regions& regions, std::size_t i, std::size_t j) {
+    constexpr double parallel = 0.97;  // cosine
+    const std::int32_t a = regions.label[i], b = regions.label[j];
+    if (a < 0 || b < 0) return false;
+    const Region &ra = regions.regions[static_cast<std::size_t>(a)],
+                 &rb = regions.regions[static_cast<std::size_t>(b)];
+    if (a == b) return true;
+    const Eigen::Vector3d p = position(surfels, i), q = position(surfels, j);
+    if (gradient(ra.model, p).normalized().dot(gradient(rb.model, q).normalized()) < parallel)
+        return false;
+    const double bound = 2 * std::max(ra.residual_m, rb.residual_m) + 0.25 * surfels.cell_m;
+    return std::abs(distance(ra.model, q)) <= bound && std::abs(distance(rb.model, p)) <= bound;
 }
 
 std::vector<std::int64_t> surfels_behind(const Surfels& s, const Regions& regions,

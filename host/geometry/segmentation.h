@@ -46,9 +46,14 @@ Regions split(const Surfels& surfels);  // on threads of its own, one per core
 struct PrimitiveSet {
     std::vector<std::int32_t> label;
     std::vector<std::string> model;
-    std::vector<std::vector<std::int32_t>> regions;  // of each primitive
+    std::vector<std::vector<std::int32_t>> regions;  // of each primitive, of those in `faces`
+    Regions faces;                                   // the regions after cutting
 };
 PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const Vec3& up,
                           const FreeSpace& free, device::ThreadPool& threads);
+
+// Whether the surface goes on smoothly from one surfel to the other: the models of their regions
+// agree around them.
+bool in_one_surface(const Surfels& surfels, const Regions& regions, std::size_t i, std::size_t j);
 
 }  // namespace topple::geometry

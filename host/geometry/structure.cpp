@@ -20,6 +20,11 @@ constexpr double scrap_share = 0.05, scrap_cos = 0.5, scrap_inside = 0.9, shell_
 // Share of the scene's surfels that may lie behind a wall: windows, mirrors, open doors.
 constexpr double behind_share = 0.02;
 
+// A level piece smaller than the first, in square metres, is floor only within the noise of the
+// floor's plane, in cells, and a scrap on the floor is part of it only within that or
+// below the second: the foot of a lamp and a book on the floor are as flat and as low.
+constexpr double floor_piece_m2 = 0.25, least_thing_m2 = 0.01, noise_cells = 0.6;
+
 // Area-weighted mean plane of one primitive: point, normal, and how much of it agrees.
 struct Face {
     double area_m2 = 0;  // of surfels whose normal agrees with the mean
@@ -85,11 +90,13 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
     for (const Face& f : face) {
         if (may_be_floor(f)) floor_height = std::min(floor_height, dot(up, f.px, f.py, f.pz));
     }
+    const double noise = noise_cells * surfels.cell_m, uneven = std::max(0.03, 2 * surfels.cell_m);
     for (std::size_t p = 0; p < face.size(); ++p) {
         const Face& f = face[p];
         const double height = dot(up, f.px, f.py, f.pz);
         if (f.flatness > flat && level(f) > horizontal_cos && f.area_m2 >= floor_area_m2 &&
-            std::abs(height - floor_height) < std::max(0.03, 2 * surfels.cell_m)) {
+            height - floor_height > -uneven &&
+            height - floor_height < (f.area_m2 < floor_piece_m2 ? noise : uneven)) {
             out[p] = Structure::floor;
         } else if (f.flatness > flat && f.area_m2 >= wall_area_m2 &&
                    f.area_m2 >= wall_share * largest_upright &&
@@ -110,16 +117,22 @@ void absorb_into_shell(const Surfels& s, PrimitiveSet& primitives,
         if (structure[shell] == Structure::none) continue;
         const Face& f = face[shell];
         std::vector<std::uint64_t> near(face.size(), 0), all(face.size(), 0);
+        std::vector<double> offset(face.size(), 0);
         for (std::size_t n = 0; n < s.size(); ++n) {
             if (primitives.label[n] < 0) continue;
             const auto p = static_cast<std::size_t>(primitives.label[n]);
             ++all[p];
-            near[p] += std::abs((s.x[n] - f.px) * f.nx + (s.y[n] - f.py) * f.ny +
-                                (s.z[n] - f.pz) * f.nz) < slack;
+            const double d =
+                (s.x[n] - f.px) * f.nx + (s.y[n] - f.py) * f.ny + (s.z[n] - f.pz) * f.nz;
+            near[p] += std::abs(d) < slack;
+            offset[p] += d;
         }
         for (std::size_t p = 0; p < face.size(); ++p) {
             const double along = face[p].nx * f.nx + face[p].ny * f.ny + face[p].nz * f.nz;
-            if (home[p] < 0 && structure[p] == Structure::none &&
+            const bool thing = structure[shell] == Structure::floor &&
+                               face[p].area_m2 >= least_thing_m2 &&
+                               offset[p] > noise_cells * s.cell_m * static_cast<double>(all[p]);
+            if (!thing && home[p] < 0 && structure[p] == Structure::none &&
                 face[p].area_m2 < scrap_share * f.area_m2 && along > scrap_cos &&
                 static_cast<double>(near[p]) >= scrap_inside * static_cast<double>(all[p])) {
                 home[p] = static_cast<std::int32_t>(shell);

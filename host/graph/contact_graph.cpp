@@ -2,6 +2,7 @@
 #include "graph/contact_graph.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -38,6 +39,140 @@ struct Columns {
     double height_sum = 0;
 };
 
+// Voxel faces with which one primitive carries another, or 0 where it does not. The border of two
+// solids is a staircase of voxels; its steps cancel in the sum over its faces, which is the true
+// area vector of the contact. Where it points sideways, some columns of the one lie on the other
+// all the same, by chance.
+double upward_faces(const std::vector<physics::TouchingPair>& pairs, std::int32_t supporter,
+                    std::int32_t supported) {
+    constexpr double steepest = 0.5;  // least share of the upward part in the sideways one
+    const auto at = std::ranges::lower_bound(
+        pairs, std::pair(std::min(supporter, supported), std::max(supporter, supported)), {},
+        [](const physics::TouchingPair& p) { return std::pair(p.a, p.b); });
+    const auto net = [&](std::size_t axis) {
+        return static_cast<double>(at->faces[2 * axis + 1]) -
+               static_cast<double>(at->faces[2 * axis]);
+    };
+    const double up = supporter < supported ? net(2) : -net(2);
+    return up >= steepest * std::hypot(net(0), net(1)) ? up : 0;
+}
+
+// Of a primitive's columns, in voxels.
+struct Extent {
+    std::int32_t i_low = std::numeric_limits<std::int32_t>::max(), i_high = 0, j_low = i_low,
+                 j_high = 0;
+    std::uint64_t columns = 0;
+    double tops = 0;  // sum over the columns
+
+    std::array<double, 2> middle() const {
+        return {0.5 * (i_low + i_high + 1), 0.5 * (j_low + j_high + 1)};
+    }
+    bool holds(const std::array<double, 2>& point) const {
+        return point[0] >= i_low && point[0] <= i_high + 1.0 && point[1] >= j_low &&
+               point[1] <= j_high + 1.0;
+    }
+    double mean_top() const { return tops / static_cast<double>(columns); }
+    void add(std::int32_t i, std::int32_t j, std::int32_t top) {
+        if (columns == 0) i_high = i, j_high = j;
+        i_low = std::min(i_low, i), i_high = std::max(i_high, i);
+        j_low = std::min(j_low, j), j_high = std::max(j_high, j);
+        ++columns;
+        tops += top;
+    }
+};
+
+// A primitive's columns: the lowest cell of each, and how far down from there nobody has seen.
+struct Underside {
+    std::int32_t i, j, lowest, unseen;
+};
+
+void add_corners(std::int32_t i, std::int32_t j, double h,
+                 std::vector<std::array<double, 2>>& corners) {
+    for (const int di : {0, 1}) {
+        for (const int dj : {0, 1}) corners.push_back({(i + di) * h, (j + dj) * h});
+    }
+}
+
+// The columns that may rest on a surface at this height: unseen from their underside down to it,
+// or, where they end at it, for some way on: else it is air that they end in.
+void add_hidden_corners(const std::vector<Underside>& undersides, double height_m, double h,
+                        std::vector<std::array<double, 2>>& corners) {
+    const double surface = height_m / h;
+    for (const Underside& u : undersides) {
+        const double above = u.lowest - surface;
+        if (above >= -1.5 && u.unseen >= std::max(above - 0.5, 2.0))
+            add_corners(u.i, u.j, h, corners);
+    }
+}
+
+// What is not seen to hang, and is not seen to stand either, stands on the highest level surface
+// under it: others hide its foot, and it hides its shadow on the table.
+void add_hidden_carryings(const std::vector<std::vector<Underside>>& undersides,
+                          const std::vector<Extent>& extents, double h, ContactGraph& graph) {
+    constexpr double least_hidden = 0.5;  // share of the columns below which nobody has seen
+    std::vector<Carrying> found;
+    for (std::int32_t p = 0; p < graph.primitives; ++p) {
+        const std::vector<Underside>& own = undersides[static_cast<std::size_t>(p)];
+        if (own.empty() || !graph.carriers_of(p).empty()) continue;
+        const Extent& e = extents[static_cast<std::size_t>(p)];
+        Carrying best;
+        for (std::int32_t q = 0; q < graph.primitives; ++q) {
+            const Extent& under = extents[static_cast<std::size_t>(q)];
+            if (q == p || under.columns < e.columns || !under.holds(e.middle())) continue;
+            const double top = under.mean_top();
+            if (top * h > graph.lowest_m[static_cast<std::size_t>(p)] + 1.5 * h) continue;
+            if (best.supporter < 0 || top * h > best.height_m) {
+                best.supporter = q;
+                best.height_m = top * h;
+            }
+        }
+        if (best.supporter < 0) continue;
+        std::vector<std::array<double, 2>> corners;
+        add_hidden_corners(own, best.height_m, h, corners);
+        const double columns = static_cast<double>(corners.size()) / 4;
+        if (columns < least_hidden * static_cast<double>(own.size())) continue;
+        best.supported = p;
+        best.area_m2 = columns * h * h;
+        best.outline = physics::convex_polygon(std::move(corners));
+        found.push_back(std::move(best));
+    }
+    for (Carrying& c : found) {
+        physics::TouchingPair pair;
+        pair.a = std::min(c.supporter, c.supported);
+        pair.b = std::max(c.supporter, c.supported);
+        pair.area_m2 = c.area_m2;
+        pair.normal = {0, 0, c.supporter < c.supported ? 1.0 : -1.0};
+        const Extent& e = extents[static_cast<std::size_t>(c.supported)];
+        pair.center = {e.middle()[0] * h, e.middle()[1] * h, c.height_m};
+        const auto key = [](const physics::TouchingPair& t) { return std::pair(t.a, t.b); };
+        const auto at = std::ranges::lower_bound(graph.pairs, key(pair), {}, key);
+        if (at == graph.pairs.end() || key(*at) != key(pair)) graph.pairs.insert(at, pair);
+        graph.carryings.push_back(std::move(c));
+    }
+    std::ranges::sort(graph.carryings, {},
+                      [](const Carrying& c) { return std::pair(c.supported, c.supporter); });
+}
+
+// What is seen to hang must be held by something near it, although the scan shows a gap: the back
+// of a cabinet is never seen, nor is what holds a screen.
+void add_hidden_joints(device::Device& device, const SolidCells& cells, std::int32_t primitives,
+                       ContactGraph& graph) {
+    constexpr double longest_m = 0.08;
+    std::vector<bool> hangs(static_cast<std::size_t>(primitives), false);
+    for (std::int32_t p = 0; p < primitives; ++p)
+        hangs[static_cast<std::size_t>(p)] = graph.carriers_of(p).empty();
+    const auto key = [](const physics::TouchingPair& p) { return std::pair(p.a, p.b); };
+    std::vector<physics::TouchingPair> joints;
+    for (const physics::TouchingPair& pair : physics::touching_pairs(
+             device, cells, primitives, static_cast<unsigned>(longest_m / cells.voxel_m))) {
+        if (!hangs[static_cast<std::size_t>(pair.a)] && !hangs[static_cast<std::size_t>(pair.b)])
+            continue;
+        if (!std::ranges::binary_search(graph.pairs, key(pair), {}, key)) joints.push_back(pair);
+    }
+    graph.pairs.insert(graph.pairs.end(), joints.begin(), joints.end());
+    std::ranges::sort(graph.pairs, {}, key);
+}
+
 }  // namespace
 
 std::span<const Carrying> ContactGraph::carriers_of(std::int32_t primitive) const {
@@ -55,6 +190,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     graph.clearances.resize(count);
     graph.lowest_m.assign(count, std::numeric_limits<double>::infinity());
     graph.highest_m.assign(count, -std::numeric_limits<double>::infinity());
+    graph.section_m2.assign(count, 0.0);
     graph.pairs = physics::touching_pairs(device, cells, primitives, gap);
     add_silhouettes(cells, cells.j, cells.k, 0, graph);
     add_silhouettes(cells, cells.i, cells.k, 1, graph);
@@ -63,12 +199,23 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     const double h = cells.voxel_m;
     std::map<std::pair<std::int32_t, std::int32_t>, Columns> carried;  // (supported, supporter)
     std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> gaps;
+    std::vector<std::vector<Underside>> undersides(count);
+    std::vector<Extent> extents(count);
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const std::int32_t upper = cells.primitive[n];
         if (upper < 0) continue;
         const auto p = static_cast<std::size_t>(upper);
         graph.lowest_m[p] = std::min(graph.lowest_m[p], cells.k[n] * h);
         graph.highest_m[p] = std::max(graph.highest_m[p], (cells.k[n] + 1) * h);
+        graph.section_m2[p] += h * h * h;
+        std::vector<Underside>& own = undersides[p];
+        if (own.empty() || own.back().i != cells.i[n] || own.back().j != cells.j[n]) {
+            own.push_back({cells.i[n], cells.j[n], cells.k[n],
+                           cells.unseen_below.empty() ? 0 : cells.unseen_below[n]});
+        }
+        const bool last = n + 1 == cells.size() || cells.i[n + 1] != cells.i[n] ||
+                          cells.j[n + 1] != cells.j[n] || cells.primitive[n + 1] != upper;
+        if (last) extents[p].add(cells.i[n], cells.j[n], cells.k[n] + 1);
         // Cells are sorted by (i, j, k): the one below in the column, if any, comes right before.
         if (n == 0 || cells.i[n - 1] != cells.i[n] || cells.j[n - 1] != cells.j[n]) continue;
         const std::int32_t lower = cells.primitive[n - 1];
@@ -80,17 +227,22 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         Columns& columns = carried[{upper, lower}];
         ++columns.count;
         columns.height_sum += (cells.k[n - 1] + 1) * h;
-        for (const int di : {0, 1}) {
-            for (const int dj : {0, 1})
-                columns.corners.push_back({(cells.i[n] + di) * h, (cells.j[n] + dj) * h});
-        }
+        add_corners(cells.i[n], cells.j[n], h, columns.corners);
     }
-    for (const auto& [key, columns] : carried) {
-        graph.carryings.push_back({key.second, key.first,
-                                   static_cast<double>(columns.count) * h * h,
-                                   columns.height_sum / static_cast<double>(columns.count),
+    for (std::size_t p = 0; p < count; ++p)
+        if (graph.section_m2[p] > 0) graph.section_m2[p] /= graph.highest_m[p] - graph.lowest_m[p];
+    for (auto& [key, columns] : carried) {
+        const double area = key.second < 0 ? static_cast<double>(columns.count)
+                                           : upward_faces(graph.pairs, key.second, key.first);
+        if (area <= 0) continue;
+        const double height = columns.height_sum / static_cast<double>(columns.count);
+        add_hidden_corners(undersides[static_cast<std::size_t>(key.first)], height, h,
+                           columns.corners);
+        graph.carryings.push_back({key.second, key.first, area * h * h, height,
                                    physics::convex_polygon(columns.corners)});
     }
+    add_hidden_carryings(undersides, extents, h, graph);
+    add_hidden_joints(device, cells, primitives, graph);
     for (const auto& [key, empty] : gaps) {
         graph.clearances[static_cast<std::size_t>(key.first)].push_back({key.second, empty * h});
     }

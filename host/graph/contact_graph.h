@@ -18,8 +18,11 @@ struct Carrying {
     std::int32_t supporter = -1;  // -1: solid that belongs to no primitive
     std::int32_t supported = -1;
     double area_m2 = 0;
-    double height_m = 0;                         // of the contact, the mean over its columns
-    std::vector<std::array<double, 2>> outline;  // convex hull of the contact, counter-clockwise
+    double height_m = 0;  // of the contact, the mean over its columns
+    // Convex hull of the contact, counter-clockwise, with what may be in contact: where nobody has
+    // seen between the supported primitive and the height of the contact. Of a box seen from the
+    // front, the rear stands on the table, too.
+    std::vector<std::array<double, 2>> outline;
 };
 
 // How far a primitive hangs above what lies under it.
@@ -35,6 +38,7 @@ struct ContactGraph {
     std::vector<std::array<double, 3>> silhouette_m2;  // by primitive: area seen along x, y, z
     std::vector<std::vector<Clearance>> clearances;    // by primitive, sorted by `below`
     std::vector<double> lowest_m, highest_m;           // by primitive
+    std::vector<double> section_m2;                    // by primitive: mean level cross-section
 
     // What carries one primitive: a range of `carryings`.
     std::span<const Carrying> carriers_of(std::int32_t primitive) const;

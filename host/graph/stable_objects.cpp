@@ -4,12 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "graph/swendsen_wang.h"
+#include "physics/drop.h"
 #include "physics/tipping.h"
 
 namespace topple::graph {
 namespace {
+
+constexpr double pi = std::numbers::pi;
 
 // S(O, W) of Eq. 6 at the energy W: the largest release that W sets free.
 double release_at(const physics::Stability& stability, double work_J) {
@@ -20,25 +24,27 @@ double release_at(const physics::Stability& stability, double work_J) {
     return release;
 }
 
-// The larger of the two faces that could take part in a contact, seen along its normal.
-double larger_face(const ContactGraph& graph, const physics::TouchingPair& pair) {
-    std::size_t axis = 0;
-    for (std::size_t d = 1; d < 3; ++d) {
-        if (std::abs(pair.normal[d]) > std::abs(pair.normal[axis])) axis = d;
-    }
-    return std::max(graph.silhouette_m2[static_cast<std::size_t>(pair.a)][axis],
-                    graph.silhouette_m2[static_cast<std::size_t>(pair.b)][axis]);
-}
-
-std::vector<Edge> edges_of(const ContactGraph& graph, double temperature) {
+// Eq. 10, with the freedom that the joint takes as the feature F.
+std::vector<Edge> edges_of(const ContactGraph& graph, const ScenePrior& prior, double temperature) {
     std::vector<Edge> edges;
     edges.reserve(graph.pairs.size());
     for (const physics::TouchingPair& pair : graph.pairs) {
-        const double face = larger_face(graph, pair);
-        const double f = face > 0 ? 1 - std::min(1.0, pair.area_m2 / face) : 1;  // Eq. 10
+        const double f = prior.lost_between(pair.a, pair.b);
         edges.push_back({pair.a, pair.b, std::clamp(std::exp(-f / temperature), 0.05, 0.95)});
     }
     return edges;
+}
+
+// Whether a body withstands a tilt of its support: S = 0 without a look at its landscape. The
+// height that tilting by an angle a lifts the centre of mass by is h (1 / cos a - 1), and an edge
+// at the distance m asks for sqrt(h^2 + m^2) - h: the one is less than the other where m > h tan a.
+// slack_m: what the outline of the support, made of whole voxels, is too wide by.
+bool stands(const physics::Candidate& c, double tilt, double slack_m) {
+    if (c.support_polygon.empty()) return false;
+    const physics::Footing foot =
+        physics::footing(c.support_polygon, c.body.center[0], c.body.center[1]);
+    const double height = c.body.center[2] - c.support_height_m;
+    return foot.margin_m > slack_m && foot.margin_m - slack_m >= height * std::tan(tilt);
 }
 
 }  // namespace
@@ -84,39 +90,50 @@ double free_fall_m(const ContactGraph& graph, std::span<const std::int32_t> prim
 }
 
 Grouping group_primitives(device::Device& device, const physics::SupportTable& table,
-                          const ContactGraph& graph, std::span<const physics::Body> bodies,
-                          const NormalVariation& variation, const std::vector<bool>& ground,
-                          const GroupingOptions& options) {
-    const ScenePrior prior(graph, bodies, variation, ground, options.prior);
+                          const physics::SolidCells& cells, const ContactGraph& graph,
+                          std::span<const physics::Body> bodies, const SurfaceSeams& seams,
+                          const std::vector<bool>& ground, const GroupingOptions& options) {
+    const ScenePrior prior(graph, bodies, seams, ground, options.prior);
+    const physics::CellColumns columns(cells);
+    const double tilt = options.tilt_deg * pi / 180;
     const GroupEnergies energies = [&](std::span<const GroupQuery> queries, std::span<double> out) {
-        std::vector<physics::Candidate> candidates;
-        for (const GroupQuery& q : queries) {
-            if (!q.pinned) candidates.push_back(candidate_of(graph, bodies, q.nodes));
-        }
-        const std::vector<physics::Stability> stability =
-            physics::evaluate(device, table, candidates);
-        std::size_t next = 0;
+        std::vector<physics::Candidate> unstable;
+        std::vector<std::size_t> query;  // of each candidate
         for (std::size_t i = 0; i < queries.size(); ++i) {
             out[i] = prior(queries[i].nodes);
             if (queries[i].pinned) continue;  // the ground does not fall: S = 0
-            const physics::Candidate& c = candidates[next];
-            const physics::Stability& s = stability[next++];
+            physics::Candidate c = candidate_of(graph, bodies, queries[i].nodes);
+            if (c.body.mass_kg <= 0 || stands(c, tilt, 0.5 * cells.voxel_m)) continue;
+            unstable.push_back(std::move(c));
+            query.push_back(i);
+        }
+        const std::vector<physics::Stability> stability =
+            physics::evaluate(device, table, unstable);
+        for (std::size_t n = 0; n < unstable.size(); ++n) {
+            const physics::Candidate& c = unstable[n];
             const double weight = c.body.mass_kg * physics::gravity;
-            if (weight <= 0) continue;
-            double release = release_at(s, weight * options.disturbance_m);
-            if (c.support_polygon.empty()) release += weight * free_fall_m(graph, c.primitives);
-            out[i] += std::min(options.worst_instability, release / (weight * options.scale_m));
+            const double height = std::max(c.body.center[2] - c.support_height_m, 0.0);
+            // What does not stand by stands() falls, whatever its barrier.
+            double release =
+                std::max(release_at(stability[n], weight * height * (1 / std::cos(tilt) - 1)),
+                         stability[n].release_J);
+            release += weight * (c.support_polygon.empty()
+                                     ? free_fall_m(graph, c.primitives)
+                                     : physics::drop_when_tipped_m(cells, columns, c));
+            out[query[n]] +=
+                std::min(options.worst_instability, release / (weight * options.scale_m));
         }
     };
     SwendsenWangOptions sampler;
     sampler.seed = options.seed;
     // Enough flips that every node is tried many times over all chains, within seconds.
     sampler.chains = 4;
+    sampler.last_temperature = 0.005;
     sampler.anneal_steps =
-        static_cast<unsigned>(std::clamp<std::int64_t>(10 * graph.primitives, 500, 5000));
+        static_cast<unsigned>(std::clamp<std::int64_t>(100 * graph.primitives, 2000, 12000));
     sampler.sample_steps = sampler.anneal_steps / 2;
     sampler.cancelled = options.cancelled;
-    const std::vector<Edge> edges = edges_of(graph, options.turn_on_temperature);
+    const std::vector<Edge> edges = edges_of(graph, prior, options.turn_on_temperature);
     Partition partition = swendsen_wang_cuts(graph.primitives, edges, ground, energies, sampler);
     return {std::move(partition.label), std::move(partition.joined),
             std::move(partition.best_energy_curve)};

@@ -16,13 +16,14 @@ namespace topple::graph {
 
 struct GroupingOptions {
     std::uint64_t seed = 1;
-    // The disturbance W of Eq. 8, as the height in metres that it could lift each object by: an
-    // object is unstable if less than m g * disturbance_m knocks it over.
-    double disturbance_m = 0.003;
+    // The disturbance W of Eq. 8, for each object: the work that tilts it by this angle, or its
+    // support, degrees. Standards for the stability of furniture and lamps ask for 6 to 15; what a
+    // smaller tilt knocks over is no object on its own.
+    double tilt_deg = 10;
     // Unit of instability, metres: an object that would release m g * scale_m counts 1.
-    double scale_m = 0.2;
+    double scale_m = 0.3;
     double worst_instability = 3;  // cap, in those units
-    // T of Eq. 10: q_e = exp(-(1 - contact / larger face) / T), clipped to [0.05, 0.95].
+    // T of Eq. 10: q_e = exp(-F / T), clipped to [0.05, 0.95].
     double turn_on_temperature = 0.5;
     ScenePrior::Weights prior;
     std::function<bool()> cancelled;
@@ -45,8 +46,8 @@ double free_fall_m(const ContactGraph& graph, std::span<const std::int32_t> prim
 // ground: by primitive, true for the room's shell. Minimises Eq. 8 by Swendsen-Wang cuts; with the
 // sign of its penalty such that joints which take freedom away cost energy.
 Grouping group_primitives(device::Device& device, const physics::SupportTable& table,
-                          const ContactGraph& graph, std::span<const physics::Body> bodies,
-                          const NormalVariation& variation, const std::vector<bool>& ground,
-                          const GroupingOptions& options);
+                          const physics::SolidCells& cells, const ContactGraph& graph,
+                          std::span<const physics::Body> bodies, const SurfaceSeams& seams,
+                          const std::vector<bool>& ground, const GroupingOptions& options);
 
 }  // namespace topple::graph

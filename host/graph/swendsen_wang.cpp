@@ -302,10 +302,11 @@ Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
     for (unsigned step = 0; step < steps; ++step) {
         if (options.cancelled && options.cancelled()) break;
         const bool annealing = step < options.anneal_steps;
-        const double along = annealing ? static_cast<double>(step) / options.anneal_steps : 1.0;
+        const double along = static_cast<double>(step) / options.anneal_steps;
         const double temperature =
-            options.first_temperature *
-            std::pow(options.last_temperature / options.first_temperature, along);
+            annealing ? options.first_temperature *
+                            std::pow(options.last_temperature / options.first_temperature, along)
+                      : options.sample_temperature;
         std::vector<GroupQuery> wanted;
         for (Chain& chain : chains) {
             const Proposal& p = chain.propose();

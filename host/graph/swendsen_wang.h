@@ -29,9 +29,10 @@ struct SwendsenWangOptions {
     std::uint64_t seed = 1;
     unsigned chains = 8;           // independent, run in lockstep so that energies come in batches
     unsigned anneal_steps = 2000;  // flips per chain while cooling
-    unsigned sample_steps = 2000;  // flips per chain at the last temperature
+    unsigned sample_steps = 2000;  // flips per chain at the sampling temperature
     double first_temperature = 1.0;  // of p ~ exp(-E / T)
     double last_temperature = 0.05;
+    double sample_temperature = 0.05;
     std::function<bool()> cancelled;  // polled between steps; may be empty
 };
 
@@ -45,7 +46,7 @@ struct Partition {
 };
 
 // Starts from one group per node (pinned nodes together) and returns the best partition seen, and
-// the joint probabilities of the states sampled at the last temperature. A flip moves one connected
+// the joint probabilities of the states sampled after that. A flip moves one connected
 // component of turned-on edges to the group of one of its neighbours, or to a fresh group; it is
 // accepted with the probability of Barbu and Zhu's Theorem 1 (paper, Eq. 11). Deterministic.
 Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,

@@ -19,6 +19,8 @@ struct SolidCells {
     std::vector<std::int32_t> i, j, k;
     std::vector<std::int32_t> primitive;  // -1: belongs to none; such cells block but have no mass
     std::vector<std::uint8_t> surface;    // 1: seen, 0: completed
+    // Voxels right below each that nobody has seen into, up to 255; empty: none for all.
+    std::vector<std::uint8_t> unseen_below;
     std::size_t size() const { return i.size(); }
 };
 

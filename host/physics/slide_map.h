@@ -5,24 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "physics/cell_columns.h"
 #include "physics/sliding.h"
 
 // The ground that one object slides on. For this folder.
 namespace topple::physics {
-
-// Cells by column, for cells sorted by (i, j, k).
-class CellColumns {
-  public:
-    explicit CellColumns(const SolidCells& cells);
-    // Cells of column (i, j): [first, last).
-    std::pair<std::size_t, std::size_t> at(std::int32_t i, std::int32_t j) const;
-
-  private:
-    std::int32_t lowest_i_ = 0;
-    std::vector<std::size_t> row_first_;  // into the columns, per i
-    std::vector<std::int32_t> column_j_;
-    std::vector<std::size_t> column_first_;  // into the cells
-};
 
 // An object's columns, lowest and highest cell of each.
 struct Footprint {

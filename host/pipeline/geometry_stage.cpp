@@ -13,8 +13,8 @@ namespace {
 // even where it is sparsely seen, and each averages the noise of several points. Measured: part
 // mIoU on generated rooms is highest at about twice the point spacing.
 constexpr double surfel_cells = 1.85;
-// A solid shows at least this many surfels: a patch of five by five.
-constexpr std::uint64_t least_surfels = 25;
+// A solid shows at least this many surfels: a patch of six by six.
+constexpr std::uint64_t least_surfels = 36;
 
 }  // namespace
 
@@ -70,23 +70,24 @@ std::vector<std::int32_t> keep_primitives(GeometryStage& g, const std::vector<bo
     return number;
 }
 
-graph::NormalVariation normal_variation(const GeometryStage& g) {
+graph::SurfaceSeams surface_seams(const GeometryStage& g) {
     const geometry::Surfels& s = g.surfels;
-    graph::NormalVariation out;
+    const std::vector<std::int32_t>& label = g.primitives.label;
+    graph::SurfaceSeams out;
     out.inside.resize(g.primitives.model.size());
     for (std::size_t n = 0; n < s.size(); ++n) {
-        const std::int32_t a = g.primitives.label[n];
+        const std::int32_t a = label[n];
         if (a < 0) continue;
         for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
             const std::uint32_t m = s.neighbours[k];
-            const std::int32_t b = g.primitives.label[m];
+            const std::int32_t b = label[m];
             if (m <= n || b < 0) continue;
-            graph::NormalVariation::Sum& sum = a == b
-                                                   ? out.inside[static_cast<std::size_t>(a)]
-                                                   : out.between[{std::min(a, b), std::max(a, b)}];
-            sum.sum += 1 - (double{s.nx[n]} * s.nx[m] + double{s.ny[n]} * s.ny[m] +
-                            double{s.nz[n]} * s.nz[m]);
-            ++sum.pairs;
+            graph::Seam& seam = a == b ? out.inside[static_cast<std::size_t>(a)]
+                                       : out.between[{std::min(a, b), std::max(a, b)}];
+            seam.variation += 1 - (double{s.nx[n]} * s.nx[m] + double{s.ny[n]} * s.ny[m] +
+                                   double{s.nz[n]} * s.nz[m]);
+            ++seam.pairs;
+            if (a != b) seam.flush += geometry::in_one_surface(s, g.primitives.faces, n, m);
         }
     }
     return out;

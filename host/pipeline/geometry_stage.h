@@ -30,7 +30,7 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
 // the new number of each, -1 for the dropped.
 std::vector<std::int32_t> keep_primitives(GeometryStage& geometry, const std::vector<bool>& keep);
 
-// How much the surface normals vary inside primitives and across their borders (for Eq. 9, f2).
-graph::NormalVariation normal_variation(const GeometryStage& geometry);
+// The seen surface inside primitives and at their seams.
+graph::SurfaceSeams surface_seams(const GeometryStage& geometry);
 
 }  // namespace topple

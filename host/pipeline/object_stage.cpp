@@ -68,8 +68,8 @@ ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
         grouping.seed = options.seed;
         grouping.cancelled = options.cancelled;
         out.grouping =
-            graph::group_primitives(device, table, out.contacts, out.bodies,
-                                    normal_variation(geometry), shell(geometry), grouping);
+            graph::group_primitives(device, table, voxels.cells, out.contacts, out.bodies,
+                                    surface_seams(geometry), shell(geometry), grouping);
     });
     stage("barriers", [&] {
         collect_objects(out);

@@ -48,6 +48,25 @@ std::int32_t floor_level(const vdb::VoxelScene& scene,
     return *middle;
 }
 
+// For each cell the unseen voxels right below it, up to what fits. What is below the shell is of no
+// interest.
+std::vector<std::uint8_t> unseen_below(const vdb::VoxelScene& scene,
+                                       const physics::SolidCells& cells,
+                                       const std::vector<geometry::Structure>& structure) {
+    std::vector<std::uint8_t> out(cells.size(), 0);
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const std::int32_t p = cells.primitive[n];
+        if (p < 0 || structure[static_cast<std::size_t>(p)] != geometry::Structure::none) continue;
+        const bool covered = n > 0 && cells.i[n - 1] == cells.i[n] &&
+                             cells.j[n - 1] == cells.j[n] && cells.k[n - 1] == cells.k[n] - 1;
+        if (covered) continue;
+        while (out[n] < 255 && scene.state_at(cells.i[n], cells.j[n], cells.k[n] - out[n] - 1) ==
+                                   vdb::State::invisible)
+            ++out[n];
+    }
+    return out;
+}
+
 // Returns whether the frames show the scene from around.
 bool carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScene& scene,
                StageClock& stage) {
@@ -110,6 +129,7 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
     out.cells.j = std::move(solid.j);
     out.cells.k = std::move(solid.k);
     out.cells.primitive = std::move(solid.primitive);
+    out.cells.unseen_below = unseen_below(*out.scene, out.cells, geometry.structure);
     return out;
 }
 

@@ -65,7 +65,7 @@ void expect_enumerated(std::int32_t nodes, const std::vector<bool>& pinned) {
     SwendsenWangOptions options;
     options.anneal_steps = 200;
     options.sample_steps = 50000;
-    options.first_temperature = options.last_temperature = 0.5;
+    options.first_temperature = options.last_temperature = options.sample_temperature = 0.5;
     const Partition sampled = swendsen_wang_cuts(nodes, edges, pinned, arbitrary, options);
 
     std::vector<std::vector<std::int32_t>> all;

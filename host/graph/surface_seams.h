@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace topple::graph {
+
+// What the seen surface tells of primitives and of the seams between them: sums over pairs of
+// neighbouring surface elements.
+struct Seam {
+    double variation = 0;     // of 1 - n.n'
+    std::uint64_t pairs = 0;  // all of them
+    std::uint64_t flush = 0;  // those where the surface goes on smoothly
+};
+struct SurfaceSeams {
+    std::vector<Seam> inside;                                       // by primitive
+    std::map<std::pair<std::int32_t, std::int32_t>, Seam> between;  // (a, b), a < b
+
+    // How surely two primitives are made in one piece, 0 to 1: things that merely stand on one
+    // another hardly ever do so with their faces in line.
+    double flushness(std::int32_t a, std::int32_t b) const;
+};
+
+}  // namespace topple::graph
