@@ -198,7 +198,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
 
     const double h = cells.voxel_m;
     std::map<std::pair<std::int32_t, std::int32_t>, Columns> carried;  // (supported, supporter)
-    std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> gaps;
+    std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, std::uint64_t> gaps;
     std::vector<std::vector<Underside>> undersides(count);
     std::vector<Extent> extents(count);
     for (std::size_t n = 0; n < cells.size(); ++n) {
@@ -221,8 +221,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         const std::int32_t lower = cells.primitive[n - 1];
         if (lower == upper) continue;
         const std::int32_t empty = cells.k[n] - cells.k[n - 1] - 1;
-        const auto [at, fresh] = gaps.try_emplace({upper, lower}, empty);
-        if (!fresh) at->second = std::min(at->second, empty);
+        ++gaps[{upper, lower, empty}];
         if (empty > static_cast<std::int32_t>(gap)) continue;
         Columns& columns = carried[{upper, lower}];
         ++columns.count;
@@ -243,8 +242,10 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     }
     add_hidden_carryings(undersides, extents, h, graph);
     add_hidden_joints(device, cells, primitives, graph);
-    for (const auto& [key, empty] : gaps) {
-        graph.clearances[static_cast<std::size_t>(key.first)].push_back({key.second, empty * h});
+    for (const auto& [key, columns] : gaps) {
+        const auto& [upper, lower, empty] = key;
+        graph.clearances[static_cast<std::size_t>(upper)].push_back(
+            {lower, empty * h, static_cast<double>(columns) * h * h});
     }
     return graph;
 }

@@ -25,10 +25,11 @@ struct Carrying {
     std::vector<std::array<double, 2>> outline;
 };
 
-// How far a primitive hangs above what lies under it.
+// How far a primitive hangs above what lies under it, for the columns of one gap.
 struct Clearance {
     std::int32_t below = -1;  // primitive, or -1 for unlabelled solid
-    double gap_m = 0;         // least over the columns they share
+    double gap_m = 0;
+    double area_m2 = 0;  // of those columns
 };
 
 struct ContactGraph {
@@ -36,7 +37,7 @@ struct ContactGraph {
     std::vector<physics::TouchingPair> pairs;          // sorted by (a, b)
     std::vector<Carrying> carryings;                   // sorted by (supported, supporter)
     std::vector<std::array<double, 3>> silhouette_m2;  // by primitive: area seen along x, y, z
-    std::vector<std::vector<Clearance>> clearances;    // by primitive, sorted by `below`
+    std::vector<std::vector<Clearance>> clearances;    // by primitive, sorted by (below, gap)
     std::vector<double> lowest_m, highest_m;           // by primitive
     std::vector<double> section_m2;                    // by primitive: mean level cross-section
 

@@ -72,17 +72,24 @@ physics::Candidate candidate_of(const ContactGraph& graph, std::span<const physi
 }
 
 double free_fall_m(const ContactGraph& graph, std::span<const std::int32_t> primitives) {
-    double lowest = std::numeric_limits<double>::infinity(),
-           fall = std::numeric_limits<double>::infinity();
+    // A scrap under one corner does not stop a fall.
+    constexpr double least_share = 0.15;  // of the body, seen from below
+    std::vector<Clearance> under;
+    double lowest = std::numeric_limits<double>::infinity(), area = 0;
     for (const std::int32_t p : primitives) {
         lowest = std::min(lowest, graph.lowest_m[static_cast<std::size_t>(p)]);
+        area += graph.silhouette_m2[static_cast<std::size_t>(p)][2];
         for (const Clearance& c : graph.clearances[static_cast<std::size_t>(p)]) {
-            const bool own =
-                std::find(primitives.begin(), primitives.end(), c.below) != primitives.end();
-            if (!own) fall = std::min(fall, c.gap_m);
+            if (std::find(primitives.begin(), primitives.end(), c.below) == primitives.end())
+                under.push_back(c);
         }
     }
-    if (std::isfinite(fall)) return fall;
+    std::ranges::sort(under, {}, &Clearance::gap_m);
+    double met = 0;
+    for (const Clearance& c : under) {
+        met += c.area_m2;
+        if (met >= least_share * area) return c.gap_m;
+    }
     // Nothing was seen below: down to the lowest thing in the scene.
     double floor = std::numeric_limits<double>::infinity();
     for (const double z : graph.lowest_m) floor = std::min(floor, z);

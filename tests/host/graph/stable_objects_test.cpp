@@ -46,8 +46,7 @@ class Objects : public test::EachBackend {
     std::vector<std::int32_t> groups(Scene& scene, std::uint64_t seed = 1) {
         const ContactGraph graph = contacts(scene);
         const std::vector<double> density(static_cast<std::size_t>(scene.count), 700);
-        const auto bodies =
-            physics::mass_properties(*device, scene.cells, scene.count, density);
+        const auto bodies = physics::mass_properties(*device, scene.cells, scene.count, density);
         const physics::SupportTable table(*device, scene.cells, scene.count,
                                           physics::geodesic_sphere(8));
         scene.seams.inside.resize(static_cast<std::size_t>(scene.count));
