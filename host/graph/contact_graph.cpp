@@ -105,6 +105,10 @@ void add_hidden_corners(const std::vector<Underside>& undersides, double height_
     }
 }
 
+// Solid that belongs to no primitive is mostly noise: it carries what rests on it with this share
+// of its columns.
+constexpr double least_on_scraps = 0.15;
+
 // What is not seen to hang, and is not seen to stand either, stands on the highest level surface
 // under it: others hide its foot, and it hides its shadow on the table.
 void add_hidden_carryings(const std::vector<std::vector<Underside>>& undersides,
@@ -231,14 +235,20 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     for (std::size_t p = 0; p < count; ++p)
         if (graph.section_m2[p] > 0) graph.section_m2[p] /= graph.highest_m[p] - graph.lowest_m[p];
     for (auto& [key, columns] : carried) {
-        const double area = key.second < 0 ? static_cast<double>(columns.count)
-                                           : upward_faces(graph.pairs, key.second, key.first);
+        const auto& [supported, supporter] = key;
+        const Extent& load = extents[static_cast<std::size_t>(supported)];
+        const auto met = static_cast<double>(columns.count);
+        const bool scraps = supporter < 0;
+        if (scraps && met < least_on_scraps * static_cast<double>(load.columns)) continue;
+        const double area = scraps ? met : upward_faces(graph.pairs, supporter, supported);
         if (area <= 0) continue;
-        const double height = columns.height_sum / static_cast<double>(columns.count);
-        add_hidden_corners(undersides[static_cast<std::size_t>(key.first)], height, h,
-                           columns.corners);
-        graph.carryings.push_back({key.second, key.first, area * h * h, height,
-                                   physics::convex_polygon(columns.corners)});
+        const double height = columns.height_sum / met;
+        // A surface at least half as wide may go on where it is hidden; a leg does not.
+        if (!scraps && 2 * extents[static_cast<std::size_t>(supporter)].columns >= load.columns)
+            add_hidden_corners(undersides[static_cast<std::size_t>(supported)], height, h,
+                               columns.corners);
+        graph.carryings.push_back(
+            {supporter, supported, area * h * h, height, physics::convex_polygon(columns.corners)});
     }
     add_hidden_carryings(undersides, extents, h, graph);
     add_hidden_joints(device, cells, primitives, graph);
