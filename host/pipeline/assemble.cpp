@@ -78,7 +78,9 @@ void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& sc
         if (c.supporter < 0) continue;
         carries[std::minmax(c.supporter, c.supported)] = true;
         const auto pair = std::pair(object(c.supporter), object(c.supported));
-        if (pair.first != pair.second) carried[pair] += c.area_m2;
+        // The ground carries, and nothing carries it, though scraps of it may lie on things.
+        const bool ground = objects.objects[static_cast<std::size_t>(pair.second)].grounded;
+        if (pair.first != pair.second && !ground) carried[pair] += c.area_m2;
     }
     for (const auto& [pair, area] : carried)
         scene.supports.push_back({pair.first, pair.second, area});
