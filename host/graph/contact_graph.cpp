@@ -49,6 +49,9 @@ double upward_faces(const std::vector<physics::TouchingPair>& pairs, std::int32_
     const auto at = std::ranges::lower_bound(
         pairs, std::pair(std::min(supporter, supported), std::max(supporter, supported)), {},
         [](const physics::TouchingPair& p) { return std::pair(p.a, p.b); });
+    if (at == pairs.end() || at->a != std::min(supporter, supported) ||
+        at->b != std::max(supporter, supported))
+        return 0;
     const auto net = [&](std::size_t axis) {
         return static_cast<double>(at->faces[2 * axis + 1]) -
                static_cast<double>(at->faces[2 * axis]);
