@@ -39,6 +39,10 @@ struct Columns {
     double height_sum = 0;
 };
 
+std::pair<std::int32_t, std::int32_t> ends(const physics::TouchingPair& pair) {
+    return {pair.a, pair.b};
+}
+
 // Voxel faces with which one primitive carries another, or 0 where it does not. The border of two
 // solids is a staircase of voxels; its steps cancel in the sum over its faces, which is the true
 // area vector of the contact. Where it points sideways, some columns of the one lie on the other
@@ -46,12 +50,9 @@ struct Columns {
 double upward_faces(const std::vector<physics::TouchingPair>& pairs, std::int32_t supporter,
                     std::int32_t supported) {
     constexpr double steepest = 0.5;  // least share of the upward part in the sideways one
-    const auto at = std::ranges::lower_bound(
-        pairs, std::pair(std::min(supporter, supported), std::max(supporter, supported)), {},
-        [](const physics::TouchingPair& p) { return std::pair(p.a, p.b); });
-    if (at == pairs.end() || at->a != std::min(supporter, supported) ||
-        at->b != std::max(supporter, supported))
-        return 0;
+    const std::pair wanted{std::min(supporter, supported), std::max(supporter, supported)};
+    const auto at = std::ranges::lower_bound(pairs, wanted, {}, ends);
+    if (at == pairs.end() || ends(*at) != wanted) return 0;
     const auto net = [&](std::size_t axis) {
         return static_cast<double>(at->faces[2 * axis + 1]) -
                static_cast<double>(at->faces[2 * axis]);
@@ -151,9 +152,8 @@ void add_hidden_carryings(const std::vector<std::vector<Underside>>& undersides,
         pair.normal = {0, 0, c.supporter < c.supported ? 1.0 : -1.0};
         const Extent& e = extents[static_cast<std::size_t>(c.supported)];
         pair.center = {e.middle()[0] * h, e.middle()[1] * h, c.height_m};
-        const auto key = [](const physics::TouchingPair& t) { return std::pair(t.a, t.b); };
-        const auto at = std::ranges::lower_bound(graph.pairs, key(pair), {}, key);
-        if (at == graph.pairs.end() || key(*at) != key(pair)) graph.pairs.insert(at, pair);
+        const auto at = std::ranges::lower_bound(graph.pairs, ends(pair), {}, ends);
+        if (at == graph.pairs.end() || ends(*at) != ends(pair)) graph.pairs.insert(at, pair);
         graph.carryings.push_back(std::move(c));
     }
     std::ranges::sort(graph.carryings, {},
@@ -168,16 +168,15 @@ void add_hidden_joints(device::Device& device, const SolidCells& cells, std::int
     std::vector<bool> hangs(static_cast<std::size_t>(primitives), false);
     for (std::int32_t p = 0; p < primitives; ++p)
         hangs[static_cast<std::size_t>(p)] = graph.carriers_of(p).empty();
-    const auto key = [](const physics::TouchingPair& p) { return std::pair(p.a, p.b); };
     std::vector<physics::TouchingPair> joints;
     for (const physics::TouchingPair& pair : physics::touching_pairs(
              device, cells, primitives, static_cast<unsigned>(longest_m / cells.voxel_m))) {
         if (!hangs[static_cast<std::size_t>(pair.a)] && !hangs[static_cast<std::size_t>(pair.b)])
             continue;
-        if (!std::ranges::binary_search(graph.pairs, key(pair), {}, key)) joints.push_back(pair);
+        if (!std::ranges::binary_search(graph.pairs, ends(pair), {}, ends)) joints.push_back(pair);
     }
     graph.pairs.insert(graph.pairs.end(), joints.begin(), joints.end());
-    std::ranges::sort(graph.pairs, {}, key);
+    std::ranges::sort(graph.pairs, {}, ends);
 }
 
 }  // namespace
