@@ -16,8 +16,9 @@ std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t v) {
 }
 
 // The full tree, a basin for every local minimum, in the order in which the minima appear: by
-// energy, equal ones by direction.
-MergeTree full_tree(std::span<const float> energy, const SphereMesh& mesh) {
+// energy, equal ones by number. neighbours(v) is the span of those of v.
+template <typename Energy, typename Neighbours>
+MergeTree full_tree(std::span<const Energy> energy, const Neighbours& neighbours) {
     const auto n = static_cast<std::uint32_t>(energy.size());
     std::vector<std::uint32_t> order(n), parent(n), elder(n);  // elder: basin of a component's root
     std::iota(order.begin(), order.end(), 0U);
@@ -30,8 +31,7 @@ MergeTree full_tree(std::span<const float> energy, const SphereMesh& mesh) {
     tree.basin_of.assign(n, -1);
     for (const std::uint32_t v : order) {
         std::uint32_t deepest = absent;  // of the components around
-        for (std::size_t k = 0; k < 6; ++k) {
-            const std::uint32_t w = mesh.neighbour[std::size_t{v} * 6 + k];
+        for (const std::uint32_t w : neighbours(v)) {
             if (parent[w] == absent) continue;
             const std::uint32_t r = root(parent, w);
             if (deepest == absent || elder[r] < elder[deepest]) deepest = r;
@@ -42,8 +42,7 @@ MergeTree full_tree(std::span<const float> energy, const SphereMesh& mesh) {
             tree.basins.push_back({v, energy[v], std::numeric_limits<double>::infinity(), v, -1});
         } else {
             const std::uint32_t basin = elder[deepest];
-            for (std::size_t k = 0; k < 6; ++k) {
-                const std::uint32_t w = mesh.neighbour[std::size_t{v} * 6 + k];
+            for (const std::uint32_t w : neighbours(v)) {
                 if (parent[w] == absent) continue;
                 const std::uint32_t r = root(parent, w);
                 if (elder[r] != basin && r != v) {
@@ -61,17 +60,8 @@ MergeTree full_tree(std::span<const float> energy, const SphereMesh& mesh) {
     return tree;
 }
 
-}  // namespace
-
-MergeTree disconnectivity_graph(std::span<const float> energy, const SphereMesh& mesh,
-                                double plateau_tolerance) {
-    if (energy.size() != mesh.size()) {
-        throw Error(ErrorKind::usage, "disconnectivity_graph: " + std::to_string(energy.size()) +
-                                          " energies for " + std::to_string(mesh.size()) +
-                                          " directions");
-    }
-    MergeTree tree = full_tree(energy, mesh);
-    // A shallow basin counts as part of the one that it joins. Parents come before their children.
+// A shallow basin counts as part of the one that it joins. Parents come before their children.
+MergeTree without_shallow(MergeTree tree, double plateau_tolerance) {
     std::vector<std::int32_t> kept_as(tree.basins.size());
     std::vector<MergeTree::Basin> kept;
     for (std::size_t b = 0; b < tree.basins.size(); ++b) {
@@ -89,6 +79,33 @@ MergeTree disconnectivity_graph(std::span<const float> energy, const SphereMesh&
     tree.basins = std::move(kept);
     for (std::int32_t& basin : tree.basin_of) basin = kept_as[static_cast<std::size_t>(basin)];
     return tree;
+}
+
+}  // namespace
+
+MergeTree disconnectivity_graph(std::span<const float> energy, const SphereMesh& mesh,
+                                double plateau_tolerance) {
+    if (energy.size() != mesh.size()) {
+        throw Error(ErrorKind::usage, "disconnectivity_graph: " + std::to_string(energy.size()) +
+                                          " energies for " + std::to_string(mesh.size()) +
+                                          " directions");
+    }
+    const auto neighbours = [&](std::uint32_t v) {
+        return std::span(mesh.neighbour).subspan(std::size_t{v} * 6, 6);
+    };
+    return without_shallow(full_tree(energy, neighbours), plateau_tolerance);
+}
+
+MergeTree disconnectivity_graph(std::span<const double> energy,
+                                std::span<const std::vector<std::uint32_t>> neighbours,
+                                double plateau_tolerance) {
+    if (energy.size() != neighbours.size()) {
+        throw Error(ErrorKind::usage, "disconnectivity_graph: " + std::to_string(energy.size()) +
+                                          " energies for " + std::to_string(neighbours.size()) +
+                                          " nodes");
+    }
+    const auto of = [&](std::uint32_t v) { return std::span(neighbours[v]); };
+    return without_shallow(full_tree(energy, of), plateau_tolerance);
 }
 
 double MergeTree::minimax(std::span<const float> energy, std::uint32_t a, std::uint32_t b) const {

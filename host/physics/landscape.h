@@ -88,10 +88,10 @@ std::vector<Stability> evaluate(device::Device& device, const SupportTable& tabl
 // Merge tree of one landscape (paper, 3.2): the disconnectivity graph, by sorting and union-find.
 struct MergeTree {
     struct Basin {
-        std::uint32_t minimum = 0;  // direction of the mesh
+        std::uint32_t minimum = 0;  // direction of the mesh, or node of the graph
         double energy = 0;          // of the minimum
         double pass = 0;  // energy at which it joins a deeper basin; infinity for the deepest
-        std::uint32_t saddle = 0;  // direction of that pass
+        std::uint32_t saddle = 0;  // direction or node of that pass
         std::int32_t parent = -1;  // basin that it joins
     };
     std::vector<Basin> basins;           // by rising energy
@@ -104,6 +104,10 @@ struct MergeTree {
 // Basins no deeper than plateau_tolerance (in the energies' unit) below their pass are merged into
 // the basin they join: a rolling ball has one basin, not one per facet.
 MergeTree disconnectivity_graph(std::span<const float> energy, const SphereMesh& mesh,
+                                double plateau_tolerance);
+// The same of any graph, which need not hang together: the neighbours of each node, both ways.
+MergeTree disconnectivity_graph(std::span<const double> energy,
+                                std::span<const std::vector<std::uint32_t>> neighbours,
                                 double plateau_tolerance);
 
 }  // namespace topple::physics

@@ -6,20 +6,12 @@
 #include <limits>
 #include <numbers>
 
+#include "physics/vectors.h"
+
 namespace topple::physics {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-double dot(const Vec3& a, const Vec3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec3 minus(const Vec3& a, const Vec3& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 Vec3 direction_of(const SphereMesh& mesh, std::size_t v) {
     return {mesh.x[v], mesh.y[v], mesh.z[v]};

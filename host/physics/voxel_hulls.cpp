@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cstdio>
-#include <map>
-#include <memory>
+#include <string>
 
+#include "physics/qhull.h"
 #include "physics/support_rows.h"
 #include "topple/error.h"
-
-// Last: its macros are many.
-extern "C" {
-#include <libqhull_r/qhull_ra.h>
-}
 
 namespace topple::physics {
 namespace {
@@ -45,48 +39,19 @@ std::vector<Corner> slice_hull(const std::vector<Corner>& points) {
     return hull;
 }
 
-// Indices of the hull's vertices; empty where Qhull can't build one.
-std::vector<std::size_t> qhull_vertices(const std::vector<Corner>& corners) {
-    std::vector<coordT> points;
-    points.reserve(corners.size() * 3);
-    for (const Corner& c : corners) {
-        for (std::size_t a = 0; a < 3; ++a) points.push_back(c[a] - corners.front()[a]);
-    }
-    // Qhull writes its complaints to a file; a scratch stream keeps the library silent.
-    char* text = nullptr;
-    std::size_t length = 0;
-    std::FILE* log = open_memstream(&text, &length);
-    if (!log) throw Error(ErrorKind::device, "no memory for Qhull's messages");
-    qhT state;
-    qhT* qh = &state;
-    qh_zero(qh, log);
-    char options[] = "qhull ";
-    const int failed = qh_new_qhull(qh, 3, static_cast<int>(corners.size()), points.data(), False,
-                                    options, nullptr, log);
-    std::vector<std::size_t> found;
-    if (!failed) {
-        vertexT* vertex;
-        FORALLvertices {
-            found.push_back(static_cast<std::size_t>(qh_pointid(qh, vertex->point)));
-        }
-        std::sort(found.begin(), found.end());
-    }
-    qh_freeqhull(qh, !qh_ALL);
-    int current = 0, total = 0;
-    qh_memfreeshort(qh, &current, &total);
-    std::fclose(log);
-    std::free(text);
-    return found;
-}
-
 std::vector<Corner> reduce(std::vector<Corner> corners) {
     std::sort(corners.begin(), corners.end());
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     if (corners.size() <= 8) return corners;
-    const std::vector<std::size_t> kept = qhull_vertices(corners);
-    if (kept.empty()) return corners;  // the slices' corners have the same hull, only more of them
+    std::vector<std::array<double, 3>> points;
+    for (const Corner& c : corners) {
+        points.push_back({double(c[0]) - corners.front()[0], double(c[1]) - corners.front()[1],
+                          double(c[2]) - corners.front()[2]});
+    }
+    const auto kept = convex_hull(points);
+    if (!kept) return corners;  // the slices' corners have the same hull, only more of them
     std::vector<Corner> hull;
-    for (const std::size_t n : kept) hull.push_back(corners[n]);
+    for (const std::uint32_t n : kept->vertices) hull.push_back(corners[n]);
     return hull;
 }
 
