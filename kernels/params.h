@@ -25,8 +25,6 @@ STRUCT(SupportParams) {
 STRUCT(VoxelNormalsParams) {
     uint query_count;
     uint cell_count;      // stride of the planes of cells and prior
-    uint column_first;    // cell of the first column
-    uint column_count;    // stride of the planes of columns
     int radius;           // of the neighbourhood, cells per axis, 1 to 3
     float inverse_reach2; // 1 / (distance at which a cell's weight falls to 0)^2, cells^-2
     uint use_prior;       // 1: weigh cells by agreement of normals

@@ -156,20 +156,20 @@ std::size_t ColumnSweep::first_at(std::uint64_t key) const {
                                     keys_.begin());
 }
 
-std::vector<std::uint32_t> column_table(const ColumnSweep& sweep, std::size_t first,
-                                        std::size_t last, std::size_t base,
+std::vector<std::uint32_t> column_table(const ColumnSweep& sweep,
+                                        std::span<const std::uint32_t> cells, std::size_t base,
                                         device::ThreadPool& threads) {
-    const std::size_t count = last - first;
+    const std::size_t count = cells.size();
     std::vector<std::uint32_t> table(count * sweep.columns());
     threads.run(count, chunk, [&](std::uint64_t begin, std::uint64_t end) {
-        sweep.run(first + begin, first + end,
-                  [&](std::size_t cell, std::size_t column, std::size_t lo, std::size_t hi) {
-                      // An empty column may start beyond the tile; its start is never read.
-                      table[column * count + cell - first] =
-                          hi > lo ? static_cast<std::uint32_t>(lo - base) |
-                                        static_cast<std::uint32_t>(hi - lo) << 29
-                                  : 0;
-                  });
+        sweep.run(
+            begin, end, [&](std::size_t k) { return cells[k]; },
+            [&](std::size_t k, std::size_t column, std::size_t lo, std::size_t hi) {
+                // An empty column may start beyond the tile; its start is never read.
+                table[column * count + k] = hi > lo ? static_cast<std::uint32_t>(lo - base) |
+                                                          static_cast<std::uint32_t>(hi - lo) << 29
+                                                    : 0;
+            });
     });
     return table;
 }
@@ -179,22 +179,25 @@ void cell_neighbours(std::span<const std::int32_t> x, std::span<const std::int32
                      std::vector<std::uint32_t>& first, std::vector<std::uint32_t>& neighbours) {
     const std::size_t count = x.size();
     const ColumnSweep sweep(x, y, z, 1);
+    const auto itself = [](std::size_t cell) { return cell; };
     first.assign(count + 1, 0);
     threads.run(count, chunk, [&](std::uint64_t begin, std::uint64_t end) {
-        sweep.run(begin, end, [&](std::size_t cell, std::size_t, std::size_t lo, std::size_t hi) {
-            first[cell + 1] += static_cast<std::uint32_t>(hi - lo);
-        });
+        sweep.run(begin, end, itself,
+                  [&](std::size_t cell, std::size_t, std::size_t lo, std::size_t hi) {
+                      first[cell + 1] += static_cast<std::uint32_t>(hi - lo);
+                  });
         for (std::uint64_t cell = begin; cell < end; ++cell) --first[cell + 1];  // itself
     });
     std::partial_sum(first.begin(), first.end(), first.begin());
     neighbours.resize(first[count]);
     threads.run(count, chunk, [&](std::uint64_t begin, std::uint64_t end) {
         std::uint32_t* to = neighbours.data() + first[begin];
-        sweep.run(begin, end, [&](std::size_t cell, std::size_t, std::size_t lo, std::size_t hi) {
-            for (std::size_t j = lo; j < hi; ++j) {
-                if (j != cell) *to++ = static_cast<std::uint32_t>(j);
-            }
-        });
+        sweep.run(begin, end, itself,
+                  [&](std::size_t cell, std::size_t, std::size_t lo, std::size_t hi) {
+                      for (std::size_t j = lo; j < hi; ++j) {
+                          if (j != cell) *to++ = static_cast<std::uint32_t>(j);
+                      }
+                  });
     });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -73,10 +74,11 @@ class ColumnSweep {
     ColumnSweep(std::span<const std::int32_t> x, std::span<const std::int32_t> y,
                 std::span<const std::int32_t> z, int radius);
 
-    // Calls visit(cell, column, lo, hi) for each cell of [first, last) and each of the
+    // Calls visit(k, column, lo, hi) for the cell cells(k), k of [first, last), and each of the
     // (2 radius + 1)^2 columns, x offset slowest: its cells within reach are [lo, hi), ascending.
-    template <class Visit>
-    void run(std::size_t first, std::size_t last, const Visit& visit) const;
+    // The cells must ascend.
+    template <class Cells, class Visit>
+    void run(std::size_t first, std::size_t last, const Cells& cells, const Visit& visit) const;
     std::size_t columns() const { return lowest_.size(); }
 
   private:
@@ -85,12 +87,13 @@ class ColumnSweep {
     std::vector<std::uint64_t> lowest_;  // of each column's run, relative to the cell's key
     std::uint64_t height_ = 0;           // keys of a run
     std::size_t first_at(std::uint64_t key) const;
+    std::size_t advance(std::size_t at, std::uint64_t key) const;
 };
 
-// A sweep's runs for the cells [first, last), a plane of last - first entries for each column: the
-// first cell, counted from `base`, + (count << 29); see kernel voxel_normals.
-std::vector<std::uint32_t> column_table(const ColumnSweep& sweep, std::size_t first,
-                                        std::size_t last, std::size_t base,
+// A sweep's runs for ascending cells, a plane of cells.size() entries for each column: the first
+// cell of the run, counted from `base`, + (count << 29); see kernel voxel_normals.
+std::vector<std::uint32_t> column_table(const ColumnSweep& sweep,
+                                        std::span<const std::uint32_t> cells, std::size_t base,
                                         device::ThreadPool& threads);
 
 // CSR of the occupied cells among the 26 around each, ascending.
@@ -98,20 +101,39 @@ void cell_neighbours(std::span<const std::int32_t> x, std::span<const std::int32
                      std::span<const std::int32_t> z, device::ThreadPool& threads,
                      std::vector<std::uint32_t>& first, std::vector<std::uint32_t>& neighbours);
 
-template <class Visit>
-void ColumnSweep::run(std::size_t first, std::size_t last, const Visit& visit) const {
+// The first place from `at` on whose key is not below `key`; mostly a few places on.
+inline std::size_t ColumnSweep::advance(std::size_t at, std::uint64_t key) const {
+    for (int step = 0; step < 8; ++step, ++at) {
+        if (keys_[at] >= key) return at;
+    }
+    std::size_t stride = 8;
+    while (at + stride < keys_.size() && keys_[at + stride] < key) {
+        at += stride;
+        stride *= 2;
+    }
+    const auto begin = keys_.begin() + static_cast<std::ptrdiff_t>(at);
+    const auto end =
+        keys_.begin() + static_cast<std::ptrdiff_t>(std::min(at + stride, keys_.size() - 1));
+    return static_cast<std::size_t>(std::lower_bound(begin, end, key) - keys_.begin());
+}
+
+template <class Cells, class Visit>
+void ColumnSweep::run(std::size_t first, std::size_t last, const Cells& cells,
+                      const Visit& visit) const {
     // Cells are sorted, so both ends of every run only move up; the first ones are searched for.
     std::array<std::size_t, most_columns> lo{}, hi{};
     const std::size_t columns = lowest_.size();
     if (first == last) return;
-    for (std::size_t c = 0; c < columns; ++c) lo[c] = hi[c] = first_at(keys_[first] + lowest_[c]);
-    for (std::size_t cell = first; cell < last; ++cell) {
+    for (std::size_t c = 0; c < columns; ++c)
+        lo[c] = hi[c] = first_at(keys_[cells(first)] + lowest_[c]);
+    for (std::size_t k = first; k < last; ++k) {
+        const std::uint64_t key = keys_[cells(k)];
         for (std::size_t c = 0; c < columns; ++c) {
-            const std::uint64_t low = keys_[cell] + lowest_[c];
-            while (keys_[lo[c]] < low) ++lo[c];
+            const std::uint64_t low = key + lowest_[c];
+            lo[c] = advance(lo[c], low);
             if (hi[c] < lo[c]) hi[c] = lo[c];
             while (keys_[hi[c]] < low + height_) ++hi[c];
-            visit(cell, c, lo[c], hi[c]);
+            visit(k, c, lo[c], hi[c]);
         }
     }
 }

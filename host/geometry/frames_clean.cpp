@@ -104,55 +104,6 @@ void move_to(CellSums& cell, const std::array<double, 3>& at) {
     }
 }
 
-// The cells [first, last) of a grid.
-CellGrid part_of(const CellGrid& grid, std::size_t first, std::size_t last) {
-    CellGrid part;
-    part.cell_m = grid.cell_m;
-    const auto cut = [&](auto& to, const auto& from) {
-        to.assign(from.begin() + static_cast<std::ptrdiff_t>(first),
-                  from.begin() + static_cast<std::ptrdiff_t>(last));
-    };
-    cut(part.x, grid.x);
-    cut(part.y, grid.y);
-    cut(part.z, grid.z);
-    cut(part.weight, grid.weight);
-    for (std::size_t a = 0; a < 3; ++a) cut(part.mean[a], grid.mean[a]);
-    for (std::size_t a = 0; a < 6; ++a) cut(part.spread[a], grid.spread[a]);
-    return part;
-}
-
-// fit_planes for queries by ascending cell, one slab of the grid after the other: the kernel's
-// tables take a few hundred bytes per cell. A slab sees what is within the fit's radius of it.
-PlaneFit fit_in_slabs(device::Device& device, const CellGrid& grid, const PlaneQueries& queries) {
-    constexpr std::size_t slab_cells = std::size_t{1} << 18;
-    const auto lower = [&](std::int64_t x) {
-        return static_cast<std::size_t>(std::lower_bound(grid.x.begin(), grid.x.end(), x) -
-                                        grid.x.begin());
-    };
-    PlaneFit fit;
-    for (std::size_t begin = 0, end = 0; begin < queries.cell.size(); begin = end) {
-        const std::size_t limit = queries.cell[begin] + slab_cells;
-        PlaneQueries some;
-        const std::size_t first =
-            lower(grid.x[queries.cell[begin]] - std::int64_t{PlaneFitter::default_radius});
-        for (; end < queries.cell.size() && queries.cell[end] < limit; ++end) {
-            some.cell.push_back(queries.cell[end] - static_cast<std::uint32_t>(first));
-            for (std::size_t a = 0; a < 3; ++a) some.at[a].push_back(queries.at[a][end]);
-        }
-        const std::size_t last =
-            lower(grid.x[queries.cell[end - 1]] + std::int64_t{PlaneFitter::default_radius} + 1);
-        const PlaneFit found = fit_planes(device, part_of(grid, first, last), some);
-        const auto append = [](auto& to, const auto& from) {
-            to.insert(to.end(), from.begin(), from.end());
-        };
-        for (std::size_t a = 0; a < 3; ++a) append(fit.normal[a], found.normal[a]);
-        append(fit.rms, found.rms);
-        append(fit.offset, found.offset);
-        append(fit.used, found.used);
-    }
-    return fit;
-}
-
 // Moves the cells `which` onto the planes fitted in the grid of one level, whose cell is cell_of
 // for each. A plane is fitted at the mean of a level's cell and serves all that it was made from:
 // that mean lies nearer the surface than its outer layers do, and there are far fewer.
@@ -169,7 +120,7 @@ void flatten_level(FusedCells& fused, const CellGrid& grid, double scale,
         queries.cell.push_back(static_cast<std::uint32_t>(cell));
         for (std::size_t a = 0; a < 3; ++a) queries.at[a].push_back(grid.mean[a][cell]);
     }
-    const PlaneFit fit = fit_in_slabs(device, grid, queries);
+    const PlaneFit fit = fit_planes(device, grid, std::move(queries));
     pool.each(which.size(), chunk, [&](std::size_t k) {
         CellSums& cell = fused.cells[which[k]];
         const std::uint32_t home = cell_of[which[k]], q = query_of[home];

@@ -34,34 +34,36 @@ struct PlanePrior {
 // A query at the mean of each cell.
 PlaneQueries queries_at_means(const CellGrid& grid);
 
-// Fits planes to the neighbourhoods of one grid, which must outlive the fitter: what kernel
-// voxel_normals needs of it is made once. The grid goes in tiles where it is larger than a binding
-// may be; then only the last one is kept.
+// Fits planes to neighbourhoods in one grid, which must outlive the fitter: what kernel
+// voxel_normals needs of grid and queries is made once. They go in tiles where there is more of
+// them than fits a binding or some 200 MB; then only the last one is kept.
 class PlaneFitter {
   public:
     // radius: of the neighbourhood, cells per axis, 1 to 3. Throws Error(device) where not even one
     // layer of cells fits a binding.
-    PlaneFitter(device::Device& device, const CellGrid& grid, int radius = default_radius);
+    PlaneFitter(device::Device& device, const CellGrid& grid, PlaneQueries queries,
+                int radius = default_radius);
     ~PlaneFitter();
-    PlaneFit fit(const PlaneQueries& queries, const PlanePrior& prior);
+    PlaneFit fit(const PlanePrior& prior);
 
     static constexpr int default_radius = 2;
 
-    // The cells [first, last) that a tile answers for, and [halo_first, halo_last) that it looks
-    // at.
+  private:
+    // The queries [first, last) by ascending cell, and the cells [halo_first, halo_last) that they
+    // look at.
     struct Tile {
         std::size_t first, last, halo_first, halo_last;
     };
-
-  private:
     struct OnDevice;
+    std::vector<Tile> make_tiles() const;
     const OnDevice& prepare(const Tile& tile);
-    // Fits the queries in `order`, whose cells lie in the tile.
-    void fit_tile(const Tile& tile, const PlaneQueries& queries, const PlanePrior& prior,
-                  std::span<const std::uint32_t> order, PlaneFit& fit);
+    void fit_tile(const Tile& tile, const PlanePrior& prior, PlaneFit& fit);
 
     device::Device& device_;
     const CellGrid& grid_;
+    PlaneQueries queries_;
+    std::vector<std::uint32_t> order_;  // of the queries, by ascending cell
+    std::vector<std::uint32_t> cell_;   // of each in that order
     int radius_;
     ColumnSweep sweep_;
     std::vector<Tile> tiles_;
@@ -70,6 +72,6 @@ class PlaneFitter {
 };
 
 // The same for one fit.
-PlaneFit fit_planes(device::Device& device, const CellGrid& grid, const PlaneQueries& queries);
+PlaneFit fit_planes(device::Device& device, const CellGrid& grid, PlaneQueries queries);
 
 }  // namespace topple::geometry

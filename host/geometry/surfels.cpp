@@ -167,7 +167,7 @@ void fill_from_coarser(device::Device& device, const CellGrid& fine, Surfels& s)
             queries.at[2].push_back(
                 static_cast<float>(s.z[i] / grid.cell_m - (grid.z[cell] + 0.5)));
         }
-        set_normals(s, fit_planes(device, grid, queries), &left, grid.cell_m);
+        set_normals(s, fit_planes(device, grid, std::move(queries)), &left, grid.cell_m);
         std::erase_if(left, [&](std::uint32_t i) { return !undefined(s, i); });
     }
 }
@@ -210,15 +210,14 @@ Surfels make_surfels(device::Device& device, const PointCloud& cloud, double cel
     s.of_point = std::move(of_point);
     cell_neighbours(s.cx, s.cy, s.cz, device.threads(), s.neighbour_first, s.neighbours);
 
-    const PlaneQueries queries = queries_at_means(grid);
-    PlaneFitter fitter(device, grid);
-    set_normals(s, fitter.fit(queries, {}), nullptr, cell_m);
+    PlaneFitter fitter(device, grid, queries_at_means(grid));
+    set_normals(s, fitter.fit({}), nullptr, cell_m);
     const Orientation towards =
         sensor_side(s, cloud, viewpoints, viewpoint_of_point, device.threads());
     orient(s, towards);
     // The second pass knows which side each cell faces and leaves the others out.
     const std::vector<float> px = s.nx, py = s.ny, pz = s.nz;
-    PlaneFit sharp = fitter.fit(queries, {px, py, pz});
+    PlaneFit sharp = fitter.fit({px, py, pz});
     for (std::size_t i = 0; i < s.size(); ++i) {
         // Where too few agree, the first pass stands.
         if (sharp.normal[0][i] == 0 && sharp.normal[1][i] == 0 && sharp.normal[2][i] == 0) {

@@ -77,8 +77,6 @@ Prepared voxel_normals(device::Device& device) {
                                                   .fit = on->fit},
                                                  {.query_count = count,
                                                   .cell_count = count,
-                                                  .column_first = 0,
-                                                  .column_count = count,
                                                   .radius = radius,
                                                   .inverse_reach2 = 1 / (reach * reach),
                                                   .use_prior = 0});

@@ -50,7 +50,6 @@ struct Inputs {
     std::vector<float> cells, query, prior;
     std::vector<std::int32_t> z;
     std::vector<std::uint32_t> columns, home;
-    std::vector<std::size_t> query_home;
     std::size_t queries = 0;
 };
 
@@ -71,9 +70,15 @@ Inputs inputs_for(const std::vector<PlaneCell>& cells, std::size_t queries, int 
         for (const PlaneCell& c : cells) in.prior.push_back(static_cast<float>(c.prior[a]));
     }
     for (const PlaneCell& c : cells) in.z.push_back(c.index[2]);
+    in.query.resize(3 * queries);
+    for (std::size_t q = 0; q < queries; ++q) {
+        in.home.push_back(static_cast<std::uint32_t>(random.word() % n));
+        for (std::size_t a = 0; a < 3; ++a) in.query[a * queries + q] = random.uniform(-0.5f, 0.5f);
+    }
     for (int dx = -radius; dx <= radius; ++dx) {
         for (int dy = -radius; dy <= radius; ++dy) {
-            for (const PlaneCell& c : cells) {
+            for (const std::uint32_t home : in.home) {
+                const PlaneCell& c = cells[home];
                 std::uint32_t first = 0, count = 0;
                 for (std::size_t j = 0; j < n; ++j) {
                     if (cells[j].index[0] != c.index[0] + dx ||
@@ -86,11 +91,6 @@ Inputs inputs_for(const std::vector<PlaneCell>& cells, std::size_t queries, int 
                 in.columns.push_back(first | count << 29);
             }
         }
-    }
-    in.query.resize(3 * queries);
-    for (std::size_t q = 0; q < queries; ++q) {
-        in.home.push_back(static_cast<std::uint32_t>(random.word() % n));
-        for (std::size_t a = 0; a < 3; ++a) in.query[a * queries + q] = random.uniform(-0.5f, 0.5f);
     }
     return in;
 }
@@ -115,8 +115,6 @@ std::vector<float> run(device::Device& device, const Inputs& in, std::size_t cel
                                       .fit = fit.slice()},
                                      {.query_count = static_cast<std::uint32_t>(in.queries),
                                       .cell_count = static_cast<std::uint32_t>(cells),
-                                      .column_first = 0,
-                                      .column_count = static_cast<std::uint32_t>(cells),
                                       .radius = radius,
                                       .inverse_reach2 = 1.0f / (reach * reach),
                                       .use_prior = use_prior ? 1u : 0u});
