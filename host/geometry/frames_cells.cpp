@@ -54,8 +54,8 @@ void CellSums::add(const CellSums& other) {
     }
 }
 
-CellTable::Block& CellTable::find(std::uint64_t key) {
-    if (last_ < blocks_.size() && blocks_[last_].key == key) return blocks_[last_];
+std::size_t CellTable::find(std::uint64_t key) {
+    if (last_ < blocks_.size() && blocks_[last_].key == key) return last_;
     if (2 * (blocks_.size() + 1) > slots_.size()) grow();
     const std::size_t mask = slots_.size() - 1;
     std::size_t at = hash(key) & mask;
@@ -65,21 +65,43 @@ CellTable::Block& CellTable::find(std::uint64_t key) {
         slots_[at] = static_cast<std::uint32_t>(blocks_.size());
     }
     last_ = slots_[at] - 1;
-    return blocks_[last_];
+    return last_;
 }
 
-void CellTable::add(const CellSums& sums) {
-    Block& block = find(block_of(sums.key));
-    const std::size_t local =
-        (sums.key >> x_bits & 3) << 4 | (sums.key >> y_bits & 3) << 2 | (sums.key & 3);
-    std::uint32_t& at = block.at[local];
-    if (at != 0) {
-        cells_[at - 1].add(sums);
-        return;
+void CellTable::add(std::span<const CellSums> sums) {
+    // Tables are larger than caches: some sums at a time, so that the memory of each step is
+    // fetched while the others are under way.
+    constexpr std::size_t at_once = 16;
+    std::array<std::uint32_t*, at_once> place{};
+    std::array<std::size_t, at_once> block{};
+    for (; !sums.empty(); sums = sums.subspan(std::min(at_once, sums.size()))) {
+        const auto some = sums.first(std::min(at_once, sums.size()));
+        const auto local = [&](std::size_t i) {
+            const std::uint64_t key = some[i].key;
+            return (key >> x_bits & 3) << 4 | (key >> y_bits & 3) << 2 | (key & 3);
+        };
+        if (!slots_.empty()) {
+            for (const CellSums& s : some)
+                __builtin_prefetch(&slots_[hash(block_of(s.key)) & (slots_.size() - 1)]);
+        }
+        for (std::size_t i = 0; i < some.size(); ++i) block[i] = find(block_of(some[i].key));
+        for (std::size_t i = 0; i < some.size(); ++i) {
+            place[i] = &blocks_[block[i]].at[local(i)];
+            __builtin_prefetch(place[i]);
+        }
+        for (std::size_t i = 0; i < some.size(); ++i) {
+            if (*place[i] != 0) __builtin_prefetch(&cells_[*place[i] - 1]);
+        }
+        for (std::size_t i = 0; i < some.size(); ++i) {
+            if (*place[i] != 0) {
+                cells_[*place[i] - 1].add(some[i]);
+                continue;
+            }
+            cells_.push_back(some[i]);
+            *place[i] = static_cast<std::uint32_t>(cells_.size());
+            ++blocks_[block[i]].count;
+        }
     }
-    cells_.push_back(sums);
-    at = static_cast<std::uint32_t>(cells_.size());
-    ++block.count;
 }
 
 void CellTable::grow() {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "device/native/thread_pool.h"
@@ -34,7 +35,7 @@ class CellTable {
         std::array<std::uint32_t, 64> at{};  // by cell, z fastest: place in cells() + 1, or 0
     };
     static std::uint64_t block_of(std::uint64_t key) { return key >> 2 & block_mask; }
-    void add(const CellSums& sums);
+    void add(std::span<const CellSums> sums);
     const std::vector<CellSums>& cells() const { return cells_; }
     const std::vector<Block>& blocks() const { return blocks_; }
 
@@ -42,7 +43,7 @@ class CellTable {
     // The upper 19 of the 21 bits of each axis, where they lie in a key shifted by 2.
     static constexpr std::uint64_t block_mask = 0x7FFFFu * (1 + (1ull << 21) + (1ull << 42));
     static std::uint64_t hash(std::uint64_t key) { return key * 0x9E3779B97F4A7C15u >> 20; }
-    Block& find(std::uint64_t key);
+    std::size_t find(std::uint64_t key);  // the block's place, new where there was none
     void grow();
     std::vector<std::uint32_t> slots_;  // open addressing: place in blocks_ + 1, or 0
     std::vector<Block> blocks_;

@@ -154,7 +154,7 @@ void bin_anew(FusedCells& fused, device::ThreadPool& pool) {
     });
     tables.for_each_shard(pool, [&](std::size_t shard, CellTable& table) {
         for (const auto& part : parts) {
-            for (const std::uint32_t i : part[shard]) table.add(fused.cells[i]);
+            for (const std::uint32_t i : part[shard]) table.add({&fused.cells[i], 1});
         }
     });
     parts = {};

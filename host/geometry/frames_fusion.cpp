@@ -59,6 +59,52 @@ bool flying(const std::uint16_t* depth, std::uint32_t u, std::uint32_t v, const 
     return (left && right) || (up && down);
 }
 
+// Sums up the readings of a patch of the image, which mostly fall into few cells, before they go to
+// the tables: a slot for each cell, or for the last one of several that share it.
+class PatchSums {
+  public:
+    static constexpr std::uint32_t width = 32;  // pixels
+    PatchSums(std::array<std::vector<CellSums>, CellTables::shard_count>& runs, std::uint32_t frame)
+        : runs_(runs), frame_(frame) {}
+
+    // p: in cells, from the grid's lowest corner; positive.
+    void add(const std::array<double, 3>& p, std::uint32_t weight) {
+        std::array<std::uint64_t, 3> fixed{};
+        for (std::size_t a = 0; a < 3; ++a) fixed[a] = static_cast<std::uint64_t>(p[a] * 65536);
+        const std::uint64_t x = fixed[0] >> 16, y = fixed[1] >> 16, z = fixed[2] >> 16;
+        const std::uint64_t key = x << 42 | y << 21 | z;
+        CellSums& sums = slots_[(x & 7) << 6 | (y & 7) << 3 | (z & 7)];
+        if (sums.count == 0 || sums.key != key) {
+            if (sums.count == 0)
+                used_[used_count_++] = &sums;
+            else
+                put(sums);
+            sums = CellSums{};
+            sums.key = key;
+            sums.best_frame = frame_;
+        }
+        for (std::size_t a = 0; a < 3; ++a) sums.offset[a] += weight * (fixed[a] & 0xFFFF);
+        sums.weight += weight;
+        sums.best_weight = std::max(sums.best_weight, weight);
+        ++sums.count;
+    }
+    void flush() {
+        for (std::size_t k = 0; k < used_count_; ++k) {
+            put(*used_[k]);
+            used_[k]->count = 0;
+        }
+        used_count_ = 0;
+    }
+
+  private:
+    void put(const CellSums& sums) { runs_[CellTables::shard_of(sums.key)].push_back(sums); }
+    std::array<std::vector<CellSums>, CellTables::shard_count>& runs_;
+    std::uint32_t frame_;
+    std::array<CellSums, 512> slots_{};
+    std::array<CellSums*, 512> used_{};
+    std::size_t used_count_ = 0;
+};
+
 }  // namespace
 
 FrameFusion::FrameFusion(const Intrinsics& intrinsics, double cell_m, unsigned threads)
@@ -94,49 +140,30 @@ void FrameFusion::add(const DepthFrame& frame) {
         for (auto& list : runs) list.clear();
         const auto first = static_cast<std::uint32_t>(block * k.height / Cells::block_count);
         const auto last = static_cast<std::uint32_t>((block + 1) * k.height / Cells::block_count);
-        for (std::uint32_t v = first; v < last; ++v) {
-            const double dy = (v - k.cy) / k.fy;
-            CellSums run;
-            const auto flush = [&] {
-                if (run.count) runs[CellTables::shard_of(run.key)].push_back(run);
-            };
-            const std::uint16_t* row = frame.depth.data() + std::size_t{v} * k.width;
-            for (std::uint32_t u = 0; u < k.width; ++u) {
-                const std::uint16_t stored = row[u];
-                if (stored == 0 || flying(row + u, u, v, k, c.sigma_limit[stored])) continue;
-                const double z = stored / k.depth_scale, dx = (u - k.cx) / k.fx;
-                constexpr auto bias = static_cast<double>(key_bias);
-                const std::array<double, 3> p{
-                    ((m[0] * dx + m[1] * dy + m[2]) * z + m[3]) * per_cell + bias,
-                    ((m[4] * dx + m[5] * dy + m[6]) * z + m[7]) * per_cell + bias,
-                    ((m[8] * dx + m[9] * dy + m[10]) * z + m[11]) * per_cell + bias};
-                if (!(p[0] >= 1 && p[1] >= 1 && p[2] >= 1 && p[0] < 2 * bias - 1 &&
-                      p[1] < 2 * bias - 1 && p[2] < 2 * bias - 1)) {
-                    ++c.outside[block];
-                    continue;
+        PatchSums patch(runs, number);
+        for (std::uint32_t u0 = 0; u0 < k.width; u0 += PatchSums::width) {
+            const std::uint32_t u1 = std::min(k.width, u0 + PatchSums::width);
+            for (std::uint32_t v = first; v < last; ++v) {
+                const double dy = (v - k.cy) / k.fy;
+                const std::uint16_t* row = frame.depth.data() + std::size_t{v} * k.width;
+                for (std::uint32_t u = u0; u < u1; ++u) {
+                    const std::uint16_t stored = row[u];
+                    if (stored == 0 || flying(row + u, u, v, k, c.sigma_limit[stored])) continue;
+                    const double z = stored / k.depth_scale, dx = (u - k.cx) / k.fx;
+                    constexpr auto bias = static_cast<double>(key_bias);
+                    const std::array<double, 3> p{
+                        ((m[0] * dx + m[1] * dy + m[2]) * z + m[3]) * per_cell + bias,
+                        ((m[4] * dx + m[5] * dy + m[6]) * z + m[7]) * per_cell + bias,
+                        ((m[8] * dx + m[9] * dy + m[10]) * z + m[11]) * per_cell + bias};
+                    if (p[0] >= 1 && p[1] >= 1 && p[2] >= 1 && p[0] < 2 * bias - 1 &&
+                        p[1] < 2 * bias - 1 && p[2] < 2 * bias - 1) {
+                        patch.add(p, c.weight[stored]);
+                    } else {
+                        ++c.outside[block];
+                    }
                 }
-                const auto x = static_cast<std::uint64_t>(p[0]),
-                           y = static_cast<std::uint64_t>(p[1]),
-                           h = static_cast<std::uint64_t>(p[2]);
-                const std::uint64_t key = x << 42 | y << 21 | h;
-                if (key != run.key || run.count == 0) {
-                    flush();
-                    run = CellSums{};
-                    run.key = key;
-                    run.best_frame = number;
-                }
-                const std::uint32_t weight = c.weight[stored];
-                const auto fraction = [](double value, std::uint64_t whole) {
-                    return static_cast<std::uint64_t>((value - static_cast<double>(whole)) * 65536);
-                };
-                run.offset[0] += weight * fraction(p[0], x);
-                run.offset[1] += weight * fraction(p[1], y);
-                run.offset[2] += weight * fraction(p[2], h);
-                run.weight += weight;
-                run.best_weight = std::max(run.best_weight, weight);
-                ++run.count;
             }
-            flush();
+            patch.flush();
         }
     };
     // A pool without threads of its own hands out all blocks at once.
@@ -144,9 +171,7 @@ void FrameFusion::add(const DepthFrame& frame) {
         for (std::uint64_t block = begin; block < end; ++block) add_rows(block);
     });
     c.tables.for_each_shard(c.pool, [&](std::size_t shard, CellTable& table) {
-        for (const auto& block : c.runs) {
-            for (const CellSums& run : block[shard]) table.add(run);
-        }
+        for (const auto& block : c.runs) table.add(block[shard]);
     });
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <optional>
 #include <utility>
 
@@ -79,20 +80,20 @@ double cell_for_frames(const FrameStream& frames) {
     return std::clamp(std::max(1.5 * z / k.fx, 1.2 * noise), least_cell_m, 0.015);
 }
 
-Ingested ingest_frames(io::FrameSequence sequence, const ParseOptions& options) {
+Ingested ingest_frames(device::Device& device, io::FrameSequence sequence,
+                       const ParseOptions& options) {
     Ingested out;
     const bool posed = sequence.posed();
     out.camera_up = sequence.mean_camera_up();
     out.frames = std::make_unique<SequenceStream>(std::move(sequence));
     out.cell_m = cell_for_frames(*out.frames);
     geometry::FrameFusion fusion(out.frames->intrinsics(), out.cell_m);
-    for (std::size_t f = 0; f < out.frames->size(); ++f) {
+    const auto count = static_cast<double>(out.frames->size());
+    for_each_frame(*out.frames, device.threads(), [&](const DepthFrame& frame, std::size_t f) {
         if (options.cancelled && options.cancelled()) throw Error(ErrorKind::input, "cancelled");
-        fusion.add(out.frames->load(f));
-        if (options.progress)
-            options.progress("ingest",
-                             static_cast<double>(f + 1) / static_cast<double>(out.frames->size()));
-    }
+        fusion.add(frame);
+        if (options.progress) options.progress("ingest", static_cast<double>(f + 1) / count);
+    });
     geometry::FusedCloud fused = fusion.finish();
     out.cloud = std::move(fused.cloud);
     out.viewpoints = std::move(fused.viewpoints);
@@ -145,6 +146,28 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
 
 }  // namespace
 
+void for_each_frame(const FrameStream& frames, device::ThreadPool& threads,
+                    const std::function<void(DepthFrame, std::size_t)>& use) {
+    struct Decoded {
+        DepthFrame frame;
+        std::exception_ptr error;
+    };
+    for (std::size_t first = 0; first < frames.size(); first += threads.threads()) {
+        std::vector<Decoded> batch(std::min<std::size_t>(threads.threads(), frames.size() - first));
+        threads.each(batch.size(), 1, [&](std::size_t i) {
+            try {
+                batch[i].frame = frames.load(first + i);
+            } catch (...) {
+                batch[i].error = std::current_exception();
+            }
+        });
+        for (std::size_t i = 0; i < batch.size(); ++i) {
+            if (batch[i].error) std::rethrow_exception(batch[i].error);
+            use(std::move(batch[i].frame), first + i);
+        }
+    }
+}
+
 Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions&) {
     Ingested out;
     const double spacing = geometry::point_spacing(cloud);
@@ -173,7 +196,7 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
                 const ParseOptions& options) {
     if (options.progress) options.progress("ingest", 0);
     if (io::looks_like_sequence(input))
-        return ingest_frames(io::FrameSequence::open(input), options);
+        return ingest_frames(device, io::FrameSequence::open(input), options);
     return ingest_cloud(device, io::read_cloud(input), options);
 }
 

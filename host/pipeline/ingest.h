@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "device/device.h"
+#include "device/native/thread_pool.h"
 #include "topple/input.h"
 #include "topple/parse.h"
 
@@ -21,6 +22,10 @@ class FrameStream {
     virtual std::size_t size() const = 0;
     virtual DepthFrame load(std::size_t i) const = 0;
 };
+
+// Calls use(frame, i) for each frame in order. Frames are decoded by all threads, as many at once.
+void for_each_frame(const FrameStream& frames, device::ThreadPool& threads,
+                    const std::function<void(DepthFrame, std::size_t)>& use);
 
 // What every later stage starts from, whatever the input was.
 struct Ingested {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "pipeline/view_coverage.h"
 
@@ -76,14 +77,14 @@ bool carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScen
     const std::size_t per_batch =
         static_cast<std::size_t>(std::clamp<std::uint64_t>(batch_bytes / frame_bytes, 1, 64));
     std::vector<DepthFrame> batch;
-    for (std::size_t f = 0; f < frames.size(); ++f) {
-        batch.push_back(frames.load(f));
+    for_each_frame(frames, device.threads(), [&](DepthFrame frame, std::size_t f) {
+        batch.push_back(std::move(frame));
         coverage.add(batch.back().camera_to_world);
-        if (batch.size() < per_batch && f + 1 < frames.size()) continue;
+        if (batch.size() < per_batch && f + 1 < frames.size()) return;
         scene.carve(device, k, batch);
         batch.clear();
         stage.progress("carving", static_cast<double>(f + 1) / static_cast<double>(frames.size()));
-    }
+    });
     return coverage.from_around();
 }
 
