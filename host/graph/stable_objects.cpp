@@ -103,7 +103,7 @@ Grouping group_primitives(device::Device& device, const physics::SupportTable& t
     const ScenePrior prior(graph, bodies, seams, ground, options.prior);
     const physics::CellColumns columns(cells);
     const double tilt = options.tilt_deg * pi / 180;
-    const GroupEnergies energies = [&](std::span<const GroupQuery> queries, std::span<double> out) {
+    const auto energies = [&](std::span<const GroupQuery> queries, std::span<double> out) {
         std::vector<physics::Candidate> unstable;
         std::vector<std::size_t> query;  // of each candidate
         for (std::size_t i = 0; i < queries.size(); ++i) {
@@ -141,7 +141,10 @@ Grouping group_primitives(device::Device& device, const physics::SupportTable& t
     sampler.sample_steps = sampler.anneal_steps / 2;
     sampler.cancelled = options.cancelled;
     const std::vector<Edge> edges = edges_of(graph, prior, options.turn_on_temperature);
-    Partition partition = swendsen_wang_cuts(graph.primitives, edges, ground, energies, sampler);
+    // Instability is never below 0, so that the prior alone is a bound.
+    const auto at_least = [&](const GroupQuery& query) { return prior(query.nodes); };
+    Partition partition =
+        swendsen_wang_cuts(graph.primitives, edges, ground, {energies, at_least}, sampler);
     return {std::move(partition.label), std::move(partition.joined),
             std::move(partition.best_energy_curve)};
 }

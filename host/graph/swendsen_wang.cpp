@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <unordered_map>
 
 #include "core/random.h"
 
@@ -42,44 +43,70 @@ struct Adjacency {
     }
 };
 
+struct HashOfQuery {
+    std::size_t operator()(const GroupQuery& q) const {
+        std::uint64_t h = q.pinned ? 0x9E3779B97F4A7C15u : 0;
+        for (const std::int32_t n : q.nodes)
+            h = (h ^ static_cast<std::uint64_t>(n)) * 0xD6E8FEB86659FD93u + (h >> 32);
+        return h;
+    }
+};
+struct SameQuery {
+    bool operator()(const GroupQuery& a, const GroupQuery& b) const {
+        return a.pinned == b.pinned && a.nodes == b.nodes;
+    }
+};
+
 // Energies by group, asked for once each.
 class EnergyCache {
   public:
     explicit EnergyCache(const GroupEnergies& energies) : energies_(energies) {}
 
     // Makes sure that all queries are known, in one call for those that aren't.
-    void fetch(const std::vector<GroupQuery>& queries) {
+    void fetch(std::span<const GroupQuery> queries) {
         std::vector<GroupQuery> missing;
         for (const GroupQuery& q : queries) {
-            if (!q.nodes.empty() && known_.try_emplace(key(q), 0.0).second) missing.push_back(q);
+            if (q.nodes.empty()) continue;
+            Energy& known = known_[q];
+            if (known.exact) continue;
+            known.exact = true;
+            missing.push_back(q);
         }
         if (missing.empty()) return;
         std::vector<double> values(missing.size());
-        energies_(missing, values);
-        for (std::size_t i = 0; i < missing.size(); ++i) known_[key(missing[i])] = values[i];
+        energies_.of(missing, values);
+        for (std::size_t i = 0; i < missing.size(); ++i) known_[missing[i]].value = values[i];
         evaluated_ += missing.size();
     }
-    double operator()(const GroupQuery& q) const { return q.nodes.empty() ? 0 : known_.at(key(q)); }
+    double operator()(const GroupQuery& q) const {
+        return q.nodes.empty() ? 0 : known_.at(q).value;
+    }
+    double at_least(const GroupQuery& q) {
+        if (q.nodes.empty()) return 0;
+        const auto [at, fresh] = known_.try_emplace(q);
+        if (fresh && energies_.at_least) at->second.value = energies_.at_least(q);
+        return at->second.value;
+    }
     std::uint64_t evaluated() const { return evaluated_; }
 
   private:
-    static Group key(const GroupQuery& q) {
-        Group k = q.nodes;
-        if (q.pinned) k.push_back(-1);
-        return k;
-    }
+    struct Energy {
+        double value = -std::numeric_limits<double>::infinity();  // or a lower bound
+        bool exact = false;
+    };
     const GroupEnergies& energies_;
-    std::map<Group, double> known_;
+    std::unordered_map<GroupQuery, Energy, HashOfQuery, SameQuery> known_;
     std::uint64_t evaluated_ = 0;
 };
 
 // A flip that awaits its energies.
 struct Proposal {
-    bool any = false;
+    bool open = false;  // neither rejected nor without effect, so far
     std::vector<std::int32_t> moved;
     std::int32_t from = 0, to = 0;
     double log_cut_ratio = 0;  // ln of the products of (1 - q_e) in Eq. 11
-    GroupQuery from_before, from_after, to_before, to_after;
+    double most_change = 0;    // of the energy, exclusive, for which it is accepted
+    GroupQuery from_after, to_after;
 };
 
 class Chain {
@@ -103,55 +130,74 @@ class Chain {
         }
         return all;
     }
-    void set_energy(double e) { energy_ = e; }
+    // Energies of the groups, which the cache knows.
+    void start(const EnergyCache& energy_of) {
+        energy_of_label_.assign(members_.size(), 0);
+        energy_ = 0;
+        for (std::size_t l = 0; l < members_.size(); ++l) {
+            energy_of_label_[l] = energy_of({members_[l], l == pinned_label});
+            energy_ += energy_of_label_[l];
+        }
+    }
     double energy() const { return energy_; }
     const std::vector<std::int32_t>& labels() const { return label_; }
 
-    const Proposal& propose() {
-        proposal_ = {};
-        if (label_.empty()) return proposal_;
-        grow_component(static_cast<std::int32_t>(random_.below(label_.size())));
-        Proposal& p = proposal_;
-        for (const std::int32_t n : p.moved) {
-            if (pinned_[static_cast<std::size_t>(n)]) return proposal_;
-        }
-        choose_target();
-        if (p.to == p.from) return proposal_;
-        const auto take = [&](std::int32_t l) {
-            return GroupQuery{members_[static_cast<std::size_t>(l)], l == pinned_label};
-        };
-        p.from_before = take(p.from);
-        p.to_before = take(p.to);
-        p.from_after.pinned = p.from_before.pinned;
-        std::set_difference(p.from_before.nodes.begin(), p.from_before.nodes.end(), p.moved.begin(),
-                            p.moved.end(), std::back_inserter(p.from_after.nodes));
-        if (!connected(p.from_after)) return proposal_;
-        p.any = true;
-        p.to_after.pinned = p.to_before.pinned;
-        std::merge(p.to_before.nodes.begin(), p.to_before.nodes.end(), p.moved.begin(),
-                   p.moved.end(), std::back_inserter(p.to_after.nodes));
-        return proposal_;
-    }
-
-    // Metropolis-Hastings on the proposal, Eq. 11.
-    void decide(const EnergyCache& energy_of, double temperature) {
-        const Proposal& p = proposal_;
+    // Draws a flip and the odds it must meet; whether it can be accepted as far as `energies` tell.
+    const Proposal& propose(EnergyCache& energies, double temperature) {
+        draw();
         // Drawn always, so that the stream of random numbers doesn't depend on the outcome.
         const double u = random_.uniform();
-        if (!p.any) return;
-        const double change = energy_of(p.from_after) + energy_of(p.to_after) -
-                              energy_of(p.from_before) - energy_of(p.to_before);
-        if (std::log(std::max(u, std::numeric_limits<double>::min())) >=
-            p.log_cut_ratio - change / temperature) {
-            return;
-        }
+        Proposal& p = proposal_;
+        if (!p.open) return p;
+        // Metropolis-Hastings, Eq. 11: ln u < ln ratio - change / T.
+        p.most_change = temperature * (p.log_cut_ratio -
+                                       std::log(std::max(u, std::numeric_limits<double>::min())));
+        p.open =
+            change(energies.at_least(p.from_after), energies.at_least(p.to_after)) < p.most_change;
+        return p;
+    }
+
+    void decide(const EnergyCache& energy_of) {
+        const Proposal& p = proposal_;
+        if (!p.open) return;
+        const double from = energy_of(p.from_after), to = energy_of(p.to_after);
+        if (change(from, to) >= p.most_change) return;
+        energy_ += change(from, to);
         for (const std::int32_t n : p.moved) label_[static_cast<std::size_t>(n)] = p.to;
         members_[static_cast<std::size_t>(p.from)] = p.from_after.nodes;
         members_[static_cast<std::size_t>(p.to)] = p.to_after.nodes;
-        energy_ += change;
+        energy_of_label_[static_cast<std::size_t>(p.from)] = from;
+        energy_of_label_[static_cast<std::size_t>(p.to)] = to;
     }
 
   private:
+    double change(double from_after, double to_after) const {
+        return from_after + to_after - energy_of_label_[static_cast<std::size_t>(proposal_.from)] -
+               energy_of_label_[static_cast<std::size_t>(proposal_.to)];
+    }
+
+    void draw() {
+        proposal_ = {};
+        if (label_.empty()) return;
+        grow_component(static_cast<std::int32_t>(random_.below(label_.size())));
+        Proposal& p = proposal_;
+        for (const std::int32_t n : p.moved) {
+            if (pinned_[static_cast<std::size_t>(n)]) return;
+        }
+        choose_target();
+        if (p.to == p.from) return;
+        const Group& from = members_[static_cast<std::size_t>(p.from)];
+        const Group& to = members_[static_cast<std::size_t>(p.to)];
+        p.from_after.pinned = p.from == pinned_label;
+        std::set_difference(from.begin(), from.end(), p.moved.begin(), p.moved.end(),
+                            std::back_inserter(p.from_after.nodes));
+        if (!connected(p.from_after)) return;
+        p.open = true;
+        p.to_after.pinned = p.to == pinned_label;
+        std::merge(to.begin(), to.end(), p.moved.begin(), p.moved.end(),
+                   std::back_inserter(p.to_after.nodes));
+    }
+
     // The connected component of turned-on edges around one node. Edges are drawn as they are met,
     // each at most once: the same distribution as drawing all of them first. Starting from a random
     // node picks a component with probability proportional to its size, which is the same in the
@@ -258,6 +304,7 @@ class Chain {
     Random random_;
     std::vector<std::int32_t> label_;
     std::vector<Group> members_;  // by label
+    std::vector<double> energy_of_label_;
     double energy_ = 0;
     Proposal proposal_;
 };
@@ -290,10 +337,8 @@ Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
         chains.emplace_back(nodes, edges, adjacency, pinned, root.split(c));
     }
     cache.fetch(chains[0].groups());
-    double start = 0;
-    for (const GroupQuery& q : chains[0].groups()) start += cache(q);
-    for (Chain& chain : chains) chain.set_energy(start);
-    best.energy = start;
+    for (Chain& chain : chains) chain.start(cache);
+    best.energy = chains[0].energy();
     std::vector<std::int32_t> best_labels = chains[0].labels();
 
     std::vector<std::uint64_t> joined(edges.size(), 0);
@@ -309,13 +354,12 @@ Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
                       : options.sample_temperature;
         std::vector<GroupQuery> wanted;
         for (Chain& chain : chains) {
-            const Proposal& p = chain.propose();
-            if (!p.any) continue;
-            wanted.insert(wanted.end(), {p.from_before, p.from_after, p.to_before, p.to_after});
+            const Proposal& p = chain.propose(cache, temperature);
+            if (p.open) wanted.insert(wanted.end(), {p.from_after, p.to_after});
         }
         cache.fetch(wanted);
         for (Chain& chain : chains) {
-            chain.decide(cache, temperature);
+            chain.decide(cache);
             // A margin, so that rounding in the running sum is not taken for an improvement.
             if (chain.energy() < best.energy - 1e-9) {
                 best.energy = chain.energy();

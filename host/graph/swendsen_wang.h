@@ -23,7 +23,12 @@ struct GroupQuery {
     Group nodes;
     bool pinned = false;
 };
-using GroupEnergies = std::function<void(std::span<const GroupQuery>, std::span<double>)>;
+struct GroupEnergies {
+    std::function<void(std::span<const GroupQuery>, std::span<double>)> of;
+    // What a group's energy is at least, where that is cheaper to tell: flips that even this rules
+    // out need no more. May be empty. Does not change the outcome.
+    std::function<double(const GroupQuery&)> at_least;
+};
 
 struct SwendsenWangOptions {
     std::uint64_t seed = 1;

@@ -66,7 +66,7 @@ void expect_enumerated(std::int32_t nodes, const std::vector<bool>& pinned) {
     options.anneal_steps = 200;
     options.sample_steps = 50000;
     options.first_temperature = options.last_temperature = options.sample_temperature = 0.5;
-    const Partition sampled = swendsen_wang_cuts(nodes, edges, pinned, arbitrary, options);
+    const Partition sampled = swendsen_wang_cuts(nodes, edges, pinned, {arbitrary, {}}, options);
 
     std::vector<std::vector<std::int32_t>> all;
     std::vector<std::int32_t> prefix;
@@ -106,21 +106,20 @@ TEST(SwendsenWang, MatchesEnumerationWithPinnedNodes) {
 TEST(SwendsenWang, GroupsStayConnected) {
     // A path 0-1-2: 0 and 2 may only be together with 1, however cheap that would be.
     const std::vector<Edge> path{{0, 1, 0.5}, {1, 2, 0.5}};
-    const GroupEnergies ends_attract = [](std::span<const GroupQuery> groups,
-                                          std::span<double> energies) {
+    const auto ends_attract = [](std::span<const GroupQuery> groups, std::span<double> energies) {
         for (std::size_t i = 0; i < groups.size(); ++i) {
             energies[i] = groups[i].nodes == Group{0, 2} ? -10 : groups[i].nodes.size() > 1 ? 1 : 0;
         }
     };
-    const Partition p = swendsen_wang_cuts(3, path, std::vector<bool>(3), ends_attract, {});
+    const Partition p = swendsen_wang_cuts(3, path, std::vector<bool>(3), {ends_attract, {}}, {});
     EXPECT_EQ(p.label, (std::vector<std::int32_t>{0, 1, 2}));
 }
 
 TEST(SwendsenWang, EmptyGraphAndSingleNode) {
-    EXPECT_TRUE(swendsen_wang_cuts(0, {}, {}, arbitrary, {}).label.empty());
-    EXPECT_EQ(swendsen_wang_cuts(1, {}, {false}, arbitrary, {}).label,
+    EXPECT_TRUE(swendsen_wang_cuts(0, {}, {}, {arbitrary, {}}, {}).label.empty());
+    EXPECT_EQ(swendsen_wang_cuts(1, {}, {false}, {arbitrary, {}}, {}).label,
               std::vector<std::int32_t>{0});
-    EXPECT_EQ(swendsen_wang_cuts(1, {}, {true}, arbitrary, {}).label,
+    EXPECT_EQ(swendsen_wang_cuts(1, {}, {true}, {arbitrary, {}}, {}).label,
               std::vector<std::int32_t>{-1});
 }
 
@@ -129,11 +128,28 @@ TEST(SwendsenWang, SameSeedSameResult) {
     SwendsenWangOptions options;
     options.seed = 9;
     options.anneal_steps = options.sample_steps = 300;
-    const Partition a = swendsen_wang_cuts(12, edges, std::vector<bool>(12), arbitrary, options);
-    const Partition b = swendsen_wang_cuts(12, edges, std::vector<bool>(12), arbitrary, options);
+    const Partition a =
+        swendsen_wang_cuts(12, edges, std::vector<bool>(12), {arbitrary, {}}, options);
+    const Partition b =
+        swendsen_wang_cuts(12, edges, std::vector<bool>(12), {arbitrary, {}}, options);
     EXPECT_EQ(a.label, b.label);
     EXPECT_EQ(a.joined, b.joined);
     EXPECT_EQ(a.energy, b.energy);
+}
+
+TEST(SwendsenWang, ALowerBoundSavesEnergiesAndChangesNothing) {
+    const auto edges = complete_graph(10);
+    const std::vector<bool> pinned{true,  false, false, false, false,
+                                   false, false, false, false, true};
+    SwendsenWangOptions options;
+    options.anneal_steps = options.sample_steps = 2000;
+    const auto at_least = [](const GroupQuery& g) { return 0.8 * arbitrary_energy(g); };
+    const Partition all = swendsen_wang_cuts(10, edges, pinned, {arbitrary, {}}, options);
+    const Partition some = swendsen_wang_cuts(10, edges, pinned, {arbitrary, at_least}, options);
+    EXPECT_EQ(all.label, some.label);
+    EXPECT_EQ(all.joined, some.joined);
+    EXPECT_EQ(all.best_energy_curve, some.best_energy_curve);
+    EXPECT_LT(some.energies_evaluated, all.energies_evaluated);
 }
 
 }  // namespace
