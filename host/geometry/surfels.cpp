@@ -204,20 +204,19 @@ Surfels make_surfels(device::Device& device, const PointCloud& cloud, double cel
         none.neighbour_first.assign(1, 0);
         return none;
     }
-    flatten_noise(device, grid, count, of_point);
+    const PlaneFit rough = flatten_noise(device, grid, count, of_point);
     Surfels s = from_grid(grid);
     s.weight = std::move(count);
     s.of_point = std::move(of_point);
     cell_neighbours(s.cx, s.cy, s.cz, device.threads(), s.neighbour_first, s.neighbours);
 
-    PlaneFitter fitter(device, grid, queries_at_means(grid));
-    set_normals(s, fitter.fit({}), nullptr, cell_m);
+    set_normals(s, rough, nullptr, cell_m);
     const Orientation towards =
         sensor_side(s, cloud, viewpoints, viewpoint_of_point, device.threads());
     orient(s, towards);
     // The second pass knows which side each cell faces and leaves the others out.
     const std::vector<float> px = s.nx, py = s.ny, pz = s.nz;
-    PlaneFit sharp = fitter.fit({px, py, pz});
+    PlaneFit sharp = PlaneFitter(device, grid, queries_at_means(grid)).fit({px, py, pz});
     for (std::size_t i = 0; i < s.size(); ++i) {
         // Where too few agree, the first pass stands.
         if (sharp.normal[0][i] == 0 && sharp.normal[1][i] == 0 && sharp.normal[2][i] == 0) {

@@ -48,8 +48,8 @@ std::array<double, 6> in_plane(const CellGrid& grid, const PlaneFit& fit, std::s
 
 }  // namespace
 
-void flatten_noise(device::Device& device, CellGrid& grid, std::vector<float>& count,
-                   std::vector<std::uint32_t>& of_point) {
+PlaneFit flatten_noise(device::Device& device, CellGrid& grid, std::vector<float>& count,
+                       std::vector<std::uint32_t>& of_point) {
     const PlaneFit fit = fit_planes(device, grid, queries_at_means(grid));
     const float noise = median_rms(fit);
     const std::size_t n = grid.size();
@@ -75,7 +75,7 @@ void flatten_noise(device::Device& device, CellGrid& grid, std::vector<float>& c
             for (std::size_t a = 0; a < 6; ++a) spread[i][a] = grid.spread[a][i];
         }
     });
-    if (!any) return;
+    if (!any) return fit;
 
     const auto cell = [](double v) { return static_cast<std::int64_t>(std::floor(v)); };
     std::array<std::int64_t, 3> lowest{}, highest{};
@@ -95,13 +95,19 @@ void flatten_noise(device::Device& device, CellGrid& grid, std::vector<float>& c
     merged.cell_m = grid.cell_m;
     merged.resize(cells.size());
     std::vector<float> merged_count(cells.size());
+    PlaneFit planes;
+    for (auto* field : {&planes.normal[0], &planes.normal[1], &planes.normal[2], &planes.rms,
+                        &planes.offset, &planes.used})
+        field->resize(cells.size());
     threads.each(cells.size(), chunk, [&](std::size_t to) {
         const auto group = cells.group(to);
         std::array<double, 3> at{}, first{};
         for (std::size_t a = 0; a < 3; ++a) at[a] = std::floor(moved[a][group[0]]);
         std::array<double, 6> second{};
         double sum = 0;
+        std::uint32_t heaviest = group[0];
         for (const std::uint32_t i : group) {
+            if (count[i] > count[heaviest]) heaviest = i;
             now[i] = static_cast<std::uint32_t>(to);
             const double w = count[i];
             std::array<double, 3> d{};
@@ -126,11 +132,16 @@ void flatten_noise(device::Device& device, CellGrid& grid, std::vector<float>& c
             merged.spread[a][to] = static_cast<float>(second[a] / sum - mm[a]);
         }
         merged_count[to] = static_cast<float>(sum);
+        for (std::size_t a = 0; a < 3; ++a) planes.normal[a][to] = fit.normal[a][heaviest];
+        planes.rms[to] = fit.rms[heaviest];
+        planes.used[to] = fit.used[heaviest];
+        planes.offset[to] = 0;
         merged.weight[to] = fit_weight(sum);
     });
     grid = std::move(merged);
     count = std::move(merged_count);
     for (std::uint32_t& point : of_point) point = now[point];
+    return planes;
 }
 
 }  // namespace topple::geometry

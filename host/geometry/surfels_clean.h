@@ -6,6 +6,7 @@
 
 #include "device/device.h"
 #include "geometry/cell_grid.h"
+#include "geometry/plane_fit.h"
 
 namespace topple::geometry {
 
@@ -19,8 +20,8 @@ inline float fit_weight(double count) {
 // noise is thicker than a cell becomes one layer of cells (moving least squares, one step). Only
 // where a plane fits as well as it does in most of the scene, and by no more than noise explains:
 // edges and small things stay. count: points per cell; of_point: cell of each point; both follow
-// the new cells.
-void flatten_noise(device::Device& device, CellGrid& grid, std::vector<float>& count,
-                   std::vector<std::uint32_t>& of_point);
+// the new cells. Returns the planes that were fitted, of each new cell that of its heaviest part.
+PlaneFit flatten_noise(device::Device& device, CellGrid& grid, std::vector<float>& count,
+                       std::vector<std::uint32_t>& of_point);
 
 }  // namespace topple::geometry
