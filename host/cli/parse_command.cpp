@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <system_error>
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/progress.h"
 #include "cli/summary.h"
 #include "io/output_folder.h"
 #include "topple/device.h"
@@ -17,6 +18,8 @@
 
 namespace topple::cli {
 namespace {
+
+const std::map<std::string, double> units{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}};
 
 struct Arguments {
     std::string input, backend = "auto", up, disturbance = "human,wind,earthquake", max_memory;
@@ -88,29 +91,6 @@ std::filesystem::path default_output(const std::filesystem::path& input) {
     return name.string() + "-parsed";
 }
 
-// One line per stage; on a terminal the line of the running stage shows how far it is.
-class Progress {
-  public:
-    explicit Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
-    void operator()(const std::string& stage, double done) {
-        if (quiet_) return;
-        if (terminal_) {
-            std::fprintf(stderr, "\r\033[K%s %3.0f %%", stage.c_str(), 100 * done);
-        } else if (stage != last_) {
-            std::fprintf(stderr, "%s\n", stage.c_str());
-        }
-        last_ = stage;
-        std::fflush(stderr);
-    }
-    void finish() const {
-        if (!quiet_ && terminal_) std::fprintf(stderr, "\r\033[K");
-    }
-
-  private:
-    bool quiet_, terminal_;
-    std::string last_;
-};
-
 // Everything that can be wrong with the options is told before a long parse.
 void read_options(Arguments& a) {
     if (a.voxel_m) {
@@ -131,6 +111,11 @@ int run(Arguments& a) {
     read_options(a);
     const std::filesystem::path out =
         a.out ? std::filesystem::path(*a.out) : default_output(a.input);
+    std::error_code error;
+    if (!std::filesystem::exists(a.input, error)) {
+        throw Error(ErrorKind::input,
+                    a.input + ": " + (error ? error.message() : "No such file or folder"));
+    }
     catch_interrupts();
     // Throws now, not after the parse, where nothing can be written there.
     { const io::OutputFolder probe(out); }
@@ -169,6 +154,11 @@ Command add_parse(CLI::App& app) {
         ->capture_default_str();
     app.add_option("--voxel", a->voxel_m,
                    "Edge of a solid voxel in metres (default: from the scan's resolution)");
+    app.add_option_function<std::string>(
+           "--unit", [a](const std::string& unit) { a->options.unit_m = units.at(unit); },
+           "Unit of a point cloud's coordinates: m, cm, mm or in; the output is in metres")
+        ->check(CLI::IsMember({"m", "cm", "mm", "in"}))
+        ->default_str("m");
     app.add_option("--up", a->up,
                    "Up in the input's frame, X,Y,Z, as from an IMU (default: found from the scan)");
     app.add_option("--disturbance", a->disturbance,

@@ -75,27 +75,6 @@ void CloudBuilder::add(const std::array<double, 3>& point, const std::array<doub
     cloud_.nz.push_back(usable ? static_cast<float>(normal[2] / length) : 0.0f);
 }
 
-void CloudBuilder::note_units() {
-    double extent = 0, reach = 0;
-    for (const auto* values : {&cloud_.x, &cloud_.y, &cloud_.z}) {
-        extent = std::max(extent, robust_extent(*values));
-        for (const float value : *values) reach = std::max(reach, double(std::abs(value)));
-    }
-    // Rooms and buildings stay below 300 m; the same in millimetres starts at 1000.
-    if (extent > 300) {
-        cloud_.notes.push_back(
-            "The points extend over " + short_number(extent) +
-            " m: if the file's unit is the millimetre, divide its coordinates by 1000.");
-    }
-    // Half a millimetre is what a float resolves at 8192 m.
-    if (reach > 8192 && extent <= 300) {
-        cloud_.notes.push_back(
-            "The points lie up to " + short_number(reach) +
-            " m from the origin, where 32-bit coordinates are coarser than 0.5 mm: "
-            "subtract the offset from the file's coordinates.");
-    }
-}
-
 PointCloud CloudBuilder::finish(std::uint32_t width, std::uint32_t height) {
     if (cloud_.x.empty()) {
         fail(file_, seen_ == 0 ? std::string("has no points")
@@ -109,8 +88,27 @@ PointCloud CloudBuilder::finish(std::uint32_t width, std::uint32_t height) {
         cloud_.pixel = {};
     }
     if (!any_normal_) cloud_.nx = cloud_.ny = cloud_.nz = {};
-    note_units();
     return std::move(cloud_);
+}
+
+void note_extent(PointCloud& cloud) {
+    double extent = 0, reach = 0;
+    for (const auto* values : {&cloud.x, &cloud.y, &cloud.z}) {
+        extent = std::max(extent, robust_extent(*values));
+        for (const float value : *values) reach = std::max(reach, double(std::abs(value)));
+    }
+    // Rooms and buildings stay below 300 m; the same in millimetres starts at 1000.
+    if (extent > 300) {
+        cloud.notes.push_back("The points extend over " + short_number(extent) +
+                              " m: if the file's unit is the millimetre, say --unit mm.");
+    }
+    // Half a millimetre is what a float resolves at 8192 m.
+    if (reach > 8192 && extent <= 300) {
+        cloud.notes.push_back(
+            "The points lie up to " + short_number(reach) +
+            " m from the origin, where 32-bit coordinates are coarser than 0.5 mm: "
+            "subtract the offset from the file's coordinates.");
+    }
 }
 
 }  // namespace topple::io

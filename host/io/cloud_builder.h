@@ -26,13 +26,14 @@ class CloudBuilder {
     PointCloud finish(std::uint32_t width = 0, std::uint32_t height = 0);
 
   private:
-    void note_units();
-
     std::filesystem::path file_;
     PointCloud cloud_;
     bool with_normals_;
     bool any_normal_ = false;
     std::uint64_t seen_ = 0;
 };
+
+// Notes in the cloud what looks odd about its extent or its place.
+void note_extent(PointCloud& cloud);
 
 }  // namespace topple::io

@@ -6,6 +6,7 @@
 #include <string>
 #include <system_error>
 
+#include "io/cloud_builder.h"
 #include "io/formats.h"
 #include "io/text.h"
 
@@ -23,21 +24,28 @@ std::string lower_extension(const std::filesystem::path& file) {
     return extension;
 }
 
-}  // namespace
-
-PointCloud read_cloud(const std::filesystem::path& file) {
-    std::error_code error;
-    if (std::filesystem::is_directory(file, error)) {
-        fail(file,
-             "is a folder without depth/ and intrinsics.json; give a .ply, .pcd or .xyz file, "
-             "or a folder with both");
+// Whether the first line that says anything is of three numbers or more.
+bool starts_as_points(std::string_view bytes) {
+    Lines lines(bytes.substr(0, 4096));
+    for (std::string_view line; lines.next(line);) {
+        std::size_t numbers = 0;
+        double value;
+        std::string_view token = next_token(line, true);
+        if (token.empty()) continue;
+        for (; parse_number(token, value); token = next_token(line, true)) ++numbers;
+        return numbers >= 3 && token.empty();
     }
-    const auto bytes = read_file(file);
-    const auto text = bytes.text();
+    return false;
+}
+
+PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text) {
     if (starts_as_ply(text)) return parse_ply(file, text);
     if (text.starts_with("# .PCD")) return parse_pcd(file, text);
 
     const auto extension = lower_extension(file);
+    if ((extension == ".ply" || extension == ".pcd") && starts_as_points(text)) {
+        fail(file, "has no header, but lines of numbers; if these are points, name the file .xyz");
+    }
     if (extension == ".ply") {
         fail(file, "starts with " + in_quotes(text.substr(0, 8)) +
                        ", where a PLY file starts with \"ply\"; it is another format or damaged");
@@ -48,6 +56,28 @@ PointCloud read_cloud(const std::filesystem::path& file) {
     }
     fail(file, "is no known kind of point cloud (its extension is " + in_quotes(extension) +
                    "); give a .ply, .pcd or .xyz file, or a folder with depth/*.png");
+}
+
+void scale(PointCloud& cloud, double unit_m) {
+    for (auto* values : {&cloud.x, &cloud.y, &cloud.z}) {
+        for (float& v : *values) v = static_cast<float>(v * unit_m);
+    }
+    for (double& v : cloud.viewpoint) v *= unit_m;
+}
+
+}  // namespace
+
+PointCloud read_cloud(const std::filesystem::path& file, double unit_m) {
+    std::error_code error;
+    if (std::filesystem::is_directory(file, error)) {
+        fail(file,
+             "is a folder without depth/ and intrinsics.json; give a .ply, .pcd or .xyz file, "
+             "or a folder with both");
+    }
+    PointCloud cloud = parse_cloud(file, read_file(file).text());
+    if (unit_m != 1) scale(cloud, unit_m);
+    note_extent(cloud);
+    return cloud;
 }
 
 }  // namespace topple::io

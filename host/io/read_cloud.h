@@ -13,10 +13,10 @@ namespace topple::io {
 // Reads a PLY, PCD or XYZ file, told apart by its first bytes and, where those say nothing, by its
 // extension (.ply, .pcd; .xyz, .txt, .csv, .asc, .pts are XYZ).
 //
-// Metres, the file's own frame. Points with a coordinate that is not finite are left out and
-// counted in `dropped`; a file without a finite point, or with a coordinate beyond 1e6 m, is
-// refused. Normals are kept, made unit length, where the file has them (0, 0, 0 for single points
-// without one).
-PointCloud read_cloud(const std::filesystem::path& file);
+// Metres, the file's own frame: `unit_m` is how many metres its coordinates' unit has. Points with
+// a coordinate that is not finite are left out and counted in `dropped`; a file without a finite
+// point, or with a coordinate beyond 1e6 units, is refused. Normals are kept, made unit length,
+// where the file has them (0, 0, 0 for single points without one).
+PointCloud read_cloud(const std::filesystem::path& file, double unit_m = 1);
 
 }  // namespace topple::io

@@ -15,12 +15,17 @@
 #include "geometry/virtual_views.h"
 #include "io/frame_sequence.h"
 #include "io/read_cloud.h"
+#include "pipeline/voxel_stage.h"
 
 namespace topple {
 namespace {
 
 // Working resolution stays within what indoor sensors deliver and what furniture needs.
 constexpr double least_cell_m = 0.003, largest_cell_m = 0.05;
+// Points farther apart than this show no surface: five cells of the coarsest resolution.
+constexpr double sparsest_m = 5 * largest_cell_m;
+// What a scan of rooms extends over, for guesses at its unit.
+constexpr double least_room_m = 1.5, largest_room_m = 30;
 // Virtual views are drawn with surfels this wide: coarse enough that noise does not blur which side
 // of a surface is which.
 constexpr double view_cells = 3;
@@ -144,6 +149,35 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
     out.frames = std::make_unique<MemoryStream>(views.intrinsics, std::move(views.frames));
 }
 
+// Refuses a cloud whose points are too far apart for surfaces at the coarsest resolution, which is
+// what a room looks like in another unit than metres.
+void check_spacing(const PointCloud& cloud, double spacing) {
+    if (spacing <= sparsest_m) return;
+    const auto text = [](double value) {
+        char digits[32];
+        std::snprintf(digits, sizeof(digits), "%.3g", value);
+        return std::string(digits);
+    };
+    double extent = 0;
+    for (const auto* axis : {&cloud.x, &cloud.y, &cloud.z}) {
+        const auto [low, high] = std::minmax_element(axis->begin(), axis->end());
+        extent = std::max(extent, static_cast<double>(*high) - *low);
+    }
+    std::string units, options;
+    for (const auto& [unit, unit_m] : {std::pair("mm", 0.001), {"cm", 0.01}, {"in", 0.0254}}) {
+        if (extent * unit_m < least_room_m || extent * unit_m > largest_room_m) continue;
+        units.append(units.empty() ? "" : " or ").append(unit);
+        options.append(options.empty() ? "--unit " : " or --unit ").append(unit);
+    }
+    throw Error(ErrorKind::input,
+                cloud.source + ": the points extend over " + text(extent) + " m and are " +
+                    text(spacing) + " m apart, more than the " + text(sparsest_m) +
+                    " m at which surfaces can be found; " +
+                    (units.empty() ? "give a denser scan"
+                                   : "if the coordinates are in " + units + ", say " + options +
+                                         ", else give a denser scan"));
+}
+
 }  // namespace
 
 void for_each_frame(const FrameStream& frames, device::ThreadPool& threads,
@@ -170,7 +204,14 @@ void for_each_frame(const FrameStream& frames, device::ThreadPool& threads,
 
 Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions&) {
     Ingested out;
+    if (cloud.size() < least_voxels) {
+        throw Error(ErrorKind::input, cloud.source + ": " + std::to_string(cloud.size()) +
+                                          (cloud.size() == 1 ? " point was" : " points were") +
+                                          " found, but the smallest solid takes " +
+                                          std::to_string(least_voxels) + "; give a denser scan");
+    }
     const double spacing = geometry::point_spacing(cloud);
+    check_spacing(cloud, spacing);
     // A little above the spacing, so that a surface has no holes at this resolution.
     out.cell_m = std::clamp(1.25 * spacing, least_cell_m, largest_cell_m);
     out.notes = cloud.notes;
@@ -195,9 +236,15 @@ Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptio
 Ingested ingest(device::Device& device, const std::filesystem::path& input,
                 const ParseOptions& options) {
     if (options.progress) options.progress("ingest", 0);
-    if (io::looks_like_sequence(input))
+    if (io::looks_like_sequence(input)) {
+        if (options.unit_m != 1) {
+            throw Error(ErrorKind::usage,
+                        "--unit is for point clouds; depth frames have their unit in "
+                        "intrinsics.json, as depth_scale");
+        }
         return ingest_frames(device, io::FrameSequence::open(input), options);
-    return ingest_cloud(device, io::read_cloud(input), options);
+    }
+    return ingest_cloud(device, io::read_cloud(input, options.unit_m), options);
 }
 
 }  // namespace topple

@@ -80,7 +80,14 @@ ParseResult parse_ingested(device::Device& device, const Ingested& input,
 
     GeometryStage geometry = find_primitives(device, input, options, stage);  // 2.1
     if (!geometry.frame.note.empty()) scene.notes.push_back(geometry.frame.note);
-    VoxelStage voxels = make_solids(device, input, geometry, voxel_m, stage);            // 2.2
+    VoxelStage voxels = make_solids(device, input, geometry, voxel_m, stage);  // 2.2
+    if (geometry.primitives.model.empty()) {
+        throw Error(ErrorKind::input,
+                    scene.source + ": " + std::to_string(input.cloud.size()) +
+                        " points were found, but no surface of them fills the " +
+                        std::to_string(least_voxels) +
+                        " voxels that a solid takes; give a denser scan, or a smaller --voxel");
+    }
     const ObjectStage objects = find_objects(device, geometry, voxels, options, stage);  // 3, 4
     const SafetyStage safety =
         assess_safety(device, geometry, voxels, objects, options, stage);  // 5
@@ -107,6 +114,7 @@ ParseResult run(const std::string& source, const ParseOptions& options, Ingest i
 
 void check_options(const ParseOptions& o) {
     if (o.voxel_m != 0) check_range("--voxel", o.voxel_m, least_voxel_m, 1.0);
+    check_range("--unit", o.unit_m, 1e-6, 1e6);
     check_range("--density", o.density_kg_m3, 0, 30000);
     check_range("--friction", o.friction, 0, 10);
     check_range("--wind", o.wind_m_s, 0, 150);

@@ -18,10 +18,6 @@ constexpr std::uint64_t batch_bytes = 16u << 20;
 // open.
 constexpr unsigned hidden_gap_voxels = 3;
 
-// A solid has at least the volume of a cube of three voxels; less is a scrap that noise left, and
-// too little to tell how it stands.
-constexpr std::uint64_t least_voxels = 27;
-
 // Primitives that are solids, by their voxels.
 std::vector<bool> solids(const vdb::VoxelScene& scene, std::size_t primitives) {
     std::vector<std::uint64_t> voxels(primitives, 0);

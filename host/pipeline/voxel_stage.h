@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "device/device.h"
@@ -17,6 +18,10 @@ struct VoxelStage {
     std::shared_ptr<vdb::VoxelScene> scene;
     physics::SolidCells cells;
 };
+
+// A solid has at least the volume of a cube of three voxels; less is a scrap that noise left, and
+// too little to tell how it stands.
+constexpr std::uint64_t least_voxels = 27;
 
 // Edge of a solid voxel for a scan of this resolution: about two cells, rounded to a handy value.
 double voxel_for_cell(double cell_m);

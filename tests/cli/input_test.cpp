@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 #include "scenes/depth_camera.h"
@@ -113,18 +115,64 @@ TEST_F(Input, no_finite_point) {
     refused("inf.pcd", {"finite"});
 }
 
+// Said before the first stage: a path may be mistyped.
+TEST_F(Input, missing_is_told_before_the_parse_begins) {
+    expect_failure(1, {"parse", "missing.ply", "-o", "out"}, {"missing.ply", "No such file"});
+    expect_failure(1, {"parse", "folder/", "-o", "out"}, {"folder/", "No such file"});
+}
+
 TEST_F(Input, hardly_any_point) {
     put("one.xyz", "1 2 3\n");
-    parsed("one.xyz");
+    refused("one.xyz", {"1 point was found", "27"});
     put("two.xyz", "1 2 3\n1.5 2 3\n");
-    parsed("two.xyz");
+    refused("two.xyz", {"2 points were found", "27"});
     put("far.xyz", "0 0 0\n100000 0 0\n");
-    parsed("far.xyz");
+    refused("far.xyz", {"2 points"});
 }
 
 TEST_F(Input, the_same_point_over_and_over) {
     put("same.ply", ply_header("5000") + floats(15000, 0.7f));
-    parsed("same.ply");
+    refused("same.ply", {"5000 points", "no surface", "27 voxels"});
+}
+
+// A box of 4 x 3 x 2.5 m in steps of 5 cm: floor and walls, in the unit given.
+std::string room_in(double unit_m) {
+    std::string text;
+    const auto point = [&](int i, int j, int k) {
+        for (const int at : {i, j, k}) text += std::to_string(0.04 * at / unit_m) + " ";
+        text += "\n";
+    };
+    for (int i = 0; i <= 80; ++i) {
+        for (int j = 0; j <= 60; ++j) {
+            point(i, j, 0);
+            if (i % 80 != 0 && j % 60 != 0) continue;
+            for (int k = 1; k <= 50; ++k) point(i, j, k);
+        }
+    }
+    return text;
+}
+
+TEST_F(Input, in_another_unit_than_metres) {
+    const std::vector<std::pair<std::string, double>> units{
+        {"mm", 0.001}, {"cm", 0.01}, {"in", 0.0254}};
+    for (const auto& [unit, unit_m] : units) {
+        put("room.xyz", room_in(unit_m));
+        refused("room.xyz", {"extend over", "apart", "--unit " + unit});
+        std::filesystem::remove_all(in("out"));
+        EXPECT_EQ(run({"parse", "room.xyz", "-o", "out", "--quiet", "--unit", unit}).code, 0);
+        // Metres again.
+        const auto scene = nlohmann::json::parse(bytes_of_file(in("out/scene.json")));
+        ASSERT_FALSE(scene.at("primitives").empty());
+        double farthest = 0;
+        for (const auto& p : scene.at("primitives"))
+            farthest = std::max(farthest, p.at("center_of_mass_m").at(0).get<double>());
+        EXPECT_GT(farthest, 1.9);
+        EXPECT_LT(farthest, 4.1);
+        std::filesystem::remove_all(in("out"));
+    }
+    put_sequence("frames", 2);
+    expect_failure(2, {"parse", "frames", "-o", "out", "--quiet", "--unit", "mm"},
+                   {"--unit", "depth_scale"});
 }
 
 TEST_F(Input, one_plane_only) {

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <regex>
+#include <sstream>
+
 #include "cli/program.h"
 #include "scenes/depth_camera.h"
 #include "scenes/furnished_room.h"
@@ -39,8 +42,14 @@ TEST_F(Output, stages_then_the_summary_unless_quiet) {
     put_plane("plane.xyz");
     const Finished loud = run({"parse", "plane.xyz", "-o", "out"});
     EXPECT_EQ(loud.code, 0) << loud.err;
-    EXPECT_TRUE(loud.err.starts_with("ingest\n")) << loud.err;
-    EXPECT_TRUE(loud.err.ends_with("output\n")) << loud.err;
+    // What each stage does, and its seconds.
+    EXPECT_TRUE(loud.err.starts_with("ingest: reading the scan ... ")) << loud.err;
+    EXPECT_NE(loud.err.find("\noutput: writing the files ... "), std::string::npos) << loud.err;
+    std::istringstream lines(loud.err);
+    for (std::string line; std::getline(lines, line);) {
+        EXPECT_TRUE(std::regex_match(line, std::regex("[a-z ]+: [a-z' ]+ \\.\\.\\. [0-9.]+ s")))
+            << line;
+    }
     EXPECT_EQ(loud.err.find('\r'), std::string::npos) << "that is for terminals";
     EXPECT_NE(loud.out.find("10000 points"), std::string::npos) << loud.out;
     EXPECT_NE(loud.out.find("out/report.html"), std::string::npos) << loud.out;
@@ -81,7 +90,7 @@ TEST_P(Interrupted, leaves_nothing) {
     std::chrono::steady_clock::time_point sent;
     const Finished finished =
         run({"parse", "scan", "-o", "made/for/out", "--backend", "native"},
-            [&, name = std::string(stage) + "\n", number = expected](const std::string& err) {
+            [&, name = std::string(stage) + ": ", number = expected](const std::string& err) {
                 if (err.find(name) == std::string::npos) return 0;
                 sent = std::chrono::steady_clock::now();
                 return number;
@@ -89,7 +98,7 @@ TEST_P(Interrupted, leaves_nothing) {
     EXPECT_EQ(finished.code, 128 + expected) << finished.err;
     EXPECT_TRUE(finished.err.ends_with("topple: interrupted; nothing was written\n"))
         << finished.err;
-    EXPECT_EQ(finished.err.find("output\n"), std::string::npos) << finished.err;
+    EXPECT_EQ(finished.err.find("output: "), std::string::npos) << finished.err;
     EXPECT_EQ(everything(), before);
     EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(30));
 }

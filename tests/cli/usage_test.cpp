@@ -17,6 +17,18 @@ TEST_F(Usage, says_what_is_missing_or_unknown) {
     expect_failure(2, {"parse", "plane.xyz", "-o"}, {"--output"});
 }
 
+// What follows an unknown option is taken for an argument; the option is what is wrong.
+TEST_F(Usage, names_the_unknown_option_and_the_nearest_one) {
+    put_plane("plane.xyz");
+    expect_failure(2, {"parse", "--wnd", "3", "plane.xyz"}, {"--wnd", "did you mean --wind?"});
+    expect_failure(2, {"parse", "plane.xyz", "--densty=3"}, {"--densty;", "--density?"});
+    expect_failure(2, {"--verison"}, {"--verison", "--version?"});
+    // Nothing is near this one.
+    const Finished far = run({"parse", "plane.xyz", "--kaleidoscope"});
+    EXPECT_EQ(far.err.find("did you mean"), std::string::npos) << far.err;
+    EXPECT_NE(far.err.find("--kaleidoscope"), std::string::npos) << far.err;
+}
+
 // Not quiet: the name of a stage on stderr would show that the parse had begun.
 TEST_F(Usage, refuses_values_before_it_parses) {
     put_plane("plane.xyz");
@@ -34,6 +46,7 @@ TEST_F(Usage, refuses_values_before_it_parses) {
         {"--friction", "0"},      {"--max-memory", "much"},
         {"--max-memory", "-1G"},  {"--max-memory", "nan"},
         {"--max-memory", "5 GB"}, {"--max-memory", "1e30T"},
+        {"--unit", "yard"},       {"--unit", "0.001"},
         {"--seed", "-1"},         {"--seed", "99999999999999999999"},
         {"--threads", "-1"},      {"--threads", "many"}};
     for (const auto& option : bad) {
@@ -56,10 +69,10 @@ TEST_F(Usage, help_names_every_command_and_option) {
         EXPECT_EQ(help.code, 0);
         EXPECT_EQ(help.err, "");
         for (const char* option :
-             {"INPUT",        "--output", "--backend", "--voxel",    "--up",   "--disturbance",
-              "--wind",       "--pga",    "--density", "--friction", "--seed", "--threads",
-              "--max-memory", "--quiet",  "native",    "opencl",     "vulkan", "human",
-              "earthquake",   ".ply",     ".pcd",      ".xyz"}) {
+             {"INPUT",     "--output",     "--backend", "--voxel",   "--up",       "--disturbance",
+              "--unit",    "--wind",       "--pga",     "--density", "--friction", "--seed",
+              "--threads", "--max-memory", "--quiet",   "native",    "opencl",     "vulkan",
+              "human",     "earthquake",   ".ply",      ".pcd",      ".xyz"}) {
             EXPECT_NE(help.out.find(option), std::string::npos) << option << " in\n" << help.out;
         }
         if (arguments.size() > 1) continue;

@@ -3,8 +3,11 @@
 #include <exception>
 #include <map>
 #include <new>
+#include <span>
+#include <string>
 
 #include "cli/commands.h"
+#include "cli/unknown_option.h"
 #include "topple/error.h"
 #include "topple/version.h"
 
@@ -53,7 +56,12 @@ int run(int argc, char** argv) {
     } catch (const CLI::Success& done) {
         return app.exit(done);
     } catch (const CLI::ParseError& error) {
-        std::fprintf(stderr, "topple: %s (see topple --help)\n", error.what());
+        const auto subcommands = app.get_subcommands();
+        const std::string unknown = topple::cli::unknown_option(
+            subcommands.empty() ? app : *subcommands.front(),
+            std::span<const char* const>(argv, static_cast<std::size_t>(argc)));
+        std::fprintf(stderr, "topple: %s (see topple --help)\n",
+                     unknown.empty() ? error.what() : unknown.c_str());
         return 2;
     }
     return commands.at(app.get_subcommands().front())();

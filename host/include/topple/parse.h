@@ -25,6 +25,7 @@ struct ParseOptions {
     // Null: what open_device("auto") gives, opened for this parse alone.
     std::shared_ptr<device::Device> device;
     double voxel_m = 0;      // edge of a solid voxel, metres; 0: found from the data
+    double unit_m = 1;       // metres in the unit of a cloud file's coordinates: 0.001 for mm
     std::optional<Vec3> up;  // up in the input's frame (from an IMU, say); else found
     std::vector<std::string> disturbances{"human", "wind", "earthquake"};
     std::uint64_t seed = 1;

@@ -240,11 +240,31 @@ TEST_F(Ply, notes_what_looks_like_millimetres) {
         header("ascii", "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n");
     const auto millimetres = read_cloud(write("a.ply", text + "0 0 0\n4000 2500 3000\n"));
     ASSERT_EQ(millimetres.notes.size(), 1u);
-    EXPECT_NE(millimetres.notes[0].find("millimetre"), std::string::npos);
+    EXPECT_NE(millimetres.notes[0].find("4000 m"), std::string::npos);
+    EXPECT_NE(millimetres.notes[0].find("--unit mm"), std::string::npos);
     const auto shifted = read_cloud(write("a.ply", text + "500000 0 0\n500004 2 3\n"));
     ASSERT_EQ(shifted.notes.size(), 1u);
     EXPECT_NE(shifted.notes[0].find("offset"), std::string::npos);
     EXPECT_TRUE(read_cloud(write("a.ply", text + "0 0 0\n4 2.5 3\n")).notes.empty());
+}
+
+TEST_F(Ply, takes_the_unit_that_is_given) {
+    const auto text =
+        header("ascii", "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n");
+    const auto cloud = read_cloud(write("a.ply", text + "0 0 0\n4000 2500 3000\n"), 0.001);
+    EXPECT_TRUE(cloud.notes.empty());
+    EXPECT_FLOAT_EQ(cloud.x[1], 4);
+    EXPECT_FLOAT_EQ(cloud.y[1], 2.5);
+    EXPECT_FLOAT_EQ(cloud.z[1], 3);
+}
+
+TEST_F(Ply, points_without_a_header_are_told_from_damage) {
+    for (const char* name : {"a.ply", "a.pcd"}) {
+        expect_input_error([&] { read_cloud(write(name, "\n0.5 1 2\n3 4 5\n")); },
+                           {name, "no header", ".xyz"});
+    }
+    expect_input_error([&] { read_cloud(write("a.ply", "1 2 three\n")); }, {"damaged"});
+    expect_input_error([&] { read_cloud(write("a.ply", "1 2\n")); }, {"damaged"});
 }
 
 TEST_F(Ply, files_that_can_not_be_read) {

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "cli/progress.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <utility>
+
+namespace topple::cli {
+namespace {
+
+// What a stage does, short enough that the line fits on a terminal of 80 columns.
+const char* what_it_does(const std::string& stage) {
+    static constexpr std::array<std::pair<const char*, const char*>, 19> stages{
+        {{"ingest", "reading the scan"},
+         {"normals", "fitting surface elements"},
+         {"frame", "finding up and the walls' directions"},
+         {"splitting", "growing smooth surfaces"},
+         {"merging", "joining surfaces to parts"},
+         {"voxels", "turning surfaces into voxels"},
+         {"carving", "looking through empty space"},
+         {"filling", "completing what is hidden"},
+         {"bodies", "weighing the parts"},
+         {"contacts", "finding what touches"},
+         {"supports", "finding what carries what"},
+         {"grouping", "sampling which parts are one object"},
+         {"barriers", "what it takes to upset each object"},
+         {"field human", "walking people through the room"},
+         {"field wind", "blowing from all sides"},
+         {"field earthquake", "shaking the ground"},
+         {"risk", "weighing disturbances by what they release"},
+         {"assembly", "collecting the results"},
+         {"output", "writing the files"}}};
+    for (const auto& [name, what] : stages) {
+        if (stage == name) return what;
+    }
+    return "";
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+Progress::Progress(bool quiet)
+    : quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO) != 0),
+      start_(Clock::now()),
+      stage_start_(start_) {}
+
+void Progress::operator()(const std::string& stage, double done) {
+    if (quiet_) return;
+    if (stage != stage_) {
+        if (!terminal_) finish();
+        stage_ = stage;
+        stage_start_ = Clock::now();
+        if (!terminal_) std::fprintf(stderr, "%s: %s ...", stage.c_str(), what_it_does(stage));
+    }
+    if (terminal_) {
+        std::fprintf(stderr, "\r\033[K%4.0f s  %s: %s", seconds_since(start_), stage.c_str(),
+                     what_it_does(stage));
+        if (done > 0) std::fprintf(stderr, " %.0f %%", 100 * done);
+    }
+    std::fflush(stderr);
+}
+
+void Progress::finish() {
+    if (stage_.empty()) return;
+    if (terminal_) {
+        std::fprintf(stderr, "\r\033[K");
+    } else {
+        std::fprintf(stderr, " %.2f s\n", seconds_since(stage_start_));
+    }
+    stage_.clear();
+}
+
+}  // namespace topple::cli
