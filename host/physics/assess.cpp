@@ -3,9 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
 
+#include "physics/hull_ways.h"
 #include "physics/pose_passes.h"
 #include "physics/tipping.h"
+#include "topple/error.h"
 
 namespace topple::physics {
 namespace {
@@ -39,9 +44,9 @@ std::uint32_t nearest(const SphereMesh& mesh, std::uint32_t v, const Vec3& d) {
     }
 }
 
-// A pass as the mesh has it, and made exact.
+// A pass at the level at which the landscape has it, and made exact.
 struct Opening {
-    double mesh_height_m = 0;
+    double level_m = 0;
     PosePass pass;
 };
 
@@ -60,48 +65,110 @@ std::vector<Vec3> vertices_of(const SupportTable::Rows& rows, const Candidate& c
     return all;
 }
 
+// How far a candidate may rock by what is not known of its contacts, if its footing holds it: two
+// voxels of height over the distance at which it does.
+std::optional<double> dent_angle(const SupportTable::Rows& rows, const Candidate& candidate) {
+    if (candidate.support_polygon.empty() || !(rows.resolution_m > 0)) return std::nullopt;
+    const Vec3& c = candidate.body.center;
+    const double margin = footing(candidate.support_polygon, c[0], c[1]).margin_m;
+    if (!(margin > 0)) return std::nullopt;
+    return std::min(std::atan(2 * rows.resolution_m / std::max(margin, rows.resolution_m)), 0.5);
+}
+bool is_dent(const SupportTable::Rows& rows, double angle, const Vec3& bottom, double depth) {
+    return bottom[2] >= std::cos(angle) && depth <= 2 * rows.resolution_m;
+}
+
 // The passes that matter: those that open something deeper than lower ones do, and the lowest.
-std::vector<Opening> openings(const SupportTable::Rows& rows, const Candidate& candidate,
-                              const Flooded& f) {
-    const double base = f.height[f.start];
-    std::vector<Vec3> vertices;
+template <typename Refine>
+std::vector<Opening> openings(const std::vector<PosePass>& passes, const Refine& refine) {
     std::vector<Opening> result;
     double deepest = 0;
-    for (const PosePass& found : find_passes(f)) {
+    for (const PosePass& found : passes) {
         if (!result.empty() && found.deepest_m >= deepest) continue;
         deepest = found.deepest_m;
-        if (vertices.empty()) vertices = vertices_of(rows, candidate);
-        Opening opening{found.height_m, found};
-        if (found.height_m > base) {
-            if (const auto exact = refine_pass(found, vertices, f.spacing)) opening.pass = *exact;
-            opening.pass.height_m = std::max(opening.pass.height_m, base);
-        }
-        opening.pass.deepest_m = refine_minimum(found.deepest, vertices, f.spacing);
-        result.push_back(opening);
+        result.push_back({found.height_m, refine(found)});
     }
     return result;
 }
 
-bool is_deeper(const Flooded& f, double height) {
-    return height < f.height[f.start] - f.resolution_m / 2;
+// What the mesh found, made exact by the vertices nearby.
+PosePass refined(const PosePass& found, const Flooded& f, std::span<const Vec3> vertices) {
+    const double base = f.height[f.start];
+    PosePass pass = found;
+    if (found.height_m > base) {
+        if (const auto exact = refine_pass(found, vertices, f.spacing)) pass = *exact;
+        pass.height_m = std::max(pass.height_m, base);
+    }
+    pass.deepest_m = refine_minimum(found.deepest, vertices, f.spacing);
+    return pass;
+}
+
+// The landscape's passes, and the level of a way from the start to a direction that lies behind one
+// of them.
+struct Surroundings {
+    double base_m = 0;  // the start's height
+    std::vector<Opening> passes;
+    std::function<std::optional<double>(const Vec3& up)> behind;
+    bool rolls = false;
+};
+
+Surroundings sampled_surroundings(const Flooded& f, std::span<const Vec3> vertices) {
+    return {f.height[f.start],
+            openings(find_passes(f), [&](const PosePass& p) { return refined(p, f, vertices); }),
+            [&f, v = 0U](const Vec3& up) mutable -> std::optional<double> {
+                v = nearest(*f.mesh, v, up);
+                if (double{f.level[v]} - f.height[v] <= f.noise_m) return std::nullopt;
+                return f.level[v];
+            },
+            rolls(f)};
+}
+
+// Nothing where the vertices have no hull about the centre of mass, nor where that hull would fall
+// from a footing that holds the candidate: its contacts are not known well enough to go by them.
+std::optional<Surroundings> exact_surroundings(const SupportTable::Rows& rows,
+                                               const Candidate& candidate,
+                                               std::span<const Vec3> vertices, double noise) {
+    std::shared_ptr<HullWays> ways;
+    try {
+        ways = std::make_shared<HullWays>(vertices, Vec3{0, 0, 1});
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::input) throw;
+        return std::nullopt;
+    }
+    if (const std::optional<double> angle = dent_angle(rows, candidate)) {
+        const double depth = ways->start_height() - ways->rest_height();
+        if (!is_dent(rows, *angle, ways->rest(), depth)) return std::nullopt;
+        ways->settle();
+    }
+    return Surroundings{ways->start_height(),
+                        openings(ways->passes(noise), [](const PosePass& p) { return p; }),
+                        [ways, noise](const Vec3& up) -> std::optional<double> {
+                            const double level = ways->level(up);
+                            if (level - ways->height(up) <= noise) return std::nullopt;
+                            return level;
+                        },
+                        ways->rolls(noise)};
+}
+
+bool is_deeper(const Flooded& f, double base, double height) {
+    return height < base - f.resolution_m / 2;
 }
 
 // The deepest height that opens to a body leaning towards `way` (unit, horizontal): behind the
 // first pass of the hull that this turn meets. The start's height if it meets none within 120
 // degrees.
-double deepest_towards(const Flooded& f, std::span<const Opening> passes, const Vec3& way) {
-    std::uint32_t v = 0;
+double deepest_towards(const Flooded& f, const Surroundings& around, const Vec3& way) {
     const double step = f.spacing / 2;
     for (double angle = 0; angle < 2.1; angle += step) {
         const double s = std::sin(angle), c = std::cos(angle);
-        v = nearest(*f.mesh, v, {-s * way[0], -s * way[1], c});
-        if (double{f.level[v]} - f.height[v] <= f.noise_m) continue;
-        const auto after = std::upper_bound(
-            passes.begin(), passes.end(), double{f.level[v]},
-            [](double level, const Opening& p) { return level < p.mesh_height_m; });
-        if (after != passes.begin()) return std::prev(after)->pass.deepest_m;
+        const auto level = around.behind({-s * way[0], -s * way[1], c});
+        if (!level) continue;
+        const auto after =
+            std::upper_bound(around.passes.begin(), around.passes.end(), *level,
+                             [](double height, const Opening& p) { return height < p.level_m; });
+        if (after != around.passes.begin()) return std::prev(after)->pass.deepest_m;
     }
-    return f.height[f.start];
+    return around.base_m;
 }
 
 // A pass that is the scanned pose itself leans nowhere: what matters is where it leads. Upside down
@@ -114,21 +181,21 @@ Vec3 way_over(const PosePass& pass) {
     return {1, 0, 0};
 }
 
-void add_passes(const Flooded& f, std::span<const Opening> passes, std::vector<Way>& ways) {
-    const double base = f.height[f.start];
-    for (const auto& [mesh_height, pass] : passes) {
+void add_passes(const Flooded& f, const Surroundings& around, std::vector<Way>& ways) {
+    const double base = around.base_m;
+    for (const auto& [level, pass] : around.passes) {
         ways.push_back({pass.height_m - base,
-                        is_deeper(f, pass.deepest_m) ? pass.height_m - pass.deepest_m : 0,
+                        is_deeper(f, base, pass.deepest_m) ? pass.height_m - pass.deepest_m : 0,
                         way_over(pass)});
     }
 }
 
 void add_footing(const Candidate& candidate, const Footing& on, const Flooded& f,
-                 std::span<const Opening> passes, std::vector<Way>& ways) {
-    const double base = f.height[f.start];
+                 const Surroundings& around, std::vector<Way>& ways) {
+    const double base = around.base_m;
     const auto add = [&](double climb, const Vec3& way) {
-        const double deepest = deepest_towards(f, passes, way);
-        ways.push_back({climb, is_deeper(f, deepest) ? climb + base - deepest : 0, way});
+        const double deepest = deepest_towards(f, around, way);
+        ways.push_back({climb, is_deeper(f, base, deepest) ? climb + base - deepest : 0, way});
     };
     if (on.edges.empty()) return add(0, on.away);
     const double h = candidate.body.center[2] - candidate.support_height_m;
@@ -138,12 +205,12 @@ void add_footing(const Candidate& candidate, const Footing& on, const Flooded& f
 }
 
 // Held by nothing: it falls as its hull lets it.
-void add_fall(const Flooded& f, std::span<const Opening> passes, std::vector<Way>& ways) {
-    const double base = f.height[f.start];
+void add_fall(const Flooded& f, const Surroundings& around, std::vector<Way>& ways) {
+    const double base = around.base_m;
     Way fall;
-    for (const auto& [mesh_height, pass] : passes) {
+    for (const auto& [level, pass] : around.passes) {
         if (pass.height_m > base + f.resolution_m) break;
-        if (is_deeper(f, pass.deepest_m)) {
+        if (is_deeper(f, base, pass.deepest_m)) {
             fall.release_m = base - pass.deepest_m;
             fall.direction = way_over(pass);
         }
@@ -185,13 +252,8 @@ std::vector<InstabilityStep> curve_of(std::vector<Way> ways, double weight_N) {
 
 std::uint32_t start_direction(const SupportTable::Rows& rows, const Candidate& candidate,
                               std::span<const float> height) {
-    if (candidate.support_polygon.empty() || !(rows.resolution_m > 0)) return 0;
-    const Vec3& c = candidate.body.center;
-    const double margin = footing(candidate.support_polygon, c[0], c[1]).margin_m;
-    if (!(margin > 0)) return 0;
-    // Two voxels of height over the distance at which the footing holds.
-    const double angle =
-        std::min(std::atan(2 * rows.resolution_m / std::max(margin, rows.resolution_m)), 0.5);
+    const std::optional<double> angle = dent_angle(rows, candidate);
+    if (!angle) return 0;
     std::uint32_t v = 0;
     for (bool lower = true; lower;) {
         std::uint32_t best = v;
@@ -202,12 +264,12 @@ std::uint32_t start_direction(const SupportTable::Rows& rows, const Candidate& c
         lower = best != v;
         v = best;
     }
-    return rows.mesh.z[v] >= std::cos(angle) && height[0] - height[v] <= 2 * rows.resolution_m ? v
-                                                                                               : 0;
+    return is_dent(rows, *angle, direction_of(rows.mesh, v), height[0] - height[v]) ? v : 0;
 }
 
 Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
-                 std::span<const float> height, std::span<const float> level, std::uint32_t start) {
+                 std::span<const float> height, std::span<const float> level, std::uint32_t start,
+                 Passes passes) {
     const double radius = *std::max_element(height.begin(), height.end());
     const double weight_N = candidate.body.mass_kg * gravity;
     // Heights are known to a voxel, and to the rounding of their float sums.
@@ -219,21 +281,25 @@ Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
                     rows.spacing,
                     resolution,
                     resolution + rows.spacing / 2 * radius};
-    const std::vector<Opening> passes = openings(rows, candidate, f);
+    const std::vector<Vec3> vertices = vertices_of(rows, candidate);
+    std::optional<Surroundings> found;
+    if (passes == Passes::exact)
+        found = exact_surroundings(rows, candidate, vertices, rows.resolution_m + 1e-7 * radius);
+    const Surroundings around = found ? std::move(*found) : sampled_surroundings(f, vertices);
 
     Stability result;
     std::vector<Way> ways;
     if (candidate.support_polygon.empty()) {
         result.margin_m = -radius;
-        add_fall(f, passes, ways);
+        add_fall(f, around, ways);
     } else {
         const Footing on =
             footing(candidate.support_polygon, candidate.body.center[0], candidate.body.center[1]);
         result.margin_m = on.margin_m;
-        add_footing(candidate, on, f, passes, ways);
+        add_footing(candidate, on, f, around, ways);
     }
-    add_passes(f, passes, ways);
-    if (rolls(f)) ways.push_back({});
+    add_passes(f, around, ways);
+    if (around.rolls) ways.push_back({});
 
     const auto least = std::min_element(
         ways.begin(), ways.end(), [](const Way& a, const Way& b) { return a.climb_m < b.climb_m; });

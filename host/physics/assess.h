@@ -17,6 +17,7 @@ std::uint32_t start_direction(const SupportTable::Rows& rows, const Candidate& c
 
 // height, level: U and L over M g, metres, one value per direction of the mesh.
 Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
-                 std::span<const float> height, std::span<const float> level, std::uint32_t start);
+                 std::span<const float> height, std::span<const float> level, std::uint32_t start,
+                 Passes passes);
 
 }  // namespace topple::physics

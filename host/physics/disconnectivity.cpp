@@ -108,16 +108,22 @@ MergeTree disconnectivity_graph(std::span<const double> energy,
     return without_shallow(full_tree(energy, of), plateau_tolerance);
 }
 
-double MergeTree::minimax(std::span<const float> energy, std::uint32_t a, std::uint32_t b) const {
-    double level = std::max(energy[a], energy[b]);
-    std::int32_t p = basin_of[a], q = basin_of[b];
+std::int32_t MergeTree::last_join(std::uint32_t a, std::uint32_t b) const {
+    std::int32_t p = basin_of[a], q = basin_of[b], last = -1;
+    const auto pass = [&](std::int32_t n) { return basins[static_cast<std::size_t>(n)].pass; };
     // The later basin is never an ancestor of the earlier: climb from it.
     while (p != q) {
         std::int32_t& later = p > q ? p : q;
-        level = std::max(level, basins[static_cast<std::size_t>(later)].pass);
+        if (last < 0 || pass(later) > pass(last)) last = later;
         later = basins[static_cast<std::size_t>(later)].parent;
     }
-    return level;
+    return last;
+}
+
+double MergeTree::minimax(std::span<const float> energy, std::uint32_t a, std::uint32_t b) const {
+    const double level = std::max(energy[a], energy[b]);
+    const std::int32_t last = last_join(a, b);
+    return last < 0 ? level : std::max(level, basins[static_cast<std::size_t>(last)].pass);
 }
 
 }  // namespace topple::physics

@@ -110,7 +110,8 @@ std::vector<float> flood(device::Device& device, const SupportTable::Rows& rows,
 }
 
 void evaluate_batch(device::Device& device, const SupportTable::Rows& rows,
-                    std::span<const Candidate> candidates, std::vector<Stability>& results) {
+                    std::span<const Candidate> candidates, Passes passes,
+                    std::vector<Stability>& results) {
     const Batch batch = gather(rows, candidates);
     const device::Buffer<float> energy = landscapes(device, rows, batch);
     const std::vector<float> heights = energy.download();
@@ -126,14 +127,14 @@ void evaluate_batch(device::Device& device, const SupportTable::Rows& rows,
         const bool empty = batch.first[n] == batch.first[n + 1];
         results.push_back(
             empty ? Stability{}
-                  : assess(rows, candidates[n], row(heights, n), row(levels, n), start[n]));
+                  : assess(rows, candidates[n], row(heights, n), row(levels, n), start[n], passes));
     }
 }
 
 }  // namespace
 
 std::vector<Stability> evaluate(device::Device& device, const SupportTable& table,
-                                std::span<const Candidate> candidates) {
+                                std::span<const Candidate> candidates, Passes passes) {
     check(table, candidates);
     const SupportTable::Rows& rows = table.rows();
     const std::size_t most =
@@ -146,7 +147,7 @@ std::vector<Stability> evaluate(device::Device& device, const SupportTable& tabl
                (to == from || members + candidates[to].primitives.size() <= batch_members)) {
             members += candidates[to++].primitives.size();
         }
-        evaluate_batch(device, rows, candidates.subspan(from, to - from), results);
+        evaluate_batch(device, rows, candidates.subspan(from, to - from), passes, results);
         from = to;
     }
     return results;

@@ -92,6 +92,29 @@ Place leave_corner(const HullPolytope& hull, const Place& place) {
     return {e.face[to_first() ? 0 : 1], none, {}};
 }
 
+// Rounding could send a way round in circles where faces are almost one plane: there, the lowest
+// seen is as good.
+std::uint32_t follow(const HullPolytope& hull, Place place) {
+    std::uint32_t lowest = 0;
+    double height = infinity;
+    for (std::size_t step = 0; step < hull.face.size() + hull.corner.size(); ++step) {
+        if (place.face != none) {
+            const HullPolytope::Face& f = hull.face[place.face];
+            if (f.minimum) return place.face;
+            if (f.height < height) {
+                height = f.height;
+                lowest = place.face;
+            }
+            place = leave_face(hull, place.face);
+        } else if (place.corner != none) {
+            place = leave_corner(hull, place);
+        } else {
+            break;
+        }
+    }
+    return lowest;
+}
+
 double signed_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
     return 2 * std::atan2(dot(a, cross(b, c)), 1 + dot(a, b) + dot(b, c) + dot(c, a));
 }
@@ -117,23 +140,14 @@ std::vector<Vec3> way_up(const HullPolytope& hull, const Edge& pass, std::size_t
 }  // namespace
 
 std::uint32_t descend(const HullPolytope& hull, std::uint32_t face) {
-    Place place{face, none, {}};
-    // Rounding could send a way round in circles where faces are almost one plane: there, the
-    // lowest seen is as good.
-    std::uint32_t lowest = face;
-    for (std::size_t step = 0; step < hull.face.size() + hull.corner.size(); ++step) {
-        if (place.face != none) {
-            const HullPolytope::Face& f = hull.face[place.face];
-            if (f.minimum) return place.face;
-            if (f.height < hull.face[lowest].height) lowest = place.face;
-            place = leave_face(hull, place.face);
-        } else if (place.corner != none) {
-            place = leave_corner(hull, place);
-        } else {
-            break;
-        }
-    }
-    return lowest;
+    return follow(hull, {face, none, {}});
+}
+
+std::uint32_t descend(const HullPolytope& hull, const Vec3& down) {
+    const auto lowest =
+        std::max_element(hull.corner.begin(), hull.corner.end(),
+                         [&](const Vec3& a, const Vec3& b) { return dot(a, down) < dot(b, down); });
+    return follow(hull, {none, static_cast<std::uint32_t>(lowest - hull.corner.begin()), down});
 }
 
 std::vector<double> basin_angles(const HullPolytope& hull) {

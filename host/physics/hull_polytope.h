@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "physics/landscape.h"
 #include "physics/vectors.h"
 
 // The hull behind a HullLandscape, and the steepest ways over it. For this folder.
@@ -38,6 +40,8 @@ struct HullPolytope {
         bool pass() const { return turns() && held(); }
         double highest = 0;  // of h on the arc
     };
+    double radius = 0;                               // metres; all other lengths are in its units
+    std::vector<Vec3> points;                        // as given, relative to the centre of mass
     std::vector<Vec3> corner;                        // relative to the centre of mass
     std::vector<std::uint32_t> point;                // number of the point of each corner
     std::vector<std::vector<std::uint32_t>> beside;  // edges at each corner
@@ -45,8 +49,19 @@ struct HullPolytope {
     std::vector<Edge> edge;
 };
 
+inline constexpr double hull_flat = 1e-9;  // of the extent: what spans less spans nothing
+
+// Throws Error(input) as hull_landscape does.
+HullPolytope hull_polytope(std::span<const Vec3> points, const Vec3& center_of_mass);
+
+// Of the landscape. Nodes are the faces, then the edges; resolution is in units of the radius.
+MergeTree merge_tree(const HullPolytope& hull, double resolution);
+
 // The face that is a minimum and at the end of the steepest way down from the given one.
 std::uint32_t descend(const HullPolytope& hull, std::uint32_t face);
+
+// The same from any direction, as a unit vector that points down.
+std::uint32_t descend(const HullPolytope& hull, const Vec3& down);
 
 // Solid angle of the basin of steepest descent of each minimum, by face; 0 for other faces. The
 // borders of basins are the steepest ways up from the passes, which are arcs of great circles; the

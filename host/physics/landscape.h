@@ -48,9 +48,9 @@ class SupportTable {
 };
 
 // What a group of primitives can do when pushed. Heights are known to one voxel, so a descent
-// behind a pass counts from M g (voxel + what the mesh misses: half its spacing times the body's
-// radius), and a minimum is deeper than the start from M g voxel / 2. A body that can turn by 90
-// degrees within the former (a ball, a lying cylinder) has barrier 0.
+// behind a pass counts from M g (voxel + what the mesh misses, if passes are sampled: half its
+// spacing times the body's radius), and a minimum is deeper than the start from M g voxel / 2. A
+// body that can turn by 90 degrees within the former (a ball, a lying cylinder) has barrier 0.
 struct Stability {
     // Least energy that takes it out of its basin; 0: it falls or rolls by itself.
     double barrier_J = 0;
@@ -73,17 +73,28 @@ struct Candidate {
     double support_height_m = 0;
 };
 
+// Where the passes of the hull's landscape come from.
+enum class Passes {
+    sampled,  // the mesh, made exact by a search of the hull's edges nearby: for many candidates
+    // The convex hull of the members' vertices (hull_landscape.h): no descent is too small for the
+    // mesh, so that only the voxel limits what counts. Half a millisecond for each candidate.
+    // Those stay sampled whose vertices span no volume about the centre of mass, and those that
+    // their footing holds but, by a contact that voxels misplace, their hull would not.
+    exact,
+};
+
 // Pose landscapes and barriers of many candidates in one batch (kernels group_landscape,
 // barrier_flood). Order as given; deterministic. The barrier is the least of
 //   - M g (sqrt(h^2 + m^2) - h) over the edges of the support polygon, m the distance of the centre
 //   of
 //     mass to the edge's line, h its height above the support (paper-exact for rigid tipping), and
-//   - the lowest pass of the hull's landscape on a plane, made exact on the hull's edges.
+//   - the lowest pass of the hull's landscape on a plane.
 // A centre of mass outside the polygon, or no polygon: barrier 0. The curve counts what the pose
 // releases on a plane at the support's height; a further drop, where the support ends, is the
 // caller's to add. Throws Error(usage) for a primitive that the table doesn't hold.
 std::vector<Stability> evaluate(device::Device& device, const SupportTable& table,
-                                std::span<const Candidate> candidates);
+                                std::span<const Candidate> candidates,
+                                Passes passes = Passes::sampled);
 
 // Merge tree of one landscape (paper, 3.2): the disconnectivity graph, by sorting and union-find.
 struct MergeTree {
@@ -97,6 +108,9 @@ struct MergeTree {
     std::vector<Basin> basins;           // by rising energy
     std::vector<std::int32_t> basin_of;  // basin of each direction: the deepest one that its
                                          // component holds at its own level
+    // The basin that joins another last on the way from a to b: its pass is the highest on the way.
+    // -1 where both are in one basin, and no pass between them.
+    std::int32_t last_join(std::uint32_t a, std::uint32_t b) const;
     // The least, over all paths from a to b, of the highest energy on the way; exact where the tree
     // was built with plateau_tolerance 0.
     double minimax(std::span<const float> energy, std::uint32_t a, std::uint32_t b) const;

@@ -13,10 +13,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-Vec3 direction_of(const SphereMesh& mesh, std::size_t v) {
-    return {mesh.x[v], mesh.y[v], mesh.z[v]};
-}
-
 bool is_minimum(const Flooded& f, std::size_t v) {
     for (std::size_t k = 0; k < 6; ++k) {
         if (f.height[f.mesh->neighbour[v * 6 + k]] < f.height[v]) return false;
@@ -101,42 +97,50 @@ std::optional<PosePass> search(const PosePass& found, std::span<const Vec3> vert
 
 }  // namespace
 
+std::vector<PosePass> passes_to(std::vector<MinimumBehind> behind) {
+    std::stable_sort(
+        behind.begin(), behind.end(),
+        [](const MinimumBehind& a, const MinimumBehind& b) { return a.level_m < b.level_m; });
+    std::vector<PosePass> passes;
+    for (const MinimumBehind& b : behind) {
+        if (passes.empty() || passes.back().height_m != b.level_m) {
+            PosePass pass{b.level_m, b.pass, infinity, {}};
+            if (!passes.empty()) {
+                pass.deepest_m = passes.back().deepest_m;
+                pass.deepest = passes.back().deepest;
+            }
+            passes.push_back(pass);
+        }
+        if (b.height_m < passes.back().deepest_m) {
+            passes.back().deepest_m = b.height_m;
+            passes.back().deepest = b.minimum;
+        }
+    }
+    return passes;
+}
+
 std::vector<PosePass> find_passes(const Flooded& f) {
     // Only minima need a look: from anywhere behind a pass, one can descend to a minimum that is
     // behind the same pass and deeper.
-    std::vector<std::pair<float, std::uint32_t>> behind;
+    std::vector<MinimumBehind> behind;
     for (std::uint32_t v = 0; v < f.height.size(); ++v) {
         if (double{f.level[v]} - f.height[v] > f.noise_m && is_minimum(f, v)) {
-            behind.emplace_back(f.level[v], v);
+            behind.push_back({f.level[v], f.height[v], {}, direction_of(*f.mesh, v)});
         }
     }
-    std::sort(behind.begin(), behind.end());
-    std::vector<PosePass> passes;
-    std::vector<float> levels;
-    for (const auto& [level, v] : behind) {
-        if (levels.empty() || levels.back() != level) {
-            levels.push_back(level);
-            PosePass pass;
-            pass.height_m = level;
-            pass.deepest_m = passes.empty() ? infinity : passes.back().deepest_m;
-            if (!passes.empty()) pass.deepest = passes.back().deepest;
-            passes.push_back(pass);
-        }
-        if (f.height[v] < passes.back().deepest_m) {
-            passes.back().deepest_m = f.height[v];
-            passes.back().deepest = direction_of(*f.mesh, v);
-        }
-    }
+    std::vector<PosePass> passes = passes_to(std::move(behind));
     // A level is the height of the pass's own direction.
-    std::vector<bool> placed(levels.size(), false);
-    for (std::uint32_t v = 0; v < f.height.size() && !levels.empty(); ++v) {
+    std::vector<bool> placed(passes.size(), false);
+    for (std::uint32_t v = 0; v < f.height.size() && !passes.empty(); ++v) {
         if (f.level[v] != f.height[v]) continue;
-        const auto at = std::lower_bound(levels.begin(), levels.end(), f.level[v]);
-        if (at == levels.end() || *at != f.level[v]) continue;
-        const auto n = static_cast<std::size_t>(at - levels.begin());
+        const auto at = std::lower_bound(
+            passes.begin(), passes.end(), double{f.level[v]},
+            [](const PosePass& pass, double level) { return pass.height_m < level; });
+        if (at == passes.end() || at->height_m != double{f.level[v]}) continue;
+        const auto n = static_cast<std::size_t>(at - passes.begin());
         if (placed[n]) continue;
         placed[n] = true;
-        passes[n].direction = direction_of(*f.mesh, v);
+        at->direction = direction_of(*f.mesh, v);
     }
     return passes;
 }

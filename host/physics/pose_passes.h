@@ -12,6 +12,10 @@
 // 2). All heights are U / (M g), metres: the centre of mass above the lowest point.
 namespace topple::physics {
 
+inline Vec3 direction_of(const SphereMesh& mesh, std::size_t v) {
+    return {mesh.x[v], mesh.y[v], mesh.z[v]};
+}
+
 struct Flooded {
     const SphereMesh* mesh = nullptr;
     std::span<const float> height;  // U / (M g) per direction
@@ -33,6 +37,15 @@ struct PosePass {
     double deepest_m = 0;  // lowest height behind this pass or lower ones
     Vec3 deepest{};        // and its direction
 };
+
+// A minimum that lies behind a pass, as seen from the start.
+struct MinimumBehind {
+    double level_m = 0;      // of the pass
+    double height_m = 0;     // of the minimum
+    Vec3 pass{}, minimum{};  // directions
+};
+// One pass for each level, by rising height; of equal minima the first counts.
+std::vector<PosePass> passes_to(std::vector<MinimumBehind> behind);
 
 // All passes by rising height. Two that are within rounding of each other stay two.
 std::vector<PosePass> find_passes(const Flooded& landscape);

@@ -20,6 +20,9 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
 inline Vec3 along(const Vec3& a, double t, const Vec3& b) {
     return {a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]};
 }
+inline Vec3 opposite(const Vec3& a) {
+    return {-a[0], -a[1], -a[2]};
+}
 inline Vec3 unit(const Vec3& a) {
     const double length = std::sqrt(dot(a, a));
     return {a[0] / length, a[1] / length, a[2] / length};

@@ -76,7 +76,7 @@ ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
         std::vector<physics::Candidate> candidates;
         for (const StableObject& o : out.objects) candidates.push_back(o.candidate);
         const std::vector<physics::Stability> tipping =
-            physics::evaluate(device, table, candidates);
+            physics::evaluate(device, table, candidates, physics::Passes::exact);
         std::vector<physics::Body> bodies;
         // What is fixed to the ground does not slide: no mass, nothing to search.
         for (const StableObject& o : out.objects)

@@ -27,10 +27,10 @@ class ClosedForms : public ::testing::Test {
         const Candidate candidate{{0}, mass, std::move(polygon), height};
         return evaluate(*device, table, std::span(&candidate, 1))[0];
     }
-    Stability voxels(const SolidCells& cells, unsigned frequency = 16) {
-        const SupportTable table(*device, cells, 1, geodesic_sphere(frequency));
+    Stability voxels(const SolidCells& cells, Passes passes) {
+        const SupportTable table(*device, cells, 1, geodesic_sphere(16));
         const Candidate candidate = test::standing(*device, cells);
-        return evaluate(*device, table, std::span(&candidate, 1))[0];
+        return evaluate(*device, table, std::span(&candidate, 1), passes)[0];
     }
 };
 
@@ -172,28 +172,32 @@ TEST_F(ClosedForms, BallAndLyingCylinderAreOneBasin) {
 
 TEST_F(ClosedForms, VoxelisedSolids) {
     const double voxel = 0.005;
-    expect_share(voxels(test::voxelise({{0, test::box({0, 0, 0}, {0.3, 0.2, 0.5})}}, {0, 0, 0},
-                                       {0.3, 0.2, 0.5}, voxel))
-                     .barrier_J,
-                 box_short, 0.001);
     const auto cylinder = [](double x, double y, double) { return x * x + y * y < 0.04 * 0.04; };
-    expect_share(
-        voxels(test::voxelise({{0, cylinder}}, {-0.04, -0.04, 0}, {0.04, 0.04, 0.12}, voxel))
-            .barrier_J,
-        0.050148, 0.05);
     const auto cone = [](double x, double y, double z) {
         const double r = 0.1 * (1 - z / 0.3);
         return r > 0 && x * x + y * y < r * r;
     };
-    expect_share(
-        voxels(test::voxelise({{0, cone}}, {-0.1, -0.1, 0}, {0.1, 0.1, 0.3}, voxel)).barrier_J,
-        1.078297, 0.05);
-    const auto hemisphere = [](double x, double y, double z) {
-        return x * x + y * y + z * z < 0.01;
-    };
-    expect_share(voxels(test::voxelise({{0, hemisphere}}, {-0.1, -0.1, 0}, {0.1, 0.1, 0.1}, voxel))
-                     .barrier_J,
-                 0.996348, 0.05);
+    const auto ball = [](double x, double y, double z) { return x * x + y * y + z * z < 0.01; };
+    const SolidCells box = test::voxelise({{0, test::box({0, 0, 0}, {0.3, 0.2, 0.5})}}, {0, 0, 0},
+                                          {0.3, 0.2, 0.5}, voxel),
+                     can = test::voxelise({{0, cylinder}}, {-0.04, -0.04, 0}, {0.04, 0.04, 0.12},
+                                          voxel),
+                     hat = test::voxelise({{0, cone}}, {-0.1, -0.1, 0}, {0.1, 0.1, 0.3}, voxel),
+                     dome = test::voxelise({{0, ball}}, {-0.1, -0.1, 0}, {0.1, 0.1, 0.1}, voxel),
+                     bowl = test::voxelise({{0, ball}}, {-0.1, -0.1, -0.1}, {0.1, 0.1, 0}, voxel);
+    for (const Passes passes : {Passes::sampled, Passes::exact}) {
+        SCOPED_TRACE(passes == Passes::exact ? "exact" : "sampled");
+        expect_share(voxels(box, passes).barrier_J, box_short, 0.001);
+        expect_share(voxels(can, passes).barrier_J, 0.050148, 0.05);
+        expect_share(voxels(hat, passes).barrier_J, 1.078297, 0.05);
+        expect_share(voxels(dome, passes).barrier_J, 0.996348, 0.05);
+    }
+    // On a dome of voxels it stands on the few of the lowest layer: only the hull tells.
+    SupportTable table(*device, bowl, 1, geodesic_sphere(16));
+    Candidate rocking = test::standing(*device, bowl);
+    rocking.support_polygon = everywhere;
+    expect_share(evaluate(*device, table, std::span(&rocking, 1), Passes::exact)[0].barrier_J,
+                 0.636915, 0.05);
 }
 
 TEST_F(ClosedForms, VoxelisedRollersAreFree) {
@@ -204,13 +208,16 @@ TEST_F(ClosedForms, VoxelisedRollersAreFree) {
     const auto roll = [](double, double y, double z) {
         return y * y + (z - 0.04) * (z - 0.04) < 0.0016;
     };
-    const Stability a =
-        voxels(test::voxelise({{0, ball}}, {-0.1, -0.1, 0}, {0.1, 0.1, 0.2}, voxel));
-    const Stability b =
-        voxels(test::voxelise({{0, roll}}, {-0.06, -0.04, 0}, {0.06, 0.04, 0.08}, voxel));
-    for (const Stability& s : {a, b}) {
-        EXPECT_EQ(s.barrier_J, 0);
-        EXPECT_EQ(s.release_J, 0);
+    const SolidCells round = test::voxelise({{0, ball}}, {-0.1, -0.1, 0}, {0.1, 0.1, 0.2}, voxel),
+                     lying =
+                         test::voxelise({{0, roll}}, {-0.06, -0.04, 0}, {0.06, 0.04, 0.08}, voxel);
+    for (const Passes passes : {Passes::sampled, Passes::exact}) {
+        SCOPED_TRACE(passes == Passes::exact ? "exact" : "sampled");
+        for (const SolidCells& cells : {round, lying}) {
+            const Stability s = voxels(cells, passes);
+            EXPECT_EQ(s.barrier_J, 0);
+            EXPECT_EQ(s.release_J, 0);
+        }
     }
 }
 

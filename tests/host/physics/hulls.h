@@ -91,6 +91,15 @@ inline Vec3 random_direction(scenes::Random& random) {
     return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
+// About the origin, by a random rotation.
+inline std::vector<Vec3> turned(std::vector<Vec3> points, scenes::Random& random) {
+    const Vec3 x = random_direction(random),
+               y = physics::unit(physics::cross(x, random_direction(random))),
+               z = physics::cross(x, y);
+    for (Vec3& p : points) p = {physics::dot(x, p), physics::dot(y, p), physics::dot(z, p)};
+    return points;
+}
+
 // Points in a ball of radius 0.1 m, stretched by axes of their own: round for `stretch` 1.
 inline Hull random_hull(std::uint64_t seed, unsigned count, double stretch = 1) {
     scenes::Random random(seed);
