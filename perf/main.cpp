@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "perf/landscape_stages.h"
 #include "perf/measure.h"
 #include "perf/peers.h"
 #include "perf/pipeline_case.h"
@@ -74,12 +75,19 @@ class Stages {
     StageRun first_;
 };
 
+bool landscapes_wanted(const Arguments& a) {
+    const auto names = landscape_names();
+    return a.stage_runs > 0 &&
+           std::any_of(names.begin(), names.end(), [&](const auto& n) { return wanted(a, n); });
+}
+
 std::vector<Result> measure_backend(const std::shared_ptr<device::Device>& device,
                                     const Arguments& a, Stages& stages) {
     std::vector<Result> results;
-    const bool any_kernel =
-        stages.wanted() || std::any_of(all_cases().begin(), all_cases().end(),
-                                       [&](const Case& c) { return wanted(a, c.name); });
+    const bool landscapes = landscapes_wanted(a);
+    const bool any_kernel = stages.wanted() || landscapes ||
+                            std::any_of(all_cases().begin(), all_cases().end(),
+                                        [&](const Case& c) { return wanted(a, c.name); });
     for (const Case& test : all_cases()) {
         // The probes are the yardstick of all others.
         if (!wanted(a, test.name) && !(any_kernel && is_probe(test.name))) continue;
@@ -88,6 +96,11 @@ std::vector<Result> measure_backend(const std::shared_ptr<device::Device>& devic
     if (stages.wanted()) {
         const auto whole = stages.measure(*device);
         results.insert(results.end(), whole.begin(), whole.end());
+    }
+    if (landscapes) {
+        const auto whole = measure_landscapes(*device, a.stage_runs);
+        std::copy_if(whole.begin(), whole.end(), std::back_inserter(results),
+                     [&](const Result& r) { return wanted(a, r.name); });
     }
     apply_roofline(results);
     print_results(results);
@@ -119,6 +132,7 @@ int run(const Arguments& a) {
     if (a.list) {
         for (const Case& test : all_cases()) std::printf("%s\n", test.name);
         for (const std::string& name : stage_names()) std::printf("%s\n", name.c_str());
+        for (const std::string& name : landscape_names()) std::printf("%s\n", name.c_str());
         std::printf("pipeline\n");
         return 0;
     }
@@ -141,6 +155,9 @@ int run(const Arguments& a) {
     }
     const auto peers = stages.peers();
     results.insert(results.end(), peers.begin(), peers.end());
+    if (a.peers) {
+        if (const auto peer = compare_with_trimesh(results)) results.push_back(*peer);
+    }
     if (!a.json.empty()) write_json(a.json, results);
     if (!a.csv.empty()) write_csv(a.csv, results);
     return hashes_agree(results) ? 0 : 1;
@@ -167,7 +184,7 @@ int main(int argc, char** argv) {
     app.add_option("--seconds", a.measure.seconds, "Time for each kernel")->capture_default_str();
     app.add_option("--stage-runs", a.stage_runs, "Runs of the stages; 0: none")
         ->capture_default_str();
-    app.add_flag("!--no-peers", a.peers, "Leave out PCL and OctoMap beside the stages");
+    app.add_flag("!--no-peers", a.peers, "Leave out PCL, OctoMap and trimesh beside the stages");
     app.add_option("--pipeline-runs", a.pipeline.runs, "Parses of the whole room; 0: none")
         ->capture_default_str();
     app.add_option("--pipeline-frames", a.pipeline.frames, "Frames of the walk through the room")

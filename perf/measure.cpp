@@ -16,6 +16,27 @@ double seconds_of(device::Queue& queue) {
 
 }  // namespace
 
+Result named(const device::Device& device, std::string name, Work work) {
+    Result result;
+    result.backend = device::to_string(device.info().backend);
+    result.device = device.info().name;
+    result.name = std::move(name);
+    result.work = work;
+    return result;
+}
+
+void sample(device::Device& device, Result& result, unsigned runs,
+            const std::function<void()>& run) {
+    for (unsigned n = 0; n < runs; ++n) {
+        const device::Counters before = device.counters();
+        const auto start = std::chrono::steady_clock::now();
+        run();
+        result.samples_s.push_back(
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        if (n == 0) result.counters = device.counters() - before;
+    }
+}
+
 device::Counters operator-(const device::Counters& a, const device::Counters& b) {
     return {a.dispatches - b.dispatches,       a.submits - b.submits,
             a.kernel_builds - b.kernel_builds, a.bytes_written - b.bytes_written,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,13 @@ struct Result {
     double median() const;
     double worst() const;
 };
+
+// One without samples, on this device.
+Result named(const device::Device& device, std::string name, Work work);
+
+// Adds the wall time of `runs` runs; the counts are those of the first.
+void sample(device::Device& device, Result& result, unsigned runs,
+            const std::function<void()>& run);
 
 // What was counted from b to a.
 device::Counters operator-(const device::Counters& a, const device::Counters& b);

@@ -19,28 +19,6 @@ GeometryStage segment(device::Device& device, const StageScene& scene, Timings& 
     return find_primitives(device, scene.ingested, options, clock);
 }
 
-Result named(const device::Device& device, std::string name, Work work) {
-    Result result;
-    result.backend = device::to_string(device.info().backend);
-    result.device = device.info().name;
-    result.name = std::move(name);
-    result.work = work;
-    return result;
-}
-
-// Wall time of `runs` runs; the counts are those of the first.
-void sample(device::Device& device, Result& result, unsigned runs,
-            const std::function<void()>& run) {
-    for (unsigned n = 0; n < runs; ++n) {
-        const device::Counters before = device.counters();
-        const auto start = std::chrono::steady_clock::now();
-        run();
-        result.samples_s.push_back(
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-        if (n == 0) result.counters = device.counters() - before;
-    }
-}
-
 std::uint64_t hash_of(const vdb::VoxelScene& scene) {
     const vdb::Tiles tiles = scene.tiles(true);
     const std::vector<std::uint8_t> states = scene.states(tiles);
