@@ -39,10 +39,10 @@ std::string unknown_option(const CLI::App& app, std::span<const char* const> wor
         if (std::find(known.begin(), known.end(), name) != known.end()) continue;
         std::string text = "unknown option ";
         text.append(name);
-        const auto nearest = std::min_element(
-            known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
-                return edits(name, a) < edits(name, b);
-            });
+        const auto nearest = std::min_element(known.begin(), known.end(),
+                                              [&](const std::string& a, const std::string& b) {
+                                                  return edits(name, a) < edits(name, b);
+                                              });
         // More than a third of its letters wrong is another word.
         if (nearest != known.end() && 3 * edits(name, *nearest) <= name.size())
             text.append("; did you mean ").append(*nearest).append("?");
