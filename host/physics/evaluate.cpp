@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <string>
 
 #include "barrier_flood.hpp"
+#include "device/native/thread_pool.h"
 #include "device/queue.h"
 #include "group_landscape.hpp"
 #include "physics/assess.h"
@@ -13,6 +15,7 @@ namespace topple::physics {
 namespace {
 
 constexpr std::uint64_t batch_bytes = 32U << 20;             // of energies
+constexpr std::uint64_t chunk = 4;                           // candidates that a thread takes
 constexpr std::size_t batch_members = std::size_t{4} << 20;  // primitives over all candidates
 
 void check(const SupportTable& table, std::span<const Candidate> candidates) {
@@ -119,15 +122,24 @@ void evaluate_batch(device::Device& device, const SupportTable::Rows& rows,
         return std::span<const float>(values).subspan(n * rows.padded, rows.mesh.size());
     };
     std::vector<std::uint32_t> start(candidates.size());
-    for (std::size_t n = 0; n < candidates.size(); ++n) {
+    device.threads().each(candidates.size(), chunk, [&](std::size_t n) {
         start[n] = start_direction(rows, candidates[n], row(heights, n));
-    }
+    });
     const std::vector<float> levels = flood(device, rows, energy, heights, start);
-    for (std::size_t n = 0; n < candidates.size(); ++n) {
-        const bool empty = batch.first[n] == batch.first[n + 1];
-        results.push_back(
-            empty ? Stability{}
-                  : assess(rows, candidates[n], row(heights, n), row(levels, n), start[n], passes));
+    const std::size_t first = results.size();
+    results.resize(first + candidates.size());
+    std::vector<std::exception_ptr> failure(candidates.size());  // the pool's work must not throw
+    device.threads().each(candidates.size(), chunk, [&](std::size_t n) {
+        if (batch.first[n] == batch.first[n + 1]) return;  // no voxels: no landscape
+        try {
+            results[first + n] =
+                assess(rows, candidates[n], row(heights, n), row(levels, n), start[n], passes);
+        } catch (...) {
+            failure[n] = std::current_exception();
+        }
+    });
+    for (const std::exception_ptr& error : failure) {
+        if (error) std::rethrow_exception(error);
     }
 }
 
