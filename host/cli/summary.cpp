@@ -34,8 +34,10 @@ void print_objects(const Scene& scene) {
                 "barrier J", "release J", "mode", "human J", "wind J", "quake J", "rests on");
     for (std::size_t i = 0; i < std::min(rows_shown, movable.size()); ++i) {
         const Object& o = *movable[i];
-        std::printf("%6d %8.1f %8.3g %9.3g %9.3g %6s %10.3g %10.3g %10.3g  %s\n", o.id, o.unsafety,
-                    o.mass_kg, o.barrier_J, o.release_J, o.mode.c_str(), risk_of(o, "human"),
+        char barrier[32] = "~0";
+        if (!barrier_within_error(o)) std::snprintf(barrier, sizeof(barrier), "%.3g", o.barrier_J);
+        std::printf("%6d %8.1f %8.3g %9s %9.3g %6s %10.3g %10.3g %10.3g  %s\n", o.id, o.unsafety,
+                    o.mass_kg, barrier, o.release_J, o.mode.c_str(), risk_of(o, "human"),
                     risk_of(o, "wind"), risk_of(o, "earthquake"), rests_on[o.id].c_str());
     }
     if (movable.size() > rows_shown)

@@ -68,6 +68,7 @@ Json to_json(const Object& o) {
         {"mass_kg", number(o.mass_kg)},
         {"center_of_mass_m", vector(o.center_of_mass_m)},
         {"barrier_J", number(o.barrier_J)},
+        {"barrier_error_J", number(o.barrier_error_J)},
         {"release_J", number(o.release_J)},
         {"mode", o.mode},
         {"direction", vector(o.direction)},
@@ -126,6 +127,8 @@ Object object_of(const Json& json) {
     o.mass_kg = number_at(json, "mass_kg");
     o.center_of_mass_m = vector_at(json, "center_of_mass_m");
     o.barrier_J = number_at(json, "barrier_J");
+    // Earlier versions did not write it.
+    if (json.contains("barrier_error_J")) o.barrier_error_J = number_at(json, "barrier_error_J");
     o.release_J = number_at(json, "release_J");
     o.mode = json.at("mode").get<std::string>();
     o.direction = vector_at(json, "direction");

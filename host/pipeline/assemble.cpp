@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 #include <utility>
+
+#include "physics/landscape.h"
 
 namespace topple {
 namespace {
@@ -55,6 +58,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
         to.center_of_mass_m = to_input(from.candidate.body.center);
         if (!from.grounded) {
             to.barrier_J = from.instability.barrier_J;
+            to.barrier_error_J = to.mass_kg * physics::gravity * scene.voxel_size_m;
             to.release_J = from.instability.release_J;
             to.mode = from.instability.mode;
             to.direction = to_input(from.instability.direction);
@@ -150,6 +154,18 @@ void add_fields(const SafetyStage& safety, const ToInput& to_input, Scene& scene
     }
 }
 
+void note_uncertain_barriers(Scene& scene) {
+    const auto uncertain =
+        std::count_if(scene.objects.begin(), scene.objects.end(), barrier_within_error);
+    if (uncertain == 0) return;
+    const auto movable = std::count_if(scene.objects.begin(), scene.objects.end(),
+                                       [](const Object& o) { return !o.grounded; });
+    scene.notes.push_back("The barrier of " + std::to_string(uncertain) + " of " +
+                          std::to_string(movable) +
+                          " objects that can move is 0 or within its error (weight times a voxel): "
+                          "they stand on edge, or the scan does not show what holds them.");
+}
+
 }  // namespace
 
 void assemble(const Ingested& input, const GeometryStage& geometry, VoxelStage& voxels,
@@ -170,6 +186,7 @@ void assemble(const Ingested& input, const GeometryStage& geometry, VoxelStage& 
     scene.solid = voxels.scene->solid_voxels();
     add_exposures(safety, voxels);
     add_fields(safety, to_input, scene);
+    note_uncertain_barriers(scene);
     scene.swc_energy = objects.grouping.energy_curve;
 }
 

@@ -3,13 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <string>
 
 #include "safety/objects.h"
 
 namespace topple::safety {
 namespace {
 
+// Table tops are smaller, and rooms larger.
+constexpr double small_floor_m2 = 4;
 constexpr float no_floor = -std::numeric_limits<float>::infinity();
 
 struct Offset {
@@ -217,6 +221,16 @@ WalkableMap walkable_map(const Surroundings& surroundings, const HumanOptions& o
     }
     if (map.walkable.empty()) {
         map.notes.push_back("Nobody walks here: solids leave no room for a body on the floor.");
+        return map;
+    }
+    const double area = static_cast<double>(map.walkable.size()) * map.cell_m * map.cell_m;
+    if (area < small_floor_m2) {
+        char text[32];
+        std::snprintf(text, sizeof(text), "%.1f", area);
+        map.notes.push_back(std::string("People walk on only ") + text +
+                            " square metres: the lowest level surface was taken for the floor. If "
+                            "it is a table top or the like, nobody walks there: ignore the risk by "
+                            "people, or leave human out of --disturbance.");
     }
     return map;
 }

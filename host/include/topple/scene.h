@@ -39,7 +39,9 @@ struct Object {
     bool grounded = false;  // holds the floor, or is fixed to what does
     double mass_kg = 0;
     Vec3 center_of_mass_m{};
-    double barrier_J = 0;       // least energy that moves it out of its basin
+    double barrier_J = 0;  // least energy that moves it out of its basin
+    // What a voxel more or less in its shape or support changes in the barrier: M g x voxel size.
+    double barrier_error_J = 0;
     double release_J = 0;       // what it can release then
     std::string mode = "none";  // "tip" | "slide" | "none"
     Vec3 direction{};           // weakest horizontal direction, unit, or zero for "none"
@@ -47,6 +49,11 @@ struct Object {
     std::map<std::string, double> risk_J;  // by disturbance, joules per event
     double unsafety = 1;                   // 1 (safest) to 10, by risk, over the scene's objects
 };
+
+// Whether the barrier can't be told from 0.
+inline bool barrier_within_error(const Object& o) {
+    return !o.grounded && o.barrier_J <= o.barrier_error_J;
+}
 
 // Two primitives that touch.
 struct Contact {

@@ -3,6 +3,12 @@
 
 const capital = text => text.charAt(0).toUpperCase() + text.slice(1);
 
+// A barrier that a voxel more or less would undo can't be told from 0.
+function barrierText(object, unit) {
+  if (object.grounded || object.barrier_J === null) return number(null);
+  return object.barrier_J <= object.barrier_error_J ? '~0' + (unit ? '\u00a0' + unit : '') : number(object.barrier_J, unit);
+}
+
 // Object columns: heading, value to sort by, and what stands in the cell.
 function objectColumns(scene) {
   const columns = [
@@ -10,7 +16,7 @@ function objectColumns(scene) {
       element('span', {className: 'swatch', style: {background: css(colourOf(scene, object.id))}}), String(object.id)]},
     {name: 'Grounded', text: true, value: object => object.grounded ? 1 : 0, cell: object => [object.grounded ? 'yes' : 'no']},
     {name: 'Mass (kg)', value: object => object.mass_kg},
-    {name: 'Barrier (J)', value: object => object.grounded ? Infinity : object.barrier_J, number: object => object.grounded ? null : object.barrier_J},
+    {name: 'Barrier (J)', value: object => object.grounded ? Infinity : object.barrier_J, cell: object => [barrierText(object)]},
     {name: 'Release (J)', value: object => object.grounded ? -1 : object.release_J, number: object => object.grounded ? null : object.release_J},
     {name: 'Mode', text: true, value: object => object.mode, cell: object => [object.mode === 'none' ? '\u2013' : object.mode]},
   ];
@@ -113,7 +119,8 @@ function showObject(panel, scene, id, choose) {
   const pairs = [['Mass', number(object.mass_kg, 'kg')],
     ['Centre of mass', object.center_of_mass_m.map(v => v === null ? '\u2013' : v.toFixed(2)).join(', ') + ' m']];
   if (!object.grounded) {
-    pairs.push(['Barrier: energy that moves it', number(object.barrier_J, 'J')], ['It then can release', number(object.release_J, 'J')]);
+    pairs.push(['Barrier: energy that moves it', barrierText(object, 'J')],
+      ['Error of the barrier', number(object.barrier_error_J, 'J')], ['It then can release', number(object.release_J, 'J')]);
   }
   for (const name of scene.disturbances) pairs.push(['Risk by ' + name, number(object.risk_J[name], 'J')]);
   pairs.push(['Unsafety, 1 to 10', object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);

@@ -39,6 +39,7 @@ Scene some_scene() {
     object.primitives = {0, 1};
     object.mass_kg = 1.0 / 3.0;
     object.barrier_J = 0.1;
+    object.barrier_error_J = 0.02;
     object.release_J = 5;
     object.mode = "tip";
     object.direction = {1, 0, 0};
@@ -63,6 +64,7 @@ TEST_F(Write, scene_json_reads_back_the_same) {
     EXPECT_EQ(back.source, scene.source);
     EXPECT_EQ(back.objects[0].mass_kg, scene.objects[0].mass_kg);
     EXPECT_EQ(back.objects[0].risk_J, scene.objects[0].risk_J);
+    EXPECT_EQ(back.objects[0].barrier_error_J, 0.02);
     EXPECT_EQ(back.objects[0].instability[1].S_J, 9);
     EXPECT_EQ(back.contacts[0].relation, "fixed");
     EXPECT_EQ(back.timings_s, scene.timings_s);
@@ -85,9 +87,9 @@ TEST_F(Write, scene_json_has_the_fixed_members) {
                             "mass_kg", "center_of_mass_m"}) {
         EXPECT_TRUE(json["primitives"][0].contains(key)) << key;
     }
-    for (const char* key :
-         {"id", "primitives", "grounded", "mass_kg", "center_of_mass_m", "barrier_J", "release_J",
-          "mode", "direction", "instability", "risk_J", "unsafety"}) {
+    for (const char* key : {"id", "primitives", "grounded", "mass_kg", "center_of_mass_m",
+                            "barrier_J", "barrier_error_J", "release_J", "mode", "direction",
+                            "instability", "risk_J", "unsafety"}) {
         EXPECT_TRUE(json["objects"][0].contains(key)) << key;
     }
     EXPECT_EQ(json["objects"][0]["instability"][0]["W_J"], 0.1);

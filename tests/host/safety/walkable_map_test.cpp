@@ -87,6 +87,21 @@ TEST(WalkableMap, SaysWhyNobodyWalks) {
     EXPECT_NE(walkable_map(full.surroundings(), {}).notes.at(0).find("no room"), std::string::npos);
 }
 
+// A table top that was scanned alone looks like a floor.
+TEST(WalkableMap, SaysThatTheFloorIsSmall) {
+    const auto says_so = [](double width, double depth) {
+        test::Room room(0.02);
+        room.floor(0, width, 0, depth);
+        const WalkableMap map = walkable_map(room.surroundings(), {});
+        EXPECT_FALSE(map.walkable.empty());
+        return !map.notes.empty() && map.notes.back().find("square metres") != std::string::npos &&
+               map.notes.back().find("--disturbance") != std::string::npos;
+    };
+    EXPECT_TRUE(says_so(1.6, 0.8));
+    EXPECT_TRUE(says_so(2.4, 1.2));
+    EXPECT_FALSE(says_so(2.4, 2.0));
+}
+
 TEST(PrimaryMotion, StaysOnWalkableCellsAndCrowdsThePassage) {
     test::Room room(0.02);
     room.floor(0, 4, 0, 4);
