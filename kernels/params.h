@@ -100,10 +100,11 @@ STRUCT(LandscapeParams) {
     uint tile_first;         // where the tile starts in an output row
 } STRUCT_END(LandscapeParams)
 
-// barrier_flood
-STRUCT(FloodParams) {
-    uint padded_directions;  // row length, a multiple of 128, at most 3072
-} STRUCT_END(FloodParams)
+// steepest_descent
+STRUCT(DescentParams) {
+    uint candidate_count;
+    uint padded_directions;  // row length, a multiple of the items per work-item
+} STRUCT_END(DescentParams)
 
 // dialect_probe
 STRUCT(DialectProbeParams) {

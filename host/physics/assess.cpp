@@ -78,21 +78,35 @@ bool is_dent(const SupportTable::Rows& rows, double angle, const Vec3& bottom, d
     return bottom[2] >= std::cos(angle) && depth <= 2 * rows.resolution_m;
 }
 
-// The passes that matter: those that open something deeper than lower ones do, and the lowest.
+// The direction to start from. It is direction 0, the pose as scanned, but for a candidate whose
+// footing holds it: contacts are known to a voxel or two, so that its hull may seem to rock by an
+// angle within that; then it is the bottom of that dent.
+std::uint32_t start_direction(const SupportTable::Rows& rows, const Candidate& candidate,
+                              std::span<const float> height) {
+    const std::optional<double> angle = dent_angle(rows, candidate);
+    if (!angle) return 0;
+    std::uint32_t v = 0;
+    for (bool lower = true; lower;) {
+        std::uint32_t best = v;
+        for (std::size_t k = 0; k < 6; ++k) {
+            const std::uint32_t w = rows.mesh.neighbour[std::size_t{v} * 6 + k];
+            if (height[w] < height[best]) best = w;
+        }
+        lower = best != v;
+        v = best;
+    }
+    return is_dent(rows, *angle, direction_of(rows.mesh, v), height[0] - height[v]) ? v : 0;
+}
+
 template <typename Refine>
 std::vector<Opening> openings(const std::vector<PosePass>& passes, const Refine& refine) {
     std::vector<Opening> result;
-    double deepest = 0;
-    for (const PosePass& found : passes) {
-        if (!result.empty() && found.deepest_m >= deepest) continue;
-        deepest = found.deepest_m;
-        result.push_back({found.height_m, refine(found)});
-    }
+    for (const PosePass& found : passes) result.push_back({found.height_m, refine(found)});
     return result;
 }
 
 // What the mesh found, made exact by the vertices nearby.
-PosePass refined(const PosePass& found, const Flooded& f, std::span<const Vec3> vertices) {
+PosePass refined(const PosePass& found, const Sampled& f, std::span<const Vec3> vertices) {
     const double base = f.height[f.start];
     PosePass pass = found;
     if (found.height_m > base) {
@@ -112,13 +126,14 @@ struct Surroundings {
     bool rolls = false;
 };
 
-Surroundings sampled_surroundings(const Flooded& f, std::span<const Vec3> vertices) {
+Surroundings sampled_surroundings(const Sampled& f, std::span<const Vec3> vertices) {
     return {f.height[f.start],
             openings(find_passes(f), [&](const PosePass& p) { return refined(p, f, vertices); }),
             [&f, v = 0U](const Vec3& up) mutable -> std::optional<double> {
                 v = nearest(*f.mesh, v, up);
-                if (double{f.level[v]} - f.height[v] <= f.noise_m) return std::nullopt;
-                return f.level[v];
+                const double level = f.basins->level(v);
+                if (level - f.height[v] <= f.noise_m) return std::nullopt;
+                return level;
             },
             rolls(f)};
 }
@@ -140,24 +155,25 @@ std::optional<Surroundings> exact_surroundings(const SupportTable::Rows& rows,
         if (!is_dent(rows, *angle, ways->rest(), depth)) return std::nullopt;
         ways->settle();
     }
-    return Surroundings{ways->start_height(),
-                        openings(ways->passes(noise), [](const PosePass& p) { return p; }),
-                        [ways, noise](const Vec3& up) -> std::optional<double> {
-                            const double level = ways->level(up);
-                            if (level - ways->height(up) <= noise) return std::nullopt;
-                            return level;
-                        },
-                        ways->rolls(noise)};
+    return Surroundings{
+        ways->start_height(),
+        openings(passes_that_matter(ways->passes(noise)), [](const PosePass& p) { return p; }),
+        [ways, noise](const Vec3& up) -> std::optional<double> {
+            const double level = ways->level(up);
+            if (level - ways->height(up) <= noise) return std::nullopt;
+            return level;
+        },
+        ways->rolls(noise)};
 }
 
-bool is_deeper(const Flooded& f, double base, double height) {
+bool is_deeper(const Sampled& f, double base, double height) {
     return height < base - f.resolution_m / 2;
 }
 
 // The deepest height that opens to a body leaning towards `way` (unit, horizontal): behind the
 // first pass of the hull that this turn meets. The start's height if it meets none within 120
 // degrees.
-double deepest_towards(const Flooded& f, const Surroundings& around, const Vec3& way) {
+double deepest_towards(const Sampled& f, const Surroundings& around, const Vec3& way) {
     const double step = f.spacing / 2;
     for (double angle = 0; angle < 2.1; angle += step) {
         const double s = std::sin(angle), c = std::cos(angle);
@@ -181,7 +197,7 @@ Vec3 way_over(const PosePass& pass) {
     return {1, 0, 0};
 }
 
-void add_passes(const Flooded& f, const Surroundings& around, std::vector<Way>& ways) {
+void add_passes(const Sampled& f, const Surroundings& around, std::vector<Way>& ways) {
     const double base = around.base_m;
     for (const auto& [level, pass] : around.passes) {
         ways.push_back({pass.height_m - base,
@@ -190,7 +206,7 @@ void add_passes(const Flooded& f, const Surroundings& around, std::vector<Way>& 
     }
 }
 
-void add_footing(const Candidate& candidate, const Footing& on, const Flooded& f,
+void add_footing(const Candidate& candidate, const Footing& on, const Sampled& f,
                  const Surroundings& around, std::vector<Way>& ways) {
     const double base = around.base_m;
     const auto add = [&](double climb, const Vec3& way) {
@@ -205,7 +221,7 @@ void add_footing(const Candidate& candidate, const Footing& on, const Flooded& f
 }
 
 // Held by nothing: it falls as its hull lets it.
-void add_fall(const Flooded& f, const Surroundings& around, std::vector<Way>& ways) {
+void add_fall(const Sampled& f, const Surroundings& around, std::vector<Way>& ways) {
     const double base = around.base_m;
     Way fall;
     for (const auto& [level, pass] : around.passes) {
@@ -250,33 +266,17 @@ std::vector<InstabilityStep> curve_of(std::vector<Way> ways, double weight_N) {
 
 }  // namespace
 
-std::uint32_t start_direction(const SupportTable::Rows& rows, const Candidate& candidate,
-                              std::span<const float> height) {
-    const std::optional<double> angle = dent_angle(rows, candidate);
-    if (!angle) return 0;
-    std::uint32_t v = 0;
-    for (bool lower = true; lower;) {
-        std::uint32_t best = v;
-        for (std::size_t k = 0; k < 6; ++k) {
-            const std::uint32_t w = rows.mesh.neighbour[std::size_t{v} * 6 + k];
-            if (height[w] < height[best]) best = w;
-        }
-        lower = best != v;
-        v = best;
-    }
-    return is_dent(rows, *angle, direction_of(rows.mesh, v), height[0] - height[v]) ? v : 0;
-}
-
 Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
-                 std::span<const float> height, std::span<const float> level, std::uint32_t start,
-                 Passes passes) {
+                 std::span<const float> height, std::span<std::uint32_t> down, Passes passes) {
+    const std::uint32_t start = start_direction(rows, candidate, height);
+    const Basins basins(height, rows.mesh, down, start);
     const double radius = *std::max_element(height.begin(), height.end());
     const double weight_N = candidate.body.mass_kg * gravity;
     // Heights are known to a voxel, and to the rounding of their float sums.
     const double resolution = rows.resolution_m + 1e-5 * radius;
-    const Flooded f{&rows.mesh,
+    const Sampled f{&rows.mesh,
                     height,
-                    level,
+                    &basins,
                     start,
                     rows.spacing,
                     resolution,

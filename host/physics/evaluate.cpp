@@ -4,11 +4,11 @@
 #include <exception>
 #include <string>
 
-#include "barrier_flood.hpp"
 #include "device/native/thread_pool.h"
 #include "device/queue.h"
 #include "group_landscape.hpp"
 #include "physics/assess.h"
+#include "steepest_descent.hpp"
 #include "topple/error.h"
 
 namespace topple::physics {
@@ -86,30 +86,16 @@ device::Buffer<float> landscapes(device::Device& device, const SupportTable::Row
     return energy;
 }
 
-// Levels of all candidates: by the kernel, or from merge trees where a mesh is too fine for it.
-std::vector<float> flood(device::Device& device, const SupportTable::Rows& rows,
-                         const device::Buffer<float>& energy, std::span<const float> heights,
-                         std::span<const std::uint32_t> start) {
-    if (rows.padded <= flood_directions) {
-        device::Buffer<std::uint32_t> starts(device, start, "flood starts");
-        device::Buffer<float> level(device, energy.size(), "flood levels");
-        device::Queue queue(device);
-        queue.add<kernels::BarrierFlood>(
-            start.size(),
-            {.energy = energy, .neighbour = rows.neighbour, .start = starts, .level = level},
-            {.padded_directions = rows.padded});
-        queue.run();
-        return level.download();
-    }
-    std::vector<float> levels(heights.begin(), heights.end());
-    for (std::size_t n = 0; n < start.size(); ++n) {
-        const auto height = heights.subspan(n * rows.padded, rows.mesh.size());
-        const MergeTree tree = disconnectivity_graph(height, rows.mesh, 0);
-        for (std::uint32_t v = 0; v < rows.mesh.size(); ++v) {
-            levels[n * rows.padded + v] = static_cast<float>(tree.minimax(height, start[n], v));
-        }
-    }
-    return levels;
+std::vector<std::uint32_t> descents(device::Device& device, const SupportTable::Rows& rows,
+                                    const device::Buffer<float>& energy) {
+    device::Buffer<std::uint32_t> down(device, energy.size(), "steepest descents");
+    device::Queue queue(device);
+    queue.add<kernels::SteepestDescent>(
+        energy.size(), {.energy = energy, .neighbour = rows.neighbour, .down = down},
+        {.candidate_count = static_cast<std::uint32_t>(energy.size() / rows.padded),
+         .padded_directions = rows.padded});
+    queue.run();
+    return down.download();
 }
 
 void evaluate_batch(device::Device& device, const SupportTable::Rows& rows,
@@ -118,22 +104,17 @@ void evaluate_batch(device::Device& device, const SupportTable::Rows& rows,
     const Batch batch = gather(rows, candidates);
     const device::Buffer<float> energy = landscapes(device, rows, batch);
     const std::vector<float> heights = energy.download();
-    const auto row = [&](const std::vector<float>& values, std::size_t n) {
-        return std::span<const float>(values).subspan(n * rows.padded, rows.mesh.size());
-    };
-    std::vector<std::uint32_t> start(candidates.size());
-    device.threads().each(candidates.size(), chunk, [&](std::size_t n) {
-        start[n] = start_direction(rows, candidates[n], row(heights, n));
-    });
-    const std::vector<float> levels = flood(device, rows, energy, heights, start);
+    std::vector<std::uint32_t> down = descents(device, rows, energy);
     const std::size_t first = results.size();
     results.resize(first + candidates.size());
     std::vector<std::exception_ptr> failure(candidates.size());  // the pool's work must not throw
     device.threads().each(candidates.size(), chunk, [&](std::size_t n) {
         if (batch.first[n] == batch.first[n + 1]) return;  // no voxels: no landscape
         try {
+            const std::size_t at = n * rows.padded, size = rows.mesh.size();
             results[first + n] =
-                assess(rows, candidates[n], row(heights, n), row(levels, n), start[n], passes);
+                assess(rows, candidates[n], std::span<const float>(heights).subspan(at, size),
+                       std::span(down).subspan(at, size), passes);
         } catch (...) {
             failure[n] = std::current_exception();
         }

@@ -84,7 +84,7 @@ enum class Passes {
 };
 
 // Pose landscapes and barriers of many candidates in one batch (kernels group_landscape,
-// barrier_flood). Order as given; deterministic. The barrier is the least of
+// steepest_descent). Order as given; deterministic. The barrier is the least of
 //   - M g (sqrt(h^2 + m^2) - h) over the edges of the support polygon, m the distance of the centre
 //   of
 //     mass to the edge's line, h its height above the support (paper-exact for rigid tipping), and

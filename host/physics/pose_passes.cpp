@@ -13,45 +13,44 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-bool is_minimum(const Flooded& f, std::size_t v) {
-    for (std::size_t k = 0; k < 6; ++k) {
-        if (f.height[f.mesh->neighbour[v * 6 + k]] < f.height[v]) return false;
-    }
-    return true;
-}
-
+// The pose in which the centre of mass (the origin) stands above an edge, if it can.
 struct Balance {
-    PosePass pose;
-    Vec3 edge_from, edge_to;
-};
+    double height_m = 0;
+    Vec3 foot{};  // of the plumb line, on the edge
 
-// The pose in which the centre of mass (the origin) stands above the edge a-b, if it can.
+    Vec3 direction() const {
+        return {-foot[0] / height_m, -foot[1] / height_m, -foot[2] / height_m};
+    }
+};
 std::optional<Balance> balance(const Vec3& a, const Vec3& b) {
     const Vec3 e = minus(b, a);
-    const double length2 = dot(e, e);
-    if (!(length2 > 0)) return std::nullopt;
-    const double t = -dot(a, e) / length2;
-    if (t < 0 || t > 1) return std::nullopt;
+    const double length2 = dot(e, e), along = -dot(a, e);
+    // Most pairs end here, without a division.
+    if (!(length2 > 0) || along < 0 || along > length2) return std::nullopt;
+    const double t = along / length2;
     const Vec3 foot{a[0] + t * e[0], a[1] + t * e[1], a[2] + t * e[2]};
     const double height = std::sqrt(dot(foot, foot));
     if (!(height > 0)) return std::nullopt;
-    Balance result{{}, a, b};
-    result.pose.height_m = height;
-    result.pose.direction = {-foot[0] / height, -foot[1] / height, -foot[2] / height};
-    return result;
+    return Balance{height, foot};
 }
 
-// Whether the pose rests on the edge alone: no vertex lower, and not on vertices on both sides of
-// it, which would make it a face and the pose a minimum.
-bool is_pass(const Balance& b, std::span<const Vec3> vertices, double rounding) {
-    const Vec3 across = cross(minus(b.edge_to, b.edge_from), b.pose.direction);
+// Whether the pose rests on the edge a-b alone: no vertex lower, and not on vertices on both sides
+// of it, which would make it a face and the pose a minimum. What is lower is likely among the
+// first.
+bool is_pass(const Balance& balanced, const Vec3& a, const Vec3& b, std::span<const Vec3> first,
+             std::span<const Vec3> vertices, double rounding) {
+    const Vec3 up = balanced.direction();
+    for (const Vec3& v : first) {
+        if (-dot(v, up) - balanced.height_m > rounding) return false;
+    }
+    const Vec3 across = cross(minus(b, a), up);
     const double width = std::sqrt(dot(across, across));
     bool left = false, right = false;
     for (const Vec3& v : vertices) {
-        const double below = -dot(v, b.pose.direction) - b.pose.height_m;
+        const double below = -dot(v, up) - balanced.height_m;
         if (below > rounding) return false;
         if (below < -rounding) continue;
-        const double side = dot(minus(v, b.edge_from), across) / width;
+        const double side = dot(minus(v, a), across) / width;
         left |= side > rounding;
         right |= side < -rounding;
     }
@@ -64,33 +63,49 @@ std::optional<PosePass> search(const PosePass& found, std::span<const Vec3> vert
     // At most `keep` of the lowest vertices: the edge's ends are among them for all but the
     // roundest.
     constexpr std::size_t keep = 192;
-    double reach = 0;
+    double reach = 0, lowest = infinity;
+    for (const Vec3& v : vertices) {
+        reach = std::max(reach, dot(v, v));
+        lowest = std::min(lowest, dot(v, found.direction));
+    }
+    const double band =
+        lowest + 2 * std::sqrt(reach) * std::sin(std::min(radius, std::numbers::pi / 2));
     std::vector<std::pair<double, std::uint32_t>> low;
     for (std::size_t n = 0; n < vertices.size(); ++n) {
-        low.emplace_back(dot(vertices[n], found.direction), static_cast<std::uint32_t>(n));
-        reach = std::max(reach, dot(vertices[n], vertices[n]));
+        const double height = dot(vertices[n], found.direction);
+        if (height <= band) low.emplace_back(height, static_cast<std::uint32_t>(n));
     }
     std::sort(low.begin(), low.end());
-    const double band =
-        low.front().first + 2 * std::sqrt(reach) * std::sin(std::min(radius, std::numbers::pi / 2));
-    std::size_t count = 0;
-    while (count < std::min(keep, low.size()) && low[count].first <= band) ++count;
-    std::vector<Balance> candidates;
-    for (std::size_t p = 0; p < count; ++p) {
-        for (std::size_t q = p + 1; q < count; ++q) {
-            const auto pose = balance(vertices[low[p].second], vertices[low[q].second]);
-            if (!pose || pose->pose.height_m > bound ||
-                dot(pose->pose.direction, found.direction) < std::cos(radius)) {
-                continue;
-            }
-            candidates.push_back(*pose);
+    low.resize(std::min(keep, low.size()));
+    std::vector<Vec3> near;
+    for (const auto& [height, n] : low) near.push_back(vertices[n]);
+    struct Edge {
+        double height_m = 0;
+        std::uint32_t p = 0, q = 0;
+    };
+    const double least_turn = std::cos(radius);
+    std::vector<Edge> edges;
+    for (std::uint32_t p = 0; p < near.size(); ++p) {
+        for (std::uint32_t q = p + 1; q < near.size(); ++q) {
+            const auto pose = balance(near[p], near[q]);
+            if (pose && pose->height_m <= bound &&
+                dot(pose->direction(), found.direction) >= least_turn)
+                edges.push_back({pose->height_m, p, q});
         }
     }
-    std::stable_sort(candidates.begin(), candidates.end(), [](const Balance& a, const Balance& b) {
-        return a.pose.height_m > b.pose.height_m;
-    });
-    for (const Balance& candidate : candidates) {
-        if (is_pass(candidate, vertices, rounding)) return candidate.pose;
+    // The highest first, of equal ones the first.
+    const auto later = [](const Edge& a, const Edge& b) {
+        if (a.height_m != b.height_m) return a.height_m < b.height_m;
+        return a.p != b.p ? a.p > b.p : a.q > b.q;
+    };
+    std::make_heap(edges.begin(), edges.end(), later);
+    while (!edges.empty()) {
+        const auto& [height, p, q] = edges.front();
+        const Balance pose = *balance(near[p], near[q]);
+        if (is_pass(pose, near[p], near[q], near, vertices, rounding))
+            return PosePass{pose.height_m, pose.direction(), 0, {}};
+        std::pop_heap(edges.begin(), edges.end(), later);
+        edges.pop_back();
     }
     return std::nullopt;
 }
@@ -119,33 +134,38 @@ std::vector<PosePass> passes_to(std::vector<MinimumBehind> behind) {
     return passes;
 }
 
-std::vector<PosePass> find_passes(const Flooded& f) {
+std::vector<PosePass> passes_that_matter(std::vector<PosePass> passes) {
+    std::vector<PosePass> kept;
+    for (const PosePass& pass : passes) {
+        if (kept.empty() || pass.deepest_m < kept.back().deepest_m) kept.push_back(pass);
+    }
+    return kept;
+}
+
+std::vector<PosePass> find_passes(const Sampled& f) {
     // Only minima need a look: from anywhere behind a pass, one can descend to a minimum that is
     // behind the same pass and deeper.
     std::vector<MinimumBehind> behind;
-    for (std::uint32_t v = 0; v < f.height.size(); ++v) {
-        if (double{f.level[v]} - f.height[v] > f.noise_m && is_minimum(f, v)) {
-            behind.push_back({f.level[v], f.height[v], {}, direction_of(*f.mesh, v)});
-        }
+    const std::span<const std::uint32_t> minima = f.basins->minima();
+    for (std::size_t b = 0; b < minima.size(); ++b) {
+        const float height = f.height[minima[b]], level = f.basins->level_of_minimum(b);
+        if (double{level} - height > f.noise_m)
+            behind.push_back({level, height, {}, direction_of(*f.mesh, minima[b])});
     }
-    std::vector<PosePass> passes = passes_to(std::move(behind));
+    std::vector<PosePass> passes = passes_that_matter(passes_to(std::move(behind)));
     // A level is the height of the pass's own direction.
-    std::vector<bool> placed(passes.size(), false);
-    for (std::uint32_t v = 0; v < f.height.size() && !passes.empty(); ++v) {
-        if (f.level[v] != f.height[v]) continue;
-        const auto at = std::lower_bound(
-            passes.begin(), passes.end(), double{f.level[v]},
-            [](const PosePass& pass, double level) { return pass.height_m < level; });
-        if (at == passes.end() || at->height_m != double{f.level[v]}) continue;
-        const auto n = static_cast<std::size_t>(at - passes.begin());
-        if (placed[n]) continue;
-        placed[n] = true;
-        at->direction = direction_of(*f.mesh, v);
+    for (PosePass& pass : passes) {
+        const auto level = static_cast<float>(pass.height_m);
+        for (std::uint32_t v = 0; v < f.height.size(); ++v) {
+            if (f.height[v] != level || f.basins->level(v) != level) continue;
+            pass.direction = direction_of(*f.mesh, v);
+            break;
+        }
     }
     return passes;
 }
 
-bool rolls(const Flooded& f) {
+bool rolls(const Sampled& f) {
     const Vec3 start = direction_of(*f.mesh, f.start);
     const double level = f.height[f.start];
     std::vector<bool> seen(f.height.size(), false);
@@ -189,17 +209,25 @@ double refine_minimum(const Vec3& direction, std::span<const Vec3> vertices, dou
         low = std::min(low, dot(v, direction));
         reach = std::max(reach, dot(v, v));
     }
+    const double band = low + 4 * spacing * std::sqrt(reach);
     std::vector<Vec3> near;
     for (const Vec3& v : vertices) {
-        if (dot(v, direction) <= low + 4 * spacing * std::sqrt(reach)) near.push_back(v);
+        if (dot(v, direction) <= band) near.push_back(v);
     }
-    const auto height = [&](const Vec3& d) {
+    // The height along d, or some height that is no less than `enough`. The vertex that sufficed
+    // comes first the next time: it is likely to do so again.
+    const auto height = [&](const Vec3& d, double enough) {
         double lowest = infinity;
-        for (const Vec3& v : near) lowest = std::min(lowest, dot(v, d));
+        for (Vec3& v : near) {
+            lowest = std::min(lowest, dot(v, d));
+            if (-lowest < enough) continue;
+            std::swap(v, near.front());
+            break;
+        }
         return -lowest;
     };
     Vec3 at = direction;
-    double best = height(at);
+    double best = height(at, infinity);
     // A basis across the direction, from the axis that it has least of.
     std::size_t axis = 0;
     for (std::size_t a = 1; a < 3; ++a) {
@@ -209,18 +237,24 @@ double refine_minimum(const Vec3& direction, std::span<const Vec3> vertices, dou
     unit[axis] = 1;
     const Vec3 u = cross(at, unit), w = cross(at, u);
     // Moves along creases need fine directions: twelve of them.
+    std::array<double, 12> cosine, sine;
+    for (std::size_t k = 0; k < 12; ++k) {
+        const double angle = static_cast<double>(k) * std::numbers::pi / 6;
+        cosine[k] = std::cos(angle);
+        sine[k] = std::sin(angle);
+    }
+    const double least_turn = std::cos(2 * spacing);
     for (double step = spacing; step > spacing / 100; step /= 2) {
         for (int moves = 0; moves < 4; ++moves) {
             Vec3 better = at;
-            for (int k = 0; k < 12; ++k) {
-                const double angle = k * std::numbers::pi / 6, c = step * std::cos(angle),
-                             s = step * std::sin(angle);
+            for (std::size_t k = 0; k < 12; ++k) {
+                const double c = step * cosine[k], s = step * sine[k];
                 Vec3 d{};
                 for (std::size_t a = 0; a < 3; ++a) d[a] = at[a] + c * u[a] + s * w[a];
                 const double length = std::sqrt(dot(d, d));
                 for (double& x : d) x /= length;
-                if (dot(d, direction) < std::cos(2 * spacing)) continue;
-                if (const double h = height(d); h < best) {
+                if (dot(d, direction) < least_turn) continue;
+                if (const double h = height(d, best); h < best) {
                     best = h;
                     better = d;
                 }

@@ -6,9 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "physics/basins.h"
 #include "physics/landscape.h"
 
-// Passes of one pose landscape, from its energies U and its flooded levels L (paper, Defs. 1 and
+// Passes of one pose landscape, from its energies U and its levels L (paper, Defs. 1 and
 // 2). All heights are U / (M g), metres: the centre of mass above the lowest point.
 namespace topple::physics {
 
@@ -16,10 +17,10 @@ inline Vec3 direction_of(const SphereMesh& mesh, std::size_t v) {
     return {mesh.x[v], mesh.y[v], mesh.z[v]};
 }
 
-struct Flooded {
+struct Sampled {
     const SphereMesh* mesh = nullptr;
-    std::span<const float> height;  // U / (M g) per direction
-    std::span<const float> level;   // L / (M g) per direction
+    std::span<const float> height;   // U / (M g) per direction
+    const Basins* basins = nullptr;  // and their levels, of L / (M g)
     std::uint32_t start = 0;
     double spacing = 0;       // longest edge of the mesh, radians
     double resolution_m = 0;  // to which heights are known
@@ -47,12 +48,14 @@ struct MinimumBehind {
 // One pass for each level, by rising height; of equal minima the first counts.
 std::vector<PosePass> passes_to(std::vector<MinimumBehind> behind);
 
-// All passes by rising height. Two that are within rounding of each other stay two.
-std::vector<PosePass> find_passes(const Flooded& landscape);
+// The passes that matter, by rising height: the lowest, and those that open something deeper than
+// lower ones do. Two that are within rounding of each other stay two.
+std::vector<PosePass> passes_that_matter(std::vector<PosePass> passes);
+std::vector<PosePass> find_passes(const Sampled& landscape);
 
 // Whether the body can turn by 90 degrees and more with its height all the way within the noise of
 // the start's.
-bool rolls(const Flooded& landscape);
+bool rolls(const Sampled& landscape);
 
 // The exact pass near one found on the mesh. A body balances over an edge of its hull where the
 // centre of mass stands above the edge, and every pass is such a pose; vertices are relative to the

@@ -95,7 +95,7 @@ SphereMesh geodesic_sphere(unsigned frequency) {
             }
         }
     }
-    // From the north pole down: neighbours have close numbers, and floods run along them.
+    // From the north pole down: neighbours have close numbers.
     const std::size_t n = points.direction.size();
     std::vector<std::uint32_t> order(n), rank(n);
     for (std::uint32_t v = 0; v < n; ++v) order[v] = v;

@@ -23,13 +23,12 @@ struct SupportTable::Rows {
         device::Buffer<float> s, dx, dy, dz;
     };
     std::vector<Tile> tiles;
-    device::Buffer<std::uint32_t> neighbour;  // six planes, as kernel barrier_flood wants them
+    device::Buffer<std::uint32_t> neighbour;  // six planes, as kernel steepest_descent wants them
     std::vector<Vec3> origin;                 // of each primitive's row and vertices, grid frame
     std::vector<std::vector<Vec3>> vertices;  // of each primitive's hull, relative to its origin
 };
 
 inline constexpr std::uint32_t direction_block = 128;
-inline constexpr std::uint32_t flood_directions = 3072;  // as many as kernel barrier_flood holds
 
 // The vertices of the convex hull of voxel corners, for each primitive, in voxels. Corners that lie
 // inside the hull of their own i-slice are dropped exactly first; Qhull does the rest.

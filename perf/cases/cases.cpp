@@ -16,7 +16,7 @@ std::span<const Case> all_cases() {
         {"segmented_sum", segmented_sum},
         {"support_function", support_function},
         {"group_landscape", group_landscape},
-        {"barrier_flood", barrier_flood},
+        {"steepest_descent", steepest_descent},
         {"disturbance_reach", disturbance_reach},
         {"disturbance", disturbance},
     };

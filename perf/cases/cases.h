@@ -17,7 +17,7 @@ Prepared six_fill_vote(device::Device& device);
 Prepared segmented_sum(device::Device& device);
 Prepared support_function(device::Device& device);
 Prepared group_landscape(device::Device& device);
-Prepared barrier_flood(device::Device& device);
+Prepared steepest_descent(device::Device& device);
 Prepared disturbance_reach(device::Device& device);
 Prepared disturbance(device::Device& device);
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <memory>
 
-#include "barrier_flood.hpp"
 #include "group_landscape.hpp"
 #include "perf/cases/cases.h"
 #include "scenes/random.h"
+#include "steepest_descent.hpp"
 #include "support_function.hpp"
 
 namespace topple::perf {
@@ -143,10 +143,9 @@ Prepared group_landscape(device::Device& device) {
             [on] { return Hash().add(on->energy.download()).value(); }};
 }
 
-// Landscapes of 128 boxes, each flooded from upright. The rounds until nothing changes depend on
-// the landscape; the work counts one round, up and down, which no landscape can do without.
-Prepared barrier_flood(device::Device& device) {
-    constexpr std::uint32_t candidates = 128, padded = 2688;
+// Landscapes of 1,024 boxes, on the mesh that the sampler uses.
+Prepared steepest_descent(device::Device& device) {
+    constexpr std::uint32_t candidates = 1024, padded = 2688;
     const physics::SphereMesh mesh = physics::geodesic_sphere(16);
     const Directions d = directions(16, padded);
     Random random(3);
@@ -157,7 +156,7 @@ Prepared barrier_flood(device::Device& device) {
         for (std::size_t n = 0; n < d.used; ++n)
             energy[std::size_t{c} * padded + n] = box_height(d, n, half);
     }
-    std::vector<std::uint32_t> neighbour(6 * padded), start(candidates, 0);
+    std::vector<std::uint32_t> neighbour(6 * padded);
     for (std::uint32_t k = 0; k < 6; ++k) {
         for (std::uint32_t n = 0; n < padded; ++n) {
             neighbour[k * padded + n] = n < d.used ? mesh.neighbour[6 * n + k] : n;
@@ -165,25 +164,21 @@ Prepared barrier_flood(device::Device& device) {
     }
     struct Buffers {
         device::Buffer<float> energy;
-        device::Buffer<std::uint32_t> neighbour, start;
-        device::Buffer<float> level;
+        device::Buffer<std::uint32_t> neighbour, down;
     };
     auto on = std::make_shared<Buffers>(Buffers{upload(device, energy, "energy"),
                                                 upload(device, neighbour, "neighbour"),
-                                                upload(device, start, "start"),
-                                                {device, energy.size(), "level"}});
+                                                {device, energy.size(), "down"}});
     const double all = double{candidates} * padded;
-    return {{all, "directions", 8 * all + 24.0 * padded, 2 * 8 * all},
+    return {{all, "directions", 8 * all + 24.0 * padded, 7 * all},
             [on](device::Queue& queue) {
-                queue.add<kernels::BarrierFlood>(candidates,
-                                                 {.energy = on->energy,
-                                                  .neighbour = on->neighbour,
-                                                  .start = on->start,
-                                                  .level = on->level},
-                                                 {.padded_directions = padded});
+                queue.add<kernels::SteepestDescent>(
+                    std::uint64_t{candidates} * padded,
+                    {.energy = on->energy, .neighbour = on->neighbour, .down = on->down},
+                    {.candidate_count = candidates, .padded_directions = padded});
             },
             {},
-            [on] { return Hash().add(on->level.download()).value(); }};
+            [on] { return Hash().add(on->down.download()).value(); }};
 }
 
 }  // namespace topple::perf

@@ -5,7 +5,7 @@
 
 #include "host/physics/solids.h"
 #include "kernels/device_compare.h"
-#include "oracle/barrier_flood_oracle.h"
+#include "oracle/flood_oracle.h"
 #include "topple/error.h"
 
 namespace topple::physics {
