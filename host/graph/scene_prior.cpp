@@ -35,7 +35,11 @@ const Joint* find(const std::vector<Joint>& joints, std::int32_t other) {
 ScenePrior::ScenePrior(const ContactGraph& graph, std::span<const physics::Body> bodies,
                        const SurfaceSeams& seams, const std::vector<bool>& ground,
                        const Weights& weights)
-    : graph_(graph), seams_(seams), ground_(ground), weights_(weights) {
+    : graph_(graph),
+      seams_(seams),
+      joinery_(graph, bodies, seams, ground),
+      ground_(ground),
+      weights_(weights) {
     double total = 0;
     for (const physics::Body& b : bodies) total += b.volume_m3;
     for (const physics::Body& b : bodies)
@@ -46,9 +50,11 @@ ScenePrior::ScenePrior(const ContactGraph& graph, std::span<const physics::Body>
     for (const Carrying& c : graph.carryings) add_carrying(c);
     for (const physics::TouchingPair& pair : graph.pairs) add_touching(pair);
     between_.resize(bodies.size());
-    for (const auto& [pair, seam] : seams.between) {
+    std::map<std::pair<std::int32_t, std::int32_t>, Seam> between = seams.between;
+    for (const physics::TouchingPair& pair : graph.pairs) between.try_emplace({pair.a, pair.b});
+    for (const auto& [pair, seam] : between) {
         between_[static_cast<std::size_t>(pair.first)].push_back(
-            {pair.second, seam, seams.flushness(pair.first, pair.second)});
+            {pair.second, seam, joinery_.made_as_one(pair.first, pair.second)});
     }
 }
 
@@ -60,7 +66,7 @@ void ScenePrior::add_carrying(const Carrying& c) {
     const double section = graph_.section_m2[static_cast<std::size_t>(c.supporter)];
     carriers_[static_cast<std::size_t>(c.supported)].push_back(
         {c.supporter,
-         lost_freedom(section, c.area_m2) * (1 - seams_.flushness(c.supporter, c.supported))});
+         lost_freedom(section, c.area_m2) * (1 - joinery_.made_as_one(c.supporter, c.supported))});
     loads_[static_cast<std::size_t>(c.supporter)].push_back(c.supported);
 }
 
@@ -72,7 +78,7 @@ void ScenePrior::add_touching(const physics::TouchingPair& pair) {
                              : std::abs(pair.normal[1]) > 0.5 ? 1
                                                               : 2;
     const double of_a = graph_.silhouette_m2[a][axis], of_b = graph_.silhouette_m2[b][axis];
-    const double solid = 1 - seams_.flushness(pair.a, pair.b);
+    const double solid = 1 - joinery_.made_as_one(pair.a, pair.b);
     if (ground_[a] || ground_[b]) {
         const double lost = lost_freedom(ground_[a] ? of_b : of_a, pair.area_m2);
         carriers_[ground_[a] ? b : a].push_back(
@@ -93,7 +99,7 @@ double ScenePrior::lost_between(std::int32_t a, std::int32_t b) const {
 }
 
 double ScenePrior::operator()(const Group& group) const {
-    double share = 0, lost = 0, flush = 0, variation = 0;
+    double share = 0, lost = 0, one = 0, variation = 0;
     std::uint64_t pairs = 0;
     const auto add = [&](const Seam& s) {
         variation += s.variation;
@@ -106,7 +112,7 @@ double ScenePrior::operator()(const Group& group) const {
         for (const Neighbour& neighbour : between_[i]) {
             if (!has(group, neighbour.other)) continue;
             add(neighbour.seam);
-            flush += neighbour.flushness;
+            one += neighbour.made_as_one;
         }
         for (const Joint& carrier : carriers_[i]) {
             if (has(group, carrier.other)) lost += carrier.lost;
@@ -115,7 +121,7 @@ double ScenePrior::operator()(const Group& group) const {
     const double complexity = pairs ? variation / static_cast<double>(pairs) : 0;
     return weights_.size * std::pow(share, weights_.size_exponent) +
            weights_.complexity * complexity + weights_.freedom * (lost + held_at_sides(group)) -
-           weights_.flush * flush;
+           weights_.made_as_one * one;
 }
 
 double ScenePrior::held_at_sides(const Group& group) const {

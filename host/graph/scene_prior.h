@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "graph/contact_graph.h"
+#include "graph/joinery.h"
 #include "graph/surface_seams.h"
 #include "graph/swendsen_wang.h"
 #include "physics/bodies.h"
@@ -22,13 +23,13 @@ namespace topple::graph {
 //       cup to a table top costs much, gluing a table top to its leg nothing. The same for touching
 //       a wall, by the thing's own face there. What hangs on others only by joints at its sides
 //       loses as much as the strongest of them is weak, by the mean of the two faces. Parts
-//       that are flush have no freedom to lose.
-//   f4  (ours) minus the flushness of its pairs of primitives: parts in line were made as one.
+//       that were made as one have no freedom to lose.
+//   f4  (ours) minus how surely its pairs of primitives were made as one, see Joinery.
 class ScenePrior {
   public:
     struct Weights {
         double size = 0.1, complexity = 0.1, freedom = 0.7;  // lambda 1 to 3 of the paper
-        double flush = 0.3;
+        double made_as_one = 0.3;
         double size_exponent = 2;
     };
     ScenePrior(const ContactGraph& graph, std::span<const physics::Body> bodies,
@@ -50,17 +51,18 @@ class ScenePrior {
 
     const ContactGraph& graph_;
     const SurfaceSeams& seams_;
+    Joinery joinery_;
     const std::vector<bool>& ground_;
     Weights weights_;
     std::vector<double> volume_share_;
     // By primitive: what carries it, and the shell beside it; and what touches its side.
     std::vector<std::vector<Joint>> carriers_, sides_;
     std::vector<std::vector<std::int32_t>> loads_;  // by primitive: what it carries
-    // By the lower primitive of each pair with a common seam.
+    // By the lower primitive of each pair that touches or has a common seam.
     struct Neighbour {
         std::int32_t other;
         Seam seam;
-        double flushness;
+        double made_as_one;
     };
     std::vector<std::vector<Neighbour>> between_;
 };
