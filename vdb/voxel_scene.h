@@ -101,6 +101,12 @@ class VoxelScene {
     };
     std::uint64_t fill(device::Device& device, const FillOptions& options);
 
+    // Ends filled solids at the surface on which they are seen to stand: rays pass from a box into
+    // the table top that it hides, and take that for more of the box. What lies below goes to the
+    // primitive stood on, or beside it to a leg; `hollow` as in fill(). Returns voxels that changed
+    // hands.
+    std::uint64_t settle(const std::vector<bool>& hollow);
+
     // Joins neighbouring primitives through what no frame saw: gaps of up to `longest_gap`
     // invisible voxels along an axis between two primitives are completed, each voxel by the nearer
     // of the two. Legs meet their table top where the edge above hides it. A gap with a voxel that

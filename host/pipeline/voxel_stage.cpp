@@ -115,6 +115,7 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
                                      s == geometry::Structure::ceiling);
         }
         out.scene->fill(device, options);
+        out.scene->settle(options.hollow);
         out.scene->bridge(hidden_gap_voxels, options.hollow);
         out.scene->relabel(
             keep_primitives(geometry, solids(*out.scene, geometry.primitives.model.size())));
