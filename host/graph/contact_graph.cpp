@@ -191,6 +191,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
                                  std::int32_t primitives, unsigned gap) {
     ContactGraph graph;
     graph.primitives = primitives;
+    graph.voxel_m = cells.voxel_m;
     const auto count = static_cast<std::size_t>(primitives);
     graph.silhouette_m2.assign(count, {0, 0, 0});
     graph.clearances.resize(count);

@@ -34,6 +34,7 @@ struct Clearance {
 
 struct ContactGraph {
     std::int32_t primitives = 0;
+    double voxel_m = 0;
     std::vector<physics::TouchingPair> pairs;          // sorted by (a, b)
     std::vector<Carrying> carryings;                   // sorted by (supported, supporter)
     std::vector<std::array<double, 3>> silhouette_m2;  // by primitive: area seen along x, y, z
