@@ -107,6 +107,11 @@ class VoxelScene {
     // hands.
     std::uint64_t settle(const std::vector<bool>& hollow);
 
+    // Slender parts (up to 10 cm) whose upper end nobody saw go on, through at most 60 cm of what
+    // nobody saw, to the wider thing above them: legs under a seat. `hollow` as in fill(). Returns
+    // voxels completed.
+    std::uint64_t extend(const std::vector<bool>& hollow);
+
     // Joins neighbouring primitives through what no frame saw: gaps of up to `longest_gap`
     // invisible voxels along an axis between two primitives are completed, each voxel by the nearer
     // of the two. Legs meet their table top where the edge above hides it. A gap with a voxel that

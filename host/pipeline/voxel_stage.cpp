@@ -116,6 +116,7 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
         }
         out.scene->fill(device, options);
         out.scene->settle(options.hollow);
+        out.scene->extend(options.hollow);
         out.scene->bridge(hidden_gap_voxels, options.hollow);
         out.scene->relabel(
             keep_primitives(geometry, solids(*out.scene, geometry.primitives.model.size())));
