@@ -162,9 +162,12 @@ void add_hidden_carryings(const std::vector<std::vector<Underside>>& undersides,
 
 // What is seen to hang must be held by something near it, although the scan shows a gap: the back
 // of a cabinet is never seen, nor is what holds a screen.
+// hidden: columns of air between two primitives (a, b), a < b, that nobody has seen into.
 void add_hidden_joints(device::Device& device, const SolidCells& cells, std::int32_t primitives,
+                       const std::map<std::pair<std::int32_t, std::int32_t>, std::uint64_t>& hidden,
                        ContactGraph& graph) {
     constexpr double longest_m = 0.08;
+    constexpr double least_hidden = 0.3;  // of the columns between the two
     std::vector<bool> hangs(static_cast<std::size_t>(primitives), false);
     for (std::int32_t p = 0; p < primitives; ++p)
         hangs[static_cast<std::size_t>(p)] = graph.carriers_of(p).empty();
@@ -173,7 +176,15 @@ void add_hidden_joints(device::Device& device, const SolidCells& cells, std::int
              device, cells, primitives, static_cast<unsigned>(longest_m / cells.voxel_m))) {
         if (!hangs[static_cast<std::size_t>(pair.a)] && !hangs[static_cast<std::size_t>(pair.b)])
             continue;
-        if (!std::ranges::binary_search(graph.pairs, ends(pair), {}, ends)) joints.push_back(pair);
+        if (std::ranges::binary_search(graph.pairs, ends(pair), {}, ends)) continue;
+        if (std::abs(pair.normal[2]) > 0.5) {
+            // Air that was seen is no joint.
+            const auto at = hidden.find(ends(pair));
+            const double columns = std::max(pair.faces[4], pair.faces[5]);
+            if (at == hidden.end() || static_cast<double>(at->second) < least_hidden * columns)
+                continue;
+        }
+        joints.push_back(pair);
     }
     graph.pairs.insert(graph.pairs.end(), joints.begin(), joints.end());
     std::ranges::sort(graph.pairs, {}, ends);
@@ -206,6 +217,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     const double h = cells.voxel_m;
     std::map<std::pair<std::int32_t, std::int32_t>, Columns> carried;  // (supported, supporter)
     std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, std::uint64_t> gaps;
+    std::map<std::pair<std::int32_t, std::int32_t>, std::uint64_t> hidden;
     std::vector<std::vector<Underside>> undersides(count);
     std::vector<Extent> extents(count);
     for (std::size_t n = 0; n < cells.size(); ++n) {
@@ -229,6 +241,8 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         if (lower == upper) continue;
         const std::int32_t empty = cells.k[n] - cells.k[n - 1] - 1;
         ++gaps[{upper, lower, empty}];
+        if (cells.unseen_below.empty() || cells.unseen_below[n] >= empty)
+            ++hidden[std::minmax(upper, lower)];
         if (empty > static_cast<std::int32_t>(gap)) continue;
         Columns& columns = carried[{upper, lower}];
         ++columns.count;
@@ -254,7 +268,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
             {supporter, supported, area * h * h, height, physics::convex_polygon(columns.corners)});
     }
     add_hidden_carryings(undersides, extents, h, graph);
-    add_hidden_joints(device, cells, primitives, graph);
+    add_hidden_joints(device, cells, primitives, hidden, graph);
     for (const auto& [key, columns] : gaps) {
         const auto& [upper, lower, empty] = key;
         graph.clearances[static_cast<std::size_t>(upper)].push_back(
