@@ -52,6 +52,10 @@ struct Opening {
 
 std::vector<Vec3> vertices_of(const SupportTable::Rows& rows, const Candidate& candidate) {
     std::vector<Vec3> all;
+    std::size_t count = 0;
+    for (const std::int32_t p : candidate.primitives)
+        count += rows.vertices[static_cast<std::size_t>(p)].size();
+    all.reserve(count);
     for (const std::int32_t p : candidate.primitives) {
         const auto at = static_cast<std::size_t>(p);
         Vec3 offset{};

@@ -1,24 +1,26 @@
 // SPDX-License-Identifier: MIT
 #include "physics/basins.h"
 
+#include <bit>
 #include <limits>
 #include <numeric>
 
 namespace topple::physics {
 namespace {
 
-// Follows every descent to its end; the minima as they are met by rising number.
+// Follows every descent to its end, by steps that double; the ends by rising number.
 std::vector<std::uint32_t> follow(std::span<std::uint32_t> down) {
+    for (std::uint32_t changed = 1; changed != 0;) {
+        changed = 0;
+        for (std::uint32_t& to : down) {
+            const std::uint32_t next = down[to];
+            changed |= next ^ to;
+            to = next;
+        }
+    }
     std::vector<std::uint32_t> minima;
     for (std::uint32_t v = 0; v < down.size(); ++v) {
-        std::uint32_t end = v;
-        while (down[end] != end) end = down[end];
-        if (end == v) minima.push_back(v);
-        for (std::uint32_t w = v; w != end;) {
-            const std::uint32_t next = down[w];
-            down[w] = end;
-            w = next;
-        }
+        if (down[v] == v) minima.push_back(v);
     }
     return minima;
 }
@@ -30,9 +32,11 @@ struct Saddle {
 
 std::vector<Saddle> saddles(std::span<const float> height, const SphereMesh& mesh,
                             std::span<const std::uint32_t> basin_of, std::size_t basins) {
+    // Basins hang together, so that on a sphere fewer than three pairs for each of them can meet: a
+    // hash table of eight has room.
     constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> table(std::bit_ceil(8 * basins), none);
     std::vector<Saddle> all;
-    std::vector<std::uint32_t> first(basins, none), next;  // saddles of each a
     for (std::uint32_t v = 0; v < basin_of.size(); ++v) {
         const std::uint32_t a = basin_of[v];
         const auto around = std::span(mesh.neighbour).subspan(std::size_t{v} * 6, 6);
@@ -43,14 +47,17 @@ std::vector<Saddle> saddles(std::span<const float> height, const SphereMesh& mes
             const std::uint32_t b = basin_of[w];
             if (b <= a) continue;
             const float over = std::max(height[v], height[w]);
-            std::uint32_t s = first[a];
-            while (s != none && all[s].b != b) s = next[s];
-            if (s != none) {
+            std::size_t slot = (a * 0x9E3779B1U + b * 0x85EBCA77U) >> 7;
+            for (;; ++slot) {
+                std::uint32_t& s = table[slot &= table.size() - 1];
+                if (s == none) {
+                    s = static_cast<std::uint32_t>(all.size());
+                    all.push_back({over, a, b});
+                } else if (all[s].a != a || all[s].b != b) {
+                    continue;
+                }
                 all[s].height = std::min(all[s].height, over);
-            } else {
-                next.push_back(first[a]);
-                first[a] = static_cast<std::uint32_t>(all.size());
-                all.push_back({over, a, b});
+                break;
             }
         }
     }

@@ -13,6 +13,28 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+// visit(v . direction, v) for all vertices that can be the lowest, to `rounding`, in a direction
+// that is at most `radius` radians away: that turn gains v on the one that is lowest now by no more
+// than their distance times the turn's chord.
+template <typename Visit>
+void for_lowest(std::span<const Vec3> vertices, const Vec3& direction, double radius,
+                double rounding, const Visit& visit) {
+    const Vec3* lowest = nullptr;
+    double low = infinity;
+    for (const Vec3& v : vertices) {
+        const double height = dot(v, direction);
+        if (height >= low) continue;
+        low = height;
+        lowest = &v;
+    }
+    const double chord = 2 * std::sin(radius / 2) * (1 + 1e-9);
+    for (const Vec3& v : vertices) {
+        const double height = dot(v, direction), above = height - low - rounding;
+        const Vec3 apart = minus(v, *lowest);
+        if (above <= 0 || above * above <= chord * chord * dot(apart, apart)) visit(height, v);
+    }
+}
+
 // The pose in which the centre of mass (the origin) stands above an edge, if it can.
 struct Balance {
     double height_m = 0;
@@ -63,22 +85,14 @@ std::optional<PosePass> search(const PosePass& found, std::span<const Vec3> vert
     // At most `keep` of the lowest vertices: the edge's ends are among them for all but the
     // roundest.
     constexpr std::size_t keep = 192;
-    double reach = 0, lowest = infinity;
-    for (const Vec3& v : vertices) {
-        reach = std::max(reach, dot(v, v));
-        lowest = std::min(lowest, dot(v, found.direction));
-    }
-    const double band =
-        lowest + 2 * std::sqrt(reach) * std::sin(std::min(radius, std::numbers::pi / 2));
-    std::vector<std::pair<double, std::uint32_t>> low;
-    for (std::size_t n = 0; n < vertices.size(); ++n) {
-        const double height = dot(vertices[n], found.direction);
-        if (height <= band) low.emplace_back(height, static_cast<std::uint32_t>(n));
-    }
-    std::sort(low.begin(), low.end());
+    std::vector<std::pair<double, Vec3>> low;
+    for_lowest(vertices, found.direction, radius, rounding,
+               [&](double height, const Vec3& v) { low.emplace_back(height, v); });
+    std::stable_sort(low.begin(), low.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     low.resize(std::min(keep, low.size()));
     std::vector<Vec3> near;
-    for (const auto& [height, n] : low) near.push_back(vertices[n]);
+    for (const auto& [height, v] : low) near.push_back(v);
     struct Edge {
         double height_m = 0;
         std::uint32_t p = 0, q = 0;
@@ -203,17 +217,9 @@ std::optional<PosePass> refine_pass(const PosePass& found, std::span<const Vec3>
 }
 
 double refine_minimum(const Vec3& direction, std::span<const Vec3> vertices, double spacing) {
-    // Only what lies low enough can become the lowest within reach.
-    double low = infinity, reach = 0;
-    for (const Vec3& v : vertices) {
-        low = std::min(low, dot(v, direction));
-        reach = std::max(reach, dot(v, v));
-    }
-    const double band = low + 4 * spacing * std::sqrt(reach);
+    const double radius = 2 * spacing;
     std::vector<Vec3> near;
-    for (const Vec3& v : vertices) {
-        if (dot(v, direction) <= band) near.push_back(v);
-    }
+    for_lowest(vertices, direction, radius, 0, [&](double, const Vec3& v) { near.push_back(v); });
     // The height along d, or some height that is no less than `enough`. The vertex that sufficed
     // comes first the next time: it is likely to do so again.
     const auto height = [&](const Vec3& d, double enough) {
@@ -243,7 +249,7 @@ double refine_minimum(const Vec3& direction, std::span<const Vec3> vertices, dou
         cosine[k] = std::cos(angle);
         sine[k] = std::sin(angle);
     }
-    const double least_turn = std::cos(2 * spacing);
+    const double least_turn = std::cos(radius);
     for (double step = spacing; step > spacing / 100; step /= 2) {
         for (int moves = 0; moves < 4; ++moves) {
             Vec3 better = at;
