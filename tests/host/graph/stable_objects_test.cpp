@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "graph/joinery.h"
 #include "host/physics/solids.h"
 #include "kernels/device_harness.h"
 
@@ -168,6 +169,64 @@ TEST_P(Objects, AHiddenFootStandsAndASeenGapHangs) {
     ASSERT_EQ(standing.carriers_of(thing).size(), 1u);
     EXPECT_EQ(standing.carriers_of(thing)[0].supporter, 0);
     EXPECT_NEAR(standing.carriers_of(thing)[0].area_m2, 0.04, 1e-9);
+}
+
+// Neither of two trestles holds the plank alone, nor does the box beside them; and a book lies on
+// a table that would hold it without the other book.
+TEST_P(Objects, WhatCarriesTogetherWasMadeAsOne) {
+    Scene scene;
+    const auto left = scene.add(box({-0.5, -0.1, 0}, {-0.4, 0.1, 0.4}));
+    const auto right = scene.add(box({0.4, -0.1, 0}, {0.5, 0.1, 0.4}));
+    const auto plank = scene.add(box({-0.5, -0.1, 0.4}, {0.5, 0.1, 0.44}));
+    const auto cup = scene.add(cylinder(0, 0, 0.04, 0.44, 0.54));
+    const ContactGraph graph = contacts(scene);
+    const std::vector<double> density(static_cast<std::size_t>(scene.count), 700);
+    const auto bodies = physics::mass_properties(*device, scene.cells, scene.count, density);
+    const Joinery joinery(graph, bodies, scene.seams, {true, false, false, false, false});
+    EXPECT_EQ(joinery.made_as_one(left, plank), 1);
+    EXPECT_EQ(joinery.made_as_one(plank, right), 1);
+    EXPECT_EQ(joinery.made_as_one(plank, cup), 0);
+    EXPECT_EQ(joinery.made_as_one(left, right), 0);
+    EXPECT_EQ(joinery.made_as_one(0, left), 0);
+}
+
+// A sofa's arm covers the side of its seat; a box that barely reaches beside it does not, nor does
+// the shell of the room, which furniture is pushed against.
+TEST_P(Objects, SidesMateWhereOneCoversTheOther) {
+    Scene scene;
+    const auto seat = scene.add(box({-0.4, -0.3, 0}, {0.4, 0.3, 0.4}));
+    const auto arm = scene.add(box({0.4, -0.3, 0}, {0.56, 0.3, 0.6}));
+    const auto beside = scene.add(box({-0.6, 0.2, 0}, {-0.4, 0.5, 0.2}));
+    const auto mat = scene.add(box({-0.2, -0.2, 0.4}, {0.2, 0.2, 0.42}));
+    const ContactGraph graph = contacts(scene);
+    const std::vector<double> density(static_cast<std::size_t>(scene.count), 700);
+    const auto bodies = physics::mass_properties(*device, scene.cells, scene.count, density);
+    const std::vector<bool> ground{true, false, false, false, false};
+    const Joinery joinery(graph, bodies, scene.seams, ground);
+    EXPECT_EQ(joinery.made_as_one(seat, arm), 1);
+    EXPECT_EQ(joinery.made_as_one(seat, beside), 0);
+    EXPECT_EQ(joinery.made_as_one(seat, mat), 0);
+    const std::vector<bool> shell{true, false, true, false, false};
+    EXPECT_EQ(Joinery(graph, bodies, scene.seams, shell).made_as_one(seat, arm), 0);
+}
+
+// A screen above its table is not fixed to it through air that was seen.
+TEST_P(Objects, AirThatWasSeenIsNoHiddenJoint) {
+    Scene scene;
+    const auto table = scene.add(box({-0.4, -0.3, 0}, {0.4, 0.3, 0.4}));
+    const auto screen = scene.add(box({-0.2, -0.02, 0.46}, {0.2, 0.02, 0.7}));
+    scene.voxelise();
+    const auto joined = [&] {
+        return std::ranges::any_of(contacts(scene).pairs, [&](const physics::TouchingPair& p) {
+            return p.a == table && p.b == screen;
+        });
+    };
+    scene.cells.unseen_below.assign(scene.cells.size(), 0);
+    EXPECT_FALSE(joined());
+    for (std::size_t n = 0; n < scene.cells.size(); ++n)
+        if (scene.cells.primitive[n] == screen && scene.cells.k[n] == 23)
+            scene.cells.unseen_below[n] = 3;
+    EXPECT_TRUE(joined());
 }
 
 }  // namespace
