@@ -11,6 +11,7 @@
 #include "topple/error.h"
 #include "vdb/depth_pyramid.h"
 #include "vdb/grids.h"
+#include "vdb/view_leaves.h"
 
 // Visibility carving: what the frames say about leaves, then about the voxels of mixed ones.
 namespace topple::vdb {
@@ -86,19 +87,20 @@ class Carver {
 
     void carve(std::span<const DepthFrame> frames) {
         upload(frames);
-        std::vector<std::uint64_t> leaves;
-        for (std::uint64_t next = 0; next < g_.leaves.size();) {
-            leaves.clear();
-            for (; next < g_.leaves.size() && leaves.size() < leaf_chunk; ++next) {
-                if (g_.evidence.kind[next] != Evidence::Kind::empty) leaves.push_back(next);
-            }
-            classify(leaves);
+        std::vector<std::uint64_t> leaves = leaves_in_view(g_.leaves, cones_, params_);
+        std::erase_if(leaves, [&](std::uint64_t leaf) {
+            return g_.evidence.kind[leaf] == Evidence::Kind::empty;
+        });
+        for (std::size_t first = 0; first < leaves.size(); first += leaf_chunk) {
+            classify(std::span(leaves).subspan(
+                first, std::min<std::size_t>(leaf_chunk, leaves.size() - first)));
         }
     }
 
   private:
     void upload(std::span<const DepthFrame> frames);
-    void classify(const std::vector<std::uint64_t>& leaves);
+    double deepest(std::span<const std::uint32_t> pyramid) const;
+    void classify(std::span<const std::uint64_t> leaves);
     void count(std::span<const std::uint64_t> leaves,
                const std::vector<std::vector<std::uint32_t>>& mixed);
     void judge(std::uint64_t leaf, std::span<const std::uint32_t> evidence);
@@ -117,7 +119,17 @@ class Carver {
     std::uint64_t words_;
     kernels::CarveParams params_{};
     std::vector<Batch> batches_;
+    std::vector<ViewCone> cones_;  // of all batches' frames
 };
+
+// How deep a frame sees, from the word that holds the least and largest of all its readings.
+double Carver::deepest(std::span<const std::uint32_t> pyramid) const {
+    const std::uint32_t high = pyramid.back() >> 16;
+    if (high == 0) return -1;
+    const double depth = high * double{params_.metres_per_unit};
+    const double far = std::max(depth - params_.noise_from_m, 0.0);
+    return depth + params_.margin_m + params_.noise_base_m + params_.noise_growth * far * far;
+}
 
 void Carver::upload(std::span<const DepthFrame> frames) {
     const std::uint64_t fit = device_.info().limits.max_binding_bytes / (words_ * 4);
@@ -126,6 +138,7 @@ void Carver::upload(std::span<const DepthFrame> frames) {
     std::vector<std::uint32_t> words;
     std::vector<float> rows;
     batches_.clear();
+    cones_.clear();
     for (std::size_t first = 0; first < frames.size(); first += step) {
         const auto some = frames.subspan(first, std::min<std::size_t>(step, frames.size() - first));
         words.resize(some.size() * words_);
@@ -135,6 +148,7 @@ void Carver::upload(std::span<const DepthFrame> frames) {
             const auto camera =
                 camera_rows(g_.frame, g_.leaves.reference(), intrinsics_, some[n].camera_to_world);
             rows.insert(rows.end(), camera.begin(), camera.end());
+            cones_.push_back({camera, deepest({words.data() + n * words_, words_})});
         }
         batches_.push_back({static_cast<std::uint32_t>(some.size()),
                             {device_, std::span<const float>(rows), "cameras"},
@@ -156,8 +170,7 @@ std::array<device::Buffer<std::int32_t>, 3> Carver::origins(
     return buffers;
 }
 
-void Carver::classify(const std::vector<std::uint64_t>& leaves) {
-    if (leaves.empty()) return;
+void Carver::classify(std::span<const std::uint64_t> leaves) {
     const auto origin = origins(leaves);
     std::vector<std::uint32_t> holds(leaves.size());
     for (std::size_t n = 0; n < leaves.size(); ++n) holds[n] = has_points(leaves[n]);
