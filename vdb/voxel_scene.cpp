@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/scene_bounds.h"
 #include "topple/error.h"
 #include "vdb/grids.h"
 
@@ -74,44 +75,16 @@ Placed place(const VoxelFrame& frame, const PointCloud& cloud) {
     return placed;
 }
 
-// Box of leaves between two voxels, inclusive, with a margin of two voxels for noise.
-LeafTable box_of(const std::array<std::int32_t, 3>& low, const std::array<std::int32_t, 3>& high,
-                 std::int32_t margin) {
-    LeafTable table;
+// The leaves of the scene's bounds, with a margin of two voxels for noise.
+LeafTable box_of(const VoxelFrame& frame, const std::array<std::vector<std::int32_t>, 3>& index) {
+    constexpr std::int32_t margin = 2, leaf = 8;
+    const Bounds<std::int32_t> bounds =
+        scene_bounds<std::int32_t>({index[0], index[1], index[2]}, leaf);
+    LeafTable chosen;
     for (int a = 0; a < 3; ++a) {
-        table.low[a] = (low[a] - margin) >> 3;
-        table.count[a] = ((high[a] + margin) >> 3) - table.low[a] + 1;
+        chosen.low[a] = (bounds.low[a] - margin) >> 3;
+        chosen.count[a] = ((bounds.high[a] + margin) >> 3) - chosen.low[a] + 1;
     }
-    return table;
-}
-
-// Bounds of all samples, or, where that is much more space than the bounds of 99.8 % of them per
-// axis, the latter with a twentieth added on each side.
-LeafTable bounds_of(const VoxelFrame& frame,
-                    const std::array<std::vector<std::int32_t>, 3>& index) {
-    std::array<std::int32_t, 3> low, high, inner_low, inner_high;
-    const std::size_t n = index[0].size(), cut = n < 100 ? 0 : std::max<std::size_t>(1, n / 1000);
-    std::int32_t widest = 0;
-    for (int a = 0; a < 3; ++a) {
-        std::vector<std::int32_t> sorted = index[a];
-        const auto [first, last] = std::minmax_element(sorted.begin(), sorted.end());
-        low[a] = *first;
-        high[a] = *last;
-        std::nth_element(sorted.begin(), sorted.begin() + cut, sorted.end());
-        inner_low[a] = sorted[cut];
-        std::nth_element(sorted.begin(), sorted.end() - 1 - cut, sorted.end());
-        inner_high[a] = sorted[n - 1 - cut];
-        widest = std::max(widest, inner_high[a] - inner_low[a]);
-    }
-    const LeafTable all = box_of(low, high, 2);
-    LeafTable inner = box_of(inner_low, inner_high, 2 + widest / 20);
-    for (int a = 0; a < 3; ++a) {  // never larger than all
-        const std::int32_t end = std::min(inner.low[a] + inner.count[a], all.low[a] + all.count[a]);
-        inner.low[a] = std::max(inner.low[a], all.low[a]);
-        inner.count[a] = end - inner.low[a];
-    }
-    const bool strays = all.box_size() / 4 > inner.box_size();
-    const LeafTable& chosen = strays ? inner : all;
     if (chosen.box_size() > max_leaves) {
         const double scale =
             std::cbrt(static_cast<double>(chosen.box_size()) / static_cast<double>(max_leaves));
@@ -181,7 +154,7 @@ VoxelScene::VoxelScene(const VoxelFrame& frame, const PointCloud& cloud,
         labels.push_back(std::max(label[n], -1));
     }
     if (labels.empty()) return;
-    g.leaves = bounds_of(frame, index);
+    g.leaves = box_of(frame, index);
 
     std::array<std::int32_t, 3> corner;
     for (int a = 0; a < 3; ++a) {
@@ -202,6 +175,7 @@ VoxelScene::VoxelScene(const VoxelFrame& frame, const PointCloud& cloud,
     StateLeaf* primitive = nullptr;
     openvdb::MaskTree::LeafNodeType* points = nullptr;
     std::uint64_t leaf_key = ~std::uint64_t{0};
+    bool stray = false;
     for (std::size_t first = 0; first < samples.size();) {
         std::size_t end = first;
         while (end < samples.size() && samples[end].key == samples[first].key) ++end;
@@ -211,14 +185,15 @@ VoxelScene::VoxelScene(const VoxelFrame& frame, const PointCloud& cloud,
                 static_cast<std::int32_t>(leaf_key >> 36) + (corner[0] >> 3),
                 static_cast<std::int32_t>(leaf_key >> 18 & 0x3ffff) + (corner[1] >> 3),
                 static_cast<std::int32_t>(leaf_key & 0x3ffff) + (corner[2] >> 3)};
-            if (!g.leaves.in_box(leaf)) g.leaves.beyond.push_back(leaf);
+            stray = !g.leaves.in_box(leaf);
+            if (stray) g.leaves.beyond.push_back(leaf);
             state = g.state->tree().touchLeaf(origin_of(leaf));
             primitive = g.primitive->tree().touchLeaf(origin_of(leaf));
             points = g.points.touchLeaf(origin_of(leaf));
         }
         const auto offset = static_cast<openvdb::Index>(samples[first].key & 511);
         state->setValueOn(offset, static_cast<std::int32_t>(State::surface));
-        primitive->setValueOn(offset, majority({samples.data() + first, end - first}));
+        primitive->setValueOn(offset, stray ? -1 : majority({samples.data() + first, end - first}));
         points->setValueOn(offset);
         first = end;
     }
@@ -232,6 +207,9 @@ const VoxelFrame& VoxelScene::frame() const {
 }
 std::uint64_t VoxelScene::unplaced_points() const {
     return grids_->unplaced;
+}
+bool VoxelScene::in_bounds(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    return grids_->leaves.in_box({i >> 3, j >> 3, k >> 3});
 }
 std::array<std::int32_t, 3> VoxelScene::lowest() const {
     return grids_->lowest;

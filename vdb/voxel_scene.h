@@ -63,9 +63,9 @@ class VoxelScene {
     // surface). A voxel takes the label that most of its labelled points have, the lowest of
     // equals. The scene's bounds are those of its points; where few stray points lie far from all
     // others, the bounds leave them out (0.1 % per side), and only their own leaves exist out
-    // there. Throws Error(usage) for a frame that is no rotation, a voxel size that is not
-    // positive, or labels that don't match the points; Error(input) where the bounds hold more
-    // leaves than memory allows.
+    // there, which belong to no primitive. Throws Error(usage) for a frame that is no rotation, a
+    // voxel size that is not positive, or labels that don't match the points; Error(input) where
+    // the bounds hold more leaves than memory allows.
     VoxelScene(const VoxelFrame& frame, const PointCloud& cloud,
                std::span<const std::int32_t> label);
     ~VoxelScene();
@@ -75,6 +75,9 @@ class VoxelScene {
 
     // Points that no voxel index can reach: further than 2^20 voxels from the points' median.
     std::uint64_t unplaced_points() const;
+
+    // Whether a voxel lies within the scene's bounds, rounded outwards to whole leaves.
+    bool in_bounds(std::int32_t i, std::int32_t j, std::int32_t k) const;
 
     // Visibility carving (paper, 2.2.2; kernels carve_leaves, carve): voxels in front of a depth
     // reading become empty, those that no frame saw stay invisible. May be called for as many

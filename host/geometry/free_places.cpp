@@ -6,6 +6,8 @@
 #include <deque>
 #include <limits>
 
+#include "core/scene_bounds.h"
+
 namespace topple::geometry {
 namespace {
 
@@ -45,14 +47,10 @@ void FreePlaces::occupy(const Surfels& s) {
     const std::array<const std::vector<float>*, 3> p{&s.x, &s.y, &s.z};
     Vec3 extent{};
     for (std::size_t a = 0; a < 3; ++a) {
-        std::vector<float> sorted = *p[a];
-        const std::size_t cut = sorted.size() / 1000;
-        const auto low = sorted.begin() + static_cast<std::ptrdiff_t>(cut);
-        const auto high = sorted.end() - 1 - static_cast<std::ptrdiff_t>(cut);
-        std::nth_element(sorted.begin(), low, sorted.end());
-        low_[a] = *low;
-        std::nth_element(sorted.begin(), high, sorted.end());
-        extent[a] = *high - low_[a];
+        std::vector<float> values = *p[a];
+        const auto [low, high] = inner_range(values);
+        low_[a] = low;
+        extent[a] = high - low_[a];
     }
     const double longest = *std::max_element(extent.begin(), extent.end());
     cell_m_ = std::max(cells_per_surfel * s.cell_m, longest / most_cells);

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/scene_bounds.h"
 #include "geometry/split.h"
 
 namespace topple::geometry {
@@ -38,14 +39,11 @@ FreeSpace::FreeSpace(const Surfels& s, const PointCloud& cloud, std::span<const 
             lowest = std::min(lowest, viewpoint_of_point[i]);
         }
     }
-    Eigen::Vector3d high = position(s, 0);
-    low_ = high;
-    for (std::size_t i = 0; i < s.size(); ++i) {
-        low_ = low_.cwiseMin(position(s, i));
-        high = high.cwiseMax(position(s, i));
-    }
-    const Eigen::Vector3d extent = high - low_;
     cell_m_ = surfels_per_cell * s.cell_m;
+    const Bounds<float> bounds = scene_bounds<float>({s.x, s.y, s.z}, static_cast<float>(cell_m_));
+    low_ = {bounds.low[0], bounds.low[1], bounds.low[2]};
+    const Eigen::Vector3d extent =
+        Eigen::Vector3d(bounds.high[0], bounds.high[1], bounds.high[2]) - low_;
     const auto cells = [&] {
         double all = 1;
         for (int a = 0; a < 3; ++a) all *= std::floor(extent[a] / cell_m_) + 1;
@@ -55,11 +53,14 @@ FreeSpace::FreeSpace(const Surfels& s, const PointCloud& cloud, std::span<const 
     for (int a = 0; a < 3; ++a)
         size_[static_cast<std::size_t>(a)] = static_cast<std::int64_t>(extent[a] / cell_m_) + 1;
     cell_.assign(static_cast<std::size_t>(cells()), 0);
+    const auto is_stray = [&](std::size_t i) { return !bounds.contains(s.x[i], s.y[i], s.z[i]); };
     for (std::size_t i = 0; i < s.size(); ++i)
-        cell_[static_cast<std::size_t>(index(in_cells(position(s, i))))] = occupied;
+        if (!is_stray(i))
+            cell_[static_cast<std::size_t>(index(in_cells(position(s, i))))] = occupied;
     const std::size_t step = s.size() / most_lines + 1;
     threads.each((s.size() + step - 1) / step, 256, [&](std::size_t line) {
         const std::size_t i = line * step;
+        if (is_stray(i)) return;
         const Vec3& eye = viewpoints[seen_from[i]];
         cross({eye[0], eye[1], eye[2]}, position(s, i));
     });

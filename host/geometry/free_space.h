@@ -22,6 +22,7 @@ class FreeSpace {
 
     // One line of sight for each surfel, of a fixed sample where there are many. Cells with surfels
     // are not free, and a line through one of them tells nothing: viewpoints may be estimates.
+    // Strays far from all others are left out, which keeps the cells small.
     // Arguments as for make_surfels; no viewpoints: nothing is known.
     FreeSpace(const Surfels& surfels, const PointCloud& cloud, std::span<const Vec3> viewpoints,
               std::span<const std::uint32_t> viewpoint_of_point, device::ThreadPool& threads);

@@ -18,6 +18,11 @@ constexpr double nearer = 0.9;
 // Flying points and thin things at their edges; clouds of several views have ten times as many.
 constexpr double most_hidden = 0.003;
 constexpr double least_facing = 0.9;
+// A surface goes through the eye where this many points lie within as many spacings of it: that is
+// the corner or the middle of a floor that someone chose for the origin, and seen edge-on it hides
+// nothing. One stray alone may lie there.
+constexpr std::size_t most_at_eye = 3;
+constexpr double at_eye_spacings = 5;
 // A sensor with a limited view sees all but stray points within this angle of its axis.
 constexpr double view_cos = 0.5, view_share = 0.98;
 // The axis along which it looks is a frame's own axis, give or take this angle.
@@ -116,6 +121,15 @@ bool normals_face(const PointCloud& cloud, const Vec3& eye) {
     return static_cast<double>(facing) >= least_facing * static_cast<double>(cloud.nx.size());
 }
 
+bool surface_at(const PointCloud& cloud, const Vec3& eye, double spacing_m) {
+    const double reach = at_eye_spacings * spacing_m;
+    std::size_t near = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        near += std::hypot(cloud.x[i] - eye[0], cloud.y[i] - eye[1], cloud.z[i] - eye[2]) <= reach;
+    }
+    return near > most_at_eye;
+}
+
 std::optional<Vec3> customary_up(const RangeGrid& grid) {
     Vec3 sum{};
     double total = 0;
@@ -143,8 +157,11 @@ std::optional<Vec3> customary_up(const RangeGrid& grid) {
 
 }  // namespace
 
-std::optional<SingleScan> find_single_scan(const PointCloud& cloud, const Vec3& eye) {
-    if (cloud.size() < least_points || !normals_face(cloud, eye)) return {};
+std::optional<SingleScan> find_single_scan(const PointCloud& cloud, const Vec3& eye,
+                                           double spacing_m) {
+    if (cloud.size() < least_points || !normals_face(cloud, eye) ||
+        surface_at(cloud, eye, spacing_m))
+        return {};
     const Directions directions = directions_of(cloud, eye);
     const auto count = static_cast<double>(directions.size());
     // Coarse cells first, of sixteen points each even if the view goes all around: the area that

@@ -14,10 +14,12 @@ struct SingleScan {
     std::optional<Vec3> up;  // the sensor's, by the custom of the axes that it looks along
 };
 
-// Whether one sensor at `eye` may have taken the whole cloud: hardly a point then lies hidden
-// behind others, and normals, where there are any, face it. Up follows custom: of a limited view
+// Whether one sensor at `eye` may have taken the whole cloud, whose points are `spacing_m` apart:
+// hardly a point then lies hidden behind others, none lies where the sensor stood, and normals,
+// where there are any, face it. Up follows custom: of a limited view
 // along z it is -y (cameras), along -z it is y (graphics), along x it is z (robots); a view all
 // around tells nothing. Empty where the cloud must be of several views, or is too small to tell.
-std::optional<SingleScan> find_single_scan(const PointCloud& cloud, const Vec3& eye);
+std::optional<SingleScan> find_single_scan(const PointCloud& cloud, const Vec3& eye,
+                                           double spacing_m);
 
 }  // namespace topple::geometry

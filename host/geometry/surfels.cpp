@@ -72,6 +72,10 @@ CellPacking packing_of(const PointCloud& cloud, const Axes& p, double cell_m,
     return {lowest, highest};
 }
 
+// Sums of places in a cell are integers, so that they do not depend on the order of the points: a
+// cell's edge counts as this much. Enough for 2^33 points.
+constexpr double cell_steps = 0x1p32;
+
 // The cells of the points and their moments.
 CellGrid bin(const PointCloud& cloud, double cell_m, device::ThreadPool& threads,
              std::vector<std::uint32_t>& of_point, std::vector<float>& count) {
@@ -94,23 +98,28 @@ CellGrid bin(const PointCloud& cloud, double cell_m, device::ThreadPool& threads
         const auto points = cells.group(cell);
         const std::array<std::int64_t, 3> at{index(cloud.x[points[0]]), index(cloud.y[points[0]]),
                                              index(cloud.z[points[0]])};
-        std::array<double, 3> first{};
-        std::array<double, 6> second{};
+        std::array<std::int64_t, 3> sum{};
+        std::array<std::int64_t, 6> products{};
+        const auto steps = [](double v) { return static_cast<std::int64_t>(v * cell_steps); };
         for (const std::uint32_t i : points) {
             of_point[i] = static_cast<std::uint32_t>(cell);
             std::array<double, 3> d{};
             for (std::size_t a = 0; a < 3; ++a) {
                 d[a] = (*p[a])[i] / cell_m - (static_cast<double>(at[a]) + 0.5);
-                first[a] += d[a];
-                second[a] += d[a] * d[a];
+                sum[a] += steps(d[a]);
+                products[a] += steps(d[a] * d[a]);
             }
-            second[3] += d[0] * d[1];
-            second[4] += d[0] * d[2];
-            second[5] += d[1] * d[2];
+            products[3] += steps(d[0] * d[1]);
+            products[4] += steps(d[0] * d[2]);
+            products[5] += steps(d[1] * d[2]);
         }
         const double size = static_cast<double>(points.size());
-        for (double& v : first) v /= size;
-        for (double& v : second) v /= size;
+        std::array<double, 3> first{};
+        std::array<double, 6> second{};
+        for (std::size_t a = 0; a < 3; ++a)
+            first[a] = static_cast<double>(sum[a]) / cell_steps / size;
+        for (std::size_t a = 0; a < 6; ++a)
+            second[a] = static_cast<double>(products[a]) / cell_steps / size;
         grid.x[cell] = static_cast<std::int32_t>(at[0]);
         grid.y[cell] = static_cast<std::int32_t>(at[1]);
         grid.z[cell] = static_cast<std::int32_t>(at[2]);
@@ -234,30 +243,6 @@ Surfels make_surfels(device::Device& device, const PointCloud& cloud, double cel
     fill_from_coarser(device, grid, s);
     orient(s, towards);
     return s;
-}
-
-double point_spacing(const PointCloud& cloud) {
-    const std::size_t n = cloud.size();
-    if (n < 2) return 0;
-    // Brute force over a fixed sample: the clouds that come here have at most some 10^7 points.
-    const std::size_t samples = std::clamp<std::size_t>(200'000'000 / n, 64, 512);
-    std::vector<float> nearest;
-    for (std::size_t k = 0; k < std::min(samples, n); ++k) {
-        const std::size_t i = k * n / std::min(samples, n);
-        const float x = cloud.x[i], y = cloud.y[i], z = cloud.z[i];
-        float best = std::numeric_limits<float>::max();
-        for (std::size_t j = 0; j < n; ++j) {
-            const float dx = cloud.x[j] - x, dy = cloud.y[j] - y, dz = cloud.z[j] - z;
-            const float d = dx * dx + dy * dy + dz * dz;
-            // Stored twice is not a spacing.
-            best = d > 0 && d < best ? d : best;
-        }
-        if (best < std::numeric_limits<float>::max()) nearest.push_back(best);
-    }
-    if (nearest.empty()) return 0;
-    const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
-    std::nth_element(nearest.begin(), middle, nearest.end());
-    return std::sqrt(static_cast<double>(*middle));
 }
 
 }  // namespace topple::geometry

@@ -38,7 +38,9 @@ Surfels make_surfels(device::Device& device, const PointCloud& cloud, double cel
                      std::span<const Vec3> viewpoints,
                      std::span<const std::uint32_t> viewpoint_of_point);
 
-// Typical distance of a point to its nearest neighbour, metres: the median over a fixed sample.
+// Typical distance of a point to its nearest neighbour, metres: the median over a sample of places,
+// but no less than what joins three quarters of the surface, where most points lie on little of it.
+// 0 where there are fewer than two places. The points' order and repetitions play no part.
 double point_spacing(const PointCloud& cloud);
 
 }  // namespace topple::geometry

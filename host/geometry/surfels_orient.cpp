@@ -79,9 +79,10 @@ Orientation sensor_side(const Surfels& s, const PointCloud& cloud, std::span<con
     Orientation result;
     const bool stored = viewpoints.empty() && !cloud.nx.empty();
     if (viewpoints.empty() && !stored) return result;
-    for (auto& axis : result.towards) axis.assign(s.size(), 0.0f);
-    // The directions in parallel, their sums in the order of the points; block by block, since all
-    // of them would take as much memory as the cloud.
+    for (auto& axis : result.towards) axis.assign(s.size(), 0.0);
+    // The directions in parallel, their sums after that; block by block, since all of them would
+    // take as much memory as the cloud. Sums of up to 2^33 multiples of 2^-20 are exact.
+    constexpr double steps = 0x1p20;
     constexpr std::size_t block = 1 << 16;
     std::vector<std::array<float, 3>> unit(std::min(block, cloud.size()));
     for (std::size_t begin = 0; begin < cloud.size(); begin += block) {
@@ -99,7 +100,8 @@ Orientation sensor_side(const Surfels& s, const PointCloud& cloud, std::span<con
             const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
             const bool known = length > 0 && std::isfinite(length);
             for (std::size_t a = 0; a < 3; ++a)
-                unit[k][a] = known ? static_cast<float>(d[a] / length) : 0.0f;
+                unit[k][a] =
+                    known ? static_cast<float>(std::round(d[a] / length * steps) / steps) : 0.0f;
         });
         for (std::size_t k = 0; k < size; ++k) {
             const std::uint32_t at = s.of_point[begin + k];

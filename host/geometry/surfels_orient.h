@@ -12,9 +12,10 @@
 namespace topple::geometry {
 
 // Which side of each surfel the sensor was on: the sum of unit directions from the surfel's points
-// to their sensors, or of the stored normals; empty where neither is known.
+// to their sensors, or of the stored normals; empty where neither is known. The directions are
+// rounded so that their sums are exact, whatever the order of the points.
 struct Orientation {
-    std::array<std::vector<float>, 3> towards;
+    std::array<std::vector<double>, 3> towards;
 };
 Orientation sensor_side(const Surfels& surfels, const PointCloud& cloud,
                         std::span<const Vec3> viewpoints,

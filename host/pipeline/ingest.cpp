@@ -228,7 +228,7 @@ Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptio
         return out;
     }
     const auto scan = geometry::find_single_scan(
-        out.cloud, out.cloud.has_viewpoint ? out.cloud.viewpoint : Vec3{0, 0, 0});
+        out.cloud, out.cloud.has_viewpoint ? out.cloud.viewpoint : Vec3{0, 0, 0}, spacing);
     look_from_free_places(device, scan, out);
     return out;
 }

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "core/scene_bounds.h"
 #include "device/device.h"
 #include "pipeline/assemble.h"
 #include "pipeline/geometry_stage.h"
@@ -44,12 +45,10 @@ std::string size_text(std::uint64_t bytes) {
 // What the stages after ingest will hold at their peak, bytes: measured at about 400 per point
 // (cloud, surfels, regions, output) and 40 per voxel of the scene's box.
 std::uint64_t estimated_bytes(const PointCloud& cloud, double voxel_m) {
+    const Bounds<float> bounds =
+        scene_bounds<float>({cloud.x, cloud.y, cloud.z}, static_cast<float>(voxel_m));
     double box = 1;
-    for (const auto* axis : {&cloud.x, &cloud.y, &cloud.z}) {
-        float low = INFINITY, high = -INFINITY;
-        for (const float v : *axis) low = std::min(low, v), high = std::max(high, v);
-        box *= (high - low) / voxel_m + 16;
-    }
+    for (std::size_t a = 0; a < 3; ++a) box *= (bounds.high[a] - bounds.low[a]) / voxel_m + 16;
     return static_cast<std::uint64_t>(400.0 * static_cast<double>(cloud.size()) + 40.0 * box);
 }
 

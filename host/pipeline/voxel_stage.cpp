@@ -121,13 +121,16 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
         out.scene->relabel(
             keep_primitives(geometry, solids(*out.scene, geometry.primitives.model.size())));
     });
-    vdb::SolidCellArrays solid = out.scene->solid_cells();
+    const vdb::SolidCellArrays solid = out.scene->solid_cells();
     out.cells.voxel_m = voxel_m;
-    for (const vdb::State s : solid.state) out.cells.surface.push_back(s == vdb::State::surface);
-    out.cells.i = std::move(solid.i);
-    out.cells.j = std::move(solid.j);
-    out.cells.k = std::move(solid.k);
-    out.cells.primitive = std::move(solid.primitive);
+    for (std::size_t n = 0; n < solid.size(); ++n) {
+        if (!out.scene->in_bounds(solid.i[n], solid.j[n], solid.k[n])) continue;
+        out.cells.i.push_back(solid.i[n]);
+        out.cells.j.push_back(solid.j[n]);
+        out.cells.k.push_back(solid.k[n]);
+        out.cells.primitive.push_back(solid.primitive[n]);
+        out.cells.surface.push_back(solid.state[n] == vdb::State::surface);
+    }
     out.cells.unseen_below = unseen_below(*out.scene, out.cells, geometry.structure);
     return out;
 }

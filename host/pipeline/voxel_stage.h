@@ -16,7 +16,7 @@ namespace topple {
 
 struct VoxelStage {
     std::shared_ptr<vdb::VoxelScene> scene;
-    physics::SolidCells cells;
+    physics::SolidCells cells;  // within the scene's bounds: strays are no body, and in no way
 };
 
 // A solid has at least the volume of a cube of three voxels; less is a scrap that noise left, and

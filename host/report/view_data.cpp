@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "core/scene_bounds.h"
 #include "report/cells.h"
 
 namespace topple::report {
@@ -127,23 +128,37 @@ class Packer {
         return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
     }
 
+    // Whether a place is drawn: strays far from all others would leave the rest no steps.
+    bool drawn(const Vec3& p) const {
+        return finite(p) && bounds_.contains(static_cast<float>(p[0]), static_cast<float>(p[1]),
+                                             static_cast<float>(p[2]));
+    }
+
     // The box of all that is drawn, and how it divides into 65,535 steps.
     void measure() {
-        Box all;
-        for (std::size_t i = 0; i < scene_.solid.x.size(); ++i) {
-            if (const auto p = place(scene_.solid, i); finite(p)) {
-                solid_box_.add(p);
-                if (scene_.solid.object[i] >= 0) ++voxels_of_object_[scene_.solid.object[i]];
-                all.add(p);
+        std::array<std::vector<float>, 3> at;
+        const auto add = [&](const auto& cloud) {
+            for (std::size_t i = 0; i < cloud.x.size(); ++i) {
+                const auto p = place(cloud, i);
+                if (!finite(p)) continue;
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                    at[axis].push_back(static_cast<float>(p[axis]));
             }
-        }
-        for (std::size_t i = 0; i < scene_.points.x.size(); ++i) {
-            if (const auto p = place(scene_.points, i); finite(p)) all.add(p);
-        }
-        if (all.empty()) all.add({0, 0, 0});
-        view_.origin_m = all.low;
+        };
+        add(scene_.solid);
+        add(scene_.points);
+        if (at[0].empty()) at[0] = at[1] = at[2] = {0};
+        bounds_ = scene_bounds<float>({at[0], at[1], at[2]}, 0.01f);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            view_.step_m[axis] = std::max(all.high[axis] - all.low[axis], 1e-3) / 65535;
+            view_.origin_m[axis] = bounds_.low[axis];
+            view_.step_m[axis] =
+                std::max(double{bounds_.high[axis]} - bounds_.low[axis], 1e-3) / 65535;
+        }
+        for (std::size_t i = 0; i < scene_.solid.x.size(); ++i) {
+            const auto p = place(scene_.solid, i);
+            if (!drawn(p)) continue;
+            solid_box_.add(p);
+            if (scene_.solid.object[i] >= 0) ++voxels_of_object_[scene_.solid.object[i]];
         }
     }
 
@@ -176,7 +191,7 @@ class Packer {
         std::vector<std::uint64_t> size_of_owner;
         for (std::size_t i = 0; i < solid.x.size(); ++i) {
             const auto p = place(solid, i);
-            if (!finite(p)) continue;
+            if (!drawn(p)) continue;
             Cell cell;
             cell.index = index_of(p, edge);
             cell.group = groups_.of(solid.primitive[i], solid.object[i]);
@@ -211,7 +226,7 @@ class Packer {
             lattice_shift_ = 0.5 / merge;
             CellTable table(scene_.solid.x.size());
             auto cells = cells_of(edge, table);
-            // A scene that a few strays stretch is not coarsened without end.
+            // A scene of things far apart is not coarsened without end.
             if (mark_exposed(cells, table) > limits_.voxels && merge < 64) continue;
             add_normals(cells, table, edge);
             write_cells(cells, edge);
@@ -265,7 +280,7 @@ class Packer {
             if (draw * static_cast<double>(out.total) >= static_cast<double>(limits_.points))
                 continue;
             const auto p = place(points, i);
-            if (!finite(p)) continue;
+            if (!drawn(p)) continue;
             out.cell.push_back(quantised(p, groups_.of(points.primitive[i], points.object[i])));
             Vec3 n{};
             if (!points.nx.empty())
@@ -318,6 +333,7 @@ class Packer {
     Groups groups_;
     std::set<std::int32_t> grounded_;
     std::map<std::int32_t, std::uint64_t> voxels_of_object_;
+    Bounds<float> bounds_;
     Box solid_box_;
     double lattice_shift_ = 0.5;
 };

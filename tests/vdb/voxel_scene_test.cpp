@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "device/device.h"
 #include "kernels/device_harness.h"
 #include "oracle/random_depth.h"
 #include "oracle/six_fill_oracle.h"
@@ -226,6 +227,34 @@ TEST_P(Scenes, EmptyCloudOnePointOnePlane) {
     EXPECT_EQ(sheet.solid_cells().size(), 2500u);
 }
 
+// A scene ten times as long with the same views: the same leaves go to the device.
+TEST_P(Scenes, LeavesThatNoRayReachesCostNothing) {
+    const Intrinsics k{64, 48, 50, 50, 31.5, 23.5, 1000};
+    DepthFrame frame;
+    frame.depth.assign(std::size_t{64} * 48, 2000);  // a wall two metres ahead
+    frame.camera_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    const auto carved = [&](int end) {
+        std::vector<Vec3> points;
+        for (int x = -40; x < end; ++x)
+            for (int y = -40; y < 40; ++y)
+                for (const double z : {0.025, 2.025})
+                    points.push_back({x * 0.05 + 0.025, y * 0.05 + 0.025, z});
+        VoxelScene scene({.voxel_m = 0.05}, cloud_of(points),
+                         std::vector<std::int32_t>(points.size(), 0));
+        const device::Counters before = device->counters();
+        scene.carve(*device, k, {&frame, 1});
+        const device::Counters& after = device->counters();
+        EXPECT_EQ(scene.state_at(0, 0, 20), State::empty);
+        EXPECT_EQ(scene.state_at(38, 0, 20), State::invisible);
+        return std::array{
+            after.dispatches - before.dispatches, after.bytes_written - before.bytes_written,
+            after.bytes_read - before.bytes_read, after.bytes_bound - before.bytes_bound};
+    };
+    const auto once = carved(40), tenfold = carved(760);
+    EXPECT_GT(once[0], 0u);
+    EXPECT_EQ(once, tenfold);
+}
+
 TEST_P(Scenes, BadFramesAreRefused) {
     VoxelScene scene({}, cloud_of({{0, 0, 1}}), std::vector<std::int32_t>{0});
     const Intrinsics k{8, 8, 8, 8, 3.5, 3.5, 1000};
@@ -266,6 +295,12 @@ TEST(VoxelScene, StrayPointsNeitherFillMemoryNorVanish) {
     points.push_back({1e30, 0, 0});        // beyond what an index can hold
     VoxelScene scene({}, cloud_of(points), std::vector<std::int32_t>(points.size(), 0));
     EXPECT_EQ(scene.state_at(250000, -150000, 10000), State::surface);
+    EXPECT_TRUE(scene.in_bounds(25, 25, 25));
+    EXPECT_FALSE(scene.in_bounds(250000, -150000, 10000));
+    const auto solid = scene.solid_cells();
+    ASSERT_EQ(solid.i.back(), 250000);
+    EXPECT_EQ(solid.primitive.back(), -1);
+    EXPECT_EQ(solid.primitive.front(), 0);
     EXPECT_EQ(scene.unplaced_points(), 1u);
     EXPECT_LT(scene.tiles(true).size(), 2000u);
     auto device = device::open_device("native");

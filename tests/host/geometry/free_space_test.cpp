@@ -64,6 +64,20 @@ TEST(FreeSpace, LinesThroughASurfaceTellNothing) {
     EXPECT_FALSE(free.at({0, 0, 0.5}));
 }
 
+TEST(FreeSpace, AStrayFarAwayDoesNotCoarsenIt) {
+    Builder scene;
+    scene.face({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0);
+    scene.face({1, -1, 0}, {0, 0, 1.5}, {0, 2, 0}, 1);
+    const Vec3 eye{0, 0, 2};
+    device::ThreadPool threads(2);
+    const FreeSpace before(scene.surfels(), cloud_of(scene), {&eye, 1}, {}, threads);
+    for (const double side : {-1, 1}) scene.point({side * 6000, 7000, side * 5000}, {0, 0, 1}, 2);
+    const FreeSpace free(scene.surfels(), cloud_of(scene), {&eye, 1}, {}, threads);
+    EXPECT_EQ(free.cell_m(), before.cell_m());
+    EXPECT_TRUE(free.at({0, 0, 0.9}));
+    EXPECT_FALSE(free.at({0, 0, 0}));
+}
+
 TEST(FreeSpace, TheOrderOfPointsAndTheirViewpointsDoesNotMatter) {
     Builder scene;
     scene.face({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0);

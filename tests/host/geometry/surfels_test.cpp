@@ -121,6 +121,10 @@ TEST_F(SurfelsTest, FieldsAreConsistentAndOrderFree) {
     EXPECT_EQ(a.cx, b.cx);
     EXPECT_EQ(a.cy, b.cy);
     EXPECT_EQ(a.cz, b.cz);
+    EXPECT_EQ(a.x, b.x);
+    EXPECT_EQ(a.nx, b.nx);
+    EXPECT_EQ(a.roughness_m, b.roughness_m);
+    EXPECT_EQ(point_spacing(cloud), point_spacing(reversed));
     double points = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
         points += a.weight[i];
@@ -139,6 +143,27 @@ TEST_F(SurfelsTest, FieldsAreConsistentAndOrderFree) {
         }
     }
     EXPECT_EQ(points, static_cast<double>(cloud.size()));
+}
+
+// Rows and columns a centimetre apart: that is the spacing, also where points repeat, where a
+// corner has three quarters of the points, and where strays surround the plane.
+TEST(PointSpacing, IsThatOfTheSurface) {
+    PointCloud plane;
+    for (int i = 0; i < 150; ++i)
+        for (int j = 0; j < 150; ++j) add(plane, 0.01 * i, 0.01 * j, 1);
+    EXPECT_NEAR(point_spacing(plane), 0.01, 1e-5);
+    PointCloud repeated = plane, dense = plane, strays = plane;
+    for (int n = 0; n < 10'000; ++n) add(repeated, 0.5, 0.5, 1);
+    EXPECT_NEAR(point_spacing(repeated), 0.01, 1e-5);
+    for (int i = 0; i < 250; ++i)
+        for (int j = 0; j < 250; ++j) add(dense, -0.5 + 0.002 * i, 0.002 * j, 1);
+    EXPECT_GT(point_spacing(dense),
+              0.0035);  // most of a centimetre's cells then still hold a point
+    EXPECT_LT(point_spacing(dense), 0.011);
+    Random random(6);
+    for (int n = 0; n < 200; ++n)
+        add(strays, 20 * random.uniform(), 20 * random.uniform(), 20 * random.uniform());
+    EXPECT_NEAR(point_spacing(strays), 0.01, 1e-5);
 }
 
 TEST_F(SurfelsTest, OddInputs) {

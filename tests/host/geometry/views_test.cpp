@@ -34,18 +34,36 @@ PointCloud scan() {
 
 TEST(SingleScan, IsFoundByWhatItHides) {
     const PointCloud cloud = scan();
-    const auto found = find_single_scan(cloud, {0, 0, 0});
+    const auto found = find_single_scan(cloud, {0, 0, 0}, 0.008);
     ASSERT_TRUE(found);
     EXPECT_NEAR(found->spacing, 1 / 250.0, 0.001);
     ASSERT_TRUE(found->up);
     EXPECT_EQ(*found->up, (Vec3{0, -1, 0}));
-    EXPECT_FALSE(find_single_scan(cloud, {0.6, 0, 0}));  // the ball hides the wall it did not
-    PointCloud away = cloud;                             // normals that face away from the origin
+    EXPECT_FALSE(
+        find_single_scan(cloud, {0.6, 0, 0}, 0.008));  // the ball hides the wall it did not
+    PointCloud away = cloud;                           // normals that face away from the origin
     away.nx.assign(cloud.size(), 0);
     away.ny.assign(cloud.size(), 0);
     away.nz.assign(cloud.size(), 1);
-    EXPECT_FALSE(find_single_scan(away, {0, 0, 0}));
-    EXPECT_FALSE(find_single_scan({}, {0, 0, 0}));
+    EXPECT_FALSE(find_single_scan(away, {0, 0, 0}, 0.008));
+    EXPECT_FALSE(find_single_scan({}, {0, 0, 0}, 0.008));
+}
+
+// A plane through the origin is seen edge-on from there: it hides nothing, and nobody took it so.
+TEST(SingleScan, IsNotTakenFromWithinASurface) {
+    PointCloud corner;
+    for (int i = 1; i < 100; ++i) {
+        for (int j = 1; j < 100; ++j) {
+            add(corner, {i * 0.02, j * 0.02, 0});
+            add(corner, {i * 0.02, 0, j * 0.02});
+            add(corner, {0, i * 0.02, j * 0.02});
+        }
+    }
+    EXPECT_FALSE(find_single_scan(corner, {0, 0, 0}, 0.02));
+    EXPECT_TRUE(find_single_scan(corner, {1, 1, 1}, 0.02));
+    PointCloud dust = scan();
+    add(dust, {0.001, 0, 0.002});
+    EXPECT_TRUE(find_single_scan(dust, {0, 0, 0}, 0.008));
 }
 
 class Views : public ::testing::Test {

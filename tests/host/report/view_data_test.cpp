@@ -68,6 +68,22 @@ TEST(ViewData, only_voxels_with_an_exposed_face) {
     EXPECT_EQ(faces, 6 * 25);
 }
 
+TEST(ViewData, strays_leave_the_rest_its_steps) {
+    Scene scene = cube_of(12, 0.02);
+    for (const float far : {1e4f, -2e4f}) {
+        scene.solid.x.push_back(far);
+        scene.solid.y.push_back(1);
+        scene.solid.z.push_back(far);
+        scene.solid.primitive.push_back(-1);
+        scene.solid.object.push_back(-1);
+        scene.solid.state.push_back(0);
+    }
+    const auto view = pack_view(scene);
+    EXPECT_EQ(view.voxels.total, 12u * 12 * 12 + 2);
+    EXPECT_EQ(view.voxels.cell.size(), 12u * 12 * 12 - 10 * 10 * 10);
+    for (const double step : view.step_m) EXPECT_LT(step, 1e-4);
+}
+
 TEST(ViewData, places_are_right_to_a_sixty_thousandth) {
     const auto scene = test::SyntheticScene(0.05).make();
     const auto view = pack_view(scene);

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "core/random.h"
+#include "geometry/surfels.h"
+
+// The resolution of a cloud.
+namespace topple::geometry {
+namespace {
+
+// Where most points lie on little of the surface, a dense wall or what stands next to the sensor,
+// their spacing would tear up all else. So it is no less than this share of the distance to the
+// fourth place around, of that part of the surface; random points are as near to the next as that.
+constexpr std::size_t around = 4;
+constexpr double around_share = 0.38, surface_part = 0.75;
+// Blocks that surface is counted in: as many spacings wide, and with no fewer points.
+constexpr double area_spacings = 40;
+constexpr std::size_t least_in_block = 6;
+
+// A well mixed number of a place, the same whatever the place's number in the cloud.
+std::uint64_t hash_of(std::int64_t x, std::int64_t y, std::int64_t z) {
+    const auto mixed = [](std::uint64_t seed, std::int64_t v) {
+        return Random(seed ^ static_cast<std::uint64_t>(v)).bits();
+    };
+    return mixed(mixed(mixed(0, x), y), z);
+}
+std::uint64_t place_hash(const PointCloud& cloud, std::size_t i) {
+    const auto bits = [](float v) { return std::int64_t{std::bit_cast<std::int32_t>(v + 0.0f)}; };
+    return hash_of(bits(cloud.x[i]), bits(cloud.y[i]), bits(cloud.z[i]));
+}
+
+// Points at that many different places, evenly over the points: those of the lowest hashes.
+std::vector<std::size_t> sample_places(const PointCloud& cloud, std::size_t samples) {
+    std::map<std::uint64_t, std::size_t> lowest;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const std::uint64_t hash = place_hash(cloud, i);
+        if (lowest.size() == samples && hash >= lowest.rbegin()->first) continue;
+        lowest.emplace(hash, i);
+        if (lowest.size() > samples) lowest.erase(std::prev(lowest.end()));
+    }
+    std::vector<std::size_t> out;
+    for (const auto& [hash, point] : lowest) out.push_back(point);
+    return out;
+}
+
+// Points of that many different blocks of space, evenly over the surface that was scanned: of each
+// block the point with the lowest hash. Blocks of a few points are strays.
+std::vector<std::size_t> sample_area(const PointCloud& cloud, std::size_t samples, double block_m) {
+    struct Block {
+        std::uint64_t lowest;
+        std::size_t point, count;
+    };
+    constexpr std::size_t tried = 4;  // times as many, to leave enough without the strays
+    std::map<std::uint64_t, Block> blocks;
+    const auto index = [&](float v) { return static_cast<std::int64_t>(std::floor(v / block_m)); };
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const std::uint64_t block =
+            hash_of(index(cloud.x[i]), index(cloud.y[i]), index(cloud.z[i]));
+        if (blocks.size() == tried * samples && block > blocks.rbegin()->first) continue;
+        const std::uint64_t place = place_hash(cloud, i);
+        Block& b = blocks.try_emplace(block, Block{place, i, 0}).first->second;
+        ++b.count;
+        if (place < b.lowest) b.lowest = place, b.point = i;
+        if (blocks.size() > tried * samples) blocks.erase(std::prev(blocks.end()));
+    }
+    std::vector<std::size_t> out;
+    for (const auto& [hash, b] : blocks) {
+        if (b.count >= least_in_block && out.size() < samples) out.push_back(b.point);
+    }
+    return out;
+}
+
+// How far it is from a point to the n-th of the other places around it, n <= `around`, squared;
+// infinite where there are fewer. A place counts once, however often it is stored.
+float distance_around(const PointCloud& cloud, std::size_t point, std::size_t n) {
+    struct Place {
+        float distance = std::numeric_limits<float>::infinity();
+        std::size_t point = 0;
+    };
+    std::array<Place, around> nearest{};
+    const auto same = [&](std::size_t a, std::size_t b) {
+        return cloud.x[a] == cloud.x[b] && cloud.y[a] == cloud.y[b] && cloud.z[a] == cloud.z[b];
+    };
+    const float x = cloud.x[point], y = cloud.y[point], z = cloud.z[point];
+    Place& last = nearest[n - 1];
+    for (std::size_t j = 0; j < cloud.size(); ++j) {
+        const float dx = cloud.x[j] - x, dy = cloud.y[j] - y, dz = cloud.z[j] - z;
+        const float d = dx * dx + dy * dy + dz * dz;
+        if (!(d < last.distance && d > 0)) continue;
+        const auto end = nearest.begin() + static_cast<std::ptrdiff_t>(n);
+        if (std::any_of(nearest.begin(), end,
+                        [&](const Place& p) { return p.distance == d && same(p.point, j); }))
+            continue;
+        last = {d, j};
+        for (auto at = end - 1; at != nearest.begin() && at->distance < (at - 1)->distance; --at)
+            std::swap(*at, *(at - 1));
+    }
+    return last.distance;
+}
+
+// The distance to the n-th place around that this share of the points has at most; 0 where none has
+// so many.
+double spacing_of(const PointCloud& cloud, const std::vector<std::size_t>& points, std::size_t n,
+                  double share) {
+    std::vector<float> distances;
+    for (const std::size_t i : points) {
+        const float d = distance_around(cloud, i, n);
+        if (std::isfinite(d)) distances.push_back(d);
+    }
+    if (distances.empty()) return 0;
+    const auto at = distances.begin() +
+                    static_cast<std::ptrdiff_t>(share * static_cast<double>(distances.size() - 1));
+    std::nth_element(distances.begin(), at, distances.end());
+    return std::sqrt(static_cast<double>(*at));
+}
+
+}  // namespace
+
+double point_spacing(const PointCloud& cloud) {
+    const std::size_t n = cloud.size();
+    if (n < 2) return 0;
+    // Brute force over a sample: the clouds that come here have at most some 10^7 points.
+    const std::size_t samples = std::clamp<std::size_t>(100'000'000 / n, 64, 256);
+    const double of_points = spacing_of(cloud, sample_places(cloud, samples), 1, 0.5);
+    if (of_points <= 0) return 0;
+    const double of_area = spacing_of(cloud, sample_area(cloud, samples, area_spacings * of_points),
+                                      around, surface_part);
+    return std::max(of_points, around_share * of_area);
+}
+
+}  // namespace topple::geometry
