@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "graph/contact_graph.h"
@@ -18,12 +20,14 @@ namespace topple::graph {
 //       the same for every partition; above 1 it prefers smaller objects.
 //   f2  mean of 1 - n.n' over neighbouring surface elements of the group, across its primitives
 //       too.
-//   f3  lost freedom: for each pair of its primitives of which one carries the other, how small the
-//       contact is beside the mean level section of the carrier, on a logarithmic scale. Gluing a
-//       cup to a table top costs much, gluing a table top to its leg nothing. The same for touching
-//       a wall, by the thing's own face there. What hangs on others only by joints at its sides
-//       loses as much as the strongest of them is weak, by the mean of the two faces. Parts
-//       that were made as one have no freedom to lose.
+//   f3  lost freedom. A joint by which one primitive carries the other takes the more, the smaller
+//       its area is beside the mean level section of the carrier, on a logarithmic scale: gluing a
+//       cup to a table top costs much, gluing a table top to its leg nothing. For joints at sides
+//       it is the mean of the two faces, for touching a wall the thing's own face there. Parts that
+//       were made as one have no freedom to lose. n primitives are held together by n - 1 joints;
+//       the group pays for those that take least (its minimum spanning tree), since others have
+//       nothing left to take. Joints with the shell all count: furniture stands in a room without
+//       being fixed to it, whatever it touches.
 //   f4  (ours) minus how surely its pairs of primitives were made as one, see Joinery.
 class ScenePrior {
   public:
@@ -41,13 +45,15 @@ class ScenePrior {
     double lost_between(std::int32_t a, std::int32_t b) const;
 
   private:
+    // A joint from one end, with its place among all joints by rising loss.
     struct Joint {
         std::int32_t other;
-        double lost;
+        std::uint32_t rank;
     };
-    void add_carrying(const Carrying& carrying);
-    void add_touching(const physics::TouchingPair& pair);
-    double held_at_sides(const Group& group) const;
+    void find_joints(const ContactGraph& graph);
+    double lost_by_carrying(const Carrying& carrying) const;
+    double lost_by_touching(const physics::TouchingPair& pair) const;
+    double lost_freedom(const Group& group) const;
 
     const ContactGraph& graph_;
     const SurfaceSeams& seams_;
@@ -55,9 +61,13 @@ class ScenePrior {
     const std::vector<bool>& ground_;
     Weights weights_;
     std::vector<double> volume_share_;
-    // By primitive: what carries it, and the shell beside it; and what touches its side.
-    std::vector<std::vector<Joint>> carriers_, sides_;
-    std::vector<std::vector<std::int32_t>> loads_;  // by primitive: what it carries
+    std::map<std::pair<std::int32_t, std::int32_t>, double> lost_;  // (a, b), a < b
+    struct RankedJoint {
+        double lost;
+        std::int32_t a, b;
+    };
+    std::vector<RankedJoint> by_rank_;
+    std::vector<std::vector<Joint>> joints_;  // by the lower primitive
     // By the lower primitive of each pair that touches or has a common seam.
     struct Neighbour {
         std::int32_t other;
