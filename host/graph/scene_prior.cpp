@@ -86,7 +86,7 @@ double ScenePrior::lost_by_touching(const physics::TouchingPair& pair) const {
     const double of_a = graph_.silhouette_m2[a][axis], of_b = graph_.silhouette_m2[b][axis];
     const double solid = 1 - joinery_.made_as_one(pair.a, pair.b);
     if (!ground_[a] && !ground_[b])
-        return freedom_lost(std::sqrt(of_a * of_b), pair.area_m2) * solid;
+        return (freedom_lost(of_a, pair.area_m2) + freedom_lost(of_b, pair.area_m2)) * solid;
     const double lost = freedom_lost(ground_[a] ? of_b : of_a, pair.area_m2);
     return (beside_shell + (1 - beside_shell) * lost) * solid;
 }
