@@ -25,6 +25,9 @@ double freedom_lost(double face_m2, double joint_m2) {
 // would take.
 constexpr double beside_shell = 0.5;
 
+// A cube of four voxels; less says little about what it is.
+constexpr std::uint64_t least_voxels = 64;
+
 }  // namespace
 
 ScenePrior::ScenePrior(const ContactGraph& graph, std::span<const physics::Body> bodies,
@@ -39,6 +42,7 @@ ScenePrior::ScenePrior(const ContactGraph& graph, std::span<const physics::Body>
     for (const physics::Body& b : bodies) total += b.volume_m3;
     for (const physics::Body& b : bodies)
         volume_share_.push_back(total > 0 ? b.volume_m3 / total : 0);
+    for (const physics::Body& b : bodies) scrap_.push_back(b.voxels < least_voxels);
     find_joints(graph);
     between_.resize(bodies.size());
     std::map<std::pair<std::int32_t, std::int32_t>, Seam> between = seams.between;
@@ -135,20 +139,39 @@ double ScenePrior::lost_freedom(const Group& group) const {
         while (root[at] != at) at = root[at] = root[root[at]];
         return at;
     };
+    const auto is_shell = [&](std::int32_t n) { return ground_[static_cast<std::size_t>(n)]; };
+    std::vector<bool> hung(group.size());  // scraps that have their joint
     double sum = 0;
+    std::size_t parts = static_cast<std::size_t>(
+        std::ranges::count_if(group, [&](std::int32_t n) { return !is_shell(n); }));
+    const bool shell = parts < group.size();
     for (const std::uint32_t rank : ranks) {
         const RankedJoint& joint = by_rank_[rank];
-        if (ground_[static_cast<std::size_t>(joint.a)] ||
-            ground_[static_cast<std::size_t>(joint.b)]) {
+        if (is_shell(joint.a) || is_shell(joint.b)) {
             sum += joint.lost;
             continue;
         }
         const std::size_t a = root_of(joint.a), b = root_of(joint.b);
-        if (a == b) continue;
+        if (a == b || !hang(joint, group, hung)) continue;
         root[std::max(a, b)] = std::min(a, b);
         sum += joint.lost;
+        --parts;
     }
-    return sum;
+    // Parts that only scraps, or nothing, would join lose all their freedom.
+    return shell || parts == 0 ? sum : sum + static_cast<double>(parts - 1);
+}
+
+// Takes note of the scraps at a joint; false where one of them has its only joint already.
+bool ScenePrior::hang(const RankedJoint& joint, const Group& group, std::vector<bool>& hung) const {
+    std::vector<std::size_t> scraps;
+    for (const std::int32_t n : {joint.a, joint.b}) {
+        if (scrap_[static_cast<std::size_t>(n)])
+            scraps.push_back(
+                static_cast<std::size_t>(std::ranges::lower_bound(group, n) - group.begin()));
+    }
+    if (std::ranges::any_of(scraps, [&](std::size_t at) { return hung[at]; })) return false;
+    for (const std::size_t at : scraps) hung[at] = true;
+    return true;
 }
 
 }  // namespace topple::graph

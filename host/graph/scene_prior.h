@@ -26,8 +26,9 @@ namespace topple::graph {
 //       it is the mean of the two faces, for touching a wall the thing's own face there. Parts that
 //       were made as one have no freedom to lose. n primitives are held together by n - 1 joints;
 //       the group pays for those that take least (its minimum spanning tree), since others have
-//       nothing left to take. Joints with the shell all count: furniture stands in a room without
-//       being fixed to it, whatever it touches.
+//       nothing left to take. A scrap of a few voxels, mostly noise between two things, hangs on
+//       one of them and holds none together. Joints with the shell all count: furniture stands in a
+//       room without being fixed to it, whatever it touches.
 //   f4  (ours) minus how surely its pairs of primitives were made as one, see Joinery.
 class ScenePrior {
   public:
@@ -61,11 +62,13 @@ class ScenePrior {
     const std::vector<bool>& ground_;
     Weights weights_;
     std::vector<double> volume_share_;
+    std::vector<bool> scrap_;
     std::map<std::pair<std::int32_t, std::int32_t>, double> lost_;  // (a, b), a < b
     struct RankedJoint {
         double lost;
         std::int32_t a, b;
     };
+    bool hang(const RankedJoint& joint, const Group& group, std::vector<bool>& hung) const;
     std::vector<RankedJoint> by_rank_;
     std::vector<std::vector<Joint>> joints_;  // by the lower primitive
     // By the lower primitive of each pair that touches or has a common seam.
