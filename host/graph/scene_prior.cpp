@@ -25,6 +25,9 @@ double freedom_lost(double face_m2, double joint_m2) {
 // would take.
 constexpr double beside_shell = 0.5;
 
+// What it costs that parts of a group are joined by scraps only: more than any fall that it saves.
+constexpr double not_joined = 5;
+
 // A cube of four voxels; less says little about what it is.
 constexpr std::uint64_t least_voxels = 64;
 
@@ -157,8 +160,7 @@ double ScenePrior::lost_freedom(const Group& group) const {
         sum += joint.lost;
         --parts;
     }
-    // Parts that only scraps, or nothing, would join lose all their freedom.
-    return shell || parts == 0 ? sum : sum + static_cast<double>(parts - 1);
+    return shell || parts == 0 ? sum : sum + not_joined * static_cast<double>(parts - 1);
 }
 
 // Takes note of the scraps at a joint; false where one of them has its only joint already.

@@ -171,6 +171,19 @@ TEST_P(Objects, AHiddenFootStandsAndASeenGapHangs) {
     EXPECT_NEAR(standing.carriers_of(thing)[0].area_m2, 0.04, 1e-9);
 }
 
+// Noise between two slender boxes that would fall is no joint; a post there would be one.
+TEST_P(Objects, AScrapHoldsNothingTogether) {
+    for (const bool post : {false, true}) {
+        Scene scene;
+        const auto a = scene.add(box({0, 0, 0}, {0.06, 0.2, 0.3}));
+        const auto b = scene.add(box({0.14, 0, 0}, {0.2, 0.2, 0.3}));
+        const double low = post ? 0 : 0.16;
+        scene.add(box({0.06, 0.06, low}, {0.14, 0.14, 0.2}));
+        const std::vector<std::int32_t> group = groups(scene);
+        EXPECT_EQ(group[static_cast<std::size_t>(a)] == group[static_cast<std::size_t>(b)], post);
+    }
+}
+
 // Neither of two trestles holds the plank alone, nor does the box beside them; and a book lies on
 // a table that would hold it without the other book.
 TEST_P(Objects, WhatCarriesTogetherWasMadeAsOne) {
