@@ -14,9 +14,8 @@ namespace {
 // What one primitive's cells look like from above.
 struct Shape {
     std::array<std::int32_t, 2> low{}, high{};  // of its columns, inclusive
-    std::uint64_t columns = 0;
-    std::vector<std::int32_t> bottoms;  // lowest k of each column
-    std::vector<std::int32_t> seen;     // k of the cells that were seen
+    std::vector<std::int32_t> bottoms;          // lowest k of each column
+    std::vector<std::int32_t> seen;             // k of the cells that were seen
     // Whether the other lies within, and this one goes on beyond it on three sides at least: so
     // does a table top around a box, but not a sofa's seat around its arm.
     bool surrounds(const Shape& other) const {
@@ -119,13 +118,12 @@ class Settling {
         const std::array<std::int32_t, 2> at{cells_.i[n], cells_.j[n]};
         if (cells_.state[n] == State::surface) s.seen.push_back(cells_.k[n]);
         for (std::size_t a = 0; a < 2; ++a) {
-            s.low[a] = s.columns == 0 ? at[a] : std::min(s.low[a], at[a]);
-            s.high[a] = s.columns == 0 ? at[a] : std::max(s.high[a], at[a]);
+            s.low[a] = s.bottoms.empty() ? at[a] : std::min(s.low[a], at[a]);
+            s.high[a] = s.bottoms.empty() ? at[a] : std::max(s.high[a], at[a]);
         }
         const std::array<std::int32_t, 3> place{cells_.primitive[n], at[0], at[1]};
         if (last_column_[cells_.primitive[n]] == place) return;
         last_column_[cells_.primitive[n]] = place;
-        ++s.columns;
         s.bottoms.push_back(cells_.k[n]);
     }
 

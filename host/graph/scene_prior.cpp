@@ -46,7 +46,7 @@ ScenePrior::ScenePrior(const ContactGraph& graph, std::span<const physics::Body>
     for (const physics::Body& b : bodies)
         volume_share_.push_back(total > 0 ? b.volume_m3 / total : 0);
     for (const physics::Body& b : bodies) scrap_.push_back(b.voxels < least_voxels);
-    find_joints(graph);
+    find_joints();
     between_.resize(bodies.size());
     std::map<std::pair<std::int32_t, std::int32_t>, Seam> between = seams.between;
     for (const physics::TouchingPair& pair : graph.pairs) between.try_emplace({pair.a, pair.b});
@@ -56,14 +56,14 @@ ScenePrior::ScenePrior(const ContactGraph& graph, std::span<const physics::Body>
     }
 }
 
-void ScenePrior::find_joints(const ContactGraph& graph) {
-    for (const Carrying& c : graph.carryings) {
+void ScenePrior::find_joints() {
+    for (const Carrying& c : graph_.carryings) {
         if (c.supporter < 0) continue;
         const double lost = lost_by_carrying(c);
         const auto [at, fresh] = lost_.try_emplace(std::minmax(c.supporter, c.supported), lost);
         if (!fresh) at->second = std::min(at->second, lost);
     }
-    for (const physics::TouchingPair& pair : graph.pairs) {
+    for (const physics::TouchingPair& pair : graph_.pairs) {
         if (!lost_.contains({pair.a, pair.b})) lost_[{pair.a, pair.b}] = lost_by_touching(pair);
     }
     for (const auto& [pair, lost] : lost_) by_rank_.push_back({lost, pair.first, pair.second});
@@ -165,14 +165,14 @@ double ScenePrior::lost_freedom(const Group& group) const {
 
 // Takes note of the scraps at a joint; false where one of them has its only joint already.
 bool ScenePrior::hang(const RankedJoint& joint, const Group& group, std::vector<bool>& hung) const {
-    std::vector<std::size_t> scraps;
-    for (const std::int32_t n : {joint.a, joint.b}) {
-        if (scrap_[static_cast<std::size_t>(n)])
-            scraps.push_back(
-                static_cast<std::size_t>(std::ranges::lower_bound(group, n) - group.begin()));
-    }
-    if (std::ranges::any_of(scraps, [&](std::size_t at) { return hung[at]; })) return false;
-    for (const std::size_t at : scraps) hung[at] = true;
+    const auto is_scrap = [&](std::int32_t n) { return scrap_[static_cast<std::size_t>(n)]; };
+    const auto place = [&](std::int32_t n) {
+        return static_cast<std::size_t>(std::ranges::lower_bound(group, n) - group.begin());
+    };
+    for (const std::int32_t n : {joint.a, joint.b})
+        if (is_scrap(n) && hung[place(n)]) return false;
+    for (const std::int32_t n : {joint.a, joint.b})
+        if (is_scrap(n)) hung[place(n)] = true;
     return true;
 }
 

@@ -22,13 +22,13 @@ namespace topple::graph {
 //       too.
 //   f3  lost freedom. A joint by which one primitive carries the other takes the more, the smaller
 //       its area is beside the mean level section of the carrier, on a logarithmic scale: gluing a
-//       cup to a table top costs much, gluing a table top to its leg nothing. For joints at sides
-//       it is the mean of the two faces, for touching a wall the thing's own face there. Parts that
-//       were made as one have no freedom to lose. n primitives are held together by n - 1 joints;
-//       the group pays for those that take least (its minimum spanning tree), since others have
-//       nothing left to take. A scrap of a few voxels, mostly noise between two things, hangs on
-//       one of them and holds none together. Joints with the shell all count: furniture stands in a
-//       room without being fixed to it, whatever it touches.
+//       cup to a table top costs much, gluing a table top to its leg nothing. Joints at sides
+//       take from both, by the face of each, those with a wall from the thing, by its own face.
+//       Parts that were made as one have no freedom to lose. n primitives are held together by n -
+//       1 joints; the group pays for those that take least (its minimum spanning tree), since
+//       others have nothing left to take. A scrap of a few voxels, mostly noise between two things,
+//       hangs on one of them and holds none together. Joints with the shell all count: furniture
+//       stands in a room without being fixed to it, whatever it touches.
 //   f4  (ours) minus how surely its pairs of primitives were made as one, see Joinery.
 class ScenePrior {
   public:
@@ -42,7 +42,8 @@ class ScenePrior {
 
     double operator()(const Group& group) const;
 
-    // Freedom lost by fixing two primitives that touch to one another, 0 to 1.
+    // Freedom lost by fixing two primitives that touch to one another: 0 to 1 for each that loses
+    // some, so up to 2.
     double lost_between(std::int32_t a, std::int32_t b) const;
 
   private:
@@ -51,7 +52,7 @@ class ScenePrior {
         std::int32_t other;
         std::uint32_t rank;
     };
-    void find_joints(const ContactGraph& graph);
+    void find_joints();
     double lost_by_carrying(const Carrying& carrying) const;
     double lost_by_touching(const physics::TouchingPair& pair) const;
     double lost_freedom(const Group& group) const;
