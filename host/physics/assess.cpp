@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "physics/hull_ways.h"
 #include "physics/pose_passes.h"
@@ -213,14 +214,23 @@ void add_passes(const Sampled& f, const Surroundings& around, std::vector<Way>& 
 void add_footing(const Candidate& candidate, const Footing& on, const Sampled& f,
                  const Surroundings& around, std::vector<Way>& ways) {
     const double base = around.base_m;
-    const auto add = [&](double climb, const Vec3& way) {
+    const std::vector<double>& drops = candidate.edge_drop_m;
+    if (!drops.empty() && drops.size() != std::max<std::size_t>(on.edges.size(), 1)) {
+        throw Error(ErrorKind::usage, "evaluate: a candidate has " + std::to_string(drops.size()) +
+                                          " drops, but its support has " +
+                                          std::to_string(on.edges.size()) + " edges to tip over");
+    }
+    const auto add = [&](double climb, const Vec3& way, std::size_t edge) {
         const double deepest = deepest_towards(f, around, way);
-        ways.push_back({climb, is_deeper(f, base, deepest) ? climb + base - deepest : 0, way});
+        const double turn = is_deeper(f, base, deepest) ? base - deepest : 0;
+        const double descent = turn + (drops.empty() ? 0 : drops[edge]);
+        ways.push_back({climb, descent > 0 ? climb + descent : 0, way});
     };
-    if (on.edges.empty()) return add(0, on.away);
+    if (on.edges.empty()) return add(0, on.away, 0);
     const double h = candidate.body.center[2] - candidate.support_height_m;
-    for (const Footing::Edge& edge : on.edges) {
-        add(std::sqrt(h * h + edge.distance_m * edge.distance_m) - h, edge.outward);
+    for (std::size_t n = 0; n < on.edges.size(); ++n) {
+        const Footing::Edge& edge = on.edges[n];
+        add(std::sqrt(h * h + edge.distance_m * edge.distance_m) - h, edge.outward, n);
     }
 }
 

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <vector>
+
 #include "physics/cell_columns.h"
 #include "physics/landscape.h"
 
 namespace topple::physics {
 
-// How far a body that tips over the weakest edge of its support falls below the height of it,
-// metres: to the highest surface that is none of its own where it lands. 0 where the support goes
-// on, or where nothing is known of what lies there. The body has a support polygon.
+// How far a body that tips over an edge of its support falls below the height of it, metres: to the
+// highest surface that is none of its own where it lands. 0 where the support goes on, or where
+// nothing is known of what lies there. One value for each edge of footing(), in their order; where
+// the centre of mass is outside, one for the way in which it falls. The body has a support polygon.
+std::vector<double> drops_when_tipped_m(const SolidCells& cells, const CellColumns& columns,
+                                        const Candidate& body);
+// Over the weakest of them.
 double drop_when_tipped_m(const SolidCells& cells, const CellColumns& columns,
                           const Candidate& body);
 

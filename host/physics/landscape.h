@@ -71,6 +71,9 @@ struct Candidate {
     Body body;
     std::vector<std::array<double, 2>> support_polygon;
     double support_height_m = 0;
+    // How far it falls below that height where it tips over each of the polygon's edges
+    // (drops_when_tipped_m); empty: nowhere.
+    std::vector<double> edge_drop_m = {};
 };
 
 // Where the passes of the hull's landscape come from.
@@ -90,8 +93,8 @@ enum class Passes {
 //     mass to the edge's line, h its height above the support (paper-exact for rigid tipping), and
 //   - the lowest pass of the hull's landscape on a plane.
 // A centre of mass outside the polygon, or no polygon: barrier 0. The curve counts what the pose
-// releases on a plane at the support's height; a further drop, where the support ends, is the
-// caller's to add. Throws Error(usage) for a primitive that the table doesn't hold.
+// releases on a plane at the support's height, and the candidate's drops. Throws Error(usage) for a
+// primitive that the table doesn't hold, and for drops that are not one for each edge.
 std::vector<Stability> evaluate(device::Device& device, const SupportTable& table,
                                 std::span<const Candidate> candidates,
                                 Passes passes = Passes::sampled);

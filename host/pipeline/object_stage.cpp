@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "physics/drop.h"
+
 namespace topple {
 namespace {
 
@@ -74,7 +76,14 @@ ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
     stage("barriers", [&] {
         collect_objects(out);
         std::vector<physics::Candidate> candidates;
-        for (const StableObject& o : out.objects) candidates.push_back(o.candidate);
+        const physics::CellColumns columns(voxels.cells);
+        for (StableObject& o : out.objects) {
+            if (!o.grounded && !o.candidate.support_polygon.empty()) {
+                o.candidate.edge_drop_m =
+                    physics::drops_when_tipped_m(voxels.cells, columns, o.candidate);
+            }
+            candidates.push_back(o.candidate);
+        }
         const std::vector<physics::Stability> tipping =
             physics::evaluate(device, table, candidates, physics::Passes::exact);
         std::vector<physics::Body> bodies;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "device/devices.h"
 #include "host/physics/solids.h"
+#include "physics/drop.h"
 #include "topple/error.h"
 
 namespace topple::physics {
@@ -35,6 +38,44 @@ TEST_F(Evaluate, OverhangTipsOverTheTable) {
     EXPECT_NEAR(s[1].direction[0], 1, 1e-9);
     EXPECT_EQ(s[2].barrier_J, 0);
     EXPECT_LT(s[2].margin_m, 0);
+}
+
+TEST_F(Evaluate, WhatTipsOverTheTableFallsToTheFloor) {
+    // A bar as above, but 0.2 m wide, on a table 0.5 m above a floor; on a plane it would land no
+    // lower.
+    const double table_m = 0.5;
+    const test::Solid solid{0, test::box({-0.2, 0, 0}, {0.2, 0.2, 0.1})};
+    const SolidCells cells = test::voxelise({solid,
+                                             {1, test::box({-0.5, -0.5, -0.05}, {0.05, 0.5, 0})},
+                                             {2, test::box({-1, -1, -0.55}, {1, 1, -table_m})}},
+                                            {-1, -1, -0.55}, {1, 1, 0.1}, 0.025);
+    const SupportTable table(*device, cells, 3, geodesic_sphere(16));
+    Candidate bar = test::standing(
+        *device, test::voxelise({solid}, {-0.2, 0, 0}, {0.2, 0.2, 0.1}, cells.voxel_m));
+    bar.support_polygon = {{-0.2, 0}, {0.05, 0}, {0.05, 0.2}, {-0.2, 0.2}};
+    const CellColumns columns(cells);
+    bar.edge_drop_m = drops_when_tipped_m(cells, columns, bar);
+    // One value for each edge: towards -y, +x, +y and -x. Only +x leads off the table.
+    ASSERT_EQ(bar.edge_drop_m.size(), 4u);
+    EXPECT_EQ(std::ranges::count(bar.edge_drop_m, 0.0), 3);
+    EXPECT_NEAR(bar.edge_drop_m[1], table_m, 1e-9);
+    EXPECT_NEAR(drop_when_tipped_m(cells, columns, bar), table_m, 1e-9);
+    const Stability s = evaluate(*device, table, std::span(&bar, 1))[0];
+    const double weight = bar.body.mass_kg * gravity, climb = std::sqrt(2) * 0.05 - 0.05;
+    ASSERT_EQ(s.curve.size(), 1u);
+    EXPECT_NEAR(s.curve[0].W_J, weight * climb, 1e-6 * weight);
+    EXPECT_NEAR(s.curve[0].S_J, weight * (climb + table_m), 1e-6 * weight);
+    EXPECT_NEAR(s.release_J, s.curve[0].S_J, 1e-12);
+    EXPECT_NEAR(s.direction[0], 1, 1e-9);
+    // Half over the edge it falls by itself.
+    bar.support_polygon = {{-0.2, 0}, {-0.01, 0}, {-0.01, 0.2}, {-0.2, 0.2}};
+    bar.edge_drop_m = drops_when_tipped_m(cells, columns, bar);
+    ASSERT_EQ(bar.edge_drop_m.size(), 1u);
+    const Stability out = evaluate(*device, table, std::span(&bar, 1))[0];
+    EXPECT_EQ(out.barrier_J, 0);
+    EXPECT_NEAR(out.release_J, weight * bar.edge_drop_m[0], 1e-6 * weight);
+    bar.edge_drop_m = {0, 0};
+    EXPECT_THROW(evaluate(*device, table, std::span(&bar, 1)), Error);
 }
 
 TEST_F(Evaluate, GroupsCombineTheirMembersRows) {
