@@ -12,9 +12,11 @@
 #include <memory>
 #include <sstream>
 
+#include "perf/peers/bullet_pushes.h"
 #include "physics/hull_landscape.h"
 #include "physics/landscape.h"
 #include "scenes/random.h"
+#include "simulation/pushes.h"
 #include "topple/error.h"
 
 namespace topple::perf {
@@ -89,10 +91,33 @@ Result measure_hulls(device::Device& device, unsigned runs) {
     return result;
 }
 
+std::vector<simulation::StandingObject> standing_objects() {
+    return simulation::standing_objects(1, 24);
+}
+
+Result measure_objects(device::Device& device, unsigned runs) {
+    const auto objects = standing_objects();
+    const simulation::StandingScene scene(device, objects);
+    Result result =
+        named(device, "landscapes/objects", {static_cast<double>(objects.size()), "objects", 0, 0});
+    std::vector<physics::Instability> instability;
+    sample(device, result, runs, [&] { instability = scene.instability(); });
+    Hash hash;
+    for (const physics::Instability& i : instability) add(hash, i.barrier_J);
+    result.hash = hash.value();
+    return result;
+}
+
+// What was measured of a stage on the first backend that has it.
+const Result* first_of(const std::vector<Result>& own, const char* name) {
+    const auto at = std::ranges::find(own, name, &Result::name);
+    return at == own.end() ? nullptr : &*at;
+}
+
 }  // namespace
 
 std::vector<std::string> landscape_names() {
-    return {"landscapes/table", "landscapes/groups", "landscapes/hulls"};
+    return {"landscapes/table", "landscapes/groups", "landscapes/hulls", "landscapes/objects"};
 }
 
 std::vector<Result> measure_landscapes(device::Device& device, unsigned runs) {
@@ -122,13 +147,13 @@ std::vector<Result> measure_landscapes(device::Device& device, unsigned runs) {
     for (const physics::Stability& s : stability) add(hash, s.barrier_J);
     results.back().hash = hash.value();
     results.push_back(measure_hulls(device, runs));
+    results.push_back(measure_objects(device, runs));
     return results;
 }
 
 std::optional<Result> compare_with_trimesh(const std::vector<Result>& own) {
-    const auto mine = std::find_if(own.begin(), own.end(),
-                                   [](const Result& r) { return r.name == "landscapes/hulls"; });
-    if (mine == own.end()) return std::nullopt;
+    const Result* mine = first_of(own, "landscapes/hulls");
+    if (!mine) return std::nullopt;
     const auto path = std::filesystem::temp_directory_path() /
                       ("topple-hulls-" + std::to_string(getpid()) + ".txt");
     std::ofstream file(path);
@@ -166,6 +191,25 @@ std::optional<Result> compare_with_trimesh(const std::vector<Result>& own) {
         own_poses += physics::hull_landscape(hull, {0, 0, 0}).poses.size();
     std::printf("%-32s %9.4f %9.3f %8.1fx  %zu poses against %.0f\n", peer.name.c_str(),
                 mine->best(), seconds, seconds / mine->best(), own_poses, poses);
+    return peer;
+}
+
+std::optional<Result> compare_with_bullet(const std::vector<Result>& own) {
+    const Result* mine = first_of(own, "landscapes/objects");
+    if (!mine) return std::nullopt;
+    const auto pushes = bullet_pushes(standing_objects());
+    if (!pushes) {
+        std::printf("Bullet: not in this build; apt-get install libbullet-dev\n");
+        return std::nullopt;
+    }
+    Result peer;
+    peer.backend = "peer";
+    peer.device = pushes->library;
+    peer.name = "landscapes/objects/bullet";
+    peer.work = mine->work;
+    peer.samples_s = {pushes->seconds};
+    std::printf("%-32s %9.4f %9.3f %8.1fx\n", peer.name.c_str(), mine->best(), pushes->seconds,
+                pushes->seconds / mine->best());
     return peer;
 }
 

@@ -156,7 +156,8 @@ int run(const Arguments& a) {
     const auto peers = stages.peers();
     results.insert(results.end(), peers.begin(), peers.end());
     if (a.peers) {
-        if (const auto peer = compare_with_trimesh(results)) results.push_back(*peer);
+        for (const auto compare : {compare_with_trimesh, compare_with_bullet})
+            if (const auto peer = compare(results)) results.push_back(*peer);
     }
     if (!a.json.empty()) write_json(a.json, results);
     if (!a.csv.empty()) write_csv(a.csv, results);
@@ -184,7 +185,8 @@ int main(int argc, char** argv) {
     app.add_option("--seconds", a.measure.seconds, "Time for each kernel")->capture_default_str();
     app.add_option("--stage-runs", a.stage_runs, "Runs of the stages; 0: none")
         ->capture_default_str();
-    app.add_flag("!--no-peers", a.peers, "Leave out PCL, OctoMap and trimesh beside the stages");
+    app.add_flag("!--no-peers", a.peers,
+                 "Leave out PCL, OctoMap, trimesh and Bullet beside the stages");
     app.add_option("--pipeline-runs", a.pipeline.runs, "Parses of the whole room; 0: none")
         ->capture_default_str();
     app.add_option("--pipeline-frames", a.pipeline.frames, "Frames of the walk through the room")

@@ -125,7 +125,7 @@ struct Simulation::World {
     std::unique_ptr<btRigidBody> loose, fixed;
     btTransform first;
     btVector3 origin{0, 0, 0};  // of the world: near the body, where numbers are small
-    double mass = 0;
+    double mass = 0, height = 0;
 
     ~World() {
         dynamics.removeRigidBody(loose.get());
@@ -159,6 +159,7 @@ struct Simulation::World {
             normal[3] = -normal.dot(a) - margin_m;
             planes.back().push_back(normal);
         }
+        for (const btVector3& p : points) height = std::max(height, p.z());
     }
 
     void add_body(btRigidBody& body, double friction) {
@@ -216,14 +217,54 @@ double Simulation::mass_kg() const {
     return world_->mass;
 }
 
-void Simulation::push(const Vec3& impulse_Ns) {
-    world_->loose->applyCentralImpulse({impulse_Ns[0], impulse_Ns[1], impulse_Ns[2]});
+double Simulation::height_m() const {
+    return world_->height;
+}
+
+void Simulation::push(const Vec3& impulse_Ns, const Vec3& at_m) {
+    world_->loose->applyImpulse({impulse_Ns[0], impulse_Ns[1], impulse_Ns[2]},
+                                {at_m[0], at_m[1], at_m[2]});
+}
+
+double Simulation::energy_J(const Vec3& impulse_Ns, const Vec3& at_m) const {
+    const btVector3 p(impulse_Ns[0], impulse_Ns[1], impulse_Ns[2]), r(at_m[0], at_m[1], at_m[2]);
+    const btVector3 spin = r.cross(p);
+    return 0.5 * (p.length2() / world_->mass +
+                  spin.dot(world_->loose->getInvInertiaTensorWorld() * spin));
 }
 
 void Simulation::run(double seconds, double far_m) {
     const auto& at = world_->loose->getCenterOfMassPosition();
     for (double t = 0; t < seconds && at.length() <= far_m; t += step_s)
         world_->dynamics.stepSimulation(step_s, 0);
+}
+
+bool Simulation::sinks(double seconds, double by_m) {
+    // Slower than this for a quarter of a second it is at rest, even where it stood on an edge.
+    constexpr double still = 2e-3, rest_s = 0.25;
+    const btRigidBody& body = *world_->loose;
+    double resting_s = 0;
+    for (double t = 0; t < seconds && resting_s < rest_s; t += step_s) {
+        world_->dynamics.stepSimulation(step_s, 0);
+        if (body.getCenterOfMassPosition().z() < -by_m) return true;
+        const bool rests =
+            body.getLinearVelocity().length() < still && body.getAngularVelocity().length() < still;
+        resting_s = rests ? resting_s + step_s : 0;
+    }
+    return false;
+}
+
+void Simulation::reset() {
+    World& w = *world_;
+    w.loose->setWorldTransform(w.first);
+    w.loose->setInterpolationWorldTransform(w.first);
+    w.loose->setLinearVelocity({0, 0, 0});
+    w.loose->setAngularVelocity({0, 0, 0});
+    w.loose->clearForces();
+    // What the contacts of the last step pressed would start the next one.
+    w.broadphase.getOverlappingPairCache()->cleanProxyFromPairs(w.loose->getBroadphaseProxy(),
+                                                                &w.dispatcher);
+    w.solver.reset();
 }
 
 Vec3 Simulation::moved_m() const {

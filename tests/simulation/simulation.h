@@ -31,11 +31,18 @@ class Simulation {
     Simulation(Simulation&&) noexcept;
 
     double mass_kg() const;
-    // A blow to the centre of mass, in N s.
-    void push(const Vec3& impulse_Ns);
+    double height_m() const;  // of the body above its centre of mass, at the beginning
+    // A blow at a point relative to the centre of mass, in N s, and the kinetic energy that it
+    // gives to the body at rest if nothing touches it.
+    void push(const Vec3& impulse_Ns, const Vec3& at_m = {});
+    double energy_J(const Vec3& impulse_Ns, const Vec3& at_m = {}) const;
     // Goes on until it has moved by more than `far_m`, at most.
     void run(double seconds, double far_m);
+    // Goes on until the centre of mass is lower by more than `by_m` than it was, which is told, or
+    // until the body has come to rest.
+    bool sinks(double seconds, double by_m);
     Vec3 moved_m() const;  // of the centre of mass, since the beginning
+    void reset();          // to the beginning
 
   private:
     struct World;
