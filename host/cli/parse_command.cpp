@@ -175,6 +175,9 @@ Command add_parse(CLI::App& app) {
     app.add_option("--seed", a->options.seed, "Seed of everything random")
         ->check(whole_number)
         ->capture_default_str();
+    app.add_option("--grouping-time", a->options.grouping_time_s,
+                   "Seconds for the search for objects, about; where that is too few, the\n"
+                   "objects depend on the machine (default: as long as it takes)");
     app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
     app.add_option("--max-memory", a->max_memory, "Refuse a scan that would need more, such as 4G");
     app.add_flag("--quiet", a->quiet, "Print errors only");

@@ -3,14 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "graph/stamped_set.h"
 
 namespace topple::graph {
 namespace {
-
-bool has(const Group& group, std::int32_t node) {
-    return std::binary_search(group.begin(), group.end(), node);
-}
 
 // The freedom of a part on a face of `face_m2` that fixing it there by a joint of `joint_m2` takes:
 // the ratio of the paper on a logarithmic scale, from 0 for all of the face to 1 for a
@@ -33,6 +30,29 @@ constexpr std::uint64_t least_voxels = 64;
 
 }  // namespace
 
+// What one group needs: its members, their roots, the scraps that have their joint, and the ranks
+// of the joints among parts that aren't shell. Each thread keeps its own for the memory.
+struct ScenePrior::Scratch {
+    StampedSet members, hung;
+    std::vector<std::int32_t> root;
+    std::vector<std::int64_t> ranks;
+
+    static Scratch& of_thread(std::size_t nodes) {
+        thread_local Scratch scratch;
+        scratch.members.clear(nodes);
+        scratch.hung.clear(nodes);
+        scratch.ranks.clear();
+        if (scratch.root.size() < nodes) scratch.root.resize(nodes);
+        return scratch;
+    }
+    std::int32_t root_of(std::int32_t node) {
+        auto at = static_cast<std::size_t>(node);
+        while (static_cast<std::size_t>(root[at]) != at)
+            at = static_cast<std::size_t>(root[at] = root[static_cast<std::size_t>(root[at])]);
+        return static_cast<std::int32_t>(at);
+    }
+};
+
 ScenePrior::ScenePrior(const ContactGraph& graph, std::span<const physics::Body> bodies,
                        const SurfaceSeams& seams, const std::vector<bool>& ground,
                        const Weights& weights)
@@ -40,23 +60,25 @@ ScenePrior::ScenePrior(const ContactGraph& graph, std::span<const physics::Body>
       seams_(seams),
       joinery_(graph, bodies, seams, ground),
       ground_(ground),
-      weights_(weights) {
+      weights_(weights),
+      neighbours_(bodies.size()) {
     double total = 0;
     for (const physics::Body& b : bodies) total += b.volume_m3;
     for (const physics::Body& b : bodies)
         volume_share_.push_back(total > 0 ? b.volume_m3 / total : 0);
     for (const physics::Body& b : bodies) scrap_.push_back(b.voxels < least_voxels);
-    find_joints();
-    between_.resize(bodies.size());
+    const Ranks ranks = find_joints();
     std::map<std::pair<std::int32_t, std::int32_t>, Seam> between = seams.between;
-    for (const physics::TouchingPair& pair : graph.pairs) between.try_emplace({pair.a, pair.b});
+    for (const auto& [pair, rank] : ranks) between.try_emplace(pair);
     for (const auto& [pair, seam] : between) {
-        between_[static_cast<std::size_t>(pair.first)].push_back(
-            {pair.second, seam, joinery_.made_as_one(pair.first, pair.second)});
+        const auto rank = ranks.find(pair);
+        neighbours_[static_cast<std::size_t>(pair.first)].push_back(
+            {pair.second, seam, joinery_.made_as_one(pair.first, pair.second),
+             rank == ranks.end() ? -1 : rank->second});
     }
 }
 
-void ScenePrior::find_joints() {
+ScenePrior::Ranks ScenePrior::find_joints() {
     for (const Carrying& c : graph_.carryings) {
         if (c.supporter < 0) continue;
         const double lost = lost_by_carrying(c);
@@ -68,11 +90,10 @@ void ScenePrior::find_joints() {
     }
     for (const auto& [pair, lost] : lost_) by_rank_.push_back({lost, pair.first, pair.second});
     std::ranges::stable_sort(by_rank_, {}, &RankedJoint::lost);
-    joints_.resize(ground_.size());
-    for (std::uint32_t rank = 0; rank < by_rank_.size(); ++rank) {
-        const RankedJoint& joint = by_rank_[rank];
-        joints_[static_cast<std::size_t>(joint.a)].push_back({joint.b, rank});
-    }
+    Ranks ranks;
+    for (const RankedJoint& joint : by_rank_)
+        ranks[{joint.a, joint.b}] = static_cast<std::int64_t>(ranks.size());
+    return ranks;
 }
 
 double ScenePrior::lost_by_carrying(const Carrying& c) const {
@@ -104,75 +125,61 @@ double ScenePrior::lost_between(std::int32_t a, std::int32_t b) const {
 }
 
 double ScenePrior::operator()(const Group& group) const {
-    double share = 0, one = 0, variation = 0;
+    double share = 0, one = 0, variation = 0, lost_to_shell = 0;
     std::uint64_t pairs = 0;
     const auto add = [&](const Seam& s) {
         variation += s.variation;
         pairs += s.pairs;
     };
+    Scratch& scratch = Scratch::of_thread(ground_.size());
+    for (const std::int32_t n : group) scratch.members.add(n);
     for (const std::int32_t n : group) {
         const auto i = static_cast<std::size_t>(n);
         share += volume_share_[i];
         add(seams_.inside[i]);
-        for (const Neighbour& neighbour : between_[i]) {
-            if (!has(group, neighbour.other)) continue;
+        for (const Neighbour& neighbour : neighbours_[i]) {
+            if (!scratch.members.has(neighbour.other)) continue;
             add(neighbour.seam);
             one += neighbour.made_as_one;
+            if (neighbour.rank < 0) continue;
+            if (is_shell(n) || is_shell(neighbour.other))
+                lost_to_shell += by_rank_[static_cast<std::size_t>(neighbour.rank)].lost;
+            else
+                scratch.ranks.push_back(neighbour.rank);
         }
     }
     const double complexity = pairs ? variation / static_cast<double>(pairs) : 0;
     return weights_.size * std::pow(share, weights_.size_exponent) +
-           weights_.complexity * complexity + weights_.freedom * lost_freedom(group) -
+           weights_.complexity * complexity +
+           weights_.freedom * (lost_to_shell + lost_among_parts(group, scratch)) -
            weights_.made_as_one * one;
 }
 
-// Kruskal's algorithm over the joints within the group.
-double ScenePrior::lost_freedom(const Group& group) const {
-    if (group.size() < 2) return 0;
-    std::vector<std::uint32_t> ranks;
-    for (const std::int32_t n : group) {
-        for (const Joint& joint : joints_[static_cast<std::size_t>(n)])
-            if (has(group, joint.other)) ranks.push_back(joint.rank);
-    }
-    std::sort(ranks.begin(), ranks.end());
-    std::vector<std::size_t> root(group.size());
-    std::iota(root.begin(), root.end(), std::size_t{0});
-    const auto root_of = [&](std::int32_t node) {
-        auto at = static_cast<std::size_t>(std::ranges::lower_bound(group, node) - group.begin());
-        while (root[at] != at) at = root[at] = root[root[at]];
-        return at;
-    };
-    const auto is_shell = [&](std::int32_t n) { return ground_[static_cast<std::size_t>(n)]; };
-    std::vector<bool> hung(group.size());  // scraps that have their joint
+// Kruskal's algorithm over the joints of the scratch's ranks.
+double ScenePrior::lost_among_parts(const Group& group, Scratch& scratch) const {
+    std::sort(scratch.ranks.begin(), scratch.ranks.end());
+    for (const std::int32_t n : group) scratch.root[static_cast<std::size_t>(n)] = n;
     double sum = 0;
-    std::size_t parts = static_cast<std::size_t>(
-        std::ranges::count_if(group, [&](std::int32_t n) { return !is_shell(n); }));
-    const bool shell = parts < group.size();
-    for (const std::uint32_t rank : ranks) {
-        const RankedJoint& joint = by_rank_[rank];
-        if (is_shell(joint.a) || is_shell(joint.b)) {
-            sum += joint.lost;
-            continue;
-        }
-        const std::size_t a = root_of(joint.a), b = root_of(joint.b);
-        if (a == b || !hang(joint, group, hung)) continue;
-        root[std::max(a, b)] = std::min(a, b);
+    const auto shells = std::ranges::count_if(group, [&](std::int32_t n) { return is_shell(n); });
+    auto parts = static_cast<std::ptrdiff_t>(group.size()) - shells;
+    for (const std::int64_t rank : scratch.ranks) {
+        const RankedJoint& joint = by_rank_[static_cast<std::size_t>(rank)];
+        const std::int32_t a = scratch.root_of(joint.a), b = scratch.root_of(joint.b);
+        if (a == b || !hang(joint, scratch)) continue;
+        scratch.root[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
         sum += joint.lost;
         --parts;
     }
-    return shell || parts == 0 ? sum : sum + not_joined * static_cast<double>(parts - 1);
+    return shells > 0 || parts < 1 ? sum : sum + not_joined * static_cast<double>(parts - 1);
 }
 
 // Takes note of the scraps at a joint; false where one of them has its only joint already.
-bool ScenePrior::hang(const RankedJoint& joint, const Group& group, std::vector<bool>& hung) const {
+bool ScenePrior::hang(const RankedJoint& joint, Scratch& scratch) const {
     const auto is_scrap = [&](std::int32_t n) { return scrap_[static_cast<std::size_t>(n)]; };
-    const auto place = [&](std::int32_t n) {
-        return static_cast<std::size_t>(std::ranges::lower_bound(group, n) - group.begin());
-    };
     for (const std::int32_t n : {joint.a, joint.b})
-        if (is_scrap(n) && hung[place(n)]) return false;
+        if (is_scrap(n) && scratch.hung.has(n)) return false;
     for (const std::int32_t n : {joint.a, joint.b})
-        if (is_scrap(n)) hung[place(n)] = true;
+        if (is_scrap(n)) scratch.hung.add(n);
     return true;
 }
 

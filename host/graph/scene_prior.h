@@ -47,15 +47,26 @@ class ScenePrior {
     double lost_between(std::int32_t a, std::int32_t b) const;
 
   private:
-    // A joint from one end, with its place among all joints by rising loss.
-    struct Joint {
-        std::int32_t other;
-        std::uint32_t rank;
+    // A joint with its place among all joints by rising loss, so that sorting places sorts joints.
+    struct RankedJoint {
+        double lost;
+        std::int32_t a, b;
     };
-    void find_joints();
+    // From the lower primitive of two that touch or have a common seam.
+    struct Neighbour {
+        std::int32_t other;
+        Seam seam;
+        double made_as_one;
+        std::int64_t rank;  // of their joint; -1: none
+    };
+    using Ranks = std::map<std::pair<std::int32_t, std::int32_t>, std::int64_t>;
+    Ranks find_joints();
     double lost_by_carrying(const Carrying& carrying) const;
     double lost_by_touching(const physics::TouchingPair& pair) const;
-    double lost_freedom(const Group& group) const;
+    bool is_shell(std::int32_t n) const { return ground_[static_cast<std::size_t>(n)]; }
+    struct Scratch;
+    double lost_among_parts(const Group& group, Scratch& scratch) const;
+    bool hang(const RankedJoint& joint, Scratch& scratch) const;
 
     const ContactGraph& graph_;
     const SurfaceSeams& seams_;
@@ -64,21 +75,9 @@ class ScenePrior {
     Weights weights_;
     std::vector<double> volume_share_;
     std::vector<bool> scrap_;
-    std::map<std::pair<std::int32_t, std::int32_t>, double> lost_;  // (a, b), a < b
-    struct RankedJoint {
-        double lost;
-        std::int32_t a, b;
-    };
-    bool hang(const RankedJoint& joint, const Group& group, std::vector<bool>& hung) const;
     std::vector<RankedJoint> by_rank_;
-    std::vector<std::vector<Joint>> joints_;  // by the lower primitive
-    // By the lower primitive of each pair that touches or has a common seam.
-    struct Neighbour {
-        std::int32_t other;
-        Seam seam;
-        double made_as_one;
-    };
-    std::vector<std::vector<Neighbour>> between_;
+    std::map<std::pair<std::int32_t, std::int32_t>, double> lost_;  // (a, b), a < b
+    std::vector<std::vector<Neighbour>> neighbours_;
 };
 
 }  // namespace topple::graph

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 
+#include "device/native/thread_pool.h"
 #include "graph/swendsen_wang.h"
 #include "physics/drop.h"
 #include "physics/tipping.h"
@@ -103,16 +106,29 @@ Grouping group_primitives(device::Device& device, const physics::SupportTable& t
     const ScenePrior prior(graph, bodies, seams, ground, options.prior);
     const physics::CellColumns columns(cells);
     const double tilt = options.tilt_deg * pi / 180;
+    // The body that a query asks about, if it does not stand.
+    const auto unstable_body = [&](const GroupQuery& query) -> std::optional<physics::Candidate> {
+        if (query.pinned) return std::nullopt;  // the ground does not fall: S = 0
+        physics::Candidate c = candidate_of(graph, bodies, query.nodes);
+        if (c.body.mass_kg <= 0 || stands(c, tilt, 0.5 * cells.voxel_m)) return std::nullopt;
+        return c;
+    };
+    const auto fall_m = [&](const physics::Candidate& c) {
+        return c.support_polygon.empty() ? free_fall_m(graph, c.primitives)
+                                         : physics::drop_when_tipped_m(cells, columns, c);
+    };
+    const auto instability = [&](double released_m) {
+        return std::min(options.worst_instability, released_m / options.scale_m);
+    };
     const auto energies = [&](std::span<const GroupQuery> queries, std::span<double> out) {
         std::vector<physics::Candidate> unstable;
         std::vector<std::size_t> query;  // of each candidate
         for (std::size_t i = 0; i < queries.size(); ++i) {
             out[i] = prior(queries[i].nodes);
-            if (queries[i].pinned) continue;  // the ground does not fall: S = 0
-            physics::Candidate c = candidate_of(graph, bodies, queries[i].nodes);
-            if (c.body.mass_kg <= 0 || stands(c, tilt, 0.5 * cells.voxel_m)) continue;
-            unstable.push_back(std::move(c));
-            query.push_back(i);
+            if (std::optional<physics::Candidate> c = unstable_body(queries[i])) {
+                unstable.push_back(*std::move(c));
+                query.push_back(i);
+            }
         }
         const std::vector<physics::Stability> stability =
             physics::evaluate(device, table, unstable);
@@ -121,30 +137,32 @@ Grouping group_primitives(device::Device& device, const physics::SupportTable& t
             const double weight = c.body.mass_kg * physics::gravity;
             const double height = std::max(c.body.center[2] - c.support_height_m, 0.0);
             // What does not stand by stands() falls, whatever its barrier.
-            double release =
+            const double release =
                 std::max(release_at(stability[n], weight * height * (1 / std::cos(tilt) - 1)),
                          stability[n].release_J);
-            release += weight * (c.support_polygon.empty()
-                                     ? free_fall_m(graph, c.primitives)
-                                     : physics::drop_when_tipped_m(cells, columns, c));
-            out[query[n]] +=
-                std::min(options.worst_instability, release / (weight * options.scale_m));
+            out[query[n]] += instability(release / weight + fall_m(c));
         }
+    };
+    // Instability is never below 0, nor below what the fall alone makes.
+    const auto prior_alone = [&](const GroupQuery& query, double) { return prior(query.nodes); };
+    const auto prior_and_fall = [&](const GroupQuery& query, double prior_of_it) {
+        const std::optional<physics::Candidate> c = unstable_body(query);
+        return c ? prior_of_it + instability(fall_m(*c)) : prior_of_it;
     };
     SwendsenWangOptions sampler;
     sampler.seed = options.seed;
     // Enough flips that every node is tried many times over all chains, within seconds.
     sampler.chains = 4;
+    sampler.threads = device.threads().threads();
     sampler.last_temperature = 0.005;
     sampler.anneal_steps =
         static_cast<unsigned>(std::clamp<std::int64_t>(100 * graph.primitives, 2000, 12000));
     sampler.sample_steps = sampler.anneal_steps / 2;
+    sampler.time_limit_s = options.time_limit_s;
     sampler.cancelled = options.cancelled;
     const std::vector<Edge> edges = edges_of(graph, prior, options.turn_on_temperature);
-    // Instability is never below 0, so that the prior alone is a bound.
-    const auto at_least = [&](const GroupQuery& query) { return prior(query.nodes); };
-    Partition partition =
-        swendsen_wang_cuts(graph.primitives, edges, ground, {energies, at_least}, sampler);
+    Partition partition = swendsen_wang_cuts(graph.primitives, edges, ground,
+                                             {energies, {prior_alone, prior_and_fall}}, sampler);
     return {std::move(partition.label), std::move(partition.joined),
             std::move(partition.best_energy_curve)};
 }

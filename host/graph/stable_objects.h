@@ -26,6 +26,7 @@ struct GroupingOptions {
     // T of Eq. 10: q_e = exp(-F / T), clipped to [0.05, 0.95].
     double turn_on_temperature = 0.5;
     ScenePrior::Weights prior;
+    double time_limit_s = 0;  // see SwendsenWangOptions
     std::function<bool()> cancelled;
 };
 

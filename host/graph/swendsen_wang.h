@@ -23,22 +23,28 @@ struct GroupQuery {
     Group nodes;
     bool pinned = false;
 };
+// Called from several threads: `of` by one of them at a time, the bounds by all at once.
 struct GroupEnergies {
     std::function<void(std::span<const GroupQuery>, std::span<double>)> of;
-    // What a group's energy is at least, where that is cheaper to tell: flips that even this rules
-    // out need no more. May be empty. Does not change the outcome.
-    std::function<double(const GroupQuery&)> at_least;
+    // What a group's energy is at least, by ways that cost ever more and tell ever more, each given
+    // what the one before it said (-infinity: none before): flips that these rule out need no
+    // energy. May be empty. Does not change the outcome.
+    std::vector<std::function<double(const GroupQuery&, double)>> at_least;
 };
 
 struct SwendsenWangOptions {
     std::uint64_t seed = 1;
-    unsigned chains = 8;           // independent, run in lockstep so that energies come in batches
-    unsigned anneal_steps = 2000;  // flips per chain while cooling
-    unsigned sample_steps = 2000;  // flips per chain at the sampling temperature
+    unsigned chains = 8;             // independent
+    unsigned threads = 1;            // that the chains share; the result does not depend on them
+    unsigned anneal_steps = 2000;    // flips per chain while cooling
+    unsigned sample_steps = 2000;    // flips per chain at the sampling temperature
     double first_temperature = 1.0;  // of p ~ exp(-E / T)
     double last_temperature = 0.05;
     double sample_temperature = 0.05;
-    std::function<bool()> cancelled;  // polled between steps; may be empty
+    // Seconds for all, about; annealing and sampling are sped up to fit. 0: as long as they take. A
+    // limit that is met makes the result depend on the machine.
+    double time_limit_s = 0;
+    std::function<bool()> cancelled;  // polled between steps by the caller's thread; may be empty
 };
 
 struct Partition {
@@ -47,7 +53,8 @@ struct Partition {
     double energy = 0;
     std::vector<double> joined;  // per edge: share of sampled states with both ends in one group
     std::vector<double> best_energy_curve;  // after every step of the annealing, over all chains
-    std::uint64_t energies_evaluated = 0;   // groups asked for, cache misses only
+    std::uint64_t energies_evaluated = 0;   // groups asked for; with several threads it may differ
+                                            // a little from run to run
 };
 
 // Starts from one group per node (pinned nodes together) and returns the best partition seen, and

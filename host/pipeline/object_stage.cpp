@@ -68,6 +68,7 @@ ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
     stage("grouping", [&] {
         graph::GroupingOptions grouping;
         grouping.seed = options.seed;
+        grouping.time_limit_s = options.grouping_time_s.value_or(0);
         grouping.cancelled = options.cancelled;
         out.grouping =
             graph::group_primitives(device, table, voxels.cells, out.contacts, out.bodies,

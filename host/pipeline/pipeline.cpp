@@ -118,6 +118,7 @@ void check_options(const ParseOptions& o) {
     check_range("--friction", o.friction, 0, 10);
     check_range("--wind", o.wind_m_s, 0, 150);
     check_range("--pga", o.pga_m_s2, 0, 50);
+    if (o.grouping_time_s) check_range("--grouping-time", *o.grouping_time_s, 0, 86400);
     for (const std::string& d : o.disturbances) {
         if (d != "human" && d != "wind" && d != "earthquake") {
             throw Error(ErrorKind::usage,

@@ -66,6 +66,8 @@ std::string cpu_name() {
     return "CPU";
 }
 
+constexpr std::uint64_t least_items = 4096;  // 1 to 100 microseconds of work
+
 class NativeDevice final : public Device {
   public:
     explicit NativeDevice(unsigned threads) : pool_(threads) {
@@ -111,8 +113,12 @@ class NativeDevice final : public Device {
             }
             const NativeEntry entry = best_entry(dispatch.kernel->native);
             const NativeArgs args{addresses.data(), dispatch.params.data()};
-            // Some chunks per thread, so that an uneven load evens out.
-            const std::uint64_t chunk = dispatch.groups / (std::uint64_t{pool_.threads()} * 16) + 1;
+            // Some chunks per thread, so that an uneven load evens out; none so small that waking
+            // a thread takes longer.
+            const std::uint64_t least =
+                dispatch.kernel->per_group ? 1 : least_items / dispatch.kernel->group_size;
+            const std::uint64_t chunk =
+                std::max(least, dispatch.groups / (std::uint64_t{pool_.threads()} * 16) + 1);
             pool_.run(dispatch.groups, chunk, [&](std::uint64_t first, std::uint64_t last) {
                 entry(args, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
             });

@@ -34,14 +34,14 @@ void ThreadPool::run(std::uint64_t count, std::uint64_t chunk,
         count_ = count;
         chunk_ = chunk;
         next_.store(0, std::memory_order_relaxed);
-        busy_ = static_cast<unsigned>(workers_.size());
+        open_ = true;
         ++generation_;
     }
     start_.notify_all();
     take_chunks();
     std::unique_lock lock(mutex_);
-    done_.wait(lock, [this] { return busy_ == 0; });
-    body_ = nullptr;
+    open_ = false;  // all is handed out: who wakes up from now on has nothing to do
+    done_.wait(lock, [this] { return inside_ == 0; });
 }
 
 void ThreadPool::take_chunks() {
@@ -60,10 +60,12 @@ void ThreadPool::work() {
             start_.wait(lock, [&] { return stop_ || generation_ != seen; });
             if (stop_) return;
             seen = generation_;
+            if (!open_) continue;
+            ++inside_;
         }
         take_chunks();
         std::lock_guard lock(mutex_);
-        if (--busy_ == 0) done_.notify_one();
+        if (--inside_ == 0) done_.notify_one();
     }
 }
 

@@ -42,7 +42,8 @@ class ThreadPool {
     std::mutex mutex_;
     std::condition_variable start_, done_;
     std::uint64_t generation_ = 0;
-    unsigned busy_ = 0;
+    bool open_ = false;    // whether there may be chunks left
+    unsigned inside_ = 0;  // workers that take chunks; the caller waits for these alone
     bool stop_ = false;
     const std::function<void(std::uint64_t, std::uint64_t)>* body_ = nullptr;
     std::uint64_t count_ = 0, chunk_ = 1;

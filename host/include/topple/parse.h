@@ -34,6 +34,9 @@ struct ParseOptions {
     double friction = 0.3;
     double wind_m_s = 12;
     double pga_m_s2 = 3;  // peak ground acceleration
+    // Seconds for the search for objects, about; none: as long as it takes. Where a limit is met,
+    // the objects depend on the machine.
+    std::optional<double> grouping_time_s;
     // Called when a stage starts and while it goes on: its name, and how much of it is done, 0
     // to 1.
     std::function<void(const std::string&, double)> progress;

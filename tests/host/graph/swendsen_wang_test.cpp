@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <set>
+#include <stdexcept>
 
 #include "core/random.h"
 
@@ -143,13 +147,76 @@ TEST(SwendsenWang, ALowerBoundSavesEnergiesAndChangesNothing) {
                                    false, false, false, false, true};
     SwendsenWangOptions options;
     options.anneal_steps = options.sample_steps = 2000;
-    const auto at_least = [](const GroupQuery& g) { return 0.8 * arbitrary_energy(g); };
+    // The second one sees what the first one said.
+    const auto half = [](const GroupQuery& g, double) { return 0.5 * arbitrary_energy(g); };
+    const auto more = [](const GroupQuery&, double before) { return 1.6 * before; };
     const Partition all = swendsen_wang_cuts(10, edges, pinned, {arbitrary, {}}, options);
-    const Partition some = swendsen_wang_cuts(10, edges, pinned, {arbitrary, at_least}, options);
+    const Partition some =
+        swendsen_wang_cuts(10, edges, pinned, {arbitrary, {half, more}}, options);
     EXPECT_EQ(all.label, some.label);
     EXPECT_EQ(all.joined, some.joined);
     EXPECT_EQ(all.best_energy_curve, some.best_energy_curve);
     EXPECT_LT(some.energies_evaluated, all.energies_evaluated);
+}
+
+TEST(SwendsenWang, ThreadsChangeNothing) {
+    const auto edges = complete_graph(12);
+    SwendsenWangOptions options;
+    options.chains = 5;
+    const Partition one =
+        swendsen_wang_cuts(12, edges, std::vector<bool>(12), {arbitrary, {}}, options);
+    for (const unsigned threads : {2u, 3u, 8u}) {
+        options.threads = threads;
+        const Partition many =
+            swendsen_wang_cuts(12, edges, std::vector<bool>(12), {arbitrary, {}}, options);
+        EXPECT_EQ(one.label, many.label);
+        EXPECT_EQ(one.joined, many.joined);
+        EXPECT_EQ(one.best_energy_curve, many.best_energy_curve);
+    }
+}
+
+TEST(SwendsenWang, WhatTheEnergiesThrowReachesTheCaller) {
+    const auto edges = complete_graph(12);
+    SwendsenWangOptions options;
+    options.threads = 4;
+    std::atomic<int> calls = 0;
+    const auto fails = [&](std::span<const GroupQuery> groups, std::span<double> energies) {
+        if (++calls == 20) throw std::runtime_error("device lost");
+        arbitrary(groups, energies);
+    };
+    EXPECT_THROW(swendsen_wang_cuts(12, edges, std::vector<bool>(12), {fails, {}}, options),
+                 std::runtime_error);
+    EXPECT_EQ(calls, 20);
+}
+
+TEST(SwendsenWang, StopsWhenCancelledWithTheBestSoFar) {
+    const auto edges = complete_graph(12);
+    SwendsenWangOptions options;
+    options.threads = 2;
+    options.anneal_steps = 1000000000;
+    int polls = 0;
+    options.cancelled = [&] { return ++polls > 100; };
+    const Partition p =
+        swendsen_wang_cuts(12, edges, std::vector<bool>(12), {arbitrary, {}}, options);
+    EXPECT_EQ(p.label.size(), 12u);
+    EXPECT_EQ(p.joined.size(), edges.size());
+    EXPECT_DOUBLE_EQ(p.energy, p.best_energy_curve.back());
+}
+
+TEST(SwendsenWang, ATimeLimitStillAnnealsToTheEnd) {
+    const auto edges = complete_graph(8);
+    SwendsenWangOptions options;
+    const Partition whole =
+        swendsen_wang_cuts(8, edges, std::vector<bool>(8), {arbitrary, {}}, options);
+    options.anneal_steps = options.sample_steps = 1000000000;
+    options.time_limit_s = 0.3;
+    const auto start = std::chrono::steady_clock::now();
+    const Partition p =
+        swendsen_wang_cuts(8, edges, std::vector<bool>(8), {arbitrary, {}}, options);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+    EXPECT_LE(p.energy, whole.energy + 1e-9);
+    // It came to the sampling.
+    EXPECT_GT(std::ranges::max(p.joined), 0);
 }
 
 }  // namespace

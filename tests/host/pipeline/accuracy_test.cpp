@@ -79,6 +79,7 @@ TEST(Options, out_of_range_are_named) {
     named("--friction", [](ParseOptions& o) { o.friction = -1; });
     named("--wind", [](ParseOptions& o) { o.wind_m_s = 1e9; });
     named("--pga", [](ParseOptions& o) { o.pga_m_s2 = NAN; });
+    named("--grouping-time", [](ParseOptions& o) { o.grouping_time_s = -1; });
     named("flood", [](ParseOptions& o) { o.disturbances = {"human", "flood"}; });
 }
 

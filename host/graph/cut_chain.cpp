@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+#include "graph/cut_chain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+namespace topple::graph {
+
+Adjacency::Adjacency(std::int32_t nodes, std::span<const Edge> edges)
+    : first(static_cast<std::size_t>(nodes) + 1), links(2 * edges.size()) {
+    for (const Edge& e : edges) {
+        ++first[static_cast<std::size_t>(e.a) + 1];
+        ++first[static_cast<std::size_t>(e.b) + 1];
+    }
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<std::size_t> next(first.begin(), first.end() - 1);
+    for (std::uint32_t i = 0; i < edges.size(); ++i) {
+        const double q = edges[i].turn_on;
+        const auto link = [&](std::int32_t from, std::int32_t to) {
+            links[next[static_cast<std::size_t>(from)]++] = {to, i, q, std::log1p(-q)};
+        };
+        link(edges[i].a, edges[i].b);
+        link(edges[i].b, edges[i].a);
+    }
+}
+
+CutChain::CutChain(const CutProblem& problem, EnergyCache& energies, Random random)
+    : problem_(problem),
+      energies_(energies),
+      random_(random),
+      label_(problem.key.size()),
+      members_(problem.key.size() + 1),
+      key_(members_.size()),
+      energy_of_label_(members_.size()),
+      joints_(problem.edges.size()),
+      is_moved_(problem.key.size()),
+      seen_(problem.key.size()),
+      own_(problem.key.size()),
+      seen_label_(members_.size()),
+      log_miss_to_(members_.size()) {
+    for (std::int32_t n = 0; n < static_cast<std::int32_t>(label_.size()); ++n) {
+        const std::int32_t l = is_pinned(n) ? pinned_label : n + 1;
+        label_[static_cast<std::size_t>(n)] = l;
+        members_[static_cast<std::size_t>(l)].push_back(n);
+        key_[static_cast<std::size_t>(l)] ^= problem.key[static_cast<std::size_t>(n)];
+    }
+    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+        if (label_of(problem.edges[e].a) == label_of(problem.edges[e].b)) joints_.join(e, 0);
+    }
+    for (std::size_t l = 0; l < members_.size(); ++l) missing_.push_back({key_[l], group(l)});
+    energies_.fetch(missing_);
+    for (std::size_t l = 0; l < members_.size(); ++l) {
+        energy_of_label_[l] = *energies_.known(key_[l]);
+        energy_ += energy_of_label_[l];
+    }
+}
+
+void CutChain::step(double temperature) {
+    const bool possible = draw();
+    // Drawn always, so that the stream of random numbers doesn't depend on the outcome.
+    const double u = random_.uniform();
+    if (!possible) return;
+    // Metropolis-Hastings, Eq. 11: taken for a change of the energy below this one, that is for
+    // ln u < ln ratio - change / T.
+    const double most_change =
+        temperature * (log_cut_ratio_ - std::log(std::max(u, std::numeric_limits<double>::min())));
+    if (ruled_out(most_change)) return;
+    fetch_energies();
+    if (change(from_energy_, to_energy_) < most_change) take();
+}
+
+bool CutChain::ruled_out(double most_change) {
+    for (std::size_t n = 0; n < energies_.bounds(); ++n) {
+        const double from = energies_.at_least(from_key_, n, [&] { return group_less_moved(); });
+        const double to = energies_.at_least(to_key_, n, [&] { return group_with_moved(); });
+        if (change(from, to) >= most_change) return true;
+    }
+    return false;
+}
+
+void CutChain::fetch_energies() {
+    std::optional<double> from = energies_.known(from_key_), to = energies_.known(to_key_);
+    if (!from || !to) {
+        missing_.clear();
+        if (!from) missing_.push_back({from_key_, group_less_moved()});
+        if (!to) missing_.push_back({to_key_, group_with_moved()});
+        energies_.fetch(missing_);
+        from = energies_.known(from_key_);
+        to = energies_.known(to_key_);
+    }
+    from_energy_ = *from;
+    to_energy_ = *to;
+}
+
+void CutChain::take() {
+    energy_ += change(from_energy_, to_energy_);
+    const auto from = static_cast<std::size_t>(from_), to = static_cast<std::size_t>(to_);
+    members_[to] = group_with_moved().nodes;
+    members_[from] = group_less_moved().nodes;
+    if (members_[from].empty()) lowest_free_ = std::min(lowest_free_, from);
+    key_[from] = from_key_;
+    key_[to] = to_key_;
+    energy_of_label_[from] = from_energy_;
+    energy_of_label_[to] = to_energy_;
+    for (const std::int32_t n : moved_) {
+        for (const Link& link : problem_.adjacency.of(n)) {
+            if (is_moved_.has(link.node)) continue;
+            const std::int32_t l = label_of(link.node);
+            if (l == from_) joints_.part(link.edge, samples_);
+            if (l == to_) joints_.join(link.edge, samples_);
+        }
+    }
+    for (const std::int32_t n : moved_) label_[static_cast<std::size_t>(n)] = to_;
+}
+
+GroupQuery CutChain::group_less_moved() const {
+    GroupQuery q{{}, from_ == pinned_label};
+    std::ranges::copy_if(members_[static_cast<std::size_t>(from_)], std::back_inserter(q.nodes),
+                         [&](std::int32_t n) { return !is_moved_.has(n); });
+    return q;
+}
+
+GroupQuery CutChain::group_with_moved() const {
+    GroupQuery q{{}, to_ == pinned_label};
+    std::ranges::merge(members_[static_cast<std::size_t>(to_)], moved_,
+                       std::back_inserter(q.nodes));
+    return q;
+}
+
+double CutChain::change(double from_after, double to_after) const {
+    return from_after + to_after - energy_of_label_[static_cast<std::size_t>(from_)] -
+           energy_of_label_[static_cast<std::size_t>(to_)];
+}
+
+// False where the flip drawn is none.
+bool CutChain::draw() {
+    if (label_.empty() || !grow_component(static_cast<std::int32_t>(random_.below(label_.size()))))
+        return false;
+    choose_target();
+    if (to_ == from_ || !stays_connected()) return false;
+    from_key_ = key_[static_cast<std::size_t>(from_)];
+    to_key_ = key_[static_cast<std::size_t>(to_)];
+    for (const std::int32_t n : moved_) {
+        from_key_ ^= problem_.key[static_cast<std::size_t>(n)];
+        to_key_ ^= problem_.key[static_cast<std::size_t>(n)];
+    }
+    return true;
+}
+
+// The connected component of turned-on edges around one node. Edges are drawn as they are met on
+// the way out of it, which each is at most once: the same distribution as drawing all of them
+// first. Starting from a random
+// node picks a component with probability proportional to its size, which is the same in the
+// state before and after the flip, and so cancels in Eq. 11 as a uniform choice would. False
+// where it holds a pinned node: that one does not move.
+bool CutChain::grow_component(std::int32_t seed) {
+    if (is_pinned(seed)) return false;
+    from_ = label_[static_cast<std::size_t>(seed)];
+    moved_.clear();
+    is_moved_.clear();
+    is_moved_.add(seed);
+    moved_.push_back(seed);
+    for (std::size_t head = 0; head < moved_.size(); ++head) {
+        for (const Link& link : problem_.adjacency.of(moved_[head])) {
+            if (label_of(link.node) != from_ || is_moved_.has(link.node)) continue;
+            if (random_.uniform() >= link.turn_on) continue;
+            if (is_pinned(link.node)) return false;
+            is_moved_.add(link.node);
+            moved_.push_back(link.node);
+        }
+    }
+    std::sort(moved_.begin(), moved_.end());
+    return true;
+}
+
+// The target is one of the groups that touch the component from outside, or a fresh group, each
+// alike. The nodes outside keep their labels, so the reverse flip has the same choices and the
+// proposal's own ratio q(old)/q(new) is 1.
+void CutChain::choose_target() {
+    targets_.clear();
+    seen_label_.clear();
+    border_.clear();
+    seen_.clear();
+    for (const std::int32_t n : moved_) {
+        for (const Link& link : problem_.adjacency.of(n)) {
+            if (is_moved_.has(link.node)) continue;
+            const std::int32_t l = label_of(link.node);
+            double& sum = log_miss_to_[static_cast<std::size_t>(l)];
+            if (seen_label_.add(l)) {
+                targets_.push_back(l);
+                sum = 0;
+            }
+            sum += link.log_miss;
+            if (l == from_ && seen_.add(link.node)) border_.push_back(link.node);
+        }
+    }
+    std::sort(targets_.begin(), targets_.end());
+    const std::uint64_t pick = random_.below(targets_.size() + 1);
+    if (pick == targets_.size()) {
+        // A fresh group; where the component already is a whole group, that is no change.
+        const bool whole = members_[static_cast<std::size_t>(from_)].size() == moved_.size();
+        to_ = whole ? from_ : free_label();
+    } else {
+        to_ = targets_[pick];
+    }
+    const auto log_misses = [&](std::int32_t l) {
+        return seen_label_.has(l) ? log_miss_to_[static_cast<std::size_t>(l)] : 0;
+    };
+    log_cut_ratio_ = log_misses(to_) - log_misses(from_);
+}
+
+// A group is one rigid body, so it hangs together; the pinned nodes do so by definition. Flips
+// that would break a group are not proposed, which also keeps every flip reversible. What is
+// left of a connected group is connected if all that touched the part taken out still reach one
+// another, or, in the pinned group, a pinned node.
+bool CutChain::stays_connected() {
+    if (border_.empty()) return true;
+    const bool shell = from_ == pinned_label;
+    seen_.clear();  // nodes that reach the first one or the shell, or are about to
+    if (!shell) seen_.add(border_.front());
+    for (const std::int32_t start : border_) {
+        if (seen_.has(start)) continue;
+        if (!reaches(start, shell)) return false;
+    }
+    return true;
+}
+// Whether a node reaches a pinned one, or one that is seen, within its group less the moved
+// part. All on the way there are seen then.
+bool CutChain::reaches(std::int32_t start, bool shell) {
+    open_.assign(1, start);
+    own_.clear();
+    own_.add(start);
+    bool found = shell && is_pinned(start);
+    for (std::size_t head = 0; head < open_.size() && !found; ++head) {
+        for (const Link& link : problem_.adjacency.of(open_[head])) {
+            if (label_of(link.node) != from_ || is_moved_.has(link.node)) continue;
+            found = found || seen_.has(link.node) || (shell && is_pinned(link.node));
+            if (own_.add(link.node)) open_.push_back(link.node);
+        }
+    }
+    for (const std::int32_t n : open_) seen_.add(n);
+    return found;
+}
+
+std::int32_t CutChain::free_label() {
+    while (lowest_free_ < members_.size() && !members_[lowest_free_].empty()) ++lowest_free_;
+    return static_cast<std::int32_t>(lowest_free_);
+}
+
+}  // namespace topple::graph

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/random.h"
+#include "graph/energy_cache.h"
+#include "graph/stamped_set.h"
+#include "graph/swendsen_wang.h"
+
+namespace topple::graph {
+
+inline constexpr std::int32_t pinned_label = 0;
+
+// An edge as one of its nodes sees it.
+struct Link {
+    std::int32_t node;
+    std::uint32_t edge;
+    double turn_on, log_miss;  // q_e and ln(1 - q_e)
+};
+
+// The links of each node, those of one after those of the other.
+struct Adjacency {
+    std::vector<std::size_t> first;
+    std::vector<Link> links;
+
+    Adjacency(std::int32_t nodes, std::span<const Edge> edges);
+    std::span<const Link> of(std::int32_t node) const {
+        const auto n = static_cast<std::size_t>(node);
+        return std::span(links).subspan(first[n], first[n + 1] - first[n]);
+    }
+};
+
+// What all chains share.
+struct CutProblem {
+    std::span<const Edge> edges;
+    const std::vector<bool>& pinned;
+    Adjacency adjacency;
+    std::vector<GroupKey> key;  // of each node
+
+    CutProblem(std::int32_t nodes, std::span<const Edge> all, const std::vector<bool>& held)
+        : edges(all), pinned(held), adjacency(nodes, all), key(keys_of_nodes(nodes)) {}
+};
+
+// How long both ends of each edge have been in one group, in samples.
+class JointCounts {
+  public:
+    explicit JointCounts(std::size_t edges) : count_(edges), since_(edges, apart) {}
+    void join(std::size_t edge, std::uint64_t now) { since_[edge] = now; }
+    void part(std::size_t edge, std::uint64_t now) {
+        count_[edge] += now - since_[edge];
+        since_[edge] = apart;
+    }
+    std::uint64_t until(std::size_t edge, std::uint64_t now) const {
+        return count_[edge] + (since_[edge] == apart ? 0 : now - since_[edge]);
+    }
+
+  private:
+    static constexpr std::uint64_t apart = std::numeric_limits<std::uint64_t>::max();
+    std::vector<std::uint64_t> count_, since_;
+};
+
+// One Markov chain of Swendsen-Wang cuts, from one group per node (pinned nodes together).
+class CutChain {
+  public:
+    CutChain(const CutProblem& problem, EnergyCache& energies, Random random);
+
+    // Proposes one flip and takes it or leaves it.
+    void step(double temperature);
+
+    double energy() const { return energy_; }
+    const std::vector<std::int32_t>& labels() const { return label_; }
+
+    void take_sample() { ++samples_; }
+    std::uint64_t samples() const { return samples_; }
+    // Samples that have both ends of the edge in one group.
+    std::uint64_t samples_joined(std::size_t edge) const { return joints_.until(edge, samples_); }
+
+  private:
+    bool is_pinned(std::int32_t n) const { return problem_.pinned[static_cast<std::size_t>(n)]; }
+    std::int32_t label_of(std::int32_t n) const { return label_[static_cast<std::size_t>(n)]; }
+    GroupQuery group(std::size_t l) const { return {members_[l], l == pinned_label}; }
+    GroupQuery group_less_moved() const;
+    GroupQuery group_with_moved() const;
+
+    bool draw();
+    bool grow_component(std::int32_t seed);
+    void choose_target();
+    bool stays_connected();
+    bool reaches(std::int32_t start, bool shell);
+    std::int32_t free_label();
+    double change(double from_after, double to_after) const;
+    bool ruled_out(double most_change);
+    void fetch_energies();
+    void take();
+
+    const CutProblem& problem_;
+    EnergyCache& energies_;
+    Random random_;
+    std::vector<std::int32_t> label_;
+    std::vector<Group> members_;  // by label, as the two below
+    std::vector<GroupKey> key_;
+    std::vector<double> energy_of_label_;
+    double energy_ = 0;
+    // A group of two or more leaves a label free, and none other is asked for one.
+    std::size_t lowest_free_ = 1;
+    JointCounts joints_;
+    std::uint64_t samples_ = 0;
+
+    // The flip that is proposed, and the groups after it.
+    std::vector<std::int32_t> moved_;
+    std::int32_t from_ = 0, to_ = 0;
+    double log_cut_ratio_ = 0;  // ln of the products of (1 - q_e) in Eq. 11
+    GroupKey from_key_, to_key_;
+    double from_energy_ = 0, to_energy_ = 0;
+
+    // Kept for their memory: what one proposal meets.
+    StampedSet is_moved_, seen_, own_, seen_label_;
+    std::vector<std::int32_t> targets_, border_, open_;
+    std::vector<double> log_miss_to_;  // by label
+    std::vector<EnergyCache::Missing> missing_;
+};
+
+}  // namespace topple::graph
