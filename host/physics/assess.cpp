@@ -143,22 +143,44 @@ Surroundings sampled_surroundings(const Sampled& f, std::span<const Vec3> vertic
             rolls(f)};
 }
 
-// Nothing where the vertices have no hull about the centre of mass, nor where that hull would fall
-// from a footing that holds the candidate: its contacts are not known well enough to go by them.
+// The body as its footing holds it: cut at the height of the support and as wide there as what it
+// stands on. What reaches lower is noise, or hangs beside the end of the support.
+std::vector<Vec3> held_vertices(const Candidate& candidate, std::span<const Vec3> vertices) {
+    const Vec3& c = candidate.body.center;
+    const double level = candidate.support_height_m - c[2];
+    std::vector<Vec3> held;
+    for (const Vec3& v : vertices) held.push_back({v[0], v[1], std::max(v[2], level)});
+    for (const auto& [x, y] : candidate.support_polygon)
+        held.push_back({x - c[0], y - c[1], level});
+    return held;
+}
+
+// Nothing where the vertices have no hull about the centre of mass.
+std::shared_ptr<HullWays> hull_ways(std::span<const Vec3> vertices) {
+    try {
+        return std::make_shared<HullWays>(vertices, Vec3{0, 0, 1});
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::input) throw;
+        return nullptr;
+    }
+}
+
 std::optional<Surroundings> exact_surroundings(const SupportTable::Rows& rows,
                                                const Candidate& candidate,
                                                std::span<const Vec3> vertices, double noise) {
-    std::shared_ptr<HullWays> ways;
-    try {
-        ways = std::make_shared<HullWays>(vertices, Vec3{0, 0, 1});
-    } catch (const Error& error) {
-        if (error.kind() != ErrorKind::input) throw;
-        return std::nullopt;
-    }
+    std::shared_ptr<HullWays> ways = hull_ways(vertices);
+    if (!ways) return std::nullopt;
+    bool rolls = ways->rolls(noise);
     if (const std::optional<double> angle = dent_angle(rows, candidate)) {
         const double depth = ways->start_height() - ways->rest_height();
-        if (!is_dent(rows, *angle, ways->rest(), depth)) return std::nullopt;
-        ways->settle();
+        if (is_dent(rows, *angle, ways->rest(), depth)) {
+            ways->settle();
+            rolls = ways->rolls(noise);
+        } else {
+            // The hull would fall from a footing that holds the candidate.
+            ways = hull_ways(held_vertices(candidate, vertices));
+            if (!ways) return std::nullopt;
+        }
     }
     return Surroundings{
         ways->start_height(),
@@ -168,7 +190,7 @@ std::optional<Surroundings> exact_surroundings(const SupportTable::Rows& rows,
             if (level - ways->height(up) <= noise) return std::nullopt;
             return level;
         },
-        ways->rolls(noise)};
+        rolls};
 }
 
 bool is_deeper(const Sampled& f, double base, double height) {

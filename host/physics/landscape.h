@@ -81,8 +81,9 @@ enum class Passes {
     sampled,  // the mesh, made exact by a search of the hull's edges nearby: for many candidates
     // The convex hull of the members' vertices (hull_landscape.h): no descent is too small for the
     // mesh, so that only the voxel limits what counts. Half a millisecond for each candidate.
-    // Those stay sampled whose vertices span no volume about the centre of mass, and those that
-    // their footing holds but, by a contact that voxels misplace, their hull would not.
+    // Where that hull would fall though the footing holds the candidate, it is cut at the height of
+    // the support, and made as wide there as the footing. Those stay sampled whose vertices span no
+    // volume about the centre of mass.
     exact,
 };
 

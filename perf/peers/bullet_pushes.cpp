@@ -14,8 +14,7 @@ std::optional<PeerPushes> bullet_pushes(const std::vector<simulation::StandingOb
     const auto start = std::chrono::steady_clock::now();
     for (const simulation::StandingObject& object : objects)
         out.energy_J.push_back(simulation::weakest_blow_J(object));
-    out.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return out;
 }
 

@@ -90,10 +90,8 @@ Shape random_shape(std::size_t kind, scenes::Random& random) {
                      block({side, 0, high - 4}, {r(3, 7), side, 4})}};
         }
         case 8:
-            return {"over the edge",
-                    {block({0, 0, 0}, {r(10, 16), r(5, 10), r(3, 10)})},
-                    false,
-                    true};
+            return {
+                "over the edge", {block({0, 0, 0}, {r(10, 16), r(5, 10), r(3, 10)})}, false, true};
         case 9: {
             const std::int32_t foot = r(10, 16);
             return {"steps",
@@ -157,8 +155,7 @@ std::vector<StandingObject> standing_objects(std::uint64_t seed, std::size_t cou
             return Cell{c[0] + to[0], c[1] + to[1], c[2] + to[2]};
         });
         StandingObject object{shape.name, {voxel, 700, std::move(shape.parts)}, {}};
-        object.fixed =
-            block({origin[0] - floor, origin[1] - floor, -1}, {2 * floor, 2 * floor, 1});
+        object.fixed = block({origin[0] - floor, origin[1] - floor, -1}, {2 * floor, 2 * floor, 1});
         if (!shape.on_floor) {
             const Part top = block({origin[0] - half_table, origin[1] - half_table, table_top - 2},
                                    {2 * half_table, 2 * half_table, 2});

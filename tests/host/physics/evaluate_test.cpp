@@ -78,6 +78,23 @@ TEST_F(Evaluate, WhatTipsOverTheTableFallsToTheFloor) {
     EXPECT_THROW(evaluate(*device, table, std::span(&bar, 1)), Error);
 }
 
+TEST_F(Evaluate, WhatHangsBesideTheSupportDoesNotLiftIt) {
+    // A box with a strip along one side that hangs 10 cm below the table on which it stands.
+    const SolidCells cells = test::voxelise({{0, test::box({0, 0, 0}, {0.2, 0.2, 0.3})},
+                                             {0, test::box({0.2, 0, -0.1}, {0.22, 0.2, 0.3})}},
+                                            {0, 0, -0.1}, {0.22, 0.2, 0.3}, 0.02);
+    const SupportTable table(*device, cells, 1, geodesic_sphere(16));
+    Candidate box = test::standing(*device, cells);
+    box.support_polygon = {{0, 0}, {0.2, 0}, {0.2, 0.2}, {0, 0.2}};
+    box.support_height_m = 0;
+    const Stability s = evaluate(*device, table, std::span(&box, 1), Passes::exact)[0];
+    const double weight = box.body.mass_kg * gravity, h = box.body.center[2];
+    const double edge = 0.2 - box.body.center[0];  // the nearest
+    EXPECT_NEAR(s.barrier_J, weight * (std::hypot(h, edge) - h), 1e-9 * weight);
+    EXPECT_NEAR(s.direction[0], 1, 1e-9);
+    EXPECT_GT(s.release_J, 0);
+}
+
 TEST_F(Evaluate, GroupsCombineTheirMembersRows) {
     // A slab on a thin post: on its own the slab is flat and safe, together they tip.
     const SolidCells cells = test::voxelise({{0, test::box({-0.02, -0.02, 0}, {0.02, 0.02, 0.5})},
