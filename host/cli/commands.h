@@ -34,5 +34,6 @@ Command add_parse(CLI::App& app);
 Command add_devices(CLI::App& app);
 Command add_generate(CLI::App& app);
 Command add_evaluate(CLI::App& app);
+Command add_landscape(CLI::App& app);
 
 }  // namespace topple::cli

@@ -24,8 +24,8 @@ namespace {
 
 // What topple writes; an earlier output may hold these and nothing else. scene.json is written
 // last.
-constexpr std::array<std::string_view, 5> our_files{"points.ply", "solid.ply", "volume.vdb",
-                                                    "report.html", "scene.json"};
+constexpr std::array<std::string_view, 6> our_files{"points.ply",  "solid.ply",       "volume.vdb",
+                                                    "report.html", "landscapes.json", "scene.json"};
 
 bool is_our_scene(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);

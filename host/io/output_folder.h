@@ -24,7 +24,7 @@ class OutputFolder {
     OutputFolder& operator=(const OutputFolder&) = delete;
 
     // The temporary folder, to write files (no folders) into. Names must be among those that topple
-    // writes: points.ply, solid.ply, volume.vdb, report.html, scene.json.
+    // writes: points.ply, solid.ply, volume.vdb, report.html, landscapes.json, scene.json.
     const std::filesystem::path& folder() const { return temporary_; }
     const std::filesystem::path& destination() const { return destination_; }
 

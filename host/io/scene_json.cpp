@@ -58,6 +58,18 @@ Json to_json(const Primitive& p) {
             {"center_of_mass_m", vector(p.center_of_mass_m)}};
 }
 
+Json to_json(const Why& w) {
+    return {{"azimuth_deg", number(w.azimuth_deg)},
+            {"edge_m", list(w.edge_m, vector)},
+            {"W_J", number(w.W_J)},
+            {"S_J", number(w.S_J)},
+            {"way_m", number(w.way_m)},
+            {"drop_m", number(w.drop_m)},
+            {"lands_on", w.lands_on},
+            {"stands_on", w.stands_on},
+            {"sentence", w.sentence}};
+}
+
 Json to_json(const Object& o) {
     auto risk = Json::object();
     for (const auto& [disturbance, value] : o.risk_J) risk[disturbance] = number(value);
@@ -76,6 +88,7 @@ Json to_json(const Object& o) {
                              [](const InstabilityStep& step) {
                                  return Json{{"W_J", number(step.W_J)}, {"S_J", number(step.S_J)}};
                              })},
+        {"why", to_json(o.why)},
         {"risk_J", std::move(risk)},
         {"unsafety", number(o.unsafety)}};
 }
@@ -119,6 +132,22 @@ Primitive primitive_of(const Json& json) {
     return p;
 }
 
+Why why_of(const Json& json) {
+    Why w;
+    w.azimuth_deg = number_at(json, "azimuth_deg");
+    for (const Json& end : json.at("edge_m")) {
+        w.edge_m.push_back({number_of(end.at(0)), number_of(end.at(1)), number_of(end.at(2))});
+    }
+    w.W_J = number_at(json, "W_J");
+    w.S_J = number_at(json, "S_J");
+    w.way_m = number_at(json, "way_m");
+    w.drop_m = number_at(json, "drop_m");
+    w.lands_on = json.at("lands_on").get<std::int32_t>();
+    w.stands_on = json.at("stands_on").get<std::vector<std::int32_t>>();
+    w.sentence = json.at("sentence").get<std::string>();
+    return w;
+}
+
 Object object_of(const Json& json) {
     Object o;
     o.id = json.at("id").get<std::int32_t>();
@@ -135,6 +164,7 @@ Object object_of(const Json& json) {
     for (const auto& step : json.at("instability")) {
         o.instability.push_back({number_at(step, "W_J"), number_at(step, "S_J")});
     }
+    if (json.contains("why")) o.why = why_of(json.at("why"));  // nor this
     for (const auto& [disturbance, value] : json.at("risk_J").items()) {
         o.risk_J[disturbance] = number_of(value);
     }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "physics/body_landscape.h"
 #include "physics/hull_ways.h"
 #include "physics/pose_passes.h"
 #include "physics/tipping.h"
@@ -15,12 +16,6 @@
 
 namespace topple::physics {
 namespace {
-
-// One way out of the start's basin; metres, to be multiplied by M g.
-struct Way {
-    double climb_m = 0, release_m = 0;
-    Vec3 direction{};  // horizontal, unit or zero
-};
 
 // The body turns so that d becomes vertical; its own vertical then leans to the other side of d.
 Vec3 lean(const Vec3& d) {
@@ -50,25 +45,6 @@ struct Opening {
     double level_m = 0;
     PosePass pass;
 };
-
-std::vector<Vec3> vertices_of(const SupportTable::Rows& rows, const Candidate& candidate) {
-    std::vector<Vec3> all;
-    std::size_t count = 0;
-    for (const std::int32_t p : candidate.primitives)
-        count += rows.vertices[static_cast<std::size_t>(p)].size();
-    all.reserve(count);
-    for (const std::int32_t p : candidate.primitives) {
-        const auto at = static_cast<std::size_t>(p);
-        Vec3 offset{};
-        for (std::size_t a = 0; a < 3; ++a) {
-            offset[a] = rows.origin[at][a] - candidate.body.center[a];
-        }
-        for (const Vec3& v : rows.vertices[at]) {
-            all.push_back({v[0] + offset[0], v[1] + offset[1], v[2] + offset[2]});
-        }
-    }
-    return all;
-}
 
 // How far a candidate may rock by what is not known of its contacts, if its footing holds it: two
 // voxels of height over the distance at which it does.
@@ -224,17 +200,23 @@ Vec3 way_over(const PosePass& pass) {
     return {1, 0, 0};
 }
 
-void add_passes(const Sampled& f, const Surroundings& around, std::vector<Way>& ways) {
+void add_passes(const Candidate& candidate, const Sampled& f, const Surroundings& around,
+                std::vector<TippingWay>& ways) {
     const double base = around.base_m;
     for (const auto& [level, pass] : around.passes) {
-        ways.push_back({pass.height_m - base,
-                        is_deeper(f, base, pass.deepest_m) ? pass.height_m - pass.deepest_m : 0,
-                        way_over(pass)});
+        TippingWay way{pass.height_m - base,
+                       is_deeper(f, base, pass.deepest_m) ? pass.height_m - pass.deepest_m : 0,
+                       way_over(pass)};
+        if (pass.edge) {
+            const Vec3& c = candidate.body.center;
+            way.edge = Ends{along(c, 1, (*pass.edge)[0]), along(c, 1, (*pass.edge)[1])};
+        }
+        ways.push_back(way);
     }
 }
 
 void add_footing(const Candidate& candidate, const Footing& on, const Sampled& f,
-                 const Surroundings& around, std::vector<Way>& ways) {
+                 const Surroundings& around, std::vector<TippingWay>& ways) {
     const double base = around.base_m;
     const std::vector<double>& drops = candidate.edge_drop_m;
     if (!drops.empty() && drops.size() != std::max<std::size_t>(on.edges.size(), 1)) {
@@ -242,24 +224,28 @@ void add_footing(const Candidate& candidate, const Footing& on, const Sampled& f
                                           " drops, but its support has " +
                                           std::to_string(on.edges.size()) + " edges to tip over");
     }
-    const auto add = [&](double climb, const Vec3& way, std::size_t edge) {
+    const auto add = [&](double climb, const Vec3& way, std::size_t edge,
+                         const std::array<std::array<double, 2>, 2>& ends) {
         const double deepest = deepest_towards(f, around, way);
+        const double z = candidate.support_height_m;
         const double turn = is_deeper(f, base, deepest) ? base - deepest : 0;
-        const double descent = turn + (drops.empty() ? 0 : drops[edge]);
-        ways.push_back({climb, descent > 0 ? climb + descent : 0, way});
+        const double drop = drops.empty() ? 0 : drops[edge], descent = turn + drop;
+        ways.push_back({climb, descent > 0 ? climb + descent : 0, way,
+                        Ends{Vec3{ends[0][0], ends[0][1], z}, Vec3{ends[1][0], ends[1][1], z}},
+                        drop});
     };
-    if (on.edges.empty()) return add(0, on.away, 0);
+    if (on.edges.empty()) return add(0, on.away, 0, on.nearest);
     const double h = candidate.body.center[2] - candidate.support_height_m;
     for (std::size_t n = 0; n < on.edges.size(); ++n) {
         const Footing::Edge& edge = on.edges[n];
-        add(std::sqrt(h * h + edge.distance_m * edge.distance_m) - h, edge.outward, n);
+        add(std::sqrt(h * h + edge.distance_m * edge.distance_m) - h, edge.outward, n, edge.ends);
     }
 }
 
 // Held by nothing: it falls as its hull lets it.
-void add_fall(const Sampled& f, const Surroundings& around, std::vector<Way>& ways) {
+void add_fall(const Sampled& f, const Surroundings& around, std::vector<TippingWay>& ways) {
     const double base = around.base_m;
-    Way fall;
+    TippingWay fall;
     for (const auto& [level, pass] : around.passes) {
         if (pass.height_m > base + f.resolution_m) break;
         if (is_deeper(f, base, pass.deepest_m)) {
@@ -272,23 +258,22 @@ void add_fall(const Sampled& f, const Surroundings& around, std::vector<Way>& wa
 
 // The easiest way that releases anything, of equal ones the one that releases most: the first step
 // of the curve. The lowest pass of all may lead nowhere deeper, and a body that rolls has no way.
-Vec3 release_direction(const std::vector<Way>& ways) {
-    const Way* first = nullptr;
-    for (const Way& way : ways) {
+std::optional<TippingWay> releasing(const std::vector<TippingWay>& ways) {
+    std::optional<TippingWay> first;
+    for (const TippingWay& way : ways) {
         if (!(way.release_m > 0)) continue;
         if (!first || way.climb_m < first->climb_m ||
             (way.climb_m == first->climb_m && way.release_m > first->release_m))
-            first = &way;
+            first = way;
     }
-    return first ? first->direction : Vec3{};
+    return first;
 }
 
 // S(W) of Eq. 6: the largest release over all ways with a climb of at most W.
-std::vector<InstabilityStep> curve_of(std::vector<Way> ways, double weight_N) {
-    std::stable_sort(ways.begin(), ways.end(),
-                     [](const Way& a, const Way& b) { return a.climb_m < b.climb_m; });
+std::vector<InstabilityStep> curve_of(std::vector<TippingWay> ways, double weight_N) {
+    std::ranges::stable_sort(ways, {}, &TippingWay::climb_m);
     std::vector<InstabilityStep> curve;
-    for (const Way& way : ways) {
+    for (const TippingWay& way : ways) {
         const double W = weight_N * way.climb_m, S = weight_N * way.release_m;
         if (S <= (curve.empty() ? 0 : curve.back().S_J)) continue;
         if (!curve.empty() && curve.back().W_J == W) {
@@ -324,7 +309,7 @@ Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
     const Surroundings around = found ? std::move(*found) : sampled_surroundings(f, vertices);
 
     Stability result;
-    std::vector<Way> ways;
+    std::vector<TippingWay> ways;
     if (candidate.support_polygon.empty()) {
         result.margin_m = -radius;
         add_fall(f, around, ways);
@@ -334,21 +319,20 @@ Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
         result.margin_m = on.margin_m;
         add_footing(candidate, on, f, around, ways);
     }
-    add_passes(f, around, ways);
+    add_passes(candidate, f, around, ways);
     if (around.rolls) ways.push_back({});
 
-    const auto least = std::min_element(
-        ways.begin(), ways.end(), [](const Way& a, const Way& b) { return a.climb_m < b.climb_m; });
+    const auto least = std::ranges::min_element(ways, {}, &TippingWay::climb_m);
     // Of ways equal to within rounding, the one that releases most.
-    const Way* taken = &*least;
-    for (const Way& way : ways) {
+    const TippingWay* taken = &*least;
+    for (const TippingWay& way : ways) {
         if (way.climb_m <= least->climb_m + 1e-6 * radius && way.release_m > taken->release_m)
             taken = &way;
     }
     result.barrier_J = weight_N * least->climb_m;
     result.release_J = weight_N * taken->release_m;
-    result.direction = taken->direction;
-    result.release_direction = release_direction(ways);
+    result.easiest = *taken;
+    result.releasing = releasing(ways);
     result.curve = curve_of(std::move(ways), weight_N);
     return result;
 }

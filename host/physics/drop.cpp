@@ -8,13 +8,18 @@
 #include "physics/tipping.h"
 
 namespace topple::physics {
-
 namespace {
 
+struct Landing {
+    double drop_m = 0;
+    std::int32_t onto = -1;  // primitive
+};
+
 // Over an edge, or a border, that is `distance` from the centre of mass.
-double drop_over(const SolidCells& cells, const CellColumns& columns, const Candidate& body,
-                 const Vec3& direction, double distance) {
+Landing landing(const SolidCells& cells, const CellColumns& columns, const Candidate& body,
+                const Vec3& direction, double distance) {
     const double h = cells.voxel_m;
+    std::int32_t onto = -1;
     // Over its edge the centre of mass lands about its own height away; where the body leans on
     // something nearer or farther it stops there.
     const double height = std::max(body.body.center[2] - body.support_height_m, 2 * h);
@@ -29,14 +34,16 @@ double drop_over(const SolidCells& cells, const CellColumns& columns, const Cand
         for (std::size_t c = first; c < last; ++c) {
             const double top = (cells.k[c] + 1) * h;
             if (top > body.body.center[2]) break;  // above where it is: no place to land
-            if (!std::binary_search(body.primitives.begin(), body.primitives.end(),
-                                    cells.primitive[c]))
-                highest = std::max(highest, top);
+            if (top <= highest || std::binary_search(body.primitives.begin(), body.primitives.end(),
+                                                     cells.primitive[c]))
+                continue;
+            highest = top;
+            onto = cells.primitive[c];
         }
     }
-    if (!std::isfinite(highest)) return 0;
     const double drop = body.support_height_m - highest;
-    return drop > 1.5 * h ? drop : 0;  // a voxel is noise
+    if (!std::isfinite(highest) || drop <= 1.5 * h) return {};  // a voxel is noise
+    return {drop, onto};
 }
 
 }  // namespace
@@ -44,11 +51,20 @@ double drop_over(const SolidCells& cells, const CellColumns& columns, const Cand
 std::vector<double> drops_when_tipped_m(const SolidCells& cells, const CellColumns& columns,
                                         const Candidate& body) {
     const Footing foot = footing(body.support_polygon, body.body.center[0], body.body.center[1]);
-    if (foot.edges.empty()) return {drop_over(cells, columns, body, foot.away, 0)};
+    if (foot.edges.empty()) return {landing(cells, columns, body, foot.away, 0).drop_m};
     std::vector<double> drops;
     for (const Footing::Edge& edge : foot.edges)
-        drops.push_back(drop_over(cells, columns, body, edge.outward, edge.distance_m));
+        drops.push_back(landing(cells, columns, body, edge.outward, edge.distance_m).drop_m);
     return drops;
+}
+
+std::int32_t met_when_tipped(const SolidCells& cells, const CellColumns& columns,
+                             const Candidate& body, const Vec3& direction, const Vec3& on_edge) {
+    const Vec3& c = body.body.center;
+    // Outside of its footing it falls from where it is.
+    const bool inside = footing(body.support_polygon, c[0], c[1]).margin_m > 0;
+    const double distance = (on_edge[0] - c[0]) * direction[0] + (on_edge[1] - c[1]) * direction[1];
+    return landing(cells, columns, body, direction, inside ? distance : 0).onto;
 }
 
 double drop_when_tipped_m(const SolidCells& cells, const CellColumns& columns,
@@ -56,7 +72,7 @@ double drop_when_tipped_m(const SolidCells& cells, const CellColumns& columns,
     const Footing foot = footing(body.support_polygon, body.body.center[0], body.body.center[1]);
     const auto weakest = std::ranges::min_element(foot.edges, {}, &Footing::Edge::distance_m);
     const Vec3 direction = foot.edges.empty() ? foot.away : weakest->outward;
-    return drop_over(cells, columns, body, direction, foot.margin_m);
+    return landing(cells, columns, body, direction, foot.margin_m).drop_m;
 }
 
 }  // namespace topple::physics

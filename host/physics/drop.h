@@ -14,7 +14,11 @@ namespace topple::physics {
 // the centre of mass is outside, one for the way in which it falls. The body has a support polygon.
 std::vector<double> drops_when_tipped_m(const SolidCells& cells, const CellColumns& columns,
                                         const Candidate& body);
-// Over the weakest of them.
+// The primitive that it falls onto in a horizontal direction over an edge of its support, of which
+// `on_edge` is a point; -1 for other solid, or where it does not fall.
+std::int32_t met_when_tipped(const SolidCells& cells, const CellColumns& columns,
+                             const Candidate& body, const Vec3& direction, const Vec3& on_edge);
+// How far it falls over the weakest of them.
 double drop_when_tipped_m(const SolidCells& cells, const CellColumns& columns,
                           const Candidate& body);
 

@@ -150,6 +150,14 @@ std::uint32_t descend(const HullPolytope& hull, const Vec3& down) {
     return follow(hull, {none, static_cast<std::uint32_t>(lowest - hull.corner.begin()), down});
 }
 
+std::vector<Vec3> border_over(const HullPolytope& hull, const Edge& pass) {
+    std::vector<Vec3> border = way_up(hull, pass, 0);
+    std::reverse(border.begin(), border.end());
+    border.push_back(unit(pass.foot));
+    for (const Vec3& n : way_up(hull, pass, 1)) border.push_back(n);
+    return border;
+}
+
 std::vector<double> basin_angles(const HullPolytope& hull) {
     constexpr double all = 4 * std::numbers::pi;
     std::vector<double> angle(hull.face.size(), 0.0);
@@ -158,11 +166,7 @@ std::vector<double> basin_angles(const HullPolytope& hull) {
         const std::array<std::uint32_t, 2> basin{descend(hull, e.face[0]),
                                                  descend(hull, e.face[1])};
         if (basin[0] == basin[1]) continue;
-        // From the top beyond end 0 over the pass to the top beyond end 1.
-        std::vector<Vec3> border = way_up(hull, e, 0);
-        std::reverse(border.begin(), border.end());
-        border.push_back(unit(e.foot));
-        for (const Vec3& n : way_up(hull, e, 1)) border.push_back(n);
+        const std::vector<Vec3> border = border_over(hull, e);
         // face[0] has the ends counter-clockwise, so its side of the border is on the left.
         for (std::size_t side = 0; side < 2; ++side) {
             const Vec3& from = hull.face[basin[side]].normal;

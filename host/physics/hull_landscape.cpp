@@ -61,7 +61,7 @@ std::vector<HullPose> make_poses(const HullPolytope& hull, const MergeTree& tree
     return poses;
 }
 
-std::vector<HullPass> make_passes(const HullPolytope& hull, const MergeTree& tree) {
+std::vector<HullPass> make_passes(const HullPolytope& hull, const MergeTree& tree, bool borders) {
     std::vector<HullPass> passes;
     for (const HullPolytope::Edge& e : hull.edge) {
         if (!e.pass()) continue;
@@ -72,7 +72,10 @@ std::vector<HullPass> make_passes(const HullPolytope& hull, const MergeTree& tre
             pass.points[side] = hull.point[e.end[side]];
             pass.poses[side] = tree.basin_of[descend(hull, e.face[side])];
         }
-        passes.push_back(pass);
+        if (borders && pass.poses[0] != pass.poses[1]) {
+            for (const Vec3& n : border_over(hull, e)) pass.border.push_back(opposite(n));
+        }
+        passes.push_back(std::move(pass));
     }
     std::stable_sort(passes.begin(), passes.end(),
                      [](const HullPass& a, const HullPass& b) { return a.height_m < b.height_m; });
@@ -93,7 +96,12 @@ HullLandscape hull_landscape(std::span<const Vec3> points, const Vec3& center_of
     const MergeTree tree = merge_tree(hull, resolution);
     HullLandscape result;
     result.poses = make_poses(hull, tree, resolution);
-    result.passes = make_passes(hull, tree);
+    result.passes = make_passes(hull, tree, options.borders);
+    result.corners = hull.point;
+    const Vec3 down = opposite(options.up);
+    result.now = tree.basin_of[descend(hull, down)];
+    for (const Vec3& v : hull.corner)
+        result.now_m = std::max(result.now_m, dot(v, down) * hull.radius);
     for (std::size_t n = 0; n < hull.corner.size(); ++n) {
         result.maxima +=
             std::none_of(hull.beside[n].begin(), hull.beside[n].end(), [&](std::uint32_t m) {

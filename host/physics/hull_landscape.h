@@ -48,13 +48,20 @@ struct HullPass {
     std::array<std::uint32_t, 2> points{};  // numbers of the edge's ends
     // Where it comes to rest, to either side: numbers of poses, which may be the same one.
     std::array<std::int32_t, 2> poses{};
+    // The border between both sides, from top to top: up directions, each joined to the next by an
+    // arc of a great circle. Only where asked for.
+    std::vector<Vec3> border{};
 };
 
 struct HullLandscape {
-    std::vector<HullPose> poses;   // by rising height
-    std::vector<HullPass> passes;  // by rising height
-    std::size_t maxima = 0;        // corners on which it could balance
-    double highest_m = 0;          // the top of the landscape
+    std::vector<HullPose> poses;         // by rising height
+    std::vector<HullPass> passes;        // by rising height
+    std::size_t maxima = 0;              // corners on which it could balance
+    double highest_m = 0;                // the top of the landscape
+    std::vector<std::uint32_t> corners;  // numbers of the points that are corners of the hull
+    // Where it is with HullOptions::up up: the pose that it comes to rest in, and its height now.
+    std::int32_t now = 0;
+    double now_m = 0;
 };
 
 struct HullOptions {
@@ -62,6 +69,8 @@ struct HullOptions {
     // (a lying cylinder of many facets is one pose), and a point no higher above the plane touches
     // it. It is never taken for less than 1e-12 and, for touching, 1e-9 of the hull's radius.
     double resolution_m = 0;
+    Vec3 up{0, 0, 1};      // unit: up now
+    bool borders = false;  // whether passes have theirs
 };
 
 // Points need not be corners and may repeat. Throws Error(input) for points that are fewer than

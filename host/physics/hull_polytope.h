@@ -63,6 +63,11 @@ std::uint32_t descend(const HullPolytope& hull, std::uint32_t face);
 // The same from any direction, as a unit vector that points down.
 std::uint32_t descend(const HullPolytope& hull, const Vec3& down);
 
+// The way down from both sides of a pass divides at it; this is the border between the two, from
+// the top beyond the edge's first end over the pass to that beyond its second: unit vectors that
+// point down, each joined to the next by an arc of a great circle.
+std::vector<Vec3> border_over(const HullPolytope& hull, const HullPolytope::Edge& pass);
+
 // Solid angle of the basin of steepest descent of each minimum, by face; 0 for other faces. The
 // borders of basins are the steepest ways up from the passes, which are arcs of great circles; the
 // angle within is their sum of signed triangles with the minimum (by Stokes' theorem).

@@ -26,6 +26,13 @@ Vec3 HullWays::direction(std::uint32_t node) const {
     return opposite(a.height > b.height ? a.normal : b.normal);
 }
 
+std::optional<Ends> HullWays::edge(std::uint32_t node) const {
+    if (node < hull_.face.size()) return std::nullopt;
+    const auto& ends = hull_.edge[node - hull_.face.size()].end;
+    return Ends{along({}, hull_.radius, hull_.corner[ends[0]]),
+                along({}, hull_.radius, hull_.corner[ends[1]])};
+}
+
 std::vector<PosePass> HullWays::passes(double noise_m) const {
     std::vector<MinimumBehind> behind;
     for (std::uint32_t f = 0; f < hull_.face.size(); ++f) {
@@ -38,6 +45,7 @@ std::vector<PosePass> HullWays::passes(double noise_m) const {
             if (basin.pass * hull_.radius > start_height_m_) {
                 minimum.level_m = basin.pass * hull_.radius;
                 minimum.pass = direction(basin.saddle);
+                minimum.edge = edge(basin.saddle);
             }
         }
         if (minimum.level_m - minimum.height_m > noise_m) behind.push_back(minimum);

@@ -34,6 +34,7 @@ class HullWays {
 
   private:
     Vec3 direction(std::uint32_t node) const;
+    std::optional<Ends> edge(std::uint32_t node) const;
     HullPolytope hull_;
     MergeTree tree_;
     Vec3 start_;

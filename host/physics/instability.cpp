@@ -21,23 +21,26 @@ Instability combine_curves(const Stability& tip, const SlideResult& slide) {
             result.curve.push_back(step);
         }
     }
+    const auto take = [&](const char* mode, double barrier_J, double release_J, const auto& way) {
+        result.mode = mode;
+        result.barrier_J = barrier_J;
+        result.release_J = release_J;
+        result.weakest = way.direction;
+        result.edge = way.edge;
+        result.drop_m = way.drop_m;
+        if (result.mode != "none") result.direction = way.direction;
+    };
     // Tipping may find its first release behind a higher pass than its lowest.
     const InstabilityStep* first = tip.curve.empty() ? nullptr : &tip.curve.front();
-    result.barrier_J = tip.barrier_J;
     if (tip.release_J > 0 && !(slides && slide.absorbed_J < tip.barrier_J)) {
-        result.release_J = tip.release_J;
-        result.mode = "tip";
-        result.direction = tip.direction;
+        take("tip", tip.barrier_J, tip.release_J, tip.easiest);
     } else if (slides && !(first && first->W_J < slide.absorbed_J)) {
-        result.barrier_J = slide.absorbed_J;
-        result.release_J = slide.released_J;
-        result.mode = "slide";
-        result.direction = slide.direction;
+        take("slide", slide.absorbed_J, slide.released_J, slide);
+        result.onto = slide.onto;
     } else if (first) {
-        result.barrier_J = first->W_J;
-        result.release_J = first->S_J;
-        result.mode = "tip";
-        result.direction = tip.release_direction;
+        take("tip", first->W_J, first->S_J, *tip.releasing);
+    } else {
+        take("none", tip.barrier_J, 0, tip.easiest);
     }
     return result;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -47,6 +48,20 @@ class SupportTable {
     std::unique_ptr<Rows> rows_;
 };
 
+// Of an edge.
+using Ends = std::array<Vec3, 2>;
+
+// One way in which a body leaves its pose. Heights are of its centre of mass: times M g, joules.
+struct TippingWay {
+    double climb_m = 0;
+    double release_m = 0;  // from the top of the climb; 0: nothing there is deeper
+    Vec3 direction{};      // horizontal way that it goes, unit, grid frame; zero: any, or none
+    // The edge that it turns over, where it is as it stands, grid frame; nothing where it falls or
+    // rolls without one.
+    std::optional<Ends> edge{};
+    double drop_m = 0;  // what it falls beyond where its support ends, part of release_m
+};
+
 // What a group of primitives can do when pushed. Heights are known to one voxel, so a descent
 // behind a pass counts from M g (voxel + what the mesh misses, if passes are sampled: half its
 // spacing times the body's radius), and a minimum is deeper than the start from M g voxel / 2. A
@@ -59,9 +74,9 @@ struct Stability {
     // Distance of the centre of mass inside the support polygon; < 0 outside; minus the body's
     // radius where nothing holds it.
     double margin_m = 0;
-    Vec3 direction{};                    // horizontal way it goes, unit, grid frame
-    Vec3 release_direction{};            // the same of the first step of the curve, or zero
-    std::vector<InstabilityStep> curve;  // S(W), ascending in W
+    TippingWay easiest;                   // the way with that barrier and release
+    std::optional<TippingWay> releasing;  // the easiest that releases anything: the first step
+    std::vector<InstabilityStep> curve;   // S(W), ascending in W
 };
 
 // One candidate rigid body: its primitives, its mass properties, and the hull of the points on

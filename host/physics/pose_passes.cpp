@@ -117,7 +117,7 @@ std::optional<PosePass> search(const PosePass& found, std::span<const Vec3> vert
         const auto& [height, p, q] = edges.front();
         const Balance pose = *balance(near[p], near[q]);
         if (is_pass(pose, near[p], near[q], near, vertices, rounding))
-            return PosePass{pose.height_m, pose.direction(), 0, {}};
+            return PosePass{pose.height_m, pose.direction(), 0, {}, Ends{near[p], near[q]}};
         std::pop_heap(edges.begin(), edges.end(), later);
         edges.pop_back();
     }
@@ -133,7 +133,7 @@ std::vector<PosePass> passes_to(std::vector<MinimumBehind> behind) {
     std::vector<PosePass> passes;
     for (const MinimumBehind& b : behind) {
         if (passes.empty() || passes.back().height_m != b.level_m) {
-            PosePass pass{b.level_m, b.pass, infinity, {}};
+            PosePass pass{b.level_m, b.pass, infinity, {}, b.edge};
             if (!passes.empty()) {
                 pass.deepest_m = passes.back().deepest_m;
                 pass.deepest = passes.back().deepest;

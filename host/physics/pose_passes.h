@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -33,10 +34,11 @@ struct Sampled {
 // One pass out of the start's basin, and the deepest minimum that it opens beyond those that lower
 // passes open.
 struct PosePass {
-    double height_m = 0;   // at the pass
-    Vec3 direction{};      // up in the body's frame at the pass
-    double deepest_m = 0;  // lowest height behind this pass or lower ones
-    Vec3 deepest{};        // and its direction
+    double height_m = 0;         // at the pass
+    Vec3 direction{};            // up in the body's frame at the pass
+    double deepest_m = 0;        // lowest height behind this pass or lower ones
+    Vec3 deepest{};              // and its direction
+    std::optional<Ends> edge{};  // over which it balances, relative to the centre of mass
 };
 
 // A minimum that lies behind a pass, as seen from the start.
@@ -44,6 +46,7 @@ struct MinimumBehind {
     double level_m = 0;      // of the pass
     double height_m = 0;     // of the minimum
     Vec3 pass{}, minimum{};  // directions
+    std::optional<Ends> edge{};
 };
 // One pass for each level, by rising height; of equal minima the first counts.
 std::vector<PosePass> passes_to(std::vector<MinimumBehind> behind);

@@ -140,8 +140,4 @@ bool SlideMap::any_edge() {
     return false;
 }
 
-double SlideMap::drop_m(std::int32_t i, std::int32_t j) {
-    return ground(i, j).below * cells_.voxel_m;
-}
-
 }  // namespace topple::physics

@@ -33,6 +33,8 @@ class SlideMap {
     std::int32_t start_j() const { return start_j_; }
     std::int32_t radius() const { return radius_; }  // of the window of positions, voxels
 
+    // Whether the column is support.
+    bool holds(std::int32_t i, std::int32_t j) { return ground(i, j).holds; }
     // With the centre of mass over column (i, j): can it be there, and does it fall from there?
     bool blocked(std::int32_t i, std::int32_t j);
     bool falls(std::int32_t i, std::int32_t j);
@@ -40,8 +42,9 @@ class SlideMap {
     bool passable(std::int32_t i, std::int32_t j);
     // Whether any column in reach lies above a drop.
     bool any_edge();
-    double drop_m(std::int32_t i,
-                  std::int32_t j);  // below column (i, j); 0: unknown or less than 2 voxels
+    // Below column (i, j); 0: unknown, or less than 2 voxels.
+    std::int32_t drop_voxels(std::int32_t i, std::int32_t j) { return ground(i, j).below; }
+    double drop_m(std::int32_t i, std::int32_t j) { return drop_voxels(i, j) * cells_.voxel_m; }
 
   private:
     struct Ground {

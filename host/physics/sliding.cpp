@@ -5,9 +5,11 @@
 #include <cmath>
 #include <map>
 #include <queue>
+#include <set>
 #include <string>
 
 #include "physics/slide_map.h"
+#include "physics/vectors.h"
 #include "topple/error.h"
 
 namespace topple::physics {
@@ -79,6 +81,35 @@ class Search {
         double x = 0, y = 0;  // end of the first leg
         std::int32_t i = 0, j = 0;
     };
+    // The cost of every place that can be reached within `reach` columns of the start, those that
+    // fall included, without going on from these.
+    void explore(std::int32_t reach) {
+        std::priority_queue<Node, std::vector<Node>, std::greater<>> open;
+        const std::int32_t si = map_.start_i(), sj = map_.start_j();
+        state(si, sj) = {0, si, sj, false, true};
+        open.push({0, si, sj});
+        while (!open.empty()) {
+            const Node node = open.top();
+            open.pop();
+            State& s = state(node.i, node.j);
+            if (s.closed || node.cost != s.cost) continue;
+            if (!settle(node, s)) {
+                if (std::isfinite(s.cost)) open.push({s.cost, node.i, node.j});
+                continue;
+            }
+            s.closed = true;
+            if (map_.falls(node.i, node.j) ||
+                std::max(std::abs(node.i - si), std::abs(node.j - sj)) >= reach)
+                continue;
+            expand(node, s, open);
+        }
+    }
+    // What explore() found; infinity where it did not get.
+    double cost(std::int32_t i, std::int32_t j) {
+        const State& s = state(i, j);
+        return s.closed ? s.cost : std::numeric_limits<double>::infinity();
+    }
+
     Way run() {
         std::priority_queue<Node, std::vector<Node>, std::greater<>> open;
         const std::int32_t si = map_.start_i(), sj = map_.start_j();
@@ -212,6 +243,87 @@ class Search {
     std::vector<State> nodes_;
 };
 
+// The support's border around column (i, j), which does not hold: the faces between such columns
+// that hang together within reach of it and columns that do, as the segment that fits them best.
+Ends border_at(SlideMap& map, std::int32_t i, std::int32_t j, std::int32_t reach, double voxel_m,
+               double height_m) {
+    std::vector<std::array<double, 2>> middles;  // of faces, voxels
+    std::vector<std::array<std::int32_t, 2>> next{{i, j}};
+    std::set<std::array<std::int32_t, 2>> seen{{i, j}};
+    while (!next.empty()) {
+        const auto [at_i, at_j] = next.back();
+        next.pop_back();
+        for (int a = -1; a <= 1; ++a) {
+            for (int b = -1; b <= 1; ++b) {
+                const std::int32_t to_i = at_i + a, to_j = at_j + b;
+                if (map.holds(to_i, to_j)) {
+                    if ((a == 0) != (b == 0))
+                        middles.push_back({at_i + 0.5 + 0.5 * a, at_j + 0.5 + 0.5 * b});
+                } else if (std::max(std::abs(to_i - i), std::abs(to_j - j)) <= reach &&
+                           seen.insert({to_i, to_j}).second) {
+                    next.push_back({to_i, to_j});
+                }
+            }
+        }
+    }
+    Vec3 middle{i + 0.5, j + 0.5, height_m / voxel_m};
+    if (middles.empty()) return {along({}, voxel_m, middle), along({}, voxel_m, middle)};
+    const double count = static_cast<double>(middles.size());
+    middle[0] = middle[1] = 0;
+    for (const auto& m : middles) middle = along(middle, 1 / count, {m[0], m[1], 0});
+    double xx = 0, xy = 0, yy = 0;
+    for (const auto& m : middles) {
+        const double x = m[0] - middle[0], y = m[1] - middle[1];
+        xx += x * x;
+        xy += x * y;
+        yy += y * y;
+    }
+    const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
+    const Vec3 way{std::cos(angle), std::sin(angle), 0};
+    double low = 0, high = 0;
+    for (const auto& m : middles) {
+        const double t = dot(way, {m[0] - middle[0], m[1] - middle[1], 0});
+        low = std::min(low, t);
+        high = std::max(high, t);
+    }
+    return {along({}, voxel_m, along(middle, low - 0.5, way)),
+            along({}, voxel_m, along(middle, high + 0.5, way))};
+}
+
+// As far as the way goes and a bit more, or `least` where there is none.
+Landscape::Places places_around(SlideMap& map, const Body& body, double way_m, double friction,
+                                double voxel_m) {
+    constexpr double least_m = 0.3, most_m = 1.5;
+    constexpr std::int32_t most_in_a_row = 63;
+    const double weight = body.mass_kg * gravity;
+    const std::int32_t reach = std::min(
+        static_cast<std::int32_t>(std::ceil(std::clamp(1.3 * way_m, least_m, most_m) / voxel_m)),
+        map.radius() - 1);
+    Search search(map, body.center[0] / voxel_m, body.center[1] / voxel_m);
+    search.explore(reach);
+    const std::int32_t stride = (2 * reach + most_in_a_row) / most_in_a_row;
+    const std::int32_t half = reach / stride;
+    Landscape::Places places;
+    places.side = 2 * half + 1;
+    places.step_m = stride * voxel_m;
+    for (std::int32_t b = -half; b <= half; ++b) {
+        for (std::int32_t a = -half; a <= half; ++a) {
+            const std::int32_t i = map.start_i() + a * stride, j = map.start_j() + b * stride;
+            const double cost = search.cost(i, j);
+            double value = std::numeric_limits<double>::quiet_NaN();
+            if (map.blocked(i, j)) {
+                value = std::numeric_limits<double>::infinity();
+            } else if (map.drop_m(i, j) > 0 && map.falls(i, j)) {
+                value = -weight * map.drop_m(i, j);
+            } else if (std::isfinite(cost)) {
+                value = friction * weight * cost * voxel_m;
+            }
+            places.energy_J.push_back(static_cast<float>(value));
+        }
+    }
+    return places;
+}
+
 SlideResult slide_one(const SolidCells& cells, const CellColumns& columns,
                       std::span<const std::int32_t> object, std::int32_t self,
                       const Footprint& foot, const Body& body, double friction,
@@ -220,7 +332,11 @@ SlideResult slide_one(const SolidCells& cells, const CellColumns& columns,
     const double x = body.center[0] / cells.voxel_m, y = body.center[1] / cells.voxel_m;
     const Search::Way way = Search(map, x, y).run();
     SlideResult result;
-    if (!way.found || way.length * cells.voxel_m > options.reach_m) return result;
+    const bool found = way.found && way.length * cells.voxel_m <= options.reach_m;
+    if (options.places)
+        result.places = places_around(map, body, found ? way.length * cells.voxel_m : 0, friction,
+                                      cells.voxel_m);
+    if (!found) return result;
     const double weight = body.mass_kg * gravity;
     result.found = true;
     result.distance_m = way.length * cells.voxel_m;
@@ -229,6 +345,15 @@ SlideResult slide_one(const SolidCells& cells, const CellColumns& columns,
     result.released_J = weight * result.drop_m;
     const double dx = way.x - x, dy = way.y - y, length = std::hypot(dx, dy);
     if (length > 0) result.direction = {dx / length, dy / length, 0};
+    std::int32_t reach = 3;
+    for (const Footprint::Column& c : foot.columns)
+        reach = std::max(reach, std::abs(c.i - map.start_i()));
+    const std::int32_t below = foot.support - map.drop_voxels(way.i, way.j);
+    result.edge = border_at(map, way.i, way.j, std::min(reach, 50), cells.voxel_m,
+                            (foot.support + 1) * cells.voxel_m);
+    const auto [first, last] = columns.at(way.i, way.j);
+    for (std::size_t n = first; n < last; ++n)
+        if (cells.k[n] == below) result.onto = cells.primitive[n];
     return result;
 }
 

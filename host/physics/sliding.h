@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,13 +19,17 @@ namespace topple::physics {
 struct SlideResult {
     double absorbed_J = 0, released_J = 0;
     double distance_m = 0, drop_m = 0;
-    Vec3 direction{};    // of the way's first leg, horizontal, unit
-    bool found = false;  // false: nothing holds it from below, or no way leads to an edge
+    Vec3 direction{};          // of the way's first leg, horizontal, unit
+    Ends edge{};               // of the support, where it slides off; ends, grid frame
+    std::int32_t onto = -1;    // primitive below, -1 for other solid
+    bool found = false;        // false: nothing holds it from below, or no way leads to an edge
+    Landscape::Places places;  // the position landscape around it, if asked for
 };
 
 struct SlideOptions {
-    unsigned gap = 1;    // empty voxels that still count as contact
-    double reach_m = 3;  // ways longer than this are no longer one push
+    unsigned gap = 1;     // empty voxels that still count as contact
+    double reach_m = 3;   // ways longer than this are no longer one push
+    bool places = false;  // whether to look at all places around the object
 };
 
 // For every object, on the voxel columns of its support. The support is the level that most of the
@@ -49,6 +54,12 @@ struct Instability {
     std::string mode = "none";            // "tip" | "slide" | "none"
     Vec3 direction{};                     // zero for "none"
     std::vector<InstabilityStep> curve;   // S(W) of Eq. 6: ascending in W and in S
+    // How it takes that barrier; for "none" the easiest way, which releases nothing.
+    Vec3 weakest{};            // horizontal, unit; zero where no way is easier than others
+    std::optional<Ends> edge;  // that it turns over, or slides off; grid frame
+    double drop_m = 0;         // from where its support ends
+    // The primitive that it meets there, -1 for other solid. For "tip" the caller's to find out.
+    std::int32_t onto = -1;
 };
 
 // The curve is the larger of both at every W. The mode is the one with the least barrier that has

@@ -37,11 +37,12 @@ Footing footing(std::span<const Point> polygon, double x, double y) {
         if (distance < border) {
             border = distance;
             nearest = p;
+            result.nearest = {a, b};
         }
         if (!(length > 0)) continue;
         const double within = (ex * (y - a[1]) - ey * (x - a[0])) / length;
         inside = inside && within > 0;
-        result.edges.push_back({within, {ey / length, -ex / length, 0}});
+        result.edges.push_back({within, {ey / length, -ex / length, 0}, {a, b}});
     }
     if (inside && result.edges.size() >= 3) {
         result.margin_m = border;

@@ -17,8 +17,10 @@ struct Footing {
     struct Edge {
         double distance_m = 0;  // of the centre of mass from the edge's line
         Vec3 outward{};         // unit
+        std::array<std::array<double, 2>, 2> ends{};
     };
-    std::vector<Edge> edges;  // inside only
+    std::vector<Edge> edges;                         // inside only
+    std::array<std::array<double, 2>, 2> nearest{};  // ends of the nearest edge, or the one point
 };
 // polygon: counter-clockwise, convex, at least one point; one or two points, or points on a line,
 // give a footing without an inside.

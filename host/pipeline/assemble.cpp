@@ -4,28 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
 #include "physics/landscape.h"
+#include "pipeline/explain.h"
 
 namespace topple {
 namespace {
-
-// From the grid frame to the input's.
-class ToInput {
-  public:
-    explicit ToInput(const std::array<Vec3, 3>& axes) : axes_(axes) {}
-    Vec3 operator()(const Vec3& g) const {
-        Vec3 out{};
-        for (std::size_t c = 0; c < 3; ++c)
-            out[c] = g[0] * axes_[0][c] + g[1] * axes_[1][c] + g[2] * axes_[2][c];
-        return out;
-    }
-
-  private:
-    const std::array<Vec3, 3>& axes_;
-};
 
 void add_primitives(const GeometryStage& geometry, const ObjectStage& objects,
                     const ToInput& to_input, Scene& scene) {
@@ -46,6 +33,18 @@ void add_primitives(const GeometryStage& geometry, const ObjectStage& objects,
     }
 }
 
+Landscape turned(const StableObject& from, const ToInput& to_input) {
+    Landscape out = from.poses;
+    out.places = from.sliding.places;
+    for (Vec3& corner : out.hull_m) corner = to_input(corner);
+    for (Landscape::Pose& pose : out.poses) pose.up = to_input(pose.up);
+    for (Landscape::Pass& pass : out.passes) {
+        pass.up = to_input(pass.up);
+        for (Vec3& up : pass.border) up = to_input(up);
+    }
+    return out;
+}
+
 void add_objects(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,
                  Scene& scene) {
     for (std::size_t o = 0; o < objects.objects.size(); ++o) {
@@ -63,6 +62,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
             to.mode = from.instability.mode;
             to.direction = to_input(from.instability.direction);
             to.instability = from.instability.curve;
+            to.landscape = turned(from, to_input);
         }
         for (std::size_t d = 0; d < safety.disturbances.size(); ++d) {
             to.risk_J[safety.disturbances[d].name] = from.grounded ? 0 : safety.risk_J[d][o];
@@ -76,18 +76,16 @@ void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& sc
     const auto object = [&](std::int32_t p) {
         return objects.object_of_primitive[static_cast<std::size_t>(p)];
     };
-    std::map<std::pair<std::int32_t, std::int32_t>, double> carried;  // (supporter, supported)
-    std::map<std::pair<std::int32_t, std::int32_t>, bool> carries;    // primitives, a < b
+    std::set<std::pair<std::int32_t, std::int32_t>> carries;  // primitives, a < b
     for (const graph::Carrying& c : objects.contacts.carryings) {
-        if (c.supporter < 0) continue;
-        carries[std::minmax(c.supporter, c.supported)] = true;
-        const auto pair = std::pair(object(c.supporter), object(c.supported));
-        // The ground carries, and nothing carries it, though scraps of it may lie on things.
-        const bool ground = objects.objects[static_cast<std::size_t>(pair.second)].grounded;
-        if (pair.first != pair.second && !ground) carried[pair] += c.area_m2;
+        if (c.supporter >= 0) carries.insert(std::minmax(c.supporter, c.supported));
     }
-    for (const auto& [pair, area] : carried)
-        scene.supports.push_back({pair.first, pair.second, area});
+    std::vector<bool> grounded;
+    for (const StableObject& o : objects.objects) grounded.push_back(o.grounded);
+    scene.supports = supports_between(objects.contacts, objects.object_of_primitive, grounded);
+    // Their order makes the carriers of each ascend.
+    for (const Support& s : scene.supports)
+        scene.objects[static_cast<std::size_t>(s.supported)].why.stands_on.push_back(s.supporter);
     for (std::size_t i = 0; i < objects.contacts.pairs.size(); ++i) {
         const physics::TouchingPair& pair = objects.contacts.pairs[i];
         Contact c;
@@ -188,6 +186,7 @@ void assemble(const Ingested& input, const GeometryStage& geometry, VoxelStage& 
     add_fields(safety, to_input, scene);
     note_uncertain_barriers(scene);
     scene.swc_energy = objects.grouping.energy_curve;
+    explain(geometry, objects, to_input, scene);
 }
 
 }  // namespace topple

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <utility>
 
+#include "physics/body_landscape.h"
 #include "physics/drop.h"
 
 namespace topple {
@@ -52,27 +54,55 @@ void collect_objects(ObjectStage& out) {
 
 }  // namespace
 
-ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
-                         const VoxelStage& voxels, const ParseOptions& options, StageClock& stage) {
-    ObjectStage out;
+PartStage weigh_parts(device::Device& device, const GeometryStage& geometry,
+                      const VoxelStage& voxels, const ParseOptions& options, StageClock& stage) {
     const auto count = static_cast<std::int32_t>(geometry.primitives.model.size());
     const std::vector<double> density(static_cast<std::size_t>(count), options.density_kg_m3);
-    out.bodies = stage(
+    std::vector<physics::Body> bodies = stage(
         "bodies", [&] { return physics::mass_properties(device, voxels.cells, count, density); });
-    out.contacts =
+    graph::ContactGraph contacts =
         stage("contacts", [&] { return graph::build_contact_graph(device, voxels.cells, count); });
-    const physics::SupportTable table = stage("supports", [&] {
+    physics::SupportTable table = stage("supports", [&] {
         return physics::SupportTable(device, voxels.cells, count,
                                      physics::geodesic_sphere(sphere_frequency));
     });
+    return {std::move(bodies), std::move(contacts), std::move(table), surface_seams(geometry),
+            shell(geometry)};
+}
+
+std::vector<Support> supports_between(const graph::ContactGraph& contacts,
+                                      std::span<const std::int32_t> object_of_primitive,
+                                      const std::vector<bool>& grounded) {
+    const auto object = [&](std::int32_t p) {
+        return object_of_primitive[static_cast<std::size_t>(p)];
+    };
+    std::map<std::pair<std::int32_t, std::int32_t>, double> carried;  // (supporter, supported)
+    for (const graph::Carrying& c : contacts.carryings) {
+        if (c.supporter < 0) continue;
+        const auto pair = std::pair(object(c.supporter), object(c.supported));
+        // The ground carries, and nothing carries it, though scraps of it may lie on things.
+        if (pair.first != pair.second && !grounded[static_cast<std::size_t>(pair.second)])
+            carried[pair] += c.area_m2;
+    }
+    std::vector<Support> supports;
+    for (const auto& [pair, area] : carried) supports.push_back({pair.first, pair.second, area});
+    return supports;
+}
+
+ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
+                         const VoxelStage& voxels, const ParseOptions& options, StageClock& stage) {
+    ObjectStage out;
+    PartStage parts = weigh_parts(device, geometry, voxels, options, stage);
+    out.bodies = std::move(parts.bodies);
+    out.contacts = std::move(parts.contacts);
+    const physics::SupportTable& table = parts.table;
     stage("grouping", [&] {
         graph::GroupingOptions grouping;
         grouping.seed = options.seed;
         grouping.time_limit_s = options.grouping_time_s.value_or(0);
         grouping.cancelled = options.cancelled;
-        out.grouping =
-            graph::group_primitives(device, table, voxels.cells, out.contacts, out.bodies,
-                                    surface_seams(geometry), shell(geometry), grouping);
+        out.grouping = graph::group_primitives(device, table, voxels.cells, out.contacts,
+                                               out.bodies, parts.seams, parts.shell, grouping);
     });
     stage("barriers", [&] {
         collect_objects(out);
@@ -85,19 +115,25 @@ ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
             }
             candidates.push_back(o.candidate);
         }
-        const std::vector<physics::Stability> tipping =
+        std::vector<physics::Stability> tipping =
             physics::evaluate(device, table, candidates, physics::Passes::exact);
         std::vector<physics::Body> bodies;
         // What is fixed to the ground does not slide: no mass, nothing to search.
         for (const StableObject& o : out.objects)
             bodies.push_back(o.grounded ? physics::Body{} : o.candidate.body);
         const std::vector<double> friction(candidates.size(), options.friction);
-        const std::vector<physics::SlideResult> sliding =
-            physics::slide_all(voxels.cells, out.object_of_primitive, bodies, friction);
+        std::vector<physics::SlideResult> sliding = physics::slide_all(
+            voxels.cells, out.object_of_primitive, bodies, friction, {.places = true});
         for (std::size_t o = 0; o < out.objects.size(); ++o) {
             if (out.objects[o].grounded) continue;
-            out.objects[o].sliding = sliding[o];
-            out.objects[o].instability = physics::combine_curves(tipping[o], sliding[o]);
+            physics::Instability& how = out.objects[o].instability;
+            how = physics::combine_curves(tipping[o], sliding[o]);
+            if (how.mode == "tip" && how.drop_m > 0)
+                how.onto = physics::met_when_tipped(voxels.cells, columns, candidates[o],
+                                                    how.weakest, (*how.edge)[0]);
+            out.objects[o].tipping = std::move(tipping[o]);
+            out.objects[o].sliding = std::move(sliding[o]);
+            out.objects[o].poses = physics::body_landscape(table, candidates[o]);
         }
     });
     return out;

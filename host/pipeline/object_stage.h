@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "device/device.h"
@@ -20,8 +21,10 @@ namespace topple {
 struct StableObject {
     physics::Candidate candidate;
     bool grounded = false;
+    physics::Stability tipping;
     physics::SlideResult sliding;
     physics::Instability instability;  // of tipping and sliding together
+    Landscape poses;                   // grid frame; its places are those of `sliding`
     double lowest_m = 0, highest_m = 0;
 };
 
@@ -32,6 +35,23 @@ struct ObjectStage {
     std::vector<std::int32_t> object_of_primitive;  // the ground, where there is one, is object 0
     std::vector<StableObject> objects;
 };
+
+// What grouping starts from.
+struct PartStage {
+    std::vector<physics::Body> bodies;  // by primitive
+    graph::ContactGraph contacts;
+    physics::SupportTable table;
+    graph::SurfaceSeams seams;
+    std::vector<bool> shell;  // by primitive: floor, wall or ceiling
+};
+PartStage weigh_parts(device::Device& device, const GeometryStage& geometry,
+                      const VoxelStage& voxels, const ParseOptions& options, StageClock& stage);
+
+// Which object carries which, by the contacts of their primitives; what is `grounded` carries and
+// is not carried. Sorted by (supporter, supported).
+std::vector<Support> supports_between(const graph::ContactGraph& contacts,
+                                      std::span<const std::int32_t> object_of_primitive,
+                                      const std::vector<bool>& grounded);
 
 ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
                          const VoxelStage& voxels, const ParseOptions& options, StageClock& stage);

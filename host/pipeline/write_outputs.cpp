@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "io/landscapes_json.h"
 #include "io/output_folder.h"
 #include "io/scene_json.h"
 #include "io/write_ply.h"
@@ -14,6 +15,7 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
     io::write_solid_ply(out.folder() / "solid.ply", result.scene.solid);
     result.voxels->write(out.folder() / "volume.vdb");
     report::write_report(out.folder() / "report.html", result.scene);
+    io::write_landscapes_json(out.folder() / "landscapes.json", result.scene);
     io::write_scene_json(out.folder() / "scene.json", result.scene);
     out.commit();
 }

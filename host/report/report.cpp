@@ -2,16 +2,20 @@
 #include "report/report.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/file_writer.h"
 #include "io/palette.h"
 #include "io/scene_json.h"
 #include "report/base64.h"
+#include "report/drawing.h"
 #include "report/page_parts.h"
 #include "report/view_data.h"
 
@@ -53,6 +57,83 @@ Json view_json(const PackedView& view) {
             {"voxels", records_json(view.voxels)},
             {"points", records_json(view.points)},
             {"fields", std::move(fields)}};
+}
+
+Json point_json(const Point& p) {
+    return {std::round(10 * p[0]) / 10, std::round(10 * p[1]) / 10};
+}
+
+// As short as it can be: a scene has hundreds of these.
+Json drawing_json(const Drawing& d) {
+    constexpr std::array styles{"axis", "curve", "border", "pass", "lowest", "pose", "now"};
+    constexpr std::array anchors{"start", "middle", "end"};
+    const auto style = [&](Drawing::Style s) { return styles[static_cast<std::size_t>(s)]; };
+    Json strokes = Json::array(), dots = Json::array(), labels = Json::array(),
+         swatches = Json::array();
+    for (const Drawing::Stroke& stroke : d.strokes) {
+        Json points = Json::array();
+        for (const Point& p : stroke.points)
+            for (const double x : p) points.push_back(std::round(10 * x) / 10);
+        strokes.push_back({style(stroke.style), std::move(points)});
+    }
+    for (const Drawing::Dot& dot : d.dots)
+        dots.push_back({style(dot.style), point_json(dot.at), dot.radius});
+    for (const Drawing::Label& label : d.labels) {
+        labels.push_back({anchors[static_cast<std::size_t>(label.align)], point_json(label.at),
+                          label.strong, label.text});
+    }
+    for (const Drawing::Swatch& s : d.swatches)
+        swatches.push_back({s.colour, point_json(s.corner), s.width, s.height});
+    Json json{{"title", d.title},
+              {"width", d.width},
+              {"height", d.height},
+              {"strokes", std::move(strokes)},
+              {"dots", std::move(dots)},
+              {"labels", std::move(labels)},
+              {"swatches", std::move(swatches)}};
+    if (d.sphere) {
+        const double unit = d.sphere->highest_m / 32767;
+        std::vector<std::int16_t> corners;
+        for (const Vec3& v : d.sphere->corners)
+            for (const double x : v)
+                corners.push_back(static_cast<std::int16_t>(std::lround(x / unit)));
+        json["sphere"] = {{"middle", d.sphere->middle},
+                          {"radius", d.sphere->radius},
+                          {"low", d.sphere->lowest_m / unit},
+                          {"high", d.sphere->highest_m / unit},
+                          {"corners", packed(corners)}};
+    }
+    if (d.raster) {
+        json["raster"] = {{"corner", d.raster->corner},
+                          {"size", d.raster->size},
+                          {"side", d.raster->side},
+                          {"palette", d.raster->palette},
+                          {"code", packed(d.raster->code)}};
+    }
+    return json;
+}
+
+// By object id; the most unsafe objects first, as far as they find room.
+Json landscapes_json(const Scene& scene) {
+    constexpr std::size_t most_bytes = 2'000'000;
+    std::vector<const Object*> order;
+    for (const Object& object : scene.objects) order.push_back(&object);
+    std::ranges::stable_sort(order, [](const Object* a, const Object* b) {
+        return (std::isnan(a->unsafety) ? 0 : a->unsafety) >
+               (std::isnan(b->unsafety) ? 0 : b->unsafety);
+    });
+    Json all = Json::object();
+    std::size_t bytes = 0;
+    for (const Object* object : order) {
+        Json drawings = Json::array();
+        for (const Drawing& d : landscape_drawings(scene, *object))
+            drawings.push_back(drawing_json(d));
+        const std::size_t size = drawings.dump().size();
+        if (bytes + size > most_bytes) break;
+        bytes += size;
+        all[std::to_string(object->id)] = std::move(drawings);
+    }
+    return all;
 }
 
 // The palette that the .ply files use, for the ids that occur.
@@ -107,6 +188,8 @@ std::string data_json(const Scene& scene) {
     const auto view = pack_view(scene);
     json["colours"] = colours_json(view);
     json["view"] = view_json(view);
+    json["drawings"] = landscapes_json(scene);
+    json["ramp"] = {{"colours", ramp}, {"bands", bands}};
     return script_safe(json.dump());
 }
 

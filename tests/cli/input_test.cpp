@@ -25,8 +25,8 @@ class Input : public Program {
         EXPECT_EQ(finished.code, 0);
         EXPECT_EQ(finished.out, "");
         EXPECT_EQ(finished.err, "");
-        for (const char* name :
-             {"points.ply", "solid.ply", "volume.vdb", "report.html", "scene.json"}) {
+        for (const char* name : {"points.ply", "solid.ply", "volume.vdb", "report.html",
+                                 "landscapes.json", "scene.json"}) {
             EXPECT_TRUE(std::filesystem::exists(in("out") / name)) << name;
         }
     }

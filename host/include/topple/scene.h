@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -32,6 +33,58 @@ struct InstabilityStep {
     double S_J = 0;  // the largest release that this much energy can set free
 };
 
+// Why an object is as safe as it is: its easiest step out of its pose, which is the one of its
+// barrier and release.
+struct Why {
+    // Of the weakest direction: degrees clockwise from the scene's north, seen from above. North is
+    // the second row of manhattan_from_input. NaN where no way is easier than others.
+    double azimuth_deg = std::numeric_limits<double>::quiet_NaN();
+    // Ends of the edge that it turns over, or of its support's where it slides off: two or none.
+    std::vector<Vec3> edge_m;
+    double W_J = 0, S_J = 0;              // what the step takes, and what it can release
+    double way_m = 0;                     // slid on the support; 0 for other steps
+    double drop_m = 0;                    // fallen beyond where its support ends; 0: it stays on it
+    std::int32_t lands_on = -1;           // object below that drop, or -1
+    std::vector<std::int32_t> stands_on;  // objects that carry it, ascending
+    std::string sentence;                 // all this in plain words
+};
+
+// The energy landscapes of an object (paper, 3.1 and 3.2, Figs. 5 and 6), as its pictures show
+// them. Energies are joules above its pose and place as scanned.
+struct Landscape {
+    // Over directions d, each the one that is up then, in the body as it was scanned: U(d) = - M g
+    // min over the corners v of v.d, less its value as scanned.
+    struct Pose {
+        Vec3 up{};
+        double energy_J = 0;
+        // The disconnectivity graph: the energy at which its basin joins that of a deeper pose, and
+        // which one; infinity and -1 for the deepest of all.
+        double joins_at_J = 0;
+        std::int32_t joins = -1;
+        double probability = 0;  // of coming to rest in it when tossed
+    };
+    // Where one basin borders on another: an edge over which the body can balance.
+    struct Pass {
+        Vec3 up{};
+        double energy_J = 0;
+        std::array<std::int32_t, 2> poses{};
+        std::vector<Vec3> border;  // of the two basins, directions from top to top
+    };
+    // Where it can be pushed to: the work of the shortest way there on its support, around what
+    // stands there; beyond the support's end minus what the fall releases. NaN: not reached, or
+    // unknown. Infinity: something is in the way.
+    struct Places {
+        std::int32_t side = 0;        // places in a row, odd; its own is in the middle
+        double step_m = 0;            // between them
+        std::vector<float> energy_J;  // rows from south to north, each from west to east
+    };
+    std::vector<Vec3> hull_m;  // corners, relative to the centre of mass; none: not known
+    std::vector<Pose> poses;   // by rising energy
+    std::vector<Pass> passes;  // by rising energy
+    std::int32_t now = -1;     // the pose that it is in
+    Places places;
+};
+
 // A set of primitives fixed to one another: one rigid body.
 struct Object {
     std::int32_t id = -1;
@@ -46,6 +99,8 @@ struct Object {
     std::string mode = "none";  // "tip" | "slide" | "none"
     Vec3 direction{};           // weakest horizontal direction, unit, or zero for "none"
     std::vector<InstabilityStep> instability;
+    Why why;
+    Landscape landscape;
     std::map<std::string, double> risk_J;  // by disturbance, joules per event
     double unsafety = 1;                   // 1 (safest) to 10, by risk, over the scene's objects
 };

@@ -112,29 +112,30 @@ function showObject(panel, scene, id, choose) {
   }
   const heading = element('h2', {}, [element('span', {className: 'swatch', style: {background: css(colourOf(scene, id))}}), 'Object ' + id]);
   panel.append(heading);
-  const mode = {
-    tip: 'Most easily tipped over.', slide: 'Most easily slid off what carries it.', none: 'It has no way to fall.',
-  }[object.mode] || '';
-  panel.append(element('p', {className: 'hint', text: object.grounded ? 'Part of the ground, or fixed to it: it can\u2019t fall.' : mode}));
+  panel.append(element('p', {className: 'why', text: object.why.sentence}));
   const pairs = [['Mass', number(object.mass_kg, 'kg')],
     ['Centre of mass', object.center_of_mass_m.map(v => v === null ? '\u2013' : v.toFixed(2)).join(', ') + ' m']];
   if (!object.grounded) {
     pairs.push(['Barrier: energy that moves it', barrierText(object, 'J')],
       ['Error of the barrier', number(object.barrier_error_J, 'J')], ['It then can release', number(object.release_J, 'J')]);
   }
+  if (object.why.azimuth_deg !== null) pairs.push(['Weakest direction', azimuthText(object.why.azimuth_deg)]);
   for (const name of scene.disturbances) pairs.push(['Risk by ' + name, number(object.risk_J[name], 'J')]);
   pairs.push(['Unsafety, 1 to 10', object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
   panel.append(numberList(pairs));
 
-  const chart = object.grounded ? null : instabilityChart(object);
-  if (chart) panel.append(element('h3', {text: 'Instability S(W)'}), chart);
-
+  panel.append(...drawingsOf(scene, id));
   const on = scene.supports.filter(s => s.supported === id).map(s => [s.supporter, areaText(s.area_m2)]);
   const carries = scene.supports.filter(s => s.supporter === id).map(s => [s.supported, areaText(s.area_m2)]);
   if (on.length) panel.append(element('h3', {text: 'Rests on'}), objectLinks(on, choose));
   if (carries.length) panel.append(element('h3', {text: 'Carries'}), objectLinks(carries, choose));
   panel.append(element('h3', {text: 'Made of'}), primitiveList(scene, object));
   panel.append(element('p', {className: 'hint'}, [element('button', {type: 'button', text: 'back to the overview', onclick: () => choose(null)})]));
+}
+
+function azimuthText(degrees) {
+  const names = ['N', 'NE', 'E', 'SE', 'S', 'SW', 'W', 'NW'];
+  return Math.round(degrees) + '\u00b0 (' + names[Math.round(degrees / 45) % 8] + ')';
 }
 
 function areaText(area) {
@@ -150,7 +151,7 @@ function primitiveList(scene, object) {
       'primitive ' + part.id + ' (' + part.model + ')']),
     element('dd', {text: part.volume_m3 === null ? '\u2013' : number(part.volume_m3 * 1000, 'l')}));
   }
-  if (parts.length > 12) list.append(element('dt', {text: 'and ' + plural(parts.length - 12, 'more')}), element('dd'));
+  if (parts.length > 12) list.append(element('dt', {text: `and ${parts.length - 12} more`}), element('dd'));
   return list;
 }
 

@@ -195,7 +195,7 @@ class View {
     }
   }
 
-  // The chosen object's centre of mass and weakest direction.
+  // The chosen object's centre of mass, weakest direction, and the edge that it turns over or slides off.
   makeMarker() {
     this.marker = new THREE.Group();
     const ink = new THREE.MeshBasicMaterial({color: 0x101418, depthTest: false, transparent: true});
@@ -203,7 +203,10 @@ class View {
     this.arrow = new THREE.ArrowHelper(new THREE.Vector3(1, 0, 0), new THREE.Vector3(), 1, 0x101418);
     this.arrow.line.material.depthTest = this.arrow.cone.material.depthTest = false;
     this.arrow.line.material.transparent = this.arrow.cone.material.transparent = true;
-    this.marker.add(this.ball, this.arrow);
+    // As thick as it is needed: lines are a pixel wide.
+    this.edge = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 8),
+      new THREE.MeshBasicMaterial({color: 0xc92c2c, depthTest: false, transparent: true}));
+    this.marker.add(this.ball, this.arrow, this.edge);
     this.marker.visible = false;
     this.marker.renderOrder = 10;
     this.world.add(this.marker);
@@ -221,6 +224,14 @@ class View {
         this.arrow.position.copy(at);
         this.arrow.setDirection(direction.normalize());
         this.arrow.setLength(0.08 * this.reach, 0.02 * this.reach, 0.012 * this.reach);
+      }
+      this.edge.visible = object.why.edge_m.length === 2 && object.why.edge_m.flat().every(value => value !== null);
+      if (this.edge.visible) {
+        const [a, b] = object.why.edge_m.map(end => this.fromInput(end));
+        const along = b.clone().sub(a), length = Math.max(along.length(), 0.01 * this.reach);
+        this.edge.position.copy(a).add(b).multiplyScalar(0.5);
+        this.edge.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.lengthSq() > 0 ? along.normalize() : new THREE.Vector3(1, 0, 0));
+        this.edge.scale.set(0.003 * this.reach, length, 0.003 * this.reach);
       }
     }
     this.redraw();
@@ -293,6 +304,9 @@ class View {
     this.uniforms.pointScale.value = height / (2 * Math.tan(this.camera.fov * Math.PI / 360));
     this.renderer.render(this.world, this.camera);
     this.idsStale = true;
+    const ahead = this.camera.getWorldDirection(new THREE.Vector3());
+    const needle = document.getElementById('needle');
+    needle.setAttribute('transform', `rotate(${Math.atan2(-ahead.x, ahead.y) * 180 / Math.PI})`);
   }
 
   // Draws each place's group number instead of its colour, once per view, at half the resolution.

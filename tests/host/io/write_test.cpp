@@ -7,6 +7,7 @@
 
 #include "files.h"
 #include "io/file_writer.h"
+#include "io/landscapes_json.h"
 #include "io/palette.h"
 #include "io/read_cloud.h"
 #include "io/scene_json.h"
@@ -44,6 +45,7 @@ Scene some_scene() {
     object.mode = "tip";
     object.direction = {1, 0, 0};
     object.instability = {{0.1, 5}, {7, 9}};
+    object.why = {45, {{1, 2, 3}, {4, 5, 6}}, 0.1, 5, 0.2, 0.75, 3, {0, 2}, "It \"tips\"."};
     object.risk_J = {{"human", 0.5}, {"wind", 0}};
     object.unsafety = 10;
     scene.objects = {object};
@@ -66,9 +68,60 @@ TEST_F(Write, scene_json_reads_back_the_same) {
     EXPECT_EQ(back.objects[0].risk_J, scene.objects[0].risk_J);
     EXPECT_EQ(back.objects[0].barrier_error_J, 0.02);
     EXPECT_EQ(back.objects[0].instability[1].S_J, 9);
+    EXPECT_EQ(back.objects[0].why.azimuth_deg, 45);
+    EXPECT_EQ(back.objects[0].why.edge_m, scene.objects[0].why.edge_m);
+    EXPECT_EQ(back.objects[0].why.stands_on, scene.objects[0].why.stands_on);
+    EXPECT_EQ(back.objects[0].why.sentence, scene.objects[0].why.sentence);
     EXPECT_EQ(back.contacts[0].relation, "fixed");
     EXPECT_EQ(back.timings_s, scene.timings_s);
     EXPECT_EQ(back.manhattan_from_input, scene.manhattan_from_input);
+}
+
+TEST_F(Write, landscapes_json_reads_back_the_same) {
+    auto scene = some_scene();
+    const double inf = std::numeric_limits<double>::infinity();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    Landscape& l = scene.objects[0].landscape;
+    l.hull_m = {{0.1, 0.2, 0.3}, {-0.1, 0, 0}};
+    l.poses = {{{0, 0, 1}, -0.5, inf, -1, 0.75}, {{0, 1, 0}, 0.25, 1.5, 0, 0.25}};
+    l.passes = {{{0, 0.6, 0.8}, 1.5, {0, 1}, {{1, 0, 0}, {0, 0.6, 0.8}}}};
+    l.now = 1;
+    l.places = {3, 0.02, {0.5f, nan, 1, 0, 0, -7.5f, std::numeric_limits<float>::infinity(), 2, 3}};
+    write_landscapes_json(path("landscapes.json"), scene);
+    auto back = some_scene();
+    read_landscapes_json(path("landscapes.json"), back);
+    const Landscape& read = back.objects[0].landscape;
+    EXPECT_EQ(read.hull_m, l.hull_m);
+    ASSERT_EQ(read.poses.size(), 2u);
+    EXPECT_EQ(read.poses[0].joins_at_J, inf);
+    EXPECT_EQ(read.poses[1].up, l.poses[1].up);
+    EXPECT_EQ(read.poses[1].joins_at_J, 1.5);
+    EXPECT_EQ(read.poses[1].joins, 0);
+    ASSERT_EQ(read.passes.size(), 1u);
+    EXPECT_EQ(read.passes[0].poses, l.passes[0].poses);
+    EXPECT_EQ(read.passes[0].border, l.passes[0].border);
+    EXPECT_EQ(read.now, 1);
+    ASSERT_EQ(read.places.energy_J.size(), 9u);
+    EXPECT_TRUE(std::isnan(read.places.energy_J[1]));
+    EXPECT_TRUE(std::isinf(read.places.energy_J[6]));
+    EXPECT_EQ(read.places.energy_J[5], -7.5f);
+
+    const std::string text = bytes_of_file(path("landscapes.json"));
+    const auto broken = [&](const std::string& from, const std::string& to) {
+        std::string changed = text;
+        const auto at = changed.find(from);
+        ASSERT_NE(at, std::string::npos) << from;
+        write_file(path("broken.json"), changed.replace(at, from.size(), to));
+        expect_input_error([&] { read_landscapes_json(path("broken.json"), back); },
+                           {"broken.json"});
+    };
+    broken("\"id\":0", "\"id\":7");
+    broken("\"now\":1", "\"now\":2");
+    broken("\"side\":3", "\"side\":4");
+    broken("topple.landscapes/1", "topple.landscapes/2");
+    broken("\"poses\":[0,1]", "\"poses\":[-1,1]");
+    broken("]}", "]");
+    expect_input_error([&] { read_landscapes_json(path("none.json"), back); }, {"none.json"});
 }
 
 // The members that scorers and users rely on, by name.
@@ -89,7 +142,7 @@ TEST_F(Write, scene_json_has_the_fixed_members) {
     }
     for (const char* key : {"id", "primitives", "grounded", "mass_kg", "center_of_mass_m",
                             "barrier_J", "barrier_error_J", "release_J", "mode", "direction",
-                            "instability", "risk_J", "unsafety"}) {
+                            "instability", "why", "risk_J", "unsafety"}) {
         EXPECT_TRUE(json["objects"][0].contains(key)) << key;
     }
     EXPECT_EQ(json["objects"][0]["instability"][0]["W_J"], 0.1);

@@ -99,7 +99,7 @@ TEST_P(Bodies, EveryBackendRatesAlike) {
         EXPECT_EQ(here[n].barrier_J, there[n].barrier_J);
         EXPECT_EQ(here[n].release_J, there[n].release_J);
         EXPECT_EQ(here[n].margin_m, there[n].margin_m);
-        EXPECT_EQ(here[n].direction, there[n].direction);
+        EXPECT_EQ(here[n].easiest.direction, there[n].easiest.direction);
         ASSERT_EQ(here[n].curve.size(), there[n].curve.size());
         for (std::size_t s = 0; s < here[n].curve.size(); ++s) {
             EXPECT_EQ(here[n].curve[s].W_J, there[n].curve[s].W_J);

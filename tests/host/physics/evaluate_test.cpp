@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "device/devices.h"
 #include "host/physics/solids.h"
@@ -35,7 +36,7 @@ TEST_F(Evaluate, OverhangTipsOverTheTable) {
     EXPECT_NEAR(s[0].margin_m, 0.05, 1e-9);
     EXPECT_EQ(s[1].barrier_J, 0);
     EXPECT_NEAR(s[1].margin_m, -0.03, 1e-9);
-    EXPECT_NEAR(s[1].direction[0], 1, 1e-9);
+    EXPECT_NEAR(s[1].easiest.direction[0], 1, 1e-9);
     EXPECT_EQ(s[2].barrier_J, 0);
     EXPECT_LT(s[2].margin_m, 0);
 }
@@ -66,7 +67,15 @@ TEST_F(Evaluate, WhatTipsOverTheTableFallsToTheFloor) {
     EXPECT_NEAR(s.curve[0].W_J, weight * climb, 1e-6 * weight);
     EXPECT_NEAR(s.curve[0].S_J, weight * (climb + table_m), 1e-6 * weight);
     EXPECT_NEAR(s.release_J, s.curve[0].S_J, 1e-12);
-    EXPECT_NEAR(s.direction[0], 1, 1e-9);
+    EXPECT_NEAR(s.easiest.direction[0], 1, 1e-9);
+    EXPECT_NEAR(s.easiest.drop_m, table_m, 1e-9);
+    ASSERT_TRUE(s.easiest.edge);
+    for (const Vec3& end : *s.easiest.edge) {
+        EXPECT_NEAR(end[0], 0.05, 1e-9);
+        EXPECT_NEAR(end[2], 0, 1e-9);
+    }
+    EXPECT_NEAR(std::abs((*s.easiest.edge)[0][1] - (*s.easiest.edge)[1][1]), 0.2, 1e-9);
+    EXPECT_EQ(met_when_tipped(cells, columns, bar, s.easiest.direction, (*s.easiest.edge)[0]), 2);
     // Half over the edge it falls by itself.
     bar.support_polygon = {{-0.2, 0}, {-0.01, 0}, {-0.01, 0.2}, {-0.2, 0.2}};
     bar.edge_drop_m = drops_when_tipped_m(cells, columns, bar);
@@ -91,7 +100,7 @@ TEST_F(Evaluate, WhatHangsBesideTheSupportDoesNotLiftIt) {
     const double weight = box.body.mass_kg * gravity, h = box.body.center[2];
     const double edge = 0.2 - box.body.center[0];  // the nearest
     EXPECT_NEAR(s.barrier_J, weight * (std::hypot(h, edge) - h), 1e-9 * weight);
-    EXPECT_NEAR(s.direction[0], 1, 1e-9);
+    EXPECT_NEAR(s.easiest.direction[0], 1, 1e-9);
     EXPECT_GT(s.release_J, 0);
 }
 

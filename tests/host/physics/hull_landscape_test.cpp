@@ -111,6 +111,29 @@ TEST(HullLandscape, Box) {
     expect_close(box.poses[5].joins_at_m, std::hypot(0.25, 0.1));
 }
 
+// On its side: the pose that it is in, and borders that lead over each edge from corner to corner.
+TEST(HullLandscape, BordersOfABox) {
+    const Hull hull = test::box_hull(0.3, 0.2, 0.5);
+    const HullLandscape box =
+        hull_landscape(hull.points, {0, 0, 0}, {.up = {1, 0, 0}, .borders = true});
+    EXPECT_GT(box.poses[static_cast<std::size_t>(box.now)].up[0], 0.999);
+    expect_close(box.now_m, 0.15);
+    EXPECT_EQ(box.corners.size(), 8U);
+    const auto height = [&](const Vec3& up) {
+        double lowest = 0;
+        for (const Vec3& v : hull.points) lowest = std::min(lowest, dot(v, up));
+        return -lowest;
+    };
+    for (const HullPass& pass : box.passes) {
+        ASSERT_EQ(pass.border.size(), 3U);
+        expect_close(height(pass.border[0]), box.highest_m);
+        expect_close(height(pass.border[1]), pass.height_m);
+        expect_close(height(pass.border[2]), box.highest_m);
+    }
+    for (const HullPass& pass : hull_landscape(hull.points, {0, 0, 0}).passes)
+        EXPECT_TRUE(pass.border.empty());
+}
+
 TEST(HullLandscape, CylinderStandingAndLying) {
     for (const unsigned n : {8U, 64U, 512U}) {
         SCOPED_TRACE(n);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "device/devices.h"
 #include "host/physics/solids.h"
 #include "topple/error.h"
@@ -17,13 +19,15 @@ class Sliding : public ::testing::Test {
     std::unique_ptr<device::Device> device = device::open_native(2);
     // Each label is an object.
     std::vector<SlideResult> slide(const std::vector<test::Solid>& solids, const Vec3& low,
-                                   const Vec3& high, double voxel, std::int32_t objects) {
+                                   const Vec3& high, double voxel, std::int32_t objects,
+                                   bool places = false) {
         const SolidCells cells = test::voxelise(solids, low, high, voxel);
         const auto n = static_cast<std::size_t>(objects);
         const std::vector<double> density(n, 700), friction(n, 0.3);
         std::vector<std::int32_t> own(n);
         for (std::size_t p = 0; p < n; ++p) own[p] = static_cast<std::int32_t>(p);
-        return slide_all(cells, own, mass_properties(*device, cells, objects, density), friction);
+        return slide_all(cells, own, mass_properties(*device, cells, objects, density), friction,
+                         {.places = places});
     }
     // Floor; a table 1.2 x 0.8 x 0.75 over [0, 1.2] x [0, 0.8]; a 0.1 m cube 0.2 m from the table's
     // low-x edge.
@@ -43,7 +47,39 @@ TEST_F(Sliding, CubeOnATable) {
         EXPECT_NEAR(s.released_J, 5.14849, 0.00001);
         EXPECT_NEAR(s.distance_m, 0.2, 1e-9);
         EXPECT_NEAR(s.direction[0], -1, 1e-6);
+        // Off the low-x edge, at the table's height, around y = 0.4, onto the floor.
+        for (const Vec3& end : s.edge) {
+            EXPECT_NEAR(end[0], 0, 1e-9);
+            EXPECT_NEAR(end[2], 0.75, 1e-9);
+        }
+        EXPECT_NEAR(0.5 * (s.edge[0][1] + s.edge[1][1]), 0.4, voxel);
+        EXPECT_GT(std::abs(s.edge[0][1] - s.edge[1][1]), 0.1);
+        EXPECT_EQ(s.onto, 0);
     }
+}
+
+TEST_F(Sliding, PlacesAroundAreWorkOrFalls) {
+    const double voxel = 0.025, weight = 0.7 * gravity;
+    // A post in the way, 5 cm wide, beside the cube.
+    room.push_back({1, box({0.3, 0.375, 0.75}, {0.35, 0.425, 0.9})});
+    const auto all = slide(room, {-2, -2, -0.1}, {3, 3, 1}, voxel, 3, true);
+    const Landscape::Places& places = all[2].places;
+    EXPECT_EQ(places.step_m, voxel);
+    ASSERT_EQ(places.side % 2, 1);
+    const std::int32_t half = places.side / 2;
+    ASSERT_EQ(places.energy_J.size(), static_cast<std::size_t>(places.side * places.side));
+    const auto at = [&](double x, double y) {
+        const auto column = half + static_cast<std::int32_t>(std::lround(x / voxel));
+        const auto row = half + static_cast<std::int32_t>(std::lround(y / voxel));
+        return places.energy_J[static_cast<std::size_t>(row * places.side + column)];
+    };
+    EXPECT_EQ(at(0, 0), 0);
+    // Places are columns, and the centre stands on the border of two.
+    EXPECT_NEAR(at(-0.1, 0), 0.3 * weight * 0.1, 0.3 * weight * voxel);
+    EXPECT_NEAR(at(0, 0.2), 0.3 * weight * 0.2, 0.3 * weight * voxel);
+    EXPECT_NEAR(at(-0.25, 0), -weight * 0.75, 1e-3);
+    EXPECT_TRUE(std::isinf(at(0.075, 0))) << "the post is in the way";
+    EXPECT_TRUE(slide(room, {-2, -2, -0.1}, {3, 3, 1}, 0.05, 3)[2].places.energy_J.empty());
 }
 
 TEST_F(Sliding, FloorsHaveNoEdge) {
@@ -95,7 +131,7 @@ TEST_F(Sliding, CurvesCombine) {
     Stability tip;
     tip.barrier_J = 2;
     tip.release_J = 5;
-    tip.direction = {1, 0, 0};
+    tip.easiest.direction = {1, 0, 0};
     tip.curve = {{2, 5}, {4, 6}};
     SlideResult way;
     way.found = true;

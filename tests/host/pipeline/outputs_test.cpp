@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <set>
 
 #include "host/pipeline/scan.h"
@@ -67,6 +69,40 @@ void check_primitives(const Json& scene) {
     }
 }
 
+// What is said of an object's easiest step is what its numbers are.
+void check_why(const Json& scene, const Json& o) {
+    const Json& why = o.at("why");
+    EXPECT_EQ(why.at("W_J"), o.at("barrier_J"));
+    EXPECT_EQ(why.at("S_J"), o.at("release_J"));
+    std::vector<Json> carriers;
+    for (const Json& s : scene.at("supports"))
+        if (s.at("supported") == o.at("id")) carriers.push_back(s.at("supporter"));
+    EXPECT_EQ(why.at("stands_on"), Json(carriers));
+    EXPECT_TRUE(why.at("edge_m").empty() || why.at("edge_m").size() == 2) << why;
+    expect_number(why, "drop_m", 0);
+    if (why.at("drop_m") == 0) {
+        EXPECT_EQ(why.at("lands_on"), -1);
+    } else {
+        EXPECT_GE(why.at("S_J").get<double>(), o.at("mass_kg").get<double>() * 9.80665 *
+                                                   why.at("drop_m").get<double>() * (1 - 1e-9));
+    }
+    EXPECT_EQ(why.at("way_m").get<double>() > 0, o.at("mode") == "slide" && why.at("W_J") > 0)
+        << why;
+    const std::string sentence = why.at("sentence");
+    EXPECT_TRUE(sentence.ends_with(".")) << sentence;
+    if (o.at("mode") == "none") return;
+    // Clockwise from the second axis of the scene's frame.
+    std::array<double, 2> along{};
+    for (std::size_t row = 0; row < 2; ++row) {
+        for (std::size_t c = 0; c < 3; ++c)
+            along[row] += scene.at("manhattan_from_input").at(row).at(c).get<double>() *
+                          o.at("direction").at(c).get<double>();
+    }
+    const double azimuth = why.at("azimuth_deg").get<double>() * std::numbers::pi / 180;
+    EXPECT_NEAR(std::sin(azimuth), along[0], 1e-6) << why;
+    EXPECT_NEAR(std::cos(azimuth), along[1], 1e-6) << why;
+}
+
 void check_objects(const Json& scene, const std::set<std::string>& disturbances) {
     const Json& primitives = scene.at("primitives");
     std::set<std::int32_t> members;
@@ -94,6 +130,7 @@ void check_objects(const Json& scene, const std::set<std::string>& disturbances)
         EXPECT_TRUE(std::set<std::string>({"tip", "slide", "none"}).contains(o.at("mode")));
         const bool moves = o.at("mode") != "none";
         EXPECT_NEAR(length(o.at("direction")), moves ? 1 : 0, 1e-6) << o;
+        check_why(scene, o);
         double earlier_w = -1, earlier_s = -1;
         for (const Json& step : o.at("instability")) {
             expect_number(step, "W_J", earlier_w);
@@ -222,7 +259,8 @@ TEST_F(Outputs, of_depth_frames_obey_their_description) {
     ParseOptions options = on(device::open_device("native"));
     options.seed = 5;
     write_outputs(parse(path("scan"), options), path("out"));
-    for (const char* name : {"points.ply", "solid.ply", "volume.vdb", "report.html", "scene.json"})
+    for (const char* name :
+         {"points.ply", "solid.ply", "volume.vdb", "report.html", "landscapes.json", "scene.json"})
         EXPECT_GT(std::filesystem::file_size(path("out") / name), 100u) << name;
     EXPECT_FALSE(std::filesystem::is_empty(path("scan"))) << "the input stays";
 

@@ -150,7 +150,8 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
     }
     // Three charts' worth of text: the panel of object 3, its curve, the sampler's.
     for (const char* expected :
-         {"Object 3", "Most easily tipped over", "Instability S(W)", "class=\"curve\"", "Rests on",
+         {"Object 3", "It tips over.", "Instability S(W)", "class=\"curve\"", "Rests on",
+          "Poses: energy", "Disconnectivity graph", "Places: work", "data:image/png", "fallen",
           "A note with &lt;i&gt;markup&lt;/i&gt;", "sampler", "look through walls"}) {
         EXPECT_NE(page.dom.find(expected), std::string::npos) << expected;
     }

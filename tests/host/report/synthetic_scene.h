@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "topple/scene.h"
@@ -86,8 +87,33 @@ class SyntheticScene {
                                       {1.8 * o.barrier, 0.85 * o.release},
                                       {3 * o.barrier, o.release}};
             }
+            if (!o.grounded) {
+                object.why.sentence =
+                    std::string("It ") + (o.mode[0] == 't' ? "tips over." : "stays.");
+                object.why.azimuth_deg = 90;
+                object.why.drop_m = 0.5;
+                object.why.W_J = o.barrier;
+                object.why.S_J = o.release;
+                object.landscape = landscape();
+            }
             scene_.objects.push_back(object);
         }
+    }
+
+    // Of a cube of 0.2 m: two poses with a border, and a few places.
+    Landscape landscape() const {
+        Landscape l;
+        for (const double x : {-0.1, 0.1}) {
+            for (const double y : {-0.1, 0.1}) {
+                for (const double z : {-0.1, 0.1}) l.hull_m.push_back(at(x, y, z));
+            }
+        }
+        const double inf = std::numeric_limits<double>::infinity(), half = std::sqrt(0.5);
+        l.poses = {{{0, 0, 1}, 0, inf, -1, 0.5}, {at(1, 0, 0), 0, 1, 0, 0.5}};
+        l.passes = {{at(half, 0, half), 1, {0, 1}, {at(0.6, 0.5, 0.62), at(half, 0, half)}}};
+        l.now = 0;
+        l.places = {3, h_, {0, 1, 2, 1, 0, 1, -3, static_cast<float>(inf), 2}};
+        return l;
     }
 
     int add(int object, const char* model) {

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/landscape_picture.h"
+#include "io/landscapes_json.h"
+#include "io/scene_json.h"
+#include "topple/error.h"
+
+namespace topple::cli {
+namespace {
+
+struct Arguments {
+    std::string parsed, out;
+    std::int64_t object = -1;
+};
+
+// Throws unless the object is there and can move.
+const Object& chosen(const Scene& scene, std::int64_t id) {
+    if (id < 0) {
+        const Object* worst = nullptr;
+        for (const Object& object : scene.objects) {
+            if (!object.grounded && (!worst || object.unsafety > worst->unsafety)) worst = &object;
+        }
+        if (!worst) throw Error(ErrorKind::input, scene.source + ": has no object that can move");
+        return *worst;
+    }
+    if (id >= static_cast<std::int64_t>(scene.objects.size())) {
+        throw Error(ErrorKind::usage, "--object " + std::to_string(id) +
+                                          ": the scene has objects 0 to " +
+                                          std::to_string(scene.objects.size() - 1));
+    }
+    const Object& object = scene.objects[static_cast<std::size_t>(id)];
+    if (object.grounded) {
+        throw Error(ErrorKind::usage,
+                    "--object " + std::to_string(id) +
+                        ": it is the ground, or fixed to it, and has no landscape");
+    }
+    return object;
+}
+
+int run(const Arguments& a) {
+    const std::filesystem::path folder = a.parsed;
+    Scene scene = io::read_scene_json(folder / "scene.json");
+    io::read_landscapes_json(folder / "landscapes.json", scene);
+    const Object& object = chosen(scene, a.object);
+    const std::string out = a.out.empty() ? "object-" + std::to_string(object.id) + ".png" : a.out;
+    draw_landscape(scene, object, out);
+    std::printf("Object %d: %s\n%s\n", object.id, object.why.sentence.c_str(), out.c_str());
+    return 0;
+}
+
+}  // namespace
+
+Command add_landscape(CLI::App& app) {
+    auto a = std::make_shared<Arguments>();
+    app.add_option("OUT", a->parsed, "Output folder of a parse")->required();
+    app.add_option("--object", a->object, "Number of the object; else the most unsafe one")
+        ->check(whole_number);
+    app.add_option("-o,--output", a->out, "Picture, .png or .svg; else object-N.png");
+    return [a] { return run(*a); };
+}
+
+}  // namespace topple::cli

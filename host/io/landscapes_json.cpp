@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#include "io/landscapes_json.h"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "io/file_writer.h"
+#include "io/text.h"
+
+namespace topple::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* schema = "topple.landscapes/1";
+
+double rounded(double value, int digits) {
+    if (value == 0 || !std::isfinite(value)) return value;
+    const double scale = std::pow(10, digits - 1 - std::floor(std::log10(std::abs(value))));
+    return std::round(value * scale) / scale;
+}
+
+Json number(double value) {
+    return std::isfinite(value) ? Json(rounded(value, 6)) : Json(nullptr);
+}
+
+Json vector(const Vec3& v) {
+    auto json = Json::array();
+    for (const double x : v) json.push_back(std::round(x * 1e4) / 1e4);
+    return json;
+}
+
+Json vectors(const std::vector<Vec3>& all) {
+    auto json = Json::array();
+    for (const Vec3& v : all) json.push_back(vector(v));
+    return json;
+}
+
+Json places_json(const Landscape::Places& places) {
+    auto energy = Json::array();
+    for (const float value : places.energy_J) {
+        if (std::isnan(value)) {
+            energy.push_back(nullptr);
+        } else if (std::isinf(value)) {
+            energy.push_back(false);
+        } else {
+            energy.push_back(rounded(double{value}, 3));
+        }
+    }
+    return {{"side", places.side}, {"step_m", places.step_m}, {"energy_J", std::move(energy)}};
+}
+
+Json to_json(const Object& object) {
+    const Landscape& l = object.landscape;
+    auto poses = Json::array(), passes = Json::array();
+    for (const Landscape::Pose& pose : l.poses) {
+        poses.push_back({{"up", vector(pose.up)},
+                         {"energy_J", number(pose.energy_J)},
+                         {"joins_at_J", number(pose.joins_at_J)},
+                         {"joins", pose.joins},
+                         {"probability", number(pose.probability)}});
+    }
+    for (const Landscape::Pass& pass : l.passes) {
+        passes.push_back({{"up", vector(pass.up)},
+                          {"energy_J", number(pass.energy_J)},
+                          {"poses", pass.poses},
+                          {"border", vectors(pass.border)}});
+    }
+    return {{"id", object.id},
+            {"hull_m", vectors(l.hull_m)},
+            {"now", l.now},
+            {"poses", std::move(poses)},
+            {"passes", std::move(passes)},
+            {"places", places_json(l.places)}};
+}
+
+Vec3 vector_of(const Json& json) {
+    return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+std::vector<Vec3> vectors_of(const Json& json) {
+    std::vector<Vec3> out;
+    for (const Json& v : json) out.push_back(vector_of(v));
+    return out;
+}
+
+double number_of(const Json& json, double missing) {
+    return json.is_null() ? missing : json.get<double>();
+}
+
+// A number of a pose, of which there are `poses`, or -1.
+std::int32_t pose_of(const Json& json, std::size_t poses, const std::filesystem::path& file) {
+    const auto n = json.get<std::int64_t>();
+    if (n < -1 || n >= static_cast<std::int64_t>(poses))
+        fail(file, "names pose " + std::to_string(n) + " of " + std::to_string(poses));
+    return static_cast<std::int32_t>(n);
+}
+
+Landscape landscape_of(const Json& json, const std::filesystem::path& file) {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    Landscape l;
+    l.hull_m = vectors_of(json.at("hull_m"));
+    const Json& poses = json.at("poses");
+    l.now = pose_of(json.at("now"), poses.size(), file);
+    for (const Json& pose : poses) {
+        l.poses.push_back(
+            {vector_of(pose.at("up")), number_of(pose.at("energy_J"), nan),
+             number_of(pose.at("joins_at_J"), std::numeric_limits<double>::infinity()),
+             pose_of(pose.at("joins"), poses.size(), file),
+             number_of(pose.at("probability"), nan)});
+    }
+    for (const Json& pass : json.at("passes")) {
+        const Json& sides = pass.at("poses");
+        Landscape::Pass out{vector_of(pass.at("up")),
+                            number_of(pass.at("energy_J"), nan),
+                            {},
+                            vectors_of(pass.at("border"))};
+        for (std::size_t side = 0; side < 2; ++side) {
+            out.poses[side] = pose_of(sides.at(side), poses.size(), file);
+            if (out.poses[side] < 0) fail(file, "has a pass without two poses");
+        }
+        l.passes.push_back(std::move(out));
+    }
+    const Json& places = json.at("places");
+    l.places.side = places.at("side").get<std::int32_t>();
+    l.places.step_m = places.at("step_m").get<double>();
+    for (const Json& value : places.at("energy_J")) {
+        l.places.energy_J.push_back(value.is_null()      ? nan
+                                    : value.is_boolean() ? std::numeric_limits<float>::infinity()
+                                                         : value.get<float>());
+    }
+    const std::int64_t side = l.places.side;
+    if (side < 0 || side * side != static_cast<std::int64_t>(l.places.energy_J.size()))
+        fail(file, "has " + std::to_string(l.places.energy_J.size()) + " places for " +
+                       std::to_string(side) + " in a row");
+    return l;
+}
+
+}  // namespace
+
+void write_landscapes_json(const std::filesystem::path& file, const Scene& scene) {
+    auto objects = Json::array();
+    for (const Object& object : scene.objects) {
+        if (!object.grounded) objects.push_back(to_json(object));
+    }
+    const Json json{{"schema", schema}, {"objects", std::move(objects)}};
+    write_file(file, json.dump() + "\n");
+}
+
+void read_landscapes_json(const std::filesystem::path& file, Scene& scene) {
+    const auto bytes = read_file(file);
+    const auto text = bytes.text();
+    try {
+        const auto json = Json::parse(text.begin(), text.end());
+        if (json.at("schema") != schema) fail(file, "its schema is not " + std::string(schema));
+        for (const Json& object : json.at("objects")) {
+            const auto id = object.at("id").get<std::int64_t>();
+            if (id < 0 || id >= static_cast<std::int64_t>(scene.objects.size()))
+                fail(file, "is of another scene: it has an object " + std::to_string(id));
+            scene.objects[static_cast<std::size_t>(id)].landscape = landscape_of(object, file);
+        }
+    } catch (const Json::exception& error) {
+        fail(file, "is no landscapes.json: " + printable(error.what(), 200));
+    }
+}
+
+}  // namespace topple::io

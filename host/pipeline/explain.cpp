@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/explain.h"
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+
+namespace topple {
+namespace {
+
+// Two digits, without an exponent; halves of a millimetre or a millijoule are nothing.
+std::string number(double value) {
+    char digits[64];
+    const double size = std::abs(value);
+    if (size < 0.0005) return "0";
+    const int before = static_cast<int>(std::floor(std::log10(size))) + 1;
+    std::snprintf(digits, sizeof(digits), "%.*f", std::max(0, 2 - before), value);
+    return digits;
+}
+std::string length(double metres) {
+    return metres < 0.1 ? number(100 * metres) + " cm" : number(metres) + " m";
+}
+std::string energy(double joules) {
+    return number(joules) + " J";
+}
+
+std::string compass(double azimuth_deg) {
+    constexpr std::array names{"north", "north-east", "east", "south-east",
+                               "south", "south-west", "west", "north-west"};
+    return names[static_cast<std::size_t>(std::lround(azimuth_deg / 45)) % names.size()];
+}
+
+double azimuth(const Vec3& way) {
+    const double degrees = std::atan2(way[0], way[1]) * 180 / std::numbers::pi;
+    return degrees < 0 ? degrees + 360 : degrees;
+}
+
+std::string what(const Scene& scene, const GeometryStage& geometry, std::int32_t primitive) {
+    if (primitive < 0) return "what lies below";
+    const auto at = static_cast<std::size_t>(primitive);
+    if (geometry.structure[at] == geometry::Structure::floor) return "the floor";
+    const Object& object = scene.objects[static_cast<std::size_t>(scene.primitives[at].object)];
+    return object.grounded ? "the ground" : "object " + std::to_string(object.id);
+}
+
+class Sentence {
+  public:
+    Sentence(const Scene& scene, const GeometryStage& geometry, const StableObject& from,
+             const Object& object)
+        : scene_(scene), geometry_(geometry), from_(from), object_(object), why_(object.why) {}
+
+    std::string text() const {
+        if (object_.grounded) return "It is the ground, or fixed to it: it can't fall.";
+        if (from_.candidate.support_polygon.empty()) {
+            return "Nothing was found that holds it up: it is held by what the scan does not show, "
+                   "or it falls.";
+        }
+        if (object_.mode == "slide") return slides();
+        return tips();
+    }
+
+  private:
+    std::string slides() const {
+        if (!(why_.way_m > 0)) {
+            return "Its centre of mass is past the edge of what carries it: " + falls() +
+                   released();
+        }
+        const std::string off = why_.stands_on.size() == 1 ? carrier() : "what carries it";
+        return "Slides " + to() + "off " + off + " at " + barrier() + ", over " +
+               length(why_.way_m) + "; " + falls() + released();
+    }
+    std::string tips() const {
+        const bool stands = from_.tipping.margin_m > 0;
+        std::string text;
+        if (!why_.edge_m.empty() && !stands) {
+            text = "Falls " + to() + "as it stands: its centre of mass is " +
+                   length(-from_.tipping.margin_m) + " beyond the edge of what carries it";
+        } else if (!why_.edge_m.empty()) {
+            text = "Tips over its " + edge() + " at " + barrier();
+        } else {
+            text = "Rolls or turns " + to() + "by itself";
+        }
+        if (!(object_.release_J > 0))
+            return text + ", but then rests no lower: it releases nothing.";
+        text += "; ";
+        return text + (why_.drop_m > 0 ? falls() : "comes to rest lower") + released();
+    }
+    std::string carrier() const {
+        const Object& on = scene_.objects[static_cast<std::size_t>(why_.stands_on[0])];
+        return on.grounded ? "the ground" : "object " + std::to_string(on.id);
+    }
+    std::string barrier() const {
+        return barrier_within_error(object_) ? "~0 J" : energy(why_.W_J);
+    }
+    std::string to() const {
+        return std::isnan(why_.azimuth_deg) ? "" : "to the " + compass(why_.azimuth_deg) + " ";
+    }
+    // An edge no longer than a voxel or two is a corner, or one of a round thing's many.
+    std::string edge() const {
+        const std::string side =
+            std::isnan(why_.azimuth_deg) ? "" : compass(why_.azimuth_deg) + " ";
+        const Vec3 &a = why_.edge_m[0], &b = why_.edge_m[1];
+        const double size = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+        if (size <= 2.5 * scene_.voxel_size_m) return side + "rim";
+        return side + "edge, " + length(size) + " long,";
+    }
+    std::string falls() const {
+        return "falls " + length(why_.drop_m) + " to " +
+               what(scene_, geometry_, from_.instability.onto);
+    }
+    std::string released() const { return " and releases " + energy(why_.S_J) + "."; }
+
+    const Scene& scene_;
+    const GeometryStage& geometry_;
+    const StableObject& from_;
+    const Object& object_;
+    const Why& why_;
+};
+
+}  // namespace
+
+void explain(const GeometryStage& geometry, const ObjectStage& objects, const ToInput& to_input,
+             Scene& scene) {
+    for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+        const StableObject& from = objects.objects[o];
+        Object& object = scene.objects[o];
+        Why& why = object.why;
+        if (!from.grounded) {
+            const physics::Instability& step = from.instability;
+            if (step.weakest != Vec3{}) why.azimuth_deg = azimuth(step.weakest);
+            if (step.edge) why.edge_m = {to_input((*step.edge)[0]), to_input((*step.edge)[1])};
+            why.W_J = object.barrier_J;
+            why.S_J = object.release_J;
+            if (object.mode == "slide") why.way_m = from.sliding.distance_m;
+            why.drop_m = step.drop_m;
+            if (step.drop_m > 0 && step.onto >= 0)
+                why.lands_on = objects.object_of_primitive[static_cast<std::size_t>(step.onto)];
+        }
+        why.sentence = Sentence(scene, geometry, from, object).text();
+    }
+}
+
+}  // namespace topple

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+
+#include "pipeline/geometry_stage.h"
+#include "pipeline/object_stage.h"
+#include "topple/scene.h"
+
+namespace topple {
+
+// From the grid frame to the input's.
+class ToInput {
+  public:
+    explicit ToInput(const std::array<Vec3, 3>& axes) : axes_(axes) {}
+    Vec3 operator()(const Vec3& g) const {
+        Vec3 out{};
+        for (std::size_t c = 0; c < 3; ++c)
+            out[c] = g[0] * axes_[0][c] + g[1] * axes_[1][c] + g[2] * axes_[2][c];
+        return out;
+    }
+
+  private:
+    const std::array<Vec3, 3>& axes_;
+};
+
+// Fills in each object's `why`, but for what it stands on: that and the energies are there already.
+void explain(const GeometryStage& geometry, const ObjectStage& objects, const ToInput& to_input,
+             Scene& scene);
+
+}  // namespace topple
