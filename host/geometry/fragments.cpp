@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/fragments.h"
 
+#include <algorithm>
 #include <map>
+#include <numeric>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -23,6 +26,82 @@ Borders borders(const Surfels& s, const std::vector<std::int32_t>& label,
         }
     }
     return out;
+}
+
+// How many steps over neighbours a surfel is away from the nearest solid; 0: part of one, or of
+// what touches none.
+std::vector<std::uint32_t> steps_from_solids(const Surfels& s,
+                                             const std::vector<std::int32_t>& label,
+                                             const std::vector<bool>& solid) {
+    std::vector<std::uint32_t> steps(s.size(), 0), queue;
+    const auto is_solid = [&](std::uint32_t n) {
+        return label[n] >= 0 && solid[static_cast<std::size_t>(label[n])];
+    };
+    for (std::uint32_t n = 0; n < s.size(); ++n) {
+        if (is_solid(n)) queue.push_back(n);
+    }
+    for (std::size_t head = 0; head < queue.size(); ++head) {
+        const std::uint32_t n = queue[head];
+        for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
+            const std::uint32_t m = s.neighbours[k];
+            if (is_solid(m) || steps[m] > 0) continue;
+            steps[m] = steps[n] + 1;
+            queue.push_back(m);
+        }
+    }
+    return steps;
+}
+
+// The fragments that a thin thing breaks into, a leg seen by few rays, as one primitive: each
+// connected piece of surfels further from all solids than scraps along a crease are, with all of
+// the fragments that take part in it. It takes the place of the largest of them.
+void join_protrusions(const Surfels& s, std::vector<bool>& solid, PrimitiveSet& primitives) {
+    constexpr std::uint32_t beyond_scraps = 2, stands_off = 4;  // steps
+    constexpr std::size_t least = 8;                            // surfels, those of a region
+    std::vector<std::int32_t>& label = primitives.label;
+    const std::vector<std::uint32_t> steps = steps_from_solids(s, label, solid);
+    std::vector<bool> seen(s.size());
+    std::vector<std::int32_t> joined(solid.size());  // what each primitive becomes part of
+    std::iota(joined.begin(), joined.end(), 0);
+    const auto root = [&](std::int32_t p) {
+        while (joined[static_cast<std::size_t>(p)] != p) p = joined[static_cast<std::size_t>(p)];
+        return p;
+    };
+    for (std::uint32_t first = 0; first < s.size(); ++first) {
+        if (seen[first] || steps[first] < beyond_scraps) continue;
+        std::vector<std::uint32_t> piece{first};
+        std::set<std::int32_t> fragments;
+        std::uint32_t furthest = 0;
+        seen[first] = true;
+        for (std::size_t head = 0; head < piece.size(); ++head) {
+            const std::uint32_t n = piece[head];
+            furthest = std::max(furthest, steps[n]);
+            if (label[n] >= 0) fragments.insert(root(label[n]));
+            for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
+                const std::uint32_t m = s.neighbours[k];
+                if (seen[m] || steps[m] < beyond_scraps) continue;
+                seen[m] = true;
+                piece.push_back(m);
+            }
+        }
+        if (furthest < stands_off || piece.size() < least || fragments.empty()) continue;
+        // Ids go by falling size.
+        const std::int32_t whole = *fragments.begin();
+        for (const std::int32_t f : fragments) joined[static_cast<std::size_t>(f)] = whole;
+        solid[static_cast<std::size_t>(whole)] = true;
+        for (const std::uint32_t n : piece)
+            if (label[n] < 0) label[n] = whole;
+    }
+    for (std::int32_t& l : label)
+        if (l >= 0) l = root(l);
+    for (std::size_t p = 0; p < joined.size(); ++p) {
+        const auto whole = static_cast<std::size_t>(root(static_cast<std::int32_t>(p)));
+        if (whole == p) continue;
+        solid[p] = false;
+        auto& to = primitives.regions[whole];
+        to.insert(to.end(), primitives.regions[p].begin(), primitives.regions[p].end());
+        primitives.model[whole] = "merged";
+    }
 }
 
 // One ring of unlabelled surfels takes the label that most of its labelled neighbours have, the
@@ -57,6 +136,7 @@ void absorb_fragments(const Surfels& surfels, std::uint64_t least_surfels,
     }
     std::vector<bool> solid;
     for (const std::uint64_t s : size) solid.push_back(s >= least_surfels);
+    join_protrusions(surfels, solid, primitives);
     // Each round takes in the fragments that touch a solid; what they touched in turn is next.
     for (;;) {
         std::map<std::int32_t, std::pair<std::uint64_t, std::int32_t>>

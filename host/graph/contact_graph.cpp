@@ -190,11 +190,30 @@ void add_hidden_joints(device::Device& device, const SolidCells& cells, std::int
     std::ranges::sort(graph.pairs, {}, ends);
 }
 
+void add_leanings(ContactGraph& graph) {
+    for (const physics::TouchingPair& pair : graph.pairs) {
+        if (std::abs(pair.normal[2]) > 0.5) continue;
+        Leaning leaning{pair.a, pair.b, pair.center[2], {}};
+        for (std::size_t e = 0; e < 4; ++e) leaning.outline[e] = {pair.ends[e][0], pair.ends[e][1]};
+        graph.leanings.push_back(leaning);
+        std::swap(leaning.primitive, leaning.against);
+        graph.leanings.push_back(leaning);
+    }
+    std::ranges::sort(graph.leanings, {},
+                      [](const Leaning& l) { return std::pair(l.primitive, l.against); });
+}
+
 }  // namespace
 
 std::span<const Carrying> ContactGraph::carriers_of(std::int32_t primitive) const {
     const auto [first, last] =
         std::ranges::equal_range(carryings, primitive, {}, &Carrying::supported);
+    return {first, last};
+}
+
+std::span<const Leaning> ContactGraph::leanings_of(std::int32_t primitive) const {
+    const auto [first, last] =
+        std::ranges::equal_range(leanings, primitive, {}, &Leaning::primitive);
     return {first, last};
 }
 
@@ -267,6 +286,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         graph.carryings.push_back(
             {supporter, supported, area * h * h, height, physics::convex_polygon(columns.corners)});
     }
+    add_leanings(graph);
     add_hidden_carryings(undersides, extents, h, graph);
     add_hidden_joints(device, cells, primitives, hidden, graph);
     for (const auto& [key, columns] : gaps) {

@@ -25,6 +25,13 @@ struct Carrying {
     std::vector<std::array<double, 2>> outline;
 };
 
+// One primitive whose side touches another's.
+struct Leaning {
+    std::int32_t primitive = -1, against = -1;
+    double height_m = 0;                             // of the contact's middle
+    std::array<std::array<double, 2>, 4> outline{};  // points on its border, seen from above
+};
+
 // How far a primitive hangs above what lies under it, for the columns of one gap.
 struct Clearance {
     std::int32_t below = -1;  // primitive, or -1 for unlabelled solid
@@ -37,6 +44,7 @@ struct ContactGraph {
     double voxel_m = 0;
     std::vector<physics::TouchingPair> pairs;          // sorted by (a, b)
     std::vector<Carrying> carryings;                   // sorted by (supported, supporter)
+    std::vector<Leaning> leanings;                     // sorted by (primitive, against)
     std::vector<std::array<double, 3>> silhouette_m2;  // by primitive: area seen along x, y, z
     std::vector<std::vector<Clearance>> clearances;    // by primitive, sorted by (below, gap)
     std::vector<double> lowest_m, highest_m;           // by primitive
@@ -44,6 +52,8 @@ struct ContactGraph {
 
     // What carries one primitive: a range of `carryings`.
     std::span<const Carrying> carriers_of(std::int32_t primitive) const;
+    // What one primitive touches with its sides: a range of `leanings`.
+    std::span<const Leaning> leanings_of(std::int32_t primitive) const;
 };
 
 // Gaps of up to `gap` empty voxels count as contact: sensor noise leaves such gaps.

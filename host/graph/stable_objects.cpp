@@ -53,6 +53,7 @@ bool stands(const physics::Candidate& c, double tilt, double slack_m) {
 }  // namespace
 
 physics::Candidate candidate_of(const ContactGraph& graph, std::span<const physics::Body> bodies,
+                                const std::vector<bool>& ground,
                                 std::vector<std::int32_t> primitives) {
     physics::Candidate candidate;
     std::sort(primitives.begin(), primitives.end());
@@ -69,6 +70,15 @@ physics::Candidate candidate_of(const ContactGraph& graph, std::span<const physi
         }
     }
     if (points.empty()) candidate.support_height_m = 0;
+    for (const std::int32_t p : primitives) {
+        if (points.empty()) break;
+        for (const Leaning& l : graph.leanings_of(p)) {
+            if (!ground[static_cast<std::size_t>(l.against)]) continue;
+            if (l.height_m < candidate.body.center[2]) continue;
+            if (std::binary_search(primitives.begin(), primitives.end(), l.against)) continue;
+            points.insert(points.end(), l.outline.begin(), l.outline.end());
+        }
+    }
     if (!points.empty()) candidate.support_polygon = physics::convex_polygon(points);
     candidate.primitives = std::move(primitives);
     return candidate;
@@ -109,7 +119,7 @@ Grouping group_primitives(device::Device& device, const physics::SupportTable& t
     // The body that a query asks about, if it does not stand.
     const auto unstable_body = [&](const GroupQuery& query) -> std::optional<physics::Candidate> {
         if (query.pinned) return std::nullopt;  // the ground does not fall: S = 0
-        physics::Candidate c = candidate_of(graph, bodies, query.nodes);
+        physics::Candidate c = candidate_of(graph, bodies, ground, query.nodes);
         if (c.body.mass_kg <= 0 || stands(c, tilt, 0.5 * cells.voxel_m)) return std::nullopt;
         return c;
     };

@@ -45,6 +45,7 @@ struct TouchingPair {
     double area_m2 = 0;  // area of the contact patch: the largest opposite-direction face count
     Vec3 normal{};       // from a to b, unit: the axis that carries the contact
     Vec3 center{};       // mean of the contact faces
+    std::array<Vec3, 4> ends{};  // middles of the contact faces furthest along -x, +x, -y, +y
 };
 
 // All touching pairs, sorted by (a, b). Gaps of up to `gap` empty voxels along an axis count as

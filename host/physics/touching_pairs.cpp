@@ -12,7 +12,8 @@ namespace {
 
 struct PairSums {
     std::array<std::uint32_t, 6> faces{};
-    std::array<std::int64_t, 3> twice{};  // twice the face centres, in voxels
+    std::array<std::int64_t, 3> twice{};                // twice the face centres, in voxels
+    std::array<std::array<std::int64_t, 3>, 4> ends{};  // those furthest along -x, +x, -y, +y
     std::uint64_t count = 0;
 };
 
@@ -34,11 +35,17 @@ void record(const SolidCells& c, std::size_t n, std::size_t m, std::size_t axis,
     }
     const std::uint64_t key = (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint32_t>(b);
     PairSums& pair = sums[key];
+    const std::array<std::int64_t, 3> twice{std::int64_t{c.i[n]} + c.i[m] + 1,
+                                            std::int64_t{c.j[n]} + c.j[m] + 1,
+                                            std::int64_t{c.k[n]} + c.k[m] + 1};
+    for (std::size_t e = 0; e < 4; ++e) {
+        const std::int64_t sign = e % 2 ? 1 : -1;
+        if (pair.count == 0 || sign * twice[e / 2] > sign * pair.ends[e][e / 2])
+            pair.ends[e] = twice;
+    }
+    for (std::size_t k = 0; k < 3; ++k) pair.twice[k] += twice[k];
     ++pair.faces[direction];
     ++pair.count;
-    pair.twice[0] += std::int64_t{c.i[n]} + c.i[m] + 1;
-    pair.twice[1] += std::int64_t{c.j[n]} + c.j[m] + 1;
-    pair.twice[2] += std::int64_t{c.k[n]} + c.k[m] + 1;
 }
 
 // Finds for every cell the next solid cell along +axis, at most gap empty voxels away. The cells
@@ -75,6 +82,8 @@ TouchingPair finish(std::uint64_t key, const PairSums& sums, double voxel_m) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         pair.center[axis] = static_cast<double>(sums.twice[axis]) /
                             (2.0 * static_cast<double>(sums.count)) * voxel_m;
+        for (std::size_t e = 0; e < 4; ++e)
+            pair.ends[e][axis] = static_cast<double>(sums.ends[e][axis]) / 2 * voxel_m;
     }
     return pair;
 }

@@ -23,7 +23,7 @@ std::vector<bool> shell(const GeometryStage& geometry) {
 }
 
 // Objects by group, the ground first.
-void collect_objects(ObjectStage& out) {
+void collect_objects(const std::vector<bool>& ground, ObjectStage& out) {
     const std::vector<std::int32_t>& group = out.grouping.group;
     const bool has_ground = std::find(group.begin(), group.end(), -1) != group.end();
     std::int32_t objects = 0;
@@ -38,7 +38,8 @@ void collect_objects(ObjectStage& out) {
     }
     for (std::size_t o = 0; o < members.size(); ++o) {
         StableObject object;
-        object.candidate = graph::candidate_of(out.contacts, out.bodies, std::move(members[o]));
+        object.candidate =
+            graph::candidate_of(out.contacts, out.bodies, ground, std::move(members[o]));
         object.grounded = has_ground && o == 0;
         object.lowest_m = std::numeric_limits<double>::infinity();
         object.highest_m = -object.lowest_m;
@@ -105,7 +106,7 @@ ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
                                                out.bodies, parts.seams, parts.shell, grouping);
     });
     stage("barriers", [&] {
-        collect_objects(out);
+        collect_objects(parts.shell, out);
         std::vector<physics::Candidate> candidates;
         const physics::CellColumns columns(voxels.cells);
         for (StableObject& o : out.objects) {

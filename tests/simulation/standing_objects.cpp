@@ -196,7 +196,9 @@ StandingScene::StandingScene(device::Device& device, const std::vector<StandingO
     const graph::ContactGraph contacts = graph::build_contact_graph(device, cells_, primitives);
     table_.emplace(device, cells_, primitives, physics::geodesic_sphere(16));
     for (std::vector<std::int32_t>& parts : members)
-        candidates_.push_back(graph::candidate_of(contacts, bodies, std::move(parts)));
+        candidates_.push_back(graph::candidate_of(
+            contacts, bodies, std::vector<bool>(static_cast<std::size_t>(primitives)),
+            std::move(parts)));
 }
 
 std::vector<physics::Instability> StandingScene::instability() const {

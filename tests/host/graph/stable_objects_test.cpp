@@ -29,6 +29,7 @@ struct Scene {
     SurfaceSeams seams;
     physics::SolidCells cells;
     std::int32_t count = 1;
+    std::vector<std::int32_t> shell{0};
 
     std::int32_t add(const Inside& inside) {
         solids.push_back({count, inside});
@@ -52,7 +53,7 @@ class Objects : public test::EachBackend {
                                           physics::geodesic_sphere(8));
         scene.seams.inside.resize(static_cast<std::size_t>(scene.count));
         std::vector<bool> ground(static_cast<std::size_t>(scene.count), false);
-        ground[0] = true;
+        for (const std::int32_t p : scene.shell) ground[static_cast<std::size_t>(p)] = true;
         GroupingOptions options;
         options.seed = seed;
         return group_primitives(*device, table, scene.cells, graph, bodies, scene.seams, ground,
@@ -172,6 +173,25 @@ TEST_P(Objects, AHiddenFootStandsAndASeenGapHangs) {
 }
 
 // Noise between two slender boxes that would fall is no joint; a post there would be one.
+// A board whose foot is 40 cm in front of a wall, or of nothing.
+TEST_P(Objects, WhatLeansOnTheWallStands) {
+    for (const bool wall : {true, false}) {
+        Scene scene;
+        const auto board = scene.add([](double x, double y, double z) {
+            const double at = 0.4 * (1 - z);  // distance from the wall at this height
+            return std::abs(x) < 0.15 && std::abs(y - at) < 0.02 && z > 0 && z < 1;
+        });
+        const auto behind = scene.add(box({-0.9, -0.06, 0}, {0.9, wall ? -0.02 : -0.04, 1.1}));
+        if (wall) scene.shell.push_back(behind);
+        const auto group = groups(scene);
+        // Where it could not stand by itself it is taken for a part of something.
+        EXPECT_EQ(
+            group[static_cast<std::size_t>(board)] >= 0 &&
+                group[static_cast<std::size_t>(board)] != group[static_cast<std::size_t>(behind)],
+            wall);
+    }
+}
+
 TEST_P(Objects, AScrapHoldsNothingTogether) {
     for (const bool post : {false, true}) {
         Scene scene;

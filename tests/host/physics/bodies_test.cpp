@@ -155,6 +155,11 @@ TEST_P(Bodies, ACupOnATableTouchesUpwards) {
     EXPECT_NEAR(pairs[0].area_m2, 0.01, 1e-9);
     EXPECT_NEAR(pairs[0].center[0], 0.15, 1e-9);
     EXPECT_NEAR(pairs[0].center[2], 0.11, 1e-9);
+    // Middles of its outermost faces, half a voxel inside its border.
+    EXPECT_NEAR(pairs[0].ends[0][0], 0.11, 1e-9);
+    EXPECT_NEAR(pairs[0].ends[1][0], 0.19, 1e-9);
+    EXPECT_NEAR(pairs[0].ends[2][1], 0.11, 1e-9);
+    EXPECT_NEAR(pairs[0].ends[3][1], 0.19, 1e-9);
     EXPECT_TRUE(touching_pairs(*device, cells, 2, 0).empty());
     SolidCells unsorted = cells;
     std::swap(unsorted.k.front(), unsorted.k.back());
