@@ -29,15 +29,29 @@ std::uint32_t nearest(const SphereMesh& mesh, std::uint32_t v, const Vec3& d) {
     const auto along = [&](std::uint32_t w) {
         return mesh.x[w] * d[0] + mesh.y[w] * d[1] + mesh.z[w] * d[2];
     };
-    for (;;) {
+    for (double most = along(v);;) {
         std::uint32_t best = v;
         for (std::size_t k = 0; k < 6; ++k) {
             const std::uint32_t w = mesh.neighbour[std::size_t{v} * 6 + k];
-            if (along(w) > along(best)) best = w;
+            if (const double reach = along(w); reach > most) {
+                most = reach;
+                best = w;
+            }
         }
         if (best == v) return v;
         v = best;
     }
+}
+
+// Of positive values. Several maxima side by side: none waits for the one before it.
+float highest(std::span<const float> height) {
+    std::array<float, 16> most{};
+    std::size_t v = 0;
+    for (; v + most.size() <= height.size(); v += most.size()) {
+        for (std::size_t k = 0; k < most.size(); ++k) most[k] = std::max(most[k], height[v + k]);
+    }
+    for (; v < height.size(); ++v) most[0] = std::max(most[0], height[v]);
+    return *std::max_element(most.begin(), most.end());
 }
 
 // A pass at the level at which the landscape has it, and made exact.
@@ -291,7 +305,7 @@ Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
                  std::span<const float> height, std::span<std::uint32_t> down, Passes passes) {
     const std::uint32_t start = start_direction(rows, candidate, height);
     const Basins basins(height, rows.mesh, down, start);
-    const double radius = *std::max_element(height.begin(), height.end());
+    const double radius = highest(height);
     const double weight_N = candidate.body.mass_kg * gravity;
     // Heights are known to a voxel, and to the rounding of their float sums.
     const double resolution = rows.resolution_m + 1e-5 * radius;

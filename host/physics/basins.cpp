@@ -1,21 +1,28 @@
 // SPDX-License-Identifier: MIT
 #include "physics/basins.h"
 
-#include <bit>
 #include <limits>
 #include <numeric>
 
 namespace topple::physics {
 namespace {
 
-// Follows every descent to its end, by steps that double; the ends by rising number.
+// Follows every descent to its end, by steps that double; the ends by rising number. Passes go up
+// and down the numbers in turn: a descent on which they rise or fall all the way takes only one.
 std::vector<std::uint32_t> follow(std::span<std::uint32_t> down) {
-    for (std::uint32_t changed = 1; changed != 0;) {
+    const std::size_t size = down.size();
+    std::uint32_t changed = 1;
+    const auto step = [&](std::uint32_t& to) {
+        const std::uint32_t next = down[to];
+        changed |= next ^ to;
+        to = next;
+    };
+    for (bool rising = true; changed != 0; rising = !rising) {
         changed = 0;
-        for (std::uint32_t& to : down) {
-            const std::uint32_t next = down[to];
-            changed |= next ^ to;
-            to = next;
+        if (rising) {
+            for (std::size_t v = 0; v < size; ++v) step(down[v]);
+        } else {
+            for (std::size_t v = size; v-- > 0;) step(down[v]);
         }
     }
     std::vector<std::uint32_t> minima;
@@ -32,33 +39,39 @@ struct Saddle {
 
 std::vector<Saddle> saddles(std::span<const float> height, const SphereMesh& mesh,
                             std::span<const std::uint32_t> basin_of, std::size_t basins) {
-    // Basins hang together, so that on a sphere fewer than three pairs for each of them can meet: a
-    // hash table of eight has room.
-    constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> table(std::bit_ceil(8 * basins), none);
+    // Most of the mesh's edges are inside of a basin; which ones no branch could foretell.
+    std::vector<std::uint32_t> border(mesh.edge.size() + 1);
+    std::size_t count = 0;
+    for (std::uint32_t e = 0; e < mesh.edge.size(); ++e) {
+        border[count] = e;
+        count += basin_of[mesh.edge[e][0]] != basin_of[mesh.edge[e][1]];
+    }
+    border.resize(count);
     std::vector<Saddle> all;
-    for (std::uint32_t v = 0; v < basin_of.size(); ++v) {
-        const std::uint32_t a = basin_of[v];
-        const auto around = std::span(mesh.neighbour).subspan(std::size_t{v} * 6, 6);
-        std::uint32_t last = a;
-        for (const std::uint32_t w : around) last = std::max(last, basin_of[w]);
-        if (last == a) continue;  // most are inside of their basin
-        for (const std::uint32_t w : around) {
-            const std::uint32_t b = basin_of[w];
-            if (b <= a) continue;
-            const float over = std::max(height[v], height[w]);
-            std::size_t slot = (a * 0x9E3779B1U + b * 0x85EBCA77U) >> 7;
-            for (;; ++slot) {
-                std::uint32_t& s = table[slot &= table.size() - 1];
-                if (s == none) {
-                    s = static_cast<std::uint32_t>(all.size());
-                    all.push_back({over, a, b});
-                } else if (all[s].a != a || all[s].b != b) {
-                    continue;
-                }
-                all[s].height = std::min(all[s].height, over);
-                break;
-            }
+    const auto visit = [&](const auto& take) {
+        for (const std::uint32_t e : border) {
+            const auto [v, w] = mesh.edge[e];
+            const auto [a, b] = std::minmax(basin_of[v], basin_of[w]);
+            take(a, b, std::max(height[v], height[w]));
+        }
+    };
+    // Landscapes have few basins, so that a square table holds the saddles of all pairs. Of many
+    // basins every edge counts as a saddle, which makes the same of them.
+    constexpr std::size_t few = 128;
+    if (basins > few) {
+        visit([&](std::uint32_t a, std::uint32_t b, float over) { all.push_back({over, a, b}); });
+        return all;
+    }
+    constexpr float none = std::numeric_limits<float>::infinity();
+    std::vector<float> lowest(basins * basins, none);
+    visit([&](std::uint32_t a, std::uint32_t b, float over) {
+        float& least = lowest[a * basins + b];
+        least = std::min(least, over);
+    });
+    for (std::uint32_t a = 0; a < basins; ++a) {
+        for (std::uint32_t b = a + 1; b < basins; ++b) {
+            const float over = lowest[a * basins + b];
+            if (over < none) all.push_back({over, a, b});
         }
     }
     return all;

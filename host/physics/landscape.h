@@ -21,7 +21,8 @@ inline constexpr double gravity = 9.80665;  // m/s^2
 // (the twelve of valence five repeat themselves once). Direction 0 is exactly +z.
 struct SphereMesh {
     std::vector<float> x, y, z;
-    std::vector<std::uint32_t> neighbour;  // 6 per direction
+    std::vector<std::uint32_t> neighbour;            // 6 per direction
+    std::vector<std::array<std::uint32_t, 2>> edge;  // each pair of neighbours once, rising
     std::size_t size() const { return x.size(); }
 };
 SphereMesh geodesic_sphere(unsigned frequency);

@@ -120,6 +120,8 @@ SphereMesh geodesic_sphere(unsigned frequency) {
         for (; e < edges.size() && edges[e][0] == v; ++e) mesh.neighbour[v * 6 + k++] = edges[e][1];
         for (; k < 6; ++k) mesh.neighbour[v * 6 + k] = mesh.neighbour[v * 6];
     }
+    std::erase_if(edges, [](const auto& edge) { return edge[0] > edge[1]; });
+    mesh.edge = std::move(edges);
     return mesh;
 }
 
