@@ -46,6 +46,12 @@ class SphereMap {
             sphere.lowest_m = std::min(sphere.lowest_m, -lowest_of(l_.hull_m, pose.up));
         out_.sphere = std::move(sphere);
         for (const Landscape::Pass& pass : l_.passes) border(pass);
+        // Where it is now, which need not be the bottom of its basin.
+        for (const auto& [dx, dy] : {Point{5, 0}, Point{0, 5}}) {
+            out_.strokes.push_back(
+                {Style::border,
+                 {{middle[0] - dx, middle[1] - dy}, {middle[0] + dx, middle[1] + dy}}});
+        }
         marks();
         const std::pair<Point, const char*> sides[] = {{{0, -radius - 14}, "N"},
                                                        {{radius + 18, 4}, "E"},
@@ -58,7 +64,7 @@ class SphereMap {
             {{width / 2, out_.height - 24},
              Align::middle,
              false,
-             "middle: as it is \xc2\xb7 rim: upside down \xc2\xb7 lines: basins"});
+             "middle (+): as it is \xc2\xb7 rim: upside down \xc2\xb7 lines: basins"});
         key();
         return std::move(out_);
     }
