@@ -10,6 +10,8 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "evaluation/groupings.h"
+#include "evaluation/joint_weights.h"
 #include "evaluation/pictures.h"
 #include "evaluation/room.h"
 #include "evaluation/tables.h"
@@ -23,6 +25,7 @@ struct Arguments {
     std::string backend = "auto", out = "evaluation";
     evaluation::RoomOptions options;
     unsigned seeds = 8, first = 1;
+    bool groupings = false, fit_joints = false;
 };
 
 void check(const Arguments& a) {
@@ -34,6 +37,10 @@ void check(const Arguments& a) {
     in_range("--seeds", a.seeds, 1000);
     in_range("--frames", a.options.camera.frames, 1000);
     check_options(a.options.parse);
+    if ((a.groupings || a.fit_joints) && a.options.camera.single) {
+        throw Error(ErrorKind::usage,
+                    "--single: --groupings and --fit-joints take rooms of several frames");
+    }
 }
 
 void make_folder(const std::filesystem::path& folder) {
@@ -49,27 +56,46 @@ void write(const std::filesystem::path& path, const std::string& text) {
     if (!out) throw Error(ErrorKind::input, path.string() + ": can't be written");
 }
 
-int run(Arguments& a) {
-    check(a);
-    make_folder(a.out);
+// Calls use() once for each room, with its options.
+template <typename Use>
+void for_each_room(Arguments& a, const Use& use) {
+    for (unsigned n = 0; n < a.seeds; ++n) {
+        a.options.room.seed = a.options.camera.seed = a.first + n;
+        std::fprintf(stderr, "room %u of %u\n", n + 1, a.seeds);
+        use();
+    }
+}
+
+void print_weights(Arguments& a) {
+    evaluation::JointExamples examples;
+    for_each_room(a,
+                  [&] { evaluation::add_examples(evaluation::scan_parts(a.options), examples); });
+    for (const double w : evaluation::fit_joints(examples.joints, examples.fixed))
+        std::printf("%.4f, ", w);
+    std::printf("\n%zu joints of %u rooms\n", examples.joints.size(), a.seeds);
+}
+
+void compare_groupings(Arguments& a) {
+    std::vector<evaluation::Groupings> rooms;
+    for_each_room(a, [&] {
+        rooms.push_back(evaluation::compare_groupings(*a.options.parse.device,
+                                                      evaluation::scan_parts(a.options),
+                                                      evaluation::fitted_joint_weights));
+    });
+    const std::string table = evaluation::table_of(rooms);
+    std::fputs(table.c_str(), stdout);
+    write(std::filesystem::path(a.out) / "groupings.txt", table);
+}
+
+void judge_parses(Arguments& a) {
     const std::filesystem::path out = a.out;
-    catch_interrupts();
-    a.options.parse.device = device::open_device(a.backend);
-    a.options.parse.cancelled = [] { return interrupted() != 0; };
     std::vector<evaluation::RoomScore> scores;
     std::optional<evaluation::Room> first;
-    try {
-        for (unsigned n = 0; n < a.seeds; ++n) {
-            a.options.room.seed = a.options.camera.seed = a.first + n;
-            std::fprintf(stderr, "room %u of %u\n", n + 1, a.seeds);
-            evaluation::Room room = evaluation::scan_and_parse(a.options);
-            scores.push_back(evaluation::judge(room));
-            if (!first) first = std::move(room);
-        }
-    } catch (const Error&) {
-        if (interrupted() != 0) return interrupted_exit();
-        throw;
-    }
+    for_each_room(a, [&] {
+        evaluation::Room room = evaluation::scan_and_parse(a.options);
+        scores.push_back(evaluation::judge(room));
+        if (!first) first = std::move(room);
+    });
     const std::string tables = evaluation::tables(scores);
     std::fputs(tables.c_str(), stdout);
     write(out / "tables.txt", tables);
@@ -79,6 +105,26 @@ int run(Arguments& a) {
     evaluation::draw_segmentation_chart(scores, out / "segmentation.svg");
     evaluation::draw_volume_chart(scores, out / "volume.svg");
     std::printf("\nPictures of the first room, charts and all figures: %s\n", a.out.c_str());
+}
+
+int run(Arguments& a) {
+    check(a);
+    if (!a.fit_joints) make_folder(a.out);
+    catch_interrupts();
+    a.options.parse.device = device::open_device(a.backend);
+    a.options.parse.cancelled = [] { return interrupted() != 0; };
+    try {
+        if (a.fit_joints) {
+            print_weights(a);
+        } else if (a.groupings) {
+            compare_groupings(a);
+        } else {
+            judge_parses(a);
+        }
+    } catch (const Error&) {
+        if (interrupted() != 0) return interrupted_exit();
+        throw;
+    }
     return 0;
 }
 
@@ -97,6 +143,12 @@ Command add_evaluate(CLI::App& app) {
         ->capture_default_str();
     app.add_option("--frames", a->options.camera.frames, "Depth frames of each room")
         ->capture_default_str();
+    CLI::Option* const groupings = app.add_flag(
+        "--groupings", a->groupings,
+        "Table 3 instead: the same primitives grouped by each joint's looks, greedily, and by SWC");
+    app.add_flag("--fit-joints", a->fit_joints,
+                 "Fit the weights of the first of these to the rooms, and print them")
+        ->excludes(groupings);
     app.add_flag("--single", a->options.camera.single,
                  "One frame of each room, without its pose, as in the paper's 6.1 and 6.2");
     add_furniture(app, a->options.room.varied);

@@ -4,28 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <optional>
 #include <utility>
 
 #include "device/native/thread_pool.h"
-#include "graph/swendsen_wang.h"
-#include "physics/drop.h"
+#include "graph/group_energy.h"
 #include "physics/tipping.h"
 
 namespace topple::graph {
 namespace {
-
-constexpr double pi = std::numbers::pi;
-
-// S(O, W) of Eq. 6 at the energy W: the largest release that W sets free.
-double release_at(const physics::Stability& stability, double work_J) {
-    double release = 0;
-    for (const InstabilityStep& step : stability.curve) {
-        if (step.W_J <= work_J) release = std::max(release, step.S_J);
-    }
-    return release;
-}
 
 // Eq. 10, with the freedom that the joint takes as the feature F.
 std::vector<Edge> edges_of(const ContactGraph& graph, const ScenePrior& prior, double temperature) {
@@ -36,18 +22,6 @@ std::vector<Edge> edges_of(const ContactGraph& graph, const ScenePrior& prior, d
         edges.push_back({pair.a, pair.b, std::clamp(std::exp(-f / temperature), 0.05, 0.95)});
     }
     return edges;
-}
-
-// Whether a body withstands a tilt of its support: S = 0 without a look at its landscape. The
-// height that tilting by an angle a lifts the centre of mass by is h (1 / cos a - 1), and an edge
-// at the distance m asks for sqrt(h^2 + m^2) - h: the one is less than the other where m > h tan a.
-// slack_m: what the outline of the support, made of whole voxels, is too wide by.
-bool stands(const physics::Candidate& c, double tilt, double slack_m) {
-    if (c.support_polygon.empty()) return false;
-    const physics::Footing foot =
-        physics::footing(c.support_polygon, c.body.center[0], c.body.center[1]);
-    const double height = c.body.center[2] - c.support_height_m;
-    return foot.margin_m > slack_m && foot.margin_m - slack_m >= height * std::tan(tilt);
 }
 
 }  // namespace
@@ -113,52 +87,7 @@ Grouping group_primitives(device::Device& device, const physics::SupportTable& t
                           const physics::SolidCells& cells, const ContactGraph& graph,
                           std::span<const physics::Body> bodies, const SurfaceSeams& seams,
                           const std::vector<bool>& ground, const GroupingOptions& options) {
-    const ScenePrior prior(graph, bodies, seams, ground, options.prior);
-    const physics::CellColumns columns(cells);
-    const double tilt = options.tilt_deg * pi / 180;
-    // The body that a query asks about, if it does not stand.
-    const auto unstable_body = [&](const GroupQuery& query) -> std::optional<physics::Candidate> {
-        if (query.pinned) return std::nullopt;  // the ground does not fall: S = 0
-        physics::Candidate c = candidate_of(graph, bodies, ground, query.nodes);
-        if (c.body.mass_kg <= 0 || stands(c, tilt, 0.5 * cells.voxel_m)) return std::nullopt;
-        return c;
-    };
-    const auto fall_m = [&](const physics::Candidate& c) {
-        return c.support_polygon.empty() ? free_fall_m(graph, c.primitives)
-                                         : physics::drop_when_tipped_m(cells, columns, c);
-    };
-    const auto instability = [&](double released_m) {
-        return std::min(options.worst_instability, released_m / options.scale_m);
-    };
-    const auto energies = [&](std::span<const GroupQuery> queries, std::span<double> out) {
-        std::vector<physics::Candidate> unstable;
-        std::vector<std::size_t> query;  // of each candidate
-        for (std::size_t i = 0; i < queries.size(); ++i) {
-            out[i] = prior(queries[i].nodes);
-            if (std::optional<physics::Candidate> c = unstable_body(queries[i])) {
-                unstable.push_back(*std::move(c));
-                query.push_back(i);
-            }
-        }
-        const std::vector<physics::Stability> stability =
-            physics::evaluate(device, table, unstable);
-        for (std::size_t n = 0; n < unstable.size(); ++n) {
-            const physics::Candidate& c = unstable[n];
-            const double weight = c.body.mass_kg * physics::gravity;
-            const double height = std::max(c.body.center[2] - c.support_height_m, 0.0);
-            // What does not stand by stands() falls, whatever its barrier.
-            const double release =
-                std::max(release_at(stability[n], weight * height * (1 / std::cos(tilt) - 1)),
-                         stability[n].release_J);
-            out[query[n]] += instability(release / weight + fall_m(c));
-        }
-    };
-    // Instability is never below 0, nor below what the fall alone makes.
-    const auto prior_alone = [&](const GroupQuery& query, double) { return prior(query.nodes); };
-    const auto prior_and_fall = [&](const GroupQuery& query, double prior_of_it) {
-        const std::optional<physics::Candidate> c = unstable_body(query);
-        return c ? prior_of_it + instability(fall_m(*c)) : prior_of_it;
-    };
+    const GroupEnergy energy(device, table, cells, graph, bodies, seams, ground, options);
     SwendsenWangOptions sampler;
     sampler.seed = options.seed;
     // Enough flips that every node is tried many times over all chains, within seconds.
@@ -170,9 +99,9 @@ Grouping group_primitives(device::Device& device, const physics::SupportTable& t
     sampler.sample_steps = sampler.anneal_steps / 2;
     sampler.time_limit_s = options.time_limit_s;
     sampler.cancelled = options.cancelled;
-    const std::vector<Edge> edges = edges_of(graph, prior, options.turn_on_temperature);
-    Partition partition = swendsen_wang_cuts(graph.primitives, edges, ground,
-                                             {energies, {prior_alone, prior_and_fall}}, sampler);
+    const std::vector<Edge> edges = edges_of(graph, energy.prior(), options.turn_on_temperature);
+    Partition partition =
+        swendsen_wang_cuts(graph.primitives, edges, ground, energy.callbacks(), sampler);
     return {std::move(partition.label), std::move(partition.joined),
             std::move(partition.best_energy_curve)};
 }

@@ -13,6 +13,8 @@ TEST_F(Evaluate, refuses_what_it_cannot_do) {
     expect_failure(2, {"evaluate", "--voxel", "-1"}, {"--voxel"});
     expect_failure(2, {"evaluate", "--furniture", "odd"}, {"--furniture", "varied"});
     expect_failure(2, {"generate", "room", "--furniture", "odd"}, {"--furniture", "plain"});
+    expect_failure(2, {"evaluate", "--groupings", "--fit-joints"}, {"--fit-joints"});
+    expect_failure(2, {"evaluate", "--groupings", "--single"}, {"--single"});
     put("file", "not a folder");
     expect_failure(1, {"evaluate", "-o", "file/below"}, {"file/below"});
 }
@@ -30,6 +32,22 @@ TEST_F(Evaluate, prints_tables_and_draws_pictures) {
                                      "judged/segments.png", "judged/slices.png",
                                      "judged/tables.txt", "judged/volume.svg"}));
     EXPECT_TRUE(done.out.starts_with(bytes_of_file(in("judged/tables.txt"))));
+}
+
+TEST_F(Evaluate, prints_tables_of_groupings_and_fits_one_of_them) {
+    const Finished table =
+        run({"evaluate", "--groupings", "--seeds", "1", "--first", "4", "--frames", "6", "--voxel",
+             "0.04", "--backend", "native", "-o", "judged"});
+    ASSERT_EQ(table.code, 0) << table.err;
+    for (const char* part : {"Table 3", "discriminative", "greedy", "SWC", "81.8"})
+        EXPECT_NE(table.out.find(part), std::string::npos) << part << " in:\n" << table.out;
+    EXPECT_EQ(everything(), (std::set<std::string>{"judged", "judged/groupings.txt"}));
+    EXPECT_EQ(table.out, bytes_of_file(in("judged/groupings.txt")));
+    const Finished weights = run({"evaluate", "--fit-joints", "--seeds", "1", "--first", "4",
+                                  "--frames", "6", "--voxel", "0.04", "--backend", "native"});
+    ASSERT_EQ(weights.code, 0) << weights.err;
+    EXPECT_EQ(std::count(weights.out.begin(), weights.out.end(), ','), 9) << weights.out;
+    EXPECT_NE(weights.out.find(" joints of 1 room"), std::string::npos) << weights.out;
 }
 
 TEST_F(Evaluate, leaves_nothing_when_interrupted) {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "evaluation/tables.h"
 
-#include <cmath>
-#include <cstdarg>
-#include <cstdio>
+#include "evaluation/text.h"
 
 namespace topple::evaluation {
 namespace {
@@ -11,23 +9,6 @@ namespace {
 using scenes::SegmentationScore;
 using scenes::Share;
 using scenes::VolumeScore;
-
-[[gnu::format(printf, 2, 3)]] void append(std::string& text, const char* format, ...) {
-    char line[256];
-    std::va_list arguments;
-    va_start(arguments, format);
-    std::vsnprintf(line, sizeof(line), format, arguments);
-    va_end(arguments);
-    text.append(line);
-}
-
-// A share in percent, or a dash for none.
-std::string percent(double share) {
-    if (std::isnan(share)) return "-";
-    char digits[32];
-    std::snprintf(digits, sizeof(digits), "%.1f", 100 * share);
-    return digits;
-}
 
 void add_segmentation(const std::vector<RoomScore>& rooms, const char* name,
                       SegmentationScore RoomScore::*which, std::string& text) {

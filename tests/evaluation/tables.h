@@ -26,6 +26,7 @@ struct PaperFigures {
     static constexpr Volume surface{0.985, 0.078}, invisible{0.477, 0.951}, completed{0.941, 0.874};
     static constexpr double fixed_joints = 0.818, support = 0.781;
     static constexpr double greedy_fixed_joints = 0.66, greedy_support = 0.603;
+    static constexpr double discriminative_fixed_joints = 0.205, discriminative_support = 0.422;
 };
 
 // Segmentation (Fig. 14), volume (Table 2) and relations (Table 3) with median and worst, beside

@@ -43,8 +43,8 @@ PartView view_parts(std::size_t parts, std::span<const std::int32_t> label,
     return view;
 }
 
-// True objects after joining those that are fixed to one another: what hangs on a wall is the
-// room's.
+}  // namespace
+
 std::vector<std::int32_t> true_bodies(const World& truth) {
     std::vector<std::int32_t> body;
     for (const Part& part : truth.parts) body.push_back(part.object);
@@ -55,8 +55,6 @@ std::vector<std::int32_t> true_bodies(const World& truth) {
     }
     return body;
 }
-
-}  // namespace
 
 RelationScore relation_score(const World& truth, const Scene& parse,
                              std::span<const std::int32_t> label) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "scenes/scene.h"
 #include "scenes/share.h"
@@ -19,6 +20,10 @@ struct RelationScore {
     // objects of which one truly carries the other.
     Share support_recall, support_precision;
 };
+
+// The body of each part: its object, where objects that are fixed to one another are one. What
+// hangs on a wall is the room's.
+std::vector<std::int32_t> true_bodies(const World& truth);
 
 // part: the true part of each of the parse's points, -1 for none.
 RelationScore relation_score(const World& truth, const Scene& parse,
