@@ -10,7 +10,7 @@
 namespace topple::cli {
 namespace {
 
-constexpr std::size_t rows_shown = 12;
+constexpr std::size_t rows_shown = 12, sentences_shown = 3;
 
 double risk_of(const Object& o, const std::string& disturbance) {
     const auto at = o.risk_J.find(disturbance);
@@ -42,6 +42,9 @@ void print_objects(const Scene& scene) {
     }
     if (movable.size() > rows_shown)
         std::printf("   ... and %zu more in scene.json\n", movable.size() - rows_shown);
+    if (!movable.empty()) std::printf("\n");
+    for (std::size_t i = 0; i < std::min(sentences_shown, movable.size()); ++i)
+        std::printf("Object %d: %s\n", movable[i]->id, movable[i]->why.sentence.c_str());
 }
 
 }  // namespace

@@ -171,7 +171,8 @@ function showOverview(panel, scene, choose) {
     }});
     list.append(element('button', {type: 'button', text: 'object ' + object.id, onclick: () => choose(object.id)}),
       element('div', {className: 'track'}, [fill]),
-      element('span', {className: 'value', text: object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)}));
+      element('span', {className: 'value', text: object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)}),
+      element('p', {className: 'hint', text: object.why.sentence}));
   }
   panel.append(list);
 }
