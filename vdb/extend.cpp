@@ -46,7 +46,8 @@ std::uint64_t VoxelScene::extend(const std::vector<bool>& hollow) {
         own.back().top = cells.k[n];
     }
     const double h = g.frame.voxel_m;
-    const double most_columns = std::pow(std::max(widest_m / h, 2.0), 2);
+    // A side covers a voxel more where it does not begin with one.
+    const double most_columns = std::pow(widest_m / h + 1, 2);
     const auto longest = static_cast<std::int32_t>(longest_m / h);
     std::uint64_t completed = 0;
     for (auto& [leg, own] : columns) {

@@ -59,8 +59,10 @@ std::optional<physics::Candidate> GroupEnergy::unstable_body(const GroupQuery& q
 }
 
 double GroupEnergy::fall_m(const physics::Candidate& body) const {
-    return body.support_polygon.empty() ? free_fall_m(graph_, body.primitives)
-                                        : physics::drop_when_tipped_m(cells_, columns_, body);
+    // What hangs in the air at rest is held by something, however short its fall would be.
+    return body.support_polygon.empty()
+               ? std::max(free_fall_m(graph_, body.primitives), options_.scale_m)
+               : physics::drop_when_tipped_m(cells_, columns_, body);
 }
 
 double GroupEnergy::instability(double released_m) const {
@@ -73,10 +75,14 @@ void GroupEnergy::operator()(std::span<const GroupQuery> queries,
     std::vector<std::size_t> query;  // of each candidate
     for (std::size_t i = 0; i < queries.size(); ++i) {
         energies[i] = prior_(queries[i].nodes);
-        if (std::optional<physics::Candidate> c = unstable_body(queries[i])) {
-            unstable.push_back(*std::move(c));
-            query.push_back(i);
+        std::optional<physics::Candidate> c = unstable_body(queries[i]);
+        if (!c) continue;
+        if (c->support_polygon.empty()) {  // it falls as it is
+            energies[i] += instability(fall_m(*c));
+            continue;
         }
+        unstable.push_back(*std::move(c));
+        query.push_back(i);
     }
     const std::vector<physics::Stability> stability = physics::evaluate(device_, table_, unstable);
     for (std::size_t n = 0; n < unstable.size(); ++n) {
