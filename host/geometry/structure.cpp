@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <utility>
 
 namespace topple::geometry {
@@ -66,6 +68,72 @@ double share_behind(const Surfels& s, const Face& f) {
     return s.size() ? static_cast<double>(behind) / static_cast<double>(s.size()) : 0;
 }
 
+// How far a level primitive lies above others around its footprint, or nothing where they are
+// hardly to be seen.
+std::optional<double> step_m(const Surfels& s, const PrimitiveSet& primitives, const Vec3& up,
+                             std::size_t piece, const std::vector<bool>& others) {
+    constexpr double around_m = 0.3;
+    constexpr double least_area_m2 = 0.02;
+    // Two axes of the level plane.
+    const Vec3 side = std::abs(up[0]) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 u{side[1] * up[2] - side[2] * up[1], side[2] * up[0] - side[0] * up[2],
+                 side[0] * up[1] - side[1] * up[0]};
+    const Vec3 v{u[1] * up[2] - u[2] * up[1], u[2] * up[0] - u[0] * up[2],
+                 u[0] * up[1] - u[1] * up[0]};
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, own = 0;
+    std::uint64_t count = 0;
+    const auto place = [&](std::size_t n, std::size_t axis) {
+        return dot(axis == 0 ? u : v, s.x[n], s.y[n], s.z[n]);
+    };
+    for (std::size_t n = 0; n < s.size(); ++n) {
+        if (primitives.label[n] != static_cast<std::int32_t>(piece)) continue;
+        for (std::size_t a = 0; a < 2; ++a) {
+            low[a] = std::min(low[a], place(n, a) - around_m);
+            high[a] = std::max(high[a], place(n, a) + around_m);
+        }
+        own += dot(up, s.x[n], s.y[n], s.z[n]);
+        ++count;
+    }
+    double theirs = 0;
+    std::uint64_t near = 0;
+    for (std::size_t n = 0; n < s.size(); ++n) {
+        const std::int32_t l = primitives.label[n];
+        if (l < 0 || !others[static_cast<std::size_t>(l)]) continue;
+        const double x = place(n, 0), y = place(n, 1);
+        if (x < low[0] || x > high[0] || y < low[1] || y > high[1]) continue;
+        theirs += dot(up, s.x[n], s.y[n], s.z[n]);
+        ++near;
+    }
+    if (count == 0 || static_cast<double>(near) * s.cell_m * s.cell_m < least_area_m2)
+        return std::nullopt;
+    return own / static_cast<double>(count) - theirs / static_cast<double>(near);
+}
+
+// Of level pieces at about the floor's height those that are floor: the largest, and what continues
+// one of them. A scan's floor is uneven by its drift, but has no step: a rug, a plinth and the
+// lowest board of a shelf do.
+std::vector<bool> continued_floor(const Surfels& s, const PrimitiveSet& primitives, const Vec3& up,
+                                  const std::vector<Face>& face,
+                                  std::vector<std::size_t> candidates, double noise_m) {
+    std::vector<bool> floor(face.size());
+    std::ranges::stable_sort(candidates, std::greater(),
+                             [&](std::size_t p) { return face[p].area_m2; });
+    if (!candidates.empty()) floor[candidates.front()] = true;
+    std::vector<std::size_t> apart;
+    for (bool more = true; more;) {
+        more = false;
+        apart.clear();
+        for (const std::size_t p : candidates) {
+            if (floor[p]) continue;
+            const std::optional<double> step = step_m(s, primitives, up, p, floor);
+            if (!step) apart.push_back(p);
+            if (step && *step <= noise_m) floor[p] = more = true;
+        }
+    }
+    for (const std::size_t p : apart) floor[p] = true;
+    return floor;
+}
+
 }  // namespace
 
 std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet& primitives,
@@ -91,12 +159,20 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
         if (may_be_floor(f)) floor_height = std::min(floor_height, dot(up, f.px, f.py, f.pz));
     }
     const double noise = noise_cells * surfels.cell_m, uneven = std::max(0.03, 2 * surfels.cell_m);
+    std::vector<std::size_t> large;
+    std::vector<bool> small(face.size());
     for (std::size_t p = 0; p < face.size(); ++p) {
         const Face& f = face[p];
-        const double height = dot(up, f.px, f.py, f.pz);
-        if (f.flatness > flat && level(f) > horizontal_cos && f.area_m2 >= floor_area_m2 &&
-            height - floor_height > -uneven &&
-            height - floor_height < (f.area_m2 < floor_piece_m2 ? noise : uneven)) {
+        const double above = dot(up, f.px, f.py, f.pz) - floor_height;
+        if (f.flatness < flat || level(f) < horizontal_cos || above < -uneven) continue;
+        if (f.area_m2 >= floor_piece_m2 && above < uneven) large.push_back(p);
+        small[p] = f.area_m2 >= floor_area_m2 && f.area_m2 < floor_piece_m2 && above < noise;
+    }
+    const std::vector<bool> continued =
+        continued_floor(surfels, primitives, up, face, large, noise);
+    for (std::size_t p = 0; p < face.size(); ++p) {
+        const Face& f = face[p];
+        if (small[p] || continued[p]) {
             out[p] = Structure::floor;
         } else if (f.flatness > flat && f.area_m2 >= wall_area_m2 &&
                    f.area_m2 >= wall_share * largest_upright &&
