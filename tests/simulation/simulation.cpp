@@ -7,6 +7,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <set>
 
 namespace topple::simulation {
 namespace {
@@ -65,6 +67,24 @@ std::vector<btVector3> corners(const std::vector<Cell>& part, double voxel,
     return all;
 }
 
+// The level on which most of the columns of a part rest, if any do: the height of what is fixed
+// right below them, in cells. Of equals the highest.
+std::optional<std::int32_t> level_under(const std::vector<Cell>& part,
+                                        const std::set<Cell>& fixed) {
+    std::map<std::array<std::int32_t, 2>, std::int32_t> lowest;
+    for (const Cell& c : part) {
+        const auto [at, fresh] = lowest.try_emplace({c[0], c[1]}, c[2]);
+        at->second = std::min(at->second, c[2]);
+    }
+    std::map<std::int32_t, int> votes;
+    for (const auto& [column, k] : lowest)
+        if (fixed.contains({column[0], column[1], k - 1})) ++votes[k];
+    std::optional<std::int32_t> level;
+    for (const auto& [k, count] : votes)
+        if (!level || count >= votes[*level]) level = k;
+    return level;
+}
+
 // Whether a cell is in part on the inner side of all planes, by more than contact.
 bool cuts(const std::vector<btVector3>& planes, const btVector3& center, double voxel) {
     return std::all_of(planes.begin(), planes.end(), [&](const btVector3& n) {
@@ -113,6 +133,18 @@ Inertia inertia_of(const LooseBody& body) {
 }
 
 }  // namespace
+
+LooseBody without_rough_underside(LooseBody body, std::span<const Cell> fixed) {
+    const std::set<Cell> all_fixed(fixed.begin(), fixed.end());
+    for (auto& part : body.parts) {
+        const std::optional<std::int32_t> level = level_under(part, all_fixed);
+        if (!level) continue;
+        std::vector<Cell> above = part;
+        std::erase_if(above, [&](const Cell& c) { return c[2] < *level; });
+        if (2 * above.size() >= part.size()) part = std::move(above);
+    }
+    return body;
+}
 
 struct Simulation::World {
     btDefaultCollisionConfiguration configuration;

@@ -21,6 +21,10 @@ struct LooseBody {
     std::vector<std::vector<Cell>> parts;
 };
 
+// The body without what of each part reaches below the level on which most of it rests, where that
+// is less than half of it: a rough underside interlocks with its support, which would be left out.
+LooseBody without_rough_underside(LooseBody body, std::span<const Cell> fixed);
+
 // One body among fixed cells, all in contact as solids. Fixed cells that a part's hull cuts are
 // left out: a hull covers the hollows of its part with what stands in them, and evens out a rough
 // side, so that it would begin deep in its surroundings and be thrown out of them.

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "host/io/files.h"
 #include "scenes/depth_camera.h"
@@ -82,12 +83,15 @@ simulation::Simulation let_go(const Scene& scene, const Solids& solids, const Ob
             scene.primitives[static_cast<std::size_t>(primitive)].object == object.id)
             continue;
         for (const simulation::Cell& c : cells) {
-            bool near = supported || 2 * c[2] >= low[2] + high[2];
+            bool near = true;
             for (std::size_t a = 0; a < 3; ++a)
                 near = near && c[a] >= low[a] - reach && c[a] <= high[a] + reach;
             if (near) fixed.push_back(c);
         }
     }
+    body = simulation::without_rough_underside(std::move(body), fixed);
+    if (!supported)
+        std::erase_if(fixed, [&](const auto& c) { return 2 * c[2] < low[2] + high[2]; });
     return {body, fixed, scene.friction};
 }
 
