@@ -16,7 +16,8 @@ namespace {
 
 using physics::SolidCells;
 
-// Areas seen along one axis: each line of cells along it counts once for every primitive on it.
+// Areas seen along one axis: each line of cells along it counts once for every primitive on it, for
+// the bulk if it holds enough of its cells.
 void add_silhouettes(const SolidCells& cells, std::span<const std::int32_t> u,
                      std::span<const std::int32_t> v, std::size_t axis, ContactGraph& graph) {
     std::vector<std::size_t> order(cells.size());
@@ -25,12 +26,27 @@ void add_silhouettes(const SolidCells& cells, std::span<const std::int32_t> u,
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
     const double face = cells.voxel_m * cells.voxel_m;
+    constexpr double least_thick = 0.15;  // of the thickest
+    std::vector<double> thick;            // cells of each line of one primitive
+    const auto finish = [&](std::int32_t p) {
+        if (p < 0) return;
+        const double most = std::ranges::max(thick);
+        const auto bulk = std::ranges::count_if(
+            thick, [&](double cells_in_line) { return cells_in_line >= least_thick * most; });
+        graph.silhouette_m2[static_cast<std::size_t>(p)][axis] =
+            static_cast<double>(thick.size()) * face;
+        graph.bulk_m2[static_cast<std::size_t>(p)][axis] = static_cast<double>(bulk) * face;
+    };
     for (std::size_t n = 0; n < order.size(); ++n) {
-        const std::int32_t p = cells.primitive[order[n]];
-        if (p >= 0 && (n == 0 || key(order[n]) != key(order[n - 1]))) {
-            graph.silhouette_m2[static_cast<std::size_t>(p)][axis] += face;
+        const bool same_line = n > 0 && key(order[n]) == key(order[n - 1]);
+        if (n > 0 && cells.primitive[order[n]] != cells.primitive[order[n - 1]]) {
+            finish(cells.primitive[order[n - 1]]);
+            thick.clear();
         }
+        if (!same_line) thick.push_back(0);
+        ++thick.back();
     }
+    if (!order.empty()) finish(cells.primitive[order.back()]);
 }
 
 struct Columns {
@@ -224,6 +240,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     graph.voxel_m = cells.voxel_m;
     const auto count = static_cast<std::size_t>(primitives);
     graph.silhouette_m2.assign(count, {0, 0, 0});
+    graph.bulk_m2.assign(count, {0, 0, 0});
     graph.clearances.resize(count);
     graph.lowest_m.assign(count, std::numeric_limits<double>::infinity());
     graph.highest_m.assign(count, -std::numeric_limits<double>::infinity());

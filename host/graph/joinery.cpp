@@ -28,8 +28,8 @@ double mated(const ContactGraph& graph, const physics::TouchingPair& pair, const
     for (std::size_t axis = 0; axis < 2; ++axis) {
         if (std::max(pair.faces[2 * axis], pair.faces[2 * axis + 1]) < least_sideways * level)
             continue;
-        const double face = std::min(graph.silhouette_m2[static_cast<std::size_t>(pair.a)][axis],
-                                     graph.silhouette_m2[static_cast<std::size_t>(pair.b)][axis]);
+        const double face = std::min(graph.bulk_m2[static_cast<std::size_t>(pair.a)][axis],
+                                     graph.bulk_m2[static_cast<std::size_t>(pair.b)][axis]);
         const double contact = graph.voxel_m * graph.voxel_m *
                                std::max(pair.faces[2 * axis], pair.faces[2 * axis + 1]);
         if (face > 0) covered = std::max(covered, contact / face);

@@ -9,7 +9,7 @@
 namespace topple::simulation {
 namespace {
 
-constexpr double voxel = 0.02;
+constexpr double side_m = 0.02;
 
 std::vector<Cell> box(const Cell& low, const Cell& high) {
     std::vector<Cell> cells;
@@ -33,7 +33,7 @@ double moved(const LooseBody& body, const std::vector<Cell>& fixed, const Vec3& 
 TEST(Simulation, ABoxStandsAsLongAsItsCentreIsOverTheTable) {
     // 10 voxels deep, 2 voxels more or less of it over the edge.
     for (const std::int32_t out : {3, 4, 6, 7}) {
-        const LooseBody body{voxel, 700, {box({10 + out, 0, 0}, {20 + out, 5, 8})}};
+        const LooseBody body{side_m, 700, {box({10 + out, 0, 0}, {20 + out, 5, 8})}};
         const double by = moved(body, table);
         if (out < 5)
             EXPECT_LT(by, 0.003) << out;
@@ -43,15 +43,15 @@ TEST(Simulation, ABoxStandsAsLongAsItsCentreIsOverTheTable) {
 }
 
 TEST(Simulation, APushedBoxSlidesAsFarAsItsFrictionLetsIt) {
-    const LooseBody body{voxel, 700, {box({-15, 0, 0}, {-5, 10, 4})}};
+    const LooseBody body{side_m, 700, {box({-15, 0, 0}, {-5, 10, 4})}};
     const double mass = Simulation(body, table, 0.3).mass_kg();
-    EXPECT_NEAR(mass, 700 * 400 * voxel * voxel * voxel, 1e-9);
+    EXPECT_NEAR(mass, 700 * 400 * side_m * side_m * side_m, 1e-9);
     const double speed = 0.7, distance = speed * speed / (2 * 0.3 * 9.80665);
     EXPECT_NEAR(moved(body, table, {speed * mass, 0, 0}), distance, 0.05 * distance);
 }
 
 TEST(Simulation, RoughSidesThatInterlockDoNotThrowItOut) {
-    // A box whose underside reaches into the table by every other voxel.
+    // A box whose underside reaches into the table by every other side_m.
     std::vector<Cell> part = box({0, 0, 0}, {10, 10, 10}), fixed = table;
     for (std::int32_t i = 0; i < 10; ++i) {
         for (std::int32_t j = (i + 1) % 2; j < 10; j += 2) {
@@ -59,10 +59,10 @@ TEST(Simulation, RoughSidesThatInterlockDoNotThrowItOut) {
             std::erase(fixed, Cell{i, j, -1});
         }
     }
-    EXPECT_LT(moved({voxel, 700, {part}}, fixed), 0.003);
+    EXPECT_LT(moved({side_m, 700, {part}}, fixed), 0.003);
     // It falls through a gap.
     std::erase_if(fixed, [](const Cell& c) { return c[0] >= -1 && c[0] <= 10; });
-    EXPECT_GT(moved({voxel, 700, {part}}, fixed), 0.3);
+    EXPECT_GT(moved({side_m, 700, {part}}, fixed), 0.3);
 }
 
 }  // namespace

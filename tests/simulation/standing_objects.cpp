@@ -15,7 +15,7 @@ namespace {
 
 using Part = std::vector<Cell>;
 
-constexpr double voxel = 0.02;
+constexpr double cell_m = 0.02;
 // Of a table, half a side and the level of its top; half a side of the floor around and under it,
 // and of one on which nothing comes to an end.
 constexpr std::int32_t half_table = 22, table_top = 25, half_floor = 40, half_wide_floor = 120;
@@ -154,7 +154,7 @@ std::vector<StandingObject> standing_objects(std::uint64_t seed, std::size_t cou
         move(shape.parts, [&](const Cell& c) {
             return Cell{c[0] + to[0], c[1] + to[1], c[2] + to[2]};
         });
-        StandingObject object{shape.name, {voxel, 700, std::move(shape.parts)}, {}};
+        StandingObject object{shape.name, {cell_m, 700, std::move(shape.parts)}, {}};
         object.fixed = block({origin[0] - floor, origin[1] - floor, -1}, {2 * floor, 2 * floor, 1});
         if (!shape.on_floor) {
             const Part top = block({origin[0] - half_table, origin[1] - half_table, table_top - 2},
@@ -183,7 +183,7 @@ StandingScene::StandingScene(device::Device& device, const std::vector<StandingO
         }
     }
     std::sort(all.begin(), all.end());
-    cells_.voxel_m = voxel;
+    cells_.voxel_m = cell_m;
     for (const auto& [c, primitive] : all) {
         cells_.i.push_back(c[0]);
         cells_.j.push_back(c[1]);

@@ -243,6 +243,25 @@ TEST_P(Objects, SidesMateWhereOneCoversTheOther) {
     EXPECT_EQ(Joinery(graph, bodies, scene.seams, shell).made_as_one(seat, arm), 0);
 }
 
+// The front of a shelf's side is flush with that of its board: some of its cells may be the
+// board's, a ragged column down from it.
+TEST_P(Objects, RaggedCellsAtAnEdgeHideNoMate) {
+    Scene scene;
+    const auto side = scene.add(box({-0.44, -0.2, 0}, {-0.4, 0.2, 0.6}));
+    const auto board = scene.add([](double x, double y, double z) {
+        const bool flat = std::abs(x) < 0.4 && std::abs(y) < 0.2 && z > 0.3 && z < 0.34;
+        const bool ragged = x > -0.3 && x < -0.26 && y < -0.16 && y > -0.2 && z > 0.02 && z < 0.3;
+        return flat || ragged || (x > 0.3 && x < 0.34 && y > 0 && y < 0.2 && z > 0 && z < 0.3);
+    });
+    const ContactGraph graph = contacts(scene);
+    const std::vector<double> density(static_cast<std::size_t>(scene.count), 700);
+    const auto bodies = physics::mass_properties(*device, scene.cells, scene.count, density);
+    const Joinery joinery(graph, bodies, scene.seams, {true, false, false});
+    const double end_m2 = graph.bulk_m2[static_cast<std::size_t>(board)][0];
+    EXPECT_LT(end_m2, 0.75 * graph.silhouette_m2[static_cast<std::size_t>(board)][0]);
+    EXPECT_EQ(joinery.made_as_one(side, board), 1);
+}
+
 // A screen above its table is not fixed to it through air that was seen.
 TEST_P(Objects, AirThatWasSeenIsNoHiddenJoint) {
     Scene scene;
