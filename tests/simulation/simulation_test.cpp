@@ -51,7 +51,7 @@ TEST(Simulation, APushedBoxSlidesAsFarAsItsFrictionLetsIt) {
 }
 
 TEST(Simulation, RoughSidesThatInterlockDoNotThrowItOut) {
-    // A box whose underside reaches into the table by every other side_m.
+    // A box whose underside reaches into the table by every other voxel.
     std::vector<Cell> part = box({0, 0, 0}, {10, 10, 10}), fixed = table;
     for (std::int32_t i = 0; i < 10; ++i) {
         for (std::int32_t j = (i + 1) % 2; j < 10; j += 2) {
