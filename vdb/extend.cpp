@@ -14,9 +14,9 @@ namespace {
 
 constexpr double widest_m = 0.1;   // a leg's side
 constexpr double longest_m = 0.6;  // of the part that nobody saw
-// Share of a leg's columns that must end hidden, below one and the same thing.
-constexpr double least_hidden = 0.6;
-// That thing is at least this many times as wide, by columns.
+// Share of a leg's columns that must end hidden, below things that are at least so many times as
+// wide, by columns: the leg at a chair's rear ends below the seat and below the back.
+constexpr double least_hidden = 0.5;
 constexpr std::uint64_t least_wider = 4;
 
 // A column of one primitive, and what is above it through voxels that nobody saw.
@@ -52,7 +52,7 @@ std::uint64_t VoxelScene::extend(const std::vector<bool>& hollow) {
     std::uint64_t completed = 0;
     for (auto& [leg, own] : columns) {
         if (static_cast<double>(own.size()) > most_columns) continue;
-        std::map<std::int32_t, std::size_t> votes;
+        std::size_t ending = 0;
         for (Column& c : own) {
             openvdb::Coord voxel(c.i, c.j, c.top + 1);
             while (c.hidden <= longest && !state.isValueOn(voxel) &&
@@ -61,17 +61,15 @@ std::uint64_t VoxelScene::extend(const std::vector<bool>& hollow) {
                 ++voxel.z();
             }
             if (c.hidden > longest || !state.isValueOn(voxel)) continue;
-            c.above = primitive.getValue(voxel);
-            if (plain(c.above) && c.above != leg) ++votes[c.above];
+            const std::int32_t above = primitive.getValue(voxel);
+            if (!plain(above) || above == leg) continue;
+            if (columns.at(above).size() < least_wider * own.size()) continue;
+            c.above = above;
+            ++ending;
         }
-        const auto most =
-            std::ranges::max_element(votes, {}, [](const auto& vote) { return vote.second; });
-        if (most == votes.end() ||
-            static_cast<double>(most->second) < least_hidden * static_cast<double>(own.size()) ||
-            columns.at(most->first).size() < least_wider * own.size())
-            continue;
+        if (static_cast<double>(ending) < least_hidden * static_cast<double>(own.size())) continue;
         for (const Column& c : own) {
-            if (c.above != most->first) continue;
+            if (c.above < 0) continue;
             for (std::int32_t k = 1; k <= c.hidden; ++k) {
                 const openvdb::Coord voxel(c.i, c.j, c.top + k);
                 state.setValueOn(voxel, static_cast<std::int32_t>(State::completed));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -103,6 +104,24 @@ TEST(Completion, ALegGoesOnToTheSeatAndAPostWhoseTopWasSeenDoesNot) {
     EXPECT_GT(scene.extend({true}), 0u);
     EXPECT_EQ(highest(2), 19) << "one below the seat";
     EXPECT_EQ(highest(3), post);
+}
+
+// As the rear leg of a chair does, below its seat and its back.
+TEST(Completion, ALegGoesOnToAllThatItEndsBelow) {
+    const Boxes boxes = seen_from_around({{{-2, -2, -0.2}, {2, 2, 0}},
+                                          {{-0.25, -0.25, 0.4}, {-0.09, 0.25, 0.46}},
+                                          {{-0.12, -0.03, 0}, {-0.06, 0.03, 0.4}},
+                                          {{-0.09, -0.25, 0.4}, {0.25, 0.25, 0.46}}});
+    const auto device = device::open_native();
+    VoxelScene scene({.voxel_m = h}, boxes.cloud, boxes.label);
+    scene.carve(*device, boxes.intrinsics, boxes.frames);
+    scene.fill(*device, {.columns = true, .lowest = 0, .hollow = {true}});
+    ASSERT_GT(scene.extend({true}), 0u);
+    const SolidCellArrays cells = scene.solid_cells();
+    std::set<std::int32_t> columns;
+    for (std::size_t n = 0; n < cells.size(); ++n)
+        if (cells.primitive[n] == 2 && cells.k[n] == 19) columns.insert(cells.i[n]);
+    EXPECT_EQ(columns.size(), 3u) << "all of them, below either";
 }
 
 }  // namespace
