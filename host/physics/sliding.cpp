@@ -84,25 +84,11 @@ class Search {
     // The cost of every place that can be reached within `reach` columns of the start, those that
     // fall included, without going on from these.
     void explore(std::int32_t reach) {
-        std::priority_queue<Node, std::vector<Node>, std::greater<>> open;
-        const std::int32_t si = map_.start_i(), sj = map_.start_j();
-        state(si, sj) = {0, si, sj, false, true};
-        open.push({0, si, sj});
-        while (!open.empty()) {
-            const Node node = open.top();
-            open.pop();
-            State& s = state(node.i, node.j);
-            if (s.closed || node.cost != s.cost) continue;
-            if (!settle(node, s)) {
-                if (std::isfinite(s.cost)) open.push({s.cost, node.i, node.j});
-                continue;
-            }
-            s.closed = true;
-            if (map_.falls(node.i, node.j) ||
-                std::max(std::abs(node.i - si), std::abs(node.j - sj)) >= reach)
-                continue;
-            expand(node, s, open);
-        }
+        search([&](const Node& node) {
+            const bool far = std::max(std::abs(node.i - map_.start_i()),
+                                      std::abs(node.j - map_.start_j())) >= reach;
+            return map_.falls(node.i, node.j) || far ? Next::leave : Next::expand;
+        });
     }
     // What explore() found; infinity where it did not get.
     double cost(std::int32_t i, std::int32_t j) {
@@ -111,28 +97,18 @@ class Search {
     }
 
     Way run() {
-        std::priority_queue<Node, std::vector<Node>, std::greater<>> open;
-        const std::int32_t si = map_.start_i(), sj = map_.start_j();
-        if (map_.falls(si, sj)) return exit_at(si, sj);
-        state(si, sj) = {0, si, sj, false, true};
-        open.push({0, si, sj});
+        if (map_.falls(map_.start_i(), map_.start_j()))
+            return exit_at(map_.start_i(), map_.start_j());
+        Way way;
         std::size_t settled = 0;
-        while (!open.empty()) {
-            const Node node = open.top();
-            open.pop();
-            State& s = state(node.i, node.j);
-            if (s.closed || node.cost != s.cost) continue;
-            if (!settle(node, s)) {
-                if (std::isfinite(s.cost)) open.push({s.cost, node.i, node.j});
-                continue;
-            }
-            s.closed = true;
+        search([&](const Node& node) {
             // A floor has no edge: worth asking once the search has grown.
-            if (++settled == 4000 && !map_.any_edge()) return {};
-            if (map_.falls(node.i, node.j)) return exit_at(node.i, node.j);
-            expand(node, s, open);
-        }
-        return {};
+            if (++settled == 4000 && !map_.any_edge()) return Next::stop;
+            if (!map_.falls(node.i, node.j)) return Next::expand;
+            way = exit_at(node.i, node.j);
+            return Next::stop;
+        });
+        return way;
     }
 
   private:
@@ -146,6 +122,29 @@ class Search {
         return nodes_[static_cast<std::size_t>(i - map_.start_i() + map_.radius()) *
                           static_cast<std::size_t>(side_) +
                       static_cast<std::size_t>(j - map_.start_j() + map_.radius())];
+    }
+    // Settles places by rising cost; what `settled` says of each is done next.
+    enum class Next { expand, leave, stop };
+    template <class Settled>
+    void search(const Settled& settled) {
+        std::priority_queue<Node, std::vector<Node>, std::greater<>> open;
+        const std::int32_t si = map_.start_i(), sj = map_.start_j();
+        state(si, sj) = {0, si, sj, false, true};
+        open.push({0, si, sj});
+        while (!open.empty()) {
+            const Node node = open.top();
+            open.pop();
+            State& s = state(node.i, node.j);
+            if (s.closed || node.cost != s.cost) continue;
+            if (!settle(node, s)) {
+                if (std::isfinite(s.cost)) open.push({s.cost, node.i, node.j});
+                continue;
+            }
+            s.closed = true;
+            const Next next = settled(node);
+            if (next == Next::stop) return;
+            if (next == Next::expand) expand(node, s, open);
+        }
     }
     bool inside(std::int32_t i, std::int32_t j) const {
         return std::abs(i - map_.start_i()) <= map_.radius() &&
