@@ -70,9 +70,30 @@ Json to_json(const Why& w) {
             {"sentence", w.sentence}};
 }
 
+Json to_json(const Fall& f) {
+    return {{"falls", f.falls},
+            {"lands_m", vector(f.lands_m)},
+            {"drop_m", number(f.drop_m)},
+            {"lands_on", f.lands_on},
+            {"takes_along", f.takes_along}};
+}
+
+Json to_json(const Advice& a) {
+    return {{"kind", a.kind},
+            {"move_m", vector(a.move_m)},
+            {"risk_J", number(a.risk_J)},
+            {"hold_N", number(a.hold_N)},
+            {"hold_height_m", number(a.hold_height_m)},
+            {"sentence", a.sentence}};
+}
+
+Json by_disturbance(const std::map<std::string, double>& values) {
+    auto json = Json::object();
+    for (const auto& [disturbance, value] : values) json[disturbance] = number(value);
+    return json;
+}
+
 Json to_json(const Object& o) {
-    auto risk = Json::object();
-    for (const auto& [disturbance, value] : o.risk_J) risk[disturbance] = number(value);
     return {
         {"id", o.id},
         {"primitives", o.primitives},
@@ -89,8 +110,12 @@ Json to_json(const Object& o) {
                                  return Json{{"W_J", number(step.W_J)}, {"S_J", number(step.S_J)}};
                              })},
         {"why", to_json(o.why)},
-        {"risk_J", std::move(risk)},
-        {"unsafety", number(o.unsafety)}};
+        {"risk_J", by_disturbance(o.risk_J)},
+        {"risk_spread_J", by_disturbance(o.risk_spread_J)},
+        {"fall_chance", by_disturbance(o.fall_chance)},
+        {"unsafety", number(o.unsafety)},
+        {"fall", to_json(o.fall)},
+        {"advice", to_json(o.advice)}};
 }
 
 Json to_json(const Contact& c) {
@@ -148,6 +173,33 @@ Why why_of(const Json& json) {
     return w;
 }
 
+Fall fall_of(const Json& json) {
+    Fall f;
+    f.falls = json.at("falls").get<bool>();
+    f.lands_m = vector_at(json, "lands_m");
+    f.drop_m = number_at(json, "drop_m");
+    f.lands_on = json.at("lands_on").get<std::int32_t>();
+    f.takes_along = json.at("takes_along").get<std::vector<std::int32_t>>();
+    return f;
+}
+
+Advice advice_of(const Json& json) {
+    Advice a;
+    a.kind = json.at("kind").get<std::string>();
+    a.move_m = vector_at(json, "move_m");
+    a.risk_J = number_at(json, "risk_J");
+    a.hold_N = number_at(json, "hold_N");
+    a.hold_height_m = number_at(json, "hold_height_m");
+    a.sentence = json.at("sentence").get<std::string>();
+    return a;
+}
+
+std::map<std::string, double> by_disturbance(const Json& json) {
+    std::map<std::string, double> values;
+    for (const auto& [disturbance, value] : json.items()) values[disturbance] = number_of(value);
+    return values;
+}
+
 Object object_of(const Json& json) {
     Object o;
     o.id = json.at("id").get<std::int32_t>();
@@ -165,8 +217,12 @@ Object object_of(const Json& json) {
         o.instability.push_back({number_at(step, "W_J"), number_at(step, "S_J")});
     }
     if (json.contains("why")) o.why = why_of(json.at("why"));  // nor this
-    for (const auto& [disturbance, value] : json.at("risk_J").items()) {
-        o.risk_J[disturbance] = number_of(value);
+    o.risk_J = by_disturbance(json.at("risk_J"));
+    if (json.contains("fall")) {  // nor these
+        o.risk_spread_J = by_disturbance(json.at("risk_spread_J"));
+        o.fall_chance = by_disturbance(json.at("fall_chance"));
+        o.fall = fall_of(json.at("fall"));
+        o.advice = advice_of(json.at("advice"));
     }
     o.unsafety = number_at(json, "unsafety");
     return o;

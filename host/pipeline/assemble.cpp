@@ -65,7 +65,11 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
             to.landscape = turned(from, to_input);
         }
         for (std::size_t d = 0; d < safety.disturbances.size(); ++d) {
-            to.risk_J[safety.disturbances[d].name] = from.grounded ? 0 : safety.risk_J[d][o];
+            const std::string& name = safety.disturbances[d].name;
+            const safety::Risk& risk = safety.risk[d][o];
+            to.risk_J[name] = risk.mean_J;
+            to.risk_spread_J[name] = risk.spread_J;
+            to.fall_chance[name] = risk.chance;
         }
         to.unsafety = from.grounded ? 1 : safety.unsafety[o];
         scene.objects.push_back(std::move(to));
@@ -152,6 +156,19 @@ void add_fields(const SafetyStage& safety, const ToInput& to_input, Scene& scene
     }
 }
 
+void add_walks(const SafetyStage& safety, const ToInput& to_input, Scene& scene) {
+    for (const safety::Disturbance& d : safety.disturbances) {
+        if (d.walks.visits.empty()) continue;
+        scene.walks = d.walks;
+        scene.walks.corner_m = to_input(d.walks.corner_m);
+        scene.walks.along_x_m = to_input(d.walks.along_x_m);
+        scene.walks.along_y_m = to_input(d.walks.along_y_m);
+        for (auto& path : scene.walks.paths) {
+            for (Vec3& corner : path) corner = to_input(corner);
+        }
+    }
+}
+
 void note_uncertain_barriers(Scene& scene) {
     const auto uncertain =
         std::count_if(scene.objects.begin(), scene.objects.end(), barrier_within_error);
@@ -184,6 +201,7 @@ void assemble(const Ingested& input, const GeometryStage& geometry, VoxelStage& 
     scene.solid = voxels.scene->solid_voxels();
     add_exposures(safety, voxels);
     add_fields(safety, to_input, scene);
+    add_walks(safety, to_input, scene);
     note_uncertain_barriers(scene);
     scene.swc_energy = objects.grouping.energy_curve;
     explain(geometry, objects, to_input, scene);

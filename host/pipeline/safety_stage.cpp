@@ -92,8 +92,8 @@ SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
     }
     stage("risk", [&] {
         for (const safety::Disturbance& d : out.disturbances)
-            out.risk_J.push_back(safety::risk(d, at_risk));
-        out.unsafety = safety::unsafety(out.risk_J);
+            out.risk.push_back(safety::risk(d, at_risk));
+        out.unsafety = safety::unsafety(out.risk);
         out.unsafety.resize(at_risk.size(), 1.0);
     });
     return out;

@@ -13,8 +13,8 @@ namespace topple {
 
 struct SafetyStage {
     std::vector<safety::Disturbance> disturbances;
-    std::vector<std::vector<double>> risk_J;  // by disturbance, then by object
-    std::vector<double> unsafety;             // by object, 1 to 10
+    std::vector<std::vector<safety::Risk>> risk;  // by disturbance, then by object
+    std::vector<double> unsafety;                 // by object, 1 to 10
 };
 
 SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,

@@ -80,6 +80,7 @@ Disturbance earthquake_field(device::Device&, const Surroundings& surroundings,
     const auto cells = cells_of_objects(object_of_cell, objects.size());
     out.exposure.assign(object_of_cell.size(), 0.0f);
     const std::vector<Pulse> pulses = random_pulses(options);
+    out.draws = pulses.size();
     const physics::SolidCells& solid = *surroundings.cells;
 
     ArrowSample arrows;

@@ -75,13 +75,16 @@ struct Disturbance {
     std::string name;                           // "human" | "wind" | "earthquake"
     FieldSamples samples;                       // grid frame, at most max_samples
     std::vector<std::vector<WorkSample>> work;  // by object, as in `objects`; none if grounded
+    std::size_t draws = 1;                      // independent events that `work` was found from
     std::vector<float> exposure;                // of each solid cell: strikes per walk (human), or
                                                 // share of the directions it is open to (wind) or
                                                 // 1 (earthquake); 0 for grounded objects
+    Walks walks;                                // of the human field
     std::vector<std::string> notes;             // e.g. no walkable floor was found
 };
 
 inline constexpr std::size_t max_samples = 4000;     // arrows per field, for the report
+inline constexpr unsigned max_shown_paths = 100;     // walks whose way the report draws
 inline constexpr std::size_t max_work_samples = 64;  // per object and human field
 
 // People who walk between random places (5.1.2): 500 shortest paths give the primary motion, a
@@ -139,13 +142,19 @@ double earthquake_work(const RiskObject& object, double half_base_m, double heig
 // S(W): the last step of the curve whose W_J is at most W; 0 below the first.
 double instability(std::span<const InstabilityStep> curve, double W_J);
 
-// R = sum over p(W) S(W) (Eq. 7), joules per event, for each object.
-std::vector<double> risk(const Disturbance& disturbance, std::span<const RiskObject> objects);
+// What one disturbance means to one object.
+struct Risk {
+    double mean_J = 0;    // R = sum over p(W) S(W) (Eq. 7), joules per event
+    double spread_J = 0;  // its standard error: sqrt((sum p S^2 - R^2) / draws)
+    double chance = 0;    // per event, that it falls: sum of p over W >= barrier, where S(W) > 0
+};
+// For each object; all 0 for grounded ones.
+std::vector<Risk> risk(const Disturbance& disturbance, std::span<const RiskObject> objects);
 
 // 1 (safest) to 10 over the scene's objects, by their largest risk r over the disturbances (one
 // vector of risks per disturbance): 1 + 9 log(1 + 999 r / r_max) / log(1000). Risks spread over
 // decades: the logarithm keeps three of them apart. No risk is 1, the largest 10; a scene without
 // risk is all 1.
-std::vector<double> unsafety(std::span<const std::vector<double>> risks);
+std::vector<double> unsafety(std::span<const std::vector<Risk>> risks);
 
 }  // namespace topple::safety

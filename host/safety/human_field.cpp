@@ -149,7 +149,10 @@ Disturbance human_field(device::Device& device, const Surroundings& surroundings
     out.notes = map.notes;
     if (map.walkable.empty()) return out;
     const PrimaryMotion motion = primary_motion(map, options);
+    out.walks = drawn_walks(map, motion);
     if (motion.paths == 0) return out;
+
+    out.draws = motion.paths;
 
     std::vector<Strikes> strikes(objects.size(), Strikes{});
     ArrowSample arrows;

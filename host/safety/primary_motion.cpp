@@ -161,7 +161,7 @@ PrimaryMotion primary_motion(const WalkableMap& map, const HumanOptions& options
         const std::uint32_t start = map.walkable[random.below(map.walkable.size())];
         const auto& others = members[static_cast<std::size_t>(map.component[start])];
         const std::uint32_t goal = others[random.below(others.size())];
-        const auto corners = finder.straightened(finder.shortest(start, goal));
+        auto corners = finder.straightened(finder.shortest(start, goal));
         for (std::size_t leg = 1; leg < corners.size(); ++leg) {
             const Place a = place(map, corners[leg - 1]), b = place(map, corners[leg]);
             const unsigned heading =
@@ -176,8 +176,37 @@ PrimaryMotion primary_motion(const WalkableMap& map, const HumanOptions& options
                 return true;
             });
         }
+        if (motion.corners.size() < max_shown_paths) motion.corners.push_back(std::move(corners));
     }
     return motion;
+}
+
+Walks drawn_walks(const WalkableMap& map, const PrimaryMotion& motion) {
+    Walks out;
+    out.corner_m = {map.x0, map.y0, 0};
+    out.along_x_m = {map.cell_m, 0, 0};
+    out.along_y_m = {0, map.cell_m, 0};
+    out.nx = map.nx;
+    out.ny = map.ny;
+    out.floor_m = map.floor_m;
+    out.visits.assign(map.size(), -1.0f);
+    for (const std::uint32_t c : map.walkable) {
+        double sum = 0;
+        for (unsigned d = 0; d < direction_count && motion.paths > 0; ++d)
+            sum += motion.frequency(d, c, map.size());
+        out.visits[c] = static_cast<float>(sum);
+    }
+    for (const auto& corners : motion.corners) {
+        std::vector<Vec3> path;
+        for (const std::uint32_t c : corners) {
+            const Place at = place(map, c);
+            path.push_back({map.x0 + (static_cast<double>(at.x) + 0.5) * map.cell_m,
+                            map.y0 + (static_cast<double>(at.y) + 0.5) * map.cell_m,
+                            double{map.floor_m[c]}});
+        }
+        out.paths.push_back(std::move(path));
+    }
+    return out;
 }
 
 }  // namespace topple::safety

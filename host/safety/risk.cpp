@@ -17,29 +17,37 @@ double instability(std::span<const InstabilityStep> curve, double W_J) {
     return release;
 }
 
-std::vector<double> risk(const Disturbance& disturbance, std::span<const RiskObject> objects) {
+std::vector<Risk> risk(const Disturbance& disturbance, std::span<const RiskObject> objects) {
     if (disturbance.work.size() != objects.size()) {
         throw Error(ErrorKind::usage, "the " + disturbance.name + " field knows " +
                                           std::to_string(disturbance.work.size()) +
                                           " objects, but risk is asked for " +
                                           std::to_string(objects.size()));
     }
-    std::vector<double> out(objects.size(), 0.0);
+    std::vector<Risk> out(objects.size());
     for (std::size_t o = 0; o < objects.size(); ++o) {
         if (objects[o].grounded) continue;
+        double mean = 0, square = 0, chance = 0;
         for (const WorkSample& sample : disturbance.work[o]) {
-            out[o] += sample.probability * instability(objects[o].curve, sample.W_J);
+            const double release = instability(objects[o].curve, sample.W_J);
+            mean += sample.probability * release;
+            square += sample.probability * release * release;
+            if (release > 0) chance += sample.probability;
         }
+        const double variance = std::max(0.0, square - mean * mean);
+        const auto draws = static_cast<double>(std::max<std::size_t>(disturbance.draws, 1));
+        out[o] = {mean, std::sqrt(variance / draws), chance};
     }
     return out;
 }
 
-std::vector<double> unsafety(std::span<const std::vector<double>> risks) {
+std::vector<double> unsafety(std::span<const std::vector<Risk>> risks) {
     std::vector<double> worst;
     for (const auto& of_disturbance : risks) {
         worst.resize(std::max(worst.size(), of_disturbance.size()), 0.0);
         for (std::size_t o = 0; o < of_disturbance.size(); ++o) {
-            if (std::isfinite(of_disturbance[o])) worst[o] = std::max(worst[o], of_disturbance[o]);
+            if (std::isfinite(of_disturbance[o].mean_J))
+                worst[o] = std::max(worst[o], of_disturbance[o].mean_J);
         }
     }
     const double most = worst.empty() ? 0 : *std::max_element(worst.begin(), worst.end());

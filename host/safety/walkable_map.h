@@ -42,6 +42,8 @@ struct PrimaryMotion {
     // of places is as likely in either order, so each path counts for both ways with half its
     // weight.
     std::vector<std::uint32_t> visits;
+    // The first max_shown_paths of the walks, as the cells of their corners.
+    std::vector<std::vector<std::uint32_t>> corners;
     // Walks per event through cell c heading d.
     double frequency(unsigned d, std::size_t c, std::size_t cells) const {
         return visits[d * cells + c] * 0.5 / paths;
@@ -53,5 +55,8 @@ struct PrimaryMotion {
 // walkable, since the grid's eight headings are not people's. The first place is drawn from all
 // walkable cells, the second from those of its component.
 PrimaryMotion primary_motion(const WalkableMap& map, const HumanOptions& options);
+
+// Both as the report draws them.
+Walks drawn_walks(const WalkableMap& map, const PrimaryMotion& motion);
 
 }  // namespace topple::safety

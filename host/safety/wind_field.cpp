@@ -159,6 +159,7 @@ Disturbance wind_field(device::Device&, const Surroundings& surroundings,
     check_option("shelter_m", options.shelter_m, 0);
     Disturbance out;
     out.name = "wind";
+    out.draws = direction_count;
     out.work.resize(objects.size());
     const auto object_of_cell = movable_object_of_cells(surroundings, objects);
     const auto cells = cells_of_objects(object_of_cell, objects.size());

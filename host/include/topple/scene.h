@@ -85,6 +85,25 @@ struct Landscape {
     Places places;
 };
 
+// Where an object comes to lie when what its risks reckon with happens, and what that takes along.
+struct Fall {
+    bool falls = false;                     // whether any disturbance can upset it
+    Vec3 lands_m{};                         // its centre of mass, about, at its first landing
+    double drop_m = 0;                      // fallen from its support to there; 0: it stays on it
+    std::int32_t lands_on = -1;             // object below that drop; -1: none, or unknown
+    std::vector<std::int32_t> takes_along;  // what it carries, directly or not, ascending
+};
+
+// What would lower an object's risk to what is tolerated.
+struct Advice {
+    std::string kind;          // "" (nothing needed) | "move" | "fix"
+    Vec3 move_m{};             // "move": the smallest that does, horizontal
+    double risk_J = 0;         // its largest risk afterwards
+    double hold_N = 0;         // "fix": horizontal force at hold_height_m that a fixing must take
+    double hold_height_m = 0;  // above its support
+    std::string sentence;
+};
+
 // A set of primitives fixed to one another: one rigid body.
 struct Object {
     std::int32_t id = -1;
@@ -101,8 +120,12 @@ struct Object {
     std::vector<InstabilityStep> instability;
     Why why;
     Landscape landscape;
-    std::map<std::string, double> risk_J;  // by disturbance, joules per event
-    double unsafety = 1;                   // 1 (safest) to 10, by risk, over the scene's objects
+    // By disturbance: joules per event; their standard error from the sampling of events; and the
+    // chance per event that it falls, which is that it absorbs its barrier or more.
+    std::map<std::string, double> risk_J, risk_spread_J, fall_chance;
+    double unsafety = 1;  // 1 (safest) to 10, by risk, over the scene's objects
+    Fall fall;
+    Advice advice;
 };
 
 // Whether the barrier can't be told from 0.
@@ -148,6 +171,16 @@ struct FieldSamples {
     std::vector<float> density;     // visits per event, or exposure in 0..1
 };
 
+// Where people walk (paper, 5.1.2 and Fig. 9): cell (x, y) spans corner_m + [x, x + 1] * along_x_m
+// + [y, y + 1] * along_y_m, and its index is y * nx + x. Empty without the disturbance "human".
+struct Walks {
+    Vec3 corner_m{}, along_x_m{}, along_y_m{};
+    std::int64_t nx = 0, ny = 0;
+    std::vector<float> floor_m;            // height of the floor above corner_m, of each cell
+    std::vector<float> visits;             // walks through the cell per event; -1: not walkable
+    std::vector<std::vector<Vec3>> paths;  // corners of some of the walks, on the floor
+};
+
 struct Scene {
     std::string source, topple_version, backend, device;
     std::uint64_t seed = 1;
@@ -168,6 +201,7 @@ struct Scene {
     ScenePoints points;
     SolidVoxels solid;
     std::map<std::string, FieldSamples> fields;  // by disturbance
+    Walks walks;
 };
 
 }  // namespace topple

@@ -81,7 +81,8 @@ class EarthquakeField : public ::testing::Test {
         EarthquakeOptions options;
         options.pga_m_s2 = pga;
         return risk(earthquake_field(*device, room.surroundings(), room.objects, mu, options),
-                    room.objects)[id];
+                    room.objects)[id]
+            .mean_J;
     }
     std::unique_ptr<device::Device> device = device::open_native(1);
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "safety/convolution.h"
 #include "safety/fields.h"
 #include "topple/error.h"
@@ -13,25 +15,29 @@ TEST(Risk, SumsReleaseOverTheWorkDistribution) {
     cup.curve = {{0.1, 2}, {0.5, 5}};
     Disturbance field;
     field.name = "human";
+    field.draws = 100;
     field.work = {
         {{0.05, 0.5, {}}, {0.1, 0.2, {}}, {0.4, 0.1, {}}, {0.5, 0.01, {}}, {9, 0.001, {}}}};
     const auto got = risk(field, std::span(&cup, 1));
     ASSERT_EQ(got.size(), 1u);
-    EXPECT_DOUBLE_EQ(got[0], 0.2 * 2 + 0.1 * 2 + 0.01 * 5 + 0.001 * 5);
+    const double mean = 0.2 * 2 + 0.1 * 2 + 0.01 * 5 + 0.001 * 5;
+    EXPECT_DOUBLE_EQ(got[0].mean_J, mean);
+    EXPECT_DOUBLE_EQ(got[0].chance, 0.311);
+    EXPECT_DOUBLE_EQ(got[0].spread_J, std::sqrt((0.3 * 4 + 0.011 * 25 - mean * mean) / 100));
     cup.grounded = true;
-    EXPECT_EQ(risk(field, std::span(&cup, 1))[0], 0);
+    EXPECT_EQ(risk(field, std::span(&cup, 1))[0].mean_J, 0);
     EXPECT_THROW(risk(field, {}), Error);
 }
 
 TEST(Risk, UnsafetyRunsFromOneToTen) {
-    const std::vector<std::vector<double>> risks{{0, 1e-3, 0.5}, {0, 2e-3, 0.1}};
+    const std::vector<std::vector<Risk>> risks{{{}, {1e-3}, {0.5}}, {{}, {2e-3}, {0.1}}};
     const auto got = unsafety(risks);
     ASSERT_EQ(got.size(), 3u);
     EXPECT_DOUBLE_EQ(got[0], 1);
     EXPECT_GT(got[1], 1);
     EXPECT_LT(got[1], 10);
     EXPECT_DOUBLE_EQ(got[2], 10);
-    const std::vector<std::vector<double>> none{{0, 0}};
+    const std::vector<std::vector<Risk>> none{{{}, {}}};
     EXPECT_EQ(unsafety(none), (std::vector<double>{1, 1}));
     EXPECT_TRUE(unsafety({}).empty());
 }
