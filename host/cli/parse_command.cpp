@@ -165,6 +165,9 @@ Command add_parse(CLI::App& app) {
                    "Which to reckon with: human, wind, earthquake, separated by commas")
         ->capture_default_str();
     app.add_option("--wind", a->options.wind_m_s, "Wind speed in m/s")->capture_default_str();
+    app.add_option("--wind-from", a->options.wind_from_deg,
+                   "Where the wind comes from, degrees clockwise from the scene's north\n"
+                   "(default: from all sides)");
     app.add_option("--pga", a->options.pga_m_s2,
                    "Peak ground acceleration of the earthquake in m/s^2")
         ->capture_default_str();

@@ -21,17 +21,18 @@ namespace {
 // The finest voxel: below the noise of every sensor of rooms, and far above what overflows.
 constexpr double least_voxel_m = 0.001;
 
+std::string number_text(double value) {
+    char digits[32];
+    std::snprintf(digits, sizeof(digits), "%g", value);
+    return digits;
+}
+
 void check_range(const char* option, double value, double lowest, double highest) {
     if (value > 0 && value >= lowest && value <= highest) return;  // false for NaN
-    const auto text = [](double v) {
-        char digits[32];
-        std::snprintf(digits, sizeof(digits), "%g", v);
-        return std::string(digits);
-    };
     throw Error(ErrorKind::usage,
-                std::string(option) + " " + text(value) + ": expected a number " +
-                    (lowest > 0 ? "from " + text(lowest) + " to " : "above 0 and at most ") +
-                    text(highest));
+                std::string(option) + " " + number_text(value) + ": expected a number " +
+                    (lowest > 0 ? "from " + number_text(lowest) + " to " : "above 0 and at most ") +
+                    number_text(highest));
 }
 
 // "3 MiB", "512 B".
@@ -117,6 +118,11 @@ void check_options(const ParseOptions& o) {
     check_range("--density", o.density_kg_m3, 0, 30000);
     check_range("--friction", o.friction, 0, 10);
     check_range("--wind", o.wind_m_s, 0, 150);
+    // 0 is north, so the range is none of those that begin above 0.
+    if (o.wind_from_deg && !(std::abs(*o.wind_from_deg) <= 360))
+        throw Error(ErrorKind::usage,
+                    "--wind-from " + number_text(*o.wind_from_deg) +
+                        ": expected degrees clockwise from the scene's north, from -360 to 360");
     check_range("--pga", o.pga_m_s2, 0, 50);
     if (o.grouping_time_s) check_range("--grouping-time", *o.grouping_time_s, 0, 86400);
     for (const std::string& d : o.disturbances) {

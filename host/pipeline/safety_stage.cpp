@@ -60,6 +60,8 @@ safety::Surroundings surroundings(const GeometryStage& geometry, const VoxelStag
     for (const geometry::Structure p : geometry.structure) {
         s.is_floor_primitive.push_back(p == geometry::Structure::floor);
     }
+    for (const physics::Body& b : objects.bodies)
+        s.density_kg_m3.push_back(b.volume_m3 > 0 ? b.mass_kg / b.volume_m3 : 0);
     return s;
 }
 
@@ -81,6 +83,7 @@ SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
             if (name == "wind") {
                 safety::WindOptions wind;
                 wind.speed_m_s = options.wind_m_s;
+                wind.from_deg = options.wind_from_deg;
                 wind.friction = options.friction;
                 return safety::wind_field(device, around, at_risk, wind);
             }

@@ -86,7 +86,7 @@ Disturbance earthquake_field(device::Device&, const Surroundings& surroundings,
     ArrowSample arrows;
     for (std::size_t o = 0; o < objects.size(); ++o) {
         if (cells[o].empty() || objects[o].grounded) continue;
-        const Stance stands = stance(solid, cells[o]);
+        const Stance stands = stance(surroundings, cells[o]);
         for (const Pulse& pulse : pulses) {
             const double base = half_base(objects[o], stands, pulse.dx, pulse.dy);
             const double work = earthquake_work(objects[o], base, stands.height(), pulse.peak,

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,6 +37,8 @@ struct Surroundings {
     const physics::SolidCells* cells = nullptr;
     std::vector<std::int32_t> object;      // of each cell
     std::vector<bool> is_floor_primitive;  // by primitive: horizontal, lowest, walkable
+    // By primitive, for where the centres of mass are; empty: the same everywhere.
+    std::vector<double> density_kg_m3 = {};
 };
 
 struct HumanOptions {
@@ -56,6 +59,9 @@ struct WindOptions {
     double friction = 0.3;
     double shelter_m =
         1.0;  // length of an obstacle's lee: what stands closer behind it gets no wind
+    // Where it comes from, degrees from +y towards +x, which is clockwise from north seen from
+    // above; none: from each of the 16 directions.
+    std::optional<double> from_deg;
 };
 struct EarthquakeOptions {
     std::uint64_t seed = 1;
@@ -94,13 +100,13 @@ inline constexpr std::size_t max_work_samples = 64;  // per object and human fie
 Disturbance human_field(device::Device& device, const Surroundings& surroundings,
                         std::span<const RiskObject> objects, double friction,
                         const HumanOptions& options);
-// A gale of one speed from each of the 16 horizontal directions, alike in all of the space (5.1.1).
+// A gale of one speed, from one direction or from each of 16, alike in all of the space (5.1.1).
 // F = rho C_d A v^2 / 2 acts on the exposed frontal area A at the height h of its centre. With m g
 // b(dir) / h the force that tips the object and mu m g the force that slides it,
 //     W = F D,  D = E / F_threshold
 // where E is the barrier below the threshold (so W rises as v^2 and reaches the barrier at the
 // threshold, where the object moves), and above it the energy of that very motion, if larger.
-// One event is one gale, from a random direction.
+// One event is one gale, from one of its directions at random.
 Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
                        std::span<const RiskObject> objects, const WindOptions& options);
 // Rectangular ground pulses of random direction and peak a (5.1.1), lasting t = period / 2. With
@@ -124,7 +130,7 @@ struct WindLoad {
 double wind_force(const WindLoad& load, const WindOptions& options);  // newtons
 double wind_work(const RiskObject& object, const WindLoad& load, const WindOptions& options);
 
-// The exposed frontal area of one object in wind that blows along direction d (directions.h): by
+// The exposed frontal area of one object in wind that blows along the unit vector `way` (x, y): by
 // layers of voxels, what the wind's lines meet first of the object, unless another solid stands
 // less than shelter_m in front of it. `cells`: the object's, ascending.
 class Columns;
@@ -133,7 +139,8 @@ struct Frontage {
     std::vector<std::uint32_t> cells;  // exposed, ascending
 };
 Frontage wind_frontage(const physics::SolidCells& solid, const Columns& columns,
-                       std::span<const std::uint32_t> cells, unsigned d, double shelter_m);
+                       std::span<const std::uint32_t> cells, const std::array<double, 2>& way,
+                       double shelter_m);
 
 // The work of one pulse of `acceleration` m/s^2 and `duration_s` on one object (see above).
 double earthquake_work(const RiskObject& object, double half_base_m, double height_m,

@@ -61,22 +61,45 @@ std::vector<std::vector<std::uint32_t>> cells_of_objects(
     return out;
 }
 
-Stance stance(const physics::SolidCells& cells, std::span<const std::uint32_t> of_object) {
+Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> of_object) {
+    const physics::SolidCells& cells = *surroundings.cells;
     Stance out;
     if (of_object.empty()) return out;
-    double x = 0, y = 0, z = 0;
+    const auto weight = [&](std::uint32_t c) {
+        const auto primitive = static_cast<std::size_t>(cells.primitive[c]);
+        return primitive < surroundings.density_kg_m3.size() ? surroundings.density_kg_m3[primitive]
+                                                             : 1.0;
+    };
+    double all = 0, x = 0, y = 0, z = 0;
     std::int32_t low = cells.k[of_object.front()], high = low;
     for (const std::uint32_t c : of_object) {
-        x += cells.i[c] + 0.5;
-        y += cells.j[c] + 0.5;
-        z += cells.k[c] + 0.5;
+        const double w = weight(c);
+        all += w;
+        x += w * (cells.i[c] + 0.5);
+        y += w * (cells.j[c] + 0.5);
+        z += w * (cells.k[c] + 0.5);
         low = std::min(low, cells.k[c]);
         high = std::max(high, cells.k[c]);
     }
-    const double scale = cells.voxel_m / static_cast<double>(of_object.size());
-    out.center = {x * scale, y * scale, z * scale};
-    out.bottom_m = low * cells.voxel_m;
-    out.top_m = (high + 1.0) * cells.voxel_m;
+    x /= all;
+    y /= all;
+    z /= all;
+    double xx = 0, xy = 0, yy = 0, zz = 0;
+    for (const std::uint32_t c : of_object) {
+        const double w = weight(c);
+        const double dx = cells.i[c] + 0.5 - x, dy = cells.j[c] + 0.5 - y,
+                     dz = cells.k[c] + 0.5 - z;
+        xx += w * dx * dx;
+        xy += w * dx * dy;
+        yy += w * dy * dy;
+        zz += w * dz * dz;
+    }
+    const double voxel = cells.voxel_m, voxel2 = voxel * voxel, own = 1.0 / 12;  // of a unit cube
+    out.center = {x * voxel, y * voxel, z * voxel};
+    out.bottom_m = low * voxel;
+    out.top_m = (high + 1.0) * voxel;
+    out.spread_m2 = {(xx / all + own) * voxel2, xy / all * voxel2, (yy / all + own) * voxel2,
+                     (zz / all + own) * voxel2};
     return out;
 }
 

@@ -22,13 +22,21 @@ bool is_floor_cell(const Surroundings& surroundings, std::size_t cell);
 std::vector<std::vector<std::uint32_t>> cells_of_objects(
     std::span<const std::int32_t> object_of_cell, std::size_t objects);
 
-// How an object stands: centre of its cells, metres, and the height of its lowest cell's underside.
+// How an object stands, metres.
 struct Stance {
-    Vec3 center{};
-    double bottom_m = 0, top_m = 0;
+    Vec3 center{};                   // of mass
+    double bottom_m = 0, top_m = 0;  // underside of its lowest cell, top of its highest
+    // Mean of (x - center)^2, of (x - center_x)(y - center_y) and so on over its mass: xx, xy, yy,
+    // zz.
+    std::array<double, 4> spread_m2{};
     double height() const { return center[2] - bottom_m; }  // of the centre, above the base
+    // Square of its radius of gyration about the level axis through the centre across (dx, dy).
+    double gyration_m2(double dx, double dy) const {
+        const auto& [xx, xy, yy, zz] = spread_m2;
+        return dx * dx * xx + 2 * dx * dy * xy + dy * dy * yy + zz;
+    }
 };
-Stance stance(const physics::SolidCells& cells, std::span<const std::uint32_t> of_object);
+Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> of_object);
 
 // Half base b in horizontal direction (dx, dy): from below the centre of mass to where the support
 // ends that way, 0 where it has ended already. From the support polygon, or half of base_width_m.

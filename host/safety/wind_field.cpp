@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "physics/landscape.h"
 #include "safety/columns.h"
 #include "safety/directions.h"
 #include "safety/fields.h"
 #include "safety/objects.h"
+#include "topple/error.h"
 
 namespace topple::safety {
 namespace {
@@ -80,24 +82,38 @@ bool open_to_wind(const Columns& columns, double x, double y, std::int32_t k, st
 
 void offer_arrows(ArrowSample& arrows, const physics::SolidCells& solid,
                   std::span<const std::uint32_t> cells,
-                  const std::vector<std::array<float, 3>>& wind, double speed) {
+                  const std::vector<std::array<float, 3>>& wind, double speed, float directions) {
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const std::uint32_t c = cells[n];
         if (wind[n][2] == 0) continue;
         arrows.offer({(solid.i[c] + 0.5) * solid.voxel_m, (solid.j[c] + 0.5) * solid.voxel_m,
                       (solid.k[c] + 0.5) * solid.voxel_m},
                      {wind[n][0] / wind[n][2] * speed, wind[n][1] / wind[n][2] * speed, 0},
-                     wind[n][2] / direction_count);
+                     wind[n][2] / directions);
     }
+}
+
+// The ways that the wind blows, unit.
+std::vector<std::array<double, 2>> ways(const WindOptions& options) {
+    if (options.from_deg) {
+        // From the east it blows exactly along -x, as from the 16.
+        const auto exact = [](double v) { return std::fabs(v) < 1e-12 ? 0.0 : v; };
+        const double angle = *options.from_deg * std::numbers::pi / 180;
+        return {{exact(-std::sin(angle)), exact(-std::cos(angle))}};
+    }
+    std::vector<std::array<double, 2>> all;
+    for (unsigned d = 0; d < direction_count; ++d) all.push_back(direction(d));
+    return all;
 }
 
 }  // namespace
 
 Frontage wind_frontage(const physics::SolidCells& solid, const Columns& columns,
-                       std::span<const std::uint32_t> cells, unsigned d, double shelter_m) {
+                       std::span<const std::uint32_t> cells, const std::array<double, 2>& way,
+                       double shelter_m) {
     Frontage out;
     if (cells.empty()) return out;
-    const auto [dx, dy] = direction(d);
+    const auto [dx, dy] = way;
     const FirstHits hits = first_hits(solid, cells, dx, dy);
     const double line_area = solid.voxel_m * solid.voxel_m / bins_per_voxel;
     double moment = 0;
@@ -159,7 +175,11 @@ Disturbance wind_field(device::Device&, const Surroundings& surroundings,
     check_option("shelter_m", options.shelter_m, 0);
     Disturbance out;
     out.name = "wind";
-    out.draws = direction_count;
+    if (options.from_deg && !std::isfinite(*options.from_deg))
+        throw Error(ErrorKind::usage, "disturbance option from_deg is not a number");
+    const std::vector<std::array<double, 2>> blown = ways(options);
+    const auto directions = static_cast<float>(blown.size());
+    out.draws = blown.size();
     out.work.resize(objects.size());
     const auto object_of_cell = movable_object_of_cells(surroundings, objects);
     const auto cells = cells_of_objects(object_of_cell, objects.size());
@@ -170,27 +190,27 @@ Disturbance wind_field(device::Device&, const Surroundings& surroundings,
     ArrowSample arrows;
     for (std::size_t o = 0; o < objects.size(); ++o) {
         if (cells[o].empty() || objects[o].grounded) continue;
-        const Stance stands = stance(solid, cells[o]);
+        const Stance stands = stance(surroundings, cells[o]);
         std::vector<std::array<float, 3>> wind(cells[o].size(),
                                                {0, 0, 0});  // sum of directions, count
-        for (unsigned d = 0; d < direction_count; ++d) {
-            const Frontage front = wind_frontage(solid, columns, cells[o], d, options.shelter_m);
+        for (const auto& way : blown) {
+            const Frontage front = wind_frontage(solid, columns, cells[o], way, options.shelter_m);
             if (front.area_m2 <= 0) continue;
-            const auto [dx, dy] = direction(d);
+            const auto [dx, dy] = way;
             for (const std::uint32_t c : front.cells) {
                 const auto n =
                     std::lower_bound(cells[o].begin(), cells[o].end(), c) - cells[o].begin();
                 auto& sum = wind[static_cast<std::size_t>(n)];
                 sum = {sum[0] + static_cast<float>(dx), sum[1] + static_cast<float>(dy),
                        sum[2] + 1};
-                out.exposure[c] += 1.0f / direction_count;
+                out.exposure[c] += 1.0f / directions;
             }
             const WindLoad load{front.area_m2, front.center_m - stands.bottom_m,
                                 half_base(objects[o], stands, dx, dy), stands.height()};
             out.work[o].push_back(
-                {wind_work(objects[o], load, options), 1.0 / direction_count, {dx, dy, 0}});
+                {wind_work(objects[o], load, options), 1.0 / double{directions}, {dx, dy, 0}});
         }
-        offer_arrows(arrows, solid, cells[o], wind, options.speed_m_s);
+        offer_arrows(arrows, solid, cells[o], wind, options.speed_m_s, directions);
     }
     out.samples = arrows.take();
     if (out.samples.x.empty()) out.notes.push_back("No object of the scene stands in the wind.");

@@ -32,23 +32,41 @@ TEST_F(Usage, names_the_unknown_option_and_the_nearest_one) {
 // Not quiet: the name of a stage on stderr would show that the parse had begun.
 TEST_F(Usage, refuses_values_before_it_parses) {
     put_plane("plane.xyz");
-    const std::vector<std::vector<std::string>> bad{
-        {"--voxel", "0"},         {"--voxel", "-1"},
-        {"--voxel", "nan"},       {"--voxel", "inf"},
-        {"--voxel", "1e-9"},      {"--voxel", "50"},
-        {"--voxel", "2cm"},       {"--up", "0,0,0"},
-        {"--up", "0,0"},          {"--up", "0,0,1,0"},
-        {"--up", "0,0,nan"},      {"--up", "up"},
-        {"--up", "0,0,1e400"},    {"--disturbance", "flood"},
-        {"--backend", "cuda"},    {"--disturbance", "human,flood"},
-        {"--wind", "-3"},         {"--wind", "nan"},
-        {"--pga", "0"},           {"--density", "-700"},
-        {"--friction", "0"},      {"--max-memory", "much"},
-        {"--max-memory", "-1G"},  {"--max-memory", "nan"},
-        {"--max-memory", "5 GB"}, {"--max-memory", "1e30T"},
-        {"--unit", "yard"},       {"--unit", "0.001"},
-        {"--seed", "-1"},         {"--seed", "99999999999999999999"},
-        {"--threads", "-1"},      {"--threads", "many"}};
+    const std::vector<std::vector<std::string>> bad{{"--voxel", "0"},
+                                                    {"--voxel", "-1"},
+                                                    {"--voxel", "nan"},
+                                                    {"--voxel", "inf"},
+                                                    {"--voxel", "1e-9"},
+                                                    {"--voxel", "50"},
+                                                    {"--voxel", "2cm"},
+                                                    {"--up", "0,0,0"},
+                                                    {"--up", "0,0"},
+                                                    {"--up", "0,0,1,0"},
+                                                    {"--up", "0,0,nan"},
+                                                    {"--up", "up"},
+                                                    {"--up", "0,0,1e400"},
+                                                    {"--disturbance", "flood"},
+                                                    {"--backend", "cuda"},
+                                                    {"--disturbance", "human,flood"},
+                                                    {"--wind", "-3"},
+                                                    {"--wind", "nan"},
+                                                    {"--wind-from", "north"},
+                                                    {"--wind-from", "nan"},
+                                                    {"--wind-from", "400"},
+                                                    {"--pga", "0"},
+                                                    {"--density", "-700"},
+                                                    {"--friction", "0"},
+                                                    {"--max-memory", "much"},
+                                                    {"--max-memory", "-1G"},
+                                                    {"--max-memory", "nan"},
+                                                    {"--max-memory", "5 GB"},
+                                                    {"--max-memory", "1e30T"},
+                                                    {"--unit", "yard"},
+                                                    {"--unit", "0.001"},
+                                                    {"--seed", "-1"},
+                                                    {"--seed", "99999999999999999999"},
+                                                    {"--threads", "-1"},
+                                                    {"--threads", "many"}};
     for (const auto& option : bad) {
         // The value as it was given, or for numbers as it was understood.
         expect_failure(2, {"parse", "plane.xyz", option[0], option[1]}, {option[0]});
@@ -69,10 +87,10 @@ TEST_F(Usage, help_names_every_command_and_option) {
         EXPECT_EQ(help.code, 0);
         EXPECT_EQ(help.err, "");
         for (const char* option :
-             {"INPUT",     "--output",     "--backend", "--voxel",   "--up",       "--disturbance",
-              "--unit",    "--wind",       "--pga",     "--density", "--friction", "--seed",
-              "--threads", "--max-memory", "--quiet",   "native",    "opencl",     "vulkan",
-              "human",     "earthquake",   ".ply",      ".pcd",      ".xyz"}) {
+             {"INPUT",  "--output",  "--backend",    "--voxel", "--up",      "--disturbance",
+              "--unit", "--wind",    "--wind-from",  "--pga",   "--density", "--friction",
+              "--seed", "--threads", "--max-memory", "--quiet", "native",    "opencl",
+              "vulkan", "human",     "earthquake",   ".ply",    ".pcd",      ".xyz"}) {
             EXPECT_NE(help.out.find(option), std::string::npos) << option << " in\n" << help.out;
         }
         if (arguments.size() > 1) continue;

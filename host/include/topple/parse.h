@@ -33,6 +33,9 @@ struct ParseOptions {
     double density_kg_m3 = 700;
     double friction = 0.3;
     double wind_m_s = 12;
+    // Where the wind comes from, degrees clockwise from the scene's north, as Why::azimuth_deg;
+    // none: from each of 16 directions.
+    std::optional<double> wind_from_deg;
     double pga_m_s2 = 3;  // peak ground acceleration
     // Seconds for the search for objects, about; none: as long as it takes. Where a limit is met,
     // the objects depend on the machine.

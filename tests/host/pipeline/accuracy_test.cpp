@@ -78,6 +78,7 @@ TEST(Options, out_of_range_are_named) {
     named("--density", [](ParseOptions& o) { o.density_kg_m3 = 0; });
     named("--friction", [](ParseOptions& o) { o.friction = -1; });
     named("--wind", [](ParseOptions& o) { o.wind_m_s = 1e9; });
+    named("--wind-from", [](ParseOptions& o) { o.wind_from_deg = NAN; });
     named("--pga", [](ParseOptions& o) { o.pga_m_s2 = NAN; });
     named("--grouping-time", [](ParseOptions& o) { o.grouping_time_s = -1; });
     named("flood", [](ParseOptions& o) { o.disturbances = {"human", "flood"}; });

@@ -25,8 +25,8 @@ class WindField : public ::testing::Test {
                                             room.objects.size());
         const auto& own = cells[static_cast<std::size_t>(id)];
         const Columns columns(*surroundings.cells);
-        const Frontage front = wind_frontage(*surroundings.cells, columns, own, d, 1.0);
-        const Stance stands = stance(*surroundings.cells, own);
+        const Frontage front = wind_frontage(*surroundings.cells, columns, own, direction(d), 1.0);
+        const Stance stands = stance(surroundings, own);
         return {front.area_m2, front.center_m - stands.bottom_m,
                 room.objects[static_cast<std::size_t>(id)].base_width_m / 2, stands.height()};
     }
@@ -151,6 +151,41 @@ TEST_F(WindField, TallerNarrowerStrongerIsNotSafer) {
         EXPECT_GE(r, last) << "width " << width;
         last = r;
     }
+}
+
+// A wall shelters from one side only; degrees clockwise from north, where the wind comes from.
+TEST_F(WindField, OneWindComesFromWhereItIsSaidTo) {
+    test::Room room(0.02);
+    room.floor(-2, 3, -2, 3);
+    const auto cup = static_cast<std::size_t>(room.thing(0.5, 0.5, 0, 0.1, 0.2));
+    room.box(0.9, 1.0, -1, 2, 0, 1);  // to the east
+    const auto from = [&](double degrees) {
+        WindOptions options;
+        options.from_deg = degrees;
+        return wind_field(*device, room.surroundings(), room.objects, options);
+    };
+    for (const double degrees : {0.0, 180.0, 270.0, 301.7, -45.0, 630.0}) {
+        const Disturbance field = from(degrees);
+        EXPECT_EQ(field.draws, 1u);
+        ASSERT_EQ(field.work[cup].size(), 1u) << degrees;
+        EXPECT_EQ(field.work[cup][0].probability, 1);
+        const double angle = degrees * std::acos(-1.0) / 180;
+        EXPECT_NEAR(field.work[cup][0].direction[0], -std::sin(angle), 1e-12) << degrees;
+        EXPECT_NEAR(field.work[cup][0].direction[1], -std::cos(angle), 1e-12) << degrees;
+    }
+    EXPECT_TRUE(from(90).work[cup].empty()) << "in the lee";
+    EXPECT_THROW(from(std::nan("")), Error);
+    // The mean over the 16 directions is the field without one.
+    const auto mean = [&](const Disturbance& field) {
+        double sum = 0;
+        for (const WorkSample& s : field.work[cup]) sum += s.W_J * s.probability;
+        return sum;
+    };
+    double sum = 0;
+    for (unsigned d = 0; d < direction_count; ++d) sum += mean(from(22.5 * d)) / direction_count;
+    const double all = mean(wind_field(*device, room.surroundings(), room.objects, {}));
+    EXPECT_NEAR(sum, all, 1e-9 * all);
+    EXPECT_GT(all, 0);
 }
 
 TEST_F(WindField, NothingInTheWind) {
