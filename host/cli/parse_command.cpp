@@ -26,6 +26,8 @@ struct Arguments {
     ParseOptions options;
     std::optional<std::string> out;
     std::optional<double> voxel_m;
+    std::string motion, motion_up;
+    MotionFileOptions motion_file;
     unsigned threads = 0;
     bool quiet = false;
 };
@@ -37,10 +39,10 @@ std::vector<std::string> split_commas(const std::string& text) {
     return parts;
 }
 
-Vec3 parse_up(const std::string& text) {
+Vec3 parse_up(const char* option, const std::string& text) {
     const auto bad = [&] {
-        return Error(ErrorKind::usage,
-                     "--up " + text + ": expected three numbers X,Y,Z, not all zero");
+        return Error(ErrorKind::usage, std::string(option) + " " + text +
+                                           ": expected three numbers X,Y,Z, not all zero");
     };
     const std::vector<std::string> parts = split_commas(text);
     if (parts.size() != 3) throw bad();
@@ -101,10 +103,14 @@ void read_options(Arguments& a) {
                         "size found from the scan");
         a.options.voxel_m = *a.voxel_m;
     }
-    if (!a.up.empty()) a.options.up = parse_up(a.up);
+    if (!a.up.empty()) a.options.up = parse_up("--up", a.up);
     if (!a.max_memory.empty()) a.options.max_memory_bytes = parse_size(a.max_memory);
     a.options.disturbances = split_commas(a.disturbance);
+    if (!a.motion_up.empty()) a.motion_file.up = parse_up("--motion-up", a.motion_up);
     check_options(a.options);
+    if (!a.motion.empty()) {
+        a.options.motion = std::make_shared<const BodyMotion>(read_motion(a.motion, a.motion_file));
+    }
 }
 
 int run(Arguments& a) {
@@ -164,6 +170,23 @@ Command add_parse(CLI::App& app) {
     app.add_option("--disturbance", a->disturbance,
                    "Which to reckon with: human, wind, earthquake, separated by commas")
         ->capture_default_str();
+    app.add_option("--walks", a->options.walks, "Walks of people that are sampled")
+        ->check(whole_number)
+        ->capture_default_str();
+    app.add_option("--motion", a->motion,
+                   "How a walker's body moves: a recording, .bvh or a table of joint positions\n"
+                   "(default: published figures of gait)");
+    app.add_option("--motion-unit", a->motion_file.unit_m,
+                   "Metres in the recording's unit (default: from the size of the body)")
+        ->check(CLI::PositiveNumber)
+        ->needs("--motion");
+    app.add_option("--motion-rate", a->motion_file.rate_hz,
+                   "Frames a second of a recording that has no times")
+        ->check(CLI::PositiveNumber)
+        ->needs("--motion");
+    app.add_option("--motion-up", a->motion_up,
+                   "Up in the recording, X,Y,Z (default: from head and feet)")
+        ->needs("--motion");
     app.add_option("--wind", a->options.wind_m_s, "Wind speed in m/s")->capture_default_str();
     app.add_option("--wind-from", a->options.wind_from_deg,
                    "Where the wind comes from, degrees clockwise from the scene's north\n"

@@ -117,6 +117,7 @@ void check_options(const ParseOptions& o) {
     check_range("--unit", o.unit_m, 1e-6, 1e6);
     check_range("--density", o.density_kg_m3, 0, 30000);
     check_range("--friction", o.friction, 0, 10);
+    check_range("--walks", o.walks, 1, 1e6);
     check_range("--wind", o.wind_m_s, 0, 150);
     // 0 is north, so the range is none of those that begin above 0.
     if (o.wind_from_deg && !(std::abs(*o.wind_from_deg) <= 360))

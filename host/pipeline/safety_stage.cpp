@@ -78,6 +78,8 @@ SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
             if (name == "human") {
                 safety::HumanOptions human;
                 human.seed = options.seed;
+                human.paths = options.walks;
+                human.motion = options.motion;
                 return safety::human_field(device, around, at_risk, options.friction, human);
             }
             if (name == "wind") {

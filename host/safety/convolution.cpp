@@ -15,44 +15,55 @@ constexpr std::uint32_t block = 64;  // cells, as in the kernels
 constexpr std::uint64_t tile_bytes = std::uint64_t{64} << 20;
 constexpr std::uint32_t largest_tile = 16384;  // cells
 
-unsigned all_bands() {
+unsigned all_bands(const SecondaryMotion& motion) {
     unsigned count = 0;
-    for (const BodyPart& part : body_parts) count += bands_of(part).count;
+    for (const MotionLayer& layer : motion.layers) count += layer.bands.count;
     return count;
 }
 
 }  // namespace
 
+Strikes no_strikes(const SecondaryMotion& motion) {
+    return Strikes(motion.energy_J.size());
+}
+
 // A run of active blocks, and what the device made of it.
 struct Convolution::Tile {
     std::span<const std::uint32_t> starts;  // padded index of each block's first cell
     std::uint32_t cells = 0;
-    std::array<std::uint32_t, body_parts.size()> output_first{};  // of each part in `density`
-    std::vector<float> density;  // parts x directions x the part's bands x cells
-    std::span<Target> targets;   // those in the tile
+    std::vector<std::uint32_t> output_first;  // of each layer in `density`
+    std::vector<float> density;               // layers x directions x the layer's bands x cells
+    std::span<Target> targets;                // those in the tile
 };
 
 Convolution::Convolution(device::Device& device, const WalkableMap& map,
-                         const PrimaryMotion& motion, const Surroundings& surroundings,
+                         const PrimaryMotion& motion, const SecondaryMotion& secondary,
+                         const Surroundings& surroundings,
                          std::span<const std::int32_t> object_of_cell, const HumanOptions& options)
     : device_(device),
       map_(map),
       motion_(motion),
+      secondary_(secondary),
       surroundings_(surroundings),
       object_of_cell_(object_of_cell),
       options_(options),
       band_m_(options.body_height_m / band_count),
-      footprint_(make_footprint(map.cell_m, options)) {
+      footprint_(make_footprint(map.cell_m, secondary)) {
     // A margin of the footprint's radius on all sides, and a row more above and below for the cells
     // of a block that lie beside the map.
     const std::int64_t r = footprint_.radius;
     width_ = (map.nx + 2 * r + block - 1) / block * block;
     height_ = map.ny + 2 * r + 2;
     const SightLines lines = sight_lines(footprint_, static_cast<std::int32_t>(width_));
+    // From the plane of the strike's direction to that of the walker's heading, too.
     std::vector<std::int32_t> delta;
-    for (const std::uint32_t row : footprint_.row) {
-        const auto& o = footprint_.offsets[row];
-        delta.push_back(o.y * static_cast<std::int32_t>(width_) + o.x);
+    for (std::size_t i = 0; i + 1 < footprint_.first.size(); ++i) {
+        const auto d = static_cast<std::int64_t>(i % direction_count);
+        for (std::uint32_t e = footprint_.first[i]; e < footprint_.first[i + 1]; ++e) {
+            const auto& o = footprint_.offsets[footprint_.row[e]];
+            delta.push_back(static_cast<std::int32_t>(
+                (footprint_.heading[e] - d) * width_ * height_ + o.y * width_ + o.x));
+        }
     }
     using device::Buffer;
     line_first_ = Buffer<std::uint32_t>(device, lines.first, "reach.row_first");
@@ -157,7 +168,8 @@ std::vector<Convolution::Target> Convolution::targets(double floor_m) const {
 void Convolution::run(Tile& tile, const device::Buffer<float>& primary,
                       const device::Buffer<std::uint32_t>& solid) {
     const auto rows = static_cast<std::uint32_t>(footprint_.offsets.size());
-    const std::uint64_t outputs = std::uint64_t{all_bands()} * direction_count * tile.cells;
+    const std::uint64_t outputs =
+        std::uint64_t{all_bands(secondary_)} * direction_count * tile.cells;
     device::Buffer<std::uint32_t> starts(device_, tile.starts, "tile.block_start");
     device::Buffer<std::uint32_t> blocked(device_, std::uint64_t{rows} * tile.cells,
                                           "tile.blocked");
@@ -172,9 +184,9 @@ void Convolution::run(Tile& tile, const device::Buffer<float>& primary,
                                           .blocked = blocked},
                                          {.cell_count = tile.cells, .row_count = rows});
     std::uint32_t output_first = 0;
-    for (unsigned part = 0; part < body_parts.size(); ++part) {
-        const Bands bands = bands_of(body_parts[part]);
-        tile.output_first[part] = output_first;
+    for (std::uint32_t layer = 0; layer < secondary_.layers.size(); ++layer) {
+        const Bands bands = secondary_.layers[layer].bands;
+        tile.output_first.push_back(output_first);
         output_first += direction_count * bands.count * tile.cells;
         const std::uint64_t quads = (bands.count + 3) / 4;
         queue.add<kernels::Disturbance>(
@@ -191,10 +203,10 @@ void Convolution::run(Tile& tile, const device::Buffer<float>& primary,
              .row_count = rows,
              .plane_cells = static_cast<std::uint32_t>(width_ * height_),
              .direction_count = direction_count,
-             .footprint_first = part * direction_count,
+             .footprint_first = layer * direction_count,
              .band_first = bands.first,
              .band_count = bands.count,
-             .output_first = tile.output_first[part]});
+             .output_first = tile.output_first[layer]});
     }
     queue.run();
     tile.density = density.download();
@@ -207,18 +219,19 @@ void Convolution::collect_strikes(Tile& tile, std::span<Strikes> strikes) const 
         if (at == tile.starts.begin() || target.cell - *(at - 1) >= block) continue;  // not active
         const auto place = static_cast<std::size_t>(at - 1 - tile.starts.begin()) * block +
                            target.cell - *(at - 1);
-        for (unsigned part = 0; part < body_parts.size(); ++part) {
-            const Bands bands = bands_of(body_parts[part]);
+        for (std::size_t n = 0; n < secondary_.layers.size(); ++n) {
+            const MotionLayer& layer = secondary_.layers[n];
+            const Bands bands = layer.bands;
             for (unsigned d = 0; d < direction_count; ++d) {
                 float most = 0;
                 for (unsigned b = target.band; b <= target.band + 1u; ++b) {
                     if (b < bands.first || b >= bands.first + bands.count) continue;
                     const std::size_t plane = d * bands.count + (b - bands.first);
                     most = std::max(
-                        most, tile.density[tile.output_first[part] + plane * tile.cells + place]);
+                        most, tile.density[tile.output_first[n] + plane * tile.cells + place]);
                 }
                 target.exposure += most;
-                double& strike = strikes[static_cast<std::size_t>(target.object)][part][d];
+                double& strike = strikes[static_cast<std::size_t>(target.object)][layer.level][d];
                 strike = std::max(strike, double{most});
             }
         }
@@ -228,14 +241,14 @@ void Convolution::collect_strikes(Tile& tile, std::span<Strikes> strikes) const 
 void Convolution::offer_arrows(const Tile& tile, double floor_m, ArrowSample& arrows) const {
     const std::int64_t r = footprint_.radius;
     std::vector<std::array<float, 3>> sum(std::size_t{band_count} * tile.cells, {0, 0, 0});
-    for (unsigned part = 0; part < body_parts.size(); ++part) {
-        const Bands bands = bands_of(body_parts[part]);
-        const double speed = body_parts[part].speed * options_.walking_speed_m_s;
+    for (std::size_t n = 0; n < secondary_.layers.size(); ++n) {
+        const Bands bands = secondary_.layers[n].bands;
+        const double speed = secondary_.layers[n].speed_m_s;
         for (unsigned d = 0; d < direction_count; ++d) {
             const auto [dx, dy] = direction(d);
             const auto vx = static_cast<float>(dx * speed), vy = static_cast<float>(dy * speed);
             for (unsigned b = 0; b < bands.count; ++b) {
-                const float* density = &tile.density[tile.output_first[part] +
+                const float* density = &tile.density[tile.output_first[n] +
                                                      std::size_t{d * bands.count + b} * tile.cells];
                 auto* to = &sum[std::size_t{bands.first + b} * tile.cells];
                 for (std::uint32_t c = 0; c < tile.cells; ++c) {
@@ -268,11 +281,11 @@ void Convolution::add_level(double floor_m, const std::vector<bool>& component,
     const device::Buffer<std::uint32_t> solid(device_, solid_bands(floor_m), "solid bands");
     const std::vector<std::uint32_t> starts = active_blocks(component);
     std::vector<Target> all = targets(floor_m);
-    std::vector<Strikes> here(strikes.size(), Strikes{});
+    std::vector<Strikes> here(strikes.size(), no_strikes(secondary_));
 
     const std::uint64_t per_cell =
         4 * std::max<std::uint64_t>(footprint_.offsets.size(),
-                                    std::uint64_t{all_bands()} * direction_count);
+                                    std::uint64_t{all_bands(secondary_)} * direction_count);
     const std::uint64_t fits =
         std::clamp<std::uint64_t>(tile_bytes / per_cell, block, largest_tile);
     const std::size_t blocks_per_tile = fits / block;
@@ -291,8 +304,8 @@ void Convolution::add_level(double floor_m, const std::vector<bool>& component,
     }
     // Walks at different levels are different events.
     for (std::size_t o = 0; o < strikes.size(); ++o) {
-        for (std::size_t part = 0; part < body_parts.size(); ++part) {
-            for (unsigned d = 0; d < direction_count; ++d) strikes[o][part][d] += here[o][part][d];
+        for (std::size_t n = 0; n < strikes[o].size(); ++n) {
+            for (unsigned d = 0; d < direction_count; ++d) strikes[o][n][d] += here[o][n][d];
         }
     }
     Target target;

@@ -10,15 +10,19 @@
 #include "device/buffer.h"
 #include "safety/footprint.h"
 #include "safety/objects.h"
+#include "safety/secondary_motion.h"
 #include "safety/walkable_map.h"
 
 namespace topple::safety {
 
-// Passes of each body part over an object, per walk, by direction: the most that any of its cells
-// gets.
-using Strikes = std::array<std::array<double, direction_count>, body_parts.size()>;
+// Passes at each level of energy over an object, per walk, by direction: the most that any of its
+// cells gets.
+using Strikes = std::vector<std::array<double, direction_count>>;
 
-// The probabilities and directions of the strongest strike of one walk; `energy` in joules by part.
+Strikes no_strikes(const SecondaryMotion& motion);
+
+// The probabilities and directions of the strongest strike of one walk; `energy` in joules by
+// level.
 // At most max_work_samples, of total probability at most 1.
 std::vector<WorkSample> strongest_strikes(const Strikes& strikes, std::span<const double> energy);
 
@@ -31,8 +35,8 @@ std::vector<WorkSample> strongest_strikes(const Strikes& strikes, std::span<cons
 class Convolution {
   public:
     Convolution(device::Device& device, const WalkableMap& map, const PrimaryMotion& motion,
-                const Surroundings& surroundings, std::span<const std::int32_t> object_of_cell,
-                const HumanOptions& options);
+                const SecondaryMotion& secondary, const Surroundings& surroundings,
+                std::span<const std::int32_t> object_of_cell, const HumanOptions& options);
 
     double band_m() const { return band_m_; }
 
@@ -66,6 +70,7 @@ class Convolution {
     device::Device& device_;
     const WalkableMap& map_;
     const PrimaryMotion& motion_;
+    const SecondaryMotion& secondary_;
     const Surroundings& surroundings_;
     std::span<const std::int32_t> object_of_cell_;
     HumanOptions options_;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 #include "device/device.h"
 #include "physics/bodies.h"
 #include "safety/directions.h"
+#include "topple/motion.h"
 #include "topple/scene.h"
 
 // Disturbance fields (paper, 5.1) and the risk they bring (Eq. 7). Grid frame: metres, z up.
@@ -52,6 +54,8 @@ struct HumanOptions {
     double body_mass_kg = 70;
     double walking_speed_m_s = 1.3;
     double wander_m = 0.20;  // how far walkers stray sideways from their path, at most
+    // How the bodies of walkers move; none: as in the table of body_parts.h.
+    std::shared_ptr<const BodyMotion> motion;
 };
 struct WindOptions {
     double speed_m_s = 12;

@@ -4,69 +4,64 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 
 namespace topple::safety {
 namespace {
 
-// Weight of a part in a cell that lies `ahead` of and `aside` from the walker, in metres, where the
-// path takes `spacing` metres from cell to cell.
-double part_weight(const BodyPart& part, const HumanOptions& options, double ahead, double aside,
-                   double spacing) {
-    const double height = options.body_height_m;
-    const double low = -part.back * height, high = part.front * height, reach = part.reach * height;
-    const double covered = std::min(ahead + spacing / 2, high) - std::max(ahead - spacing / 2, low);
-    if (covered <= 0) return 0;
-    const double stray = aside - reach;
-    if (stray >= options.wander_m && stray > 0) return 0;
-    return part.share * covered / (high - low) * (stray > 0 ? 1 - stray / options.wander_m : 1.0);
-}
-
-std::int32_t footprint_radius(double cell_m, const HumanOptions& options) {
-    double reach = 0;
-    for (const BodyPart& part : body_parts) {
-        const double side = part.reach * options.body_height_m + options.wander_m;
-        const double along = std::max(part.back, part.front) * options.body_height_m + cell_m;
-        reach = std::max(reach, std::hypot(side, along));
-    }
-    return static_cast<std::int32_t>(std::ceil(reach / cell_m));
-}
+// Passes rarer than one in a hundred thousand walks past a place are left out.
+constexpr float least_weight = 1e-5f;
 
 }  // namespace
 
-Footprint make_footprint(double cell_m, const HumanOptions& options) {
-    const std::int32_t radius = footprint_radius(cell_m, options);
-    const auto weight_at = [&](unsigned part, unsigned d, std::int32_t x, std::int32_t y) {
-        const auto [dx, dy] = direction(d);
-        const double ahead = -(x * dx + y * dy) * cell_m,
-                     aside = std::fabs(x * dy - y * dx) * cell_m;
+// An entry for each layer, direction and offset that has passes.
+Footprint make_footprint(double cell_m, const SecondaryMotion& motion) {
+    const auto radius = static_cast<std::int32_t>(std::ceil(motion.reach_m / cell_m)) + 1;
+    const auto weight_at = [&](const MotionLayer::Way& way, unsigned heading, std::int32_t x,
+                               std::int32_t y) {
+        const auto [dx, dy] = direction(heading);
+        const double ahead = -(x * dx + y * dy) * cell_m, aside = (x * dy - y * dx) * cell_m;
         const double spacing = cell_m / std::max(std::fabs(dx), std::fabs(dy));
-        return part_weight(body_parts[part], options, ahead, aside, spacing);
+        return way.passes(ahead, aside, spacing);
     };
-    Footprint out;
-    std::vector<Footprint::Offset> all;
-    for (std::int32_t y = -radius; y <= radius; ++y) {
-        for (std::int32_t x = -radius; x <= radius; ++x) {
-            bool used = false;
-            for (unsigned part = 0; part < body_parts.size() && !used; ++part) {
-                for (unsigned d = 0; d < direction_count && !used; ++d)
-                    used = weight_at(part, d, x, y) > 0;
+    const auto heading_of = [](const MotionLayer::Way& way, unsigned d) {
+        return (d + direction_count - way.turn) % direction_count;
+    };
+    struct Entry {
+        std::int32_t x, y;
+        unsigned heading;
+        float weight;
+    };
+    std::vector<Entry> entries;
+    std::vector<std::size_t> first{0};
+    std::map<std::pair<std::int32_t, std::int32_t>, std::uint32_t> rows;  // by y, then x
+    for (const MotionLayer& layer : motion.layers) {
+        for (unsigned d = 0; d < direction_count; ++d) {
+            for (const MotionLayer::Way& way : layer.ways) {
+                const unsigned heading = heading_of(way, d);
+                for (std::int32_t y = -radius; y <= radius; ++y) {
+                    for (std::int32_t x = -radius; x <= radius; ++x) {
+                        const auto weight = static_cast<float>(weight_at(way, heading, x, y));
+                        if (weight <= least_weight) continue;
+                        entries.push_back({x, y, heading, weight});
+                        rows.emplace(std::pair(y, x), 0);
+                    }
+                }
             }
-            if (!used) continue;
-            out.offsets.push_back({x, y});
-            out.radius = std::max({out.radius, std::abs(x), std::abs(y)});
+            first.push_back(entries.size());
         }
     }
-    out.first.push_back(0);
-    for (unsigned part = 0; part < body_parts.size(); ++part) {
-        for (unsigned d = 0; d < direction_count; ++d) {
-            for (std::size_t row = 0; row < out.offsets.size(); ++row) {
-                const double weight = weight_at(part, d, out.offsets[row].x, out.offsets[row].y);
-                if (weight <= 0) continue;
-                out.row.push_back(static_cast<std::uint32_t>(row));
-                out.weight.push_back(static_cast<float>(weight));
-            }
-            out.first.push_back(static_cast<std::uint32_t>(out.row.size()));
-        }
+    Footprint out;
+    for (auto& [place, row] : rows) {
+        row = static_cast<std::uint32_t>(out.offsets.size());
+        out.offsets.push_back({place.second, place.first});
+        out.radius = std::max({out.radius, std::abs(place.second), std::abs(place.first)});
+    }
+    for (const std::size_t f : first) out.first.push_back(static_cast<std::uint32_t>(f));
+    for (const Entry& e : entries) {
+        out.row.push_back(rows.at({e.y, e.x}));
+        out.heading.push_back(static_cast<std::uint8_t>(e.heading));
+        out.weight.push_back(e.weight);
     }
     return out;
 }
@@ -94,16 +89,6 @@ SightLines sight_lines(const Footprint& footprint, std::int32_t width) {
         lines.first.push_back(static_cast<std::uint32_t>(lines.a.size()));
     }
     return lines;
-}
-
-Bands bands_of(const BodyPart& part) {
-    Bands bands;
-    for (unsigned b = 0; b < band_count; ++b) {
-        const double middle = (b + 0.5) / band_count;
-        if (middle < part.low || middle >= part.high) continue;
-        if (bands.count++ == 0) bands.first = b;
-    }
-    return bands;
 }
 
 }  // namespace topple::safety

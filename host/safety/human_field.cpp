@@ -21,11 +21,6 @@ void check(const HumanOptions& options) {
     check_option("wander_m", options.wander_m, 0);
 }
 
-double kinetic_energy(const BodyPart& part, const HumanOptions& options) {
-    const double speed = part.speed * options.walking_speed_m_s;
-    return 0.5 * part.mass * options.body_mass_kg * speed * speed;  // paper, 5.2
-}
-
 // Floors at different heights are fields of their own: parts are at heights above the walker's
 // floor.
 struct Level {
@@ -154,16 +149,17 @@ Disturbance human_field(device::Device& device, const Surroundings& surroundings
 
     out.draws = motion.paths;
 
-    std::vector<Strikes> strikes(objects.size(), Strikes{});
+    const SecondaryMotion secondary =
+        options.motion ? recorded_motion(*options.motion, options) : table_motion(options);
+    out.notes.insert(out.notes.end(), secondary.notes.begin(), secondary.notes.end());
+    std::vector<Strikes> strikes(objects.size(), no_strikes(secondary));
     ArrowSample arrows;
-    Convolution convolution(device, map, motion, surroundings, object_of_cell, options);
+    Convolution convolution(device, map, motion, secondary, surroundings, object_of_cell, options);
     for (const Level& level : levels(map, 2 * convolution.band_m())) {
         convolution.add_level(level.floor_m, level.component, strikes, out.exposure, arrows);
     }
-    std::vector<double> energy;
-    for (const BodyPart& part : body_parts) energy.push_back(kinetic_energy(part, options));
     for (std::size_t o = 0; o < objects.size(); ++o)
-        out.work[o] = strongest_strikes(strikes[o], energy);
+        out.work[o] = strongest_strikes(strikes[o], secondary.energy_J);
     out.samples = arrows.take();
     return out;
 }

@@ -12,6 +12,7 @@
 #include "topple/device.h"
 #include "topple/error.h"
 #include "topple/input.h"
+#include "topple/motion.h"
 #include "topple/scene.h"
 
 namespace topple::vdb {
@@ -32,6 +33,10 @@ struct ParseOptions {
     std::uint64_t max_memory_bytes = 0;  // refuse inputs that would need more; 0: no limit
     double density_kg_m3 = 700;
     double friction = 0.3;
+    // People who walk by: walks that are sampled, and how a body moves meanwhile, from
+    // read_motion() or your own recording; none: a table of published figures of gait.
+    unsigned walks = 500;
+    std::shared_ptr<const BodyMotion> motion;
     double wind_m_s = 12;
     // Where the wind comes from, degrees clockwise from the scene's north, as Why::azimuth_deg;
     // none: from each of 16 directions.

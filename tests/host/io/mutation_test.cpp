@@ -8,6 +8,8 @@
 #include "io/frame_sequence.h"
 #include "io/read_cloud.h"
 #include "io/scene_json.h"
+#include "motion_files.h"
+#include "topple/motion.h"
 
 namespace topple::io {
 namespace {
@@ -133,6 +135,21 @@ TEST_F(Mutation, pcd) {
     append<std::uint32_t>(sizes, std::uint32_t(packed.size()));
     append<std::uint32_t>(sizes, std::uint32_t(raw.size()));
     mutate("a.pcd", head("binary_compressed") + sizes + packed, cloud);
+}
+
+TEST_F(Mutation, motion) {
+    const auto motion = [](const std::filesystem::path& file) {
+        const BodyMotion read = read_motion(file);
+        EXPECT_GE(read.frames(), 3u);
+        for (const auto& track : read.track) EXPECT_TRUE(track.empty() || track.size() >= 3);
+    };
+    mutate("a.bvh", test::bvh(6, 0.1), motion);
+    std::string table =
+        "time,l_shoulder.x,l_shoulder.y,l_shoulder.z,l_elbow.x,l_elbow.y,l_elbow.z,l_wrist.x,"
+        "l_wrist.y,l_wrist.z\n";
+    for (int f = 0; f < 6; ++f)
+        table.append(std::to_string(0.1 * f)).append(",0,0,1.4,0,0,1.1,0,0,0.83\n");
+    mutate("a.csv", table, motion);
 }
 
 TEST_F(Mutation, xyz) {

@@ -8,6 +8,7 @@
 #include "kernels/device_harness.h"
 #include "oracle/disturbance_oracle.h"
 #include "room.h"
+#include "safety/body_parts.h"
 #include "safety/convolution.h"
 #include "safety/fields.h"
 #include "safety/walkable_map.h"

@@ -43,7 +43,7 @@ TEST(Risk, UnsafetyRunsFromOneToTen) {
 }
 
 TEST(Risk, OneWalkStrikesOnceAndMostlyHard) {
-    Strikes strikes{};
+    Strikes strikes(8);
     strikes[0][3] = 0.5;  // the strongest
     strikes[1][0] = 0.6;
     strikes[1][8] = 0.6;
@@ -59,7 +59,7 @@ TEST(Risk, OneWalkStrikesOnceAndMostlyHard) {
 }
 
 TEST(Risk, ManyStrikesStayCompact) {
-    Strikes strikes{};
+    Strikes strikes(8);
     for (auto& part : strikes) part.fill(0.01);
     std::vector<double> energy{8, 7, 6, 5, 4, 3, 2, 1};
     const auto samples = strongest_strikes(strikes, energy);

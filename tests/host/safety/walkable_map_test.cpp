@@ -7,6 +7,7 @@
 #include <set>
 
 #include "room.h"
+#include "safety/body_parts.h"
 #include "safety/directions.h"
 #include "safety/footprint.h"
 
@@ -160,7 +161,7 @@ TEST(PrimaryMotion, OneSeedOneResult) {
 TEST(Footprint, OneWalkPastACellIsOnePass) {
     HumanOptions options;
     const double cell = 0.05;
-    const Footprint footprint = make_footprint(cell, options);
+    const Footprint footprint = make_footprint(cell, table_motion(options));
     for (unsigned part = 0; part < body_parts.size(); ++part) {
         for (const unsigned d : {0u, 4u, 8u, 12u}) {  // paths along the grid
             std::map<int, double> by_side;

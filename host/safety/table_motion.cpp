@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include "safety/body_parts.h"
+#include "safety/secondary_motion.h"
+
+namespace topple::safety {
+namespace {
+
+double part_weight(const BodyPart& part, const HumanOptions& options, double ahead, double aside,
+                   double spacing) {
+    const double height = options.body_height_m;
+    const double low = -part.back * height, high = part.front * height, reach = part.reach * height;
+    const double covered = std::min(ahead + spacing / 2, high) - std::max(ahead - spacing / 2, low);
+    if (covered <= 0) return 0;
+    const double stray = std::fabs(aside) - reach;
+    if (stray >= options.wander_m && stray > 0) return 0;
+    return part.share * covered / (high - low) * (stray > 0 ? 1 - stray / options.wander_m : 1.0);
+}
+
+// The bands whose middle lies within the part.
+Bands bands_of(const BodyPart& part) {
+    Bands bands;
+    for (unsigned b = 0; b < band_count; ++b) {
+        const double middle = (b + 0.5) / band_count;
+        if (middle < part.low || middle >= part.high) continue;
+        if (bands.count++ == 0) bands.first = b;
+    }
+    return bands;
+}
+
+}  // namespace
+
+SecondaryMotion table_motion(const HumanOptions& options) {
+    SecondaryMotion out;
+    for (const BodyPart& part : body_parts) {
+        const double speed = part.speed * options.walking_speed_m_s;
+        MotionLayer layer;
+        layer.level = out.energy_J.size();
+        layer.bands = bands_of(part);
+        layer.speed_m_s = speed;
+        layer.ways.push_back({0, [&part, options](double ahead, double aside, double spacing) {
+                                  return part_weight(part, options, ahead, aside, spacing);
+                              }});
+        out.energy_J.push_back(0.5 * part.mass * options.body_mass_kg * speed * speed);
+        out.layers.push_back(std::move(layer));
+        out.reach_m = std::max(out.reach_m,
+                               std::hypot(part.reach * options.body_height_m + options.wander_m,
+                                          std::max(part.back, part.front) * options.body_height_m));
+    }
+    return out;
+}
+
+}  // namespace topple::safety
