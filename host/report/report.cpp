@@ -40,6 +40,26 @@ Json records_json(const Records& records) {
             {"aux", packed(records.aux)}};
 }
 
+// Places to the millimetre.
+Json walks_json(const PackedWalks& walks) {
+    Json paths = Json::array();
+    for (const auto& path : walks.paths) {
+        Json corners = Json::array();
+        for (const auto& corner : path)
+            for (const float x : corner) corners.push_back(std::round(1000 * double{x}) / 1000);
+        paths.push_back(std::move(corners));
+    }
+    return {{"nx", walks.nx},
+            {"ny", walks.ny},
+            {"corner_m", walks.corner_m},
+            {"along_x_m", walks.along_x_m},
+            {"along_y_m", walks.along_y_m},
+            {"shade", packed(walks.shade)},
+            {"floor_mm", packed(walks.floor_mm)},
+            {"most", walks.most},
+            {"paths", std::move(paths)}};
+}
+
 Json view_json(const PackedView& view) {
     Json groups = Json::array();
     for (const auto& [primitive, object] : view.groups) groups.push_back({primitive, object});
@@ -56,7 +76,8 @@ Json view_json(const PackedView& view) {
             {"groups", std::move(groups)},
             {"voxels", records_json(view.voxels)},
             {"points", records_json(view.points)},
-            {"fields", std::move(fields)}};
+            {"fields", std::move(fields)},
+            {"walks", walks_json(view.walks)}};
 }
 
 Json point_json(const Point& p) {

@@ -112,6 +112,7 @@ class Packer {
         pack_voxels();
         pack_points();
         for (const auto& [name, field] : scene_.fields) pack_field(field, view_.fields[name]);
+        view_.walks = pack_walks(scene_.walks, view_.view_from_input, limits_.walk_cells);
         return std::move(view_);
     }
 
@@ -290,7 +291,8 @@ class Packer {
         }
     }
 
-    // The strongest sample of each cube of a grid that is widened until few enough are left.
+    // The densest sample, and of these the strongest, of each cube of a grid that is widened until
+    // few enough are left.
     void pack_field(const FieldSamples& field, Arrows& out) const {
         out.total = field.x.size();
         Box box;
@@ -323,8 +325,8 @@ class Packer {
             }
         }
     }
-    static float strength(const std::array<float, 7>& a) {
-        return (a[3] * a[3] + a[4] * a[4] + a[5] * a[5]) * (1 + a[6]);
+    static std::pair<float, float> strength(const std::array<float, 7>& a) {
+        return {a[6], a[3] * a[3] + a[4] * a[4] + a[5] * a[5]};
     }
 
     const Scene& scene_;

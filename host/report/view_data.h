@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "report/view_walks.h"
 #include "topple/scene.h"
 
 // What the page draws, packed for it. Everything is in the view's frame: the input's, turned so
@@ -17,7 +18,7 @@ namespace topple::report {
 
 // How much the page may hold; 400,000 voxels and 300,000 points take 11 MB.
 struct ViewLimits {
-    std::size_t voxels = 400'000, points = 300'000, arrows = 2'500;
+    std::size_t voxels = 400'000, points = 300'000, arrows = 2'500, walk_cells = 40'000;
 };
 
 // Records of a voxel or point. cell: x, y, z in steps of PackedView::step_m from origin_m, then the
@@ -44,6 +45,7 @@ struct PackedView {
         groups;  // primitive and object of each group
     Records voxels, points;
     std::map<std::string, Arrows> fields;
+    PackedWalks walks;
 };
 
 // Never fails; what is not finite is left out.

@@ -12,6 +12,8 @@ function loadScene() {
   for (const name of Object.keys(view.fields)) {
     view.fields[name].arrow = new Float32Array(bytesOf(view.fields[name].arrow));
   }
+  view.walks.shade = new Uint8Array(bytesOf(view.walks.shade));
+  view.walks.floor_mm = new Int16Array(bytesOf(view.walks.floor_mm));
   scene.objectById = new Map(scene.objects.map(object => [object.id, object]));
   scene.disturbances = [];
   for (const object of scene.objects) {

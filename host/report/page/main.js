@@ -7,8 +7,8 @@ function fillHeader(scene) {
   document.getElementById('title').textContent = scene.source || 'scene';
   const loose = scene.objects.filter(object => !object.grounded).length;
   document.getElementById('summary').textContent =
-    `${plural(scene.objects.length, 'object')} of ${plural(scene.primitives.length, 'primitive')}; ` +
-    `${loose} of them can move, the others are the ground or fixed to it.`;
+    `${plural(loose, 'object')} that can move` + (loose < scene.objects.length ? ', and the ground with all that is fixed to it' : '') +
+    `; ${plural(scene.primitives.length, 'part')} in all.`;
   const up = {
     given: 'given by the user', manhattan: 'from the room\u2019s three main directions',
     'dominant-plane': 'from the largest plane', 'upright-surfaces': 'along the walls', assumed: 'assumed',
@@ -40,7 +40,7 @@ function fillBottom(scene) {
   if (!scene.notes.length) document.getElementById('notes-panel').hidden = true;
   document.getElementById('table-note').textContent =
     'Click a heading to sort. Barrier: the least energy that moves an object; release: what it then can set free. ' +
-    'Risks are joules per event.';
+    'For each disturbance: joules expected per event, \u00b1 how exactly that is known, and how often an event upsets the object.';
 }
 
 // One button of a group is pressed at a time.
@@ -56,19 +56,58 @@ function radioGroup(id, value, change) {
   press(value);
 }
 
-function legend(scene, mode, fieldsOn, view) {
+const markerTexts = {middle: 'centre of mass', edge: 'edge it turns over or leaves', lands: 'where it lands', move: 'where to move it'};
+
+function legend(scene, state, view) {
   const box = document.getElementById('legend');
   box.replaceChildren();
-  if (mode === 'risk') {
-    box.append(element('div', {text: 'Unsafety'}),
-      element('div', {className: 'bar', style: {background: `linear-gradient(90deg, ${riskStops.map(css).join(',')})`}}),
-      element('div', {className: 'ends'}, [element('span', {text: '1 safest'}), element('span', {text: '10'})]));
+  const bar = colours => element('div', {className: 'bar', style: {background: `linear-gradient(90deg, ${colours.map(css).join(',')})`}});
+  const ends = (low, high) => element('div', {className: 'ends'}, [element('span', {text: low}), element('span', {text: high})]);
+  if (state.mode === 'risk') {
+    box.append(element('div', {text: 'Unsafety'}), bar(riskStops), ends('1 safest', '10'));
   }
-  for (const name of fieldsOn) {
-    const unit = name === 'earthquake' ? 'm/s\u00b2' : 'm/s';
-    box.append(element('div', {text: `${capital(name)}: longest arrow ${number(view.fields[name].userData.strongest, unit)}`}));
+  if (state.fieldsOn.includes('walks')) {
+    box.append(element('div', {text: 'Floor: how many of 100 walks pass there'}), bar(scene.ramp.colours), ends('0', number(100 * scene.view.walks.most)));
+  }
+  const arrows = state.fieldsOn.filter(name => name !== 'walks');
+  for (const name of arrows) {
+    const strongest = view.fields[name].userData.strongest;
+    const [text, most] = {
+      human: ['Arrows: how often people\u2019s bodies pass there', `${number(100 * strongest)} times in 100 walks`],
+      wind: ['Arrows: wind', number(strongest, 'm/s')],
+      earthquake: ['Arrows: shaking below things', number(strongest, 'm/s\u00b2')],
+    }[name] || [`Arrows: ${name}`, number(strongest)];
+    box.append(element('div', {text}), bar(scene.ramp.colours), ends('0', most));
+  }
+  for (const part of view.marker.parts()) {
+    box.append(element('div', {className: 'part'}, [
+      element('span', {className: 'dot', style: {background: markerColours[part]}}), markerTexts[part]]));
   }
   box.hidden = !box.childNodes.length;
+}
+
+// A box for each disturbance's arrows and for the floor that people walk on; one that has nothing to show says why.
+function fieldBoxes(scene, view, state) {
+  const fields = document.getElementById('fields');
+  const entries = disturbanceNames.map(name => [name, `${capital(causeOf(name))}`, !!view.fields[name],
+    scene.disturbances.includes(name) ? 'it reaches nothing here' : 'this run left it out']);
+  entries.push(['walks', 'Walked floor', view.walks.children.length > 0,
+    scene.disturbances.includes('human') ? 'no floor was found that people could walk on' : 'this run left people out']);
+  const missing = [];
+  for (const [name, label, there, why] of entries) {
+    const box = element('input', {type: 'checkbox', disabled: !there, onchange: () => {
+      if (name === 'walks') view.setWalks(box.checked);
+      else view.setField(name, box.checked);
+      state.fieldsOn = box.checked ? [...state.fieldsOn, name] : state.fieldsOn.filter(other => other !== name);
+      legend(scene, state, view);
+    }});
+    box.dataset.field = name;
+    fields.append(element('label', {className: there ? 'check' : 'check off', title: there ? '' : why}, [box, label.toLowerCase()]));
+    if (!there) missing.push(`${label}: ${why}.`);
+  }
+  const line = document.getElementById('missing');
+  line.textContent = missing.length ? 'Not shown: ' + missing.join(' ') : '';
+  line.hidden = !missing.length;
 }
 
 function sayThinned(scene) {
@@ -143,33 +182,29 @@ function start() {
   const repaint = () => {
     if (!view) return;
     view.paint(state.mode, state.chosen);
-    legend(scene, state.mode, state.fieldsOn, view);
+    legend(scene, state, view);
   };
   const choose = id => {
     state.chosen = id === state.chosen ? null : id;
     showObject(panel, scene, state.chosen, choose);
     table.choose(state.chosen);
+    if (state.chosen === null) delete document.body.dataset.chosen;
+    else document.body.dataset.chosen = state.chosen;
     if (view) view.mark(scene.objectById.get(state.chosen));
     repaint();
   };
   const table = new ObjectTable(document.getElementById('objects'), scene, choose);
-  showObject(panel, scene, null, choose);
+  fillRisk(document.getElementById('risk'), scene, id => {
+    choose(id);
+    document.querySelector('.stage').scrollIntoView({block: 'nearest'});
+  });
 
   if (view) {
     radioGroup('colour-by', state.mode, mode => { state.mode = mode; repaint(); });
     const hasSolids = scene.view.voxels.count > 0;
     radioGroup('show', hasSolids ? 'solids' : 'points', what => view.setShow(what));
     view.setShow(hasSolids ? 'solids' : 'points');
-    const fields = document.getElementById('fields');
-    for (const name of Object.keys(view.fields)) {
-      const box = element('input', {type: 'checkbox', onchange: () => {
-        view.setField(name, box.checked);
-        state.fieldsOn = box.checked ? [...state.fieldsOn, name] : state.fieldsOn.filter(other => other !== name);
-        legend(scene, state.mode, state.fieldsOn, view);
-      }});
-      box.dataset.field = name;
-      fields.append(element('label', {className: 'check'}, [box, name + ' field']));
-    }
+    fieldBoxes(scene, view, state);
     document.getElementById('through').addEventListener('change', event => view.setThrough(event.target.checked));
     document.getElementById('reset').addEventListener('click', () => view.reset());
     connectPointer(scene, view, choose);
@@ -179,6 +214,9 @@ function start() {
     document.body.dataset.faces = view.faces;
     document.body.dataset.points = scene.view.points.count;
     document.body.dataset.triangles = view.renderer.info.render.triangles;
+    // Milliseconds from the page's start until the first picture stood, which reading it back waits for.
+    view.renderer.getContext().readPixels(0, 0, 1, 1, WebGLRenderingContext.RGBA, WebGLRenderingContext.UNSIGNED_BYTE, new Uint8Array(4));
+    document.body.dataset.firstPictureMs = Math.round(performance.now());
   } else {
     for (const bar of document.querySelectorAll('.toolbar')) bar.hidden = true;
   }

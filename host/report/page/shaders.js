@@ -43,7 +43,8 @@ const voxelVertexShader = recordShader + `
     }
     float light = 0.86 + 0.16 * faceNormal.z - 0.07 * abs(faceNormal.x) + 0.04 * faceNormal.x;
     if (faceNormal.z < -0.5) light = 0.62;
-    float completed = aux.w >= 64.0 ? 0.9 : 1.0;
+    // What was inferred is darker on things; on floors and walls it would only be speckles.
+    float completed = aux.w >= 64.0 && colour.a > 0.75 ? 0.93 : 1.0;
     shade = picking > 0.5 ? identity() : colour.rgb * light * completed;
     gl_Position = projectionMatrix * viewMatrix * vec4(centre + position * cube, 1.0);
   }
@@ -72,21 +73,43 @@ const recordFragmentShader = `
   void main() { gl_FragColor = vec4(shade, 1.0); }
 `;
 
+// Low to high, as walks and arrows are coloured.
+const rampShader = `
+  uniform vec3 ramp[6];
+  vec3 rampColour(float share) {
+    float at = clamp(share, 0.0, 1.0) * 5.0;
+    vec3 colour = ramp[0];
+    for (int i = 0; i < 5; ++i) colour = mix(colour, ramp[i + 1], clamp(at - float(i), 0.0, 1.0));
+    return colour;
+  }
+`;
+
 // An arrow along +z of unit length, turned to its direction and scaled.
-const arrowVertexShader = `
+const arrowVertexShader = rampShader + `
   attribute vec3 offset, direction;
   attribute float strength;
   uniform float longest, thickness;
-  uniform vec3 colour;
   varying vec3 shade;
   void main() {
     float speed = length(direction);
     vec3 along = speed > 0.0 ? direction / speed : vec3(0.0, 0.0, 1.0);
     vec3 side = normalize(cross(along, abs(along.z) < 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
     vec3 other = cross(along, side);
-    vec3 at = offset + (position.x * side + position.y * other) * thickness
-            + along * position.z * longest * max(strength, 0.15);
-    shade = mix(vec3(1.0), colour, 0.45 + 0.55 * strength) * (0.75 + 0.25 * normalize(position.x * side + position.y * other + 1e-5).z);
+    vec3 out_ = position.x * side + position.y * other;
+    float size = mix(0.35, 1.0, strength);
+    vec3 at = offset + (out_ * thickness + along * position.z * longest) * size;
+    shade = rampColour(strength) * (0.8 + 0.2 * normalize(out_ + 1e-5).z);
     gl_Position = projectionMatrix * viewMatrix * vec4(at, 1.0);
+  }
+`;
+
+// One cell of the walkable floor.
+const walkVertexShader = rampShader + `
+  attribute vec3 offset;
+  attribute float share;
+  varying vec3 shade;
+  void main() {
+    shade = rampColour(share);
+    gl_Position = projectionMatrix * viewMatrix * vec4(offset + position, 1.0);
   }
 `;

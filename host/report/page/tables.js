@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 'use strict';
 
-const capital = text => text.charAt(0).toUpperCase() + text.slice(1);
-
 // A barrier that a voxel more or less would undo can't be told from 0.
 function barrierText(object, unit) {
   if (object.grounded || object.barrier_J === null) return number(null);
@@ -14,17 +12,38 @@ function objectColumns(scene) {
   const columns = [
     {name: 'Object', value: object => object.id, cell: object => [
       element('span', {className: 'swatch', style: {background: css(colourOf(scene, object.id))}}), String(object.id)]},
-    {name: 'Grounded', text: true, value: object => object.grounded ? 1 : 0, cell: object => [object.grounded ? 'yes' : 'no']},
     {name: 'Mass (kg)', value: object => object.mass_kg},
     {name: 'Barrier (J)', value: object => object.grounded ? Infinity : object.barrier_J, cell: object => [barrierText(object)]},
     {name: 'Release (J)', value: object => object.grounded ? -1 : object.release_J, number: object => object.grounded ? null : object.release_J},
-    {name: 'Mode', text: true, value: object => object.mode, cell: object => [object.mode === 'none' ? '\u2013' : object.mode]},
+    {name: 'How', text: true, value: howText, cell: object => [howText(object)]},
   ];
   for (const name of scene.disturbances) {
-    columns.push({name: capital(name) + ' risk (J)', value: object => object.risk_J[name]});
+    columns.push({name: capital(name) + ' (J)', value: object => object.risk_J[name], cell: object => riskCell(object, name)});
+  }
+  if (scene.objects.some(object => object.advice && object.advice.kind)) {
+    columns.push({name: 'Advice', text: true, value: adviceText, cell: object => [adviceText(object)]});
   }
   columns.push({name: 'Unsafety', value: object => object.unsafety, cell: object => [unsafetyBadge(object)]});
   return columns;
+}
+
+function howText(object) {
+  return object.grounded ? 'ground' : {tip: 'tips', slide: 'slides'}[object.mode] || '\u2013';
+}
+
+function adviceText(object) {
+  return (object.advice || {}).kind || '\u2013';
+}
+
+// Joules per event, how exactly they are known, and the chance per event that it falls.
+function riskCell(object, name) {
+  const risk = object.risk_J[name];
+  if (!(risk > 0)) return [number(risk)];
+  const spread = (object.risk_spread_J || {})[name], chance = (object.fall_chance || {})[name];
+  const cell = [number(risk)];
+  if (spread !== undefined && spread !== null) cell.push(element('span', {className: 'pm', text: ` \u00b1 ${spread < risk / 1000 ? '0' : Number(spread.toPrecision(2))}`}));
+  if (chance !== undefined && chance !== null) cell.push(element('small', {text: chanceText(name, chance)}));
+  return cell;
 }
 
 function unsafetyBadge(object) {
@@ -103,15 +122,19 @@ function objectLinks(ids, choose) {
     element('button', {type: 'button', text: 'object ' + id + (text ? ' \u00b7 ' + text : ''), onclick: () => choose(id)})));
 }
 
+// Fills the panel, or hides it where nothing is chosen.
 function showObject(panel, scene, id, choose) {
   panel.replaceChildren();
+  panel.scrollTop = 0;
   const object = scene.objectById.get(id);
-  if (!object) {
-    showOverview(panel, scene, choose);
-    return;
-  }
+  panel.hidden = !object;
+  if (!object) return;
+  panel.append(element('button', {type: 'button', text: '\u2190 all that is at risk', onclick: () => choose(null)}));
   const heading = element('h2', {}, [element('span', {className: 'swatch', style: {background: css(colourOf(scene, id))}}), 'Object ' + id]);
   panel.append(heading);
+  if (!object.grounded) panel.append(element('p', {className: 'why', text: upsetText(object)}));
+  if (fallKnown(object)) panel.append(element('p', {className: 'why', text: happensText(scene, object)}));
+  if (object.advice && object.advice.sentence) panel.append(element('p', {className: 'advice', text: object.advice.sentence}));
   panel.append(element('p', {className: 'why', text: object.why.sentence}));
   const pairs = [['Mass', number(object.mass_kg, 'kg')],
     ['Centre of mass', object.center_of_mass_m.map(v => v === null ? '\u2013' : v.toFixed(2)).join(', ') + ' m']];
@@ -120,17 +143,25 @@ function showObject(panel, scene, id, choose) {
       ['Error of the barrier', number(object.barrier_error_J, 'J')], ['It then can release', number(object.release_J, 'J')]);
   }
   if (object.why.azimuth_deg !== null) pairs.push(['Weakest direction', azimuthText(object.why.azimuth_deg)]);
-  for (const name of scene.disturbances) pairs.push(['Risk by ' + name, number(object.risk_J[name], 'J')]);
+  for (const name of object.grounded ? [] : scene.disturbances) {
+    pairs.push([`Risk from ${causeOf(name)}`, riskText(object, name)]);
+  }
   pairs.push(['Unsafety, 1 to 10', object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
   panel.append(numberList(pairs));
 
+  const contacts = contactGraph(scene, id, choose);
+  if (contacts) panel.append(contacts);
   panel.append(...drawingsOf(scene, id));
   const on = scene.supports.filter(s => s.supported === id).map(s => [s.supporter, areaText(s.area_m2)]);
   const carries = scene.supports.filter(s => s.supporter === id).map(s => [s.supported, areaText(s.area_m2)]);
   if (on.length) panel.append(element('h3', {text: 'Rests on'}), objectLinks(on, choose));
   if (carries.length) panel.append(element('h3', {text: 'Carries'}), objectLinks(carries, choose));
   panel.append(element('h3', {text: 'Made of'}), primitiveList(scene, object));
-  panel.append(element('p', {className: 'hint'}, [element('button', {type: 'button', text: 'back to the overview', onclick: () => choose(null)})]));
+}
+
+function riskText(object, name) {
+  const spread = (object.risk_spread_J || {})[name], risk = object.risk_J[name];
+  return number(risk, 'J') + (risk > 0 && spread > 0 ? ` \u00b1 ${Number(spread.toPrecision(2))}` : '');
 }
 
 function azimuthText(degrees) {
@@ -153,26 +184,4 @@ function primitiveList(scene, object) {
   }
   if (parts.length > 12) list.append(element('dt', {text: `and ${parts.length - 12} more`}), element('dd'));
   return list;
-}
-
-function showOverview(panel, scene, choose) {
-  const movable = scene.objects.filter(object => !object.grounded);
-  panel.append(element('h2', {text: 'Most likely to fall'}));
-  if (!movable.length) {
-    panel.append(element('p', {className: 'hint', text: 'No object was found that could fall.'}));
-    return;
-  }
-  panel.append(element('p', {className: 'hint', text: 'By unsafety. Choose one here, in the view or in the table.'}));
-  const worst = movable.slice().sort((a, b) => (b.unsafety || 0) - (a.unsafety || 0) || a.id - b.id).slice(0, 8);
-  const list = element('div', {className: 'bars'});
-  for (const object of worst) {
-    const fill = element('div', {className: 'fill', style: {
-      width: 10 * (object.unsafety || 0) + '%', background: css(riskColour(object.unsafety || 1)),
-    }});
-    list.append(element('button', {type: 'button', text: 'object ' + object.id, onclick: () => choose(object.id)}),
-      element('div', {className: 'track'}, [fill]),
-      element('span', {className: 'value', text: object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)}),
-      element('p', {className: 'hint', text: object.why.sentence}));
-  }
-  panel.append(list);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 'use strict';
 
-const fieldColours = {human: [0.10, 0.45, 0.20], wind: [0.05, 0.42, 0.70], earthquake: [0.62, 0.25, 0.05]};
 const faceNormals = [[-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1]];
 
 // The 3D view. Throws where there is no WebGL. Draws only when something changed.
@@ -21,8 +20,7 @@ class View {
     this.measure();
     this.makeVoxels();
     this.makePoints();
-    this.makeFields();
-    this.makeMarker();
+    this.makeOverlays();
     this.ids = new THREE.WebGLRenderTarget(1, 1, {magFilter: THREE.NearestFilter, minFilter: THREE.NearestFilter});
     this.idsStale = true;
     this.show = 'solids';
@@ -75,26 +73,23 @@ class View {
     this.redraw();
   }
 
-  // The middle and the reach of what is drawn, from the records' 2nd and 98th hundredths.
+  // The box and the reach of what is drawn, from the records' 2nd and 98th hundredths.
   measure() {
     const view = this.scene.view;
     const records = view.voxels.count ? view.voxels : view.points;
-    this.centre = new THREE.Vector3();
+    this.box = new THREE.Box3(new THREE.Vector3(-0.5, -0.5, -0.5), new THREE.Vector3(0.5, 0.5, 0.5));
     this.reach = 1;
-    this.height = 0;
     if (!records.count) return;
-    let sum = 0;
     const stride = Math.max(1, Math.floor(records.count / 20000));
     ['x', 'y', 'z'].forEach((axis, k) => {
       const values = [];
       for (let i = 0; i < records.count; i += stride) values.push(records.cell[4 * i + k]);
       values.sort((a, b) => a - b);
       const at = share => view.origin_m[k] + view.step_m[k] * values[Math.floor(share * (values.length - 1))];
-      this.height = at(0.98) - at(0.02);  // of the last axis in the end
-      this.centre[axis] = (at(0.02) + at(0.98)) / 2;
-      sum += Math.pow(at(0.98) - at(0.02), 2);
+      this.box.min[axis] = at(0.02);
+      this.box.max[axis] = at(0.98);
     });
-    this.reach = Math.max(Math.sqrt(sum), 4 * view.cube_m, 0.05);
+    this.reach = Math.max(this.box.min.distanceTo(this.box.max), 4 * view.cube_m, 0.05);
   }
 
   // --- what is drawn --------------------------------------------------------------------------------
@@ -155,85 +150,24 @@ class View {
     this.uniforms.pointSize.value = Math.max(Math.sqrt(area / Math.max(points.count, 1)) * 1.1, 0.3 * this.scene.voxel_size_m);
   }
 
-  makeFields() {
+  // What lies over the solids; each of it is hidden at first.
+  makeOverlays() {
     this.fields = {};
     for (const name of Object.keys(this.scene.view.fields)) {
-      const field = this.scene.view.fields[name];
-      if (!field.count) continue;
-      const offset = new Float32Array(3 * field.count), direction = new Float32Array(3 * field.count);
-      const speed = new Float32Array(field.count);
-      for (let i = 0; i < field.count; ++i) {
-        for (let k = 0; k < 3; ++k) {
-          offset[3 * i + k] = field.arrow[7 * i + k];
-          direction[3 * i + k] = field.arrow[7 * i + 3 + k];
-        }
-        speed[i] = Math.hypot(...field.arrow.subarray(7 * i + 3, 7 * i + 6));
-      }
-      const strongest = Float32Array.from(speed).sort()[Math.floor(0.95 * (field.count - 1))] || 1;
-      for (let i = 0; i < field.count; ++i) speed[i] = Math.min(speed[i] / strongest, 1);
-      const geometry = new THREE.InstancedBufferGeometry();
-      const {corners, index} = arrowShape();
-      geometry.setAttribute('position', new THREE.Float32BufferAttribute(corners, 3));
-      geometry.setIndex(index);
-      geometry.setAttribute('offset', new THREE.InstancedBufferAttribute(offset, 3));
-      geometry.setAttribute('direction', new THREE.InstancedBufferAttribute(direction, 3));
-      geometry.setAttribute('strength', new THREE.InstancedBufferAttribute(speed, 1));
-      geometry.maxInstancedCount = field.count;
-      const longest = Math.min(Math.max(0.035 * this.reach, 0.05), 0.35);
-      const mesh = new THREE.Mesh(geometry, new THREE.ShaderMaterial({
-        uniforms: {
-          longest: {value: longest}, thickness: {value: 0.14 * longest},
-          colour: {value: new THREE.Vector3(...(fieldColours[name] || [0.35, 0.2, 0.5]))},
-        },
-        vertexShader: arrowVertexShader, fragmentShader: recordFragmentShader, side: THREE.DoubleSide,
-      }));
-      mesh.frustumCulled = false;
-      mesh.visible = false;
-      mesh.userData.strongest = strongest;
-      this.fields[name] = mesh;
-      this.world.add(mesh);
+      if (this.scene.view.fields[name].count) this.fields[name] = fieldMesh(this.scene, name, this.reach);
     }
-  }
-
-  // The chosen object's centre of mass, weakest direction, and the edge that it turns over or slides off.
-  makeMarker() {
-    this.marker = new THREE.Group();
-    const ink = new THREE.MeshBasicMaterial({color: 0x101418, depthTest: false, transparent: true});
-    this.ball = new THREE.Mesh(new THREE.SphereGeometry(1, 16, 12), ink);
-    this.arrow = new THREE.ArrowHelper(new THREE.Vector3(1, 0, 0), new THREE.Vector3(), 1, 0x101418);
-    this.arrow.line.material.depthTest = this.arrow.cone.material.depthTest = false;
-    this.arrow.line.material.transparent = this.arrow.cone.material.transparent = true;
-    // As thick as it is needed: lines are a pixel wide.
-    this.edge = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 8),
-      new THREE.MeshBasicMaterial({color: 0xc92c2c, depthTest: false, transparent: true}));
-    this.marker.add(this.ball, this.arrow, this.edge);
-    this.marker.visible = false;
-    this.marker.renderOrder = 10;
-    this.world.add(this.marker);
+    this.walks = walksGroup(this.scene, this.reach);
+    this.marker = new Marker(this.reach);
+    this.labels = new Labels(this.container, this.scene);
+    for (const overlay of [...Object.values(this.fields), this.walks, this.marker.group]) {
+      overlay.visible = false;
+      this.world.add(overlay);
+    }
   }
 
   mark(object) {
-    this.marker.visible = !!object && object.center_of_mass_m.every(value => value !== null);
-    if (this.marker.visible) {
-      const at = this.fromInput(object.center_of_mass_m);
-      this.ball.position.copy(at);
-      this.ball.scale.setScalar(0.006 * this.reach);
-      const direction = this.fromInput(object.direction.map(value => value || 0));
-      this.arrow.visible = direction.length() > 0.5;
-      if (this.arrow.visible) {
-        this.arrow.position.copy(at);
-        this.arrow.setDirection(direction.normalize());
-        this.arrow.setLength(0.08 * this.reach, 0.02 * this.reach, 0.012 * this.reach);
-      }
-      this.edge.visible = object.why.edge_m.length === 2 && object.why.edge_m.flat().every(value => value !== null);
-      if (this.edge.visible) {
-        const [a, b] = object.why.edge_m.map(end => this.fromInput(end));
-        const along = b.clone().sub(a), length = Math.max(along.length(), 0.01 * this.reach);
-        this.edge.position.copy(a).add(b).multiplyScalar(0.5);
-        this.edge.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.lengthSq() > 0 ? along.normalize() : new THREE.Vector3(1, 0, 0));
-        this.edge.scale.set(0.003 * this.reach, length, 0.003 * this.reach);
-      }
-    }
+    this.marker.show(object, v => this.fromInput(v));
+    this.labels.choose(object);
     this.redraw();
   }
 
@@ -244,16 +178,34 @@ class View {
 
   // --- the camera ---------------------------------------------------------------------------------
 
+  // From above, as near as the box fits.
   reset() {
     const direction = new THREE.Vector3(-0.55, -0.75, 0.62).normalize();
+    const right = new THREE.Vector3(0, 0, 1).cross(direction).normalize(), up = new THREE.Vector3().crossVectors(direction, right);
+    // The nearest upper corner belongs to walls and a ceiling that are looked through.
+    const {min, max} = this.box, corners = [];
+    for (const x of [min.x, max.x]) {
+      for (const y of [min.y, max.y]) {
+        for (const z of [min.z, max.z]) {
+          if (x !== min.x || y !== min.y || z !== max.z) corners.push(new THREE.Vector3(x, y, z));
+        }
+      }
+    }
+    const tall = 0.94 * Math.tan(this.camera.fov * Math.PI / 360), wide = tall * this.camera.aspect;
+    const target = this.box.getCenter(new THREE.Vector3());
+    let distance = this.reach;
+    for (let round = 0; round < 20; ++round) {
+      // How far the corners reach to each side of the middle, as shares of what the window shows.
+      const reach = (axis, half) => {
+        const shares = corners.map(corner => corner.clone().sub(target)).map(p => p.dot(axis) / (distance - p.dot(direction)) / half);
+        return [Math.min(...shares), Math.max(...shares)];
+      };
+      const [left, east] = reach(right, wide), [low, high] = reach(up, tall);
+      target.addScaledVector(right, (left + east) / 2 * wide * distance).addScaledVector(up, (low + high) / 2 * tall * distance);
+      distance = Math.max(distance * Math.max((east - left) / 2, (high - low) / 2), 0.3 * this.reach);
+    }
     this.camera.near = 0.004 * this.reach;
     this.camera.far = 20 * this.reach;
-    // The sphere around the scene fits the narrower side of the window.
-    const half = Math.atan(Math.tan(this.camera.fov * Math.PI / 360) * Math.min(1, this.camera.aspect));
-    const distance = 0.53 * this.reach / Math.sin(half);
-    // The near walls and the ceiling are left out, so what shows lies below the middle.
-    const target = this.centre.clone();
-    target.z -= 0.14 * this.height;
     this.camera.position.copy(target).addScaledVector(direction, distance);
     this.camera.updateProjectionMatrix();
     this.controls.target.copy(target);
@@ -278,6 +230,11 @@ class View {
 
   setField(name, visible) {
     if (this.fields[name]) this.fields[name].visible = visible;
+    this.redraw();
+  }
+
+  setWalks(visible) {
+    this.walks.visible = visible;
     this.redraw();
   }
 
@@ -306,6 +263,7 @@ class View {
     this.idsStale = true;
     const ahead = this.camera.getWorldDirection(new THREE.Vector3());
     const needle = document.getElementById('needle');
+    this.labels.place(this.camera, v => this.fromInput(v));
     needle.setAttribute('transform', `rotate(${Math.atan2(-ahead.x, ahead.y) * 180 / Math.PI})`);
   }
 
@@ -313,7 +271,7 @@ class View {
   drawGroups() {
     const {width, height} = this.renderer.domElement;
     this.ids.setSize(Math.max(width >> 1, 1), Math.max(height >> 1, 1));
-    const shown = [this.marker, ...Object.values(this.fields)].filter(thing => thing.visible);
+    const shown = [this.marker.group, this.walks, ...Object.values(this.fields)].filter(thing => thing.visible);
     for (const thing of shown) thing.visible = false;
     this.uniforms.picking.value = 1;
     this.renderer.setRenderTarget(this.ids);
@@ -363,29 +321,4 @@ function faceCorners(normal) {
     corners.push(...n.clone().addScaledVector(side, a).addScaledVector(up, b).multiplyScalar(0.5).toArray());
   }
   return corners;
-}
-
-// A shaft and a head with five sides, along z from 0 to 1, one unit thick at the head.
-function arrowShape() {
-  const corners = [], index = [], sides = 5;
-  const ring = (radius, z) => {
-    for (let i = 0; i < sides; ++i) {
-      const angle = 2 * Math.PI * i / sides;
-      corners.push(radius * Math.cos(angle), radius * Math.sin(angle), z);
-    }
-  };
-  const join = (a, b) => {
-    for (let i = 0; i < sides; ++i) {
-      const next = (i + 1) % sides;
-      index.push(a + i, a + next, b + next, a + i, b + next, b + i);
-    }
-  };
-  ring(0.22, 0);
-  ring(0.22, 0.6);
-  ring(0.6, 0.6);
-  ring(0.01, 1);
-  join(0, sides);
-  join(sides, 2 * sides);
-  join(2 * sides, 3 * sides);
-  return {corners, index};
 }

@@ -51,14 +51,36 @@ class Report : public ::testing::Test {
     };
     Opened open(const fs::path& page, const std::string& script = "",
                 const std::string& flags = "") {
-        const auto shown = folder_ / "shown.html";
-        std::ofstream(shown) << read(page) << "<script>" << script << "</script>";
+        return shown(read(page) + "<script>" + script + "</script>", flags);
+    }
+    // The same in a window as small as a phone's, which the browser's own can't be: within a frame.
+    // `script` says what it found in `out`.
+    Opened open_on_phone(const fs::path& page, const std::string& script) {
+        std::string inner =
+            read(page) + "<script>const out = parent.document.body.dataset;" + script + "</script>";
+        std::string escaped;
+        for (const char c : inner) {
+            if (c == '&') {
+                escaped += "&amp;";
+            } else if (c == '"') {
+                escaped += "&quot;";
+            } else {
+                escaped += c;
+            }
+        }
+        return shown(
+            "<!DOCTYPE html><body><iframe width=390 height=844 style='border:0' srcdoc=\"" +
+            escaped + "\"></iframe></body>");
+    }
+    Opened shown(const std::string& html, const std::string& flags = "") {
+        const auto file = folder_ / "shown.html";
+        std::ofstream(file) << html;
         const std::string command =
             "timeout 240 chromium --headless --no-sandbox --use-angle=swiftshader "
             "--enable-unsafe-swiftshader --enable-logging=stderr --window-size=900,900 "
             "--user-data-dir='" +
             (folder_ / "browser").string() + "' " + flags +
-            " --virtual-time-budget=10000 --dump-dom 'file://" + shown.string() + "' > '" +
+            " --virtual-time-budget=10000 --dump-dom 'file://" + file.string() + "' > '" +
             (folder_ / "dom").string() + "' 2> '" + (folder_ / "log").string() + "'";
         EXPECT_EQ(std::system(command.c_str()), 0);
         return {read(folder_ / "dom"), read(folder_ / "log")};
@@ -66,6 +88,14 @@ class Report : public ::testing::Test {
 
     fs::path folder_;
 };
+
+// An attribute's text as it was before it was written into the page.
+std::string text(std::string attribute) {
+    const std::string space = "&nbsp;";
+    for (auto at = attribute.find(space); at != std::string::npos; at = attribute.find(space))
+        attribute.replace(at, space.size(), "\u00a0");
+    return attribute;
+}
 
 bool no_browser() {
     return std::system("command -v chromium > /dev/null 2>&1") != 0;
@@ -121,13 +151,52 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
     NEEDS_BROWSER();
     const auto scene = test::SyntheticScene(0.08).make();
     write_report(folder_ / "report.html", scene);
-    // Looks which objects cover the view, then uses every control, then asks for one object.
+    // Looks which objects cover the view, clicks where one is, uses every control, then asks for
+    // one object.
     const auto page = open(folder_ / "report.html", R"(
+        const text = id => document.getElementById(id).textContent;
+        document.body.dataset.listed = [...document.querySelectorAll('.item')].map(item => item.dataset.object).join(' ');
+        document.body.dataset.first = document.querySelector('.item').textContent;
+        const canvas = toppleView.renderer.domElement, box = canvas.getBoundingClientRect();
+        const pixels = () => {
+            toppleView.render();
+            const gl = toppleView.renderer.getContext(), all = new Uint8Array(4 * canvas.width * canvas.height);
+            gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, all);
+            return all;
+        };
+        const differ = (a, b) => {
+            let count = 0;
+            for (let i = 0; i < a.length; i += 4) count += a[i] !== b[i] || a[i + 1] !== b[i + 1] || a[i + 2] !== b[i + 2];
+            return count;
+        };
+        const plain = pixels();
+        document.body.dataset.drawn = differ(plain, new Uint8Array(plain.length));
+        for (const field of ['human', 'wind', 'earthquake', 'walks']) {
+            const control = document.querySelector(`[data-field=${field}]`);
+            control.click();
+            document.body.dataset[field] = differ(plain, pixels());
+            control.click();
+        }
+        // Where the monitor is seen: the first place of a grid.
+        let at = null;
+        for (let x = 5; x < box.width && !at; x += 5) {
+            for (let y = 5; y < box.height && !at; y += 5) if (toppleView.pick(x, y) === 3) at = [x, y];
+        }
+        for (const type of ['pointerdown', 'pointerup']) {
+            canvas.dispatchEvent(new PointerEvent(type, {clientX: box.left + at[0], clientY: box.top + at[1], button: 0, bubbles: true, pointerId: 1}));
+        }
+        document.body.dataset.clicked = text('detail');
+        document.body.dataset.marker = toppleView.marker.parts().join(' ');
+        document.body.dataset.contacts = document.querySelectorAll('.contacts .contact').length;
+        toppleChoose(null);
+        toppleChoose(2);
+        document.body.dataset.moved = toppleView.marker.parts().join(' ');
+        toppleChoose(null);
         const seen = toppleView.seen();
         document.body.dataset.found = [...seen.keys()].filter(id => seen.get(id) > 10).sort().join(' ');
         document.body.dataset.middle = toppleView.pick(toppleView.container.clientWidth / 2, toppleView.container.clientHeight / 2);
         for (const control of document.querySelectorAll('.toolbar button, .toolbar input')) control.click();
-        document.querySelectorAll('#objects thead button')[2].click();
+        document.querySelectorAll('#objects thead button')[1].click();
         document.body.dataset.heaviest = [...document.querySelectorAll('#objects tbody tr')].pop().cells[0].textContent;
         document.querySelectorAll('#objects tbody tr')[0].click();
         toppleChoose(3);
@@ -142,6 +211,26 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
     EXPECT_EQ(page.data("found"), "0 1 2 3 4 5") << "every object is seen, through the walls";
     EXPECT_NE(page.data("middle"), "null") << "the scene is in the middle of the view";
     EXPECT_EQ(page.data("heaviest"), "0");
+    EXPECT_EQ(page.data("listed"), "3 4 2 1") << "what is at risk, the largest risk first";
+    for (const char* part :
+         {"Object 3", "6.2\u00a0kg", "Upset by 1 walk in 40 or 1 earthquake in 40.",
+          "It tips over to the north, falls 76 cm to the floor", "and takes object 2 along.",
+          "Fix it where it stands: 12 N"}) {
+        EXPECT_NE(text(page.data("first")).find(part), std::string::npos)
+            << part << " in " << page.data("first");
+    }
+    for (const char* part : {"Object 3", "Barrier: energy that moves it", "1.4\u00a0J",
+                             "Risk from people walking by", "6.5\u00a0J \u00b1 0.65", "Contacts"}) {
+        EXPECT_NE(text(page.data("clicked")).find(part), std::string::npos)
+            << part << " in " << page.data("clicked");
+    }
+    EXPECT_EQ(page.data("marker"), "middle lands");
+    EXPECT_EQ(page.data("moved"), "middle lands move");
+    EXPECT_EQ(page.data("contacts"), "1") << "of the monitor's part with the table's";
+    EXPECT_GT(std::stoi("0" + page.data("drawn")), 50000) << "pixels that are not blank";
+    for (const char* field : {"human", "wind", "earthquake", "walks"})
+        EXPECT_GT(std::stoi("0" + page.data(field)), 2000) << field << ": pixels that it changes";
+    EXPECT_NE(page.data("first-picture-ms"), "(none)");
     EXPECT_GT(std::stoi("0" + page.data("faces")), 10000);
     EXPECT_EQ(page.data("points"), std::to_string(scene.points.x.size()));
     EXPECT_EQ(std::stoi("0" + page.data("triangles")), 2 * std::stoi("0" + page.data("faces")));
@@ -155,6 +244,62 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
           "A note with &lt;i&gt;markup&lt;/i&gt;", "sampler", "look through walls"}) {
         EXPECT_NE(page.dom.find(expected), std::string::npos) << expected;
     }
+}
+
+TEST_F(Report, shows_all_on_a_phone) {
+    NEEDS_BROWSER();
+    write_report(folder_ / "report.html", test::SyntheticScene(0.2).make());
+    const auto page = open_on_phone(folder_ / "report.html", R"(
+        out.window = innerWidth;
+        const widths = [];
+        for (const id of [null, 0, 3, 2]) {
+            toppleChoose(id);
+            widths.push(document.documentElement.scrollWidth - document.documentElement.clientWidth);
+        }
+        out.widths = widths.join(' ');
+        const canvas = document.querySelector('#canvas canvas').getBoundingClientRect();
+        out.canvas = canvas.width >= 300 && canvas.height >= 280 && canvas.right <= innerWidth;
+        out.items = [...document.querySelectorAll('.item')].filter(item => item.offsetHeight > 0).length;
+        document.querySelector('.more').click();
+        out.more = [...document.querySelectorAll('.item')].filter(item => item.offsetHeight > 0).length;
+        const small = [...document.querySelectorAll('p, td, button, dd')].filter(node => node.offsetHeight > 0 &&
+            parseFloat(getComputedStyle(node).fontSize) < 12);
+        out.small = small.length;
+        out.failed = document.body.dataset.error || '';
+    )");
+    EXPECT_EQ(page.data("window"), "390") << page.log;
+    EXPECT_EQ(page.data("widths"), "0 0 0 0") << "nothing to scroll sideways";
+    EXPECT_EQ(page.data("canvas"), "true");
+    EXPECT_EQ(page.data("items"), "3");
+    EXPECT_EQ(page.data("more"), "4");
+    EXPECT_EQ(page.data("small"), "0") << "text too small to read";
+    EXPECT_EQ(page.data("failed"), "");
+    EXPECT_EQ(page.log.find("Uncaught"), std::string::npos) << page.log;
+}
+
+TEST_F(Report, says_so_where_disturbances_are_missing) {
+    NEEDS_BROWSER();
+    auto scene = test::SyntheticScene(0.2).make();
+    scene.fields.erase("wind");
+    scene.fields["human"] = {};
+    scene.walks = {};
+    for (auto& object : scene.objects) object.risk_J.erase("wind");
+    write_report(folder_ / "report.html", scene);
+    const auto page = open(folder_ / "report.html", R"(
+        document.body.dataset.risk = document.getElementById('risk').textContent;
+        document.body.dataset.missing = document.getElementById('missing').textContent;
+        document.body.dataset.off = [...document.querySelectorAll('[data-field]')].filter(box => box.disabled)
+            .map(box => box.dataset.field).join(' ');
+    )");
+    EXPECT_NE(page.data("risk").find("This run left out wind"), std::string::npos)
+        << page.data("risk");
+    EXPECT_NE(page.data("risk").find("No floor was found on which people could walk"),
+              std::string::npos);
+    EXPECT_EQ(page.data("off"), "human wind walks");
+    EXPECT_EQ(page.data("missing"),
+              "Not shown: People walking by: it reaches nothing here. Wind: this run left it out. "
+              "Walked floor: no floor was found that people could walk on.");
+    EXPECT_EQ(page.log.find("Uncaught"), std::string::npos) << page.log;
 }
 
 TEST_F(Report, says_so_where_there_is_no_webgl) {

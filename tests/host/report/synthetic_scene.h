@@ -39,6 +39,8 @@ class SyntheticScene {
         box(add(5, "quadric"), 0.6, 1, 0, 0.8, 1.2, 0.2, {0, 0, 1});
         relations();
         fields();
+        walks();
+        falls();
         return scene_;
     }
 
@@ -81,6 +83,10 @@ class SyntheticScene {
             object.mode = o.mode;
             object.unsafety = o.unsafety;
             object.risk_J = {{"human", o.human}, {"wind", o.wind}, {"earthquake", o.earthquake}};
+            for (const auto& [name, risk] : object.risk_J) {
+                object.risk_spread_J[name] = 0.1 * risk;
+                object.fall_chance[name] = risk > 0 ? 0.025 : 0;
+            }
             if (object.mode != "none") object.direction = at(1, 0, 0);
             if (o.release > 0) {
                 object.instability = {{o.barrier, 0.6 * o.release},
@@ -179,7 +185,8 @@ class SyntheticScene {
     void relations() {
         scene_.supports = {{0, 1, 0.04}, {1, 2, 0.012}, {1, 3, 0.05}, {0, 4, 0.6}, {0, 5, 0.002}};
         scene_.contacts = {{0, 1, 12, {1, 0, 0}, "fixed", 0.99},
-                           {3, 5, 0.012, {0, 0, 1}, "support", 0.2}};
+                           {3, 5, 0.012, {0, 0, 1}, "support", 0.2},
+                           {3, 6, 0.05, {0, 0, 1}, "support", 0.1}};
     }
 
     void fields() {
@@ -199,6 +206,34 @@ class SyntheticScene {
                 }
             }
         }
+    }
+
+    // People walk everywhere but within 0.5 m of the table; one path along its west.
+    void walks() {
+        auto& walks = scene_.walks;
+        walks.corner_m = at(0, 0, 0);
+        walks.along_x_m = at(0.1, 0, 0);
+        walks.along_y_m = at(0, 0.1, 0);
+        walks.nx = 40;
+        walks.ny = 50;
+        for (std::int64_t y = 0; y < walks.ny; ++y) {
+            for (std::int64_t x = 0; x < walks.nx; ++x) {
+                const bool table = x >= 5 && x < 29 && y >= 15 && y < 33;
+                walks.floor_m.push_back(0);
+                walks.visits.push_back(table ? -1.0f : 0.002f * static_cast<float>(x));
+            }
+        }
+        walks.paths = {{at(0.3, 0.3, 0), at(0.3, 4.7, 0), at(3.2, 4.7, 0)}};
+    }
+
+    // The monitor falls off the table with the cup, to its north; the cup should be moved.
+    void falls() {
+        Object& monitor = scene_.objects[3];
+        monitor.fall = {true, at(1.9, 3.2, 0.2), 0.76, 0, {2}};
+        monitor.advice = {"fix", {}, 0.1, 12, 0.3, "Fix it where it stands: 12 N at 0.3 m."};
+        Object& cup = scene_.objects[2];
+        cup.fall = {true, at(0.8, 2.26, 0.1), 0.76, 5, {}};
+        cup.advice = {"move", at(0.2, 0, 0), 0.1, 0, 0, "Move it 20 cm to the east."};
     }
 
     double h_, c_, s_;

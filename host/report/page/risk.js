@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+'use strict';
+
+// The first panel: what is at risk, from what, what happens then, and what to do about it.
+
+const listedObjects = 8, listedOnPhones = 3;
+
+// What can fall, the largest risk first.
+function riskiest(scene) {
+  return scene.objects.filter(object => !object.grounded && largestRisk(object) > 0)
+    .sort((a, b) => largestRisk(b) - largestRisk(a) || a.id - b.id).slice(0, listedObjects);
+}
+
+// Which disturbances the run left out, and which of them found nothing to act on.
+function missingText(scene) {
+  const lines = [], left = disturbanceNames.filter(name => !scene.disturbances.includes(name));
+  if (scene.objects.length && left.length) {
+    lines.push(`This run left out ${listed(left.map(causeOf))}: risks from there are not known. ` +
+      `Parse with --disturbance ${disturbanceNames.join(',')} to have them.`);
+  }
+  if (scene.disturbances.includes('human') && !scene.view.walks.shade.some(shade => shade > 0)) {
+    lines.push('No floor was found on which people could walk, so their walks put nothing at risk here.');
+  }
+  return lines.join(' ');
+}
+
+function riskItem(scene, object, choose) {
+  const line = (className, text) => element('span', {className, text});
+  const advice = object.advice && object.advice.sentence;
+  const item = element('button', {type: 'button', className: 'item', onclick: () => choose(object.id)}, [
+    element('span', {className: 'head'}, [
+      element('span', {className: 'swatch', style: {background: css(colourOf(scene, object.id))}}),
+      element('strong', {text: `Object ${object.id}`}),
+      line('mass', `${number(object.mass_kg, 'kg')}`),
+      unsafetyBadge(object)]),
+    line('from', upsetText(object)),
+    line('then', happensText(scene, object)),
+  ]);
+  if (advice) item.append(line('advice', advice));
+  item.dataset.object = object.id;
+  return item;
+}
+
+function fillRisk(panel, scene, choose) {
+  const worst = riskiest(scene), movable = scene.objects.filter(object => !object.grounded).length;
+  panel.append(element('h2', {text: 'What is at risk, and what to do'}));
+  const missing = missingText(scene);
+  if (missing) panel.append(element('p', {className: 'warning', text: missing}));
+  if (!worst.length) {
+    panel.append(element('p', {className: 'hint', text: !movable ? 'No object was found that could fall.'
+      : 'Nothing of what was reckoned with puts an object at risk.'}));
+    return;
+  }
+  panel.append(element('p', {className: 'hint', text:
+    `The ${worst.length} riskiest of ${plural(movable, 'object')} that can fall: the chance that one event upsets it, times the ` +
+    'energy that it then sets free. An event is one person walking through the room, one gale or one earthquake. ' +
+    'The badge is unsafety, 1 to 10. Choose one to see it in the room.'}));
+  const list = element('div', {className: 'items'}, worst.map(object => riskItem(scene, object, choose)));
+  panel.append(list);
+  if (worst.length > listedOnPhones) {
+    panel.append(element('button', {type: 'button', className: 'more', text: `show ${worst.length - listedOnPhones} more`,
+      onclick: () => panel.classList.add('all')}));
+  }
+}

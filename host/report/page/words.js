@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+'use strict';
+
+// What happens to objects, in words for someone who has read nothing about it.
+
+const disturbanceNames = ['human', 'wind', 'earthquake'];
+const causes = {human: 'people walking by', wind: 'wind', earthquake: 'earthquake'};
+const events = {human: 'walk', wind: 'gale', earthquake: 'earthquake'};
+
+const capital = text => text.charAt(0).toUpperCase() + text.slice(1);
+
+function causeOf(name) {
+  return causes[name] || name;
+}
+
+// "a", "a and b", "a, b and c"
+function listed(words, last = 'and') {
+  return words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} ${last} ${words[words.length - 1]}`;
+}
+
+function objectList(ids) {
+  const shown = ids.slice(0, 5).map(String);
+  if (ids.length > 5) shown.push(`${ids.length - 5} more`);
+  return (ids.length === 1 ? 'object ' : 'objects ') + listed(shown);
+}
+
+// A chance per event as "1 walk in 40".
+function chanceText(name, chance) {
+  const event = events[name] || 'event';
+  if (chance === null || chance === undefined) return '';
+  if (chance <= 0) return `no ${event}`;
+  if (chance >= 0.95) return `nearly every ${event}`;
+  if (chance > 0.4) return `${Math.round(10 * chance)} ${event}s in 10`;
+  if (chance < 1e-4) return `less than 1 ${event} in 10,000`;
+  return `1 ${event} in ${Math.round(Number((1 / chance).toPrecision(2))).toLocaleString('en')}`;
+}
+
+// The largest of an object's risks: 0 where it has none.
+function largestRisk(object) {
+  return Math.max(0, ...Object.keys(object.risk_J).map(name => object.risk_J[name] || 0));
+}
+
+// What can upset it, the largest risk first; what adds less than a twentieth of that is left out.
+function causesOf(object) {
+  const least = largestRisk(object) / 20;
+  return Object.keys(object.risk_J).filter(name => object.risk_J[name] > 0 && object.risk_J[name] >= least)
+    .sort((a, b) => object.risk_J[b] - object.risk_J[a]);
+}
+
+function upsetText(object) {
+  const names = causesOf(object);
+  if (!names.length) return 'Upset by nothing that was reckoned with.';
+  const chances = names.map(name => chanceText(name, (object.fall_chance || {})[name])).filter(text => text);
+  if (!chances.length) return `At risk from ${listed(names.map(causeOf))}.`;
+  return `Upset by ${listed(chances, 'or')}.`;
+}
+
+function metres(length) {
+  return length < 0.995 ? `${Math.max(1, Math.round(100 * length))} cm` : `${length.toFixed(1)} m`;
+}
+
+const compassNames = ['north', 'north-east', 'east', 'south-east', 'south', 'south-west', 'west', 'north-west'];
+
+function compassOf(degrees) {
+  return compassNames[Math.round(((degrees % 360) + 360) % 360 / 45) % 8];
+}
+
+// Which way a vector of the input's frame points, seen from above; '' for no way.
+function wayOf(scene, vector) {
+  const [x, y] = scene.view.view_from_input.map(row => row[0] * vector[0] + row[1] * vector[1] + row[2] * vector[2]);
+  return Math.hypot(x, y) > 1e-3 ? compassOf(Math.atan2(x, y) * 180 / Math.PI) : '';
+}
+
+function landsText(scene, fall) {
+  const below = scene.objectById.get(fall.lands_on);
+  return !below ? 'to what lies below' : below.grounded ? 'to the floor or what is fixed to it' : `onto object ${below.id}`;
+}
+
+// Whether the program told where it falls.
+function fallKnown(object) {
+  return !!object.fall && object.fall.falls && object.fall.lands_m.every(value => value !== null);
+}
+
+// What happens then. Why it stands as it does where nothing is known of its fall.
+function happensText(scene, object) {
+  if (!fallKnown(object)) return object.why.sentence;
+  const fall = object.fall;
+  const way = wayOf(scene, fall.lands_m.map((value, k) => value - (object.center_of_mass_m[k] || 0)));
+  const to = way ? ` to the ${way}` : '';
+  const verb = object.mode === 'tip' ? `It tips over${to}` : object.mode === 'slide' ? `It slides off${to}` : `It comes down${to}`;
+  const drop = fall.drop_m > 0 ? `${verb}, falls ${metres(fall.drop_m)} ${landsText(scene, fall)}` : `${verb}`;
+  return drop + (fall.takes_along.length ? ` and takes ${objectList(fall.takes_along)} along.` : '.');
+}
