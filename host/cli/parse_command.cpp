@@ -20,8 +20,11 @@ namespace topple::cli {
 namespace {
 
 const std::map<std::string, double> units{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}};
+const std::map<std::string, double> record_units{{"g", 9.80665}, {"m/s2", 1}, {"cm/s2", 0.01}};
 
 struct Arguments {
+    std::optional<std::string> accelerogram;
+    std::optional<double> accelerogram_unit_m_s2;
     std::string input, backend = "auto", up, disturbance = "human,wind,earthquake", max_memory;
     ParseOptions options;
     std::optional<std::string> out;
@@ -107,10 +110,15 @@ void read_options(Arguments& a) {
     if (!a.max_memory.empty()) a.options.max_memory_bytes = parse_size(a.max_memory);
     a.options.disturbances = split_commas(a.disturbance);
     if (!a.motion_up.empty()) a.motion_file.up = parse_up("--motion-up", a.motion_up);
+    if (a.accelerogram_unit_m_s2 && !a.accelerogram)
+        throw Error(ErrorKind::usage,
+                    "--accelerogram-unit: there is no --accelerogram whose unit it could be");
     check_options(a.options);
     if (!a.motion.empty()) {
         a.options.motion = std::make_shared<const BodyMotion>(read_motion(a.motion, a.motion_file));
     }
+    if (a.accelerogram)
+        a.options.accelerogram = read_accelerogram(*a.accelerogram, a.accelerogram_unit_m_s2);
 }
 
 int run(Arguments& a) {
@@ -191,9 +199,18 @@ Command add_parse(CLI::App& app) {
     app.add_option("--wind-from", a->options.wind_from_deg,
                    "Where the wind comes from, degrees clockwise from the scene's north\n"
                    "(default: from all sides)");
-    app.add_option("--pga", a->options.pga_m_s2,
-                   "Peak ground acceleration of the earthquake in m/s^2")
-        ->capture_default_str();
+    app.add_option(
+        "--pga", a->options.pga_m_s2,
+        "Peak ground acceleration of the earthquake in m/s^2; an accelerogram is scaled\n"
+        "to it (default: the accelerogram's own, or 3)");
+    app.add_option("--accelerogram", a->accelerogram,
+                   "Recorded earthquake instead of pulses: JSON (dT, accel_data), or lines of\n"
+                   "time in s and acceleration");
+    app.add_option_function<std::string>(
+           "--accelerogram-unit",
+           [a](const std::string& unit) { a->accelerogram_unit_m_s2 = record_units.at(unit); },
+           "Its unit: g, m/s2 or cm/s2 (default: what the file says, else g)")
+        ->check(CLI::IsMember({"g", "m/s2", "cm/s2"}));
     app.add_option("--density", a->options.density_kg_m3, "Density of all objects in kg/m^3")
         ->capture_default_str();
     app.add_option("--friction", a->options.friction, "Coefficient of friction")

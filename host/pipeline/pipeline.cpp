@@ -124,7 +124,14 @@ void check_options(const ParseOptions& o) {
         throw Error(ErrorKind::usage,
                     "--wind-from " + number_text(*o.wind_from_deg) +
                         ": expected degrees clockwise from the scene's north, from -360 to 360");
-    check_range("--pga", o.pga_m_s2, 0, 50);
+    if (o.pga_m_s2) check_range("--pga", *o.pga_m_s2, 0, 50);
+    if (o.accelerogram) {
+        check_range("accelerogram: step_s", o.accelerogram->step_s, 1e-5, 0.5);
+        double sum = 0;  // not finite if one of them isn't
+        for (const double a : o.accelerogram->m_s2) sum += std::abs(a);
+        check_range("accelerogram: its peak in m/s^2,",
+                    std::isfinite(sum) ? o.accelerogram->peak_m_s2() : NAN, 0, 100);
+    }
     if (o.grouping_time_s) check_range("--grouping-time", *o.grouping_time_s, 0, 86400);
     for (const std::string& d : o.disturbances) {
         if (d != "human" && d != "wind" && d != "earthquake") {

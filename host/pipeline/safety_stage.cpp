@@ -65,6 +65,16 @@ safety::Surroundings surroundings(const GeometryStage& geometry, const VoxelStag
     return s;
 }
 
+// To the peak that is asked for.
+std::optional<Accelerogram> scaled_record(const ParseOptions& options) {
+    std::optional<Accelerogram> record = options.accelerogram;
+    if (record && options.pga_m_s2) {
+        const double scale = *options.pga_m_s2 / record->peak_m_s2();
+        for (double& a : record->m_s2) a *= scale;
+    }
+    return record;
+}
+
 }  // namespace
 
 SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
@@ -91,7 +101,8 @@ SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
             }
             safety::EarthquakeOptions earthquake;
             earthquake.seed = options.seed;
-            earthquake.pga_m_s2 = options.pga_m_s2;
+            earthquake.pga_m_s2 = options.pga_m_s2.value_or(earthquake.pga_m_s2);
+            earthquake.record = scaled_record(options);
             return safety::earthquake_field(device, around, at_risk, options.friction, earthquake);
         }));
     }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "core/random.h"
+#include "device/native/thread_pool.h"
 #include "physics/landscape.h"
 #include "safety/fields.h"
 #include "safety/objects.h"
@@ -13,16 +15,16 @@ namespace {
 
 using physics::gravity;
 
-struct Pulse {
+struct Event {
     double peak = 0;  // m/s^2
     double dx = 1, dy = 0;
 };
 
 // Peaks are log-normal about the median, as ground motions are; two standard deviations bound them.
-std::vector<Pulse> random_pulses(const EarthquakeOptions& options) {
+std::vector<Event> random_pulses(const EarthquakeOptions& options) {
     Random random(options.seed);
-    std::vector<Pulse> pulses(options.events);
-    for (Pulse& pulse : pulses) {
+    std::vector<Event> pulses(options.events);
+    for (Event& pulse : pulses) {
         const double angle = random.uniform(0, 2 * std::numbers::pi);
         const double radius = std::sqrt(-2 * std::log(1 - random.uniform()));  // Box-Muller
         const double normal = radius * std::cos(random.uniform(0, 2 * std::numbers::pi));
@@ -33,78 +35,122 @@ std::vector<Pulse> random_pulses(const EarthquakeOptions& options) {
     return pulses;
 }
 
-// Friction turns the pulse into sliding: the object lags behind, then comes to rest by friction.
-double sliding_work(double mass_kg, double acceleration, double friction, double duration_s) {
-    const double excess = acceleration - friction * gravity;
-    if (excess <= 0) return 0;
-    return 0.5 * mass_kg * excess * acceleration * duration_s * duration_s;  // mu m g s
+std::vector<Event> all_ways(const Accelerogram& record) {
+    std::vector<Event> events;
+    for (unsigned d = 0; d < direction_count; ++d) {
+        const auto [dx, dy] = direction(d);
+        events.push_back({record.peak_m_s2(), dx, dy});
+    }
+    return events;
 }
 
-// Work of the pulse on a block that rocks about its edge (linearised: Housner 1963).
-double rocking_work(double mass_kg, double acceleration, double half_base_m, double height_m,
-                    double duration_s) {
-    const double eta = acceleration * height_m / (gravity * half_base_m);
+// Work of the pulse on a body that rocks about its edge ahead (linearised: Housner 1963).
+double rocking_work(double mass_kg, const Profile& body, double acceleration, double duration_s) {
+    const double eta = acceleration * body.height_m / (gravity * body.ahead_m);
     if (eta <= 1) return 0;
-    const double p = std::sqrt(3 * gravity / (4 * std::hypot(half_base_m, height_m)));
+    const double radius = std::hypot(body.ahead_m, body.height_m);
+    const double p =
+        std::sqrt(gravity * radius / (body.gyration_m * body.gyration_m + radius * radius));
     const double growth = std::cosh(std::min(p * duration_s, 50.0)) - 1;
-    return tipping_energy(mass_kg, height_m, half_base_m) * 2 * eta * (eta - 1) * growth;
+    return tipping_energy(mass_kg, body.height_m, body.ahead_m) * 2 * eta * (eta - 1) * growth;
+}
+
+// What the ideal body needs to fall and what the landscape says differ by the voxels; and a motion
+// may hold more energy than the weakest way takes, and yet not go that way.
+double work_of(const RiskObject& object, double energy_J, bool falls) {
+    if (object.barrier_J <= 0) return energy_J;
+    return falls ? std::max(energy_J, object.barrier_J)
+                 : std::min(energy_J, std::nextafter(object.barrier_J, 0.0));
+}
+
+bool slides_off(const RiskObject& object, double way_m) {
+    return object.slide_distance_m >= 0 && way_m > 0 && way_m >= object.slide_distance_m;
 }
 
 }  // namespace
 
-double earthquake_work(const RiskObject& object, double half_base_m, double height_m,
-                       double acceleration, double friction, double duration_s) {
-    if (!(object.mass_kg > 0) || !(height_m > 0)) return 0;
-    if (half_base_m <= 0) return object.barrier_J;  // nothing holds it that way: any push tips it
-    if (half_base_m / height_m >= friction) {
-        return sliding_work(object.mass_kg, acceleration, friction, duration_s);
+double pulse_work(const RiskObject& object, const Profile& body, double acceleration,
+                  double friction, double duration_s) {
+    if (!(object.mass_kg > 0) || !(body.height_m > 0)) return 0;
+    if (body.ahead_m <= 0) return object.barrier_J;  // nothing holds it that way: any push tips it
+    if (body.rocks_ahead(friction)) {
+        const double work = rocking_work(object.mass_kg, body, acceleration, duration_s);
+        return work_of(object, work,
+                       work >= tipping_energy(object.mass_kg, body.height_m, body.ahead_m));
     }
-    const double work =
-        rocking_work(object.mass_kg, acceleration, half_base_m, height_m, duration_s);
-    // What the ideal block needs to overturn and what the landscape says differ by the voxels.
-    const bool overturns = work >= tipping_energy(object.mass_kg, height_m, half_base_m);
-    return overturns ? std::max(work, object.barrier_J) : work;
+    // It lags behind, then comes to rest by friction.
+    const double force = friction * object.mass_kg * gravity;
+    const double excess = acceleration - friction * gravity;
+    if (excess <= 0) return 0;
+    const double work = 0.5 * object.mass_kg * excess * acceleration * duration_s * duration_s;
+    return work_of(object, work, slides_off(object, work / force));
 }
 
-Disturbance earthquake_field(device::Device&, const Surroundings& surroundings,
+double record_work(const RiskObject& object, const Profile& body, const Accelerogram& record,
+                   double friction) {
+    if (!(object.mass_kg > 0) || !(body.height_m > 0)) return 0;
+    if (body.ahead_m <= 0 || body.behind_m <= 0) return object.barrier_J;
+    const Rocking rocking = rock(body, record, friction);
+    const Sliding sliding = slide(body, record, friction);
+    const double way = std::max(sliding.ahead_m, sliding.behind_m);
+    const double energy = object.mass_kg * std::max(rocking.energy_J_kg, friction * gravity * way);
+    return work_of(object, energy, rocking.overturns || slides_off(object, way));
+}
+
+Disturbance earthquake_field(device::Device& device, const Surroundings& surroundings,
                              std::span<const RiskObject> objects, double friction,
                              const EarthquakeOptions& options) {
     check_option("pga_m_s2", options.pga_m_s2, 0);
     check_option("spread", options.spread, 0);
     check_option("dominant_period_s", options.dominant_period_s, 0);
     check_option("friction", friction, 0);
+    if (options.record) check_option("record.step_s", options.record->step_s, 1e-6);
     Disturbance out;
     out.name = "earthquake";
     out.work.resize(objects.size());
     const auto object_of_cell = movable_object_of_cells(surroundings, objects);
     const auto cells = cells_of_objects(object_of_cell, objects.size());
     out.exposure.assign(object_of_cell.size(), 0.0f);
-    const std::vector<Pulse> pulses = random_pulses(options);
-    out.draws = pulses.size();
+    const std::vector<Event> events =
+        options.record ? all_ways(*options.record) : random_pulses(options);
+    out.draws = events.size();
+    if (options.record) {
+        out.notes = options.record->notes;
+        char figures[80];
+        std::snprintf(figures, sizeof(figures), "%.3g s with a peak of %.3g m/s^2.",
+                      options.record->duration_s(), options.record->peak_m_s2());
+        out.notes.push_back("The earthquake is the accelerogram " + options.record->source + ", " +
+                            figures);
+    }
     const physics::SolidCells& solid = *surroundings.cells;
 
+    std::vector<Stance> stances(objects.size());
+    device.threads().each(objects.size(), 1, [&](std::size_t o) {
+        if (cells[o].empty() || objects[o].grounded) return;
+        stances[o] = stance(surroundings, cells[o]);
+        for (const Event& event : events) {
+            const Profile body = profile(objects[o], stances[o], event.dx, event.dy);
+            const double work = options.record
+                                    ? record_work(objects[o], body, *options.record, friction)
+                                    : pulse_work(objects[o], body, event.peak, friction,
+                                                 options.dominant_period_s / 2);
+            // Also where it is 0: what has no barrier falls at any shaking.
+            out.work[o].push_back(
+                {work, 1.0 / static_cast<double>(events.size()), {event.dx, event.dy, 0}});
+        }
+    });
     ArrowSample arrows;
     for (std::size_t o = 0; o < objects.size(); ++o) {
-        if (cells[o].empty() || objects[o].grounded) continue;
-        const Stance stands = stance(surroundings, cells[o]);
-        for (const Pulse& pulse : pulses) {
-            const double base = half_base(objects[o], stands, pulse.dx, pulse.dy);
-            const double work = earthquake_work(objects[o], base, stands.height(), pulse.peak,
-                                                friction, options.dominant_period_s / 2);
-            // Also where it is 0: what has no barrier falls at any shaking.
-            out.work[o].push_back({work, 1.0 / options.events, {pulse.dx, pulse.dy, 0}});
-        }
+        if (out.work[o].empty()) continue;
         // Arrows at the contact surface: the object's lowest cells.
+        const double bottom_m = stances[o].bottom_m;
         for (const std::uint32_t c : cells[o]) {
             out.exposure[c] = 1;
-            if (pulses.empty() ||
-                (solid.k[c] + 0.5) * solid.voxel_m > stands.bottom_m + solid.voxel_m) {
-                continue;
-            }
-            const Pulse& pulse = pulses[c % pulses.size()];
-            arrows.offer({(solid.i[c] + 0.5) * solid.voxel_m, (solid.j[c] + 0.5) * solid.voxel_m,
-                          stands.bottom_m},
-                         {pulse.peak * pulse.dx, pulse.peak * pulse.dy, 0}, 1);
+            if ((solid.k[c] + 0.5) * solid.voxel_m > bottom_m + solid.voxel_m) continue;
+            const Event& event = events[c % events.size()];
+            arrows.offer(
+                {(solid.i[c] + 0.5) * solid.voxel_m, (solid.j[c] + 0.5) * solid.voxel_m, bottom_m},
+                {event.peak * event.dx, event.peak * event.dy, 0}, 1);
         }
     }
     out.samples = arrows.take();

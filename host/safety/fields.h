@@ -12,6 +12,7 @@
 #include "device/device.h"
 #include "physics/bodies.h"
 #include "safety/directions.h"
+#include "topple/input.h"
 #include "topple/motion.h"
 #include "topple/scene.h"
 
@@ -73,6 +74,8 @@ struct EarthquakeOptions {
     double spread = 0.5;             // standard deviation of the logarithm of an event's peak
     double dominant_period_s = 0.5;  // a half-cycle is a rectangular pulse of half this length
     unsigned events = 64;
+    // A recorded ground motion, instead of pulses; it is the same for every seed.
+    std::optional<Accelerogram> record;
 };
 
 // One field: samples for the report, and each object's distribution of work: p(W) as weighted
@@ -113,14 +116,21 @@ Disturbance human_field(device::Device& device, const Surroundings& surroundings
 // One event is one gale, from one of its directions at random.
 Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
                        std::span<const RiskObject> objects, const WindOptions& options);
-// Rectangular ground pulses of random direction and peak a (5.1.1), lasting t = period / 2. With
-// half base b(dir) and height h of the centre of mass, an object with b / h < mu rocks once a > g b
-// / h,
-//     W = E_tip 2 eta (eta - 1) (cosh(p t) - 1),  eta = a h / (g b),  p^2 = 3 g / (4 sqrt(b^2 +
-//     h^2)),
-// the work of the pulse on the block relative to its support: W >= E_tip is Housner's (1963)
-// condition for overturning. One with b / h >= mu slides once a > mu g, relative to the support by
-// s = (a - mu g) a t^2 / (2 mu g), and absorbs W = mu m g s. One event is one pulse.
+// Ground motion that throws objects in a horizontal direction (5.1.1): rectangular pulses of random
+// direction and peak a, lasting t = period / 2, or a record, once in each of the 16 directions. One
+// event is one pulse, or the record in one direction.
+//
+// With half base b(dir) and height h of the centre of mass, an object with b / h < mu rocks once
+// a > g b / h; one with b / h >= mu slides once a > mu g. W is the largest energy of that motion:
+//   - rocking about an edge, of a record: potential and kinetic (shaking.h); of a pulse,
+//   linearised,
+//         W = E_tip 2 eta (eta - 1) (cosh(p t) - 1),  eta = a h / (g b),  p^2 = g R / (k^2 + R^2),
+//     R^2 = b^2 + h^2, k the radius of gyration: for a block, W >= E_tip is Housner's (1963)
+//     condition for overturning;
+//   - sliding by s relative to the support: W = mu m g s; of a pulse, s = (a - mu g) a t^2 / (2 mu
+//   g).
+// So that risk counts what falls, W is at least the barrier if the object overturns, or slides as
+// far as the end of its support, and else stays below it.
 Disturbance earthquake_field(device::Device& device, const Surroundings& surroundings,
                              std::span<const RiskObject> objects, double friction,
                              const EarthquakeOptions& options);
@@ -146,9 +156,12 @@ Frontage wind_frontage(const physics::SolidCells& solid, const Columns& columns,
                        std::span<const std::uint32_t> cells, const std::array<double, 2>& way,
                        double shelter_m);
 
-// The work of one pulse of `acceleration` m/s^2 and `duration_s` on one object (see above).
-double earthquake_work(const RiskObject& object, double half_base_m, double height_m,
-                       double acceleration, double friction, double duration_s);
+// The work of one pulse of `acceleration` m/s^2 and `duration_s`, or of a record, on one object.
+struct Profile;
+double pulse_work(const RiskObject& object, const Profile& body, double acceleration,
+                  double friction, double duration_s);
+double record_work(const RiskObject& object, const Profile& body, const Accelerogram& record,
+                   double friction);
 
 // S(W): the last step of the curve whose W_J is at most W; 0 below the first.
 double instability(std::span<const InstabilityStep> curve, double W_J);

@@ -120,6 +120,11 @@ double half_base(const RiskObject& object, const Stance& stance, double dx, doub
     return std::isfinite(reach) ? std::max(0.0, reach) : 0.0;
 }
 
+Profile profile(const RiskObject& object, const Stance& stance, double dx, double dy) {
+    return {half_base(object, stance, dx, dy), half_base(object, stance, -dx, -dy), stance.height(),
+            std::sqrt(stance.gyration_m2(dx, dy))};
+}
+
 double tipping_energy(double mass_kg, double height_m, double half_base_m) {
     // sqrt(h^2 + b^2) - h without the cancellation
     const double diagonal = std::hypot(height_m, half_base_m);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "safety/fields.h"
+#include "safety/shaking.h"
 
 // What the three fields ask of the objects' cells.
 namespace topple::safety {
@@ -41,6 +42,9 @@ Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> o
 // Half base b in horizontal direction (dx, dy): from below the centre of mass to where the support
 // ends that way, 0 where it has ended already. From the support polygon, or half of base_width_m.
 double half_base(const RiskObject& object, const Stance& stance, double dx, double dy);
+
+// The object seen from the side, `ahead` being (dx, dy).
+Profile profile(const RiskObject& object, const Stance& stance, double dx, double dy);
 
 // Energy that lifts the centre of mass over the base's edge: m g (sqrt(h^2 + b^2) - h).
 double tipping_energy(double mass_kg, double height_m, double half_base_m);

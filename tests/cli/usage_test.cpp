@@ -54,6 +54,8 @@ TEST_F(Usage, refuses_values_before_it_parses) {
                                                     {"--wind-from", "nan"},
                                                     {"--wind-from", "400"},
                                                     {"--pga", "0"},
+                                                    {"--accelerogram-unit", "m/s2"},
+                                                    {"--accelerogram-unit", "ft"},
                                                     {"--density", "-700"},
                                                     {"--friction", "0"},
                                                     {"--max-memory", "much"},
@@ -78,6 +80,15 @@ TEST_F(Usage, refuses_values_before_it_parses) {
     expect_failure(2, {"parse", "plane.xyz", "--backend", "opencl", "--voxel", "0"}, {"--voxel"});
     expect_failure(2, {"generate", "scan", "--frames", "0"}, {"--frames"});
     expect_failure(2, {"generate", "scan", "--seed", "-1"}, {"--seed"});
+}
+
+// It is read before the scan is.
+TEST_F(Usage, a_bad_accelerogram_is_refused_before_the_parse) {
+    put_plane("plane.xyz");
+    expect_failure(1, {"parse", "plane.xyz", "--accelerogram", "none.json"}, {"none.json"});
+    put("quake.txt", "0 313\n0.02 0\n");
+    expect_failure(1, {"parse", "plane.xyz", "--accelerogram", "quake.txt"},
+                   {"quake.txt", "313 g", "--accelerogram-unit"});
 }
 
 TEST_F(Usage, help_names_every_command_and_option) {

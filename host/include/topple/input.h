@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,5 +49,35 @@ struct DepthFrame {
     std::vector<std::uint16_t> depth;
     Mat4 camera_to_world{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 };
+
+// Horizontal acceleration of the ground in one direction, at equal steps of time and straight
+// between them; before and after, 0.
+struct Accelerogram {
+    std::vector<double> m_s2;
+    double step_s = 0;
+    std::string source;              // path, for messages
+    std::vector<std::string> notes;  // what was taken for granted, in sentences
+
+    double peak_m_s2() const {
+        double peak = 0;
+        for (const double a : m_s2) peak = std::max(peak, std::fabs(a));
+        return peak;
+    }
+    double duration_s() const {
+        return m_s2.empty() ? 0 : step_s * static_cast<double>(m_s2.size() - 1);
+    }
+};
+
+// Reads a record of an earthquake from
+//   - JSON: "dT" (or "dt"), seconds, and a list "accel_data" (or "data", "acceleration", "accel"),
+//     with "unit" and "factor", by which the values count, where there are any; at the top or as
+//     the one entry of "timeSeries";
+//   - text: a line of time in seconds and acceleration for each sample. Other columns are not
+//     looked at. The unit stands in its header: "# time s, acceleration m/s^2".
+// Units are g, m/s^2, cm/s^2 and gal; `unit_m_s2`, of which a value is so many, overrides them.
+// Without any it is g, which is noted. Throws Error(input) naming the file and the fault; peaks
+// beyond 10 g are one, or beyond 3 g where no unit was named.
+Accelerogram read_accelerogram(const std::filesystem::path& file,
+                               std::optional<double> unit_m_s2 = std::nullopt);
 
 }  // namespace topple

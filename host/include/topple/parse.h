@@ -41,7 +41,10 @@ struct ParseOptions {
     // Where the wind comes from, degrees clockwise from the scene's north, as Why::azimuth_deg;
     // none: from each of 16 directions.
     std::optional<double> wind_from_deg;
-    double pga_m_s2 = 3;  // peak ground acceleration
+    // Peak ground acceleration; none: the accelerogram's own, or 3 without one.
+    std::optional<double> pga_m_s2;
+    // A recorded earthquake (read_accelerogram), instead of pulses about that peak.
+    std::optional<Accelerogram> accelerogram;
     // Seconds for the search for objects, about; none: as long as it takes. Where a limit is met,
     // the objects depend on the machine.
     std::optional<double> grouping_time_s;

@@ -9,6 +9,7 @@
 #include "io/read_cloud.h"
 #include "io/scene_json.h"
 #include "motion_files.h"
+#include "topple/input.h"
 #include "topple/motion.h"
 
 namespace topple::io {
@@ -155,6 +156,20 @@ TEST_F(Mutation, motion) {
 TEST_F(Mutation, xyz) {
     mutate("a.xyz", "# scan\n3\n1 2 3 0 0 1\n4,5,6,0,1,0\n7;8;9;1;0;0\n", cloud);
     mutate("a.csv", "id,x,y,z,nx,ny,nz\n1,2,3,4,0,0,1\n5,6,7,8,0,1,0\n", cloud);
+}
+
+TEST_F(Mutation, accelerogram) {
+    const auto record = [](const std::filesystem::path& file) {
+        const Accelerogram result = read_accelerogram(file);
+        EXPECT_GE(result.m_s2.size(), 2u);
+        EXPECT_GT(result.step_s, 0);
+        EXPECT_LE(result.peak_m_s2(), 10 * 9.80665);
+    };
+    mutate("a.json", R"({"name": "a", "numPoints": 3, "dT": 0.02, "unit": "g", "factor": 1,
+                        "accel_data": [0.1, -0.2, 3e-1]})",
+           record);
+    mutate("b.json", R"({"timeSeries": [{"dt": 0.01, "data": [1, 2], "units": "m/s^2"}]})", record);
+    mutate("a.txt", "# time s, acceleration m/s^2\n0 0.5\n0.01 -1\n0.02 0.25\n", record);
 }
 
 TEST_F(Mutation, depth_image) {

@@ -80,6 +80,11 @@ TEST(Options, out_of_range_are_named) {
     named("--wind", [](ParseOptions& o) { o.wind_m_s = 1e9; });
     named("--wind-from", [](ParseOptions& o) { o.wind_from_deg = NAN; });
     named("--pga", [](ParseOptions& o) { o.pga_m_s2 = NAN; });
+    named("accelerogram", [](ParseOptions& o) { o.accelerogram.emplace(); });
+    named("accelerogram", [](ParseOptions& o) {
+        o.accelerogram.emplace().m_s2 = {0, NAN, 1};
+        o.accelerogram->step_s = 0.02;
+    });
     named("--grouping-time", [](ParseOptions& o) { o.grouping_time_s = -1; });
     named("flood", [](ParseOptions& o) { o.disturbances = {"human", "flood"}; });
 }

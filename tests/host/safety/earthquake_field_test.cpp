@@ -22,14 +22,22 @@ RiskObject block(double mass = 1) {
     return object;
 }
 
+// A rectangle of half base b and half height h.
+Profile rectangle(double b, double h) {
+    return {b, b, h, std::sqrt((b * b + h * h) / 3)};
+}
+
 TEST(Earthquake, RockingStartsWhereWestSaysAndOnlyBelowTheFrictionAngle) {
     const double b = 0.05, h = 0.25, west = gravity * b / h;
-    EXPECT_EQ(earthquake_work(block(), b, h, 0.999 * west, mu, 0.25), 0);
-    EXPECT_GT(earthquake_work(block(), b, h, 1.001 * west, mu, 0.25), 0);
+    const auto work = [](double base, double height, double a) {
+        return pulse_work(block(), rectangle(base, height), a, mu, 0.25);
+    };
+    EXPECT_EQ(work(b, h, 0.999 * west), 0);
+    EXPECT_GT(work(b, h, 1.001 * west), 0);
     // b / h >= mu: it slides instead, and only beyond mu g, however small the work to tip it is.
-    EXPECT_EQ(earthquake_work(block(), 0.31 * h, h, 0.999 * mu * gravity, mu, 0.25), 0);
-    const double sliding = earthquake_work(block(), 0.31 * h, h, 1.2 * mu * gravity, mu, 0.25);
-    EXPECT_EQ(sliding, earthquake_work(block(), 10 * h, h, 1.2 * mu * gravity, mu, 0.25));
+    EXPECT_EQ(work(0.31 * h, h, 0.999 * mu * gravity), 0);
+    const double sliding = work(0.31 * h, h, 1.2 * mu * gravity);
+    EXPECT_EQ(sliding, work(10 * h, h, 1.2 * mu * gravity));
     EXPECT_GT(sliding, 0);
 }
 
@@ -42,7 +50,7 @@ TEST(Earthquake, OverturnsAtHousnersPulse) {
         double low = 0, high = 10;
         for (int n = 0; n < 100; ++n) {
             const double t = (low + high) / 2;
-            const bool falls = earthquake_work(block(), b, h, eta * gravity * b / h, mu, t) >=
+            const bool falls = pulse_work(block(), rectangle(b, h), eta * gravity * b / h, mu, t) >=
                                tipping_energy(1, h, b);
             (falls ? high : low) = t;
         }
@@ -59,8 +67,26 @@ TEST(Earthquake, SlidingWorkMatchesIntegration) {
         v = std::min(ground, v + mu * gravity * dt);
         slip += (ground - v) * dt;
     }
-    const double work = earthquake_work(block(2), 1, 0.1, a, mu, t1);
+    const double work = pulse_work(block(2), rectangle(1, 0.1), a, mu, t1);
     EXPECT_NEAR(work, mu * 2 * gravity * slip, 1e-3 * work);
+}
+
+// A motion that does not go over an edge, or off the support, stays below the barrier, however much
+// energy it has.
+TEST(Earthquake, WorkReachesTheBarrierExactlyWhereItFalls) {
+    RiskObject object = block(2);
+    object.barrier_J = 0.01;
+    const Profile squat = rectangle(1, 0.1), tall = rectangle(0.05, 0.5);
+    EXPECT_LT(pulse_work(object, squat, 8, mu, 0.25), 0.01) << "slides on a floor without an edge";
+    const double way = pulse_work(block(2), squat, 8, mu, 0.25) / (mu * 2 * gravity);
+    object.slide_distance_m = 0.99 * way;
+    EXPECT_GE(pulse_work(object, squat, 8, mu, 0.25), 0.01);
+    object.slide_distance_m = 1.01 * way;
+    EXPECT_LT(pulse_work(object, squat, 8, mu, 0.25), 0.01);
+    object.slide_distance_m = -1;
+    EXPECT_LT(pulse_work(object, tall, 1.2, mu, 0.25), 0.01) << "rocks";
+    object.barrier_J = 1e9;
+    EXPECT_EQ(pulse_work(object, tall, 9, mu, 2), 1e9) << "overturns";
 }
 
 TEST(Earthquake, TippingEnergyOfTheBox) {

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstdlib>
+
+#include "files.h"
+#include "topple/input.h"
+
+namespace topple {
+namespace {
+
+using test::expect_input_error;
+
+class Accelerograms : public test::Files {
+  protected:
+    Accelerogram read(std::string_view bytes, std::optional<double> unit = {}) {
+        return read_accelerogram(write("record", bytes), unit);
+    }
+    void refused(std::string_view bytes, std::initializer_list<std::string_view> parts) {
+        const auto file = write("record", bytes);
+        expect_input_error([&] { read_accelerogram(file); }, {file.native()});
+        expect_input_error([&] { read_accelerogram(file); }, parts);
+    }
+};
+
+TEST_F(Accelerograms, JsonAsSimulationToolsWriteIt) {
+    const Accelerogram plain =
+        read(R"({"name": "a", "numPoints": 3, "dT": 0.02, "accel_data": [0, -0.5, 0.25]})");
+    EXPECT_EQ(plain.step_s, 0.02);
+    EXPECT_EQ(plain.m_s2, (std::vector<double>{0, -0.5 * 9.80665, 0.25 * 9.80665}));
+    EXPECT_DOUBLE_EQ(plain.peak_m_s2(), 0.5 * 9.80665);
+    EXPECT_DOUBLE_EQ(plain.duration_s(), 0.04);
+    ASSERT_EQ(plain.notes.size(), 1u);
+    EXPECT_NE(plain.notes[0].find("in g"), std::string::npos);
+
+    const Accelerogram nested = read(
+        R"({"timeSeries": [{"dt": 0.01, "data": [1, 2], "factor": 2, "units": "m/s^2"}], "x": 1})");
+    EXPECT_EQ(nested.m_s2, (std::vector<double>{2, 4}));
+    EXPECT_TRUE(nested.notes.empty());
+}
+
+TEST_F(Accelerograms, UnitsOfTheHeaderAndOfTheOption) {
+    const std::string rows = "0 0.1\n0.01 -0.2\n0.02 0\n";
+    for (const auto& [header, scale] :
+         std::vector<std::pair<std::string, double>>{{"# time s, acceleration m/s^2\n", 1},
+                                                     {"Time (sec), Acc. (cm/s2)\n", 0.01},
+                                                     {"t_s\ta_g\n", 9.80665},
+                                                     {"station X\n# units: gal\n", 0.01},
+                                                     {"\xEF\xBB\xBF% [M/S2]\n", 1}}) {
+        const Accelerogram record = read(header + rows);
+        ASSERT_EQ(record.m_s2.size(), 3u) << header;
+        EXPECT_DOUBLE_EQ(record.m_s2[1], -0.2 * scale) << header;
+        EXPECT_NEAR(record.step_s, 0.01, 1e-15);
+        EXPECT_TRUE(record.notes.empty());
+        EXPECT_DOUBLE_EQ(read(header + rows, 0.5).m_s2[1], -0.1) << "the option wins";
+    }
+    EXPECT_EQ(read(rows).notes.size(), 1u);
+    EXPECT_DOUBLE_EQ(read(rows).m_s2[0], 0.980665);
+    refused("# cm/s2, 1 g = 980.665 cm/s2\n" + rows, {"several units", "--accelerogram-unit"});
+    EXPECT_EQ(read("# cm/s2, not g\n" + rows, 0.01).notes.size(), 0u);
+}
+
+TEST_F(Accelerograms, TextWithFewDigitsOrMoreColumns) {
+    const Accelerogram coarse = read("0.00 1 9\n0.01,0.5,9\n0.01667;0;9\n0.03 0 9\r\n\n", 1.0);
+    EXPECT_EQ(coarse.m_s2, (std::vector<double>{1, 0.5, 0, 0}));
+    EXPECT_DOUBLE_EQ(coarse.step_s, 0.01);
+}
+
+TEST_F(Accelerograms, FaultsAreNamedWithTheirPlaceAndMend) {
+    refused("", {"empty"});
+    refused("hello\n", {"0 samples"});
+    refused("0 0.1\n", {"1 sample", "2"});
+    refused("0 0.1\n0.01 nan\n", {"line 2", "nan", "finite"});
+    refused("0 0.1\n0.01 x\n", {"line 2", "\"x\""});
+    refused("0 0.1\n\n0.01\n", {"line 3", "one value"});
+    refused("0 0.1\n0.02 0.1\n0.02 0.3\n", {"line 3", "0.02", "rise"});
+    refused("0 0.1\n0.01 0.1\n0.02 0.3\n0.09 0.1\n0.1 0\n",
+            {"line 4", "0.09", "0.07 s", "equally"});
+    refused("0 0\n0.01 0\n", {"no acceleration"});
+    refused("0 0.1\n10 0\n", {"10 s apart", "0.5 s", "seconds"});
+    refused("# gal\n0 20000\n0.01 0\n", {"20.39", "limit of 10 g", "--accelerogram-unit"});
+    refused("0 3.13\n0.01 0\n", {"3.13 g", "no unit", "limit of 3 g", "m/s2"});
+    EXPECT_EQ(read("0 3.13\n0.01 0\n", 1.0).m_s2[0], 3.13);
+    refused(std::string("0 1\0 1", 6), {"neither JSON nor text"});
+    refused("{\"dT\": 0.1", {"no JSON"});
+    refused("[1, 2]", {"object", "array"});
+    refused(R"({"accel_data": [1, 2]})", {"no \"dT\"", "seconds"});
+    refused(R"({"dT": "x", "accel_data": [1, 2]})", {"\"dT\"", "number", "string"});
+    refused(R"({"dT": 0.1})", {"no \"accel_data\"", "list"});
+    refused(R"({"dT": 0.1, "accel_data": 3})", {"\"accel_data\"", "list", "number"});
+    refused(R"({"dT": 0.1, "accel_data": [1, null]})", {"\"accel_data\"[1]", "null"});
+    refused(R"({"dT": 0, "accel_data": [1, 2]})", {"0 s apart"});
+    refused(R"({"dT": -0.1, "accel_data": [1, 2]})", {"-0.1 s apart"});
+    refused(R"({"dT": 0.1, "numPoints": 3, "accel_data": [1, 2]})", {"3", "2 numbers"});
+    refused(R"({"dT": 0.1, "accel_data": [1, 2], "unit": "ft"})", {"\"ft\"", "m/s^2"});
+    refused(R"({"timeSeries": [{}, {}]})", {"one record"});
+    std::string endless = "{\"dT\": 0.5, \"accel_data\": [1";
+    for (int n = 0; n < 7300; ++n) endless += ",0";
+    refused(endless + "]}", {"3650 s", "3600 s"});
+}
+
+// The north-south record of El Centro, 1940, as simulation tools hand it around.
+TEST_F(Accelerograms, ElCentro) {
+    const char* shared = std::getenv("TOPPLE_SHARED");
+    const std::filesystem::path file =
+        std::filesystem::path(shared ? shared : "") / "data/motion/ElCentro.json";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "TOPPLE_SHARED has no ElCentro.json";
+    const Accelerogram record = read_accelerogram(file);
+    EXPECT_EQ(record.m_s2.size(), 1561u);
+    EXPECT_NEAR(record.duration_s(), 31.2, 1e-9);
+    EXPECT_NEAR(record.peak_m_s2(), 0.319 * 9.80665, 0.001 * 9.80665);
+}
+
+}  // namespace
+}  // namespace topple
