@@ -90,6 +90,39 @@ std::vector<Support> supports_between(const graph::ContactGraph& contacts,
     return supports;
 }
 
+void find_barriers(device::Device& device, const physics::SupportTable& table,
+                   const physics::SolidCells& cells,
+                   std::span<const std::int32_t> object_of_primitive, double friction,
+                   std::vector<StableObject>& objects) {
+    std::vector<physics::Candidate> candidates;
+    const physics::CellColumns columns(cells);
+    for (StableObject& o : objects) {
+        if (!o.grounded && !o.candidate.support_polygon.empty())
+            o.candidate.edge_drop_m = physics::drops_when_tipped_m(cells, columns, o.candidate);
+        candidates.push_back(o.candidate);
+    }
+    std::vector<physics::Stability> tipping =
+        physics::evaluate(device, table, candidates, physics::Passes::exact);
+    std::vector<physics::Body> bodies;
+    // What is fixed to the ground does not slide: no mass, nothing to search.
+    for (const StableObject& o : objects)
+        bodies.push_back(o.grounded ? physics::Body{} : o.candidate.body);
+    const std::vector<double> all_friction(candidates.size(), friction);
+    std::vector<physics::SlideResult> sliding =
+        physics::slide_all(cells, object_of_primitive, bodies, all_friction, {.places = true});
+    for (std::size_t o = 0; o < objects.size(); ++o) {
+        if (objects[o].grounded) continue;
+        physics::Instability& how = objects[o].instability;
+        how = physics::combine_curves(tipping[o], sliding[o]);
+        if (how.mode == "tip" && how.drop_m > 0)
+            how.onto = physics::met_when_tipped(cells, columns, candidates[o], how.weakest,
+                                                (*how.edge)[0]);
+        objects[o].tipping = std::move(tipping[o]);
+        objects[o].sliding = std::move(sliding[o]);
+        objects[o].poses = physics::body_landscape(table, candidates[o]);
+    }
+}
+
 ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
                          const VoxelStage& voxels, const ParseOptions& options, StageClock& stage) {
     ObjectStage out;
@@ -107,35 +140,8 @@ ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
     });
     stage("barriers", [&] {
         collect_objects(parts.shell, out);
-        std::vector<physics::Candidate> candidates;
-        const physics::CellColumns columns(voxels.cells);
-        for (StableObject& o : out.objects) {
-            if (!o.grounded && !o.candidate.support_polygon.empty()) {
-                o.candidate.edge_drop_m =
-                    physics::drops_when_tipped_m(voxels.cells, columns, o.candidate);
-            }
-            candidates.push_back(o.candidate);
-        }
-        std::vector<physics::Stability> tipping =
-            physics::evaluate(device, table, candidates, physics::Passes::exact);
-        std::vector<physics::Body> bodies;
-        // What is fixed to the ground does not slide: no mass, nothing to search.
-        for (const StableObject& o : out.objects)
-            bodies.push_back(o.grounded ? physics::Body{} : o.candidate.body);
-        const std::vector<double> friction(candidates.size(), options.friction);
-        std::vector<physics::SlideResult> sliding = physics::slide_all(
-            voxels.cells, out.object_of_primitive, bodies, friction, {.places = true});
-        for (std::size_t o = 0; o < out.objects.size(); ++o) {
-            if (out.objects[o].grounded) continue;
-            physics::Instability& how = out.objects[o].instability;
-            how = physics::combine_curves(tipping[o], sliding[o]);
-            if (how.mode == "tip" && how.drop_m > 0)
-                how.onto = physics::met_when_tipped(voxels.cells, columns, candidates[o],
-                                                    how.weakest, (*how.edge)[0]);
-            out.objects[o].tipping = std::move(tipping[o]);
-            out.objects[o].sliding = std::move(sliding[o]);
-            out.objects[o].poses = physics::body_landscape(table, candidates[o]);
-        }
+        find_barriers(device, table, voxels.cells, out.object_of_primitive, options.friction,
+                      out.objects);
     });
     return out;
 }

@@ -28,28 +28,6 @@ double least_width(const std::vector<std::array<double, 2>>& polygon) {
     return least;
 }
 
-std::vector<safety::RiskObject> risk_objects(const ObjectStage& objects) {
-    std::vector<safety::RiskObject> out;
-    for (std::size_t i = 0; i < objects.objects.size(); ++i) {
-        const StableObject& o = objects.objects[i];
-        safety::RiskObject r;
-        r.id = static_cast<std::int32_t>(i);
-        r.grounded = o.grounded;
-        r.mass_kg = o.candidate.body.mass_kg;
-        r.barrier_J = o.instability.barrier_J;
-        r.height_m = o.highest_m - o.lowest_m;
-        r.base_width_m = least_width(o.candidate.support_polygon);
-        if (o.sliding.found) {
-            r.slide_distance_m = o.sliding.distance_m;
-            r.drop_m = o.sliding.drop_m;
-        }
-        r.curve = o.instability.curve;
-        r.support_polygon = o.candidate.support_polygon;
-        out.push_back(std::move(r));
-    }
-    return out;
-}
-
 safety::Surroundings surroundings(const GeometryStage& geometry, const VoxelStage& voxels,
                                   const ObjectStage& objects) {
     safety::Surroundings s;
@@ -77,11 +55,33 @@ std::optional<Accelerogram> scaled_record(const ParseOptions& options) {
 
 }  // namespace
 
+std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objects) {
+    std::vector<safety::RiskObject> out;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        const StableObject& o = objects[i];
+        safety::RiskObject r;
+        r.id = static_cast<std::int32_t>(i);
+        r.grounded = o.grounded;
+        r.mass_kg = o.candidate.body.mass_kg;
+        r.barrier_J = o.instability.barrier_J;
+        r.height_m = o.highest_m - o.lowest_m;
+        r.base_width_m = least_width(o.candidate.support_polygon);
+        if (o.sliding.found) {
+            r.slide_distance_m = o.sliding.distance_m;
+            r.drop_m = o.sliding.drop_m;
+        }
+        r.curve = o.instability.curve;
+        r.support_polygon = o.candidate.support_polygon;
+        out.push_back(std::move(r));
+    }
+    return out;
+}
+
 SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
                           const VoxelStage& voxels, const ObjectStage& objects,
                           const ParseOptions& options, StageClock& stage) {
     SafetyStage out;
-    const std::vector<safety::RiskObject> at_risk = risk_objects(objects);
+    const std::vector<safety::RiskObject> at_risk = risk_objects(objects.objects);
     const safety::Surroundings around = surroundings(geometry, voxels, objects);
     for (const std::string& name : options.disturbances) {
         out.disturbances.push_back(stage("field " + name, [&] {

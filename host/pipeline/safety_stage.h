@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "device/device.h"
@@ -16,6 +17,9 @@ struct SafetyStage {
     std::vector<std::vector<safety::Risk>> risk;  // by disturbance, then by object
     std::vector<double> unsafety;                 // by object, 1 to 10
 };
+
+// The objects as the fields and the risk see them; ids are their places in the list.
+std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objects);
 
 SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
                           const VoxelStage& voxels, const ObjectStage& objects,
