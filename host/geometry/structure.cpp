@@ -19,6 +19,10 @@ constexpr double floor_area_m2 = 0.02, wall_area_m2 = 0.3;
 // (the normals of noise are noisy), and lies with this share of itself within the slack of the
 // plane.
 constexpr double scrap_share = 0.05, scrap_cos = 0.5, scrap_inside = 0.9, shell_slack_cells = 2;
+// Or it faces anyhow, and lies with this share of itself within so many cells of two shell planes
+// that meet: where a wall meets a wall or the floor, normals and places of points are mixtures of
+// both. No thing is as small as that across, and as close to both.
+constexpr double corner_inside = 0.85, corner_cells = 5, corner_cos = 0.5;
 // Share of the scene's surfels that may lie behind a wall: windows, mirrors, open doors.
 constexpr double behind_share = 0.02;
 
@@ -189,10 +193,11 @@ void absorb_into_shell(const Surfels& s, PrimitiveSet& primitives,
     const std::vector<Face> face = faces(s, primitives);
     const double slack = shell_slack_cells * s.cell_m;
     std::vector<std::int32_t> home(face.size(), -1);
+    std::vector<std::vector<std::size_t>> beside(face.size());  // shell planes that it is close to
     for (std::size_t shell = 0; shell < face.size(); ++shell) {
         if (structure[shell] == Structure::none) continue;
         const Face& f = face[shell];
-        std::vector<std::uint64_t> near(face.size(), 0), all(face.size(), 0);
+        std::vector<std::uint64_t> near(face.size(), 0), close(face.size(), 0), all(face.size(), 0);
         std::vector<double> offset(face.size(), 0);
         for (std::size_t n = 0; n < s.size(); ++n) {
             if (primitives.label[n] < 0) continue;
@@ -201,6 +206,7 @@ void absorb_into_shell(const Surfels& s, PrimitiveSet& primitives,
             const double d =
                 (s.x[n] - f.px) * f.nx + (s.y[n] - f.py) * f.ny + (s.z[n] - f.pz) * f.nz;
             near[p] += std::abs(d) < slack;
+            close[p] += std::abs(d) < corner_cells * s.cell_m;
             offset[p] += d;
         }
         for (std::size_t p = 0; p < face.size(); ++p) {
@@ -208,10 +214,22 @@ void absorb_into_shell(const Surfels& s, PrimitiveSet& primitives,
             const bool thing = structure[shell] == Structure::floor &&
                                face[p].area_m2 >= least_thing_m2 &&
                                offset[p] > noise_cells * s.cell_m * static_cast<double>(all[p]);
-            if (!thing && home[p] < 0 && structure[p] == Structure::none &&
-                face[p].area_m2 < scrap_share * f.area_m2 && along > scrap_cos &&
-                static_cast<double>(near[p]) >= scrap_inside * static_cast<double>(all[p])) {
+            if (home[p] >= 0 || structure[p] != Structure::none ||
+                !(face[p].area_m2 < scrap_share * f.area_m2)) {
+                continue;
+            }
+            const auto count = static_cast<double>(all[p]);
+            if (!thing && along > scrap_cos &&
+                static_cast<double>(near[p]) >= scrap_inside * count) {
                 home[p] = static_cast<std::int32_t>(shell);
+            } else if (static_cast<double>(close[p]) >= corner_inside * count) {
+                const auto meets = [&](std::size_t other) {
+                    const Face& g = face[other];
+                    return std::abs(g.nx * f.nx + g.ny * f.ny + g.nz * f.nz) < corner_cos;
+                };
+                if (std::any_of(beside[p].begin(), beside[p].end(), meets))
+                    home[p] = static_cast<std::int32_t>(shell);
+                beside[p].push_back(shell);
             }
         }
     }

@@ -20,8 +20,8 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
                                       const Vec3& up);
 
 // Noise leaves scraps of a wall floating within a few cells of it. A small primitive that lies in
-// the plane of a shell primitive, as far as the resolution tells, joins it. Primitives keep their
-// order and are numbered anew; `structure` with them.
+// the plane of a shell primitive, as far as the resolution tells, or in the corner of two, joins
+// it. Primitives keep their order and are numbered anew; `structure` with them.
 void absorb_into_shell(const Surfels& surfels, PrimitiveSet& primitives,
                        std::vector<Structure>& structure);
 
