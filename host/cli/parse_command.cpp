@@ -211,6 +211,10 @@ Command add_parse(CLI::App& app) {
            [a](const std::string& unit) { a->accelerogram_unit_m_s2 = record_units.at(unit); },
            "Its unit: g, m/s2 or cm/s2 (default: what the file says, else g)")
         ->check(CLI::IsMember({"g", "m/s2", "cm/s2"}));
+    app.add_option("--tolerable", a->options.tolerable_J,
+                   "Risk in joules per event up to which an object may stay as it is; for others\n"
+                   "the report says where to move them, or what a fixing must hold")
+        ->capture_default_str();
     app.add_option("--density", a->options.density_kg_m3, "Density of all objects in kg/m^3")
         ->capture_default_str();
     app.add_option("--friction", a->options.friction, "Coefficient of friction")

@@ -12,7 +12,7 @@ namespace {
 
 // What a stage does, short enough that the line fits on a terminal of 80 columns.
 const char* what_it_does(const std::string& stage) {
-    static constexpr std::array<std::pair<const char*, const char*>, 19> stages{
+    static constexpr std::array<std::pair<const char*, const char*>, 20> stages{
         {{"ingest", "reading the scan"},
          {"normals", "fitting surface elements"},
          {"frame", "finding up and the walls' directions"},
@@ -30,6 +30,7 @@ const char* what_it_does(const std::string& stage) {
          {"field wind", "blowing from all sides"},
          {"field earthquake", "shaking the ground"},
          {"risk", "weighing disturbances by what they release"},
+         {"advice", "looking for places where things are safer"},
          {"assembly", "collecting the results"},
          {"output", "writing the files"}}};
     for (const auto& [name, what] : stages) {

@@ -290,14 +290,12 @@ Ends border_at(SlideMap& map, std::int32_t i, std::int32_t j, std::int32_t reach
 }
 
 // As far as the way goes and a bit more, or `least` where there is none.
-Landscape::Places places_around(SlideMap& map, const Body& body, double way_m, double friction,
+Landscape::Places places_around(SlideMap& map, const Body& body, double around_m, double friction,
                                 double voxel_m) {
-    constexpr double least_m = 0.3, most_m = 1.5;
     constexpr std::int32_t most_in_a_row = 63;
     const double weight = body.mass_kg * gravity;
-    const std::int32_t reach = std::min(
-        static_cast<std::int32_t>(std::ceil(std::clamp(1.3 * way_m, least_m, most_m) / voxel_m)),
-        map.radius() - 1);
+    const std::int32_t reach =
+        std::min(static_cast<std::int32_t>(std::ceil(around_m / voxel_m)), map.radius() - 1);
     Search search(map, body.center[0] / voxel_m, body.center[1] / voxel_m);
     search.explore(reach);
     const std::int32_t stride = (2 * reach + most_in_a_row) / most_in_a_row;
@@ -333,8 +331,9 @@ SlideResult slide_one(const SolidCells& cells, const CellColumns& columns,
     SlideResult result;
     const bool found = way.found && way.length * cells.voxel_m <= options.reach_m;
     if (options.places)
-        result.places = places_around(map, body, found ? way.length * cells.voxel_m : 0, friction,
-                                      cells.voxel_m);
+        result.places = places_around(
+            map, body, std::clamp(1.3 * (found ? way.length * cells.voxel_m : 0), 0.3, 1.5),
+            friction, cells.voxel_m);
     if (!found) return result;
     const double weight = body.mass_kg * gravity;
     result.found = true;
@@ -356,6 +355,25 @@ SlideResult slide_one(const SolidCells& cells, const CellColumns& columns,
     return result;
 }
 
+// Throws where a primitive has no object among `objects`.
+std::vector<std::int32_t> object_of_cells(const SolidCells& cells,
+                                          std::span<const std::int32_t> object_of_primitive,
+                                          std::size_t objects) {
+    std::vector<std::int32_t> object(cells.size(), -1);
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const std::int32_t p = cells.primitive[n];
+        if (p < 0) continue;
+        if (static_cast<std::size_t>(p) >= object_of_primitive.size() ||
+            object_of_primitive[static_cast<std::size_t>(p)] >=
+                static_cast<std::int64_t>(objects)) {
+            throw Error(ErrorKind::usage, "slide_all: primitive " + std::to_string(p) +
+                                              " has no object among " + std::to_string(objects));
+        }
+        object[n] = object_of_primitive[static_cast<std::size_t>(p)];
+    }
+    return object;
+}
+
 }  // namespace
 
 std::vector<SlideResult> slide_all(const SolidCells& cells,
@@ -367,19 +385,8 @@ std::vector<SlideResult> slide_all(const SolidCells& cells,
                                           " friction coefficients for " +
                                           std::to_string(objects.size()) + " objects");
     }
-    std::vector<std::int32_t> object(cells.size(), -1);
-    for (std::size_t n = 0; n < cells.size(); ++n) {
-        const std::int32_t p = cells.primitive[n];
-        if (p < 0) continue;
-        if (static_cast<std::size_t>(p) >= object_of_primitive.size() ||
-            object_of_primitive[static_cast<std::size_t>(p)] >=
-                static_cast<std::int64_t>(objects.size())) {
-            throw Error(ErrorKind::usage, "slide_all: primitive " + std::to_string(p) +
-                                              " has no object among " +
-                                              std::to_string(objects.size()));
-        }
-        object[n] = object_of_primitive[static_cast<std::size_t>(p)];
-    }
+    const std::vector<std::int32_t> object =
+        object_of_cells(cells, object_of_primitive, objects.size());
     const CellColumns columns(cells);
     std::vector<Footprint> feet = footprints(cells, object, objects.size());
     std::vector<SlideResult> results(objects.size());
@@ -391,6 +398,56 @@ std::vector<SlideResult> slide_all(const SolidCells& cells,
             slide_one(cells, columns, object, self, feet[o], objects[o], friction[o], options);
     }
     return results;
+}
+
+std::vector<Landscape::Places> places_of(const SolidCells& cells,
+                                         std::span<const std::int32_t> object_of_primitive,
+                                         std::span<const Body> objects,
+                                         std::span<const std::size_t> chosen, double friction,
+                                         double reach_m) {
+    const std::vector<std::int32_t> object =
+        object_of_cells(cells, object_of_primitive, objects.size());
+    const CellColumns columns(cells);
+    std::vector<Footprint> feet = footprints(cells, object, objects.size());
+    std::vector<Landscape::Places> out;
+    for (const std::size_t o : chosen) {
+        const auto self = static_cast<std::int32_t>(o);
+        find_support(cells, columns, object, self, SlideOptions{}.gap, feet[o]);
+        out.emplace_back();
+        if (!feet[o].stands || !(objects[o].mass_kg > 0)) continue;
+        SlideMap map(cells, columns, object, self, feet[o], objects[o].center, reach_m);
+        out.back() = places_around(map, objects[o], reach_m, friction, cells.voxel_m);
+    }
+    return out;
+}
+
+SlideElsewhere slide_elsewhere(const Landscape::Places& places, std::int32_t a, std::int32_t b,
+                               double mass_kg, double friction) {
+    const auto energy = [&](std::int32_t x, std::int32_t y) {
+        return places.energy_J[static_cast<std::size_t>(y * places.side + x)];
+    };
+    SlideElsewhere out;
+    const float here = energy(a, b);
+    out.reachable = std::isfinite(here) && here >= 0;
+    if (!out.reachable) return out;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::int32_t y = 0; y < places.side; ++y) {
+        for (std::int32_t x = 0; x < places.side; ++x) {
+            if (!(energy(x, y) < 0)) continue;
+            const double way = places.step_m * std::hypot(x - a, y - b);
+            if (way >= nearest) continue;
+            nearest = way;
+            out.slide.released_J = -double{energy(x, y)};
+            out.slide.direction = {places.step_m * (x - a) / way, places.step_m * (y - b) / way, 0};
+        }
+    }
+    const double weight = mass_kg * gravity;
+    if (!std::isfinite(nearest) || !(weight > 0)) return out;
+    out.slide.found = true;
+    out.slide.distance_m = nearest;
+    out.slide.drop_m = out.slide.released_J / weight;
+    out.slide.absorbed_J = friction * weight * nearest;
+    return out;
 }
 
 }  // namespace topple::physics

@@ -48,6 +48,22 @@ std::vector<SlideResult> slide_all(const SolidCells& cells,
                                    std::span<const Body> objects, std::span<const double> friction,
                                    const SlideOptions& options = {});
 
+// The position landscapes of some of the objects, up to reach_m around each. As slide_all().
+std::vector<Landscape::Places> places_of(const SolidCells& cells,
+                                         std::span<const std::int32_t> object_of_primitive,
+                                         std::span<const Body> objects,
+                                         std::span<const std::size_t> chosen, double friction,
+                                         double reach_m);
+
+// What sliding would be if the object stood at another of its places, column a and row b of them:
+// the nearest place that falls, in a straight line. `reachable` is false where it can't be slid to.
+struct SlideElsewhere {
+    bool reachable = false;
+    SlideResult slide;
+};
+SlideElsewhere slide_elsewhere(const Landscape::Places& places, std::int32_t a, std::int32_t b,
+                               double mass_kg, double friction);
+
 // Tipping and sliding taken together.
 struct Instability {
     double barrier_J = 0, release_J = 0;  // of the mode
@@ -65,5 +81,12 @@ struct Instability {
 // The curve is the larger of both at every W. The mode is the one with the least barrier that has
 // something to release, tipping where equal; without any, the barrier is that of tipping.
 Instability combine_curves(const Stability& tip, const SlideResult& slide);
+
+// What a voxel more or less in the body's support changes in that barrier:
+//     tipping over an edge at m > 0 from the centre of mass, h above it:
+//         M g (sqrt(h^2 + (m + voxel)^2) - sqrt(h^2 + m^2)); without an edge, M g voxel;
+//     sliding: friction M g voxel.
+double barrier_error_J(const Candidate& body, const Stability& tip, const Instability& how,
+                       double voxel_m, double friction);
 
 }  // namespace topple::physics

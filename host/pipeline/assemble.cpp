@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "physics/landscape.h"
 #include "pipeline/explain.h"
 
 namespace topple {
@@ -57,7 +56,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
         to.center_of_mass_m = to_input(from.candidate.body.center);
         if (!from.grounded) {
             to.barrier_J = from.instability.barrier_J;
-            to.barrier_error_J = to.mass_kg * physics::gravity * scene.voxel_size_m;
+            to.barrier_error_J = from.barrier_error_J;
             to.release_J = from.instability.release_J;
             to.mode = from.instability.mode;
             to.direction = to_input(from.instability.direction);
@@ -205,6 +204,7 @@ void assemble(const Ingested& input, const GeometryStage& geometry, VoxelStage& 
     note_uncertain_barriers(scene);
     scene.swc_energy = objects.grouping.energy_curve;
     explain(geometry, objects, to_input, scene);
+    foretell(objects, safety.advice, to_input, scene);
 }
 
 }  // namespace topple

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <set>
 #include <string>
 
 namespace topple {
@@ -138,6 +139,113 @@ void explain(const GeometryStage& geometry, const ObjectStage& objects, const To
                 why.lands_on = objects.object_of_primitive[static_cast<std::size_t>(step.onto)];
         }
         why.sentence = Sentence(scene, geometry, from, object).text();
+    }
+}
+
+namespace {
+
+// What each object carries, directly or not, ascending.
+std::vector<std::vector<std::int32_t>> all_carried(const Scene& scene) {
+    std::vector<std::vector<std::int32_t>> direct(scene.objects.size());
+    for (const Support& s : scene.supports)
+        direct[static_cast<std::size_t>(s.supporter)].push_back(s.supported);
+    std::vector<std::vector<std::int32_t>> out(direct.size());
+    for (std::size_t o = 0; o < direct.size(); ++o) {
+        if (scene.objects[o].grounded) continue;
+        std::set<std::int32_t> seen;
+        std::vector<std::int32_t> next = direct[o];
+        while (!next.empty()) {
+            const std::int32_t at = next.back();
+            next.pop_back();
+            // Two pieces of one thing may carry each other.
+            if (at == static_cast<std::int32_t>(o) || !seen.insert(at).second) continue;
+            const auto& more = direct[static_cast<std::size_t>(at)];
+            next.insert(next.end(), more.begin(), more.end());
+        }
+        out[o].assign(seen.begin(), seen.end());
+    }
+    return out;
+}
+
+// Where its centre of mass comes to lie once it has gone its easiest way, grid frame: over an edge
+// about its own height away and as high as it was beside the edge; off a support's end at half of
+// its length beyond it.
+Vec3 landing(const StableObject& from) {
+    const physics::Instability& how = from.instability;
+    const Vec3& center = from.candidate.body.center;
+    const Vec3& way = how.weakest;
+    const double support =
+        from.candidate.support_polygon.empty() ? from.lowest_m : from.candidate.support_height_m;
+    const double height = std::max(center[2] - support, 0.0);
+    double beside = 0;  // from the centre of mass to the edge
+    if (how.edge) {
+        const auto& [a, b] = *how.edge;
+        for (std::size_t c = 0; c < 2; ++c) beside += ((a[c] + b[c]) / 2 - center[c]) * way[c];
+    }
+    beside = std::max(beside, 0.0);
+    if (how.mode == "slide") {
+        const double on = from.sliding.distance_m + height;
+        return {center[0] + on * way[0], center[1] + on * way[1], center[2] - how.drop_m};
+    }
+    return {center[0] + (beside + height) * way[0], center[1] + (beside + height) * way[1],
+            support - how.drop_m + std::min(beside, height)};
+}
+
+std::string joules(double value) {
+    return value < 0.0005 ? "nothing" : energy(value) + " per event";
+}
+
+std::string advice_sentence(const Object& object, const Suggestion& what) {
+    double worst = 0;
+    for (const auto& [name, risk] : object.risk_J) worst = std::max(worst, risk);
+    switch (what.kind) {
+        case Suggestion::Kind::nothing:
+            break;
+        case Suggestion::Kind::check:
+            return "Look whether it stands firm: what the scan shows of its support would hardly "
+                   "hold it, and its risk follows from that.";
+        case Suggestion::Kind::move: {
+            std::string text = "Move it " + length(std::hypot(what.move_m[0], what.move_m[1])) +
+                               " to the " + compass(azimuth(what.move_m));
+            if (!object.fall.takes_along.empty()) text += ", with what stands on it";
+            return text + ": its risk falls from " + joules(worst) + " to " + joules(what.risk_J) +
+                   ".";
+        }
+        case Suggestion::Kind::fix:
+            if (!(what.hold.force_N > 0))
+                return "Fasten it, or keep people away from it: no place nearby is safer.";
+            return "Fasten it to the wall or to what carries it: the fixing must hold " +
+                   number(what.hold.force_N) + " N at " + length(what.hold.height_m) +
+                   " above its base. No place within " + length(1.5) +
+                   " on what carries it is safe enough.";
+    }
+    return "";
+}
+
+}  // namespace
+
+void foretell(const ObjectStage& objects, std::span<const Suggestion> advice,
+              const ToInput& to_input, Scene& scene) {
+    auto carried = all_carried(scene);
+    for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+        Object& object = scene.objects[o];
+        const StableObject& from = objects.objects[o];
+        object.fall.lands_m = object.center_of_mass_m;
+        object.fall.takes_along = std::move(carried[o]);
+        if (from.grounded) continue;
+        for (const auto& [name, chance] : object.fall_chance)
+            object.fall.falls = object.fall.falls || chance > 0;
+        object.fall.lands_m = to_input(landing(from));
+        object.fall.drop_m = object.why.drop_m;
+        object.fall.lands_on = object.why.lands_on;
+        const Suggestion& what = advice[o];
+        static constexpr std::array kinds{"", "check", "move", "fix"};
+        object.advice.kind = kinds[static_cast<std::size_t>(what.kind)];
+        object.advice.move_m = to_input(what.move_m);
+        object.advice.risk_J = what.risk_J;
+        object.advice.hold_N = what.hold.force_N;
+        object.advice.hold_height_m = what.hold.height_m;
+        object.advice.sentence = advice_sentence(object, what);
     }
 }
 

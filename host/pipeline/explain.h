@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "pipeline/advise.h"
 #include "pipeline/geometry_stage.h"
 #include "pipeline/object_stage.h"
 #include "topple/scene.h"
@@ -27,5 +28,9 @@ class ToInput {
 // Fills in each object's `why`, but for what it stands on: that and the energies are there already.
 void explain(const GeometryStage& geometry, const ObjectStage& objects, const ToInput& to_input,
              Scene& scene);
+
+// Fills in each object's `fall` and `advice`, from `why` and the supports.
+void foretell(const ObjectStage& objects, std::span<const Suggestion> advice,
+              const ToInput& to_input, Scene& scene);
 
 }  // namespace topple

@@ -103,6 +103,18 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
     }
     std::vector<physics::Stability> tipping =
         physics::evaluate(device, table, candidates, physics::Passes::exact);
+    std::vector<physics::Stability> level = tipping;
+    std::vector<std::size_t> dropping;
+    std::vector<physics::Candidate> held;
+    for (std::size_t o = 0; o < candidates.size(); ++o) {
+        const auto& drops = candidates[o].edge_drop_m;
+        if (std::ranges::none_of(drops, [](double drop) { return drop > 0; })) continue;
+        dropping.push_back(o);
+        held.push_back(candidates[o]);
+        held.back().edge_drop_m.clear();
+    }
+    const auto on_level = physics::evaluate(device, table, held, physics::Passes::exact);
+    for (std::size_t n = 0; n < dropping.size(); ++n) level[dropping[n]] = on_level[n];
     std::vector<physics::Body> bodies;
     // What is fixed to the ground does not slide: no mass, nothing to search.
     for (const StableObject& o : objects)
@@ -117,7 +129,10 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
         if (how.mode == "tip" && how.drop_m > 0)
             how.onto = physics::met_when_tipped(cells, columns, candidates[o], how.weakest,
                                                 (*how.edge)[0]);
+        objects[o].barrier_error_J =
+            physics::barrier_error_J(candidates[o], tipping[o], how, cells.voxel_m, friction);
         objects[o].tipping = std::move(tipping[o]);
+        objects[o].level_tipping = std::move(level[o]);
         objects[o].sliding = std::move(sliding[o]);
         objects[o].poses = physics::body_landscape(table, candidates[o]);
     }

@@ -22,9 +22,11 @@ struct StableObject {
     physics::Candidate candidate;
     bool grounded = false;
     physics::Stability tipping;
+    physics::Stability level_tipping;  // if its support went on beyond all of its edges
     physics::SlideResult sliding;
     physics::Instability instability;  // of tipping and sliding together
-    Landscape poses;                   // grid frame; its places are those of `sliding`
+    double barrier_error_J = 0;
+    Landscape poses;  // grid frame; its places are those of `sliding`
     double lowest_m = 0, highest_m = 0;
 };
 

@@ -132,6 +132,7 @@ void check_options(const ParseOptions& o) {
         check_range("accelerogram: its peak in m/s^2,",
                     std::isfinite(sum) ? o.accelerogram->peak_m_s2() : NAN, 0, 100);
     }
+    check_range("--tolerable", o.tolerable_J, 0, 1e9);
     if (o.grouping_time_s) check_range("--grouping-time", *o.grouping_time_s, 0, 86400);
     for (const std::string& d : o.disturbances) {
         if (d != "human" && d != "wind" && d != "earthquake") {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 namespace topple {
 namespace {
@@ -83,6 +84,7 @@ SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
     SafetyStage out;
     const std::vector<safety::RiskObject> at_risk = risk_objects(objects.objects);
     const safety::Surroundings around = surroundings(geometry, voxels, objects);
+    std::unique_ptr<safety::HumanField> walkers;
     for (const std::string& name : options.disturbances) {
         out.disturbances.push_back(stage("field " + name, [&] {
             if (name == "human") {
@@ -90,7 +92,8 @@ SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
                 human.seed = options.seed;
                 human.paths = options.walks;
                 human.motion = options.motion;
-                return safety::human_field(device, around, at_risk, options.friction, human);
+                walkers = std::make_unique<safety::HumanField>(device, around, at_risk, human);
+                return walkers->disturbance();
             }
             if (name == "wind") {
                 safety::WindOptions wind;
@@ -111,6 +114,10 @@ SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
             out.risk.push_back(safety::risk(d, at_risk));
         out.unsafety = safety::unsafety(out.risk);
         out.unsafety.resize(at_risk.size(), 1.0);
+    });
+    stage("advice", [&] {
+        out.advice = advise(voxels, objects, at_risk, out.disturbances, out.risk, walkers.get(),
+                            options.friction, options.tolerable_J);
     });
     return out;
 }

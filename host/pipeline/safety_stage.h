@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "device/device.h"
+#include "pipeline/advise.h"
 #include "pipeline/object_stage.h"
 #include "pipeline/stage_clock.h"
 #include "safety/fields.h"
@@ -15,6 +16,7 @@ namespace topple {
 struct SafetyStage {
     std::vector<safety::Disturbance> disturbances;
     std::vector<std::vector<safety::Risk>> risk;  // by disturbance, then by object
+    std::vector<Suggestion> advice;               // by object
     std::vector<double> unsafety;                 // by object, 1 to 10
 };
 

@@ -140,29 +140,24 @@ std::vector<std::uint32_t> Convolution::active_blocks(const std::vector<bool>& c
     return starts;
 }
 
-bool Convolution::target_of(std::size_t voxel, double floor_m, Target& target) const {
-    if (object_of_cell_[voxel] < 0) return false;
+bool Convolution::target_of(std::size_t voxel, std::int32_t object, double floor_m, Target& target,
+                            std::int32_t di, std::int32_t dj) const {
+    if (object < 0) return false;
     const physics::SolidCells& cells = *surroundings_.cells;
     const double band = std::floor(((cells.k[voxel] + 0.5) * cells.voxel_m - floor_m) / band_m_);
     if (band < 0 || band >= band_count) return false;
-    target = {padded(map_.cell_of(cells.i[voxel], cells.j[voxel])), static_cast<std::uint8_t>(band),
-              object_of_cell_[voxel], 0};
+    const std::int32_t i = cells.i[voxel] + di, j = cells.j[voxel] + dj;
+    if (!map_.holds(i, j)) return false;
+    target = {padded(map_.cell_of(i, j)), static_cast<std::uint8_t>(band), object, 0};
     return true;
 }
 
-std::vector<Convolution::Target> Convolution::targets(double floor_m) const {
-    std::vector<Target> out;
-    Target target;
-    for (std::size_t v = 0; v < object_of_cell_.size(); ++v) {
-        if (!target_of(v, floor_m, target)) continue;
-        if (out.empty() || out.back().key() != target.key()) out.push_back(target);
-    }
-    std::sort(out.begin(), out.end(),
+void Convolution::sort_unique(std::vector<Target>& targets) {
+    std::sort(targets.begin(), targets.end(),
               [](const Target& a, const Target& b) { return a.key() < b.key(); });
-    out.erase(std::unique(out.begin(), out.end(),
-                          [](const Target& a, const Target& b) { return a.key() == b.key(); }),
-              out.end());
-    return out;
+    targets.erase(std::unique(targets.begin(), targets.end(),
+                              [](const Target& a, const Target& b) { return a.key() == b.key(); }),
+                  targets.end());
 }
 
 void Convolution::run(Tile& tile, const device::Buffer<float>& primary,
@@ -274,13 +269,12 @@ void Convolution::offer_arrows(const Tile& tile, double floor_m, ArrowSample& ar
     }
 }
 
-void Convolution::add_level(double floor_m, const std::vector<bool>& component,
-                            std::span<Strikes> strikes, std::span<float> exposure,
-                            ArrowSample& arrows) {
+template <class Visit>
+void Convolution::sweep(double floor_m, const std::vector<bool>& component,
+                        const std::vector<std::uint32_t>& starts, std::vector<Target>& targets,
+                        std::span<Strikes> strikes, const Visit& visit) {
     const device::Buffer<float> primary_field(device_, primary(component), "primary motion");
     const device::Buffer<std::uint32_t> solid(device_, solid_bands(floor_m), "solid bands");
-    const std::vector<std::uint32_t> starts = active_blocks(component);
-    std::vector<Target> all = targets(floor_m);
     std::vector<Strikes> here(strikes.size(), no_strikes(secondary_));
 
     const std::uint64_t per_cell =
@@ -295,12 +289,13 @@ void Convolution::add_level(double floor_m, const std::vector<bool>& component,
             std::span(starts).subspan(first, std::min(blocks_per_tile, starts.size() - first));
         tile.cells = static_cast<std::uint32_t>(tile.starts.size() * block);
         const auto before = [](const Target& t, std::uint32_t cell) { return t.cell < cell; };
-        const auto low = std::lower_bound(all.begin(), all.end(), tile.starts.front(), before);
-        const auto high = std::lower_bound(low, all.end(), tile.starts.back() + block, before);
+        const auto low =
+            std::lower_bound(targets.begin(), targets.end(), tile.starts.front(), before);
+        const auto high = std::lower_bound(low, targets.end(), tile.starts.back() + block, before);
         tile.targets = std::span<Target>(low, high);
         run(tile, primary_field, solid);
         collect_strikes(tile, here);
-        offer_arrows(tile, floor_m, arrows);
+        visit(tile);
     }
     // Walks at different levels are different events.
     for (std::size_t o = 0; o < strikes.size(); ++o) {
@@ -308,14 +303,52 @@ void Convolution::add_level(double floor_m, const std::vector<bool>& component,
             for (unsigned d = 0; d < direction_count; ++d) strikes[o][n][d] += here[o][n][d];
         }
     }
+}
+
+void Convolution::add_level(double floor_m, const std::vector<bool>& component,
+                            std::span<Strikes> strikes, std::span<float> exposure,
+                            ArrowSample& arrows) {
+    std::vector<Target> all;
     Target target;
     for (std::size_t v = 0; v < object_of_cell_.size(); ++v) {
-        if (!target_of(v, floor_m, target)) continue;
+        if (!target_of(v, object_of_cell_[v], floor_m, target)) continue;
+        if (all.empty() || all.back().key() != target.key()) all.push_back(target);
+    }
+    sort_unique(all);
+    sweep(floor_m, component, active_blocks(component), all, strikes,
+          [&](const Tile& tile) { offer_arrows(tile, floor_m, arrows); });
+    for (std::size_t v = 0; v < object_of_cell_.size(); ++v) {
+        if (!target_of(v, object_of_cell_[v], floor_m, target)) continue;
         const auto found =
             std::lower_bound(all.begin(), all.end(), target,
                              [](const Target& a, const Target& b) { return a.key() < b.key(); });
         exposure[v] += found->exposure;
     }
+}
+
+void Convolution::add_placements(double floor_m, const std::vector<bool>& component,
+                                 std::span<const std::vector<std::uint32_t>> cells_of_object,
+                                 std::span<const Placement> placements,
+                                 std::span<Strikes> strikes) {
+    std::vector<Target> all;
+    Target target;
+    for (std::size_t p = 0; p < placements.size(); ++p) {
+        const Placement& at = placements[p];
+        const std::size_t begin = all.size();
+        for (const std::uint32_t v : cells_of_object[at.object]) {
+            if (!target_of(v, static_cast<std::int32_t>(p), floor_m, target, at.di, at.dj))
+                continue;
+            if (all.size() == begin || all.back().key() != target.key()) all.push_back(target);
+        }
+    }
+    sort_unique(all);
+    std::vector<std::uint32_t> starts;
+    std::size_t next = 0;
+    for (const std::uint32_t start : active_blocks(component)) {
+        while (next < all.size() && all[next].cell < start) ++next;
+        if (next < all.size() && all[next].cell < start + block) starts.push_back(start);
+    }
+    sweep(floor_m, component, starts, all, strikes, [](const Tile&) {});
 }
 
 }  // namespace topple::safety

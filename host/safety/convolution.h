@@ -9,6 +9,7 @@
 
 #include "device/buffer.h"
 #include "safety/footprint.h"
+#include "safety/human_field.h"
 #include "safety/objects.h"
 #include "safety/secondary_motion.h"
 #include "safety/walkable_map.h"
@@ -44,6 +45,10 @@ class Convolution {
     // strikes and to the solid cells' exposure, and offers arrows for the report.
     void add_level(double floor_m, const std::vector<bool>& component, std::span<Strikes> strikes,
                    std::span<float> exposure, ArrowSample& arrows);
+    // The same for objects that stand elsewhere: adds to the strikes of each placement.
+    void add_placements(double floor_m, const std::vector<bool>& component,
+                        std::span<const std::vector<std::uint32_t>> cells_of_object,
+                        std::span<const Placement> placements, std::span<Strikes> strikes);
 
   private:
     // A movable object's presence in a map cell and height band.
@@ -60,8 +65,15 @@ class Convolution {
     std::vector<float> primary(const std::vector<bool>& component) const;  // a plane per direction
     std::vector<std::uint32_t> solid_bands(double floor_m) const;
     std::vector<std::uint32_t> active_blocks(const std::vector<bool>& component) const;
-    bool target_of(std::size_t voxel, double floor_m, Target& target) const;  // false: it is none
-    std::vector<Target> targets(double floor_m) const;
+    // Of a voxel moved by (di, dj); false: none, outside of the map or above the body.
+    bool target_of(std::size_t voxel, std::int32_t object, double floor_m, Target& target,
+                   std::int32_t di = 0, std::int32_t dj = 0) const;
+    static void sort_unique(std::vector<Target>& targets);
+    // Runs all blocks, in tiles; adds the targets' strikes; shows each tile to `visit`.
+    template <class Visit>
+    void sweep(double floor_m, const std::vector<bool>& component,
+               const std::vector<std::uint32_t>& starts, std::vector<Target>& targets,
+               std::span<Strikes> strikes, const Visit& visit);
     void run(Tile& tile, const device::Buffer<float>& primary,
              const device::Buffer<std::uint32_t>& solid);
     void collect_strikes(Tile& tile, std::span<Strikes> strikes) const;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -84,6 +85,12 @@ struct WorkSample {
     double W_J = 0, probability = 0;  // per event
     Vec3 direction{};
 };
+// A horizontal force, and how high above the object's base it acts.
+// A horizontal force, and how high above the object's base it acts.
+struct Push {
+    double force_N = 0, height_m = 0;
+};
+
 struct Disturbance {
     std::string name;                           // "human" | "wind" | "earthquake"
     FieldSamples samples;                       // grid frame, at most max_samples
@@ -93,7 +100,12 @@ struct Disturbance {
                                                 // share of the directions it is open to (wind) or
                                                 // 1 (earthquake); 0 for grounded objects
     Walks walks;                                // of the human field
-    std::vector<std::string> notes;             // e.g. no walkable floor was found
+    // By object: its work if its barrier, curve and edges were others, as where it stood elsewhere,
+    // just as exposed. Empty for the human field, whose exposure is another there
+    // (HumanField::work_at).
+    std::vector<std::function<std::vector<WorkSample>(const RiskObject&)>> response;
+    std::vector<Push> strongest;     // by object: of all its events
+    std::vector<std::string> notes;  // e.g. no walkable floor was found
 };
 
 inline constexpr std::size_t max_samples = 4000;     // arrows per field, for the report
@@ -105,8 +117,7 @@ inline constexpr std::size_t max_work_samples = 64;  // per object and human fie
 // disturbance) the passes of each part through each cell per walk, and W = m v^2 / 2 of the part.
 // One event is one walk. Nothing walkable, no object: an empty field, and a note that says why.
 Disturbance human_field(device::Device& device, const Surroundings& surroundings,
-                        std::span<const RiskObject> objects, double friction,
-                        const HumanOptions& options);
+                        std::span<const RiskObject> objects, const HumanOptions& options);
 // A gale of one speed, from one direction or from each of 16, alike in all of the space (5.1.1).
 // F = rho C_d A v^2 / 2 acts on the exposed frontal area A at the height h of its centre. With m g
 // b(dir) / h the force that tips the object and mu m g the force that slides it,
@@ -172,6 +183,9 @@ struct Risk {
     double spread_J = 0;  // its standard error: sqrt((sum p S^2 - R^2) / draws)
     double chance = 0;    // per event, that it falls: sum of p over W >= barrier, where S(W) > 0
 };
+// Of one list of work, and one curve.
+Risk risk_of(std::span<const WorkSample> work, std::span<const InstabilityStep> curve,
+             std::size_t draws);
 // For each object; all 0 for grounded ones.
 std::vector<Risk> risk(const Disturbance& disturbance, std::span<const RiskObject> objects);
 

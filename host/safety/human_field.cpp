@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "safety/human_field.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +11,9 @@
 
 namespace topple::safety {
 namespace {
+
+// Flesh, clothes and the thing give way by so much when a body is stopped.
+constexpr double stopping_way_m = 0.05;
 
 void check(const HumanOptions& options) {
     check_option("cell_m", options.cell_m, 1e-3);
@@ -131,37 +136,90 @@ std::vector<WorkSample> strongest_strikes(const Strikes& strikes, std::span<cons
     return compact(std::move(share), work);
 }
 
-Disturbance human_field(device::Device& device, const Surroundings& surroundings,
-                        std::span<const RiskObject> objects, double /*friction*/,
-                        const HumanOptions& options) {
+struct HumanField::Parts {
+    device::Device& device;
+    const Surroundings& surroundings;
+    std::span<const RiskObject> objects;
+    HumanOptions options;
+    std::vector<std::int32_t> object_of_cell;
+    WalkableMap map;
+    PrimaryMotion primary;
+    SecondaryMotion secondary;
+    std::unique_ptr<Convolution> convolution;  // none: nobody walks
+    std::vector<Level> levels;
+};
+
+HumanField::HumanField(device::Device& device, const Surroundings& surroundings,
+                       std::span<const RiskObject> objects, const HumanOptions& options)
+    : parts_(new Parts{device,
+                       surroundings,
+                       objects,
+                       options,
+                       movable_object_of_cells(surroundings, objects),
+                       {},
+                       {},
+                       {},
+                       {},
+                       {}}) {
     check(options);
+    Parts& p = *parts_;
+    p.secondary =
+        p.options.motion ? recorded_motion(*p.options.motion, p.options) : table_motion(p.options);
+    p.map = walkable_map(surroundings, p.options);
+    if (p.map.walkable.empty()) return;
+    p.primary = primary_motion(p.map, p.options);
+    if (p.primary.paths == 0) return;
+    p.convolution = std::make_unique<Convolution>(device, p.map, p.primary, p.secondary,
+                                                  surroundings, p.object_of_cell, p.options);
+    p.levels = levels(p.map, 2 * p.convolution->band_m());
+}
+
+HumanField::~HumanField() = default;
+
+Disturbance HumanField::disturbance() {
+    Parts& p = *parts_;
     Disturbance out;
     out.name = "human";
-    out.work.resize(objects.size());
-    const auto object_of_cell = movable_object_of_cells(surroundings, objects);
-    out.exposure.assign(object_of_cell.size(), 0.0f);
-    const WalkableMap map = walkable_map(surroundings, options);
-    out.notes = map.notes;
-    if (map.walkable.empty()) return out;
-    const PrimaryMotion motion = primary_motion(map, options);
-    out.walks = drawn_walks(map, motion);
-    if (motion.paths == 0) return out;
+    out.work.resize(p.objects.size());
+    out.exposure.assign(p.object_of_cell.size(), 0.0f);
+    out.notes = p.map.notes;
+    out.notes.insert(out.notes.end(), p.secondary.notes.begin(), p.secondary.notes.end());
+    if (!p.map.walkable.empty()) out.walks = drawn_walks(p.map, p.primary);
+    if (!p.convolution) return out;
+    out.draws = p.primary.paths;
 
-    out.draws = motion.paths;
-
-    const SecondaryMotion secondary =
-        options.motion ? recorded_motion(*options.motion, options) : table_motion(options);
-    out.notes.insert(out.notes.end(), secondary.notes.begin(), secondary.notes.end());
-    std::vector<Strikes> strikes(objects.size(), no_strikes(secondary));
+    std::vector<Strikes> strikes(p.objects.size(), no_strikes(p.secondary));
     ArrowSample arrows;
-    Convolution convolution(device, map, motion, secondary, surroundings, object_of_cell, options);
-    for (const Level& level : levels(map, 2 * convolution.band_m())) {
-        convolution.add_level(level.floor_m, level.component, strikes, out.exposure, arrows);
+    for (const Level& level : p.levels)
+        p.convolution->add_level(level.floor_m, level.component, strikes, out.exposure, arrows);
+    out.strongest.resize(p.objects.size());
+    for (std::size_t o = 0; o < p.objects.size(); ++o) {
+        out.work[o] = strongest_strikes(strikes[o], p.secondary.energy_J);
+        for (const WorkSample& strike : out.work[o]) {
+            const double force = strike.W_J / stopping_way_m;
+            if (force > out.strongest[o].force_N) out.strongest[o] = {force, p.objects[o].height_m};
+        }
     }
-    for (std::size_t o = 0; o < objects.size(); ++o)
-        out.work[o] = strongest_strikes(strikes[o], secondary.energy_J);
     out.samples = arrows.take();
     return out;
+}
+
+std::vector<std::vector<WorkSample>> HumanField::work_at(std::span<const Placement> placements) {
+    Parts& p = *parts_;
+    std::vector<std::vector<WorkSample>> out(placements.size());
+    if (!p.convolution) return out;
+    const auto cells = cells_of_objects(p.object_of_cell, p.objects.size());
+    std::vector<Strikes> strikes(placements.size(), no_strikes(p.secondary));
+    for (const Level& level : p.levels)
+        p.convolution->add_placements(level.floor_m, level.component, cells, placements, strikes);
+    for (std::size_t n = 0; n < out.size(); ++n)
+        out[n] = strongest_strikes(strikes[n], p.secondary.energy_J);
+    return out;
+}
+
+Disturbance human_field(device::Device& device, const Surroundings& surroundings,
+                        std::span<const RiskObject> objects, const HumanOptions& options) {
+    return HumanField(device, surroundings, objects, options).disturbance();
 }
 
 }  // namespace topple::safety

@@ -17,6 +17,20 @@ double instability(std::span<const InstabilityStep> curve, double W_J) {
     return release;
 }
 
+Risk risk_of(std::span<const WorkSample> work, std::span<const InstabilityStep> curve,
+             std::size_t draws) {
+    double mean = 0, square = 0, chance = 0;
+    for (const WorkSample& sample : work) {
+        const double release = instability(curve, sample.W_J);
+        mean += sample.probability * release;
+        square += sample.probability * release * release;
+        if (release > 0) chance += sample.probability;
+    }
+    const double variance = std::max(0.0, square - mean * mean);
+    return {mean, std::sqrt(variance / static_cast<double>(std::max<std::size_t>(draws, 1))),
+            chance};
+}
+
 std::vector<Risk> risk(const Disturbance& disturbance, std::span<const RiskObject> objects) {
     if (disturbance.work.size() != objects.size()) {
         throw Error(ErrorKind::usage, "the " + disturbance.name + " field knows " +
@@ -27,16 +41,7 @@ std::vector<Risk> risk(const Disturbance& disturbance, std::span<const RiskObjec
     std::vector<Risk> out(objects.size());
     for (std::size_t o = 0; o < objects.size(); ++o) {
         if (objects[o].grounded) continue;
-        double mean = 0, square = 0, chance = 0;
-        for (const WorkSample& sample : disturbance.work[o]) {
-            const double release = instability(objects[o].curve, sample.W_J);
-            mean += sample.probability * release;
-            square += sample.probability * release * release;
-            if (release > 0) chance += sample.probability;
-        }
-        const double variance = std::max(0.0, square - mean * mean);
-        const auto draws = static_cast<double>(std::max<std::size_t>(disturbance.draws, 1));
-        out[o] = {mean, std::sqrt(variance / draws), chance};
+        out[o] = risk_of(disturbance.work[o], objects[o].curve, disturbance.draws);
     }
     return out;
 }

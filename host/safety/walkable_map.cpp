@@ -173,6 +173,13 @@ void find_components(WalkableMap& map, const std::vector<bool>& walkable, double
 
 }  // namespace
 
+bool WalkableMap::holds(std::int32_t i, std::int32_t j) const {
+    const auto inside = [&](std::int64_t voxel, std::int64_t n) {
+        return voxel >= 0 && static_cast<double>(voxel) * voxel_m < static_cast<double>(n) * cell_m;
+    };
+    return inside(std::int64_t{i} - i0, nx) && inside(std::int64_t{j} - j0, ny);
+}
+
 std::size_t WalkableMap::cell_of(std::int32_t i, std::int32_t j) const {
     const auto at = [&](std::int64_t voxel, std::int64_t n) {
         const auto cell =

@@ -24,6 +24,8 @@ struct WalkableMap {
     std::size_t size() const { return static_cast<std::size_t>(nx * ny); }
     // The map's cell under the voxel column (i, j); voxels are at most as wide as map cells.
     std::size_t cell_of(std::int32_t i, std::int32_t j) const;
+    // Whether that column is on the map.
+    bool holds(std::int32_t i, std::int32_t j) const;
 
     std::int32_t i0 = 0, j0 = 0;  // the voxel column at the map's corner
     double voxel_m = 0;

@@ -181,6 +181,8 @@ Disturbance wind_field(device::Device&, const Surroundings& surroundings,
     const auto directions = static_cast<float>(blown.size());
     out.draws = blown.size();
     out.work.resize(objects.size());
+    out.response.resize(objects.size());
+    out.strongest.resize(objects.size());
     const auto object_of_cell = movable_object_of_cells(surroundings, objects);
     const auto cells = cells_of_objects(object_of_cell, objects.size());
     out.exposure.assign(object_of_cell.size(), 0.0f);
@@ -193,6 +195,7 @@ Disturbance wind_field(device::Device&, const Surroundings& surroundings,
         const Stance stands = stance(surroundings, cells[o]);
         std::vector<std::array<float, 3>> wind(cells[o].size(),
                                                {0, 0, 0});  // sum of directions, count
+        std::vector<std::pair<WindLoad, Vec3>> gales;
         for (const auto& way : blown) {
             const Frontage front = wind_frontage(solid, columns, cells[o], way, options.shelter_m);
             if (front.area_m2 <= 0) continue;
@@ -207,9 +210,19 @@ Disturbance wind_field(device::Device&, const Surroundings& surroundings,
             }
             const WindLoad load{front.area_m2, front.center_m - stands.bottom_m,
                                 half_base(objects[o], stands, dx, dy), stands.height()};
-            out.work[o].push_back(
-                {wind_work(objects[o], load, options), 1.0 / double{directions}, {dx, dy, 0}});
+            gales.emplace_back(load, Vec3{dx, dy, 0});
+            const double force = wind_force(load, options);
+            if (force > out.strongest[o].force_N)
+                out.strongest[o] = {force, load.pressure_height_m};
         }
+        out.response[o] = [gales = std::move(gales), options,
+                           probability = 1.0 / double{directions}](const RiskObject& object) {
+            std::vector<WorkSample> work;
+            for (const auto& [load, way] : gales)
+                work.push_back({wind_work(object, load, options), probability, way});
+            return work;
+        };
+        out.work[o] = out.response[o](objects[o]);
         offer_arrows(arrows, solid, cells[o], wind, options.speed_m_s, directions);
     }
     out.samples = arrows.take();

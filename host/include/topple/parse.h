@@ -45,6 +45,7 @@ struct ParseOptions {
     std::optional<double> pga_m_s2;
     // A recorded earthquake (read_accelerogram), instead of pulses about that peak.
     std::optional<Accelerogram> accelerogram;
+    double tolerable_J = 0.1;  // risk per event below which nothing needs to be done
     // Seconds for the search for objects, about; none: as long as it takes. Where a limit is met,
     // the objects depend on the machine.
     std::optional<double> grouping_time_s;

@@ -112,7 +112,7 @@ struct Object {
     double mass_kg = 0;
     Vec3 center_of_mass_m{};
     double barrier_J = 0;  // least energy that moves it out of its basin
-    // What a voxel more or less in its shape or support changes in the barrier: M g x voxel size.
+    // What a voxel more or less in its support changes in the barrier.
     double barrier_error_J = 0;
     double release_J = 0;       // what it can release then
     std::string mode = "none";  // "tip" | "slide" | "none"

@@ -122,11 +122,10 @@ void check_objects(const Json& scene, const std::set<std::string>& disturbances)
         EXPECT_TRUE(std::isfinite(length(o.at("center_of_mass_m"))));
         expect_number(o, "barrier_J", 0);
         expect_number(o, "release_J", 0);
-        EXPECT_NEAR(o.at("barrier_error_J").get<double>(),
-                    o.at("grounded").get<bool>()
-                        ? 0
-                        : mass * 9.80665 * scene.at("voxel_size_m").get<double>(),
-                    1e-3 * mass);
+        // At most that of a body which rolls.
+        const double error = o.at("barrier_error_J");
+        EXPECT_LE(error, (mass + 1e-3) * 9.80665 * scene.at("voxel_size_m").get<double>());
+        EXPECT_EQ(error > 0, !o.at("grounded").get<bool>());
         EXPECT_TRUE(std::set<std::string>({"tip", "slide", "none"}).contains(o.at("mode")));
         const bool moves = o.at("mode") != "none";
         EXPECT_NEAR(length(o.at("direction")), moves ? 1 : 0, 1e-6) << o;

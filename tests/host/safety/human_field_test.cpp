@@ -20,7 +20,7 @@ namespace {
 class HumanField : public test::EachBackend {
   protected:
     Disturbance field(test::Room& room, const HumanOptions& options = {}) {
-        return human_field(*device, room.surroundings(), room.objects, 0.3, options);
+        return human_field(*device, room.surroundings(), room.objects, options);
     }
 };
 
@@ -115,7 +115,7 @@ TEST_P(HumanField, MatchesTheOracle) {
     HumanOptions options;
     options.paths = 60;
     const Surroundings s = room.surroundings();
-    const Disturbance f = human_field(*device, s, room.objects, 0.3, options);
+    const Disturbance f = human_field(*device, s, room.objects, options);
 
     const WalkableMap map = walkable_map(s, options);
     const PrimaryMotion motion = primary_motion(map, options);
@@ -199,7 +199,7 @@ TEST_P(HumanField, EmptyScenesGiveEmptyFields) {
     EXPECT_FALSE(floating.notes.empty());
     test::Room bare(0.025);
     bare.floor(0, 1, 0, 1);
-    const Disturbance walked = human_field(*device, bare.surroundings(), {}, 0.3, {});
+    const Disturbance walked = human_field(*device, bare.surroundings(), {}, {});
     EXPECT_TRUE(walked.work.empty());
     EXPECT_FALSE(walked.samples.x.empty());
     HumanOptions options;
@@ -207,7 +207,7 @@ TEST_P(HumanField, EmptyScenesGiveEmptyFields) {
     EXPECT_THROW(field(bare, options), Error);
     Surroundings broken = bare.surroundings();
     broken.object.clear();
-    EXPECT_THROW(human_field(*device, broken, bare.objects, 0.3, {}), Error);
+    EXPECT_THROW(human_field(*device, broken, bare.objects, {}), Error);
 }
 
 TEST_P(HumanField, ARoomOfFiveByFiveMetresIsFast) {
@@ -216,9 +216,9 @@ TEST_P(HumanField, ARoomOfFiveByFiveMetresIsFast) {
     for (int n = 0; n < 3; ++n) room.box(0.6 + 1.4 * n, 1.4 + 1.4 * n, 2, 3, 0.7, 0.74);
     for (int n = 0; n < 9; ++n) room.thing(0.7 + 0.4 * n, 2.1, 0.74);
     const Surroundings s = room.surroundings();
-    human_field(*device, s, room.objects, 0.3, {});  // builds the kernels
+    human_field(*device, s, room.objects, {});  // builds the kernels
     const auto start = std::chrono::steady_clock::now();
-    const Disturbance f = human_field(*device, s, room.objects, 0.3, {});
+    const Disturbance f = human_field(*device, s, room.objects, {});
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     RecordProperty("seconds", std::to_string(seconds));

@@ -154,7 +154,7 @@ TEST_P(RecordedField, IsTheSumOverWalkersAndTheirMotion) {
     options.paths = 40;
     options.motion = std::make_shared<BodyMotion>(walker(2, 1.2, 0.25));
     const Surroundings s = room.surroundings();
-    const Disturbance field = human_field(*device, s, room.objects, 0.3, options);
+    const Disturbance field = human_field(*device, s, room.objects, options);
 
     const WalkableMap map = walkable_map(s, options);
     const PrimaryMotion walks = primary_motion(map, options);

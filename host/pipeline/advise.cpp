@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/advise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "physics/drop.h"
+#include "physics/landscape.h"
+
+namespace topple {
+namespace {
+
+constexpr double look_around_m = 1.5;
+
+// Where one object might be moved to.
+struct Place {
+    std::int32_t di = 0, dj = 0;  // voxels
+    double way_m = 0;
+    double risk_J = 0;  // of all disturbances but the walkers
+    std::vector<InstabilityStep> curve;
+};
+
+class Mover {
+  public:
+    Mover(const VoxelStage& voxels, const ObjectStage& objects,
+          std::span<const safety::RiskObject> at_risk,
+          std::span<const safety::Disturbance> disturbances, double friction, double tolerable_J)
+        : voxels_(voxels),
+          objects_(objects),
+          at_risk_(at_risk),
+          disturbances_(disturbances),
+          friction_(friction),
+          tolerable_J_(tolerable_J),
+          columns_(voxels.cells) {}
+
+    // The nearest places of the object that are tolerable but for the walkers: the nearest of each
+    // of 16 directions and 12 ranges of distance, by distance.
+    std::vector<Place> places(std::size_t o, const Landscape::Places& around) const {
+        std::map<std::pair<int, int>, Place> nearest;
+        const std::int32_t half = around.side / 2;
+        const double voxel_m = voxels_.cells.voxel_m;
+        const auto stride = static_cast<std::int32_t>(std::lround(around.step_m / voxel_m));
+        for (std::int32_t b = 0; b < around.side; ++b) {
+            for (std::int32_t a = 0; a < around.side; ++a) {
+                if (a == half && b == half) continue;
+                Place place;
+                place.di = (a - half) * stride;
+                place.dj = (b - half) * stride;
+                place.way_m = voxel_m * std::hypot(place.di, place.dj);
+                const std::pair key{
+                    static_cast<int>(place.way_m / look_around_m * 12),
+                    static_cast<int>(safety::nearest_direction(place.di, place.dj))};
+                const auto known = nearest.find(key);
+                if (known != nearest.end() && known->second.way_m <= place.way_m) continue;
+                const auto slide =
+                    physics::slide_elsewhere(around, a, b, at_risk_[o].mass_kg, friction_);
+                if (!slide.reachable || !weigh(o, slide.slide, place)) continue;
+                nearest.insert_or_assign(key, std::move(place));
+            }
+        }
+        std::vector<Place> out;
+        for (auto& [key, place] : nearest) out.push_back(std::move(place));
+        std::stable_sort(out.begin(), out.end(),
+                         [](const Place& a, const Place& b) { return a.way_m < b.way_m; });
+        return out;
+    }
+
+  private:
+    // Its curve and risk there; false where that is more than is tolerated.
+    bool weigh(std::size_t o, const physics::SlideResult& slide, Place& place) const {
+        const StableObject& object = objects_.objects[o];
+        physics::Candidate there = object.candidate;
+        const double dx = place.di * voxels_.cells.voxel_m, dy = place.dj * voxels_.cells.voxel_m;
+        there.body.center[0] += dx;
+        there.body.center[1] += dy;
+        for (auto& corner : there.support_polygon) corner = {corner[0] + dx, corner[1] + dy};
+        const auto drops = physics::drops_when_tipped_m(voxels_.cells, columns_, there);
+        const bool falls = std::any_of(drops.begin(), drops.end(), [](double d) { return d > 0; });
+        // Near an edge the drops are others than here; all that is known is that there are some.
+        const physics::Instability how =
+            physics::combine_curves(falls ? object.tipping : object.level_tipping, slide);
+        safety::RiskObject changed = at_risk_[o];
+        changed.barrier_J = how.barrier_J;
+        changed.curve = how.curve;
+        changed.slide_distance_m = slide.found ? slide.distance_m : -1;
+        changed.drop_m = slide.drop_m;
+        for (const safety::Disturbance& d : disturbances_) {
+            if (d.response.empty()) continue;
+            if (!d.response[o]) continue;
+            place.risk_J = std::max(
+                place.risk_J, safety::risk_of(d.response[o](changed), changed.curve, 1).mean_J);
+        }
+        place.curve = how.curve;
+        return place.risk_J <= tolerable_J_;
+    }
+
+    const VoxelStage& voxels_;
+    const ObjectStage& objects_;
+    std::span<const safety::RiskObject> at_risk_;
+    std::span<const safety::Disturbance> disturbances_;
+    double friction_, tolerable_J_;
+    physics::CellColumns columns_;
+};
+
+// What holds the object upright against the strongest push.
+safety::Push fixing(const safety::RiskObject& object,
+                    std::span<const safety::Disturbance> disturbances, std::size_t o,
+                    double friction) {
+    const double weight = object.mass_kg * physics::gravity, top = std::max(object.height_m, 1e-3);
+    safety::Push out{0, top};
+    for (const safety::Disturbance& d : disturbances) {
+        if (o >= d.strongest.size()) continue;
+        const safety::Push& push = d.strongest[o];
+        const double tips = (push.force_N * push.height_m - weight * object.base_width_m / 2) / top;
+        out.force_N = std::max({out.force_N, tips, push.force_N - friction * weight});
+    }
+    return out;
+}
+
+}  // namespace
+
+std::vector<Suggestion> advise(const VoxelStage& voxels, const ObjectStage& objects,
+                               std::span<const safety::RiskObject> at_risk,
+                               std::span<const safety::Disturbance> disturbances,
+                               std::span<const std::vector<safety::Risk>> risk,
+                               safety::HumanField* human, double friction, double tolerable_J) {
+    std::vector<Suggestion> out(at_risk.size());
+    std::vector<double> worst(at_risk.size(), 0.0);
+    for (const auto& of_disturbance : risk) {
+        for (std::size_t o = 0; o < worst.size(); ++o)
+            worst[o] = std::max(worst[o], of_disturbance[o].mean_J);
+    }
+    std::vector<std::size_t> chosen;  // the riskiest first
+    std::vector<physics::Body> bodies;
+    for (std::size_t o = 0; o < at_risk.size(); ++o) {
+        bodies.push_back(objects.objects[o].candidate.body);
+        if (at_risk[o].grounded || !(worst[o] > tolerable_J)) continue;
+        if (at_risk[o].barrier_J <= objects.objects[o].barrier_error_J) {
+            out[o].kind = Suggestion::Kind::check;
+            out[o].risk_J = worst[o];
+            continue;
+        }
+        out[o].kind = Suggestion::Kind::fix;
+        out[o].hold = fixing(at_risk[o], disturbances, o, friction);
+        chosen.push_back(o);
+    }
+    std::stable_sort(chosen.begin(), chosen.end(),
+                     [&](std::size_t a, std::size_t b) { return worst[a] > worst[b]; });
+    if (chosen.size() > most_moved) chosen.resize(most_moved);
+
+    const auto around = physics::places_of(voxels.cells, objects.object_of_primitive, bodies,
+                                           chosen, friction, look_around_m);
+    const Mover mover(voxels, objects, at_risk, disturbances, friction, tolerable_J);
+    std::vector<safety::Placement> placements;
+    std::vector<Place> places;
+    for (std::size_t n = 0; n < chosen.size(); ++n) {
+        for (Place& place : mover.places(chosen[n], around[n])) {
+            placements.push_back({chosen[n], place.di, place.dj});
+            places.push_back(std::move(place));
+        }
+    }
+    const auto work = human ? human->work_at(placements)
+                            : std::vector<std::vector<safety::WorkSample>>(placements.size());
+    for (std::size_t n = 0; n < placements.size(); ++n) {
+        Suggestion& to = out[placements[n].object];
+        if (to.kind == Suggestion::Kind::move) continue;  // nearer ones come first
+        const double all =
+            std::max(places[n].risk_J, safety::risk_of(work[n], places[n].curve, 1).mean_J);
+        if (all > tolerable_J) continue;
+        to = {Suggestion::Kind::move,
+              {placements[n].di * voxels.cells.voxel_m, placements[n].dj * voxels.cells.voxel_m, 0},
+              all,
+              {}};
+    }
+    return out;
+}
+
+}  // namespace topple

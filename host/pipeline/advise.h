@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "pipeline/object_stage.h"
+#include "safety/fields.h"
+#include "safety/human_field.h"
+
+// What would lower the risk of each object to what is tolerated. Grid frame.
+namespace topple {
+
+struct Suggestion {
+    // nothing: its risk is tolerated. check: it stands, but its barrier can't be told from 0, so
+    // that its risk may be the scan's fault.
+    enum class Kind { nothing, check, move, fix };
+    Kind kind = Kind::nothing;
+    Vec3 move_m{};        // move: horizontal
+    double risk_J = 0;    // its largest afterwards
+    safety::Push hold{};  // fix: what a fixing must take, at the top of the object
+};
+
+// `move` is the smallest way on the object's support to a place from where all disturbances bring
+// tolerable_J at most: without an edge to tip over within its height, far from edges to slide
+// off, out of the reach of walkers. What it carries is taken to move along. Places up to 1.5 m away
+// are looked at, for the `most_moved` riskiest. Else `fix`: the moment of the strongest push less
+// what its own weight holds, over its height, or the push less friction, if that is more.
+// human: null where that disturbance is not reckoned with.
+inline constexpr std::size_t most_moved = 16;
+std::vector<Suggestion> advise(const VoxelStage& voxels, const ObjectStage& objects,
+                               std::span<const safety::RiskObject> at_risk,
+                               std::span<const safety::Disturbance> disturbances,
+                               std::span<const std::vector<safety::Risk>> risk,
+                               safety::HumanField* human, double friction, double tolerable_J);
+
+}  // namespace topple
