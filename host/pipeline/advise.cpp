@@ -11,7 +11,8 @@
 namespace topple {
 namespace {
 
-constexpr double look_around_m = 1.5;
+// How far it is moved at most, and how far from there an edge is seen.
+constexpr double look_around_m = 1.5, see_edges_m = 0.7;
 
 // Where one object might be moved to.
 struct Place {
@@ -43,11 +44,11 @@ class Mover {
         const auto stride = static_cast<std::int32_t>(std::lround(around.step_m / voxel_m));
         for (std::int32_t b = 0; b < around.side; ++b) {
             for (std::int32_t a = 0; a < around.side; ++a) {
-                if (a == half && b == half) continue;
                 Place place;
                 place.di = (a - half) * stride;
                 place.dj = (b - half) * stride;
                 place.way_m = voxel_m * std::hypot(place.di, place.dj);
+                if (place.way_m == 0 || place.way_m > look_around_m) continue;
                 const std::pair key{
                     static_cast<int>(place.way_m / look_around_m * 12),
                     static_cast<int>(safety::nearest_direction(place.di, place.dj))};
@@ -150,7 +151,7 @@ std::vector<Suggestion> advise(const VoxelStage& voxels, const ObjectStage& obje
     if (chosen.size() > most_moved) chosen.resize(most_moved);
 
     const auto around = physics::places_of(voxels.cells, objects.object_of_primitive, bodies,
-                                           chosen, friction, look_around_m);
+                                           chosen, friction, look_around_m + see_edges_m);
     const Mover mover(voxels, objects, at_risk, disturbances, friction, tolerable_J);
     std::vector<safety::Placement> placements;
     std::vector<Place> places;

@@ -55,46 +55,62 @@ double rocking_work(double mass_kg, const Profile& body, double acceleration, do
     return tipping_energy(mass_kg, body.height_m, body.ahead_m) * 2 * eta * (eta - 1) * growth;
 }
 
+// What an event does to a body, wherever it stands.
+struct Shaken {
+    double energy_J = 0;
+    bool overturns = false;
+    double way_m = 0;  // slid
+};
+
 // What the ideal body needs to fall and what the landscape says differ by the voxels; and a motion
 // may hold more energy than the weakest way takes, and yet not go that way.
-double work_of(const RiskObject& object, double energy_J, bool falls) {
-    if (object.barrier_J <= 0) return energy_J;
-    return falls ? std::max(energy_J, object.barrier_J)
-                 : std::min(energy_J, std::nextafter(object.barrier_J, 0.0));
+double work_of(const RiskObject& object, const Shaken& shaken) {
+    if (object.barrier_J <= 0) return shaken.energy_J;
+    const bool slides_off =
+        object.slide_distance_m >= 0 && shaken.way_m > 0 && shaken.way_m >= object.slide_distance_m;
+    return shaken.overturns || slides_off
+               ? std::max(shaken.energy_J, object.barrier_J)
+               : std::min(shaken.energy_J, std::nextafter(object.barrier_J, 0.0));
 }
 
-bool slides_off(const RiskObject& object, double way_m) {
-    return object.slide_distance_m >= 0 && way_m > 0 && way_m >= object.slide_distance_m;
+Shaken shaken_by_pulse(double mass_kg, const Profile& body, double acceleration, double friction,
+                       double duration_s) {
+    if (!(mass_kg > 0) || !(body.height_m > 0)) return {};
+    if (body.ahead_m <= 0) return {0, true, 0};  // nothing holds it that way: any push tips it
+    if (body.rocks_ahead(friction)) {
+        const double work = rocking_work(mass_kg, body, acceleration, duration_s);
+        return {work, work >= tipping_energy(mass_kg, body.height_m, body.ahead_m), 0};
+    }
+    // It lags behind, then comes to rest by friction.
+    const double force = friction * mass_kg * gravity;
+    const double excess = acceleration - friction * gravity;
+    if (excess <= 0) return {};
+    const double work = 0.5 * mass_kg * excess * acceleration * duration_s * duration_s;
+    return {work, false, work / force};
+}
+
+Shaken shaken_by_record(double mass_kg, const Profile& body, const Accelerogram& record,
+                        double friction) {
+    if (!(mass_kg > 0) || !(body.height_m > 0)) return {};
+    if (body.ahead_m <= 0 || body.behind_m <= 0) return {0, true, 0};
+    const Rocking rocking = rock(body, record, friction);
+    const Sliding sliding = slide(body, record, friction);
+    const double way = std::max(sliding.ahead_m, sliding.behind_m);
+    return {mass_kg * std::max(rocking.energy_J_kg, friction * gravity * way), rocking.overturns,
+            way};
 }
 
 }  // namespace
 
 double pulse_work(const RiskObject& object, const Profile& body, double acceleration,
                   double friction, double duration_s) {
-    if (!(object.mass_kg > 0) || !(body.height_m > 0)) return 0;
-    if (body.ahead_m <= 0) return object.barrier_J;  // nothing holds it that way: any push tips it
-    if (body.rocks_ahead(friction)) {
-        const double work = rocking_work(object.mass_kg, body, acceleration, duration_s);
-        return work_of(object, work,
-                       work >= tipping_energy(object.mass_kg, body.height_m, body.ahead_m));
-    }
-    // It lags behind, then comes to rest by friction.
-    const double force = friction * object.mass_kg * gravity;
-    const double excess = acceleration - friction * gravity;
-    if (excess <= 0) return 0;
-    const double work = 0.5 * object.mass_kg * excess * acceleration * duration_s * duration_s;
-    return work_of(object, work, slides_off(object, work / force));
+    return work_of(object,
+                   shaken_by_pulse(object.mass_kg, body, acceleration, friction, duration_s));
 }
 
 double record_work(const RiskObject& object, const Profile& body, const Accelerogram& record,
                    double friction) {
-    if (!(object.mass_kg > 0) || !(body.height_m > 0)) return 0;
-    if (body.ahead_m <= 0 || body.behind_m <= 0) return object.barrier_J;
-    const Rocking rocking = rock(body, record, friction);
-    const Sliding sliding = slide(body, record, friction);
-    const double way = std::max(sliding.ahead_m, sliding.behind_m);
-    const double energy = object.mass_kg * std::max(rocking.energy_J_kg, friction * gravity * way);
-    return work_of(object, energy, rocking.overturns || slides_off(object, way));
+    return work_of(object, shaken_by_record(object.mass_kg, body, record, friction));
 }
 
 Disturbance earthquake_field(device::Device& device, const Surroundings& surroundings,
@@ -108,6 +124,8 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
     Disturbance out;
     out.name = "earthquake";
     out.work.resize(objects.size());
+    out.response.resize(objects.size());
+    out.strongest.resize(objects.size());
     const auto object_of_cell = movable_object_of_cells(surroundings, objects);
     const auto cells = cells_of_objects(object_of_cell, objects.size());
     out.exposure.assign(object_of_cell.size(), 0.0f);
@@ -128,16 +146,27 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (cells[o].empty() || objects[o].grounded) return;
         stances[o] = stance(surroundings, cells[o]);
+        std::vector<std::pair<Shaken, Vec3>> shaken;
         for (const Event& event : events) {
             const Profile body = profile(objects[o], stances[o], event.dx, event.dy);
-            const double work = options.record
-                                    ? record_work(objects[o], body, *options.record, friction)
-                                    : pulse_work(objects[o], body, event.peak, friction,
-                                                 options.dominant_period_s / 2);
-            // Also where it is 0: what has no barrier falls at any shaking.
-            out.work[o].push_back(
-                {work, 1.0 / static_cast<double>(events.size()), {event.dx, event.dy, 0}});
+            const double mass = objects[o].mass_kg;
+            shaken.emplace_back(options.record
+                                    ? shaken_by_record(mass, body, *options.record, friction)
+                                    : shaken_by_pulse(mass, body, event.peak, friction,
+                                                      options.dominant_period_s / 2),
+                                Vec3{event.dx, event.dy, 0});
+            const double force = mass * event.peak;
+            if (force > out.strongest[o].force_N) out.strongest[o] = {force, body.height_m};
         }
+        out.response[o] = [shaken = std::move(shaken)](const RiskObject& object) {
+            std::vector<WorkSample> work;
+            // Also where it is 0: what has no barrier falls at any shaking.
+            for (const auto& [motion, way] : shaken)
+                work.push_back(
+                    {work_of(object, motion), 1.0 / static_cast<double>(shaken.size()), way});
+            return work;
+        };
+        out.work[o] = out.response[o](objects[o]);
     });
     ArrowSample arrows;
     for (std::size_t o = 0; o < objects.size(); ++o) {

@@ -37,6 +37,36 @@ class Sliding : public ::testing::Test {
                                   {2, box({0.15, 0.35, 0.75}, {0.25, 0.45, 0.85})}};
 };
 
+// From another place on the table the way and the drop are those of a cube that stands there.
+TEST_F(Sliding, FromAnotherPlaceItIsAsIfItStoodThere) {
+    const double voxel = 0.025;
+    const SolidCells cells = test::voxelise(room, {-2, -2, -0.1}, {3, 3, 1}, voxel);
+    const std::vector<double> density(3, 700);
+    const std::vector<std::int32_t> own{0, 1, 2};
+    const auto bodies = mass_properties(*device, cells, 3, density);
+    const std::size_t cube = 2;
+    const auto places = places_of(cells, own, bodies, std::span(&cube, 1), 0.3, 1.3).at(0);
+    ASSERT_GT(places.side, 20);
+    EXPECT_NEAR(places.step_m * (places.side / 2), 1.3, 0.05);
+    const std::int32_t half = places.side / 2;
+    int compared = 0;
+    for (const auto& [dx, dy] : {std::pair{0.0, 0.0}, {0.2, 0.0}, {0.4, 0.1}, {0.8, -0.1}}) {
+        const auto a = half + static_cast<std::int32_t>(std::lround(dx / places.step_m));
+        const auto b = half + static_cast<std::int32_t>(std::lround(dy / places.step_m));
+        const SlideElsewhere there = slide_elsewhere(places, a, b, bodies[cube].mass_kg, 0.3);
+        ASSERT_TRUE(there.reachable) << dx;
+        std::vector<test::Solid> moved = room;
+        moved.back() = {2, box({0.15 + dx, 0.35 + dy, 0.75}, {0.25 + dx, 0.45 + dy, 0.85})};
+        const SlideResult s = slide(moved, {-2, -2, -0.1}, {3, 3, 1}, voxel, 3)[2];
+        ASSERT_EQ(there.slide.found, s.found);
+        EXPECT_NEAR(there.slide.distance_m, s.distance_m, places.step_m) << dx;
+        EXPECT_NEAR(there.slide.released_J, s.released_J, 1e-5) << dx;
+        ++compared;
+    }
+    EXPECT_EQ(compared, 4);
+    EXPECT_FALSE(slide_elsewhere(places, half - 12, half, 0.7, 0.3).reachable) << "beyond the edge";
+}
+
 TEST_F(Sliding, CubeOnATable) {
     for (const double voxel : {0.05, 0.025, 0.0125}) {
         SCOPED_TRACE(voxel);

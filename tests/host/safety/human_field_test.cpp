@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "safety/human_field.h"
+
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -90,6 +92,33 @@ TEST_P(HumanField, NearerToTheEdgeIsStruckMore) {
         last = p;
     }
     EXPECT_GT(last, 0.05);
+}
+
+// Asked what it would meet elsewhere, the field tells what it tells of a thing that stands there.
+TEST_P(HumanField, ElsewhereIsAsIfItStoodThere) {
+    const double inside[] = {0.95, 0.45, 0.25, 0.05};
+    std::vector<double> moved, there;
+    for (const double at : inside) {
+        test::Room room(0.025);
+        room.floor(0, 4, 0, 4);
+        room.box(1, 3, 1, 3, 0.7, 0.75);
+        const auto cup = room.thing(1 + at, 2, 0.75);
+        const Surroundings s = room.surroundings();
+        safety::HumanField walkers(*device, s, room.objects, {});
+        there.push_back(struck(walkers.disturbance(), cup));
+        if (at != inside[0]) continue;
+        std::vector<Placement> placements;
+        for (const double to : inside) {
+            placements.push_back({static_cast<std::size_t>(cup),
+                                  static_cast<std::int32_t>(std::lround((to - at) / 0.025)), 0});
+        }
+        for (const auto& work : walkers.work_at(placements))
+            moved.push_back(test::total_probability(work));
+    }
+    for (std::size_t n = 0; n < there.size(); ++n)
+        EXPECT_NEAR(moved[n], there[n], 1e-6 + 0.02 * there[n]) << inside[n];
+    EXPECT_EQ(moved[0], 0);
+    EXPECT_GT(moved[3], 0.05);
 }
 
 // A thin thing on a table is struck by hands that pass just above the table's top.
