@@ -24,23 +24,23 @@ struct Place {
 
 class Mover {
   public:
-    Mover(const VoxelStage& voxels, const ObjectStage& objects,
+    Mover(const physics::SolidCells& cells, std::span<const StableObject> objects,
           std::span<const safety::RiskObject> at_risk,
           std::span<const safety::Disturbance> disturbances, double friction, double tolerable_J)
-        : voxels_(voxels),
+        : cells_(cells),
           objects_(objects),
           at_risk_(at_risk),
           disturbances_(disturbances),
           friction_(friction),
           tolerable_J_(tolerable_J),
-          columns_(voxels.cells) {}
+          columns_(cells) {}
 
     // The nearest places of the object that are tolerable but for the walkers: the nearest of each
     // of 16 directions and 12 ranges of distance, by distance.
     std::vector<Place> places(std::size_t o, const Landscape::Places& around) const {
         std::map<std::pair<int, int>, Place> nearest;
         const std::int32_t half = around.side / 2;
-        const double voxel_m = voxels_.cells.voxel_m;
+        const double voxel_m = cells_.voxel_m;
         const auto stride = static_cast<std::int32_t>(std::lround(around.step_m / voxel_m));
         for (std::int32_t b = 0; b < around.side; ++b) {
             for (std::int32_t a = 0; a < around.side; ++a) {
@@ -70,13 +70,13 @@ class Mover {
   private:
     // Its curve and risk there; false where that is more than is tolerated.
     bool weigh(std::size_t o, const physics::SlideResult& slide, Place& place) const {
-        const StableObject& object = objects_.objects[o];
+        const StableObject& object = objects_[o];
         physics::Candidate there = object.candidate;
-        const double dx = place.di * voxels_.cells.voxel_m, dy = place.dj * voxels_.cells.voxel_m;
+        const double dx = place.di * cells_.voxel_m, dy = place.dj * cells_.voxel_m;
         there.body.center[0] += dx;
         there.body.center[1] += dy;
         for (auto& corner : there.support_polygon) corner = {corner[0] + dx, corner[1] + dy};
-        const auto drops = physics::drops_when_tipped_m(voxels_.cells, columns_, there);
+        const auto drops = physics::drops_when_tipped_m(cells_, columns_, there);
         const bool falls = std::any_of(drops.begin(), drops.end(), [](double d) { return d > 0; });
         // Near an edge the drops are others than here; all that is known is that there are some.
         const physics::Instability how =
@@ -96,8 +96,8 @@ class Mover {
         return place.risk_J <= tolerable_J_;
     }
 
-    const VoxelStage& voxels_;
-    const ObjectStage& objects_;
+    const physics::SolidCells& cells_;
+    std::span<const StableObject> objects_;
     std::span<const safety::RiskObject> at_risk_;
     std::span<const safety::Disturbance> disturbances_;
     double friction_, tolerable_J_;
@@ -121,7 +121,9 @@ safety::Push fixing(const safety::RiskObject& object,
 
 }  // namespace
 
-std::vector<Suggestion> advise(const VoxelStage& voxels, const ObjectStage& objects,
+std::vector<Suggestion> advise(const physics::SolidCells& cells,
+                               std::span<const std::int32_t> object_of_primitive,
+                               std::span<const StableObject> objects,
                                std::span<const safety::RiskObject> at_risk,
                                std::span<const safety::Disturbance> disturbances,
                                std::span<const std::vector<safety::Risk>> risk,
@@ -135,9 +137,9 @@ std::vector<Suggestion> advise(const VoxelStage& voxels, const ObjectStage& obje
     std::vector<std::size_t> chosen;  // the riskiest first
     std::vector<physics::Body> bodies;
     for (std::size_t o = 0; o < at_risk.size(); ++o) {
-        bodies.push_back(objects.objects[o].candidate.body);
+        bodies.push_back(objects[o].candidate.body);
         if (at_risk[o].grounded || !(worst[o] > tolerable_J)) continue;
-        if (at_risk[o].barrier_J <= objects.objects[o].barrier_error_J) {
+        if (at_risk[o].barrier_J <= objects[o].barrier_error_J) {
             out[o].kind = Suggestion::Kind::check;
             out[o].risk_J = worst[o];
             continue;
@@ -150,9 +152,9 @@ std::vector<Suggestion> advise(const VoxelStage& voxels, const ObjectStage& obje
                      [&](std::size_t a, std::size_t b) { return worst[a] > worst[b]; });
     if (chosen.size() > most_moved) chosen.resize(most_moved);
 
-    const auto around = physics::places_of(voxels.cells, objects.object_of_primitive, bodies,
-                                           chosen, friction, look_around_m + see_edges_m);
-    const Mover mover(voxels, objects, at_risk, disturbances, friction, tolerable_J);
+    const auto around = physics::places_of(cells, object_of_primitive, bodies, chosen, friction,
+                                           look_around_m + see_edges_m);
+    const Mover mover(cells, objects, at_risk, disturbances, friction, tolerable_J);
     std::vector<safety::Placement> placements;
     std::vector<Place> places;
     for (std::size_t n = 0; n < chosen.size(); ++n) {
@@ -170,7 +172,7 @@ std::vector<Suggestion> advise(const VoxelStage& voxels, const ObjectStage& obje
             std::max(places[n].risk_J, safety::risk_of(work[n], places[n].curve, 1).mean_J);
         if (all > tolerable_J) continue;
         to = {Suggestion::Kind::move,
-              {placements[n].di * voxels.cells.voxel_m, placements[n].dj * voxels.cells.voxel_m, 0},
+              {placements[n].di * cells.voxel_m, placements[n].dj * cells.voxel_m, 0},
               all,
               {}};
     }

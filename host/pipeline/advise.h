@@ -27,7 +27,9 @@ struct Suggestion {
 // what its own weight holds, over its height, or the push less friction, if that is more.
 // human: null where that disturbance is not reckoned with.
 inline constexpr std::size_t most_moved = 16;
-std::vector<Suggestion> advise(const VoxelStage& voxels, const ObjectStage& objects,
+std::vector<Suggestion> advise(const physics::SolidCells& cells,
+                               std::span<const std::int32_t> object_of_primitive,
+                               std::span<const StableObject> objects,
                                std::span<const safety::RiskObject> at_risk,
                                std::span<const safety::Disturbance> disturbances,
                                std::span<const std::vector<safety::Risk>> risk,

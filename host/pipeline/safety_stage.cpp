@@ -116,8 +116,9 @@ SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
         out.unsafety.resize(at_risk.size(), 1.0);
     });
     stage("advice", [&] {
-        out.advice = advise(voxels, objects, at_risk, out.disturbances, out.risk, walkers.get(),
-                            options.friction, options.tolerable_J);
+        out.advice = advise(voxels.cells, objects.object_of_primitive, objects.objects, at_risk,
+                            out.disturbances, out.risk, walkers.get(), options.friction,
+                            options.tolerable_J);
     });
     return out;
 }
