@@ -138,6 +138,8 @@ std::vector<Suggestion> advise(const physics::SolidCells& cells,
     std::vector<physics::Body> bodies;
     for (std::size_t o = 0; o < at_risk.size(); ++o) {
         bodies.push_back(objects[o].candidate.body);
+        if (objects[o].grounded) continue;
+        if (at_risk[o].grounded) out[o].kind = Suggestion::Kind::see;
         if (at_risk[o].grounded || !(worst[o] > tolerable_J)) continue;
         if (at_risk[o].barrier_J <= objects[o].barrier_error_J) {
             out[o].kind = Suggestion::Kind::check;

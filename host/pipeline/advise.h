@@ -11,9 +11,10 @@
 namespace topple {
 
 struct Suggestion {
-    // nothing: its risk is tolerated. check: it stands, but its barrier can't be told from 0, so
-    // that its risk may be the scan's fault.
-    enum class Kind { nothing, check, move, fix };
+    // nothing: its risk is tolerated. see: nothing that holds it was seen, and no risk reckoned.
+    // check: it stands, but its barrier can't be told from 0, so that its risk may be the scan's
+    // fault.
+    enum class Kind { nothing, see, check, move, fix };
     Kind kind = Kind::nothing;
     Vec3 move_m{};        // move: horizontal
     double risk_J = 0;    // its largest afterwards

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
-#include <set>
 #include <string>
 
 namespace topple {
@@ -144,25 +143,29 @@ void explain(const GeometryStage& geometry, const ObjectStage& objects, const To
 
 namespace {
 
-// What each object carries, directly or not, ascending.
-std::vector<std::vector<std::int32_t>> all_carried(const Scene& scene) {
-    std::vector<std::vector<std::int32_t>> direct(scene.objects.size());
-    for (const Support& s : scene.supports)
-        direct[static_cast<std::size_t>(s.supporter)].push_back(s.supported);
-    std::vector<std::vector<std::int32_t>> out(direct.size());
-    for (std::size_t o = 0; o < direct.size(); ++o) {
-        if (scene.objects[o].grounded) continue;
-        std::set<std::int32_t> seen;
-        std::vector<std::int32_t> next = direct[o];
-        while (!next.empty()) {
-            const std::int32_t at = next.back();
-            next.pop_back();
-            // Two pieces of one thing may carry each other.
-            if (at == static_cast<std::int32_t>(o) || !seen.insert(at).second) continue;
-            const auto& more = direct[static_cast<std::size_t>(at)];
-            next.insert(next.end(), more.begin(), more.end());
+// What goes along with object o: what has lost half of its support with it, and with what went
+// along before. Ascending.
+std::vector<std::int32_t> taken_along(const Scene& scene,
+                                      const std::vector<std::vector<Support>>& holders,
+                                      std::size_t o) {
+    std::vector<bool> gone(scene.objects.size());
+    gone[o] = true;
+    for (bool more = true; more;) {
+        more = false;
+        for (std::size_t x = 0; x < holders.size(); ++x) {
+            if (gone[x] || scene.objects[x].grounded) continue;
+            double all = 0, lost = 0;
+            for (const Support& s : holders[x]) {
+                all += s.area_m2;
+                if (gone[static_cast<std::size_t>(s.supporter)]) lost += s.area_m2;
+            }
+            if (lost > 0 && 2 * lost >= all) gone[x] = more = true;
         }
-        out[o].assign(seen.begin(), seen.end());
+    }
+    gone[o] = false;
+    std::vector<std::int32_t> out;
+    for (std::size_t x = 0; x < gone.size(); ++x) {
+        if (gone[x]) out.push_back(static_cast<std::int32_t>(x));
     }
     return out;
 }
@@ -191,6 +194,8 @@ Vec3 landing(const StableObject& from) {
             support - how.drop_m + std::min(beside, height)};
 }
 
+constexpr double light_kg = 5;  // one carries it away rather than fastens it
+
 std::string joules(double value) {
     return value < 0.0005 ? "nothing" : energy(value) + " per event";
 }
@@ -201,6 +206,8 @@ std::string advice_sentence(const Object& object, const Suggestion& what) {
     switch (what.kind) {
         case Suggestion::Kind::nothing:
             break;
+        case Suggestion::Kind::see:
+            return "See what holds it: the scan does not show it, and its risk is not reckoned.";
         case Suggestion::Kind::check:
             return "Look whether it stands firm: what the scan shows of its support would hardly "
                    "hold it, and its risk follows from that.";
@@ -214,10 +221,11 @@ std::string advice_sentence(const Object& object, const Suggestion& what) {
         case Suggestion::Kind::fix:
             if (!(what.hold.force_N > 0))
                 return "Fasten it, or keep people away from it: no place nearby is safer.";
-            return "Fasten it to the wall or to what carries it: the fixing must hold " +
+            return std::string(object.mass_kg < light_kg ? "Put it elsewhere, or fasten it"
+                                                         : "Fasten it") +
+                   " to the wall or to what carries it: the fixing must hold " +
                    number(what.hold.force_N) + " N at " + length(what.hold.height_m) +
-                   " above its base. No place within " + length(1.5) +
-                   " on what carries it is safe enough.";
+                   " above its base. No place nearby on what carries it is safe enough.";
     }
     return "";
 }
@@ -226,20 +234,22 @@ std::string advice_sentence(const Object& object, const Suggestion& what) {
 
 void foretell(const ObjectStage& objects, std::span<const Suggestion> advice,
               const ToInput& to_input, Scene& scene) {
-    auto carried = all_carried(scene);
+    std::vector<std::vector<Support>> holders(scene.objects.size());  // of each object
+    for (const Support& s : scene.supports)
+        holders[static_cast<std::size_t>(s.supported)].push_back(s);
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
         Object& object = scene.objects[o];
         const StableObject& from = objects.objects[o];
         object.fall.lands_m = object.center_of_mass_m;
-        object.fall.takes_along = std::move(carried[o]);
         if (from.grounded) continue;
+        object.fall.takes_along = taken_along(scene, holders, o);
         for (const auto& [name, chance] : object.fall_chance)
             object.fall.falls = object.fall.falls || chance > 0;
         object.fall.lands_m = to_input(landing(from));
         object.fall.drop_m = object.why.drop_m;
         object.fall.lands_on = object.why.lands_on;
         const Suggestion& what = advice[o];
-        static constexpr std::array kinds{"", "check", "move", "fix"};
+        static constexpr std::array kinds{"", "see", "check", "move", "fix"};
         object.advice.kind = kinds[static_cast<std::size_t>(what.kind)];
         object.advice.move_m = to_input(what.move_m);
         object.advice.risk_J = what.risk_J;

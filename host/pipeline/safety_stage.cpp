@@ -62,7 +62,8 @@ std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objec
         const StableObject& o = objects[i];
         safety::RiskObject r;
         r.id = static_cast<std::int32_t>(i);
-        r.grounded = o.grounded;
+        // What hangs on nothing that was seen hangs on what was not: nobody knows how firmly.
+        r.grounded = o.grounded || o.candidate.support_polygon.empty();
         r.mass_kg = o.candidate.body.mass_kg;
         r.barrier_J = o.instability.barrier_J;
         r.height_m = o.highest_m - o.lowest_m;

@@ -23,7 +23,7 @@ namespace topple::safety {
 // An object as this stage sees it.
 struct RiskObject {
     std::int32_t id = -1;
-    bool grounded = false;
+    bool grounded = false;  // or held by what was not seen: no risk is reckoned
     double mass_kg = 0;
     double barrier_J = 0;
     double height_m = 0;                 // of the object itself

@@ -91,12 +91,12 @@ struct Fall {
     Vec3 lands_m{};                         // its centre of mass, about, at its first landing
     double drop_m = 0;                      // fallen from its support to there; 0: it stays on it
     std::int32_t lands_on = -1;             // object below that drop; -1: none, or unknown
-    std::vector<std::int32_t> takes_along;  // what it carries, directly or not, ascending
+    std::vector<std::int32_t> takes_along;  // what then loses half of its support, ascending
 };
 
 // What would lower an object's risk to what is tolerated.
 struct Advice {
-    std::string kind;          // "" (nothing needed) | "move" | "fix"
+    std::string kind;          // "" (nothing needed) | "see" | "check" | "move" | "fix"
     Vec3 move_m{};             // "move": the smallest that does, horizontal
     double risk_J = 0;         // its largest risk afterwards
     double hold_N = 0;         // "fix": horizontal force at hold_height_m that a fixing must take
