@@ -70,6 +70,34 @@ void check_primitives(const Json& scene) {
 }
 
 // What is said of an object's easiest step is what its numbers are.
+// How sure its risks are, where it would fall, and what to do about it.
+void check_prospects(const Json& o) {
+    double worst = 0;
+    bool falls = false;
+    for (const auto& [name, risk] : o.at("risk_J").items()) {
+        const double spread = o.at("risk_spread_J").at(name), chance = o.at("fall_chance").at(name);
+        EXPECT_GE(spread, 0);
+        EXPECT_GE(chance, 0);
+        EXPECT_LE(chance, 1 + 1e-9);
+        EXPECT_EQ(chance > 0, risk.get<double>() > 0) << name << " of " << o.at("id");
+        falls = falls || chance > 0;
+        worst = std::max(worst, risk.get<double>());
+    }
+    const Json &fall = o.at("fall"), &advice = o.at("advice");
+    EXPECT_EQ(fall.at("falls"), falls);
+    EXPECT_TRUE(std::isfinite(length(fall.at("lands_m"))));
+    for (const Json& along : fall.at("takes_along")) EXPECT_NE(along, o.at("id"));
+    const std::string kind = advice.at("kind");
+    EXPECT_EQ(advice.at("sentence").get<std::string>().empty(), kind.empty()) << o;
+    EXPECT_EQ(kind == "check" || kind == "move" || kind == "fix", worst > 0.1) << o;
+    if (kind == "move") {
+        EXPECT_GT(length(advice.at("move_m")), 0);
+        EXPECT_LE(advice.at("risk_J").get<double>(), 0.1);
+    } else {
+        EXPECT_EQ(length(advice.at("move_m")), 0);
+    }
+}
+
 void check_why(const Json& scene, const Json& o) {
     const Json& why = o.at("why");
     EXPECT_EQ(why.at("W_J"), o.at("barrier_J"));
@@ -142,6 +170,7 @@ void check_objects(const Json& scene, const std::set<std::string>& disturbances)
             EXPECT_GE(risk.get<double>(), 0) << name << " of " << o.at("id");
         }
         EXPECT_EQ(named, disturbances);
+        check_prospects(o);
         expect_number(o, "unsafety", 1);
         EXPECT_LE(o.at("unsafety").get<double>(), 10);
     }
