@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/canvas.h"
+#include "report/canvas.h"
 #include "report/drawing.h"
 
 namespace topple::cli {
 namespace {
 
-using evaluation::Canvas;
-using evaluation::Colour;
+using report::Canvas;
+using report::Colour;
 using report::Drawing;
 using report::Point;
 
@@ -56,7 +56,7 @@ class Painter {
         for (const Drawing::Swatch& s : d_.swatches) {
             const Point at = place(s.corner);
             canvas_.rectangle(at[0], at[1], scale * s.width, scale * s.height,
-                              evaluation::colour(s.colour));
+                              report::colour(s.colour));
         }
         for (const Drawing::Stroke& stroke : d_.strokes) {
             const Paint with = paint_of(stroke.style);
@@ -74,8 +74,8 @@ class Painter {
         }
         for (const Drawing::Label& label : d_.labels) {
             const Point at = place(label.at);
-            constexpr evaluation::Align align[]{evaluation::Align::left, evaluation::Align::middle,
-                                                evaluation::Align::right};
+            constexpr report::Align align[]{report::Align::left, report::Align::middle,
+                                            report::Align::right};
             canvas_.text(at[0], at[1], label.text, align[static_cast<std::size_t>(label.align)],
                          {.size = 11 * scale, .bold = label.strong});
         }
@@ -86,7 +86,7 @@ class Painter {
 
     void paint_sphere(const Drawing::Sphere& s) {
         const int side = static_cast<int>(2 * scale * s.radius);
-        evaluation::Raster raster(side, side, white);
+        report::Raster raster(side, side, white);
         for (int row = 0; row < side; ++row) {
             for (int column = 0; column < side; ++column) {
                 const Point at{(column + 0.5) / side * 2 - 1, (row + 0.5) / side * 2 - 1};
@@ -100,7 +100,7 @@ class Painter {
                 const double band =
                     std::clamp(std::floor(share * report::bands), 0.0, report::bands - 1.0);
                 raster.at(column, row) =
-                    evaluation::colour(report::ramp_colour((band + 0.5) / report::bands));
+                    report::colour(report::ramp_colour((band + 0.5) / report::bands));
             }
         }
         const Point corner = place({s.middle[0] - s.radius, s.middle[1] - s.radius});
@@ -109,12 +109,12 @@ class Painter {
 
     void paint_raster(const Drawing::Raster& r) {
         const int side = static_cast<int>(scale * r.size);
-        evaluation::Raster raster(side, side, white);
+        report::Raster raster(side, side, white);
         for (int row = 0; row < side; ++row) {
             for (int column = 0; column < side; ++column) {
                 const auto at = static_cast<std::size_t>((row * r.side / side) * r.side +
                                                          column * r.side / side);
-                raster.at(column, row) = evaluation::colour(r.palette[r.code[at]]);
+                raster.at(column, row) = report::colour(r.palette[r.code[at]]);
             }
         }
         const Point corner = place(r.corner);
@@ -160,14 +160,14 @@ void draw_landscape(const Scene& scene, const Object& object, const std::filesys
     Canvas canvas(path, static_cast<int>(std::max(width, scale * 2 * 330 + gap + 2 * margin)),
                   static_cast<int>(height));
     canvas.text(margin, margin + scale * 14, "Object " + std::to_string(object.id),
-                evaluation::Align::left, {.size = 16 * scale, .bold = true});
+                report::Align::left, {.size = 16 * scale, .bold = true});
     for (std::size_t n = 0; n < text.size(); ++n) {
         canvas.text(margin, margin + scale * (36 + 17 * static_cast<double>(n)), text[n],
-                    evaluation::Align::left, {.size = 13 * scale});
+                    report::Align::left, {.size = 13 * scale});
     }
     for (std::size_t n = 0; n < drawings.size(); ++n) {
         const auto [x, y] = corner[n];
-        canvas.text(x, y + scale * 12, drawings[n].title, evaluation::Align::left,
+        canvas.text(x, y + scale * 12, drawings[n].title, report::Align::left,
                     {.size = 13 * scale, .bold = true});
         Painter(canvas, drawings[n], x, y + scale * 20).paint();
     }

@@ -33,6 +33,7 @@ struct Arguments {
     MotionFileOptions motion_file;
     unsigned threads = 0;
     bool quiet = false;
+    OutputOptions output;
 };
 
 std::vector<std::string> split_commas(const std::string& text) {
@@ -140,7 +141,7 @@ int run(Arguments& a) {
     try {
         const ParseResult result = parse(a.input, a.options);
         progress("output", 0);
-        write_outputs(result, out);
+        write_outputs(result, out, a.output);
         progress.finish();
         if (!a.quiet) print_summary(result.scene, out);
     } catch (...) {
@@ -227,6 +228,8 @@ Command add_parse(CLI::App& app) {
                    "objects depend on the machine (default: as long as it takes)");
     app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
     app.add_option("--max-memory", a->max_memory, "Refuse a scan that would need more, such as 4G");
+    app.add_flag("--png", a->output.pictures,
+                 "Write the report's main views as pictures, too: view-*.png");
     app.add_flag("--quiet", a->quiet, "Print errors only");
     return [a] { return run(*a); };
 }

@@ -3,18 +3,21 @@
 #include "io/output_folder.h"
 #include "io/scene_json.h"
 #include "io/write_ply.h"
+#include "report/pictures.h"
 #include "report/report.h"
 #include "topple/parse.h"
 #include "vdb/voxel_scene.h"
 
 namespace topple {
 
-void write_outputs(const ParseResult& result, const std::filesystem::path& folder) {
+void write_outputs(const ParseResult& result, const std::filesystem::path& folder,
+                   const OutputOptions& options) {
     io::OutputFolder out(folder);
     io::write_points_ply(out.folder() / "points.ply", result.scene.points);
     io::write_solid_ply(out.folder() / "solid.ply", result.scene.solid);
     result.voxels->write(out.folder() / "volume.vdb");
     report::write_report(out.folder() / "report.html", result.scene);
+    if (options.pictures) report::write_pictures(out.folder(), result.scene);
     io::write_landscapes_json(out.folder() / "landscapes.json", result.scene);
     io::write_scene_json(out.folder() / "scene.json", result.scene);
     out.commit();

@@ -76,10 +76,9 @@ void spread_normals(std::vector<Cell>& cells, const CellTable& table,
                     const std::array<double, 3>& centre) {
     std::vector<std::uint32_t> missing;
     for (std::uint32_t i = 0; i < cells.size(); ++i) {
-        if (cells[i].background && !unit(cells[i].normal)) {
-            cells[i].normal = {};
-            missing.push_back(i);
-        }
+        if (unit(cells[i].normal)) continue;
+        cells[i].normal = {};
+        if (cells[i].background) missing.push_back(i);
     }
     for (int ring = 0; ring < 8 && !missing.empty(); ++ring) {
         // All of a ring read the ring before: the result does not depend on the order of the cells.

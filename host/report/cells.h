@@ -41,8 +41,8 @@ class CellTable {
 // Marks which faces of each cell are exposed; returns how many cells have one.
 std::size_t mark_exposed(std::vector<Cell>& cells, const CellTable& table);
 
-// Gives background cells without a normal the mean of their neighbours', ring after ring; at last,
-// those that no ring reached point to `centre` (cell units).
+// Makes normals unit vectors. Gives background cells without a normal the mean of their
+// neighbours', ring after ring; at last, those that no ring reached point to `centre` (cell units).
 void spread_normals(std::vector<Cell>& cells, const CellTable& table,
                     const std::array<double, 3>& centre);
 

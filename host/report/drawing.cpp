@@ -44,15 +44,19 @@ std::vector<int> numbers_of(const Landscape& landscape) {
     return number;
 }
 
-Bytes3 ramp_colour(double share) {
-    const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(ramp.size() - 1);
-    const std::size_t low = std::min(static_cast<std::size_t>(at), ramp.size() - 2);
+Bytes3 colour_along(std::span<const Bytes3> colours, double share) {
+    const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(colours.size() - 1);
+    const std::size_t low = std::min(static_cast<std::size_t>(at), colours.size() - 2);
     Bytes3 out{};
     for (std::size_t c = 0; c < 3; ++c) {
-        out[c] = static_cast<std::uint8_t>(
-            std::lround(ramp[low][c] + (ramp[low + 1][c] - ramp[low][c]) * (at - double(low))));
+        out[c] = static_cast<std::uint8_t>(std::lround(
+            colours[low][c] + (colours[low + 1][c] - colours[low][c]) * (at - double(low))));
     }
     return out;
+}
+
+Bytes3 ramp_colour(double share) {
+    return colour_along(ramp, share);
 }
 
 // Lambert's azimuthal equal-area projection of the whole sphere. A body leans away from where its

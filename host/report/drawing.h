@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -75,7 +76,12 @@ inline constexpr std::array<Bytes3, 6> ramp{{{38, 62, 126},
                                              {158, 40, 44}}};
 inline constexpr int bands = 14;  // of equal energy: their borders are contours
 
-// Share 0 to 1 of the way along the ramp.
+// Unsafety 1 to 10, pale to dark: lightness alone tells the order.
+inline constexpr std::array<Bytes3, 5> unsafety_ramp{
+    {{253, 236, 178}, {252, 187, 92}, {240, 118, 56}, {201, 44, 44}, {112, 10, 50}}};
+
+// Share 0 to 1 of the way along colours.
+Bytes3 colour_along(std::span<const Bytes3> colours, double share);
 Bytes3 ramp_colour(double share);
 
 // Where the map of the sphere has an up direction (x east, y north, z up): in units of its radius.

@@ -211,6 +211,7 @@ std::string data_json(const Scene& scene) {
     json["view"] = view_json(view);
     json["drawings"] = landscapes_json(scene);
     json["ramp"] = {{"colours", ramp}, {"bands", bands}};
+    json["unsafety_ramp"] = unsafety_ramp;
     return script_safe(json.dump());
 }
 

@@ -242,7 +242,7 @@ class Packer {
             const auto p = place(points, i);
             if (!finite(p)) continue;
             const auto found = table.find(index_of(p, edge));
-            if (found == CellTable::absent || !cells[found].background) continue;
+            if (found == CellTable::absent) continue;
             const auto n = turned(view_.view_from_input, points.nx[i], points.ny[i], points.nz[i]);
             if (!finite(n)) continue;
             for (std::size_t axis = 0; axis < 3; ++axis)

@@ -22,7 +22,7 @@ struct ViewLimits {
 };
 
 // Records of a voxel or point. cell: x, y, z in steps of PackedView::step_m from origin_m, then the
-// group. aux: the mean normal in 1/127 (for voxels of the background only; 0 where unknown), then
+// group. aux: the mean normal in 1/127 (0 where unknown, which no voxel of the background is), then
 // for voxels the exposed faces (bits -x +x -y +y -z +z) and, in bit 6, whether it was completed.
 struct Records {
     std::vector<std::array<std::uint16_t, 4>> cell;

@@ -65,6 +65,18 @@ TEST_F(Output, stages_then_the_summary_unless_quiet) {
     EXPECT_EQ(everything(), whole_output);
 }
 
+TEST_F(Output, pictures_where_they_are_asked_for) {
+    put_plane("plane.xyz");
+    EXPECT_EQ(run({"parse", "plane.xyz", "-o", "out", "--png", "--quiet"}).code, 0);
+    for (const char* name : {"out/view-objects.png", "out/view-risk.png"}) {
+        EXPECT_TRUE(everything().contains(name)) << name;
+        EXPECT_TRUE(bytes_of_file(in(name)).starts_with("\x89PNG")) << name;
+    }
+    // A later run without them replaces the folder as a whole.
+    EXPECT_EQ(run({"parse", "plane.xyz", "-o", "out", "--quiet"}).code, 0);
+    EXPECT_EQ(everything(), whole_output);
+}
+
 TEST_F(Output, is_named_after_the_input_where_no_name_is_given) {
     put_plane("scans/my plane.xyz");
     EXPECT_EQ(run({"parse", "scans/my plane.xyz", "--quiet"}).code, 0);

@@ -5,13 +5,16 @@
 #include <cstdio>
 #include <iterator>
 
-#include "evaluation/canvas.h"
 #include "evaluation/pictures.h"
 #include "evaluation/tables.h"
+#include "report/canvas.h"
 
 namespace topple::evaluation {
 namespace {
 
+using report::Align;
+using report::Canvas;
+using report::Colour;
 using scenes::SegmentationScore;
 
 // Colours that are told apart in grey and by the colour-blind, too (Okabe and Ito).

@@ -5,13 +5,19 @@
 #include <map>
 #include <span>
 
-#include "evaluation/canvas.h"
 #include "evaluation/pictures.h"
 #include "io/palette.h"
+#include "report/canvas.h"
 #include "scenes/score.h"
 
 namespace topple::evaluation {
 namespace {
+
+using report::Align;
+using report::Canvas;
+using report::Colour;
+using report::colour;
+using report::Raster;
 
 constexpr int panel_width = 860, panel_height = 600, title_height = 34;
 constexpr double point_m = 0.014;  // edge of the square that a point is drawn as

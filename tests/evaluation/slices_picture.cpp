@@ -5,15 +5,20 @@
 #include <cstdio>
 #include <string>
 
-#include "evaluation/canvas.h"
 #include "evaluation/pictures.h"
 #include "evaluation/rigid.h"
+#include "report/canvas.h"
 #include "scenes/measure.h"
 #include "scenes/parallel.h"
 #include "vdb/voxel_scene.h"
 
 namespace topple::evaluation {
 namespace {
+
+using report::Align;
+using report::Canvas;
+using report::Colour;
+using report::Raster;
 
 constexpr double pixels_per_m = 130, beyond_m = 0.1;
 

@@ -73,8 +73,14 @@ ParseResult parse(const std::filesystem::path& input, const ParseOptions& option
 // The same on a cloud in memory. Frame and units: metres, any right-handed frame.
 ParseResult parse(const PointCloud& cloud, const ParseOptions& options = {});
 
-// Writes points.ply, solid.ply, volume.vdb, scene.json and report.html into the folder, which
-// appears whole or not at all. Throws Error(input) naming the path where it can't be written.
-void write_outputs(const ParseResult& result, const std::filesystem::path& folder);
+struct OutputOptions {
+    bool pictures = false;  // the report's main views, too, as view-*.png
+};
+
+// Writes points.ply, solid.ply, volume.vdb, scene.json, landscapes.json and report.html into the
+// folder, which appears whole or not at all. Throws Error(input) naming the path where it can't be
+// written.
+void write_outputs(const ParseResult& result, const std::filesystem::path& folder,
+                   const OutputOptions& options = {});
 
 }  // namespace topple

@@ -37,13 +37,14 @@ function colourOf(scene, id) {
   return id >= 0 && scene.colours[id] ? scene.colours[id] : noColour;
 }
 
-// Unsafety 1 to 10, pale to dark: lightness alone tells the order.
-const riskStops = [[253, 236, 178], [252, 187, 92], [240, 118, 56], [201, 44, 44], [112, 10, 50]];
+// Share 0 to 1 of the way along colours.
+function colourAlong(colours, share) {
+  const at = Math.min(Math.max(share, 0), 1) * (colours.length - 1), low = Math.min(Math.floor(at), colours.length - 2);
+  return colours[low].map((value, c) => Math.round(value + (colours[low + 1][c] - value) * (at - low)));
+}
 
-function riskColour(unsafety) {
-  const at = Math.min(Math.max((unsafety - 1) / 9, 0), 1) * (riskStops.length - 1);
-  const low = Math.min(Math.floor(at), riskStops.length - 2);
-  return riskStops[low].map((value, i) => Math.round(value + (riskStops[low + 1][i] - value) * (at - low)));
+function riskColour(scene, unsafety) {
+  return colourAlong(scene.unsafety_ramp, (unsafety - 1) / 9);
 }
 
 function css(colour) {

@@ -44,18 +44,12 @@ function pixelImage(side, box, colourAt) {
   return svgElement('image', Object.assign({href: canvas.toDataURL(), preserveAspectRatio: 'none'}, box));
 }
 
-function rampColour(ramp, share) {
-  const stops = ramp.colours, at = Math.min(Math.max(share, 0), 1) * (stops.length - 1);
-  const low = Math.min(Math.floor(at), stops.length - 2);
-  return stops[low].map((value, c) => value + (stops[low + 1][c] - value) * (at - low));
-}
-
 // The height of the centre of mass over all up directions, an equal-area map: Lambert's azimuthal
 // projection around the pose as it is. Bands of equal height make the contours.
 function sphereImage(scene, sphere) {
   const corners = new Int16Array(bytesOf(sphere.corners)), side = Math.round(3 * sphere.radius);
   const colours = [];
-  for (let band = 0; band < scene.ramp.bands; ++band) colours.push(rampColour(scene.ramp, (band + 0.5) / scene.ramp.bands));
+  for (let band = 0; band < scene.ramp.bands; ++band) colours.push(colourAlong(scene.ramp.colours, (band + 0.5) / scene.ramp.bands));
   const scale = scene.ramp.bands / Math.max(sphere.high - sphere.low, 1e-9);
   const box = {x: sphere.middle[0] - sphere.radius, y: sphere.middle[1] - sphere.radius,
     width: 2 * sphere.radius, height: 2 * sphere.radius};

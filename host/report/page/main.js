@@ -64,7 +64,7 @@ function legend(scene, state, view) {
   const bar = colours => element('div', {className: 'bar', style: {background: `linear-gradient(90deg, ${colours.map(css).join(',')})`}});
   const ends = (low, high) => element('div', {className: 'ends'}, [element('span', {text: low}), element('span', {text: high})]);
   if (state.mode === 'risk') {
-    box.append(element('div', {text: 'Unsafety'}), bar(riskStops), ends('1 safest', '10'));
+    box.append(element('div', {text: 'Unsafety'}), bar(scene.unsafety_ramp), ends('1 safest', '10'));
   }
   if (state.fieldsOn.includes('walks')) {
     box.append(element('div', {text: 'Floor: how many of 100 walks pass there'}), bar(scene.ramp.colours), ends('0', number(100 * scene.view.walks.most)));

@@ -73,23 +73,25 @@ function arrowShape() {
 function walksGroup(scene, reach) {
   const walks = scene.view.walks, group = new THREE.Group();
   const x = new THREE.Vector3(...walks.along_x_m), y = new THREE.Vector3(...walks.along_y_m);
-  const corner = new THREE.Vector3(...walks.corner_m), offset = [], share = [];
+  const corner = new THREE.Vector3(...walks.corner_m), corners = [], share = [], index = [];
   // Above the voxels of the floor.
   const lift = 0.8 * scene.view.cube_m;
   walks.shade.forEach((shade, at) => {
     if (!shade) return;
     const place = corner.clone().addScaledVector(x, at % walks.nx).addScaledVector(y, Math.floor(at / walks.nx));
-    offset.push(place.x, place.y, place.z + walks.floor_mm[at] / 1000 + lift);
-    share.push((shade - 1) / 254);
+    place.z += walks.floor_mm[at] / 1000 + lift;
+    const first = corners.length / 3;
+    index.push(first, first + 1, first + 2, first, first + 2, first + 3);
+    for (const [along, across] of [[0, 0], [1, 0], [1, 1], [0, 1]]) {
+      corners.push(...place.clone().addScaledVector(x, along).addScaledVector(y, across).toArray());
+      share.push((shade - 1) / 254);
+    }
   });
   if (!share.length) return group;
-  const geometry = new THREE.InstancedBufferGeometry();
-  const far = x.clone().add(y);
-  geometry.setAttribute('position', new THREE.Float32BufferAttribute([0, 0, 0, ...x.toArray(), ...far.toArray(), ...y.toArray()], 3));
-  geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  geometry.setAttribute('offset', new THREE.InstancedBufferAttribute(new Float32Array(offset), 3));
-  geometry.setAttribute('share', new THREE.InstancedBufferAttribute(new Float32Array(share), 1));
-  geometry.maxInstancedCount = share.length;
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.Float32BufferAttribute(corners, 3));
+  geometry.setAttribute('share', new THREE.Float32BufferAttribute(share, 1));
+  geometry.setIndex(index);
   const cells = new THREE.Mesh(geometry, new THREE.ShaderMaterial({
     uniforms: {ramp: rampUniform(scene)}, vertexShader: walkVertexShader, fragmentShader: recordFragmentShader,
     side: THREE.DoubleSide,

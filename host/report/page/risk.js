@@ -32,7 +32,7 @@ function riskItem(scene, object, choose) {
       element('span', {className: 'swatch', style: {background: css(colourOf(scene, object.id))}}),
       element('strong', {text: `Object ${object.id}`}),
       line('mass', `${number(object.mass_kg, 'kg')}`),
-      unsafetyBadge(object)]),
+      unsafetyBadge(scene, object)]),
     line('from', upsetText(object)),
     line('then', happensText(scene, object)),
   ]);

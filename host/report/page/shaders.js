@@ -32,7 +32,7 @@ const recordShader = `
 `;
 
 const voxelVertexShader = recordShader + `
-  uniform vec3 faceNormal;
+  uniform vec3 faceNormal, corners[4];
   uniform float cube;
   void main() {
     vec3 centre = place();
@@ -41,12 +41,16 @@ const voxelVertexShader = recordShader + `
       gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
       return;
     }
-    float light = 0.86 + 0.16 * faceNormal.z - 0.07 * abs(faceNormal.x) + 0.04 * faceNormal.x;
-    if (faceNormal.z < -0.5) light = 0.62;
+    // The mean normal of what was seen there smooths the voxels' steps.
+    vec3 seen = length(aux.xyz) > 60.0 ? normalize(aux.xyz) : faceNormal;
+    if (dot(seen, faceNormal) < 0.0) seen = -seen;
+    float light = 0.77 + 0.25 * dot(normalize(faceNormal + 2.0 * seen), vec3(-0.13, -0.43, 0.89));
     // What was inferred is darker on things; on floors and walls it would only be speckles.
-    float completed = aux.w >= 64.0 && colour.a > 0.75 ? 0.93 : 1.0;
+    float inferred = floor(aux.w / 64.0 + 0.001);
+    float completed = inferred > 0.5 && colour.a > 0.75 ? 0.93 : 1.0;
+    vec3 corner = corners[int(aux.w - 64.0 * inferred + 0.5)];
     shade = picking > 0.5 ? identity() : colour.rgb * light * completed;
-    gl_Position = projectionMatrix * viewMatrix * vec4(centre + position * cube, 1.0);
+    gl_Position = projectionMatrix * viewMatrix * vec4(centre + corner * cube, 1.0);
   }
 `;
 
@@ -105,11 +109,10 @@ const arrowVertexShader = rampShader + `
 
 // One cell of the walkable floor.
 const walkVertexShader = rampShader + `
-  attribute vec3 offset;
   attribute float share;
   varying vec3 shade;
   void main() {
     shade = rampColour(share);
-    gl_Position = projectionMatrix * viewMatrix * vec4(offset + position, 1.0);
+    gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
   }
 `;

@@ -23,7 +23,7 @@ function objectColumns(scene) {
   if (scene.objects.some(object => object.advice && object.advice.kind)) {
     columns.push({name: 'Advice', text: true, value: adviceText, cell: object => [adviceText(object)]});
   }
-  columns.push({name: 'Unsafety', value: object => object.unsafety, cell: object => [unsafetyBadge(object)]});
+  columns.push({name: 'Unsafety', value: object => object.unsafety, cell: object => [unsafetyBadge(scene, object)]});
   return columns;
 }
 
@@ -46,9 +46,9 @@ function riskCell(object, name) {
   return cell;
 }
 
-function unsafetyBadge(object) {
+function unsafetyBadge(scene, object) {
   if (object.unsafety === null) return '\u2013';
-  const colour = object.grounded ? noColour : riskColour(object.unsafety);
+  const colour = object.grounded ? noColour : riskColour(scene, object.unsafety);
   const dark = 0.3 * colour[0] + 0.59 * colour[1] + 0.11 * colour[2] < 140;
   return element('span', {
     className: 'unsafety', text: object.unsafety.toFixed(1), style: {background: css(colour), color: dark ? '#fff' : '#1d2126'},

@@ -24,9 +24,9 @@ class View {
     this.ids = new THREE.WebGLRenderTarget(1, 1, {magFilter: THREE.NearestFilter, minFilter: THREE.NearestFilter});
     this.idsStale = true;
     this.show = 'solids';
-    new ResizeObserver(() => this.resize()).observe(container);
-    this.resize();
+    this.fit();
     this.reset();
+    new ResizeObserver(() => { if (this.fit()) this.render(); }).observe(container);
   }
 
   // --- data ---------------------------------------------------------------------------------------
@@ -61,7 +61,7 @@ class View {
       const object = this.scene.objectById.get(id);
       const grounded = !object || object.grounded;
       let colour = mode === 'primitive' ? colourOf(this.scene, primitive) : colourOf(this.scene, id);
-      if (mode === 'risk') colour = !object || grounded ? noColour : riskColour(object.unsafety);
+      if (mode === 'risk') colour = !object || grounded ? noColour : riskColour(this.scene, object.unsafety);
       // What can't fall steps back: paler and greyer.
       let fade = grounded ? (mode === 'primitive' ? 0.45 : 0.8) : 0;
       if (chosen !== null) fade = id === chosen ? 0 : Math.max(fade, 0.72);
@@ -94,41 +94,57 @@ class View {
 
   // --- what is drawn --------------------------------------------------------------------------------
 
-  // One mesh for each direction of face: the exposed faces only.
+  // One mesh for each direction of face, of the exposed faces only. Four vertices a face rather than an instance:
+  // drawing in software takes long over instances.
   makeVoxels() {
     const {voxels} = this.scene.view;
+    const fromCell = new Uint32Array(voxels.cell.buffer), fromAux = new Uint32Array(voxels.aux.buffer);
     this.solids = new THREE.Group();
     this.faces = 0;
     faceNormals.forEach((normal, face) => {
       let count = 0;
       for (let i = 0; i < voxels.count; ++i) count += voxels.aux[4 * i + 3] >> face & 1;
       if (!count) return;
-      const cell = new Uint16Array(4 * count), aux = new Int8Array(4 * count);
-      let at = 0;
+      const cell = new Uint16Array(16 * count), aux = new Int8Array(16 * count), index = new Uint32Array(6 * count);
+      // By words of 32 bits: two hold a cell, one its normal and flags.
+      const toCell = new Uint32Array(cell.buffer), toAux = new Uint32Array(aux.buffer);
+      let to = 0, next = 0;
       for (let i = 0; i < voxels.count; ++i) {
-        if (!(voxels.aux[4 * i + 3] >> face & 1)) continue;
-        for (let k = 0; k < 4; ++k) {
-          cell[at + k] = voxels.cell[4 * i + k];
-          aux[at + k] = voxels.aux[4 * i + k];
+        const flags = voxels.aux[4 * i + 3];
+        if (!(flags >> face & 1)) continue;
+        for (const corner of [0, 1, 2, 0, 2, 3]) index[next++] = to + corner;
+        for (let corner = 0; corner < 4; ++corner, ++to) {
+          toCell[2 * to] = fromCell[2 * i];
+          toCell[2 * to + 1] = fromCell[2 * i + 1];
+          toAux[to] = fromAux[i] & 0xffffff | (corner + (flags & 64)) << 24;
         }
-        at += 4;
       }
-      const geometry = new THREE.InstancedBufferGeometry();
-      geometry.setAttribute('position', new THREE.Float32BufferAttribute(faceCorners(normal), 3));
-      geometry.setIndex([0, 1, 2, 0, 2, 3]);
-      geometry.setAttribute('cell', new THREE.InstancedBufferAttribute(cell, 4));
-      geometry.setAttribute('aux', new THREE.InstancedBufferAttribute(aux, 4));
-      geometry.maxInstancedCount = count;
-      const material = new THREE.ShaderMaterial({
-        uniforms: Object.assign({faceNormal: {value: new THREE.Vector3(...normal)}}, this.uniforms),
+      const geometry = new THREE.BufferGeometry();
+      // three.js knows geometry by `position`, which the shader does not read.
+      geometry.setAttribute('position', new THREE.BufferAttribute(cell, 4));
+      geometry.setAttribute('cell', new THREE.BufferAttribute(cell, 4));
+      geometry.setAttribute('aux', new THREE.BufferAttribute(aux, 4));
+      geometry.setIndex(new THREE.BufferAttribute(index, 1));
+      const uniforms = {faceNormal: {value: new THREE.Vector3(...normal)}, corners: {value: faceCorners(normal)}};
+      const mesh = new THREE.Mesh(geometry, new THREE.ShaderMaterial({
+        uniforms: Object.assign(uniforms, this.uniforms),
         vertexShader: voxelVertexShader, fragmentShader: recordFragmentShader,
-      });
-      const mesh = new THREE.Mesh(geometry, material);
+      }));
       mesh.frustumCulled = false;
       this.solids.add(mesh);
       this.faces += count;
     });
     this.world.add(this.solids);
+  }
+
+  // Leaves out the directions of faces that the camera, being past all of them, sees from behind only.
+  hideBacks() {
+    const view = this.scene.view, eye = this.camera.position.toArray();
+    for (const mesh of this.solids.children) {
+      const normal = mesh.material.uniforms.faceNormal.value.toArray(), axis = normal.findIndex(value => value !== 0);
+      const low = view.origin_m[axis] - view.cube_m, high = view.origin_m[axis] + 65535 * view.step_m[axis] + view.cube_m;
+      mesh.visible = normal[axis] > 0 ? eye[axis] > low : eye[axis] < high;
+    }
   }
 
   makePoints() {
@@ -214,12 +230,15 @@ class View {
     this.redraw();
   }
 
-  resize() {
+  // Takes on the container's size; whether that changed.
+  fit() {
     const width = this.container.clientWidth || 1, height = this.container.clientHeight || 1;
+    if (this.size && this.size[0] === width && this.size[1] === height) return false;
+    this.size = [width, height];
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.render();
+    return true;
   }
 
   setShow(what) {
@@ -258,6 +277,7 @@ class View {
   render() {
     const height = this.renderer.domElement.height;
     this.uniforms.eye.value.copy(this.camera.position);
+    this.hideBacks();
     this.uniforms.pointScale.value = height / (2 * Math.tan(this.camera.fov * Math.PI / 360));
     this.renderer.render(this.world, this.camera);
     this.idsStale = true;
@@ -318,7 +338,7 @@ function faceCorners(normal) {
   const up = new THREE.Vector3().crossVectors(n, side);
   const corners = [];
   for (const [a, b] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) {
-    corners.push(...n.clone().addScaledVector(side, a).addScaledVector(up, b).multiplyScalar(0.5).toArray());
+    corners.push(n.clone().addScaledVector(side, a).addScaledVector(up, b).multiplyScalar(0.5));
   }
   return corners;
 }

@@ -233,7 +233,9 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
     EXPECT_NE(page.data("first-picture-ms"), "(none)");
     EXPECT_GT(std::stoi("0" + page.data("faces")), 10000);
     EXPECT_EQ(page.data("points"), std::to_string(scene.points.x.size()));
-    EXPECT_EQ(std::stoi("0" + page.data("triangles")), 2 * std::stoi("0" + page.data("faces")));
+    // Faces that look away from the camera, to three of six sides, are left out.
+    EXPECT_GT(std::stoi("0" + page.data("triangles")), std::stoi("0" + page.data("faces")) / 2);
+    EXPECT_LT(std::stoi("0" + page.data("triangles")), 3 * std::stoi("0" + page.data("faces")) / 2);
     for (const char* wrong : {"Uncaught", "THREE.", "ERR_"}) {
         EXPECT_EQ(page.log.find(wrong), std::string::npos) << page.log;
     }
@@ -331,8 +333,12 @@ TEST_F(Report, shows_scenes_with_nothing_or_with_holes_in_them) {
         EXPECT_EQ(page.data("used"), "1") << page.log;
         EXPECT_EQ(page.data("error"), "(none)");
         EXPECT_EQ(page.data("rows"), std::to_string(s.objects.size()));
-        const auto shown = page.dom.substr(0, page.dom.find("id=\"data\""));
+        auto shown = page.dom.substr(0, page.dom.find("id=\"data\""));
         EXPECT_GT(shown.size(), 1000u);
+        // Pictures are base64, which may hold any three letters.
+        for (auto at = shown.find("data:image"); at != std::string::npos;
+             at = shown.find("data:image"))
+            shown.erase(at, shown.find('"', at) - at);
         EXPECT_EQ(shown.find("NaN"), std::string::npos) << "no number shows as NaN";
     }
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 // Drawing without a display, by cairo.
-namespace topple::evaluation {
+namespace topple::report {
 
 struct Colour {
     double red = 0, green = 0, blue = 0;  // 0 to 1, sRGB
@@ -30,6 +30,7 @@ struct Font {
     double size = 13;
     bool bold = false;
     bool upright = false;  // turned to read from below
+    Colour colour{0.1, 0.1, 0.1};
 };
 
 // A white page; x to the right and y downwards from the upper left corner, in pixels.
@@ -38,6 +39,7 @@ class Canvas {
     // A .svg is drawn as shapes, any other name as PNG. Throws Error(input) where it can't be made.
     Canvas(const std::filesystem::path& path, int width, int height);
     ~Canvas();
+    Canvas(Canvas&&) noexcept;
 
     void rectangle(double x, double y, double width, double height, const Colour& fill);
     void line(double x0, double y0, double x1, double y1, const Colour& colour, double width = 1);
@@ -46,6 +48,7 @@ class Canvas {
     void target(double x, double y, double radius, const Colour& colour);
     // `y` is the base line.
     void text(double x, double y, const std::string& text, Align align, const Font& font = {});
+    double text_width(const std::string& text, const Font& font) const;
     // The raster's upper left corner.
     void image(double x, double y, const Raster& raster);
     // Writes the file. Throws Error(input) where it can't be written.
@@ -56,4 +59,4 @@ class Canvas {
     std::unique_ptr<Page> page_;
 };
 
-}  // namespace topple::evaluation
+}  // namespace topple::report

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "evaluation/canvas.h"
+#include "report/canvas.h"
 
 #include <cairo-svg.h>
 #include <cairo.h>
@@ -10,7 +10,7 @@
 
 #include "topple/error.h"
 
-namespace topple::evaluation {
+namespace topple::report {
 namespace {
 
 std::uint32_t packed(const Colour& c) {
@@ -46,6 +46,16 @@ struct Canvas::Page {
         if (status != CAIRO_STATUS_SUCCESS)
             throw Error(ErrorKind::input, path.string() + ": " + cairo_status_to_string(status));
     }
+    void choose(const Font& font) const {
+        cairo_select_font_face(context, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                               font.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+        cairo_set_font_size(context, font.size);
+    }
+    double advance(const std::string& text) const {
+        cairo_text_extents_t extents;
+        cairo_text_extents(context, text.c_str(), &extents);
+        return extents.x_advance;
+    }
     void use(const Colour& c) const { cairo_set_source_rgb(context, c.red, c.green, c.blue); }
 };
 
@@ -60,6 +70,7 @@ Canvas::Canvas(const std::filesystem::path& path, int width, int height)
 }
 
 Canvas::~Canvas() = default;
+Canvas::Canvas(Canvas&&) noexcept = default;
 
 void Canvas::rectangle(double x, double y, double width, double height, const Colour& fill) {
     page_->use(fill);
@@ -92,19 +103,20 @@ void Canvas::target(double x, double y, double radius, const Colour& colour) {
 
 void Canvas::text(double x, double y, const std::string& text, Align align, const Font& font) {
     cairo_t* const c = page_->context;
-    page_->use({0.1, 0.1, 0.1});
-    cairo_select_font_face(c, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
-                           font.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-    cairo_set_font_size(c, font.size);
-    cairo_text_extents_t extents;
-    cairo_text_extents(c, text.c_str(), &extents);
+    page_->use(font.colour);
+    page_->choose(font);
     const double share = align == Align::left ? 0 : align == Align::middle ? 0.5 : 1;
     cairo_save(c);
     cairo_translate(c, x, y);
     if (font.upright) cairo_rotate(c, -std::numbers::pi / 2);
-    cairo_move_to(c, -share * extents.x_advance, 0);
+    cairo_move_to(c, -share * page_->advance(text), 0);
     cairo_show_text(c, text.c_str());
     cairo_restore(c);
+}
+
+double Canvas::text_width(const std::string& text, const Font& font) const {
+    page_->choose(font);
+    return page_->advance(text);
 }
 
 void Canvas::image(double x, double y, const Raster& raster) {
@@ -131,4 +143,4 @@ void Canvas::save() {
     page_->check(cairo_surface_status(page_->surface));
 }
 
-}  // namespace topple::evaluation
+}  // namespace topple::report

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "report/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace topple::report {
+namespace {
+
+double dot(const Vec3& a, const Vec3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Vec3 plus(const Vec3& a, double share, const Vec3& b) {
+    return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
+}
+
+// The nearest upper corner belongs to walls and a ceiling that are looked through.
+std::vector<Vec3> corners_of(const Vec3& low, const Vec3& high) {
+    std::vector<Vec3> corners;
+    for (unsigned n = 0; n < 8; ++n) {
+        if (n == 4) continue;
+        corners.push_back(
+            {n & 1 ? high[0] : low[0], n & 2 ? high[1] : low[1], n & 4 ? high[2] : low[2]});
+    }
+    return corners;
+}
+
+}  // namespace
+
+std::array<double, 3> Camera::project(const Vec3& p) const {
+    const Vec3 d = plus(p, -1, eye);
+    const double depth = dot(d, ahead);
+    return {x0 + focal * dot(d, right) / depth, y0 - focal * dot(d, up) / depth, depth};
+}
+
+Camera camera_on(const Vec3& low, const Vec3& high, int width, int height,
+                 const std::array<double, 4>& margin) {
+    Camera camera;
+    constexpr Vec3 ahead{0.55, 0.75, -0.62};
+    const double level = std::hypot(ahead[0], ahead[1]), length = std::hypot(level, ahead[2]);
+    camera.ahead = {ahead[0] / length, ahead[1] / length, ahead[2] / length};
+    camera.right = {ahead[1] / level, -ahead[0] / level, 0};
+    camera.up = {camera.right[1] * camera.ahead[2], -camera.right[0] * camera.ahead[2],
+                 camera.right[0] * camera.ahead[1] - camera.right[1] * camera.ahead[0]};
+    camera.focal = height / (2 * std::tan(45 * std::numbers::pi / 360));
+    const double wide = width - margin[0] - margin[1], tall = height - margin[2] - margin[3];
+    camera.x0 = margin[0] + wide / 2;
+    camera.y0 = margin[2] + tall / 2;
+    const auto corners = corners_of(low, high);
+    Vec3 target{};
+    for (std::size_t axis = 0; axis < 3; ++axis) target[axis] = (low[axis] + high[axis]) / 2;
+    const double reach =
+        std::max(std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 1e-3);
+    double distance = reach;
+    for (int round = 0; round < 60; ++round) {
+        camera.eye = plus(target, -distance, camera.ahead);
+        double west = 1e300, east = -1e300, top = 1e300, bottom = -1e300;
+        for (const Vec3& corner : corners) {
+            const auto [x, y, depth] = camera.project(corner);
+            west = std::min(west, x);
+            east = std::max(east, x);
+            top = std::min(top, y);
+            bottom = std::max(bottom, y);
+        }
+        const double metres = distance / camera.focal;  // of a pixel in the middle
+        target = plus(target, ((west + east) / 2 - camera.x0) * metres, camera.right);
+        target = plus(target, (camera.y0 - (top + bottom) / 2) * metres, camera.up);
+        distance = std::max(distance * std::max((east - west) / wide, (bottom - top) / tall),
+                            0.75 * reach);
+    }
+    camera.eye = plus(target, -distance, camera.ahead);
+    return camera;
+}
+
+}  // namespace topple::report

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT
+#include "report/pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "io/palette.h"
+#include "report/scene_image.h"
+
+namespace topple::report {
+namespace {
+
+using Overlay = SceneImage::Overlay;
+
+constexpr int width = 1280, height = 800;
+constexpr std::array<double, 4> margin{24, 24, 76, 24};
+constexpr std::size_t labelled = 10;
+
+Vec3 plus(const Vec3& a, double share, const Vec3& b) {
+    return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
+}
+Vec3 cross(const Vec3& a, const Vec3& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double length_of(const Vec3& v) {
+    return std::hypot(v[0], v[1], v[2]);
+}
+
+std::string text(const char* format, double value) {
+    char digits[64];
+    std::snprintf(digits, sizeof(digits), format, value);
+    return digits;
+}
+
+Bytes3 faded(const Bytes3& colour, double share) {
+    constexpr Bytes3 pale{222, 223, 222};
+    Bytes3 out{};
+    for (std::size_t c = 0; c < 3; ++c)
+        out[c] = static_cast<std::uint8_t>(std::lround(colour[c] + (pale[c] - colour[c]) * share));
+    return out;
+}
+
+double largest_risk(const Object& object) {
+    double most = 0;
+    for (const auto& [name, risk] : object.risk_J) {
+        if (risk > most) most = risk;
+    }
+    return most;
+}
+
+// What can fall, the largest risk first, as far as it is labelled.
+std::vector<const Object*> riskiest(const Scene& scene) {
+    std::vector<const Object*> out;
+    for (const Object& object : scene.objects) {
+        if (!object.grounded && largest_risk(object) > 0) out.push_back(&object);
+    }
+    std::ranges::stable_sort(
+        out, [](const Object* a, const Object* b) { return largest_risk(*a) > largest_risk(*b); });
+    out.resize(std::min(out.size(), labelled));
+    return out;
+}
+
+class Pictures {
+  public:
+    Pictures(const std::filesystem::path& folder, const Scene& scene)
+        : folder_(folder),
+          scene_(scene),
+          view_(pack_view(
+              scene,
+              {.voxels = std::numeric_limits<std::size_t>::max(), .points = 0, .arrows = 1200})),
+          image_(scene, view_, width, height, margin) {}
+
+    void write() {
+        write_objects();
+        write_risk();
+        write_walks();
+        for (const auto& [name, arrows] : view_.fields) {
+            if (!arrows.arrow.empty()) write_field(name, arrows.arrow);
+        }
+    }
+
+  private:
+    // The colour of each group; `fade` is how far movable things step back.
+    std::vector<Bytes3> colours(bool by_risk, double fade) const {
+        std::vector<Bytes3> out;
+        for (const auto& [primitive, id] : view_.groups) {
+            const auto found = std::ranges::find(scene_.objects, id, &Object::id);
+            const bool movable = found != scene_.objects.end() && !found->grounded;
+            if (!movable) {
+                out.push_back(faded(io::colour_of(-1), 0.8));
+            } else if (by_risk) {
+                out.push_back(colour_along(unsafety_ramp, (found->unsafety - 1) / 9));
+            } else {
+                out.push_back(faded(io::colour_of(id), fade));
+            }
+        }
+        return out;
+    }
+
+    void write_objects() {
+        Canvas canvas = page("objects", colours(false, 0), Overlay(image_), "Objects",
+                             "Each colour is one body that moves as a whole. Grey: the ground and "
+                             "what is fixed to it. Numbers: the riskiest objects.");
+        for (const Object* object : riskiest(scene_)) label(canvas, *object, false);
+        canvas.save();
+    }
+
+    void write_risk() {
+        Canvas canvas = page("risk", colours(true, 0), Overlay(image_), "Risk",
+                             "Unsafety, by what a walk, a gale or an earthquake is expected to set "
+                             "free. Labels: object, unsafety.");
+        legend(canvas, unsafety_ramp, "1 safest", "10");
+        for (const Object* object : riskiest(scene_)) label(canvas, *object, true);
+        canvas.save();
+    }
+
+    void write_walks() {
+        const PackedWalks& walks = view_.walks;
+        Overlay overlay(image_);
+        // Above the voxels of the floor.
+        const double lift = 0.8 * view_.cube_m;
+        for (std::size_t at = 0; at < walks.shade.size(); ++at) {
+            if (walks.shade[at] == 0) continue;
+            const auto x = static_cast<std::int64_t>(at) % walks.nx,
+                       y = static_cast<std::int64_t>(at) / walks.nx;
+            Vec3 corner =
+                plus(plus(walks.corner_m, double(x), walks.along_x_m), double(y), walks.along_y_m);
+            corner[2] += walks.floor_mm[at] / 1000.0 + lift;
+            quad(overlay, corner, walks.along_x_m, walks.along_y_m,
+                 ramp_colour((walks.shade[at] - 1) / 254.0));
+        }
+        if (std::ranges::none_of(walks.shade, [](std::uint8_t s) { return s > 0; })) return;
+        for (const auto& path : walks.paths) add_path(overlay, path, 1.6 * lift);
+        Canvas canvas = page("walks", colours(false, 0.6), overlay, "Where people walk",
+                             "The floor by how many of 100 walks pass there; white: the ways of "
+                             "some walks.");
+        legend(canvas, ramp, "0", text("%.3g of 100 walks", 100 * walks.most));
+        canvas.save();
+    }
+
+    void add_path(Overlay& overlay, const std::vector<std::array<float, 3>>& path, double lift) {
+        const double half = 0.0006 * image_.reach_m();
+        for (std::size_t n = 0; n + 1 < path.size(); ++n) {
+            const Vec3 a{path[n][0], path[n][1], path[n][2] + lift};
+            const Vec3 b{path[n + 1][0], path[n + 1][1], path[n + 1][2] + lift};
+            const Vec3 along = plus(b, -1, a);
+            const double level = std::hypot(along[0], along[1]);
+            if (!(level > 0)) continue;
+            const Vec3 side{-along[1] / level * 2 * half, along[0] / level * 2 * half, 0};
+            quad(overlay, plus(a, -0.5, side), along, side, {255, 255, 255});
+        }
+    }
+
+    static void quad(Overlay& overlay, const Vec3& corner, const Vec3& a, const Vec3& b,
+                     const Bytes3& colour) {
+        const Vec3 far = plus(plus(corner, 1, a), 1, b);
+        overlay.triangle(corner, plus(corner, 1, a), far, colour);
+        overlay.triangle(corner, far, plus(corner, 1, b), colour);
+    }
+
+    void write_field(const std::string& name, const std::vector<std::array<float, 7>>& arrows) {
+        // As on the page: people's by how often they pass, others by their vector's length.
+        const bool people = name == "human";
+        std::vector<double> strength;
+        for (const auto& a : arrows)
+            strength.push_back(people ? a[6] : length_of({a[3], a[4], a[5]}));
+        std::vector<double> sorted = strength;
+        std::ranges::sort(sorted);
+        const double strongest = sorted[(sorted.size() - 1) * 95 / 100];
+        Overlay overlay(image_);
+        for (std::size_t n = 0; n < arrows.size(); ++n) {
+            const double share = strongest > 0 ? std::min(strength[n] / strongest, 1.0) : 1.0;
+            add_arrow(overlay, arrows[n], share);
+        }
+        const auto [title, says, unit] =
+            people ? std::array{"People walking by",
+                                "Which way their bodies pass, and how often: this is what knocks "
+                                "things over.",
+                                "%.3g times in 100 walks"}
+            : name == "wind"
+                ? std::array{"Wind", "What a gale meets, and which way it blows there.", "%.3g m/s"}
+                : std::array{"Earthquake", "How the ground shakes below things.", "%.3g m/s\u00b2"};
+        Canvas canvas = page(name, colours(false, 0.6), overlay, title, says);
+        legend(canvas, ramp, "0", text(unit, people ? 100 * strongest : strongest));
+        canvas.save();
+    }
+
+    // A shaft and a head with five sides.
+    void add_arrow(Overlay& overlay, const std::array<float, 7>& arrow, double share) {
+        Vec3 along{arrow[3], arrow[4], arrow[5]};
+        const double speed = length_of(along);
+        if (!(speed > 0)) return;
+        for (double& c : along) c /= speed;
+        const Vec3 aside = std::abs(along[2]) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
+        Vec3 side = cross(along, aside);
+        const double norm = length_of(side);
+        for (double& c : side) c /= norm;
+        const Vec3 other = cross(along, side), from{arrow[0], arrow[1], arrow[2]};
+        const double size =
+            std::clamp(0.035 * image_.reach_m(), 0.05, 0.35) * (0.35 + 0.65 * share);
+        const double thickness = 0.17 * size;
+        constexpr int sides = 5;
+        const auto place = [&](double radius, double z, int n) {
+            const double angle = 2 * std::numbers::pi * n / sides;
+            return plus(
+                plus(plus(from, z * size, along), radius * thickness * std::cos(angle), side),
+                radius * thickness * std::sin(angle), other);
+        };
+        const Bytes3 colour = ramp_colour(share);
+        constexpr std::array<std::array<double, 2>, 4> rings{
+            {{0.22, 0}, {0.22, 0.55}, {0.75, 0.55}, {0.01, 1}}};
+        for (int n = 0; n < sides; ++n) {
+            const double angle = 2 * std::numbers::pi * (n + 0.5) / sides;
+            const double light =
+                0.8 + 0.2 * (side[2] * std::cos(angle) + other[2] * std::sin(angle));
+            Bytes3 lit{};
+            for (std::size_t c = 0; c < 3; ++c)
+                lit[c] = static_cast<std::uint8_t>(std::lround(colour[c] * light));
+            for (std::size_t ring = 0; ring + 1 < rings.size(); ++ring) {
+                const auto [r0, z0] = rings[ring];
+                const auto [r1, z1] = rings[ring + 1];
+                overlay.triangle(place(r0, z0, n), place(r0, z0, n + 1), place(r1, z1, n + 1), lit);
+                overlay.triangle(place(r0, z0, n), place(r1, z1, n + 1), place(r1, z1, n), lit);
+            }
+        }
+    }
+
+    Canvas page(const std::string& name, const std::vector<Bytes3>& colour_of_group,
+                const Overlay& overlay, const std::string& title, const std::string& says) {
+        boxes_.clear();
+        Canvas canvas(folder_ / ("view-" + name + ".png"), width, height);
+        canvas.image(0, 0, image_.shaded(colour_of_group, overlay));
+        canvas.text(20, 34, title, Align::left, {.size = 22, .bold = true});
+        canvas.text(20, 58, says, Align::left, {.size = 14, .colour = {0.36, 0.4, 0.44}});
+        return canvas;
+    }
+
+    void legend(Canvas& canvas, std::span<const Bytes3> stops, const std::string& low,
+                const std::string& high) const {
+        constexpr double x = 20, y = height - 50, wide = 220, tall = 12;
+        for (int n = 0; n < static_cast<int>(wide); ++n)
+            canvas.rectangle(x + n, y, 1, tall, colour(colour_along(stops, n / (wide - 1))));
+        canvas.text(x, y + tall + 17, low, Align::left, {.size = 13});
+        canvas.text(x + wide, y + tall + 17, high, Align::right, {.size = 13});
+    }
+
+    // The object's number, and its unsafety, where its middle is seen; moved up from others'.
+    void label(Canvas& canvas, const Object& object, bool unsafety) {
+        Vec3 middle{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (std::size_t c = 0; c < 3; ++c)
+                middle[axis] += view_.view_from_input[axis][c] * object.center_of_mass_m[c];
+        }
+        const auto [x, y, depth] = image_.camera().project(middle);
+        if (!(depth > 0 && x > 0 && x < width && y > 0 && y < height)) return;
+        const std::string number = std::to_string(object.id);
+        const std::string says = unsafety && std::isfinite(object.unsafety)
+                                     ? number + text(": %.1f", object.unsafety)
+                                     : number;
+        const Font font{.size = 14, .bold = true};
+        const double wide = canvas.text_width(says, font) + 12, tall = 21;
+        std::array<double, 4> box{x - wide / 2, y - tall / 2, wide, tall};
+        const auto overlaps = [&](const std::array<double, 4>& b) {
+            return box[0] < b[0] + b[2] && b[0] < box[0] + box[2] && box[1] < b[1] + b[3] &&
+                   b[1] < box[1] + box[3];
+        };
+        while (std::ranges::any_of(boxes_, overlaps)) box[1] -= 4;
+        boxes_.push_back(box);
+        canvas.rectangle(box[0] - 1, box[1] - 1, wide + 2, tall + 2, {0.11, 0.13, 0.15});
+        canvas.rectangle(box[0], box[1], wide, tall, {1, 1, 1});
+        canvas.text(x, box[1] + 15.5, says, Align::middle, font);
+    }
+
+    const std::filesystem::path& folder_;
+    const Scene& scene_;
+    PackedView view_;
+    SceneImage image_;
+    std::vector<std::array<double, 4>> boxes_;  // of the labels of the page at hand
+};
+
+}  // namespace
+
+void write_pictures(const std::filesystem::path& folder, const Scene& scene) {
+    Pictures(folder, scene).write();
+}
+
+}  // namespace topple::report

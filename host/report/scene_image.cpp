@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+#include "report/scene_image.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace topple::report {
+namespace {
+
+constexpr int fine = 2;  // pixels are means of fine x fine
+
+double dot(const Vec3& a, const Vec3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Vec3 plus(const Vec3& a, double share, const Vec3& b) {
+    return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
+}
+bool unit(Vec3& v) {
+    const double length = std::sqrt(dot(v, v));
+    if (!(length > 1e-9)) return false;
+    for (double& c : v) c /= length;
+    return true;
+}
+
+struct Box {
+    Vec3 low{-0.5, -0.5, -0.5}, high{0.5, 0.5, 0.5};
+};
+
+// The 2nd and 98th hundredths of the voxels' places.
+Box box_of(const PackedView& view) {
+    Box box;
+    if (view.voxels.cell.empty()) return box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::vector<std::uint16_t> steps;
+        for (const auto& cell : view.voxels.cell) steps.push_back(cell[axis]);
+        const auto at = [&](std::size_t hundredths) {
+            const auto n = static_cast<std::ptrdiff_t>((steps.size() - 1) * hundredths / 100);
+            std::nth_element(steps.begin(), steps.begin() + n, steps.end());
+            return view.origin_m[axis] + view.step_m[axis] * steps[static_cast<std::size_t>(n)];
+        };
+        box.low[axis] = at(2);
+        box.high[axis] = at(98);
+    }
+    return box;
+}
+
+// Means over 3 x 3 pixels.
+std::vector<float> blurred(const std::vector<float>& from, int width, int height) {
+    std::vector<float> to(from.size());
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            double sum = 0;
+            for (int n = 0; n < 9; ++n) {
+                const int px = std::clamp(x + n % 3 - 1, 0, width - 1);
+                const int py = std::clamp(y + n / 3 - 1, 0, height - 1);
+                sum += double{from[static_cast<std::size_t>(py * width + px)]};
+            }
+            to[static_cast<std::size_t>(y * width + x)] = static_cast<float>(sum / 9);
+        }
+    }
+    return to;
+}
+
+}  // namespace
+
+SceneImage::SceneImage(const Scene& scene, const PackedView& view, int width, int height,
+                       const std::array<double, 4>& margin)
+    : view_(view), width_(width), height_(height), solids_(fine * width, fine * height) {
+    for (const auto& object : scene.objects) {
+        if (object.grounded) grounded_.insert(object.id);
+    }
+    const Box box = box_of(view);
+    reach_m_ = std::max(
+        std::hypot(box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]),
+        0.05);
+    camera_ = camera_on(box.low, box.high, width, height, margin);
+    fine_camera_ = camera_;
+    fine_camera_.focal *= fine;
+    fine_camera_.x0 *= fine;
+    fine_camera_.y0 *= fine;
+    draw_solids();
+    find_crevices();
+    open_ = blurred(blurred(open_, width_, height_), width_, height_);
+}
+
+void SceneImage::draw_solids() {
+    constexpr std::array<Vec3, 6> normals{
+        {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+    constexpr Vec3 sun{-0.13, -0.43, 0.89};
+    for (std::size_t n = 0; n < view_.voxels.cell.size(); ++n) {
+        const auto& cell = view_.voxels.cell[n];
+        const auto& aux = view_.voxels.aux[n];
+        Vec3 centre{}, seen{double(aux[0]), double(aux[1]), double(aux[2])};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            centre[axis] = view_.origin_m[axis] + view_.step_m[axis] * cell[axis];
+        const Vec3 to_eye = plus(camera_.eye, -1, centre);
+        const std::int32_t object = view_.groups[cell[3]].second;
+        const bool background = object < 0 || grounded_.contains(object);
+        // A wall or ceiling that is seen from behind would hide the room.
+        if (background && dot(seen, to_eye) < 0) continue;
+        const bool smooth = unit(seen);
+        for (std::size_t face = 0; face < 6; ++face) {
+            const Vec3& normal = normals[face];
+            if (!(aux[3] >> face & 1) || dot(normal, to_eye) <= 0) continue;
+            // The mean normal of what was seen there smooths the voxels' steps.
+            Vec3 facing = normal;
+            if (smooth) facing = plus(normal, dot(seen, normal) < 0 ? -2 : 2, seen);
+            unit(facing);
+            const Vec3& side = normals[(face + 2) % 6 / 2 * 2 + 1];
+            const Vec3& other = normals[(face + 4) % 6 / 2 * 2 + 1];
+            add_face(centre, normal, side, other,
+                     {cell[3], static_cast<float>(0.77 + 0.25 * dot(facing, sun))});
+        }
+    }
+}
+
+void SceneImage::add_face(const Vec3& centre, const Vec3& normal, const Vec3& side,
+                          const Vec3& other, const Face& face) {
+    // A little over its edge, so that rounding opens no cracks between neighbours.
+    const double half = 0.505 * view_.cube_m;
+    std::array<Vec3, 4> corner;
+    for (std::size_t n = 0; n < 4; ++n) {
+        corner[n] = plus(plus(plus(centre, half, normal), n == 0 || n == 3 ? -half : half, side),
+                         n < 2 ? -half : half, other);
+    }
+    const auto what = static_cast<std::uint32_t>(faces_.size());
+    faces_.push_back(face);
+    solids_.triangle(fine_camera_, corner[0], corner[1], corner[2], what);
+    solids_.triangle(fine_camera_, corner[0], corner[2], corner[3], what);
+}
+
+// Corners and what lies under things are darker: a share of the places around each pixel that are
+// nearer to the camera, but not by much.
+void SceneImage::find_crevices() {
+    constexpr std::array<std::array<double, 2>, 16> around{{{1, 0},
+                                                            {0.92, 0.38},
+                                                            {0.71, 0.71},
+                                                            {0.38, 0.92},
+                                                            {0, 1},
+                                                            {-0.38, 0.92},
+                                                            {-0.71, 0.71},
+                                                            {-0.92, 0.38},
+                                                            {-1, 0},
+                                                            {-0.92, -0.38},
+                                                            {-0.71, -0.71},
+                                                            {-0.38, -0.92},
+                                                            {0, -1},
+                                                            {0.38, -0.92},
+                                                            {0.71, -0.71},
+                                                            {0.92, -0.38}}};
+    const double radius_m = 0.025 * reach_m_;
+    open_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 1);
+    const auto index = [&](int x, int y) {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(solids_.width()) +
+               static_cast<std::size_t>(x);
+    };
+    for (int y = 0; y < height_; ++y) {
+        for (int x = 0; x < width_; ++x) {
+            const std::size_t at = index(fine * x, fine * y);
+            if (solids_.what(at) == DepthImage::nothing) continue;
+            const double depth = solids_.depth(at), radius = fine_camera_.focal * radius_m / depth;
+            double nearer = 0;
+            for (std::size_t n = 0; n < around.size(); ++n) {
+                const double length = radius * (n % 2 == 0 ? 1.0 : 0.5);
+                const int px = fine * x + static_cast<int>(length * around[n][0]);
+                const int py = fine * y + static_cast<int>(length * around[n][1]);
+                if (px < 0 || py < 0 || px >= solids_.width() || py >= solids_.height()) continue;
+                // Against the place opposite to it, so that a slope is no crevice.
+                const int qx = 2 * fine * x - px, qy = 2 * fine * y - py;
+                if (qx < 0 || qy < 0 || qx >= solids_.width() || qy >= solids_.height()) continue;
+                const double before = depth - solids_.depth(index(px, py));
+                const double behind = solids_.depth(index(qx, qy)) - depth;
+                const double step = before - std::clamp(behind, -radius_m, radius_m);
+                if (before < 1.2 * radius_m) nearer += std::clamp(step / radius_m, 0.0, 1.0);
+            }
+            open_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                  static_cast<std::size_t>(x)] =
+                static_cast<float>(1 - nearer / double(around.size()));
+        }
+    }
+}
+
+void SceneImage::Overlay::triangle(const Vec3& a, const Vec3& b, const Vec3& c,
+                                   const Bytes3& colour) {
+    const auto what = static_cast<std::uint32_t>(image_.faces_.size() + colours_.size());
+    colours_.push_back(colour);
+    front_.triangle(image_.fine_camera_, a, b, c, what);
+}
+
+// The movable object that is seen there, or -1.
+std::int32_t SceneImage::object_at(const DepthImage& image, std::size_t at) const {
+    const std::uint32_t what = image.what(at);
+    if (what >= faces_.size()) return -1;
+    const std::int32_t object = view_.groups[faces_[what].group].second;
+    return grounded_.contains(object) ? -1 : object;
+}
+
+// Whether a movable object ends there against what is behind it.
+bool SceneImage::is_rim(const DepthImage& image, int x, int y) const {
+    const auto width = static_cast<std::size_t>(image.width());
+    const std::size_t at = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+    const std::int32_t object = object_at(image, at);
+    if (object < 0 || x == 0 || y == 0 || x + 1 == image.width() || y + 1 == image.height())
+        return false;
+    for (const std::size_t beside : {at - 1, at + 1, at - width, at + width}) {
+        if (object_at(image, beside) != object && !(image.depth(beside) < image.depth(at)))
+            return true;
+    }
+    return false;
+}
+
+Raster SceneImage::shaded(const std::vector<Bytes3>& colour_of_group,
+                          const Overlay& overlay) const {
+    constexpr Colour top{0.914, 0.929, 0.945}, bottom{0.973, 0.976, 0.98};
+    const DepthImage& front = overlay.front_;
+    Raster out(width_, height_, bottom);
+    for (int y = 0; y < height_; ++y) {
+        const double down = double(y) / height_;
+        const Colour behind{top.red + (bottom.red - top.red) * down,
+                            top.green + (bottom.green - top.green) * down,
+                            top.blue + (bottom.blue - top.blue) * down};
+        for (int x = 0; x < width_; ++x) {
+            const double open =
+                double{open_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                             static_cast<std::size_t>(x)]};
+            Colour sum;
+            for (int part = 0; part < fine * fine; ++part) {
+                const int px = fine * x + part % fine, py = fine * y + part / fine;
+                const std::uint32_t what = front.what(static_cast<std::size_t>(py) *
+                                                          static_cast<std::size_t>(front.width()) +
+                                                      static_cast<std::size_t>(px));
+                Colour c = behind;
+                if (what < faces_.size()) {
+                    const Face& face = faces_[what];
+                    const double light = double{face.light} * (0.45 + 0.55 * open) *
+                                         (is_rim(front, px, py) ? 0.5 : 1.0);
+                    c = colour(colour_of_group[face.group]);
+                    c = {c.red * light, c.green * light, c.blue * light};
+                } else if (what != DepthImage::nothing) {
+                    c = colour(overlay.colours_[what - faces_.size()]);
+                }
+                sum = {sum.red + c.red, sum.green + c.green, sum.blue + c.blue};
+            }
+            constexpr double share = 1.0 / (fine * fine);
+            out.at(x, y) = {sum.red * share, sum.green * share, sum.blue * share};
+        }
+    }
+    return out;
+}
+
+}  // namespace topple::report

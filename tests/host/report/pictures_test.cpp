@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+#include "report/pictures.h"
+
+#include <gtest/gtest.h>
+#include <png.h>
+#include <stdlib.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "report/depth_image.h"
+#include "synthetic_scene.h"
+#include "topple/error.h"
+
+namespace topple::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The camera at (0, 0, -2), looking along z; a metre at depth 2 is 50 pixels.
+Camera level_camera() {
+    Camera camera;
+    camera.eye = {0, 0, -2};
+    camera.right = {1, 0, 0};
+    camera.up = {0, 1, 0};
+    camera.ahead = {0, 0, 1};
+    camera.focal = 100;
+    camera.x0 = camera.y0 = 50;
+    return camera;
+}
+
+TEST(DepthImage, covers_each_pixel_of_a_square_once) {
+    DepthImage image(100, 100);
+    const Camera camera = level_camera();
+    image.triangle(camera, {-0.5, -0.5, 0}, {0.5, -0.5, 0}, {0.5, 0.5, 0}, 1);
+    image.triangle(camera, {-0.5, -0.5, 0}, {0.5, 0.5, 0}, {-0.5, 0.5, 0}, 2);
+    int count[3] = {};
+    for (std::size_t at = 0; at < 10000; ++at) {
+        if (image.what(at) == DepthImage::nothing) {
+            EXPECT_TRUE(std::isinf(image.depth(at)));
+            continue;
+        }
+        EXPECT_NEAR(image.depth(at), 2, 1e-6);
+        ++count[image.what(at)];
+    }
+    // 50 x 50 pixels, half of them each.
+    EXPECT_EQ(count[1] + count[2], 2500);
+    EXPECT_NEAR(count[1], 1250, 25);
+}
+
+TEST(DepthImage, the_nearer_of_two_is_in_front_in_either_order) {
+    const Camera camera = level_camera();
+    for (const bool far_first : {true, false}) {
+        DepthImage image(100, 100);
+        for (int n = 0; n < 2; ++n) {
+            const bool far = (n == 0) == far_first;
+            // The far one leans: it comes through the near one at x = 0.
+            const double left = far ? 1 : 0, right = far ? -1 : 0;
+            image.triangle(camera, {-1, -1, left}, {1, -1, right}, {0, 1, 0}, far ? 7 : 8);
+        }
+        EXPECT_EQ(image.what(70 * 100 + 40), 8u);
+        EXPECT_EQ(image.what(70 * 100 + 60), 7u);
+    }
+}
+
+TEST(DepthImage, leaves_out_what_reaches_behind_the_camera) {
+    DepthImage image(10, 10);
+    image.triangle(level_camera(), {-1, -1, 0}, {1, -1, 0}, {0, 1, -3}, 1);
+    for (std::size_t at = 0; at < 100; ++at) EXPECT_EQ(image.what(at), DepthImage::nothing);
+}
+
+TEST(Camera, the_box_fits_into_the_picture_and_fills_it) {
+    for (const double tall : {0.2, 2.5, 12.0}) {
+        const Camera camera = camera_on({-3, 1, 0}, {2, 5, tall}, 800, 500, {10, 20, 60, 30});
+        double west = 1e9, east = -1e9, top = 1e9, bottom = -1e9;
+        for (unsigned n = 0; n < 8; ++n) {
+            if (n == 4) continue;  // the nearest upper corner, which is looked through
+            const auto [x, y, depth] =
+                camera.project({n & 1 ? 2.0 : -3.0, n & 2 ? 5.0 : 1.0, n & 4 ? tall : 0.0});
+            EXPECT_GT(depth, 0);
+            west = std::min(west, x);
+            east = std::max(east, x);
+            top = std::min(top, y);
+            bottom = std::max(bottom, y);
+        }
+        EXPECT_GT(west, 10 - 2);
+        EXPECT_LT(east, 780 + 2);
+        EXPECT_GT(top, 60 - 2);
+        EXPECT_LT(bottom, 470 + 2);
+        EXPECT_TRUE(east - west > 0.97 * 770 || bottom - top > 0.97 * 410) << tall;
+    }
+}
+
+class PicturesOfAScene : public ::testing::Test {
+  protected:
+    PicturesOfAScene() {
+        auto name = (fs::temp_directory_path() / "topple-test-XXXXXX").string();
+        folder_ = mkdtemp(name.data());
+    }
+    ~PicturesOfAScene() override {
+        std::error_code error;
+        fs::remove_all(folder_, error);
+    }
+    fs::path drawn(const std::string& name, const Scene& scene) {
+        fs::create_directory(folder_ / name);
+        write_pictures(folder_ / name, scene);
+        return folder_ / name;
+    }
+    static std::set<std::string> names(const fs::path& folder) {
+        std::set<std::string> out;
+        for (const auto& entry : fs::directory_iterator(folder))
+            out.insert(entry.path().filename().string());
+        return out;
+    }
+    static std::string bytes(const fs::path& file) {
+        std::ostringstream out;
+        out << std::ifstream(file, std::ios::binary).rdbuf();
+        return out.str();
+    }
+    struct Pixels {
+        png_uint_32 width = 0, height = 0;
+        std::vector<std::uint8_t> rgb;
+    };
+    static Pixels pixels(const fs::path& file) {
+        png_image image{};
+        image.version = PNG_IMAGE_VERSION;
+        Pixels out;
+        if (!png_image_begin_read_from_file(&image, file.c_str())) return out;
+        image.format = PNG_FORMAT_RGB;
+        out.width = image.width;
+        out.height = image.height;
+        out.rgb.resize(PNG_IMAGE_SIZE(image));
+        if (!png_image_finish_read(&image, nullptr, out.rgb.data(), 0, nullptr)) out.rgb.clear();
+        return out;
+    }
+    static std::size_t different(const Pixels& a, const Pixels& b) {
+        std::size_t count = 0;
+        for (std::size_t at = 0; at + 2 < std::min(a.rgb.size(), b.rgb.size()); at += 3)
+            count += std::memcmp(&a.rgb[at], &b.rgb[at], 3) != 0;
+        return count;
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(PicturesOfAScene, are_drawn_the_same_each_time) {
+    const Scene scene = test::SyntheticScene(0.06).make();
+    const fs::path a = drawn("a", scene), b = drawn("b", scene);
+    const std::set<std::string> all{"view-earthquake.png", "view-human.png", "view-objects.png",
+                                    "view-risk.png",       "view-walks.png", "view-wind.png"};
+    EXPECT_EQ(names(a), all);
+    const Pixels objects = pixels(a / "view-objects.png");
+    for (const std::string& name : all) {
+        EXPECT_EQ(bytes(a / name), bytes(b / name)) << name;
+        const Pixels picture = pixels(a / name);
+        EXPECT_EQ(picture.width, 1280u);
+        EXPECT_EQ(picture.height, 800u);
+        ASSERT_EQ(picture.rgb.size(), 1280u * 800 * 3) << name;
+        // No view is blank, and none is another's.
+        if (name == "view-objects.png") continue;
+        EXPECT_GT(different(picture, objects), 20000u) << name;
+    }
+    // Solids, shaded.
+    std::set<std::array<std::uint8_t, 3>> colours;
+    for (std::size_t at = 0; at < objects.rgb.size(); at += 3)
+        colours.insert({objects.rgb[at], objects.rgb[at + 1], objects.rgb[at + 2]});
+    EXPECT_GT(colours.size(), 500u);
+}
+
+TEST_F(PicturesOfAScene, are_only_drawn_of_what_there_is) {
+    Scene scene = test::SyntheticScene(0.2).make();
+    scene.walks = {};
+    scene.fields.erase("wind");
+    scene.fields["human"] = {};
+    EXPECT_EQ(names(drawn("some", scene)),
+              (std::set<std::string>{"view-earthquake.png", "view-objects.png", "view-risk.png"}));
+    EXPECT_EQ(names(drawn("none", Scene{})),
+              (std::set<std::string>{"view-objects.png", "view-risk.png"}));
+}
+
+TEST_F(PicturesOfAScene, can_not_be_written) {
+    EXPECT_THROW(write_pictures(folder_ / "missing", Scene{}), Error);
+}
+
+}  // namespace
+}  // namespace topple::report
