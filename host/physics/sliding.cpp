@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "device/native/thread_pool.h"
 #include "physics/slide_map.h"
 #include "physics/vectors.h"
 #include "topple/error.h"
@@ -390,12 +391,17 @@ std::vector<SlideResult> slide_all(const SolidCells& cells,
     const CellColumns columns(cells);
     std::vector<Footprint> feet = footprints(cells, object, objects.size());
     std::vector<SlideResult> results(objects.size());
-    for (std::size_t o = 0; o < objects.size(); ++o) {
+    const auto slide = [&](std::size_t o) {
         const auto self = static_cast<std::int32_t>(o);
         find_support(cells, columns, object, self, options.gap, feet[o]);
-        if (!feet[o].stands || !(objects[o].mass_kg > 0)) continue;
+        if (!feet[o].stands || !(objects[o].mass_kg > 0)) return;
         results[o] =
             slide_one(cells, columns, object, self, feet[o], objects[o], friction[o], options);
+    };
+    if (options.threads) {
+        options.threads->each(objects.size(), 1, slide);
+    } else {
+        for (std::size_t o = 0; o < objects.size(); ++o) slide(o);
     }
     return results;
 }

@@ -27,9 +27,10 @@ struct SlideResult {
 };
 
 struct SlideOptions {
-    unsigned gap = 1;     // empty voxels that still count as contact
-    double reach_m = 3;   // ways longer than this are no longer one push
-    bool places = false;  // whether to look at all places around the object
+    unsigned gap = 1;                       // empty voxels that still count as contact
+    double reach_m = 3;                     // ways longer than this are no longer one push
+    bool places = false;                    // whether to look at all places around the object
+    device::ThreadPool* threads = nullptr;  // to share the objects out among; none: one by one
 };
 
 // For every object, on the voxel columns of its support. The support is the level that most of the

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "device/native/thread_pool.h"
 #include "physics/body_landscape.h"
 #include "physics/drop.h"
 
@@ -121,9 +122,10 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
         bodies.push_back(o.grounded ? physics::Body{} : o.candidate.body);
     const std::vector<double> all_friction(candidates.size(), friction);
     std::vector<physics::SlideResult> sliding =
-        physics::slide_all(cells, object_of_primitive, bodies, all_friction, {.places = true});
-    for (std::size_t o = 0; o < objects.size(); ++o) {
-        if (objects[o].grounded) continue;
+        physics::slide_all(cells, object_of_primitive, bodies, all_friction,
+                           {.places = true, .threads = &device.threads()});
+    device.threads().each(objects.size(), 1, [&](std::size_t o) {
+        if (objects[o].grounded) return;
         physics::Instability& how = objects[o].instability;
         how = physics::combine_curves(tipping[o], sliding[o]);
         if (how.mode == "tip" && how.drop_m > 0)
@@ -135,7 +137,7 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
         objects[o].level_tipping = std::move(level[o]);
         objects[o].sliding = std::move(sliding[o]);
         objects[o].poses = physics::body_landscape(table, candidates[o]);
-    }
+    });
 }
 
 ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,

@@ -34,11 +34,29 @@ Columns::Columns(const physics::SolidCells& cells) : cells_(cells) {
         ++first_[static_cast<std::size_t>((cells.i[c] - i0) * nj + (cells.j[c] - j0)) + 1];
     }
     for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
+
+    const auto [deep, tall] = std::minmax_element(cells.k.begin(), cells.k.end());
+    k0_ = *deep;
+    nk_ = std::int64_t{*tall} - k0_ + 1;
+    words_ = (nk_ + 63) / 64;
+    constexpr std::int64_t most_words = std::int64_t{1} << 24;  // 128 MiB
+    if (words_ > most_words / (ni * nj)) return;
+    bits_.assign(static_cast<std::size_t>(ni * nj * words_), 0);
+    for (std::size_t c = 0; c < n; ++c) {
+        const std::int64_t column = (cells.i[c] - i0) * nj + (cells.j[c] - j0),
+                           k = std::int64_t{cells.k[c]} - k0_;
+        bits_[static_cast<std::size_t>(column * words_ + k / 64)] |= std::uint64_t{1} << (k % 64);
+    }
 }
 
 bool Columns::solid(std::int64_t i, std::int64_t j, std::int64_t k) const {
     if (i < i0 || i >= i0 + ni || j < j0 || j >= j0 + nj) return false;
     const auto column = static_cast<std::size_t>((i - i0) * nj + (j - j0));
+    if (!bits_.empty()) {
+        if (k < k0_ || k >= k0_ + nk_) return false;
+        const auto at = static_cast<std::size_t>(k - k0_);
+        return bits_[column * static_cast<std::size_t>(words_) + at / 64] >> (at % 64) & 1;
+    }
     const auto begin = cells_.k.begin() + static_cast<std::ptrdiff_t>(first_[column]);
     const auto end = cells_.k.begin() + static_cast<std::ptrdiff_t>(first_[column + 1]);
     return std::binary_search(begin, end, k);

@@ -25,6 +25,11 @@ class Columns {
   private:
     const physics::SolidCells& cells_;
     std::vector<std::uint64_t> first_;  // where each column's cells start, by i, then j
+    // Bit k - k0_ of each column's words, where they take no more than most_words; else empty, and
+    // columns are searched.
+    std::vector<std::uint64_t> bits_;
+    std::int32_t k0_ = 0;
+    std::int64_t nk_ = 0, words_ = 0;
 };
 
 }  // namespace topple::safety

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "device/native/thread_pool.h"
 #include "physics/landscape.h"
 #include "safety/columns.h"
 #include "safety/directions.h"
@@ -166,7 +167,7 @@ double wind_work(const RiskObject& object, const WindLoad& load, const WindOptio
     return most;
 }
 
-Disturbance wind_field(device::Device&, const Surroundings& surroundings,
+Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
                        std::span<const RiskObject> objects, const WindOptions& options) {
     check_option("speed_m_s", options.speed_m_s, 0);
     check_option("air_density_kg_m3", options.air_density_kg_m3, 0);
@@ -189,6 +190,13 @@ Disturbance wind_field(device::Device&, const Surroundings& surroundings,
     const physics::SolidCells& solid = *surroundings.cells;
     const Columns columns(solid);
 
+    std::vector<Frontage> fronts(objects.size() * blown.size());  // by object, then by way
+    device.threads().each(fronts.size(), 1, [&](std::size_t n) {
+        const std::size_t o = n / blown.size();
+        if (!cells[o].empty() && !objects[o].grounded)
+            fronts[n] =
+                wind_frontage(solid, columns, cells[o], blown[n % blown.size()], options.shelter_m);
+    });
     ArrowSample arrows;
     for (std::size_t o = 0; o < objects.size(); ++o) {
         if (cells[o].empty() || objects[o].grounded) continue;
@@ -196,10 +204,10 @@ Disturbance wind_field(device::Device&, const Surroundings& surroundings,
         std::vector<std::array<float, 3>> wind(cells[o].size(),
                                                {0, 0, 0});  // sum of directions, count
         std::vector<std::pair<WindLoad, Vec3>> gales;
-        for (const auto& way : blown) {
-            const Frontage front = wind_frontage(solid, columns, cells[o], way, options.shelter_m);
+        for (std::size_t w = 0; w < blown.size(); ++w) {
+            const Frontage& front = fronts[o * blown.size() + w];
             if (front.area_m2 <= 0) continue;
-            const auto [dx, dy] = way;
+            const auto [dx, dy] = blown[w];
             for (const std::uint32_t c : front.cells) {
                 const auto n =
                     std::lower_bound(cells[o].begin(), cells[o].end(), c) - cells[o].begin();
