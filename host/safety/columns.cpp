@@ -49,17 +49,26 @@ Columns::Columns(const physics::SolidCells& cells) : cells_(cells) {
     }
 }
 
-bool Columns::solid(std::int64_t i, std::int64_t j, std::int64_t k) const {
-    if (i < i0 || i >= i0 + ni || j < j0 || j >= j0 + nj) return false;
+std::uint64_t Columns::solid(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    if (i < i0 || i >= i0 + ni || j < j0 || j >= j0 + nj) return 0;
     const auto column = static_cast<std::size_t>((i - i0) * nj + (j - j0));
     if (!bits_.empty()) {
-        if (k < k0_ || k >= k0_ + nk_) return false;
-        const auto at = static_cast<std::size_t>(k - k0_);
-        return bits_[column * static_cast<std::size_t>(words_) + at / 64] >> (at % 64) & 1;
+        const std::int64_t at = k - k0_;
+        const auto word = [&](std::int64_t w) {
+            return w < 0 || w >= words_ ? 0
+                                        : bits_[column * static_cast<std::size_t>(words_) +
+                                                static_cast<std::size_t>(w)];
+        };
+        const std::int64_t w = at >= 0 ? at / 64 : -((63 - at) / 64);
+        const auto shift = static_cast<unsigned>(at - 64 * w);
+        return shift == 0 ? word(w) : word(w) >> shift | word(w + 1) << (64 - shift);
     }
     const auto begin = cells_.k.begin() + static_cast<std::ptrdiff_t>(first_[column]);
     const auto end = cells_.k.begin() + static_cast<std::ptrdiff_t>(first_[column + 1]);
-    return std::binary_search(begin, end, k);
+    std::uint64_t out = 0;
+    for (auto at = std::lower_bound(begin, end, k); at != end && *at < k + 64; ++at)
+        out |= std::uint64_t{1} << (*at - k);
+    return out;
 }
 
 }  // namespace topple::safety

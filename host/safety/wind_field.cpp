@@ -68,17 +68,61 @@ FirstHits first_hits(const physics::SolidCells& solid, std::span<const std::uint
     return hits;
 }
 
-// Nothing solid stands within `voxels` upwind of a point in the object's front, given in voxels.
-// Half-voxel steps; the first that counts lies outside of the front's own voxel.
-bool open_to_wind(const Columns& columns, double x, double y, std::int32_t k, std::int32_t own_i,
-                  std::int32_t own_j, double dx, double dy, double voxels) {
-    for (double s = 0.5; s <= voxels; s += 0.5) {
+// Which of the layers asked for, k and above by bit, have nothing solid within `voxels` upwind of a
+// point in the object's front, given in voxels. Half-voxel steps; the first that counts lies
+// outside of the front's own column.
+std::uint64_t open_to_wind(const Columns& columns, double x, double y, std::int32_t k,
+                           std::uint64_t layers, std::int32_t own_i, std::int32_t own_j, double dx,
+                           double dy, double voxels) {
+    std::int64_t last_i = own_i, last_j = own_j;
+    for (double s = 0.5; s <= voxels && layers; s += 0.5) {
         const auto i = static_cast<std::int64_t>(std::floor(x - s * dx));
         const auto j = static_cast<std::int64_t>(std::floor(y - s * dy));
-        if (i == own_i && j == own_j) continue;
-        if (columns.solid(i, j, k)) return false;
+        if ((i == last_i && j == last_j) || (i == own_i && j == own_j)) continue;
+        layers &= ~columns.solid(i, j, k);
+        last_i = i;
+        last_j = j;
     }
-    return true;
+    return layers;
+}
+
+// Which of the first hits the wind reaches. Layers whose first voxels stand in one column share the
+// line there: up to 64 of them are looked at together.
+std::vector<bool> open_hits(const physics::SolidCells& solid, const Columns& columns,
+                            const FirstHits& hits, double dx, double dy, double shelter) {
+    std::vector<bool> open(hits.cell.size());
+    for (std::int64_t bin = 0; bin < hits.bins; ++bin) {
+        // The line's middle, at the depth of the voxels' centres; layers whose first voxels stand
+        // in one column share it, up to 64.
+        const double across = hits.low + (static_cast<double>(bin) + 0.5) / bins_per_voxel;
+        for (std::int64_t layer = 0; layer < hits.layers;) {
+            const std::int64_t c = hits.cell[static_cast<std::size_t>(layer * hits.bins + bin)];
+            if (c < 0) {
+                ++layer;
+                continue;
+            }
+            const auto first = static_cast<std::size_t>(c);
+            std::uint64_t asked = 0;
+            std::int64_t run = 0;
+            for (; run < 64 && layer + run < hits.layers; ++run) {
+                const auto n = hits.cell[static_cast<std::size_t>((layer + run) * hits.bins + bin)];
+                if (n < 0) continue;
+                const auto cell = static_cast<std::size_t>(n);
+                if (solid.i[cell] != solid.i[first] || solid.j[cell] != solid.j[first]) break;
+                asked |= std::uint64_t{1} << run;
+            }
+            const double along = (solid.i[first] + 0.5) * dx + (solid.j[first] + 0.5) * dy;
+            const std::uint64_t reached = open_to_wind(
+                columns, along * dx - across * dy, along * dy + across * dx, solid.k[first], asked,
+                solid.i[first], solid.j[first], dx, dy, shelter);
+            for (std::int64_t r = 0; r < run; ++r) {
+                if (reached >> r & 1)
+                    open[static_cast<std::size_t>((layer + r) * hits.bins + bin)] = true;
+            }
+            layer += run;
+        }
+    }
+    return open;
 }
 
 void offer_arrows(ArrowSample& arrows, const physics::SolidCells& solid,
@@ -118,19 +162,11 @@ Frontage wind_frontage(const physics::SolidCells& solid, const Columns& columns,
     const FirstHits hits = first_hits(solid, cells, dx, dy);
     const double line_area = solid.voxel_m * solid.voxel_m / bins_per_voxel;
     double moment = 0;
+    const std::vector<bool> open =
+        open_hits(solid, columns, hits, dx, dy, shelter_m / solid.voxel_m);
     for (std::size_t at = 0; at < hits.cell.size(); ++at) {
-        if (hits.cell[at] < 0) continue;
+        if (!open[at]) continue;
         const auto c = static_cast<std::uint32_t>(hits.cell[at]);
-        // The line's middle, at the depth of the voxel's centre.
-        const double across =
-            hits.low +
-            (static_cast<double>(at % static_cast<std::size_t>(hits.bins)) + 0.5) / bins_per_voxel;
-        const double along = (solid.i[c] + 0.5) * dx + (solid.j[c] + 0.5) * dy;
-        const double x = along * dx - across * dy, y = along * dy + across * dx;
-        if (!open_to_wind(columns, x, y, solid.k[c], solid.i[c], solid.j[c], dx, dy,
-                          shelter_m / solid.voxel_m)) {
-            continue;
-        }
         out.area_m2 += line_area;
         moment += line_area * (solid.k[c] + 0.5) * solid.voxel_m;
         out.cells.push_back(c);
