@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "graph/contact_graph.h"
+#include "graph/stable_objects.h"
+#include "host/safety/room.h"
+#include "physics/landscape.h"
+#include "pipeline/object_stage.h"
+#include "pipeline/safety_stage.h"
+
+namespace topple::test {
+
+// A room of boxes with the barriers and S(W) that a parse would give to its objects. The room holds
+// the cells.
+struct AssessedRoom {
+    safety::Surroundings around;
+    std::vector<StableObject> objects;
+    std::vector<safety::RiskObject> at_risk;
+
+    AssessedRoom(device::Device& device, Room& room, double friction)
+        : around(room.surroundings()) {
+        const physics::SolidCells& cells = *around.cells;
+        const auto primitives = static_cast<std::int32_t>(room.object_of_primitive.size());
+        const auto bodies = physics::mass_properties(device, cells, primitives, room.density_kg_m3);
+        const graph::ContactGraph contacts = graph::build_contact_graph(device, cells, primitives);
+        const physics::SupportTable table(device, cells, primitives, physics::geodesic_sphere(16));
+        for (std::size_t o = 0; o < room.objects.size(); ++o) {
+            std::vector<std::int32_t> members;
+            for (std::int32_t p = 0; p < primitives; ++p) {
+                if (room.object_of_primitive[static_cast<std::size_t>(p)] ==
+                    static_cast<std::int32_t>(o))
+                    members.push_back(p);
+            }
+            StableObject object;
+            object.grounded = room.objects[o].grounded;
+            object.lowest_m = contacts.lowest_m[static_cast<std::size_t>(members.front())];
+            object.highest_m = contacts.highest_m[static_cast<std::size_t>(members.front())];
+            for (const std::int32_t p : members) {
+                object.lowest_m =
+                    std::min(object.lowest_m, contacts.lowest_m[static_cast<std::size_t>(p)]);
+                object.highest_m =
+                    std::max(object.highest_m, contacts.highest_m[static_cast<std::size_t>(p)]);
+            }
+            object.candidate =
+                graph::candidate_of(contacts, bodies, around.is_floor_primitive, members);
+            objects.push_back(std::move(object));
+        }
+        find_barriers(device, table, cells, room.object_of_primitive, friction, objects);
+        at_risk = risk_objects(objects);
+    }
+};
+
+}  // namespace topple::test
