@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "perf/field_stages.h"
 #include "perf/landscape_stages.h"
 #include "perf/measure.h"
 #include "perf/peers.h"
@@ -50,18 +51,20 @@ class Stages {
   public:
     explicit Stages(const Arguments& arguments) : a_(arguments) {}
 
-    bool wanted() const {
-        const auto names = stage_names();
-        return a_.stage_runs > 0 && std::any_of(names.begin(), names.end(), [&](const auto& name) {
-                   return perf::wanted(a_, name);
-               });
-    }
+    bool wanted() const { return any(stage_names()) || any(field_names()); }
     std::vector<Result> measure(device::Device& device) {
         if (!scene_) scene_ = make_stage_scene(device);
-        StageRun run = measure_stages(device, *scene_, a_.stage_runs);
-        std::vector<Result> results = run.results;
+        std::vector<Result> results;
+        if (any(stage_names())) {
+            StageRun run = measure_stages(device, *scene_, a_.stage_runs);
+            results = run.results;
+            if (first_.results.empty()) first_ = std::move(run);
+        }
+        if (any(field_names())) {
+            const auto fields = measure_fields(device, *scene_, a_.stage_runs);
+            results.insert(results.end(), fields.begin(), fields.end());
+        }
         std::erase_if(results, [&](const Result& r) { return !perf::wanted(a_, r.name); });
-        if (first_.results.empty()) first_ = std::move(run);
         return results;
     }
     std::vector<Result> peers() const {
@@ -70,6 +73,12 @@ class Stages {
     }
 
   private:
+    bool any(const std::vector<std::string>& names) const {
+        return a_.stage_runs > 0 &&
+               std::any_of(names.begin(), names.end(),
+                           [&](const std::string& name) { return perf::wanted(a_, name); });
+    }
+
     const Arguments& a_;
     std::optional<StageScene> scene_;
     StageRun first_;
@@ -132,6 +141,7 @@ int run(const Arguments& a) {
     if (a.list) {
         for (const Case& test : all_cases()) std::printf("%s\n", test.name);
         for (const std::string& name : stage_names()) std::printf("%s\n", name.c_str());
+        for (const std::string& name : field_names()) std::printf("%s\n", name.c_str());
         for (const std::string& name : landscape_names()) std::printf("%s\n", name.c_str());
         std::printf("pipeline\n");
         return 0;
