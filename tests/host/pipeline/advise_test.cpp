@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/advise.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "assessed_room.h"
+#include "device/devices.h"
+
+namespace topple::test {
+namespace {
+
+constexpr double mu = 0.3, tolerable_J = 0.1;
+
+// All fields of a room, and what is advised.
+class Advice : public ::testing::Test {
+  protected:
+    std::vector<Suggestion> of(Room& room) {
+        scene = std::make_unique<AssessedRoom>(*device, room, mu);
+        safety::HumanOptions walking;
+        walking.paths = 200;
+        safety::HumanField walkers(*device, scene->around, scene->at_risk, walking);
+        std::vector<safety::Disturbance> fields;
+        fields.push_back(walkers.disturbance());
+        fields.push_back(safety::wind_field(*device, scene->around, scene->at_risk, {}));
+        fields.push_back(
+            safety::earthquake_field(*device, scene->around, scene->at_risk, mu, {}));
+        risk.clear();
+        for (const auto& field : fields) risk.push_back(safety::risk(field, scene->at_risk));
+        return advise(*scene->around.cells, room.object_of_primitive, scene->objects,
+                      scene->at_risk, fields, risk, &walkers, mu, tolerable_J);
+    }
+    double worst(std::int32_t id) const {
+        double most = 0;
+        for (const auto& field : risk)
+            most = std::max(most, field[static_cast<std::size_t>(id)].mean_J);
+        return most;
+    }
+    static const Suggestion& at(const std::vector<Suggestion>& all, std::int32_t id) {
+        return all[static_cast<std::size_t>(id)];
+    }
+
+    std::unique_ptr<device::Device> device = device::open_native(2);
+    std::unique_ptr<AssessedRoom> scene;
+    std::vector<std::vector<safety::Risk>> risk;
+};
+
+// A heavy flat box that overhangs nothing, 5 cm from the edge of a wide table.
+std::int32_t box_on_table(Room& room, double x, double y = 0) {
+    room.floor(-2, 2, -2, 2);
+    room.box(-0.8, 0.8, -0.8, 0.8, 0.7, 0.75);
+    return room.box(x, x + 0.2, y - 0.1, y + 0.1, 0.75, 0.9, false);
+}
+
+TEST_F(Advice, WhatIsAtAnEdgeIsMovedInwardsToWhereItIsTolerated) {
+    Room room(0.025);
+    const auto box = box_on_table(room, 0.575);
+    const auto advice = of(room);
+    ASSERT_GT(worst(box), tolerable_J);
+    const Suggestion& what = at(advice, box);
+    ASSERT_EQ(what.kind, Suggestion::Kind::move);
+    EXPECT_LT(what.move_m[0], -0.05) << "away from the edge at x = 0.8";
+    EXPECT_LT(std::hypot(what.move_m[0], what.move_m[1]), 0.9);
+    EXPECT_LE(what.risk_J, tolerable_J);
+    // It keeps what it promises: a box that stands there is tolerated.
+    Room moved(0.025);
+    const auto there = box_on_table(moved, 0.575 + what.move_m[0], what.move_m[1]);
+    of(moved);
+    EXPECT_LE(worst(there), tolerable_J);
+}
+
+TEST_F(Advice, WhatIsSafeIsLeftAlone) {
+    Room room(0.025);
+    const auto box = box_on_table(room, -0.1);
+    const auto advice = of(room);
+    EXPECT_LE(worst(box), tolerable_J);
+    EXPECT_EQ(at(advice, box).kind, Suggestion::Kind::nothing);
+}
+
+TEST_F(Advice, ATallThinThingIsFixedAndTheFixingHoldsIt) {
+    Room room(0.025);
+    room.floor(-2, 2, -2, 2);
+    const auto post = room.box(0, 0.15, 0, 0.15, 0, 1.5, false);
+    const auto advice = of(room);
+    ASSERT_GT(worst(post), tolerable_J);
+    const Suggestion& what = at(advice, post);
+    ASSERT_EQ(what.kind, Suggestion::Kind::fix) << "shaking tips it anywhere";
+    EXPECT_NEAR(what.hold.height_m, 1.5, 0.03);
+    // 23.6 kg at up to 3 e m/s^2 tip it by (a h - g b) m over its height.
+    const double mass = 700 * 0.15 * 0.15 * 1.5;
+    EXPECT_GT(what.hold.force_N, mass * (3.0 * 0.75 - 9.80665 * 0.075) / 1.5);
+    EXPECT_LT(what.hold.force_N, 1000);
+}
+
+TEST_F(Advice, WhatHangsOnNothingSeenIsToBeSeen) {
+    Room room(0.025);
+    room.floor(-2, 2, -2, 2);
+    const auto lamp = room.box(0, 0.2, 0, 0.2, 1.5, 1.7, false);
+    const auto advice = of(room);
+    EXPECT_EQ(worst(lamp), 0);
+    EXPECT_EQ(at(advice, lamp).kind, Suggestion::Kind::see);
+}
+
+}  // namespace
+}  // namespace topple::test
