@@ -72,7 +72,7 @@ class Pictures {
           scene_(scene),
           view_(pack_view(
               scene,
-              {.voxels = std::numeric_limits<std::size_t>::max(), .points = 0, .arrows = 1200})),
+              {.voxels = std::numeric_limits<std::size_t>::max(), .points = 0, .arrows = 700})),
           image_(scene, view_, width, height, margin) {}
 
     void write() {
@@ -164,34 +164,39 @@ class Pictures {
     }
 
     void write_field(const std::string& name, const std::vector<std::array<float, 7>>& arrows) {
-        // As on the page: people's by how often they pass, others by their vector's length.
-        const bool people = name == "human";
+        // As on the page: people's by how often they pass, wind by its mean over all gales.
+        const bool people = name == "human", wind = name == "wind";
         std::vector<double> strength;
-        for (const auto& a : arrows)
-            strength.push_back(people ? a[6] : length_of({a[3], a[4], a[5]}));
+        for (const auto& a : arrows) {
+            const double length = length_of({a[3], a[4], a[5]});
+            strength.push_back(people ? a[6] : wind ? length * a[6] : length);
+        }
         std::vector<double> sorted = strength;
         std::ranges::sort(sorted);
         const double strongest = sorted[(sorted.size() - 1) * 95 / 100];
-        Overlay overlay(image_);
+        // The earth shakes below things, where they would hide it. The wind blows onto its place.
+        Overlay overlay(image_, !people && !wind);
         for (std::size_t n = 0; n < arrows.size(); ++n) {
             const double share = strongest > 0 ? std::min(strength[n] / strongest, 1.0) : 1.0;
-            add_arrow(overlay, arrows[n], share);
+            add_arrow(overlay, arrows[n], share, wind ? 1 : 0);
         }
         const auto [title, says, unit] =
             people ? std::array{"People walking by",
                                 "Which way their bodies pass, and how often: this is what knocks "
                                 "things over.",
                                 "%.3g times in 100 walks"}
-            : name == "wind"
-                ? std::array{"Wind", "What a gale meets, and which way it blows there.", "%.3g m/s"}
+            : wind
+                ? std::array{"Wind",
+                             "Where gales reach things, and which way they push on average.",
+                             "%.3g m/s"}
                 : std::array{"Earthquake", "How the ground shakes below things.", "%.3g m/s\u00b2"};
         Canvas canvas = page(name, colours(false, 0.6), overlay, title, says);
         legend(canvas, ramp, "0", text(unit, people ? 100 * strongest : strongest));
         canvas.save();
     }
 
-    // A shaft and a head with five sides.
-    void add_arrow(Overlay& overlay, const std::array<float, 7>& arrow, double share) {
+    // A shaft and a head with five sides; its place is at `tip`, from 0 at its foot to 1.
+    void add_arrow(Overlay& overlay, const std::array<float, 7>& arrow, double share, double tip) {
         Vec3 along{arrow[3], arrow[4], arrow[5]};
         const double speed = length_of(along);
         if (!(speed > 0)) return;
@@ -207,9 +212,9 @@ class Pictures {
         constexpr int sides = 5;
         const auto place = [&](double radius, double z, int n) {
             const double angle = 2 * std::numbers::pi * n / sides;
-            return plus(
-                plus(plus(from, z * size, along), radius * thickness * std::cos(angle), side),
-                radius * thickness * std::sin(angle), other);
+            return plus(plus(plus(from, (z - tip) * size, along),
+                             radius * thickness * std::cos(angle), side),
+                        radius * thickness * std::sin(angle), other);
         };
         const Bytes3 colour = ramp_colour(share);
         constexpr std::array<std::array<double, 2>, 4> rings{

@@ -188,22 +188,22 @@ void SceneImage::Overlay::triangle(const Vec3& a, const Vec3& b, const Vec3& c,
 }
 
 // The movable object that is seen there, or -1.
-std::int32_t SceneImage::object_at(const DepthImage& image, std::size_t at) const {
-    const std::uint32_t what = image.what(at);
-    if (what >= faces_.size()) return -1;
+std::int32_t SceneImage::object_at(std::size_t at) const {
+    const std::uint32_t what = solids_.what(at);
+    if (what == DepthImage::nothing) return -1;
     const std::int32_t object = view_.groups[faces_[what].group].second;
     return grounded_.contains(object) ? -1 : object;
 }
 
 // Whether a movable object ends there against what is behind it.
-bool SceneImage::is_rim(const DepthImage& image, int x, int y) const {
-    const auto width = static_cast<std::size_t>(image.width());
-    const std::size_t at = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-    const std::int32_t object = object_at(image, at);
-    if (object < 0 || x == 0 || y == 0 || x + 1 == image.width() || y + 1 == image.height())
-        return false;
+bool SceneImage::is_rim(std::size_t at) const {
+    const auto width = static_cast<std::size_t>(solids_.width()),
+               height = static_cast<std::size_t>(solids_.height());
+    const std::size_t x = at % width, y = at / width;
+    const std::int32_t object = object_at(at);
+    if (object < 0 || x == 0 || y == 0 || x + 1 == width || y + 1 == height) return false;
     for (const std::size_t beside : {at - 1, at + 1, at - width, at + width}) {
-        if (object_at(image, beside) != object && !(image.depth(beside) < image.depth(at)))
+        if (object_at(beside) != object && !(solids_.depth(beside) < solids_.depth(at)))
             return true;
     }
     return false;
@@ -225,15 +225,16 @@ Raster SceneImage::shaded(const std::vector<Bytes3>& colour_of_group,
                              static_cast<std::size_t>(x)]};
             Colour sum;
             for (int part = 0; part < fine * fine; ++part) {
-                const int px = fine * x + part % fine, py = fine * y + part / fine;
-                const std::uint32_t what = front.what(static_cast<std::size_t>(py) *
-                                                          static_cast<std::size_t>(front.width()) +
-                                                      static_cast<std::size_t>(px));
+                const auto at = static_cast<std::size_t>(fine * y + part / fine) *
+                                    static_cast<std::size_t>(front.width()) +
+                                static_cast<std::size_t>(fine * x + part % fine);
+                std::uint32_t what = front.what(at);
+                if (what == DepthImage::nothing) what = solids_.what(at);
                 Colour c = behind;
                 if (what < faces_.size()) {
                     const Face& face = faces_[what];
-                    const double light = double{face.light} * (0.45 + 0.55 * open) *
-                                         (is_rim(front, px, py) ? 0.5 : 1.0);
+                    const double light =
+                        double{face.light} * (0.45 + 0.55 * open) * (is_rim(at) ? 0.5 : 1.0);
                     c = colour(colour_of_group[face.group]);
                     c = {c.red * light, c.green * light, c.blue * light};
                 } else if (what != DepthImage::nothing) {

@@ -24,10 +24,14 @@ class SceneImage {
     const Camera& camera() const { return camera_; }  // in the picture's pixels
     double reach_m() const { return reach_m_; }       // across the scene
 
-    // What is laid over the solids, in the view's frame; hidden by what is in front of it.
+    // What is laid over the solids, in the view's frame; hidden by what of them is in front of it,
+    // or shining `through`.
     class Overlay {
       public:
-        explicit Overlay(const SceneImage& image) : image_(image), front_(image.solids_) {}
+        explicit Overlay(const SceneImage& image, bool through = false)
+            : image_(image),
+              front_(through ? DepthImage(image.solids_.width(), image.solids_.height())
+                             : image.solids_) {}
         void triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Bytes3& colour);
 
       private:
@@ -49,8 +53,8 @@ class SceneImage {
     void add_face(const Vec3& centre, const Vec3& normal, const Vec3& side, const Vec3& other,
                   const Face& face);
     void find_crevices();
-    std::int32_t object_at(const DepthImage& image, std::size_t at) const;
-    bool is_rim(const DepthImage& image, int x, int y) const;
+    std::int32_t object_at(std::size_t at) const;
+    bool is_rim(std::size_t at) const;
 
     const PackedView& view_;
     int width_, height_;

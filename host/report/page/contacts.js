@@ -64,7 +64,7 @@ function contactGraph(scene, id, choose) {
     // Near that end of the line where fewer meet.
     const share = lines('inner', contact.inner) < lines('outer', contact.outer) ? 0.3 : 0.75;
     numbers.push(contact.own ? [xLeft + 0.75 * bow + 3, (y0 + y1) / 2 + 4, text, 'start']
-      : [xLeft + share * (xRight - xLeft), y0 + share * (y1 - y0) + 4, text, 'middle']);
+      : [xLeft + share * (xRight - xLeft), y0 + share * (y1 - y0) - 3, text, 'middle']);
   }
   if (shown.length <= 14) for (const [x, y, text, anchor] of numbers) say(x, y, anchor, text, 'halo');
   const node = (x, y, object, primitive, own) => {

@@ -74,7 +74,7 @@ function legend(scene, state, view) {
     const strongest = view.fields[name].userData.strongest;
     const [text, most] = {
       human: ['Arrows: how often people\u2019s bodies pass there', `${number(100 * strongest)} times in 100 walks`],
-      wind: ['Arrows: wind', number(strongest, 'm/s')],
+      wind: ['Arrows: wind, mean over all gales', number(strongest, 'm/s')],
       earthquake: ['Arrows: shaking below things', number(strongest, 'm/s\u00b2')],
     }[name] || [`Arrows: ${name}`, number(strongest)];
     box.append(element('div', {text}), bar(scene.ramp.colours), ends('0', most));

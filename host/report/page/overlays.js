@@ -9,9 +9,10 @@ function rampUniform(scene) {
 }
 
 // What colours a field's arrows and makes them long. Of people it is how often their bodies pass per walk: where as
-// many come as go, the mean of their speeds is small.
+// many come as go, the mean of their speeds is small. Of wind it is the mean over gales from all sides.
 function strengthOf(name, arrow) {
-  return name === 'human' ? arrow[6] : Math.hypot(arrow[3], arrow[4], arrow[5]);
+  const length = Math.hypot(arrow[3], arrow[4], arrow[5]);
+  return name === 'human' ? arrow[6] : name === 'wind' ? length * arrow[6] : length;
 }
 
 function fieldMesh(scene, name, reach) {
@@ -36,8 +37,11 @@ function fieldMesh(scene, name, reach) {
   geometry.maxInstancedCount = field.count;
   const longest = Math.min(Math.max(0.035 * reach, 0.05), 0.35);
   const mesh = new THREE.Mesh(geometry, new THREE.ShaderMaterial({
-    uniforms: {longest: {value: longest}, thickness: {value: 0.17 * longest}, ramp: rampUniform(scene)},
+    // The wind blows onto its place, with the arrow's tip.
+    uniforms: {longest: {value: longest}, thickness: {value: 0.17 * longest}, tip: {value: name === 'wind' ? 1 : 0}, ramp: rampUniform(scene)},
     vertexShader: arrowVertexShader, fragmentShader: recordFragmentShader, side: THREE.DoubleSide,
+    // The earth shakes below things, where they would hide it.
+    depthTest: name !== 'earthquake', transparent: name === 'earthquake',
   }));
   mesh.frustumCulled = false;
   mesh.userData.strongest = strongest;

@@ -92,7 +92,7 @@ const rampShader = `
 const arrowVertexShader = rampShader + `
   attribute vec3 offset, direction;
   attribute float strength;
-  uniform float longest, thickness;
+  uniform float longest, thickness, tip;
   varying vec3 shade;
   void main() {
     float speed = length(direction);
@@ -101,7 +101,7 @@ const arrowVertexShader = rampShader + `
     vec3 other = cross(along, side);
     vec3 out_ = position.x * side + position.y * other;
     float size = mix(0.35, 1.0, strength);
-    vec3 at = offset + (out_ * thickness + along * position.z * longest) * size;
+    vec3 at = offset + (out_ * thickness + along * (position.z - tip) * longest) * size;
     shade = rampColour(strength) * (0.8 + 0.2 * normalize(out_ + 1e-5).z);
     gl_Position = projectionMatrix * viewMatrix * vec4(at, 1.0);
   }

@@ -8,7 +8,8 @@ class View {
   constructor(container, scene) {
     this.container = container;
     this.scene = scene;
-    this.renderer = new THREE.WebGLRenderer({antialias: true, alpha: true});
+    // Where a pixel is half a CSS pixel, its steps are too small to be smoothed, which takes long in software.
+    this.renderer = new THREE.WebGLRenderer({antialias: (window.devicePixelRatio || 1) < 2, alpha: true});
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.world = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(45, 1, 0.02, 500);
