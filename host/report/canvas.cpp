@@ -43,8 +43,16 @@ struct Canvas::Page {
         cairo_surface_destroy(surface);
     }
     void check(cairo_status_t status) const {
-        if (status != CAIRO_STATUS_SUCCESS)
-            throw Error(ErrorKind::input, path.string() + ": " + cairo_status_to_string(status));
+        if (status == CAIRO_STATUS_SUCCESS) return;
+        const auto folder =
+            path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+        std::error_code error;
+        if (status == CAIRO_STATUS_WRITE_ERROR && !std::filesystem::is_directory(folder, error)) {
+            throw Error(ErrorKind::input, path.string() + " can't be written: there is no folder " +
+                                              folder.string() + "; make it first");
+        }
+        throw Error(ErrorKind::input,
+                    path.string() + " can't be written: " + cairo_status_to_string(status));
     }
     void choose(const Font& font) const {
         cairo_select_font_face(context, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,

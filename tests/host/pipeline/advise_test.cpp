@@ -24,8 +24,7 @@ class Advice : public ::testing::Test {
         std::vector<safety::Disturbance> fields;
         fields.push_back(walkers.disturbance());
         fields.push_back(safety::wind_field(*device, scene->around, scene->at_risk, {}));
-        fields.push_back(
-            safety::earthquake_field(*device, scene->around, scene->at_risk, mu, {}));
+        fields.push_back(safety::earthquake_field(*device, scene->around, scene->at_risk, mu, {}));
         risk.clear();
         for (const auto& field : fields) risk.push_back(safety::risk(field, scene->at_risk));
         return advise(*scene->around.cells, room.object_of_primitive, scene->objects,
