@@ -51,7 +51,8 @@ std::vector<Result> measure_fields(device::Device& device, const StageScene& sce
             }
             if (n == 1) result.counters = device.counters() - before;
             for (const auto& [stage, seconds] : timings) {
-                if (stage == std::string("field ") + field.name) result.samples_s.push_back(seconds);
+                if (stage == std::string("field ") + field.name)
+                    result.samples_s.push_back(seconds);
             }
         }
         result.work.bytes = static_cast<double>(result.counters.bytes_bound);
