@@ -94,7 +94,8 @@ class Pictures {
             if (!movable) {
                 out.push_back(faded(io::colour_of(-1), 0.8));
             } else if (by_risk) {
-                out.push_back(colour_along(unsafety_ramp, (found->unsafety - 1) / 9));
+                const double share = std::isfinite(found->unsafety) ? (found->unsafety - 1) / 9 : 0;
+                out.push_back(colour_along(unsafety_ramp, share));
             } else {
                 out.push_back(faded(io::colour_of(id), fade));
             }

@@ -18,7 +18,7 @@ namespace topple::report {
 
 // How much the page may hold; 400,000 voxels and 300,000 points take 11 MB.
 struct ViewLimits {
-    std::size_t voxels = 400'000, points = 300'000, arrows = 2'500, walk_cells = 40'000;
+    std::size_t voxels = 400'000, points = 300'000, arrows = 1'200, walk_cells = 40'000;
 };
 
 // Records of a voxel or point. cell: x, y, z in steps of PackedView::step_m from origin_m, then the

@@ -37,7 +37,9 @@ Merged merged(const Walks& walks, std::int64_t x0, std::int64_t y0, std::int64_t
     for (std::int64_t y = y0; y < std::min(y0 + merge, walks.ny); ++y) {
         for (std::int64_t x = x0; x < std::min(x0 + merge, walks.nx); ++x) {
             const auto at = static_cast<std::size_t>(y * walks.nx + x);
-            if (!(walks.visits[at] >= 0) || !std::isfinite(walks.floor_m[at])) continue;
+            if (!(walks.visits[at] >= 0) || !std::isfinite(walks.visits[at]) ||
+                !std::isfinite(walks.floor_m[at]))
+                continue;
             visits += double{walks.visits[at]};
             floor += double{walks.floor_m[at]};
             ++count;

@@ -15,12 +15,8 @@ function loadScene() {
   view.walks.shade = new Uint8Array(bytesOf(view.walks.shade));
   view.walks.floor_mm = new Int16Array(bytesOf(view.walks.floor_mm));
   scene.objectById = new Map(scene.objects.map(object => [object.id, object]));
-  scene.disturbances = [];
-  for (const object of scene.objects) {
-    for (const name of Object.keys(object.risk_J)) {
-      if (!scene.disturbances.includes(name)) scene.disturbances.push(name);
-    }
-  }
+  const reckoned = new Set(scene.objects.flatMap(object => Object.keys(object.risk_J)));
+  scene.disturbances = [...new Set([...disturbanceNames, ...reckoned])].filter(name => reckoned.has(name));
   return scene;
 }
 

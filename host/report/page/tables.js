@@ -18,7 +18,7 @@ function objectColumns(scene) {
     {name: 'How', text: true, value: howText, cell: object => [howText(object)]},
   ];
   for (const name of scene.disturbances) {
-    columns.push({name: capital(name) + ' (J)', value: object => object.risk_J[name], cell: object => riskCell(object, name)});
+    columns.push({name: capital(causeOf(name)) + ' (J)', value: object => object.risk_J[name], cell: object => riskCell(object, name)});
   }
   if (scene.objects.some(object => object.advice && object.advice.kind)) {
     columns.push({name: 'Advice', text: true, value: adviceText, cell: object => [adviceText(object)]});

@@ -169,6 +169,69 @@ TEST(ViewData, nothing_at_all) {
     EXPECT_TRUE(view.points.cell.empty());
 }
 
+constexpr std::array<Vec3, 3> quarter_turn{{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}};
+
+TEST(Walks, keep_their_place_floor_and_visits) {
+    const Walks walks{.corner_m = {1, 2, 0.5},
+                      .along_x_m = {0.1, 0, 0},
+                      .along_y_m = {0, 0.2, 0},
+                      .nx = 3,
+                      .ny = 2,
+                      .floor_m = {0, 0.01f, 0, 0, 0, -0.02f},
+                      .visits = {-1, 0, 0.25f, 1, -1, 0.01f},
+                      .paths = {{{1, 2, 0.5}, {1.2, 2.3, 0.5}}, {{1, 2, 0.5}}}};
+    const PackedWalks packed = pack_walks(walks, quarter_turn, 6);
+    EXPECT_EQ(packed.nx, 3);
+    EXPECT_EQ(packed.ny, 2);
+    EXPECT_EQ(packed.corner_m, (Vec3{2, -1, 0.5}));
+    EXPECT_EQ(packed.along_x_m, (Vec3{0, -0.1, 0}));
+    EXPECT_EQ(packed.along_y_m, (Vec3{0.2, 0, 0}));
+    EXPECT_EQ(packed.floor_mm, (std::vector<std::int16_t>{0, 10, 0, 0, 0, -20}));
+    // The busiest of so few is the middle one of the three that are not 0.
+    EXPECT_EQ(packed.most, 0.25);
+    EXPECT_EQ(packed.shade, (std::vector<std::uint8_t>{0, 1, 255, 255, 0, 52}));
+    ASSERT_EQ(packed.paths.size(), 1u) << "one place is no way";
+    EXPECT_EQ(packed.paths[0][1][0], 2.3f);
+    EXPECT_EQ(packed.paths[0][1][1], -1.2f);
+}
+
+// Cells of 0.1 m without floor and visits.
+Walks five_by_three() {
+    Walks walks;
+    walks.along_x_m = {0.1, 0, 0};
+    walks.along_y_m = {0, 0.1, 0};
+    walks.nx = 5;
+    walks.ny = 3;
+    return walks;
+}
+
+TEST(Walks, of_many_cells_are_merged) {
+    Walks walks = five_by_three();
+    walks.floor_m.assign(15, 0.25f);
+    walks.visits = {1, 3, -1, -1, 0,  //
+                    2, 2, -1, -1, 0,  //
+                    8, 8, 0,  0,  -1};
+    const PackedWalks packed = pack_walks(walks, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, 6);
+    EXPECT_EQ(packed.nx, 3);
+    EXPECT_EQ(packed.ny, 2);
+    EXPECT_EQ(packed.along_x_m, (Vec3{0.2, 0, 0}));
+    EXPECT_EQ(packed.most, 2) << "8 is above 99 of 100 of the two";
+    EXPECT_EQ(packed.shade, (std::vector<std::uint8_t>{255, 0, 1, 255, 1, 0}));
+    EXPECT_EQ(packed.floor_mm[0], 250);
+}
+
+TEST(Walks, that_do_not_fit_together_are_left_out) {
+    Walks walks = five_by_three();
+    const std::array<Vec3, 3> as_is{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    EXPECT_EQ(pack_walks(walks, as_is, 100).nx, 0) << "no floor, no visits";
+    walks.floor_m.assign(15, 0);
+    walks.visits.assign(15, std::numeric_limits<float>::infinity());
+    const PackedWalks packed = pack_walks(walks, as_is, 100);
+    EXPECT_EQ(packed.shade, std::vector<std::uint8_t>(15, 0));
+    walks.nx = walks.ny = std::int64_t{1} << 40;
+    EXPECT_EQ(pack_walks(walks, as_is, 100).nx, 0);
+}
+
 // Light and the look through walls go by normals: those of the points, for the ground spread to
 // voxels that have none.
 TEST(ViewData, voxels_know_which_side_was_seen) {
