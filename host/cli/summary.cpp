@@ -43,8 +43,14 @@ void print_objects(const Scene& scene) {
     if (movable.size() > rows_shown)
         std::printf("   ... and %zu more in scene.json\n", movable.size() - rows_shown);
     if (!movable.empty()) std::printf("\n");
-    for (std::size_t i = 0; i < std::min(sentences_shown, movable.size()); ++i)
-        std::printf("Object %d: %s\n", movable[i]->id, movable[i]->why.sentence.c_str());
+    // What is only to be looked at, since the scan hardly shows what holds it, comes last.
+    std::stable_partition(movable.begin(), movable.end(),
+                          [](const Object* o) { return o->advice.kind != "check"; });
+    for (std::size_t i = 0; i < std::min(sentences_shown, movable.size()); ++i) {
+        const Object& o = *movable[i];
+        std::printf("Object %d: %s%s%s\n", o.id, o.why.sentence.c_str(),
+                    o.advice.sentence.empty() ? "" : " ", o.advice.sentence.c_str());
+    }
 }
 
 }  // namespace

@@ -53,11 +53,13 @@ double largest_risk(const Object& object) {
     return most;
 }
 
-// What can fall, the largest risk first, as far as it is labelled.
+// What can fall, the largest risk first, as far as it is labelled; without what is only to be
+// looked at, since the scan hardly shows what holds it.
 std::vector<const Object*> riskiest(const Scene& scene) {
     std::vector<const Object*> out;
     for (const Object& object : scene.objects) {
-        if (!object.grounded && largest_risk(object) > 0) out.push_back(&object);
+        if (!object.grounded && largest_risk(object) > 0 && object.advice.kind != "check")
+            out.push_back(&object);
     }
     std::ranges::stable_sort(
         out, [](const Object* a, const Object* b) { return largest_risk(*a) > largest_risk(*b); });

@@ -3,12 +3,21 @@
 
 // The first panel: what is at risk, from what, what happens then, and what to do about it.
 
-const listedObjects = 8, listedOnPhones = 3;
+const listedObjects = 8, listedDoubts = 4, listedOnPhones = 3;
+
+// It stands, and yet its barrier can't be told from 0: its risk says more about the scan than about it.
+function isDoubtful(object) {
+  return !!object.advice && object.advice.kind === 'check';
+}
+
+function byRisk(scene, wanted) {
+  return scene.objects.filter(object => !object.grounded && largestRisk(object) > 0 && wanted(object))
+    .sort((a, b) => largestRisk(b) - largestRisk(a) || a.id - b.id);
+}
 
 // What can fall, the largest risk first.
 function riskiest(scene) {
-  return scene.objects.filter(object => !object.grounded && largestRisk(object) > 0)
-    .sort((a, b) => largestRisk(b) - largestRisk(a) || a.id - b.id).slice(0, listedObjects);
+  return byRisk(scene, object => !isDoubtful(object)).slice(0, listedObjects);
 }
 
 // Which disturbances the run left out, and which of them found nothing to act on.
@@ -42,15 +51,27 @@ function riskItem(scene, object, choose) {
 }
 
 function fillRisk(panel, scene, choose) {
-  const worst = riskiest(scene), movable = scene.objects.filter(object => !object.grounded).length;
+  const worst = riskiest(scene), doubtful = byRisk(scene, isDoubtful);
+  const movable = scene.objects.filter(object => !object.grounded).length;
   panel.append(element('h2', {text: 'What is at risk, and what to do'}));
   const missing = missingText(scene);
   if (missing) panel.append(element('p', {className: 'warning', text: missing}));
   if (!worst.length) {
     panel.append(element('p', {className: 'hint', text: !movable ? 'No object was found that could fall.'
-      : 'Nothing of what was reckoned with puts an object at risk.'}));
-    return;
+      : `Nothing of what was reckoned with puts ${doubtful.length ? 'any other' : 'an'} object at risk.`}));
+  } else {
+    fillRiskiest(panel, scene, worst, movable, choose);
   }
+  if (!doubtful.length) return;
+  panel.append(element('h3', {text: 'To be looked at'}));
+  panel.append(element('p', {className: 'hint', text:
+    `${plural(doubtful.length, 'more object')} would fall at the slightest push as scanned, and yet stood there: the scan hardly ` +
+    `shows what holds them, or they stand on edge.${doubtful.length > listedDoubts ? ` The ${listedDoubts} of the largest risk:` : ''}`}));
+  panel.append(element('div', {className: 'items'},
+    doubtful.slice(0, listedDoubts).map(object => riskItem(scene, object, choose))));
+}
+
+function fillRiskiest(panel, scene, worst, movable, choose) {
   panel.append(element('p', {className: 'hint', text:
     `The ${worst.length} riskiest of ${plural(movable, 'object')} that can fall: the chance that one event upsets it, times the ` +
     'energy that it then sets free. An event is one person walking through the room, one gale or one earthquake. ' +
