@@ -55,7 +55,8 @@ struct HumanOptions {
     double largest_hole_m = 0.30;  // holes in the scanned floor up to this width are bridged
     double body_mass_kg = 70;
     double walking_speed_m_s = 1.3;
-    double wander_m = 0.20;  // how far walkers stray sideways from their path, at most
+    double wander_m = 0.20;    // how far walkers stray sideways from their path, at most
+    double restitution = 0.5;  // of a body's part that strikes a thing
     // How the bodies of walkers move; none: as in the table of body_parts.h.
     std::shared_ptr<const BodyMotion> motion;
 };
@@ -114,8 +115,9 @@ inline constexpr std::size_t max_work_samples = 64;  // per object and human fie
 
 // People who walk between random places (5.1.2): 500 shortest paths give the primary motion, a
 // table of body parts (body_parts.h) the secondary; their convolution (kernels disturbance_reach,
-// disturbance) the passes of each part through each cell per walk, and W = m v^2 / 2 of the part.
-// One event is one walk. Nothing walkable, no object: an empty field, and a note that says why.
+// disturbance) the passes of each part through each cell per walk. W is what a thing of mass M
+// takes over of m v^2 / 2 of the part (5.2): (1 + e)^2 m M / (m + M)^2 of it. One event is one
+// walk. Nothing walkable, no object: an empty field, and a note that says why.
 Disturbance human_field(device::Device& device, const Surroundings& surroundings,
                         std::span<const RiskObject> objects, const HumanOptions& options);
 // A gale of one speed, from one direction or from each of 16, alike in all of the space (5.1.1).

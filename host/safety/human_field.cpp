@@ -24,6 +24,20 @@ void check(const HumanOptions& options) {
     check_option("body_mass_kg", options.body_mass_kg, 0);
     check_option("walking_speed_m_s", options.walking_speed_m_s, 0);
     check_option("wander_m", options.wander_m, 0);
+    check_option("restitution", options.restitution, 0);
+}
+
+// Of the energies of what strikes, what a free thing of mass M takes over: by conservation of
+// momentum, (1 + e)^2 m M / (m + M)^2 of m v^2 / 2, e the restitution. A hand hardly moves a
+// wardrobe, a hip does.
+std::vector<double> taken_over(const SecondaryMotion& motion, double thing_kg, double restitution) {
+    std::vector<double> out;
+    for (std::size_t n = 0; n < motion.energy_J.size(); ++n) {
+        const double m = motion.mass_kg[n], both = m + thing_kg;
+        const double share = both > 0 ? m * thing_kg * std::pow((1 + restitution) / both, 2) : 0;
+        out.push_back(motion.energy_J[n] * share);
+    }
+    return out;
 }
 
 // Floors at different heights are fields of their own: parts are at heights above the walker's
@@ -194,7 +208,8 @@ Disturbance HumanField::disturbance() {
         p.convolution->add_level(level.floor_m, level.component, strikes, out.exposure, arrows);
     out.strongest.resize(p.objects.size());
     for (std::size_t o = 0; o < p.objects.size(); ++o) {
-        out.work[o] = strongest_strikes(strikes[o], p.secondary.energy_J);
+        out.work[o] = strongest_strikes(
+            strikes[o], taken_over(p.secondary, p.objects[o].mass_kg, p.options.restitution));
         for (const WorkSample& strike : out.work[o]) {
             const double force = strike.W_J / stopping_way_m;
             if (force > out.strongest[o].force_N) out.strongest[o] = {force, p.objects[o].height_m};
@@ -212,8 +227,11 @@ std::vector<std::vector<WorkSample>> HumanField::work_at(std::span<const Placeme
     std::vector<Strikes> strikes(placements.size(), no_strikes(p.secondary));
     for (const Level& level : p.levels)
         p.convolution->add_placements(level.floor_m, level.component, cells, placements, strikes);
-    for (std::size_t n = 0; n < out.size(); ++n)
-        out[n] = strongest_strikes(strikes[n], p.secondary.energy_J);
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        const double mass = p.objects[placements[n].object].mass_kg;
+        out[n] =
+            strongest_strikes(strikes[n], taken_over(p.secondary, mass, p.options.restitution));
+    }
     return out;
 }
 

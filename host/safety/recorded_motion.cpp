@@ -367,7 +367,7 @@ SecondaryMotion recorded_motion(const BodyMotion& motion, const HumanOptions& op
                             " % is faster than 15 m/s and was left out as noise.");
     }
     const double range = std::log(most / least_energy_J);
-    std::vector<double> weight(levels, 0.0), sum(levels, 0.0);
+    std::vector<double> weight(levels, 0.0), energies(levels, 0.0), masses(levels, 0.0);
     std::map<std::pair<unsigned, unsigned>, LayerSums> layers;  // by level and group of bands
     each([&](const Visit& v, double speed) {
         const double W = energy(v);
@@ -378,7 +378,8 @@ SecondaryMotion recorded_motion(const BodyMotion& motion, const HumanOptions& op
         const double passes =
             speed / options.walking_speed_m_s / static_cast<double>(body.frames) / group_bands / 2;
         weight[level] += passes;
-        sum[level] += passes * W;
+        energies[level] += passes * W;
+        masses[level] += passes * v.mass_kg;
         LayerSums& layer = layers[{level, static_cast<unsigned>(v.band) / group_bands}];
         layer.passes += passes;
         layer.speed += passes * speed;
@@ -391,7 +392,8 @@ SecondaryMotion recorded_motion(const BodyMotion& motion, const HumanOptions& op
     for (unsigned n = 0; n < levels; ++n) {
         if (weight[n] <= 0) continue;
         kept[n] = out.energy_J.size();
-        out.energy_J.push_back(sum[n] / weight[n]);
+        out.energy_J.push_back(energies[n] / weight[n]);
+        out.mass_kg.push_back(masses[n] / weight[n]);
     }
     for (auto& [key, sums] : layers) {
         MotionLayer layer;

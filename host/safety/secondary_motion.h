@@ -36,7 +36,8 @@ struct MotionLayer {
 // The distribution of velocities by height and offset around the walking body: p(W, direction) is
 // its convolution with the primary motion.
 struct SecondaryMotion {
-    std::vector<double> energy_J;  // W = m v^2 / 2 of each level (paper, 5.2)
+    std::vector<double> energy_J;  // m v^2 / 2 of each level (paper, 5.2)
+    std::vector<double> mass_kg;   // m of each level
     std::vector<MotionLayer> layers;
     double reach_m = 0;  // beyond it, in any direction, no layer has passes
     std::vector<std::string> notes;

@@ -43,7 +43,8 @@ SecondaryMotion table_motion(const HumanOptions& options) {
         layer.ways.push_back({0, [&part, options](double ahead, double aside, double spacing) {
                                   return part_weight(part, options, ahead, aside, spacing);
                               }});
-        out.energy_J.push_back(0.5 * part.mass * options.body_mass_kg * speed * speed);
+        out.mass_kg.push_back(part.mass * options.body_mass_kg);
+        out.energy_J.push_back(0.5 * out.mass_kg.back() * speed * speed);
         out.layers.push_back(std::move(layer));
         out.reach_m = std::max(out.reach_m,
                                std::hypot(part.reach * options.body_height_m + options.wander_m,

@@ -222,7 +222,7 @@ TEST_F(SlowRisk, FallsWithTheWidthOfAHiddenBase) {
     for (int n = 0; n < variants; ++n) {
         Random random(static_cast<std::uint64_t>(800 + n));
         seed = static_cast<std::uint64_t>(n + 1);
-        const double high = whole(random.uniform(0.5, 0.8)), density = random.uniform(350, 700);
+        const double high = whole(random.uniform(0.5, 0.8)), density = random.uniform(100, 300);
         std::vector<safety::Risk> series;
         for (const double width : {0.4, 0.3, 0.2, 0.1}) {
             Room room(voxel_m);
