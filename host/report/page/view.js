@@ -8,8 +8,8 @@ class View {
   constructor(container, scene) {
     this.container = container;
     this.scene = scene;
-    // Where a pixel is half a CSS pixel, its steps are too small to be smoothed, which takes long in software.
-    this.renderer = new THREE.WebGLRenderer({antialias: (window.devicePixelRatio || 1) < 2, alpha: true});
+    // Smooth edges take long in software, and where a pixel is half a CSS pixel they are smooth enough.
+    this.renderer = new THREE.WebGLRenderer({antialias: (window.devicePixelRatio || 1) < 2 && !drawsInSoftware(), alpha: true});
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.world = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(45, 1, 0.02, 500);
@@ -330,6 +330,16 @@ class View {
     }
     return count;
   }
+}
+
+// Whether this browser draws without a GPU.
+function drawsInSoftware() {
+  const gl = document.createElement('canvas').getContext('webgl');
+  const info = gl && gl.getExtension('WEBGL_debug_renderer_info');
+  const name = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : '';
+  const lose = gl && gl.getExtension('WEBGL_lose_context');
+  if (lose) lose.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
 }
 
 // The corners of a unit cube's face, anticlockwise seen from outside.
