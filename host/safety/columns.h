@@ -19,6 +19,7 @@ class Columns {
     std::int32_t i0 = 0, j0 = 0;
     std::int64_t ni = 0, nj = 0;
 
+    double voxel_m() const { return cells_.voxel_m; }
     // Which of the cells (i, j, k) to (i, j, k + 63) are solid, the lowest in bit 0. Any indices
     // may be asked for.
     std::uint64_t solid(std::int64_t i, std::int64_t j, std::int64_t k) const;

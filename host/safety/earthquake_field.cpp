@@ -7,6 +7,7 @@
 #include "core/random.h"
 #include "device/native/thread_pool.h"
 #include "physics/landscape.h"
+#include "safety/columns.h"
 #include "safety/fields.h"
 #include "safety/objects.h"
 
@@ -59,15 +60,21 @@ double rocking_work(double mass_kg, const Profile& body, double acceleration, do
 struct Shaken {
     double energy_J = 0;
     bool overturns = false;
-    double way_m = 0;  // slid
+    Sliding slid{};
+    // How far the support goes on, at least, that way and the other.
+    double support_ahead_m = 0, support_behind_m = 0;
 };
 
 // What the ideal body needs to fall and what the landscape says differ by the voxels; and a motion
 // may hold more energy than the weakest way takes, and yet not go that way.
 double work_of(const RiskObject& object, const Shaken& shaken) {
     if (object.barrier_J <= 0) return shaken.energy_J;
+    const auto beyond = [&](double way_m, double support_m) {
+        return way_m > 0 && way_m >= std::max(object.slide_distance_m, support_m);
+    };
     const bool slides_off =
-        object.slide_distance_m >= 0 && shaken.way_m > 0 && shaken.way_m >= object.slide_distance_m;
+        object.slide_distance_m >= 0 && (beyond(shaken.slid.ahead_m, shaken.support_ahead_m) ||
+                                         beyond(shaken.slid.behind_m, shaken.support_behind_m));
     return shaken.overturns || slides_off
                ? std::max(shaken.energy_J, object.barrier_J)
                : std::min(shaken.energy_J, std::nextafter(object.barrier_J, 0.0));
@@ -76,28 +83,28 @@ double work_of(const RiskObject& object, const Shaken& shaken) {
 Shaken shaken_by_pulse(double mass_kg, const Profile& body, double acceleration, double friction,
                        double duration_s) {
     if (!(mass_kg > 0) || !(body.height_m > 0)) return {};
-    if (body.ahead_m <= 0) return {0, true, 0};  // nothing holds it that way: any push tips it
+    if (body.ahead_m <= 0) return {0, true};  // nothing holds it that way: any push tips it
     if (body.rocks_ahead(friction)) {
         const double work = rocking_work(mass_kg, body, acceleration, duration_s);
-        return {work, work >= tipping_energy(mass_kg, body.height_m, body.ahead_m), 0};
+        return {work, work >= tipping_energy(mass_kg, body.height_m, body.ahead_m)};
     }
     // It lags behind, then comes to rest by friction.
     const double force = friction * mass_kg * gravity;
     const double excess = acceleration - friction * gravity;
     if (excess <= 0) return {};
     const double work = 0.5 * mass_kg * excess * acceleration * duration_s * duration_s;
-    return {work, false, work / force};
+    return {work, false, {work / force, 0}, body.support_ahead_m};
 }
 
 Shaken shaken_by_record(double mass_kg, const Profile& body, const Accelerogram& record,
                         double friction) {
     if (!(mass_kg > 0) || !(body.height_m > 0)) return {};
-    if (body.ahead_m <= 0 || body.behind_m <= 0) return {0, true, 0};
+    if (body.ahead_m <= 0 || body.behind_m <= 0) return {0, true};
     const Rocking rocking = rock(body, record, friction);
     const Sliding sliding = slide(body, record, friction);
     const double way = std::max(sliding.ahead_m, sliding.behind_m);
     return {mass_kg * std::max(rocking.energy_J_kg, friction * gravity * way), rocking.overturns,
-            way};
+            sliding, body.support_ahead_m, body.support_behind_m};
 }
 
 }  // namespace
@@ -142,13 +149,14 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
     }
     const physics::SolidCells& solid = *surroundings.cells;
 
+    const Columns columns(solid);
     std::vector<Stance> stances(objects.size());
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (cells[o].empty() || objects[o].grounded) return;
         stances[o] = stance(surroundings, cells[o]);
         std::vector<std::pair<Shaken, Vec3>> shaken;
         for (const Event& event : events) {
-            const Profile body = profile(objects[o], stances[o], event.dx, event.dy);
+            const Profile body = profile(objects[o], stances[o], columns, event.dx, event.dy);
             const double mass = objects[o].mass_kg;
             shaken.emplace_back(options.record
                                     ? shaken_by_record(mass, body, *options.record, friction)

@@ -143,7 +143,7 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
 //   - sliding by s relative to the support: W = mu m g s; of a pulse, s = (a - mu g) a t^2 / (2 mu
 //   g).
 // So that risk counts what falls, W is at least the barrier if the object overturns, or slides as
-// far as the end of its support, and else stays below it.
+// far as the end of its support that way (slide_distance_m at least), and else stays below it.
 Disturbance earthquake_field(device::Device& device, const Surroundings& surroundings,
                              std::span<const RiskObject> objects, double friction,
                              const EarthquakeOptions& options);

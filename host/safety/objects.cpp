@@ -8,6 +8,7 @@
 
 #include "core/random.h"
 #include "physics/landscape.h"
+#include "safety/columns.h"
 #include "topple/error.h"
 
 namespace topple::safety {
@@ -120,9 +121,30 @@ double half_base(const RiskObject& object, const Stance& stance, double dx, doub
     return std::isfinite(reach) ? std::max(0.0, reach) : 0.0;
 }
 
-Profile profile(const RiskObject& object, const Stance& stance, double dx, double dy) {
-    return {half_base(object, stance, dx, dy), half_base(object, stance, -dx, -dy), stance.height(),
-            std::sqrt(stance.gyration_m2(dx, dy))};
+double support_reach(const Stance& stance, const Columns& columns, double dx, double dy) {
+    constexpr double furthest_m = 3;
+    const double voxel = columns.voxel_m();
+    // The two layers below its lowest voxels: contacts may have a gap of one.
+    const auto below = static_cast<std::int64_t>(std::lround(stance.bottom_m / voxel)) - 2;
+    double way = 0;
+    for (; way < furthest_m; way += voxel / 2) {
+        const double x = stance.center[0] + way * dx, y = stance.center[1] + way * dy;
+        const std::uint64_t solid =
+            columns.solid(static_cast<std::int64_t>(std::floor(x / voxel)),
+                          static_cast<std::int64_t>(std::floor(y / voxel)), below);
+        if ((solid & 3) == 0) return way;
+    }
+    return INFINITY;
+}
+
+Profile profile(const RiskObject& object, const Stance& stance, const Columns& columns, double dx,
+                double dy) {
+    return {half_base(object, stance, dx, dy),
+            half_base(object, stance, -dx, -dy),
+            stance.height(),
+            std::sqrt(stance.gyration_m2(dx, dy)),
+            support_reach(stance, columns, dx, dy),
+            support_reach(stance, columns, -dx, -dy)};
 }
 
 double tipping_energy(double mass_kg, double height_m, double half_base_m) {

@@ -43,8 +43,14 @@ Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> o
 // ends that way, 0 where it has ended already. From the support polygon, or half of base_width_m.
 double half_base(const RiskObject& object, const Stance& stance, double dx, double dy);
 
+// How far the support goes on along (dx, dy) below the object's centre of mass; 0 where there is
+// none to begin with, as below what stands on legs; infinite beyond 3 m.
+class Columns;
+double support_reach(const Stance& stance, const Columns& columns, double dx, double dy);
+
 // The object seen from the side, `ahead` being (dx, dy).
-Profile profile(const RiskObject& object, const Stance& stance, double dx, double dy);
+Profile profile(const RiskObject& object, const Stance& stance, const Columns& columns, double dx,
+                double dy);
 
 // Energy that lifts the centre of mass over the base's edge: m g (sqrt(h^2 + b^2) - h).
 double tipping_energy(double mass_kg, double height_m, double half_base_m);

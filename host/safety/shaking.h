@@ -12,6 +12,8 @@ namespace topple::safety {
 // its radius of gyration about the centre. Metres.
 struct Profile {
     double ahead_m = 0, behind_m = 0, height_m = 0, gyration_m = 0;
+    // How far the support goes on under the centre each way, at least.
+    double support_ahead_m = 0, support_behind_m = 0;
     // A side over which it can rock: it does so before friction lets it slide.
     bool rocks_ahead(double friction) const { return ahead_m < friction * height_m; }
     bool rocks_behind(double friction) const { return behind_m < friction * height_m; }

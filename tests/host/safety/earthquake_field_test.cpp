@@ -6,6 +6,7 @@
 #include "device/devices.h"
 #include "physics/landscape.h"
 #include "room.h"
+#include "safety/columns.h"
 #include "safety/fields.h"
 #include "safety/objects.h"
 #include "topple/error.h"
@@ -76,13 +77,19 @@ TEST(Earthquake, SlidingWorkMatchesIntegration) {
 TEST(Earthquake, WorkReachesTheBarrierExactlyWhereItFalls) {
     RiskObject object = block(2);
     object.barrier_J = 0.01;
-    const Profile squat = rectangle(1, 0.1), tall = rectangle(0.05, 0.5);
+    const Profile tall = rectangle(0.05, 0.5);
+    Profile squat = rectangle(1, 0.1);
     EXPECT_LT(pulse_work(object, squat, 8, mu, 0.25), 0.01) << "slides on a floor without an edge";
     const double way = pulse_work(block(2), squat, 8, mu, 0.25) / (mu * 2 * gravity);
     object.slide_distance_m = 0.99 * way;
     EXPECT_GE(pulse_work(object, squat, 8, mu, 0.25), 0.01);
     object.slide_distance_m = 1.01 * way;
     EXPECT_LT(pulse_work(object, squat, 8, mu, 0.25), 0.01);
+    object.slide_distance_m = 0.1 * way;
+    squat.support_ahead_m = 1.01 * way;
+    EXPECT_LT(pulse_work(object, squat, 8, mu, 0.25), 0.01) << "the near edge is another";
+    squat.support_ahead_m = 0.99 * way;
+    EXPECT_GE(pulse_work(object, squat, 8, mu, 0.25), 0.01);
     object.slide_distance_m = -1;
     EXPECT_LT(pulse_work(object, tall, 1.2, mu, 0.25), 0.01) << "rocks";
     object.barrier_J = 1e9;
@@ -173,6 +180,23 @@ TEST_F(EarthquakeField, SupportPolygonGivesTheBaseEachWay) {
                 1e-12);
     stands.center = {-0.1, 0.1, 0};  // hangs over
     EXPECT_EQ(half_base(object, stands, -1, 0), 0);
+}
+
+// A box on a table, nearer to one end.
+TEST_F(EarthquakeField, SupportGoesOnUntilTheTableEnds) {
+    test::Room room(0.02);
+    room.floor(0, 3, 0, 3);
+    room.box(1, 2, 1, 2, 0.68, 0.7);
+    const auto id = static_cast<std::size_t>(room.thing(1.14, 1.5, 0.7));
+    const auto surroundings = room.surroundings();
+    const auto cells =
+        cells_of_objects(movable_object_of_cells(surroundings, room.objects), room.objects.size());
+    const Stance stands = stance(surroundings, cells[id]);
+    const Columns columns(*surroundings.cells);
+    EXPECT_NEAR(support_reach(stands, columns, -1, 0), 0.14, 0.011);
+    EXPECT_NEAR(support_reach(stands, columns, 1, 0), 0.86, 0.011);
+    EXPECT_NEAR(support_reach(stands, columns, 0, 1), 0.5, 0.011);
+    EXPECT_NEAR(support_reach(stands, columns, -0.6, 0.8), 0.14 / 0.6, 0.02);
 }
 
 TEST_F(EarthquakeField, NothingToShake) {

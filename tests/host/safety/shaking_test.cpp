@@ -21,9 +21,9 @@ namespace topple::safety {
 namespace {
 
 using physics::gravity;
-constexpr double mu = 0.3;
+constexpr double slip = 0.3;
 
-Profile rectangle(double b, double h) {
+Profile upright(double b, double h) {
     return {b, b, h, std::sqrt((b * b + h * h) / 3)};
 }
 
@@ -68,14 +68,14 @@ Accelerogram scaled(Accelerogram record, double by) {
 
 TEST(Rocking, StartsWhereWestSaysAndOnlyBelowTheFrictionAngle) {
     const double b = 0.05, h = 0.25, west = gravity * b / h;
-    EXPECT_EQ(rock(rectangle(b, h), pulse(0.98 * west, 0.5), mu).energy_J_kg, 0);
-    EXPECT_GT(rock(rectangle(b, h), pulse(1.02 * west, 0.5), mu).energy_J_kg, 0);
-    EXPECT_EQ(rock(rectangle(b, h), pulse(-0.98 * west, 0.5), mu).energy_J_kg, 0);
-    EXPECT_GT(rock(rectangle(b, h), pulse(-1.02 * west, 0.5), mu).energy_J_kg, 0);
-    EXPECT_EQ(slide(rectangle(b, h), pulse(9, 0.5), mu).ahead_m, 0) << "it rocks";
-    EXPECT_EQ(rock(rectangle(0.31 * h, h), pulse(9, 0.5), mu).energy_J_kg, 0) << "it slides";
-    EXPECT_GT(slide(rectangle(0.31 * h, h), pulse(1.02 * mu * gravity, 0.5), mu).ahead_m, 0);
-    EXPECT_EQ(slide(rectangle(0.31 * h, h), pulse(0.98 * mu * gravity, 0.5), mu).ahead_m, 0);
+    EXPECT_EQ(rock(upright(b, h), pulse(0.98 * west, 0.5), slip).energy_J_kg, 0);
+    EXPECT_GT(rock(upright(b, h), pulse(1.02 * west, 0.5), slip).energy_J_kg, 0);
+    EXPECT_EQ(rock(upright(b, h), pulse(-0.98 * west, 0.5), slip).energy_J_kg, 0);
+    EXPECT_GT(rock(upright(b, h), pulse(-1.02 * west, 0.5), slip).energy_J_kg, 0);
+    EXPECT_EQ(slide(upright(b, h), pulse(9, 0.5), slip).ahead_m, 0) << "it rocks";
+    EXPECT_EQ(rock(upright(0.31 * h, h), pulse(9, 0.5), slip).energy_J_kg, 0) << "it slides";
+    EXPECT_GT(slide(upright(0.31 * h, h), pulse(1.02 * slip * gravity, 0.5), slip).ahead_m, 0);
+    EXPECT_EQ(slide(upright(0.31 * h, h), pulse(0.98 * slip * gravity, 0.5), slip).ahead_m, 0);
 }
 
 // p t = ln(eta / (eta - 1)) of slender blocks (Housner 1963), either way.
@@ -89,7 +89,7 @@ TEST(Rocking, OverturnsAtHousnersPulse) {
             for (int n = 0; n < 30; ++n) {
                 const double t = (low + high) / 2;
                 const Accelerogram record = pulse(way * eta * gravity * b / h, t);
-                (rock(rectangle(b, h), record, mu).overturns ? high : low) = t;
+                (rock(upright(b, h), record, slip).overturns ? high : low) = t;
             }
             const double expected = std::log(eta / (eta - 1));
             worst = std::max(worst, std::fabs(p * high / expected - 1));
@@ -105,12 +105,12 @@ TEST(Rocking, KeepsTheAngularMomentumAboutTheOtherEdge) {
     const double h = 0.5, ahead = 0.12, k2 = (ahead * ahead + h * h) / 3;
     const Accelerogram once = pulse(1.5 * gravity * ahead / h, 0.15, 4000);
     const auto body = [&](double behind) { return Profile{ahead, behind, h, std::sqrt(k2)}; };
-    const double energy = rock(body(ahead), once, mu).energy_J_kg;
-    EXPECT_FALSE(rock(body(ahead), once, mu).overturns);
+    const double energy = rock(body(ahead), once, slip).energy_J_kg;
+    EXPECT_FALSE(rock(body(ahead), once, slip).overturns);
     double low = 1e-3, high = ahead;
     for (int n = 0; n < 40; ++n) {
         const double behind = (low + high) / 2;
-        (rock(body(behind), once, mu).overturns ? low : high) = behind;
+        (rock(body(behind), once, slip).overturns ? low : high) = behind;
     }
     const auto inertia = [&](double b) { return k2 + h * h + b * b; };
     const double kept = (k2 + h * h - ahead * high) / inertia(high);
@@ -130,10 +130,10 @@ TEST(Rocking, ConvergesWithItsSteps) {
     std::vector<double> off;
     for (int n = 0; n < all; ++n) {
         const double h = random.uniform(0.05, 0.8), alpha = random.uniform(0.05, 0.28);
-        const Profile body = rectangle(h * alpha, h);
+        const Profile body = upright(h * alpha, h);
         const Accelerogram record = scaled(shaking(static_cast<std::uint64_t>(n)),
                                            gravity * alpha * random.uniform(0.9, 2.5));
-        const Rocking plain = rock(body, record, mu), fine = rock(body, record, mu, 0.002);
+        const Rocking plain = rock(body, record, slip), fine = rock(body, record, slip, 0.002);
         falls += fine.overturns;
         alike += plain.overturns == fine.overturns;
         if (!plain.overturns && !fine.overturns && fine.energy_J_kg > 0)
@@ -154,9 +154,9 @@ TEST(SlidingOnShaking, MatchesNewmark) {
     // s = (a - mu g) a t^2 / (2 mu g)
     double worst = 0;
     for (const double a : {3.1, 4.0, 6.0, 12.0}) {
-        const double t = 0.3, s = (a - mu * gravity) * a * t * t / (2 * mu * gravity);
-        const Sliding ahead = slide(rectangle(1, 0.2), pulse(a, t), mu);
-        const Sliding behind = slide(rectangle(1, 0.2), pulse(-a, t), mu);
+        const double t = 0.3, s = (a - slip * gravity) * a * t * t / (2 * slip * gravity);
+        const Sliding ahead = slide(upright(1, 0.2), pulse(a, t), slip);
+        const Sliding behind = slide(upright(1, 0.2), pulse(-a, t), slip);
         worst = std::max(worst, std::fabs(ahead.ahead_m / s - 1));
         EXPECT_EQ(ahead.ahead_m, behind.behind_m);
         EXPECT_EQ(ahead.behind_m, 0);
@@ -176,16 +176,16 @@ TEST(SlidingOnShaking, MatchesIntegration) {
             for (int part = 0; part < parts; ++part) {
                 const double a =
                     record.m_s2[n] + (record.m_s2[n + 1] - record.m_s2[n]) * (part + 0.5) / parts;
-                if (speed == 0 && std::fabs(a) <= mu * gravity) continue;
+                if (speed == 0 && std::fabs(a) <= slip * gravity) continue;
                 const double way = speed != 0 ? std::copysign(1.0, speed) : std::copysign(1.0, a);
-                const double next = speed + (a - way * mu * gravity) * dt;
+                const double next = speed + (a - way * slip * gravity) * dt;
                 speed = next * way <= 0 ? 0 : next;
                 place += speed * dt;
                 most = std::max(most, place);
                 least = std::min(least, place);
             }
         }
-        const Sliding exact = slide(rectangle(1, 0.1), record, mu);
+        const Sliding exact = slide(upright(1, 0.1), record, slip);
         EXPECT_NEAR(exact.ahead_m, most, 2e-3 * (most - least)) << seed;
         EXPECT_NEAR(exact.behind_m, -least, 2e-3 * (most - least)) << seed;
         EXPECT_GT(most - least, 0.01);
@@ -204,7 +204,7 @@ TEST(EarthquakeRecord, SixteenDirectionsOfTheSameRecord) {
     EarthquakeOptions options;
     options.record = pulse(0.25 * gravity, 0.6);
     const auto surroundings = room.surroundings();
-    const Disturbance field = earthquake_field(*device, surroundings, room.objects, mu, options);
+    const Disturbance field = earthquake_field(*device, surroundings, room.objects, slip, options);
     EXPECT_EQ(field.draws, 16u);
     ASSERT_EQ(field.work[id].size(), 16u);
     EXPECT_NEAR(test::total_probability(field.work[id]), 1, 1e-12);
@@ -212,7 +212,7 @@ TEST(EarthquakeRecord, SixteenDirectionsOfTheSameRecord) {
     EXPECT_GE(field.work[id][8].W_J, plate.barrier_J) << "across, the other way";
     EXPECT_LT(field.work[id][4].W_J, plate.barrier_J) << "along";
     options.seed = 7;
-    const Disturbance again = earthquake_field(*device, surroundings, room.objects, mu, options);
+    const Disturbance again = earthquake_field(*device, surroundings, room.objects, slip, options);
     for (unsigned d = 0; d < direction_count; ++d) {
         EXPECT_EQ(again.work[id][d].W_J, field.work[id][d].W_J);
         EXPECT_NEAR(field.work[id][d].direction[0], direction(d)[0], 1e-12);
@@ -243,7 +243,7 @@ TEST(EarthquakeRecord, ARoomfulIsFast) {
     options.record = record;
     const auto surroundings = room.surroundings();
     const auto start = std::chrono::steady_clock::now();
-    const Disturbance field = earthquake_field(*device, surroundings, room.objects, mu, options);
+    const Disturbance field = earthquake_field(*device, surroundings, room.objects, slip, options);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     std::printf("200 objects, 16 directions, %.0f s of shaking: %.3f s\n", record.duration_s(),
