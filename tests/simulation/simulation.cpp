@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -13,7 +14,7 @@
 namespace topple::simulation {
 namespace {
 
-constexpr double step_s = 1.0 / 240, margin_m = 1e-3;
+constexpr double step_s = 1.0 / 240, margin_m = 1e-3, gravity = 9.80665;
 
 btVector3 center_of(const Cell& cell, double voxel) {
     return {(cell[0] + 0.5) * voxel, (cell[1] + 0.5) * voxel, (cell[2] + 0.5) * voxel};
@@ -229,7 +230,7 @@ Simulation::Simulation(const LooseBody& body, std::span<const Cell> fixed, doubl
         w.fixed_shape.addChildShape(at, box.get());
         w.shapes.push_back(std::move(box));
     }
-    w.dynamics.setGravity({0, 0, -9.80665});
+    w.dynamics.setGravity({0, 0, -gravity});
     // What overlaps by a part of a voxel is moved apart without being given speed.
     w.dynamics.getSolverInfo().m_splitImpulse = 1;
     w.dynamics.getSolverInfo().m_splitImpulsePenetrationThreshold = 0;
@@ -284,6 +285,27 @@ bool Simulation::sinks(double seconds, double by_m) {
         resting_s = rests ? resting_s + step_s : 0;
     }
     return false;
+}
+
+bool Simulation::falls(double seconds, double by_m, double far_m, const Load& load) {
+    btRigidBody& body = *world_->loose;
+    const btTransform start = body.getCenterOfMassTransform();
+    const btVector3 up = start.getBasis().transpose() * btVector3(0, 0, 1);
+    const btVector3 at =
+        start.getBasis().transpose() * btVector3(load.at_m[0], load.at_m[1], load.at_m[2]);
+    const btVector3 force(load.force_N[0], load.force_N[1], load.force_N[2]);
+    bool fell = false;
+    for (double t = 0; t < seconds && !fell; t += step_s) {
+        const Vec3 thrown = load.thrown_m_s2 ? load.thrown_m_s2(t) : Vec3{};
+        body.setGravity({thrown[0], thrown[1], thrown[2] - gravity});
+        body.applyForce(force, body.getWorldTransform().getBasis() * at);
+        world_->dynamics.stepSimulation(step_s, 0);
+        const btVector3& p = body.getCenterOfMassPosition();
+        fell = p.z() < -by_m || (body.getWorldTransform().getBasis() * up).z() < std::sqrt(0.5);
+        if (std::hypot(p.x(), p.y()) > far_m) break;
+    }
+    body.setGravity({0, 0, -gravity});
+    return fell;
 }
 
 void Simulation::reset() {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -45,6 +46,16 @@ class Simulation {
     // Goes on until the centre of mass is lower by more than `by_m` than it was, which is told, or
     // until the body has come to rest.
     bool sinks(double seconds, double by_m);
+    // What acts on the body while it goes on: an acceleration as by a ground that moves the other
+    // way, and a force at a point of the body, given where that is at the beginning, relative to
+    // the centre of mass.
+    struct Load {
+        std::function<Vec3(double seconds)> thrown_m_s2;
+        Vec3 force_N{}, at_m{};
+    };
+    // Whether it falls within that time: its centre of mass comes to be lower by more than `by_m`,
+    // or it leans by more than 45 degrees. What has gone `far_m` on its level does not.
+    bool falls(double seconds, double by_m, double far_m, const Load& load);
     Vec3 moved_m() const;  // of the centre of mass, since the beginning
     void reset();          // to the beginning
 
