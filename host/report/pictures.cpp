@@ -53,12 +53,17 @@ double largest_risk(const Object& object) {
     return most;
 }
 
-// What can fall, the largest risk first, as far as it is labelled; without what is only to be
-// looked at, since the scan hardly shows what holds it.
+// Whether it is only to be looked at, since the scan hardly shows what holds it.
+bool is_doubtful(const Object& object) {
+    return object.advice.kind == "check";
+}
+
+// What can fall and is not among the safest, the largest risk first, as far as it is labelled.
 std::vector<const Object*> riskiest(const Scene& scene) {
+    constexpr double least_unsafety = 2;
     std::vector<const Object*> out;
     for (const Object& object : scene.objects) {
-        if (!object.grounded && largest_risk(object) > 0 && object.advice.kind != "check")
+        if (!object.grounded && object.unsafety >= least_unsafety && largest_risk(object) > 0)
             out.push_back(&object);
     }
     std::ranges::stable_sort(
@@ -114,9 +119,10 @@ class Pictures {
     }
 
     void write_risk() {
-        Canvas canvas = page("risk", colours(true, 0), Overlay(image_), "Risk",
-                             "Unsafety, by what a walk, a gale or an earthquake is expected to set "
-                             "free. Labels: object, unsafety.");
+        Canvas canvas =
+            page("risk", colours(true, 0), Overlay(image_), "Risk",
+                 "Unsafety, by what a walk, a gale or an earthquake is expected to set "
+                 "free. Labels: object, unsafety; ?: the scan hardly shows its support.");
         legend(canvas, unsafety_ramp, "1 safest", "10");
         for (const Object* object : riskiest(scene_)) label(canvas, *object, true);
         canvas.save();
@@ -267,9 +273,8 @@ class Pictures {
         const auto [x, y, depth] = image_.camera().project(middle);
         if (!(depth > 0 && x > 0 && x < width && y > 0 && y < height)) return;
         const std::string number = std::to_string(object.id);
-        const std::string says = unsafety && std::isfinite(object.unsafety)
-                                     ? number + text(": %.1f", object.unsafety)
-                                     : number;
+        std::string says = number;
+        if (unsafety) says += text(": %.1f", object.unsafety) + (is_doubtful(object) ? " ?" : "");
         const Font font{.size = 14, .bold = true};
         const double wide = canvas.text_width(says, font) + 12, tall = 21;
         std::array<double, 4> box{x - wide / 2, y - tall / 2, wide, tall};
