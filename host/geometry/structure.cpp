@@ -31,6 +31,10 @@ constexpr double behind_share = 0.02;
 // below the second: the foot of a lamp and a book on the floor are as flat and as low.
 constexpr double floor_piece_m2 = 0.25, least_thing_m2 = 0.01, noise_cells = 0.6;
 
+// A level piece of at least this area that is higher than things one could take it for, or as low
+// as a step, is another floor: a gallery, a platform. Tables are between them, beds smaller.
+constexpr double other_floor_m2 = 4, storey_m = 1.8, lowest_step_m = 0.12, highest_step_m = 0.45;
+
 // Area-weighted mean plane of one primitive: point, normal, and how much of it agrees.
 struct Face {
     double area_m2 = 0;  // of surfels whose normal agrees with the mean
@@ -164,19 +168,21 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
     }
     const double noise = noise_cells * surfels.cell_m, uneven = std::max(0.03, 2 * surfels.cell_m);
     std::vector<std::size_t> large;
-    std::vector<bool> small(face.size());
+    std::vector<bool> small(face.size()), other(face.size());
     for (std::size_t p = 0; p < face.size(); ++p) {
         const Face& f = face[p];
         const double above = dot(up, f.px, f.py, f.pz) - floor_height;
         if (f.flatness < flat || level(f) < horizontal_cos || above < -uneven) continue;
         if (f.area_m2 >= floor_piece_m2 && above < uneven) large.push_back(p);
+        other[p] = f.area_m2 >= other_floor_m2 &&
+                   (above >= storey_m || (above >= lowest_step_m && above <= highest_step_m));
         small[p] = f.area_m2 >= floor_area_m2 && f.area_m2 < floor_piece_m2 && above < noise;
     }
     const std::vector<bool> continued =
         continued_floor(surfels, primitives, up, face, large, noise);
     for (std::size_t p = 0; p < face.size(); ++p) {
         const Face& f = face[p];
-        if (small[p] || continued[p]) {
+        if (small[p] || other[p] || continued[p]) {
             out[p] = Structure::floor;
         } else if (f.flatness > flat && f.area_m2 >= wall_area_m2 &&
                    f.area_m2 >= wall_share * largest_upright &&

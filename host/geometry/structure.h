@@ -14,8 +14,9 @@ namespace topple::geometry {
 enum class Structure : std::uint8_t { none, floor, wall, ceiling };
 
 // Finds the shell: the lowest large horizontal plane is the floor (on a scan of a table top, the
-// table takes its place), and large planes that have the whole scene on one side are walls or
-// ceiling. A scene without such planes has no shell.
+// table takes its place), and so are galleries and platforms of four square metres; large planes
+// that have the whole scene on one side are walls or ceiling. A scene without such planes has no
+// shell.
 std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet& primitives,
                                       const Vec3& up);
 

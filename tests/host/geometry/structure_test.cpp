@@ -57,6 +57,23 @@ TEST(Structure, AFloorThatDriftsIsFloorAllOver) {
     EXPECT_EQ(found[third], Structure::floor);
 }
 
+TEST(Structure, GalleriesAndPlatformsAreFloorsTablesAreNot) {
+    Scene scene;
+    const auto floor = scene.level(0, 0, 5, 5, 0);
+    const auto gallery = scene.level(0, 0, 5, 1.5, 2.4);
+    const auto platform = scene.level(3, 3, 5, 5.1, 0.3);
+    const auto table = scene.level(0, 2, 2, 4.5, 0.75);
+    const auto bed = scene.level(2, 0, 3.8, 2, 0.4);
+    const auto cupboard = scene.level(4, 0, 4.6, 2, 2.0);
+    const auto found = scene.structure();
+    EXPECT_EQ(found[floor], Structure::floor);
+    EXPECT_EQ(found[gallery], Structure::floor);
+    EXPECT_EQ(found[platform], Structure::floor);
+    EXPECT_EQ(found[table], Structure::none);
+    EXPECT_EQ(found[bed], Structure::none);
+    EXPECT_EQ(found[cupboard], Structure::none);
+}
+
 TEST(Structure, AFloorInTwoPartsThatNothingJoinsIsFloor) {
     Scene scene;
     const auto here = scene.level(0, 0, 3, 3, 0);

@@ -121,6 +121,20 @@ TEST_P(HumanField, ElsewhereIsAsIfItStoodThere) {
     EXPECT_GT(moved[3], 0.05);
 }
 
+// Floors at different heights are walked on alike: a gallery beside a floor.
+TEST_P(HumanField, EachFloorIsWalkedOn) {
+    test::Room room(0.05);
+    room.floor(0, 3, 0, 3);
+    room.floor(4, 7, 0, 3, 2.5);
+    const auto low = room.thing(1.5, 1.5, 0, 0.1, 0.9), high = room.thing(5.5, 1.5, 2.5, 0.1, 0.9);
+    const auto under = room.thing(5.5, 1.5, 0.5, 0.1, 0.5);
+    const Disturbance f = field(room);
+    EXPECT_GT(struck(f, low), 0.05);
+    EXPECT_GT(struck(f, high), 0.05);
+    EXPECT_NEAR(struck(f, low), struck(f, high), 0.5 * struck(f, low));
+    EXPECT_EQ(struck(f, under), 0) << "nobody walks where there is no floor";
+}
+
 // A thin thing on a table is struck by hands that pass just above the table's top.
 TEST_P(HumanField, ThinThingsOnTablesAreWithinReach) {
     for (const double table : {0.65, 0.70, 0.75, 0.80, 0.85}) {
