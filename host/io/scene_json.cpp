@@ -87,7 +87,7 @@ Json to_json(const Advice& a) {
             {"sentence", a.sentence}};
 }
 
-Json by_disturbance(const std::map<std::string, double>& values) {
+Json numbers_by_name(const std::map<std::string, double>& values) {
     auto json = Json::object();
     for (const auto& [disturbance, value] : values) json[disturbance] = number(value);
     return json;
@@ -110,9 +110,9 @@ Json to_json(const Object& o) {
                                  return Json{{"W_J", number(step.W_J)}, {"S_J", number(step.S_J)}};
                              })},
         {"why", to_json(o.why)},
-        {"risk_J", by_disturbance(o.risk_J)},
-        {"risk_spread_J", by_disturbance(o.risk_spread_J)},
-        {"fall_chance", by_disturbance(o.fall_chance)},
+        {"risk_J", numbers_by_name(o.risk_J)},
+        {"risk_spread_J", numbers_by_name(o.risk_spread_J)},
+        {"fall_chance", numbers_by_name(o.fall_chance)},
         {"unsafety", number(o.unsafety)},
         {"fall", to_json(o.fall)},
         {"advice", to_json(o.advice)}};
@@ -194,7 +194,7 @@ Advice advice_of(const Json& json) {
     return a;
 }
 
-std::map<std::string, double> by_disturbance(const Json& json) {
+std::map<std::string, double> numbers_by_name(const Json& json) {
     std::map<std::string, double> values;
     for (const auto& [disturbance, value] : json.items()) values[disturbance] = number_of(value);
     return values;
@@ -217,10 +217,10 @@ Object object_of(const Json& json) {
         o.instability.push_back({number_at(step, "W_J"), number_at(step, "S_J")});
     }
     if (json.contains("why")) o.why = why_of(json.at("why"));  // nor this
-    o.risk_J = by_disturbance(json.at("risk_J"));
+    o.risk_J = numbers_by_name(json.at("risk_J"));
     if (json.contains("fall")) {  // nor these
-        o.risk_spread_J = by_disturbance(json.at("risk_spread_J"));
-        o.fall_chance = by_disturbance(json.at("fall_chance"));
+        o.risk_spread_J = numbers_by_name(json.at("risk_spread_J"));
+        o.fall_chance = numbers_by_name(json.at("fall_chance"));
         o.fall = fall_of(json.at("fall"));
         o.advice = advice_of(json.at("advice"));
     }
@@ -256,6 +256,7 @@ Scene scene_of(const Json& json) {
     }
     scene.density_kg_m3 = number_at(json, "density_kg_m3");
     scene.friction = number_at(json, "friction");
+    if (json.contains("events")) scene.events = numbers_by_name(json.at("events"));
     for (const auto& item : json.at("primitives")) scene.primitives.push_back(primitive_of(item));
     for (const auto& item : json.at("objects")) scene.objects.push_back(object_of(item));
     for (const auto& item : json.at("contacts")) scene.contacts.push_back(contact_of(item));
@@ -289,6 +290,7 @@ std::string scene_json(const Scene& scene) {
     json["manhattan_from_input"] = matrix(scene.manhattan_from_input);
     json["density_kg_m3"] = number(scene.density_kg_m3);
     json["friction"] = number(scene.friction);
+    json["events"] = numbers_by_name(scene.events);
     json["primitives"] = list(scene.primitives, [](const Primitive& p) { return to_json(p); });
     json["objects"] = list(scene.objects, [](const Object& o) { return to_json(o); });
     json["contacts"] = list(scene.contacts, [](const Contact& c) { return to_json(c); });

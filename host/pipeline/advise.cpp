@@ -104,15 +104,31 @@ class Mover {
     physics::CellColumns columns_;
 };
 
-// What holds the object upright against the strongest push.
+// Whether there is any place to move to, safe or not: a hand's breadth away or more.
+bool leaves_room(const Landscape::Places& around) {
+    const std::int32_t half = around.side / 2;
+    for (std::int32_t b = 0; b < around.side; ++b) {
+        for (std::int32_t a = 0; a < around.side; ++a) {
+            const float energy = around.energy_J[static_cast<std::size_t>(b * around.side + a)];
+            if (std::isfinite(energy) && energy >= 0 &&
+                around.step_m * std::hypot(a - half, b - half) > 0.1)
+                return true;
+        }
+    }
+    return false;
+}
+
+// What holds the object upright against the strongest push of what puts it at more risk than is
+// tolerated.
 safety::Push fixing(const safety::RiskObject& object,
-                    std::span<const safety::Disturbance> disturbances, std::size_t o,
-                    double friction) {
+                    std::span<const safety::Disturbance> disturbances,
+                    std::span<const std::vector<safety::Risk>> risk, std::size_t o, double friction,
+                    double tolerable_J) {
     const double weight = object.mass_kg * physics::gravity, top = std::max(object.height_m, 1e-3);
     safety::Push out{0, top};
-    for (const safety::Disturbance& d : disturbances) {
-        if (o >= d.strongest.size()) continue;
-        const safety::Push& push = d.strongest[o];
+    for (std::size_t d = 0; d < disturbances.size(); ++d) {
+        if (o >= disturbances[d].strongest.size() || risk[d][o].mean_J <= tolerable_J) continue;
+        const safety::Push& push = disturbances[d].strongest[o];
         const double tips = (push.force_N * push.height_m - weight * object.base_width_m / 2) / top;
         out.force_N = std::max({out.force_N, tips, push.force_N - friction * weight});
     }
@@ -147,7 +163,7 @@ std::vector<Suggestion> advise(const physics::SolidCells& cells,
             continue;
         }
         out[o].kind = Suggestion::Kind::fix;
-        out[o].hold = fixing(at_risk[o], disturbances, o, friction);
+        out[o].hold = fixing(at_risk[o], disturbances, risk, o, friction, tolerable_J);
         chosen.push_back(o);
     }
     std::stable_sort(chosen.begin(), chosen.end(),
@@ -160,6 +176,8 @@ std::vector<Suggestion> advise(const physics::SolidCells& cells,
     std::vector<safety::Placement> placements;
     std::vector<Place> places;
     for (std::size_t n = 0; n < chosen.size(); ++n) {
+        out[chosen[n]].places =
+            leaves_room(around[n]) ? Suggestion::Places::unsafe : Suggestion::Places::none;
         for (Place& place : mover.places(chosen[n], around[n])) {
             placements.push_back({chosen[n], place.di, place.dj});
             places.push_back(std::move(place));
@@ -173,10 +191,10 @@ std::vector<Suggestion> advise(const physics::SolidCells& cells,
         const double all =
             std::max(places[n].risk_J, safety::risk_of(work[n], places[n].curve, 1).mean_J);
         if (all > tolerable_J) continue;
-        to = {Suggestion::Kind::move,
-              {placements[n].di * cells.voxel_m, placements[n].dj * cells.voxel_m, 0},
-              all,
-              {}};
+        to.kind = Suggestion::Kind::move;
+        to.move_m = {placements[n].di * cells.voxel_m, placements[n].dj * cells.voxel_m, 0};
+        to.risk_J = all;
+        to.hold = {};
     }
     return out;
 }

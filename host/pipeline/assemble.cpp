@@ -168,6 +168,25 @@ void add_walks(const SafetyStage& safety, const ToInput& to_input, Scene& scene)
     }
 }
 
+// An object of this share of all parts, and this many, is hardly one thing.
+constexpr double many_share = 0.15;
+constexpr std::size_t many_parts = 40;
+
+void note_crowded_objects(Scene& scene) {
+    for (const Object& o : scene.objects) {
+        const std::size_t parts = o.primitives.size();
+        if (o.grounded || parts < many_parts ||
+            static_cast<double>(parts) < many_share * static_cast<double>(scene.primitives.size()))
+            continue;
+        scene.notes.push_back(
+            "Object " + std::to_string(o.id) + " has " + std::to_string(parts) + " of the " +
+            std::to_string(scene.primitives.size()) +
+            " parts: it is probably several things that were not told apart. What "
+            "stands in or on it may be part of it, and then no risk of its own is "
+            "reckoned.");
+    }
+}
+
 void note_uncertain_barriers(Scene& scene) {
     const auto uncertain =
         std::count_if(scene.objects.begin(), scene.objects.end(), barrier_within_error);
@@ -176,7 +195,7 @@ void note_uncertain_barriers(Scene& scene) {
                                        [](const Object& o) { return !o.grounded; });
     scene.notes.push_back("The barrier of " + std::to_string(uncertain) + " of " +
                           std::to_string(movable) +
-                          " objects that can move is 0 or within its error (weight times a voxel): "
+                          " objects that can move is 0 or within its error (a voxel of its support): "
                           "they stand on edge, or the scan does not show what holds them.");
 }
 
@@ -201,6 +220,7 @@ void assemble(const Ingested& input, const GeometryStage& geometry, VoxelStage& 
     add_exposures(safety, voxels);
     add_fields(safety, to_input, scene);
     add_walks(safety, to_input, scene);
+    note_crowded_objects(scene);
     note_uncertain_barriers(scene);
     scene.swc_energy = objects.grouping.energy_curve;
     explain(geometry, objects, to_input, scene);

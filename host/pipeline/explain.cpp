@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/explain.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -143,6 +144,17 @@ void explain(const GeometryStage& geometry, const ObjectStage& objects, const To
 
 namespace {
 
+// Of two pieces that carry each other the lighter one is no support of the heavier.
+bool carried_back(const Scene& scene, const std::vector<std::vector<Support>>& holders,
+                  const Support& s) {
+    const auto by = static_cast<std::size_t>(s.supporter),
+               on = static_cast<std::size_t>(s.supported);
+    if (scene.objects[by].grounded || scene.objects[by].mass_kg >= scene.objects[on].mass_kg)
+        return false;
+    return std::ranges::any_of(holders[by],
+                               [&](const Support& back) { return back.supporter == s.supported; });
+}
+
 // What goes along with object o: what has lost half of its support with it, and with what went
 // along before. Ascending.
 std::vector<std::int32_t> taken_along(const Scene& scene,
@@ -156,6 +168,7 @@ std::vector<std::int32_t> taken_along(const Scene& scene,
             if (gone[x] || scene.objects[x].grounded) continue;
             double all = 0, lost = 0;
             for (const Support& s : holders[x]) {
+                if (carried_back(scene, holders, s)) continue;
                 all += s.area_m2;
                 if (gone[static_cast<std::size_t>(s.supporter)]) lost += s.area_m2;
             }
@@ -200,6 +213,28 @@ std::string joules(double value) {
     return value < 0.0005 ? "nothing" : energy(value) + " per event";
 }
 
+std::string fix_sentence(const Object& object, const Suggestion& what) {
+    const auto of = [&](const char* name) {
+        const auto at = object.risk_J.find(name);
+        return at == object.risk_J.end() ? 0.0 : at->second;
+    };
+    std::string text;
+    if (what.places == Suggestion::Places::none)
+        text = "What stands around it leaves no room to move it. ";
+    if (what.places == Suggestion::Places::unsafe)
+        text = "No place nearby on what carries it is safe enough. ";
+    if (object.mass_kg < light_kg) {
+        text += "Put it elsewhere, or fasten it";
+    } else if (of("human") >= std::max(of("wind"), of("earthquake"))) {
+        text += "Keep the way past it clear, or fasten it";
+    } else {
+        text += "Fasten it to the wall or to what carries it";
+    }
+    if (!(what.hold.force_N > 0)) return text + ".";
+    return text + ": the fixing must hold " + number(what.hold.force_N) + " N at " +
+           length(what.hold.height_m) + " above its base.";
+}
+
 std::string advice_sentence(const Object& object, const Suggestion& what) {
     double worst = 0;
     for (const auto& [name, risk] : object.risk_J) worst = std::max(worst, risk);
@@ -219,13 +254,7 @@ std::string advice_sentence(const Object& object, const Suggestion& what) {
                    ".";
         }
         case Suggestion::Kind::fix:
-            if (!(what.hold.force_N > 0))
-                return "Fasten it, or keep people away from it: no place nearby is safer.";
-            return std::string(object.mass_kg < light_kg ? "Put it elsewhere, or fasten it"
-                                                         : "Fasten it") +
-                   " to the wall or to what carries it: the fixing must hold " +
-                   number(what.hold.force_N) + " N at " + length(what.hold.height_m) +
-                   " above its base. No place nearby on what carries it is safe enough.";
+            return fix_sentence(object, what);
     }
     return "";
 }

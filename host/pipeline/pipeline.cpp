@@ -76,6 +76,18 @@ ParseResult parse_ingested(device::Device& device, const Ingested& input,
     scene.voxel_size_m = voxel_m;
     scene.density_kg_m3 = options.density_kg_m3;
     scene.friction = options.friction;
+    scene.events["tolerable_J"] = options.tolerable_J;
+    for (const std::string& name : options.disturbances) {
+        if (name == "human") scene.events["walks"] = options.walks;
+        if (name == "wind") scene.events["wind_m_s"] = options.wind_m_s;
+        if (name == "wind" && options.wind_from_deg)
+            scene.events["wind_from_deg"] = *options.wind_from_deg;
+        if (name == "earthquake") {
+            scene.events["pga_m_s2"] = options.pga_m_s2.value_or(
+                options.accelerogram ? options.accelerogram->peak_m_s2()
+                                     : safety::EarthquakeOptions{}.pga_m_s2);
+        }
+    }
     scene.notes.insert(scene.notes.end(), input.notes.begin(), input.notes.end());
 
     GeometryStage geometry = find_primitives(device, input, options, stage);  // 2.1

@@ -191,6 +191,9 @@ struct Scene {
     bool manhattan_found = false;
     Mat4 manhattan_from_input{};
     double density_kg_m3 = 700, friction = 0.3;
+    // What was reckoned with: walks, wind_m_s, pga_m_s2, tolerable_J, as far as they were asked
+    // for.
+    std::map<std::string, double> events;
     std::vector<Primitive> primitives;
     std::vector<Object> objects;
     std::vector<Contact> contacts;

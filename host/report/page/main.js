@@ -21,11 +21,20 @@ function fillHeader(scene) {
     ['density', number(scene.density_kg_m3, 'kg/m\u00b3')],
     ['friction', number(scene.friction)],
     ['seed', String(scene.seed)],
+    ...eventFacts(scene),
   ];
   const list = document.getElementById('facts');
   for (const [name, value] of facts) {
     list.append(element('div', {}, [element('dt', {text: name}), element('dd', {text: value})]));
   }
+}
+
+// What was reckoned with, as far as this run asked for it.
+function eventFacts(scene) {
+  const known = [['walks', 'walks', ''], ['wind_m_s', 'wind', 'm/s'], ['pga_m_s2', 'ground acceleration', 'm/s\u00b2'],
+    ['tolerable_J', 'tolerated risk', 'J per event']];
+  const events = scene.events || {};
+  return known.filter(([key]) => events[key] !== undefined).map(([key, name, unit]) => [name, number(events[key], unit)]);
 }
 
 function fillBottom(scene) {
@@ -40,7 +49,7 @@ function fillBottom(scene) {
   if (!scene.notes.length) document.getElementById('notes-panel').hidden = true;
   document.getElementById('table-note').textContent =
     'Click a heading to sort. Barrier: the least energy that moves an object; release: what it then can set free. ' +
-    'For each disturbance: joules expected per event, \u00b1 how exactly that is known, and how often an event upsets the object.';
+    'For each disturbance: joules expected per event, \u00b1 what the sampling of events leaves open (not what the scan or the grouping may have got wrong), and how often an event upsets the object.';
 }
 
 // One button of a group is pressed at a time.

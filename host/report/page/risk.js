@@ -30,6 +30,8 @@ function missingText(scene) {
   if (scene.disturbances.includes('human') && !scene.view.walks.shade.some(shade => shade > 0)) {
     lines.push('No floor was found on which people could walk, so their walks put nothing at risk here.');
   }
+  // What the list below stands or falls with.
+  lines.push(...scene.notes.filter(note => /^(People walk|Object)/.test(note)));
   return lines.join(' ');
 }
 
@@ -71,11 +73,18 @@ function fillRisk(panel, scene, choose) {
     doubtful.slice(0, listedDoubts).map(object => riskItem(scene, object, choose))));
 }
 
+function eventsText(scene) {
+  const events = scene.events || {}, wind = events.wind_m_s, ground = events.pga_m_s2;
+  return 'An event is one person walking through the room, one gale' + (wind === undefined ? '' : ` of ${number(wind, 'm/s')}`) +
+    ' or one earthquake' + (ground === undefined ? '' : ` of about ${number(ground, 'm/s\u00b2')}`) + '.' +
+    (events.tolerable_J === undefined ? '' : ` What has no advice is below ${number(events.tolerable_J, 'J')} per event, which is tolerated.`);
+}
+
 function fillRiskiest(panel, scene, worst, movable, choose) {
   panel.append(element('p', {className: 'hint', text:
     `The ${worst.length} riskiest of ${plural(movable, 'object')} that can fall: the chance that one event upsets it, times the ` +
-    'energy that it then sets free. An event is one person walking through the room, one gale or one earthquake. ' +
-    'The badge is unsafety, 1 to 10. Choose one to see it in the room.'}));
+    'energy that it then sets free. ' + eventsText(scene) + ' The badge is unsafety: 10 is the worst of this scene, whatever it is. ' +
+    'Choose one to see it in the room.'}));
   const list = element('div', {className: 'items'}, worst.map(object => riskItem(scene, object, choose)));
   panel.append(list);
   if (worst.length > listedOnPhones) {

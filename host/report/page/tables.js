@@ -35,7 +35,7 @@ function adviceText(object) {
   return (object.advice || {}).kind || '\u2013';
 }
 
-// Joules per event, how exactly they are known, and the chance per event that it falls.
+// Joules per event, the sampling error of the events, and the chance per event that it falls.
 function riskCell(object, name) {
   const risk = object.risk_J[name];
   if (!(risk > 0)) return [number(risk)];
