@@ -193,10 +193,10 @@ void note_uncertain_barriers(Scene& scene) {
     if (uncertain == 0) return;
     const auto movable = std::count_if(scene.objects.begin(), scene.objects.end(),
                                        [](const Object& o) { return !o.grounded; });
-    scene.notes.push_back("The barrier of " + std::to_string(uncertain) + " of " +
-                          std::to_string(movable) +
-                          " objects that can move is 0 or within its error (a voxel of its support): "
-                          "they stand on edge, or the scan does not show what holds them.");
+    scene.notes.push_back(
+        "The barrier of " + std::to_string(uncertain) + " of " + std::to_string(movable) +
+        " objects that can move is 0 or within its error (a voxel of its support): "
+        "they stand on edge, or the scan does not show what holds them.");
 }
 
 }  // namespace
