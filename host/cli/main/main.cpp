@@ -57,6 +57,14 @@ int run(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::Success& done) {
         return app.exit(done);
+    } catch (const CLI::ConversionError& error) {
+        // "Could not convert: --wind-from = abc"
+        std::string what = error.what();
+        const auto from = what.find("--"), is = what.find(" = ");
+        if (from != std::string::npos && is != std::string::npos && from < is)
+            what = what.substr(from, is - from) + " " + what.substr(is + 3) + ": expected a number";
+        std::fprintf(stderr, "topple: %s (see topple --help)\n", what.c_str());
+        return 2;
     } catch (const CLI::ParseError& error) {
         const auto subcommands = app.get_subcommands();
         const std::string unknown = topple::cli::unknown_option(

@@ -44,9 +44,9 @@ function riskItem(scene, object, choose) {
       element('strong', {text: `Object ${object.id}`}),
       line('mass', `${number(object.mass_kg, 'kg')}`),
       unsafetyBadge(scene, object)]),
-    line('from', upsetText(object)),
-    line('then', happensText(scene, object)),
+    line('from', isDoubtful(object) ? `As scanned a touch would upset it. ${happensText(scene, object)}` : upsetText(object)),
   ]);
+  if (!isDoubtful(object)) item.append(line('then', happensText(scene, object)));
   if (advice) item.append(line('advice', advice));
   item.dataset.object = object.id;
   return item;
@@ -85,6 +85,9 @@ function fillRiskiest(panel, scene, worst, movable, choose) {
     `The ${worst.length} riskiest of ${plural(movable, 'object')} that can fall: the chance that one event upsets it, times the ` +
     'energy that it then sets free. ' + eventsText(scene) + ' The badge is unsafety: 10 is the worst of this scene, whatever it is. ' +
     'Choose one to see it in the room.'}));
+  if (worst.every(object => !(object.advice && object.advice.kind))) {
+    panel.append(element('p', {className: 'hint', text: 'All of these risks are tolerated: nothing needs to be done.'}));
+  }
   const list = element('div', {className: 'items'}, worst.map(object => riskItem(scene, object, choose)));
   panel.append(list);
   if (worst.length > listedOnPhones) {
