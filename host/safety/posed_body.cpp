@@ -12,8 +12,8 @@ namespace {
 
 using enum BodyJoint;
 
-constexpr double smooth_s = 0.08;   // over which positions are averaged, against noise
-constexpr double walk_s = 0.5;      // over which the body's own way is averaged
+constexpr double smooth_s = 0.08;  // over which positions are averaged, against noise
+constexpr double walk_s = 0.5;     // over which the body's own way is averaged
 
 // Means over `window` frames around each.
 std::vector<Vec3> smoothed(const std::vector<Vec3>& track, std::size_t window) {
@@ -104,8 +104,8 @@ class Poser {
             if (!out.empty()) return out;
         }
         refuse_motion(motion_,
-               "has no pelvis, and no pair of hips, shoulders or elbows: where the body "
-               "is can't be told");
+                      "has no pelvis, and no pair of hips, shoulders or elbows: where the body "
+                      "is can't be told");
     }
     // From its right to its left.
     std::vector<Vec3> body_left() const {
@@ -122,8 +122,8 @@ class Poser {
             return out;
         }
         refuse_motion(motion_,
-               "has no pair of shoulders, hips, elbows or wrists: where the body faces "
-               "can't be told");
+                      "has no pair of shoulders, hips, elbows or wrists: where the body faces "
+                      "can't be told");
     }
     // Its own floor, or that of a body of the recorded size (fractions as in body_parts.h).
     double floor_m() const {
@@ -152,7 +152,8 @@ class Poser {
             std::nth_element(heights.begin(), at, heights.end());
             return *at - h.share * stature;
         }
-        refuse_motion(motion_, "has no feet, hips, shoulders or elbows: how high it is can't be told");
+        refuse_motion(motion_,
+                      "has no feet, hips, shoulders or elbows: how high it is can't be told");
     }
 
     const BodyMotion& motion_;

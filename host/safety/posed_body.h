@@ -24,9 +24,9 @@ struct PosedBody {
 };
 
 // Positions are averaged over 0.08 s, against noise; its way as a whole, averaged over 0.5 s, is
-// taken out. It faces across its shoulders, hips, elbows or wrists, from the right ones to the left,
-// whichever of these were recorded first. Throws Error(input) naming the source where that, its
-// place or its height can't be told.
+// taken out. It faces across its shoulders, hips, elbows or wrists, from the right ones to the
+// left, whichever of these were recorded first. Throws Error(input) naming the source where that,
+// its place or its height can't be told.
 PosedBody posed_body(const BodyMotion& motion, const HumanOptions& options);
 
 // Throws Error(input): "<source of the motion>: <what>".
