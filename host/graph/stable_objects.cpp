@@ -102,7 +102,7 @@ Grouping group_primitives(device::Device& device, const physics::SupportTable& t
     const std::vector<Edge> edges = edges_of(graph, energy.prior(), options.turn_on_temperature);
     Partition partition =
         swendsen_wang_cuts(graph.primitives, edges, ground, energy.callbacks(), sampler);
-    return {std::move(partition.label), std::move(partition.joined),
+    return {std::move(partition.label), std::move(partition.joined), std::move(partition.agreement),
             std::move(partition.best_energy_curve)};
 }
 

@@ -33,7 +33,9 @@ struct GroupingOptions {
 struct Grouping {
     std::vector<std::int32_t> group;       // of each primitive; -1: fixed to the ground
     std::vector<double> pair_probability;  // by pair of the contact graph: that the joint is fixed
-    std::vector<double> energy_curve;      // best energy after each step of the annealing
+    // By group: share of the sampler's chains that found it, but for a tenth of its primitives.
+    std::vector<double> agreement;
+    std::vector<double> energy_curve;  // best energy after each step of the annealing
 };
 
 // The rigid body that a set of primitives makes: its mass properties, and where it is held up by

@@ -110,6 +110,28 @@ std::vector<double> best_of(const std::vector<Outcome>& chains) {
     return curve;
 }
 
+// Of each group, whether another labelling of the nodes holds it, but for a tenth.
+std::vector<bool> found_again(const std::vector<std::int32_t>& label, std::size_t groups,
+                              const std::vector<std::int32_t>& other) {
+    std::vector<std::map<std::int32_t, std::size_t>> shared(groups);
+    std::map<std::int32_t, std::size_t> size;
+    std::vector<std::size_t> own(groups, 0);
+    for (std::size_t n = 0; n < label.size(); ++n) {
+        ++size[other[n]];
+        if (label[n] < 0) continue;
+        ++shared[static_cast<std::size_t>(label[n])][other[n]];
+        ++own[static_cast<std::size_t>(label[n])];
+    }
+    std::vector<bool> out(groups);
+    for (std::size_t g = 0; g < groups; ++g) {
+        for (const auto& [l, both] : shared[g]) {
+            const std::size_t either = own[g] + size[l] - both;
+            if (l != pinned_label && 10 * both >= 9 * either) out[g] = true;
+        }
+    }
+    return out;
+}
+
 Partition combined(const std::vector<Outcome>& chains, std::size_t edges) {
     Partition result;
     const Outcome* best = &chains.front();
@@ -121,6 +143,15 @@ Partition combined(const std::vector<Outcome>& chains, std::size_t edges) {
     result.label = canonical(best->best_labels);
     result.energy = best->best_energy;
     result.best_energy_curve = best_of(chains);
+    std::size_t groups = 0;
+    for (const std::int32_t l : result.label)
+        groups = std::max(groups, static_cast<std::size_t>(l + 1));
+    result.agreement.assign(groups, 0.0);
+    for (const Outcome& c : chains) {
+        const std::vector<bool> found = found_again(result.label, groups, c.best_labels);
+        for (std::size_t g = 0; g < groups; ++g)
+            result.agreement[g] += found[g] / static_cast<double>(chains.size());
+    }
     result.joined.assign(edges, 0.0);
     for (std::size_t e = 0; e < edges && samples > 0; ++e) {
         std::uint64_t joined = 0;

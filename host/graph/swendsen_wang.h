@@ -51,6 +51,9 @@ struct Partition {
     std::vector<std::int32_t> label;  // group of each node, numbered by first appearance;
                                       // the pinned group, where there is one, is -1
     double energy = 0;
+    // By group: share of the chains whose own best partition holds it, to nine tenths of the nodes
+    // that either holds. Groups that few chains found are not sure.
+    std::vector<double> agreement;
     std::vector<double> joined;  // per edge: share of sampled states with both ends in one group
     std::vector<double> best_energy_curve;  // after every step of the annealing, over all chains
     std::uint64_t energies_evaluated = 0;   // groups asked for; with several threads it may differ

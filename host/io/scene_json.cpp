@@ -98,6 +98,7 @@ Json to_json(const Object& o) {
         {"id", o.id},
         {"primitives", o.primitives},
         {"grounded", o.grounded},
+        {"agreement", number(o.agreement)},
         {"mass_kg", number(o.mass_kg)},
         {"center_of_mass_m", vector(o.center_of_mass_m)},
         {"barrier_J", number(o.barrier_J)},
@@ -205,6 +206,7 @@ Object object_of(const Json& json) {
     o.id = json.at("id").get<std::int32_t>();
     o.primitives = json.at("primitives").get<std::vector<std::int32_t>>();
     o.grounded = json.at("grounded").get<bool>();
+    if (json.contains("agreement")) o.agreement = number_at(json, "agreement");
     o.mass_kg = number_at(json, "mass_kg");
     o.center_of_mass_m = vector_at(json, "center_of_mass_m");
     o.barrier_J = number_at(json, "barrier_J");

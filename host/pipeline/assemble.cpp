@@ -52,6 +52,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
         to.id = static_cast<std::int32_t>(o);
         to.primitives = from.candidate.primitives;
         to.grounded = from.grounded;
+        to.agreement = from.agreement;
         to.mass_kg = from.candidate.body.mass_kg;
         to.center_of_mass_m = to_input(from.candidate.body.center);
         if (!from.grounded) {
@@ -168,6 +169,18 @@ void add_walks(const SafetyStage& safety, const ToInput& to_input, Scene& scene)
     }
 }
 
+void note_unsettled_search(Scene& scene) {
+    const auto doubted = std::count_if(scene.objects.begin(), scene.objects.end(),
+                                       [](const Object& o) { return o.agreement < 0.5; });
+    if (doubted == 0) return;
+    const auto movable = std::count_if(scene.objects.begin(), scene.objects.end(),
+                                       [](const Object& o) { return !o.grounded; });
+    scene.notes.push_back("Of " + std::to_string(movable) + " objects that can move " +
+                          std::to_string(doubted) +
+                          " were found by less than half of the searches: their parts may belong "
+                          "together otherwise, as another --seed may show.");
+}
+
 // An object of this share of all parts, and this many, is hardly one thing.
 constexpr double many_share = 0.15;
 constexpr std::size_t many_parts = 40;
@@ -220,6 +233,7 @@ void assemble(const Ingested& input, const GeometryStage& geometry, VoxelStage& 
     add_exposures(safety, voxels);
     add_fields(safety, to_input, scene);
     add_walks(safety, to_input, scene);
+    note_unsettled_search(scene);
     note_crowded_objects(scene);
     note_uncertain_barriers(scene);
     scene.swc_energy = objects.grouping.energy_curve;

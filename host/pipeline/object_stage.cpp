@@ -42,6 +42,7 @@ void collect_objects(const std::vector<bool>& ground, ObjectStage& out) {
         object.candidate =
             graph::candidate_of(out.contacts, out.bodies, ground, std::move(members[o]));
         object.grounded = has_ground && o == 0;
+        if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
         object.lowest_m = std::numeric_limits<double>::infinity();
         object.highest_m = -object.lowest_m;
         for (const std::int32_t p : object.candidate.primitives) {

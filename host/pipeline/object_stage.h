@@ -26,7 +26,8 @@ struct StableObject {
     physics::SlideResult sliding;
     physics::Instability instability;  // of tipping and sliding together
     double barrier_error_J = 0;
-    Landscape poses;  // grid frame; its places are those of `sliding`
+    double agreement = 1;  // share of the sampler's chains that found it
+    Landscape poses;       // grid frame; its places are those of `sliding`
     double lowest_m = 0, highest_m = 0;
 };
 

@@ -109,6 +109,8 @@ struct Object {
     std::int32_t id = -1;
     std::vector<std::int32_t> primitives;
     bool grounded = false;  // holds the floor, or is fixed to what does
+    // Share of the sampler's chains that found it, but for a tenth of its parts; 1 for the ground.
+    double agreement = 1;
     double mass_kg = 0;
     Vec3 center_of_mass_m{};
     double barrier_J = 0;  // least energy that moves it out of its basin

@@ -47,6 +47,9 @@ function riskItem(scene, object, choose) {
     line('from', isDoubtful(object) ? `As scanned a touch would upset it. ${happensText(scene, object)}` : upsetText(object)),
   ]);
   if (!isDoubtful(object)) item.append(line('then', happensText(scene, object)));
+  if (object.agreement < 0.5) {
+    item.append(line('then', `Only ${Math.round(100 * object.agreement)} % of the searches found it so: its parts may belong together otherwise.`));
+  }
   if (advice) item.append(line('advice', advice));
   item.dataset.object = object.id;
   return item;

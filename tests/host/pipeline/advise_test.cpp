@@ -11,24 +11,25 @@
 namespace topple::test {
 namespace {
 
-constexpr double mu = 0.3, tolerable_J = 0.1;
+constexpr double advice_friction = 0.3, advice_tolerable_J = 0.1;
 
 // All fields of a room, and what is advised.
 class Advice : public ::testing::Test {
   protected:
     std::vector<Suggestion> of(Room& room) {
-        scene = std::make_unique<AssessedRoom>(*device, room, mu);
+        scene = std::make_unique<AssessedRoom>(*device, room, advice_friction);
         safety::HumanOptions walking;
         walking.paths = 200;
         safety::HumanField walkers(*device, scene->around, scene->at_risk, walking);
         std::vector<safety::Disturbance> fields;
         fields.push_back(walkers.disturbance());
         fields.push_back(safety::wind_field(*device, scene->around, scene->at_risk, {}));
-        fields.push_back(safety::earthquake_field(*device, scene->around, scene->at_risk, mu, {}));
+        fields.push_back(
+            safety::earthquake_field(*device, scene->around, scene->at_risk, advice_friction, {}));
         risk.clear();
         for (const auto& field : fields) risk.push_back(safety::risk(field, scene->at_risk));
         return advise(*scene->around.cells, room.object_of_primitive, scene->objects,
-                      scene->at_risk, fields, risk, &walkers, mu, tolerable_J);
+                      scene->at_risk, fields, risk, &walkers, advice_friction, advice_tolerable_J);
     }
     double worst(std::int32_t id) const {
         double most = 0;
@@ -56,24 +57,24 @@ TEST_F(Advice, WhatIsAtAnEdgeIsMovedInwardsToWhereItIsTolerated) {
     Room room(0.025);
     const auto box = box_on_table(room, 0.575);
     const auto advice = of(room);
-    ASSERT_GT(worst(box), tolerable_J);
+    ASSERT_GT(worst(box), advice_tolerable_J);
     const Suggestion& what = at(advice, box);
     ASSERT_EQ(what.kind, Suggestion::Kind::move);
     EXPECT_LT(what.move_m[0], -0.05) << "away from the edge at x = 0.8";
     EXPECT_LT(std::hypot(what.move_m[0], what.move_m[1]), 0.9);
-    EXPECT_LE(what.risk_J, tolerable_J);
+    EXPECT_LE(what.risk_J, advice_tolerable_J);
     // It keeps what it promises: a box that stands there is tolerated.
     Room moved(0.025);
     const auto there = box_on_table(moved, 0.575 + what.move_m[0], what.move_m[1]);
     of(moved);
-    EXPECT_LE(worst(there), tolerable_J);
+    EXPECT_LE(worst(there), advice_tolerable_J);
 }
 
 TEST_F(Advice, WhatIsSafeIsLeftAlone) {
     Room room(0.025);
     const auto box = box_on_table(room, -0.1);
     const auto advice = of(room);
-    EXPECT_LE(worst(box), tolerable_J);
+    EXPECT_LE(worst(box), advice_tolerable_J);
     EXPECT_EQ(at(advice, box).kind, Suggestion::Kind::nothing);
 }
 
@@ -82,7 +83,7 @@ TEST_F(Advice, ATallThinThingIsFixedAndTheFixingHoldsIt) {
     room.floor(-2, 2, -2, 2);
     const auto post = room.box(0, 0.15, 0, 0.15, 0, 1.5, false);
     const auto advice = of(room);
-    ASSERT_GT(worst(post), tolerable_J);
+    ASSERT_GT(worst(post), advice_tolerable_J);
     const Suggestion& what = at(advice, post);
     ASSERT_EQ(what.kind, Suggestion::Kind::fix) << "shaking tips it anywhere";
     EXPECT_NEAR(what.hold.height_m, 1.5, 0.03);

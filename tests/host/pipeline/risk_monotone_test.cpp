@@ -88,7 +88,7 @@ std::string named(const char* what, int n) {
 // A table in the middle of a floor to walk on; a cup from its middle to its edge.
 TEST_F(SlowRisk, RisesFromTheMiddleOfATableToItsEdge) {
     for (int n = 0; n < variants; ++n) {
-        Random random(static_cast<std::uint64_t>(100 + n));
+        topple::Random random(static_cast<std::uint64_t>(100 + n));
         seed = static_cast<std::uint64_t>(n + 1);
         const double half = whole(random.uniform(0.5, 0.8)), top = whole(random.uniform(0.6, 0.85));
         const double side = whole(random.uniform(0.075, 0.1));
@@ -111,7 +111,7 @@ TEST_F(SlowRisk, RisesFromTheMiddleOfATableToItsEdge) {
 // as they do from what is within 20 cm.
 TEST_F(SlowRisk, RisesTowardsWhereOneWalks) {
     for (int n = 0; n < variants; ++n) {
-        Random random(static_cast<std::uint64_t>(200 + n));
+        topple::Random random(static_cast<std::uint64_t>(200 + n));
         seed = static_cast<std::uint64_t>(n + 1);
         const double wide = whole(random.uniform(0.7, 1.2)), top = whole(random.uniform(0.6, 0.9));
         const double side = whole(random.uniform(0.075, 0.1));
@@ -135,7 +135,7 @@ TEST_F(SlowRisk, RisesTowardsWhereOneWalks) {
 struct Column {
     double width = 0, depth = 0, height = 0;
 };
-Column random_column(Random& random) {
+Column random_column(topple::Random& random) {
     return {whole(random.uniform(0.1, 0.15)), whole(random.uniform(0.1, 0.2)),
             whole(random.uniform(0.5, 0.9))};
 }
@@ -147,7 +147,7 @@ Column random_column(Random& random) {
 TEST_F(SlowRisk, RisesWithHeight) {
     for (const char* field : {"wind", "earthquake", "human"}) {
         for (int n = 0; n < variants; ++n) {
-            Random random(static_cast<std::uint64_t>(300 + n));
+            topple::Random random(static_cast<std::uint64_t>(300 + n));
             seed = static_cast<std::uint64_t>(n + 1);
             const Column column = random_column(random);
             wind_m_s = random.uniform(14, 20);
@@ -170,7 +170,7 @@ TEST_F(SlowRisk, RisesWithHeight) {
 TEST_F(SlowRisk, FallsWithTheWeightOfTheBase) {
     for (const char* field : {"wind", "earthquake"}) {
         for (int n = 0; n < variants; ++n) {
-            Random random(static_cast<std::uint64_t>(400 + n));
+            topple::Random random(static_cast<std::uint64_t>(400 + n));
             seed = static_cast<std::uint64_t>(n + 1);
             const double pole = n % 2 ? 0.1 : 0.15, foot = pole + 0.1;
             const double high = whole(random.uniform(0.8, 1.2)), to = 0.05 + pole;
@@ -194,7 +194,7 @@ TEST_F(SlowRisk, FallsWithTheWeightOfTheBase) {
 TEST_F(SlowRisk, FallsWithTheWidthOfTheBase) {
     for (const char* field : {"wind", "earthquake"}) {
         for (int n = 0; n < variants; ++n) {
-            Random random(static_cast<std::uint64_t>(500 + n));
+            topple::Random random(static_cast<std::uint64_t>(500 + n));
             seed = static_cast<std::uint64_t>(n + 1);
             const double high = whole(random.uniform(0.5, 0.9));
             wind_m_s = random.uniform(14, 25);
@@ -220,7 +220,7 @@ TEST_F(SlowRisk, FallsWithTheWidthOfTheBase) {
 // The chance alone: what falls anyway releases more from the higher pass over a wider base.
 TEST_F(SlowRisk, FallsWithTheWidthOfAHiddenBase) {
     for (int n = 0; n < variants; ++n) {
-        Random random(static_cast<std::uint64_t>(800 + n));
+        topple::Random random(static_cast<std::uint64_t>(800 + n));
         seed = static_cast<std::uint64_t>(n + 1);
         const double high = whole(random.uniform(0.5, 0.8)), density = random.uniform(100, 300);
         std::vector<safety::Risk> series;
@@ -239,7 +239,7 @@ TEST_F(SlowRisk, FallsWithTheWidthOfAHiddenBase) {
 
 TEST_F(SlowRisk, RisesWithTheWind) {
     for (int n = 0; n < variants; ++n) {
-        Random random(static_cast<std::uint64_t>(600 + n));
+        topple::Random random(static_cast<std::uint64_t>(600 + n));
         const Column column = random_column(random);
         std::vector<safety::Risk> series;
         for (const double speed : {3.0, 8.0, 12.0, 16.0, 24.0, 40.0}) {
@@ -255,7 +255,7 @@ TEST_F(SlowRisk, RisesWithTheWind) {
 
 // Sums of sines under an envelope; its peak is 1.
 Accelerogram shaking(std::uint64_t of_seed) {
-    Random random(of_seed);
+    topple::Random random(of_seed);
     Accelerogram out;
     out.step_s = 0.02;
     out.m_s2.assign(500, 0.0);
@@ -278,7 +278,7 @@ TEST_F(SlowRisk, RisesWithThePeakOfTheGround) {
     const std::vector<double> peaks{0.2, 1.0, 2.0, 4.0, 8.0};
     std::vector<safety::Risk> mean(peaks.size());
     for (int n = 0; n < variants; ++n) {
-        Random random(static_cast<std::uint64_t>(700 + n));
+        topple::Random random(static_cast<std::uint64_t>(700 + n));
         seed = static_cast<std::uint64_t>(n + 1);
         const Column column = random_column(random);
         Room room(voxel_m);
