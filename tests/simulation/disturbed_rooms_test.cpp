@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <numbers>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "core/random.h"
 #include "device/devices.h"
 #include "host/pipeline/assessed_room.h"
+#include "host/safety/random_shaking.h"
 #include "safety/columns.h"
 #include "safety/objects.h"
 #include "simulation/simulation.h"
@@ -114,25 +114,6 @@ Simulation of_object(const Layout& layout, const safety::Surroundings& around, s
     return {body, fixed, mu};
 }
 
-// Sums of sines under an envelope, 10 s; its peak is 1.
-Accelerogram shaking(std::uint64_t seed) {
-    Random random(seed);
-    Accelerogram out;
-    out.step_s = 0.02;
-    out.m_s2.assign(500, 0.0);
-    for (int wave = 0; wave < 8; ++wave) {
-        const double period_s = random.uniform(0.2, 1.2), phase = random.uniform(0, 6.28);
-        for (std::size_t n = 0; n < out.m_s2.size(); ++n) {
-            const double t = out.step_s * static_cast<double>(n);
-            out.m_s2[n] += std::sin(2 * std::numbers::pi * t / period_s + phase) *
-                           std::sin(std::numbers::pi * t / 10);
-        }
-    }
-    const double peak = out.peak_m_s2();
-    for (double& a : out.m_s2) a /= peak;
-    return out;
-}
-
 double at_time(const Accelerogram& record, double seconds) {
     const double at = seconds / record.step_s;
     const auto n = static_cast<std::size_t>(at);
@@ -201,7 +182,7 @@ class SlowDisturbances : public ::testing::Test {
 
 TEST_F(SlowDisturbances, Earthquake) {
     const auto record = [](std::uint64_t seed) {
-        Accelerogram r = shaking(seed);
+        Accelerogram r = test::random_shaking(seed);
         for (double& a : r.m_s2) a *= 0.5 + 2 * static_cast<double>(seed);
         return r;
     };

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <numbers>
 #include <string>
 
 #include "assessed_room.h"
 #include "core/random.h"
 #include "device/devices.h"
+#include "host/safety/random_shaking.h"
 #include "topple/input.h"
 
 // What makes a thing less safe raises its risk, from voxels to joules: barriers and S(W) of the
@@ -253,25 +253,6 @@ TEST_F(SlowRisk, RisesWithTheWind) {
     }
 }
 
-// Sums of sines under an envelope; its peak is 1.
-Accelerogram shaking(std::uint64_t of_seed) {
-    topple::Random random(of_seed);
-    Accelerogram out;
-    out.step_s = 0.02;
-    out.m_s2.assign(500, 0.0);
-    for (int wave = 0; wave < 8; ++wave) {
-        const double period_s = random.uniform(0.2, 1.2), phase = random.uniform(0, 6.28);
-        for (std::size_t n = 0; n < out.m_s2.size(); ++n) {
-            const double t = out.step_s * static_cast<double>(n);
-            out.m_s2[n] += std::sin(2 * std::numbers::pi * t / period_s + phase) *
-                           std::sin(std::numbers::pi * t / 10);
-        }
-    }
-    const double peak = out.peak_m_s2();
-    for (double& a : out.m_s2) a /= peak;
-    return out;
-}
-
 // By pulses for each column. Rocking under a record is not monotone (a stronger quake may catch a
 // column the other way), so by records for the mean of all.
 TEST_F(SlowRisk, RisesWithThePeakOfTheGround) {
@@ -289,7 +270,7 @@ TEST_F(SlowRisk, RisesWithThePeakOfTheGround) {
             pga_m_s2 = peaks[p];
             record.reset();
             series.push_back(of(room, id, "earthquake"));
-            record = shaking(seed);
+            record = test::random_shaking(seed);
             for (double& a : record->m_s2) a *= peaks[p];
             const safety::Risk shaken = of(room, id, "earthquake");
             mean[p].mean_J += shaken.mean_J / variants;
