@@ -156,10 +156,12 @@ int run(Arguments& a) {
 
 Command add_parse(CLI::App& app) {
     auto a = std::make_shared<Arguments>();
-    app.add_option(
-           "INPUT", a->input,
-           "A point cloud (.ply, .pcd, .xyz), a sequence folder (depth/*.png, intrinsics.json,\n"
-           "trajectory.txt), or the same folder without a trajectory: a single frame")
+    app.add_option("INPUT", a->input,
+                   "A point cloud (.ply, .pcd, .xyz), a sequence folder (depth/*.png, "
+                   "intrinsics.json, and\n"
+                   "trajectory.txt, trajectory.log or poses.txt), or the same folder without a "
+                   "trajectory:\n"
+                   "a single frame")
         ->required();
     app.add_option(
         "-o,--output", a->out,

@@ -2,7 +2,6 @@
 #include "io/frame_sequence.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -16,7 +15,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uint32_t most_pixels_a_side = 32768;
-constexpr double farthest_m = 1e6;
 
 double positive_number(const fs::path& file, const nlohmann::json& json, const char* key,
                        bool may_be_zero = false) {
@@ -43,50 +41,19 @@ std::uint32_t side(const fs::path& file, const nlohmann::json& json, const char*
     return static_cast<std::uint32_t>(value);
 }
 
-// Camera to world from a position and a unit quaternion x y z w, row-major.
-Mat4 pose(const std::array<double, 3>& p, const std::array<double, 4>& q) {
-    const auto [x, y, z, w] = q;
-    return {1 - 2 * (y * y + z * z),
-            2 * (x * y - w * z),
-            2 * (x * z + w * y),
-            p[0],
-            2 * (x * y + w * z),
-            1 - 2 * (x * x + z * z),
-            2 * (y * z - w * x),
-            p[1],
-            2 * (x * z - w * y),
-            2 * (y * z + w * x),
-            1 - 2 * (x * x + y * y),
-            p[2],
-            0,
-            0,
-            0,
-            1};
-}
-
-Mat4 parse_pose(const fs::path& file, std::uint64_t line_number, std::string_view line) {
-    const auto bad = [&](const std::string& message) {
-        fail(file, "line " + std::to_string(line_number) + ": " + message);
-    };
-    std::array<double, 8> v{};
-    for (std::size_t i = 0; i < v.size(); ++i) {
-        const auto token = next_token(line);
-        if (token.empty()) bad(std::to_string(i) + " of the 8 numbers t x y z qx qy qz qw");
-        if (!parse_number(token, v[i]) || !std::isfinite(v[i])) {
-            bad(in_quotes(token) + " is not a finite number");
+// The one file of poses that the folder has, if any.
+std::optional<fs::path> find_trajectory(const fs::path& folder) {
+    std::optional<fs::path> found;
+    std::error_code error;
+    for (const char* name : {"trajectory.txt", "trajectory.log", "poses.txt"}) {
+        if (!fs::exists(folder / name, error)) continue;
+        if (found) {
+            fail(folder, "has both " + found->filename().string() + " and " + name +
+                             "; keep the one whose poses are meant");
         }
+        found = folder / name;
     }
-    if (!next_token(line).empty()) bad("more than the 8 numbers t x y z qx qy qz qw");
-    for (std::size_t i = 1; i < 4; ++i) {
-        if (std::abs(v[i]) > farthest_m) {
-            bad("position " + short_number(v[i]) + " is beyond the limit of 1e+06 m; use metres");
-        }
-    }
-    const double norm = std::hypot(std::hypot(v[4], v[5]), std::hypot(v[6], v[7]));
-    if (!std::isfinite(norm) || norm < 1e-6) {
-        bad("the quaternion has length " + short_number(norm) + " and gives no rotation");
-    }
-    return pose({v[1], v[2], v[3]}, {v[4] / norm, v[5] / norm, v[6] / norm, v[7] / norm});
+    return found;
 }
 
 // depth/*.png by name; hidden files are other programs'.
@@ -96,7 +63,7 @@ std::vector<fs::path> list_images(const fs::path& folder) {
     if (!fs::is_directory(depth, error)) {
         fail(folder,
              "has no folder depth/; a sequence has depth/*.png, intrinsics.json and "
-             "trajectory.txt");
+             "a trajectory.txt, trajectory.log or poses.txt");
     }
     std::vector<fs::path> images;
     fs::directory_iterator entry(depth, error);
@@ -158,20 +125,6 @@ Intrinsics read_intrinsics(const fs::path& file) {
     return intrinsics;
 }
 
-std::vector<Mat4> read_trajectory(const fs::path& file) {
-    const auto bytes = read_file(file);
-    Lines lines(bytes.text());
-    std::vector<Mat4> poses;
-    std::string_view line;
-    while (lines.next(line)) {
-        line = line.substr(0, line.find('#'));
-        auto rest = line;
-        if (next_token(rest).empty()) continue;
-        poses.push_back(parse_pose(file, lines.number(), line));
-    }
-    return poses;
-}
-
 FrameSequence FrameSequence::open(const fs::path& folder) {
     FrameSequence sequence;
     sequence.images_ = list_images(folder);
@@ -184,22 +137,22 @@ FrameSequence FrameSequence::open(const fs::path& folder) {
     }
     sequence.intrinsics_ = read_intrinsics(intrinsics);
 
-    const auto trajectory = folder / "trajectory.txt";
-    sequence.posed_ = fs::exists(trajectory, error);
+    const auto trajectory = find_trajectory(folder);
+    sequence.posed_ = trajectory.has_value();
     const auto frames = sequence.images_.size();
-    if (sequence.posed_) {
-        sequence.poses_ = read_trajectory(trajectory);
+    if (trajectory) {
+        sequence.poses_ = read_trajectory(*trajectory);
         if (sequence.poses_.size() != frames) {
-            fail(trajectory, "has " + counted(sequence.poses_.size(), "pose") + " for " +
-                                 counted(frames, "depth image") +
-                                 "; it must have one line `t x y z qx qy qz qw` for each");
+            fail(*trajectory, "has " + counted(sequence.poses_.size(), "pose") + " for " +
+                                  counted(frames, "depth image") + "; it must have one for each");
         }
     } else if (frames == 1) {
         sequence.poses_.push_back(DepthFrame{}.camera_to_world);
     } else {
-        fail(folder, "has " + std::to_string(frames) +
-                         " depth images but no trajectory.txt; add one with a line "
-                         "`t x y z qx qy qz qw` per image (camera to world), or keep one image");
+        fail(folder,
+             "has " + std::to_string(frames) +
+                 " depth images but no trajectory.txt, trajectory.log or poses.txt; add one "
+                 "with a pose per image (camera to world), or keep one image");
     }
     return sequence;
 }

@@ -13,9 +13,9 @@ namespace topple::io {
 // A folder of depth images:
 //   depth/*.png       16-bit grey, metres = value / depth_scale, 0 = no reading; in order of name
 //   intrinsics.json   {"width", "height", "fx", "fy", "cx", "cy", "depth_scale"}
-//   trajectory.txt    one line `t x y z qx qy qz qw` per image (TUM): camera to world, metres;
-//                     camera x right, y down, z forward. # starts comments.
-// Without trajectory.txt it must hold one image; its camera is then the world's origin.
+//   trajectory.txt    a pose per image, camera to world, metres; camera x right, y down, z forward:
+//                     see read_trajectory(). Or trajectory.log, or poses.txt; one of them.
+// Without any it must hold one image; its camera is then the world's origin.
 class FrameSequence {
   public:
     // Reads all but the images. Throws Error(input) naming the file that is missing or wrong.
@@ -23,7 +23,7 @@ class FrameSequence {
 
     const Intrinsics& intrinsics() const { return intrinsics_; }
     std::size_t size() const { return images_.size(); }
-    bool posed() const { return posed_; }  // trajectory.txt is there
+    bool posed() const { return posed_; }  // there is a file of poses
     const std::filesystem::path& image(std::size_t index) const { return images_.at(index); }
     const Mat4& camera_to_world(std::size_t index) const { return poses_.at(index); }
 
@@ -48,8 +48,16 @@ bool looks_like_sequence(const std::filesystem::path& path);
 
 // The parts of open() and load(), for tests.
 Intrinsics read_intrinsics(const std::filesystem::path& file);
-std::vector<Mat4> read_trajectory(const std::filesystem::path& file);
 std::vector<std::uint16_t> read_depth_png(const std::filesystem::path& file, std::uint32_t width,
                                           std::uint32_t height);
+
+// Poses, camera to world, the first of the first image in order of name. Whatever the file's name,
+// its first line tells what it is; # starts comments:
+//   8 numbers   TUM: `t x y z qx qy qz qw`; line n is the n-th image's
+//   12 numbers  KITTI: three rows of a matrix, [R | t], in one line; line n is the n-th image's
+//   3 numbers   Open3D: a line of three whole numbers, of which the first is the number of the
+//               image, from 0, then four lines of a 4x4 matrix. Any order; each image once.
+// Matrices must be rotations to 1e-3, and are made so exactly. Throws Error(input) naming the line.
+std::vector<Mat4> read_trajectory(const std::filesystem::path& file);
 
 }  // namespace topple::io
