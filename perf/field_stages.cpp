@@ -32,8 +32,9 @@ std::vector<Result> measure_fields(device::Device& device, const StageScene& sce
     ParseOptions options;
     StageClock clock(timings, options);
     GeometryStage geometry = scene.geometry;
-    const VoxelStage voxels = make_solids(device, scene.ingested, geometry, stage_voxel_m, clock);
-    const ObjectStage objects = find_objects(device, geometry, voxels, options, clock);
+    VoxelStage voxels = make_solids(device, scene.ingested, geometry, stage_voxel_m, clock);
+    const SolidParts parts = solid_parts(geometry, voxels);
+    const ObjectStage objects = find_objects(device, parts, options, clock);
     std::vector<Result> out;
     for (const Field& field : fields) {
         options.disturbances = {field.name};
@@ -43,8 +44,7 @@ std::vector<Result> measure_fields(device::Device& device, const StageScene& sce
         for (unsigned n = 0; n <= runs; ++n) {
             timings.clear();
             const device::Counters before = device.counters();
-            const SafetyStage safety =
-                assess_safety(device, geometry, voxels, objects, options, clock);
+            const SafetyStage safety = assess_safety(device, parts, objects, options, clock);
             if (n == 0) {
                 result.hash = Hash().add(safety.disturbances.at(0).exposure).value();
                 continue;

@@ -13,22 +13,20 @@
 namespace topple {
 namespace {
 
-void add_primitives(const GeometryStage& geometry, const ObjectStage& objects,
-                    const ToInput& to_input, Scene& scene) {
+void add_primitives(const SolidParts& parts, const ObjectStage& objects, const ToInput& to_input,
+                    Scene& scene) {
     for (std::size_t p = 0; p < objects.bodies.size(); ++p) {
         const physics::Body& body = objects.bodies[p];
         Primitive out;
         out.id = static_cast<std::int32_t>(p);
         out.object = objects.object_of_primitive[p];
-        out.model = geometry.primitives.model[p];
+        out.model = parts.model[p];
+        out.points = parts.points[p];
         out.solid_voxels = body.voxels;
         out.volume_m3 = body.volume_m3;
         out.mass_kg = body.mass_kg;
         out.center_of_mass_m = to_input(body.center);
         scene.primitives.push_back(std::move(out));
-    }
-    for (const std::int32_t p : geometry.primitive_of_point) {
-        if (p >= 0) ++scene.primitives[static_cast<std::size_t>(p)].points;
     }
 }
 
@@ -124,20 +122,21 @@ void add_points(const Ingested& input, const GeometryStage& geometry, const Obje
 }
 
 // Each field's strength at the solid voxels it acts on, for volume.vdb.
-void add_exposures(const SafetyStage& safety, VoxelStage& voxels) {
-    const vdb::Tiles tiles = voxels.scene->tiles();
+void add_exposures(const SafetyStage& safety, const physics::SolidCells& cells,
+                   vdb::VoxelScene& voxels) {
+    const vdb::Tiles tiles = voxels.tiles();
     std::map<std::array<std::int32_t, 3>, std::size_t> leaf;
     for (std::size_t n = 0; n < tiles.size(); ++n) leaf[{tiles.x[n], tiles.y[n], tiles.z[n]}] = n;
     for (const safety::Disturbance& d : safety.disturbances) {
         std::vector<float> values(tiles.size() * 512, 0.0f);
         for (std::size_t c = 0; c < d.exposure.size(); ++c) {
-            const std::int32_t i = voxels.cells.i[c], j = voxels.cells.j[c], k = voxels.cells.k[c];
+            const std::int32_t i = cells.i[c], j = cells.j[c], k = cells.k[c];
             const auto at = leaf.find({i & ~7, j & ~7, k & ~7});
             if (at == leaf.end()) continue;
             values[at->second * 512 +
                    static_cast<std::size_t>((i & 7) * 64 + (j & 7) * 8 + (k & 7))] = d.exposure[c];
         }
-        voxels.scene->add_field(d.name, tiles, values);
+        voxels.add_field(d.name, tiles, values);
     }
 }
 
@@ -214,31 +213,36 @@ void note_uncertain_barriers(Scene& scene) {
 
 }  // namespace
 
-void assemble(const Ingested& input, const GeometryStage& geometry, VoxelStage& voxels,
-              const ObjectStage& objects, const SafetyStage& safety, Scene& scene) {
-    const std::array<Vec3, 3>& axes = geometry.frame.axes;
+void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
+                      const SafetyStage& safety, Scene& scene) {
+    const std::array<Vec3, 3>& axes = parts.frame.axes;
     const ToInput to_input(axes);
     scene.up = axes[2];
-    scene.up_method = geometry.frame.up_method;
-    scene.manhattan_found = geometry.frame.found;
+    scene.up_method = parts.frame.up_method;
+    scene.manhattan_found = parts.frame.found;
     scene.manhattan_from_input = {
         axes[0][0], axes[0][1], axes[0][2], 0, axes[1][0], axes[1][1], axes[1][2], 0,
         axes[2][0], axes[2][1], axes[2][2], 0, 0,          0,          0,          1};
-    add_primitives(geometry, objects, to_input, scene);
+    add_primitives(parts, objects, to_input, scene);
     add_objects(objects, safety, to_input, scene);
     add_contacts(objects, to_input, scene);
-    add_points(input, geometry, objects, scene);
-    voxels.scene->set_objects(objects.object_of_primitive);
-    scene.solid = voxels.scene->solid_voxels();
-    add_exposures(safety, voxels);
     add_fields(safety, to_input, scene);
     add_walks(safety, to_input, scene);
     note_unsettled_search(scene);
     note_crowded_objects(scene);
     note_uncertain_barriers(scene);
     scene.swc_energy = objects.grouping.energy_curve;
-    explain(geometry, objects, to_input, scene);
+    explain(parts, objects, to_input, scene);
     foretell(objects, safety.advice, to_input, scene);
+}
+
+void assemble_points(const Ingested& input, const GeometryStage& geometry, const SolidParts& parts,
+                     const ObjectStage& objects, const SafetyStage& safety, vdb::VoxelScene& voxels,
+                     Scene& scene) {
+    add_points(input, geometry, objects, scene);
+    voxels.set_objects(objects.object_of_primitive);
+    scene.solid = voxels.solid_voxels();
+    add_exposures(safety, parts.cells, voxels);
 }
 
 }  // namespace topple

@@ -5,14 +5,20 @@
 #include "pipeline/ingest.h"
 #include "pipeline/object_stage.h"
 #include "pipeline/safety_stage.h"
+#include "pipeline/solid_parts.h"
 #include "pipeline/voxel_stage.h"
 #include "topple/scene.h"
 
 namespace topple {
 
-// Gathers what the stages found into the public result, in the input's frame, and hands the objects
-// and fields to the voxel grids.
-void assemble(const Ingested& input, const GeometryStage& geometry, VoxelStage& voxels,
-              const ObjectStage& objects, const SafetyStage& safety, Scene& scene);
+// Gathers what was found of primitives, objects and fields into the public result, in the input's
+// frame.
+void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
+                      const SafetyStage& safety, Scene& scene);
+
+// Adds the points and the solid voxels, and hands objects and fields to the voxel grids.
+void assemble_points(const Ingested& input, const GeometryStage& geometry, const SolidParts& parts,
+                     const ObjectStage& objects, const SafetyStage& safety, vdb::VoxelScene& voxels,
+                     Scene& scene);
 
 }  // namespace topple

@@ -37,19 +37,19 @@ double azimuth(const Vec3& way) {
     return degrees < 0 ? degrees + 360 : degrees;
 }
 
-std::string what(const Scene& scene, const GeometryStage& geometry, std::int32_t primitive) {
+std::string what(const Scene& scene, const SolidParts& parts, std::int32_t primitive) {
     if (primitive < 0) return "what lies below";
     const auto at = static_cast<std::size_t>(primitive);
-    if (geometry.structure[at] == geometry::Structure::floor) return "the floor";
+    if (parts.structure[at] == geometry::Structure::floor) return "the floor";
     const Object& object = scene.objects[static_cast<std::size_t>(scene.primitives[at].object)];
     return object.grounded ? "the ground" : "object " + std::to_string(object.id);
 }
 
 class Sentence {
   public:
-    Sentence(const Scene& scene, const GeometryStage& geometry, const StableObject& from,
+    Sentence(const Scene& scene, const SolidParts& parts, const StableObject& from,
              const Object& object)
-        : scene_(scene), geometry_(geometry), from_(from), object_(object), why_(object.why) {}
+        : scene_(scene), parts_(parts), from_(from), object_(object), why_(object.why) {}
 
     std::string text() const {
         if (object_.grounded) return "It is the ground, or fixed to it: it can't fall.";
@@ -108,12 +108,12 @@ class Sentence {
     }
     std::string falls() const {
         return "falls " + length(why_.drop_m) + " to " +
-               what(scene_, geometry_, from_.instability.onto);
+               what(scene_, parts_, from_.instability.onto);
     }
     std::string released() const { return " and releases " + energy(why_.S_J) + "."; }
 
     const Scene& scene_;
-    const GeometryStage& geometry_;
+    const SolidParts& parts_;
     const StableObject& from_;
     const Object& object_;
     const Why& why_;
@@ -121,7 +121,7 @@ class Sentence {
 
 }  // namespace
 
-void explain(const GeometryStage& geometry, const ObjectStage& objects, const ToInput& to_input,
+void explain(const SolidParts& parts, const ObjectStage& objects, const ToInput& to_input,
              Scene& scene) {
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
         const StableObject& from = objects.objects[o];
@@ -138,7 +138,7 @@ void explain(const GeometryStage& geometry, const ObjectStage& objects, const To
             if (step.drop_m > 0 && step.onto >= 0)
                 why.lands_on = objects.object_of_primitive[static_cast<std::size_t>(step.onto)];
         }
-        why.sentence = Sentence(scene, geometry, from, object).text();
+        why.sentence = Sentence(scene, parts, from, object).text();
     }
 }
 

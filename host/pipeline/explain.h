@@ -4,8 +4,8 @@
 #include <array>
 
 #include "pipeline/advise.h"
-#include "pipeline/geometry_stage.h"
 #include "pipeline/object_stage.h"
+#include "pipeline/solid_parts.h"
 #include "topple/scene.h"
 
 namespace topple {
@@ -26,7 +26,7 @@ class ToInput {
 };
 
 // Fills in each object's `why`, but for what it stands on: that and the energies are there already.
-void explain(const GeometryStage& geometry, const ObjectStage& objects, const ToInput& to_input,
+void explain(const SolidParts& parts, const ObjectStage& objects, const ToInput& to_input,
              Scene& scene);
 
 // Fills in each object's `fall` and `advice`, from `why` and the supports.

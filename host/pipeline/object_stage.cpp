@@ -16,9 +16,9 @@ namespace {
 // 10 f^2 + 2 = 2562 directions: neighbours are 4 degrees apart.
 constexpr unsigned sphere_frequency = 16;
 
-std::vector<bool> shell(const GeometryStage& geometry) {
+std::vector<bool> shell(const SolidParts& parts) {
     std::vector<bool> ground;
-    for (const geometry::Structure s : geometry.structure)
+    for (const geometry::Structure s : parts.structure)
         ground.push_back(s != geometry::Structure::none);
     return ground;
 }
@@ -57,20 +57,19 @@ void collect_objects(const std::vector<bool>& ground, ObjectStage& out) {
 
 }  // namespace
 
-PartStage weigh_parts(device::Device& device, const GeometryStage& geometry,
-                      const VoxelStage& voxels, const ParseOptions& options, StageClock& stage) {
-    const auto count = static_cast<std::int32_t>(geometry.primitives.model.size());
+PartStage weigh_parts(device::Device& device, const SolidParts& parts, const ParseOptions& options,
+                      StageClock& stage) {
+    const auto count = static_cast<std::int32_t>(parts.model.size());
     const std::vector<double> density(static_cast<std::size_t>(count), options.density_kg_m3);
     std::vector<physics::Body> bodies = stage(
-        "bodies", [&] { return physics::mass_properties(device, voxels.cells, count, density); });
+        "bodies", [&] { return physics::mass_properties(device, parts.cells, count, density); });
     graph::ContactGraph contacts =
-        stage("contacts", [&] { return graph::build_contact_graph(device, voxels.cells, count); });
+        stage("contacts", [&] { return graph::build_contact_graph(device, parts.cells, count); });
     physics::SupportTable table = stage("supports", [&] {
-        return physics::SupportTable(device, voxels.cells, count,
+        return physics::SupportTable(device, parts.cells, count,
                                      physics::geodesic_sphere(sphere_frequency));
     });
-    return {std::move(bodies), std::move(contacts), std::move(table), surface_seams(geometry),
-            shell(geometry)};
+    return {std::move(bodies), std::move(contacts), std::move(table), parts.seams, shell(parts)};
 }
 
 std::vector<Support> supports_between(const graph::ContactGraph& contacts,
@@ -141,10 +140,10 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
     });
 }
 
-ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
-                         const VoxelStage& voxels, const ParseOptions& options, StageClock& stage) {
+ObjectStage find_objects(device::Device& device, const SolidParts& solid,
+                         const ParseOptions& options, StageClock& stage) {
     ObjectStage out;
-    PartStage parts = weigh_parts(device, geometry, voxels, options, stage);
+    PartStage parts = weigh_parts(device, solid, options, stage);
     out.bodies = std::move(parts.bodies);
     out.contacts = std::move(parts.contacts);
     const physics::SupportTable& table = parts.table;
@@ -153,12 +152,12 @@ ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
         grouping.seed = options.seed;
         grouping.time_limit_s = options.grouping_time_s.value_or(0);
         grouping.cancelled = options.cancelled;
-        out.grouping = graph::group_primitives(device, table, voxels.cells, out.contacts,
-                                               out.bodies, parts.seams, parts.shell, grouping);
+        out.grouping = graph::group_primitives(device, table, solid.cells, out.contacts, out.bodies,
+                                               parts.seams, parts.shell, grouping);
     });
     stage("barriers", [&] {
         collect_objects(parts.shell, out);
-        find_barriers(device, table, voxels.cells, out.object_of_primitive, options.friction,
+        find_barriers(device, table, solid.cells, out.object_of_primitive, options.friction,
                       out.objects);
     });
     return out;

@@ -10,9 +10,8 @@
 #include "physics/bodies.h"
 #include "physics/landscape.h"
 #include "physics/sliding.h"
-#include "pipeline/geometry_stage.h"
+#include "pipeline/solid_parts.h"
 #include "pipeline/stage_clock.h"
-#include "pipeline/voxel_stage.h"
 
 // Sections 3 and 4 of the paper: from solid primitives to stable objects. Grid frame.
 namespace topple {
@@ -47,8 +46,8 @@ struct PartStage {
     graph::SurfaceSeams seams;
     std::vector<bool> shell;  // by primitive: floor, wall or ceiling
 };
-PartStage weigh_parts(device::Device& device, const GeometryStage& geometry,
-                      const VoxelStage& voxels, const ParseOptions& options, StageClock& stage);
+PartStage weigh_parts(device::Device& device, const SolidParts& parts, const ParseOptions& options,
+                      StageClock& stage);
 
 // Which object carries which, by the contacts of their primitives; what is `grounded` carries and
 // is not carried. Sorted by (supporter, supported).
@@ -63,7 +62,7 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
                    std::span<const std::int32_t> object_of_primitive, double friction,
                    std::vector<StableObject>& objects);
 
-ObjectStage find_objects(device::Device& device, const GeometryStage& geometry,
-                         const VoxelStage& voxels, const ParseOptions& options, StageClock& stage);
+ObjectStage find_objects(device::Device& device, const SolidParts& solid,
+                         const ParseOptions& options, StageClock& stage);
 
 }  // namespace topple

@@ -100,10 +100,13 @@ ParseResult parse_ingested(device::Device& device, const Ingested& input,
                         std::to_string(least_voxels) +
                         " voxels that a solid takes; give a denser scan, or a smaller --voxel");
     }
-    const ObjectStage objects = find_objects(device, geometry, voxels, options, stage);  // 3, 4
-    const SafetyStage safety =
-        assess_safety(device, geometry, voxels, objects, options, stage);  // 5
-    stage("assembly", [&] { assemble(input, geometry, voxels, objects, safety, scene); });
+    const SolidParts parts = solid_parts(geometry, voxels);
+    const ObjectStage objects = find_objects(device, parts, options, stage);           // 3, 4
+    const SafetyStage safety = assess_safety(device, parts, objects, options, stage);  // 5
+    stage("assembly", [&] {
+        assemble_objects(parts, objects, safety, scene);
+        assemble_points(input, geometry, parts, objects, safety, *voxels.scene, scene);
+    });
     return {std::move(scene), std::move(voxels.scene)};
 }
 

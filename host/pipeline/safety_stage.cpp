@@ -29,14 +29,13 @@ double least_width(const std::vector<std::array<double, 2>>& polygon) {
     return least;
 }
 
-safety::Surroundings surroundings(const GeometryStage& geometry, const VoxelStage& voxels,
-                                  const ObjectStage& objects) {
+safety::Surroundings surroundings(const SolidParts& parts, const ObjectStage& objects) {
     safety::Surroundings s;
-    s.cells = &voxels.cells;
-    for (const std::int32_t p : voxels.cells.primitive) {
+    s.cells = &parts.cells;
+    for (const std::int32_t p : parts.cells.primitive) {
         s.object.push_back(p < 0 ? -1 : objects.object_of_primitive[static_cast<std::size_t>(p)]);
     }
-    for (const geometry::Structure p : geometry.structure) {
+    for (const geometry::Structure p : parts.structure) {
         s.is_floor_primitive.push_back(p == geometry::Structure::floor);
     }
     for (const physics::Body& b : objects.bodies)
@@ -79,12 +78,12 @@ std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objec
     return out;
 }
 
-SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
-                          const VoxelStage& voxels, const ObjectStage& objects,
-                          const ParseOptions& options, StageClock& stage) {
+SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
+                          const ObjectStage& objects, const ParseOptions& options,
+                          StageClock& stage) {
     SafetyStage out;
     const std::vector<safety::RiskObject> at_risk = risk_objects(objects.objects);
-    const safety::Surroundings around = surroundings(geometry, voxels, objects);
+    const safety::Surroundings around = surroundings(parts, objects);
     std::unique_ptr<safety::HumanField> walkers;
     for (const std::string& name : options.disturbances) {
         out.disturbances.push_back(stage("field " + name, [&] {
@@ -117,7 +116,7 @@ SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
         out.unsafety.resize(at_risk.size(), 1.0);
     });
     stage("advice", [&] {
-        out.advice = advise(voxels.cells, objects.object_of_primitive, objects.objects, at_risk,
+        out.advice = advise(parts.cells, objects.object_of_primitive, objects.objects, at_risk,
                             out.disturbances, out.risk, walkers.get(), options.friction,
                             options.tolerable_J);
     });

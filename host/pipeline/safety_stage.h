@@ -23,8 +23,8 @@ struct SafetyStage {
 // The objects as the fields and the risk see them; ids are their places in the list.
 std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objects);
 
-SafetyStage assess_safety(device::Device& device, const GeometryStage& geometry,
-                          const VoxelStage& voxels, const ObjectStage& objects,
-                          const ParseOptions& options, StageClock& stage);
+SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
+                          const ObjectStage& objects, const ParseOptions& options,
+                          StageClock& stage);
 
 }  // namespace topple

@@ -105,8 +105,9 @@ RoomParts scan_parts(const RoomOptions& options) {
     points.z = input.cloud.z;
     points.primitive = geometry.primitive_of_point;
     std::vector<std::int32_t> part = scenes::true_parts(world, points);
-    PartStage parts = weigh_parts(device, geometry, voxels, options.parse, stage);
-    return {std::move(world), std::move(points), std::move(part), std::move(voxels.cells),
+    SolidParts solid = solid_parts(geometry, voxels);
+    PartStage parts = weigh_parts(device, solid, options.parse, stage);
+    return {std::move(world), std::move(points), std::move(part), std::move(solid.cells),
             std::move(parts)};
 }
 
