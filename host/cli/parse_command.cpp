@@ -156,12 +156,12 @@ int run(Arguments& a) {
 
 Command add_parse(CLI::App& app) {
     auto a = std::make_shared<Arguments>();
-    app.add_option("INPUT", a->input,
-                   "A point cloud (.ply, .pcd, .xyz), a sequence folder (depth/*.png, "
-                   "intrinsics.json, and\n"
-                   "trajectory.txt, trajectory.log or poses.txt), or the same folder without a "
-                   "trajectory:\n"
-                   "a single frame")
+    app.add_option(
+           "INPUT", a->input,
+           "A point cloud (.ply, .pcd, .xyz), a mesh (.obj, .stl, .glb, .gltf, .ply with faces),\n"
+           "a sequence folder (depth/*.png, intrinsics.json, and trajectory.txt, trajectory.log "
+           "or\n"
+           "poses.txt), or the same folder without a trajectory: a single frame")
         ->required();
     app.add_option(
         "-o,--output", a->out,
@@ -173,7 +173,7 @@ Command add_parse(CLI::App& app) {
                    "Edge of a solid voxel in metres (default: from the scan's resolution)");
     app.add_option_function<std::string>(
            "--unit", [a](const std::string& unit) { a->options.unit_m = units.at(unit); },
-           "Unit of a point cloud's coordinates: m, cm, mm or in; the output is in metres")
+           "Unit of a cloud's or mesh's coordinates: m, cm, mm or in; the output is in metres")
         ->check(CLI::IsMember({"m", "cm", "mm", "in"}))
         ->default_str("m");
     app.add_option("--up", a->up,

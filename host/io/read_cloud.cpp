@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <string>
 #include <system_error>
 
 #include "io/cloud_builder.h"
 #include "io/formats.h"
+#include "io/mesh_checks.h"
+#include "io/read_mesh.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -38,11 +41,40 @@ bool starts_as_points(std::string_view bytes) {
     return false;
 }
 
-PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text) {
-    if (starts_as_ply(text)) return parse_ply(file, text);
+std::optional<MeshFormat> mesh_format(std::string_view bytes, const std::string& extension) {
+    if (bytes.starts_with("glTF") || extension == ".glb") return MeshFormat::glb;
+    if (extension == ".gltf") return MeshFormat::gltf;
+    if (extension == ".obj") return MeshFormat::obj;
+    if (extension == ".stl") return MeshFormat::stl;
+    return std::nullopt;
+}
+
+// The faces of a PLY, where it has any that show a surface, else its vertices.
+PointCloud parse_ply_or_mesh(const std::filesystem::path& file, std::string_view text,
+                             double unit_m) {
+    PointCloud cloud = parse_ply(file, text);
+    if (!ply_has_faces(text)) return cloud;
+    std::string reason = "they have no area";
+    try {
+        if (auto mesh = parse_mesh(file, text, MeshFormat::ply, unit_m)) return *std::move(mesh);
+    } catch (const Error& error) {
+        reason = error.what();
+    }
+    cloud.notes.push_back(
+        "The file's faces can't be used, so its vertices were taken alone: " + reason + ".");
+    return cloud;
+}
+
+PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text, double unit_m) {
+    if (starts_as_ply(text)) return parse_ply_or_mesh(file, text, unit_m);
     if (text.starts_with("# .PCD")) return parse_pcd(file, text);
 
     const auto extension = lower_extension(file);
+    if (const auto format = mesh_format(text, extension)) {
+        auto mesh = parse_mesh(file, text, *format, unit_m);
+        if (!mesh) fail(file, "is a mesh without any face that has an area");
+        return *std::move(mesh);
+    }
     if ((extension == ".ply" || extension == ".pcd") && starts_as_points(text)) {
         fail(file, "has no header, but lines of numbers; if these are points, name the file .xyz");
     }
@@ -54,8 +86,9 @@ PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text)
     for (const char* known : {".xyz", ".txt", ".csv", ".asc", ".pts"}) {
         if (extension == known) return parse_xyz(file, text);
     }
-    fail(file, "is no known kind of point cloud (its extension is " + in_quotes(extension) +
-                   "); give a .ply, .pcd or .xyz file, or a folder with depth/*.png");
+    fail(file, "is no known kind of point cloud or mesh (its extension is " + in_quotes(extension) +
+                   "); give a .ply, .pcd, .xyz, .obj, .stl, .glb or .gltf file, or a folder with "
+                   "depth/*.png");
 }
 
 void scale(PointCloud& cloud, double unit_m) {
@@ -74,7 +107,7 @@ PointCloud read_cloud(const std::filesystem::path& file, double unit_m) {
              "is a folder without depth/ and intrinsics.json; give a .ply, .pcd or .xyz file, "
              "or a folder with both");
     }
-    PointCloud cloud = parse_cloud(file, read_file(file).text());
+    PointCloud cloud = parse_cloud(file, read_file(file).text(), unit_m);
     if (unit_m != 1) scale(cloud, unit_m);
     note_extent(cloud);
     return cloud;

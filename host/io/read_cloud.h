@@ -10,8 +10,9 @@
 // file, the place in it, what was found and what was expected.
 namespace topple::io {
 
-// Reads a PLY, PCD or XYZ file, told apart by its first bytes and, where those say nothing, by its
-// extension (.ply, .pcd; .xyz, .txt, .csv, .asc, .pts are XYZ).
+// Reads a PLY, PCD or XYZ file, or the faces of a mesh as points (read_mesh.h), told apart by its
+// first bytes and, where those say nothing, by its extension (.ply, .pcd; .xyz, .txt, .csv, .asc,
+// .pts are XYZ; .obj, .stl, .glb, .gltf and a PLY with faces are meshes).
 //
 // Metres, the file's own frame: `unit_m` is how many metres its coordinates' unit has. Points with
 // a coordinate that is not finite are left out and counted in `dropped`; a file without a finite

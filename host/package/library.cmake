@@ -12,9 +12,9 @@ add_library(libtopple ${OBJECTS})
 add_library(topple::topple ALIAS libtopple)
 
 # What those objects need when they are linked, by package and target; what they need of others are headers.
-set(TOPPLE_LINKED_PACKAGES Threads PNG liblzf Qhull TBB OpenCL Vulkan)  # and OpenVDB, cairo
+set(TOPPLE_LINKED_PACKAGES Threads PNG liblzf Qhull TBB OpenCL Vulkan assimp)  # and OpenVDB, cairo
 target_link_libraries(libtopple PRIVATE Threads::Threads PNG::PNG liblzf::liblzf Qhull::qhull_r OpenVDB::openvdb
-                                        TBB::tbb OpenCL::OpenCL Vulkan::Vulkan cairo)
+                                        TBB::tbb OpenCL::OpenCL Vulkan::Vulkan assimp::assimp cairo)
 
 set(GENERATED_HEADERS ${CMAKE_CURRENT_BINARY_DIR}/include)
 file(GLOB HEADERS CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/include/topple/*.h)
