@@ -30,7 +30,7 @@ std::uint64_t make_key(const std::array<std::uint32_t, 3>& v) {
     return leaf << 9 | (v[0] & 7) << 6 | (v[1] & 7) << 3 | (v[2] & 7);
 }
 
-void check(const VoxelFrame& frame, const PointCloud& cloud, std::span<const std::int32_t> label) {
+void check(const VoxelFrame& frame, const CloudView& cloud, std::span<const std::int32_t> label) {
     if (!(frame.voxel_m > 0) || !std::isfinite(frame.voxel_m)) {
         throw Error(ErrorKind::usage,
                     "voxel size " + std::to_string(frame.voxel_m) + " m: it must be positive");
@@ -57,7 +57,7 @@ struct Placed {
     std::array<std::vector<double>, 3> at;
     std::array<double, 3> median{0, 0, 0};
 };
-Placed place(const VoxelFrame& frame, const PointCloud& cloud) {
+Placed place(const VoxelFrame& frame, const CloudView& cloud) {
     Placed placed;
     for (int a = 0; a < 3; ++a) {
         const Vec3& row = frame.grid_from_input[a];
@@ -120,7 +120,7 @@ std::int32_t majority(std::span<const Sample> samples) {
 
 }  // namespace
 
-VoxelScene::VoxelScene(const VoxelFrame& frame, const PointCloud& cloud,
+VoxelScene::VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
                        std::span<const std::int32_t> label)
     : grids_(std::make_unique<Grids>()) {
     check(frame, cloud, label);

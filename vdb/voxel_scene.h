@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "device/device.h"
-#include "topple/input.h"
+#include "topple/cloud_view.h"
 #include "topple/scene.h"
 
 // Sparse voxel grids of a scene. OpenVDB holds them; devices see their leaves as flat tiles.
@@ -66,7 +66,7 @@ class VoxelScene {
     // there, which belong to no primitive. Throws Error(usage) for a frame that is no rotation, a
     // voxel size that is not positive, or labels that don't match the points; Error(input) where
     // the bounds hold more leaves than memory allows.
-    VoxelScene(const VoxelFrame& frame, const PointCloud& cloud,
+    VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
                std::span<const std::int32_t> label);
     ~VoxelScene();
     VoxelScene(VoxelScene&&) noexcept;

@@ -36,8 +36,8 @@ std::array<T, 2> inner_range(std::vector<T>& values) {
 // Bounds of all points; or, where these hold over four times as much space, the inner ranges per
 // axis with a twentieth of the widest added on each side. Sides count as no shorter than `least`.
 // There must be a point.
-template <class T>
-Bounds<T> scene_bounds(const std::array<std::span<const T>, 3>& at, T least) {
+template <class T, class Values = std::span<const T>>
+Bounds<T> scene_bounds(const std::array<Values, 3>& at, T least) {
     Bounds<T> all, inner;
     T widest{};
     for (std::size_t a = 0; a < 3; ++a) {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "topple/input.h"
+#include "topple/cloud_view.h"
 
 namespace topple::geometry {
 
@@ -43,6 +43,6 @@ class FrameFusion {
 // The camera looks along z with y down or, where the points say so, along -z with y up: its upward
 // axis is the frame's -y axis (camera_to_world), the hint for find_scene_frame. Returns false where
 // the points are no pinhole image (residual above one pixel).
-bool frame_of_organised_cloud(const PointCloud& cloud, Intrinsics& intrinsics, DepthFrame& frame);
+bool frame_of_organised_cloud(const CloudView& cloud, Intrinsics& intrinsics, DepthFrame& frame);
 
 }  // namespace topple::geometry

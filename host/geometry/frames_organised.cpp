@@ -39,12 +39,13 @@ Line fit_line(const std::vector<double>& slope, const std::vector<double>& pixel
 
 }  // namespace
 
-bool frame_of_organised_cloud(const PointCloud& cloud, Intrinsics& intrinsics, DepthFrame& frame) {
+bool frame_of_organised_cloud(const CloudView& cloud, Intrinsics& intrinsics, DepthFrame& frame) {
     constexpr std::size_t least_points = 16;
     constexpr std::uint64_t most_pixels = std::uint64_t{1} << 28;
     const std::uint64_t pixels = std::uint64_t{cloud.width} * cloud.height;
     if (cloud.width < 2 || cloud.height < 2 || pixels > most_pixels ||
-        cloud.pixel.size() != cloud.size() || cloud.size() < least_points) {
+        cloud.size() < least_points ||
+        (cloud.pixel.empty() ? pixels : cloud.pixel.size()) != cloud.size()) {
         return false;
     }
     // The camera stands at the viewpoint and looks along z with y down, or (as graphics has it)
@@ -58,14 +59,14 @@ bool frame_of_organised_cloud(const PointCloud& cloud, Intrinsics& intrinsics, D
     std::size_t behind = 0;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
         const double z = side * (cloud.z[i] - eye[2]);
-        if (!(z > 0) || cloud.pixel[i] >= pixels) {
+        if (!(z > 0) || cloud.pixel_of(i) >= pixels) {
             ++behind;
             continue;
         }
         sx.push_back((cloud.x[i] - eye[0]) / z);
         sy.push_back(side * (cloud.y[i] - eye[1]) / z);
-        u.push_back(cloud.pixel[i] % cloud.width);
-        v.push_back(static_cast<double>(cloud.pixel[i] / cloud.width));
+        u.push_back(static_cast<double>(cloud.pixel_of(i) % cloud.width));
+        v.push_back(static_cast<double>(cloud.pixel_of(i) / cloud.width));
         farthest = std::max(farthest, z);
     }
     if (sx.size() < least_points || behind > cloud.size() / 100) return false;
@@ -85,9 +86,10 @@ bool frame_of_organised_cloud(const PointCloud& cloud, Intrinsics& intrinsics, D
     frame.camera_to_world = {1, 0, 0, eye[0], 0, side, 0, eye[1], 0, 0, side, eye[2], 0, 0, 0, 1};
     for (std::size_t i = 0; i < cloud.size(); ++i) {
         const double z = side * (cloud.z[i] - eye[2]);
-        if (!(z > 0) || cloud.pixel[i] >= pixels) continue;
+        if (!(z > 0) || cloud.pixel_of(i) >= pixels) continue;
         const double stored = std::round(z * intrinsics.depth_scale);
-        frame.depth[cloud.pixel[i]] = static_cast<std::uint16_t>(std::clamp(stored, 1.0, 65535.0));
+        frame.depth[cloud.pixel_of(i)] =
+            static_cast<std::uint16_t>(std::clamp(stored, 1.0, 65535.0));
     }
     return true;
 }

@@ -26,7 +26,7 @@ constexpr int least_free = 2;
 
 }  // namespace
 
-FreeSpace::FreeSpace(const Surfels& s, const PointCloud& cloud, std::span<const Vec3> viewpoints,
+FreeSpace::FreeSpace(const Surfels& s, const CloudView& cloud, std::span<const Vec3> viewpoints,
                      std::span<const std::uint32_t> viewpoint_of_point,
                      device::ThreadPool& threads) {
     if (s.size() == 0 || viewpoints.empty()) return;

@@ -24,7 +24,7 @@ class FreeSpace {
     // are not free, and a line through one of them tells nothing: viewpoints may be estimates.
     // Strays far from all others are left out, which keeps the cells small.
     // Arguments as for make_surfels; no viewpoints: nothing is known.
-    FreeSpace(const Surfels& surfels, const PointCloud& cloud, std::span<const Vec3> viewpoints,
+    FreeSpace(const Surfels& surfels, const CloudView& cloud, std::span<const Vec3> viewpoints,
               std::span<const std::uint32_t> viewpoint_of_point, device::ThreadPool& threads);
 
     bool known() const { return !cell_.empty(); }

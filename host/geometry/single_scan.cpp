@@ -36,7 +36,7 @@ struct Directions {
     std::size_t size() const { return face.size(); }
 };
 
-Directions directions_of(const PointCloud& cloud, const Vec3& eye) {
+Directions directions_of(const CloudView& cloud, const Vec3& eye) {
     Directions out;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
         const Vec3 d{cloud.x[i] - eye[0], cloud.y[i] - eye[1], cloud.z[i] - eye[2]};
@@ -111,7 +111,7 @@ class RangeGrid {
     std::vector<float> nearest_;
 };
 
-bool normals_face(const PointCloud& cloud, const Vec3& eye) {
+bool normals_face(const CloudView& cloud, const Vec3& eye) {
     std::size_t facing = 0;
     for (std::size_t i = 0; i < cloud.nx.size(); ++i) {
         facing += cloud.nx[i] * (eye[0] - cloud.x[i]) + cloud.ny[i] * (eye[1] - cloud.y[i]) +
@@ -121,7 +121,7 @@ bool normals_face(const PointCloud& cloud, const Vec3& eye) {
     return static_cast<double>(facing) >= least_facing * static_cast<double>(cloud.nx.size());
 }
 
-bool surface_at(const PointCloud& cloud, const Vec3& eye, double spacing_m) {
+bool surface_at(const CloudView& cloud, const Vec3& eye, double spacing_m) {
     const double reach = at_eye_spacings * spacing_m;
     std::size_t near = 0;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -157,7 +157,7 @@ std::optional<Vec3> customary_up(const RangeGrid& grid) {
 
 }  // namespace
 
-std::optional<SingleScan> find_single_scan(const PointCloud& cloud, const Vec3& eye,
+std::optional<SingleScan> find_single_scan(const CloudView& cloud, const Vec3& eye,
                                            double spacing_m) {
     if (cloud.size() < least_points || !normals_face(cloud, eye) ||
         surface_at(cloud, eye, spacing_m))

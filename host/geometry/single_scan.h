@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "topple/input.h"
+#include "topple/cloud_view.h"
 
 namespace topple::geometry {
 
@@ -19,7 +19,7 @@ struct SingleScan {
 // where there are any, face it. Up follows custom: of a limited view
 // along z it is -y (cameras), along -z it is y (graphics), along x it is z (robots); a view all
 // around tells nothing. Empty where the cloud must be of several views, or is too small to tell.
-std::optional<SingleScan> find_single_scan(const PointCloud& cloud, const Vec3& eye,
+std::optional<SingleScan> find_single_scan(const CloudView& cloud, const Vec3& eye,
                                            double spacing_m);
 
 }  // namespace topple::geometry

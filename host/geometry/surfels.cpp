@@ -18,7 +18,7 @@ namespace {
 // Normals are looked for on coarser grids where the cells are too sparse; this many doublings.
 constexpr int most_levels = 3;
 
-void check(const PointCloud& cloud, double cell_m, std::span<const Vec3> viewpoints,
+void check(const CloudView& cloud, double cell_m, std::span<const Vec3> viewpoints,
            std::span<const std::uint32_t> viewpoint_of_point) {
     if (!(cell_m > 0) || !std::isfinite(cell_m)) {
         throw Error(ErrorKind::usage,
@@ -43,14 +43,14 @@ void check(const PointCloud& cloud, double cell_m, std::span<const Vec3> viewpoi
 
 constexpr std::uint64_t chunk = 1 << 14;  // points or cells handed to a thread at once
 
-using Axes = std::array<const std::vector<float>*, 3>;
+using Axes = std::array<FloatColumn, 3>;
 
 // Lowest and highest cell per axis. Throws Error(input) where they lie too far apart.
-CellPacking packing_of(const PointCloud& cloud, const Axes& p, double cell_m,
+CellPacking packing_of(const CloudView& cloud, const Axes& p, double cell_m,
                        device::ThreadPool& threads) {
     std::array<std::array<float, 2>, 3> range{};
     threads.each(3, 1, [&](std::size_t a) {
-        const auto [low, high] = std::minmax_element(p[a]->begin(), p[a]->end());
+        const auto [low, high] = std::minmax_element(p[a].begin(), p[a].end());
         range[a] = {*low, *high};
     });
     std::array<std::int64_t, 3> lowest{}, highest{};
@@ -77,9 +77,9 @@ CellPacking packing_of(const PointCloud& cloud, const Axes& p, double cell_m,
 constexpr double cell_steps = 0x1p32;
 
 // The cells of the points and their moments.
-CellGrid bin(const PointCloud& cloud, double cell_m, device::ThreadPool& threads,
+CellGrid bin(const CloudView& cloud, double cell_m, device::ThreadPool& threads,
              std::vector<std::uint32_t>& of_point, std::vector<float>& count) {
-    const Axes p{&cloud.x, &cloud.y, &cloud.z};
+    const Axes p{cloud.x, cloud.y, cloud.z};
     const std::size_t n = cloud.size();
     CellGrid grid;
     grid.cell_m = cell_m;
@@ -105,7 +105,7 @@ CellGrid bin(const PointCloud& cloud, double cell_m, device::ThreadPool& threads
             of_point[i] = static_cast<std::uint32_t>(cell);
             std::array<double, 3> d{};
             for (std::size_t a = 0; a < 3; ++a) {
-                d[a] = (*p[a])[i] / cell_m - (static_cast<double>(at[a]) + 0.5);
+                d[a] = p[a][i] / cell_m - (static_cast<double>(at[a]) + 0.5);
                 sum[a] += steps(d[a]);
                 products[a] += steps(d[a] * d[a]);
             }
@@ -200,7 +200,7 @@ Surfels from_grid(const CellGrid& grid) {
 
 }  // namespace
 
-Surfels make_surfels(device::Device& device, const PointCloud& cloud, double cell_m,
+Surfels make_surfels(device::Device& device, const CloudView& cloud, double cell_m,
                      std::span<const Vec3> viewpoints,
                      std::span<const std::uint32_t> viewpoint_of_point) {
     check(cloud, cell_m, viewpoints, viewpoint_of_point);

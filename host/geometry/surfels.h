@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "device/device.h"
-#include "topple/input.h"
+#include "topple/cloud_view.h"
 
 namespace topple::geometry {
 
@@ -34,13 +34,13 @@ struct Surfels {
 // where its sensor was: one viewpoint per point as an index into `viewpoints`; where the span is
 // empty, all points use viewpoint 0; where there are no viewpoints, stored normals orient, and else
 // the sign is arbitrary but consistent over smooth neighbourhoods.
-Surfels make_surfels(device::Device& device, const PointCloud& cloud, double cell_m,
+Surfels make_surfels(device::Device& device, const CloudView& cloud, double cell_m,
                      std::span<const Vec3> viewpoints,
                      std::span<const std::uint32_t> viewpoint_of_point);
 
 // Typical distance of a point to its nearest neighbour, metres: the median over a sample of places,
 // but no less than what joins three quarters of the surface, where most points lie on little of it.
 // 0 where there are fewer than two places. The points' order and repetitions play no part.
-double point_spacing(const PointCloud& cloud);
+double point_spacing(const CloudView& cloud);
 
 }  // namespace topple::geometry

@@ -73,7 +73,7 @@ void orient_by_neighbours(Surfels& s) {
 
 }  // namespace
 
-Orientation sensor_side(const Surfels& s, const PointCloud& cloud, std::span<const Vec3> viewpoints,
+Orientation sensor_side(const Surfels& s, const CloudView& cloud, std::span<const Vec3> viewpoints,
                         std::span<const std::uint32_t> viewpoint_of_point,
                         device::ThreadPool& threads) {
     Orientation result;

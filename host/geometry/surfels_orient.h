@@ -17,7 +17,7 @@ namespace topple::geometry {
 struct Orientation {
     std::array<std::vector<double>, 3> towards;
 };
-Orientation sensor_side(const Surfels& surfels, const PointCloud& cloud,
+Orientation sensor_side(const Surfels& surfels, const CloudView& cloud,
                         std::span<const Vec3> viewpoints,
                         std::span<const std::uint32_t> viewpoint_of_point,
                         device::ThreadPool& threads);

@@ -33,13 +33,13 @@ std::uint64_t hash_of(std::int64_t x, std::int64_t y, std::int64_t z) {
     };
     return mixed(mixed(mixed(0, x), y), z);
 }
-std::uint64_t place_hash(const PointCloud& cloud, std::size_t i) {
+std::uint64_t place_hash(const CloudView& cloud, std::size_t i) {
     const auto bits = [](float v) { return std::int64_t{std::bit_cast<std::int32_t>(v + 0.0f)}; };
     return hash_of(bits(cloud.x[i]), bits(cloud.y[i]), bits(cloud.z[i]));
 }
 
 // Points at that many different places, evenly over the points: those of the lowest hashes.
-std::vector<std::size_t> sample_places(const PointCloud& cloud, std::size_t samples) {
+std::vector<std::size_t> sample_places(const CloudView& cloud, std::size_t samples) {
     std::map<std::uint64_t, std::size_t> lowest;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
         const std::uint64_t hash = place_hash(cloud, i);
@@ -54,7 +54,7 @@ std::vector<std::size_t> sample_places(const PointCloud& cloud, std::size_t samp
 
 // Points of that many different blocks of space, evenly over the surface that was scanned: of each
 // block the point with the lowest hash. Blocks of a few points are strays.
-std::vector<std::size_t> sample_area(const PointCloud& cloud, std::size_t samples, double block_m) {
+std::vector<std::size_t> sample_area(const CloudView& cloud, std::size_t samples, double block_m) {
     struct Block {
         std::uint64_t lowest;
         std::size_t point, count;
@@ -81,7 +81,7 @@ std::vector<std::size_t> sample_area(const PointCloud& cloud, std::size_t sample
 
 // How far it is from a point to the n-th of the other places around it, n <= `around`, squared;
 // infinite where there are fewer. A place counts once, however often it is stored.
-float distance_around(const PointCloud& cloud, std::size_t point, std::size_t n) {
+float distance_around(const CloudView& cloud, std::size_t point, std::size_t n) {
     struct Place {
         float distance = std::numeric_limits<float>::infinity();
         std::size_t point = 0;
@@ -109,7 +109,7 @@ float distance_around(const PointCloud& cloud, std::size_t point, std::size_t n)
 
 // The distance to the n-th place around that this share of the points has at most; 0 where none has
 // so many.
-double spacing_of(const PointCloud& cloud, const std::vector<std::size_t>& points, std::size_t n,
+double spacing_of(const CloudView& cloud, const std::vector<std::size_t>& points, std::size_t n,
                   double share) {
     std::vector<float> distances;
     for (const std::size_t i : points) {
@@ -125,7 +125,7 @@ double spacing_of(const PointCloud& cloud, const std::vector<std::size_t>& point
 
 }  // namespace
 
-double point_spacing(const PointCloud& cloud) {
+double point_spacing(const CloudView& cloud) {
     const std::size_t n = cloud.size();
     if (n < 2) return 0;
     // Brute force over a sample: the clouds that come here have at most some 10^7 points.

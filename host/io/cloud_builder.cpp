@@ -10,10 +10,6 @@
 namespace topple::io {
 namespace {
 
-// Farther from the origin than this, a room is not described in metres: at 1e6 a float resolves 6
-// cm.
-constexpr double farthest_m = 1e6;
-
 bool finite(const std::array<double, 3>& v) {
     return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
@@ -53,12 +49,7 @@ void CloudBuilder::add(const std::array<double, 3>& point, const std::array<doub
         return;
     }
     for (const double value : point) {
-        if (std::abs(value) > farthest_m) {
-            fail(file_,
-                 "point " + std::to_string(index) + " has a coordinate of " + short_number(value) +
-                     ", beyond the limit of 1e+06 m; coordinates must be metres from an origin "
-                     "near the scene: convert the units, or subtract the map's offset");
-        }
+        if (std::abs(value) > farthest_m) fail(file_, too_far(index, value));
     }
     cloud_.x.push_back(static_cast<float>(point[0]));
     cloud_.y.push_back(static_cast<float>(point[1]));
@@ -89,6 +80,12 @@ PointCloud CloudBuilder::finish(std::uint32_t width, std::uint32_t height) {
     }
     if (!any_normal_) cloud_.nx = cloud_.ny = cloud_.nz = {};
     return std::move(cloud_);
+}
+
+std::string too_far(std::uint64_t index, double coordinate) {
+    return "point " + std::to_string(index) + " has a coordinate of " + short_number(coordinate) +
+           ", beyond the limit of 1e+06 m; coordinates must be metres from an origin near the "
+           "scene: convert the units, or subtract the map's offset";
 }
 
 void note_extent(PointCloud& cloud) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "topple/input.h"
 
@@ -32,6 +33,12 @@ class CloudBuilder {
     bool any_normal_ = false;
     std::uint64_t seen_ = 0;
 };
+
+// Farther from the origin than this, a room is not described in metres: at 1e6 a float resolves 6
+// cm.
+inline constexpr double farthest_m = 1e6;
+// What is wrong with point number `index` then, and what mends it.
+std::string too_far(std::uint64_t index, double coordinate);
 
 // Notes in the cloud what looks odd about its extent or its place.
 void note_extent(PointCloud& cloud);

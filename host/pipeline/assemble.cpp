@@ -102,16 +102,17 @@ void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& sc
     }
 }
 
-void add_points(const Ingested& input, const GeometryStage& geometry, const ObjectStage& objects,
+void add_points(Ingested& input, const GeometryStage& geometry, const ObjectStage& objects,
                 Scene& scene) {
     ScenePoints& out = scene.points;
-    out.x = input.cloud.x;
-    out.y = input.cloud.y;
-    out.z = input.cloud.z;
+    out.index = std::move(input.index);
     out.primitive = geometry.primitive_of_point;
     out.region = geometry.region_of_point;
     const geometry::Surfels& s = geometry.surfels;
-    for (std::size_t n = 0; n < input.cloud.size(); ++n) {
+    const std::size_t count = input.cloud.size();
+    out.object.reserve(count);
+    for (auto* axis : {&out.nx, &out.ny, &out.nz}) axis->reserve(count);
+    for (std::size_t n = 0; n < count; ++n) {
         const std::int32_t p = out.primitive[n];
         out.object.push_back(p < 0 ? -1 : objects.object_of_primitive[static_cast<std::size_t>(p)]);
         const std::uint32_t surfel = s.of_point[n];
@@ -236,13 +237,25 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     foretell(objects, safety.advice, to_input, scene);
 }
 
-void assemble_points(const Ingested& input, const GeometryStage& geometry, const SolidParts& parts,
+void assemble_points(Ingested& input, const GeometryStage& geometry, const SolidParts& parts,
                      const ObjectStage& objects, const SafetyStage& safety, vdb::VoxelScene& voxels,
                      Scene& scene) {
     add_points(input, geometry, objects, scene);
     voxels.set_objects(objects.object_of_primitive);
     scene.solid = voxels.solid_voxels();
     add_exposures(safety, parts.cells, voxels);
+}
+
+void take_coordinates(Ingested& input, ScenePoints& out) {
+    if (input.own.size() > 0) {
+        out.x = std::move(input.own.x);
+        out.y = std::move(input.own.y);
+        out.z = std::move(input.own.z);
+        return;
+    }
+    out.x.assign(input.cloud.x.begin(), input.cloud.x.end());
+    out.y.assign(input.cloud.y.begin(), input.cloud.y.end());
+    out.z.assign(input.cloud.z.begin(), input.cloud.z.end());
 }
 
 }  // namespace topple

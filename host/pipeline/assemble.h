@@ -17,8 +17,11 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
                       const SafetyStage& safety, Scene& scene);
 
 // Adds the points and the solid voxels, and hands objects and fields to the voxel grids.
-void assemble_points(const Ingested& input, const GeometryStage& geometry, const SolidParts& parts,
+void assemble_points(Ingested& input, const GeometryStage& geometry, const SolidParts& parts,
                      const ObjectStage& objects, const SafetyStage& safety, vdb::VoxelScene& voxels,
                      Scene& scene);
+
+// The coordinates of the points: moved, where they are the input's own.
+void take_coordinates(Ingested& input, ScenePoints& out);
 
 }  // namespace topple

@@ -15,6 +15,7 @@
 #include "geometry/virtual_views.h"
 #include "io/frame_sequence.h"
 #include "io/read_cloud.h"
+#include "pipeline/caller_points.h"
 #include "pipeline/voxel_stage.h"
 
 namespace topple {
@@ -100,7 +101,8 @@ Ingested ingest_frames(device::Device& device, io::FrameSequence sequence,
         if (options.progress) options.progress("ingest", static_cast<double>(f + 1) / count);
     });
     geometry::FusedCloud fused = fusion.finish();
-    out.cloud = std::move(fused.cloud);
+    out.own = std::move(fused.cloud);
+    out.cloud = out.own;
     out.viewpoints = std::move(fused.viewpoints);
     out.viewpoint_of_point = std::move(fused.viewpoint_of_point);
     if (!posed)
@@ -151,7 +153,7 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
 
 // Refuses a cloud whose points are too far apart for surfaces at the coarsest resolution, which is
 // what a room looks like in another unit than metres.
-void check_spacing(const PointCloud& cloud, double spacing) {
+void check_spacing(const CloudView& cloud, double spacing) {
     if (spacing <= sparsest_m) return;
     const auto text = [](double value) {
         char digits[32];
@@ -159,8 +161,8 @@ void check_spacing(const PointCloud& cloud, double spacing) {
         return std::string(digits);
     };
     double extent = 0;
-    for (const auto* axis : {&cloud.x, &cloud.y, &cloud.z}) {
-        const auto [low, high] = std::minmax_element(axis->begin(), axis->end());
+    for (const FloatColumn& axis : {cloud.x, cloud.y, cloud.z}) {
+        const auto [low, high] = std::minmax_element(axis.begin(), axis.end());
         extent = std::max(extent, static_cast<double>(*high) - *low);
     }
     std::string units, options;
@@ -202,8 +204,11 @@ void for_each_frame(const FrameStream& frames, device::ThreadPool& threads,
     }
 }
 
-Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions&) {
-    Ingested out;
+namespace {
+
+// All that follows from the points.
+void look_at_cloud(device::Device& device, Ingested& out) {
+    const CloudView& cloud = out.cloud;
     if (cloud.size() < least_voxels) {
         throw Error(ErrorKind::input, cloud.source + ": " + std::to_string(cloud.size()) +
                                           (cloud.size() == 1 ? " point was" : " points were") +
@@ -215,21 +220,46 @@ Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptio
     // A little above the spacing, so that a surface has no holes at this resolution.
     out.cell_m = std::clamp(1.25 * spacing, least_cell_m, largest_cell_m);
     out.notes = cloud.notes;
-    out.cloud = std::move(cloud);
     Intrinsics intrinsics;
     DepthFrame frame;
-    if (out.cloud.height > 1 && geometry::frame_of_organised_cloud(out.cloud, intrinsics, frame)) {
+    if (cloud.height > 1 && geometry::frame_of_organised_cloud(cloud, intrinsics, frame)) {
         out.viewpoints = {position(frame)};
         const Mat4& pose = frame.camera_to_world;
         out.camera_up = Vec3{-pose[1], -pose[5], -pose[9]};
         std::vector<DepthFrame> frames;
         frames.push_back(std::move(frame));
         out.frames = std::make_unique<MemoryStream>(intrinsics, std::move(frames));
-        return out;
+        return;
     }
     const auto scan = geometry::find_single_scan(
-        out.cloud, out.cloud.has_viewpoint ? out.cloud.viewpoint : Vec3{0, 0, 0}, spacing);
+        cloud, cloud.has_viewpoint ? cloud.viewpoint : Vec3{0, 0, 0}, spacing);
     look_from_free_places(device, scan, out);
+}
+
+}  // namespace
+
+Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions&) {
+    Ingested out;
+    out.own = std::move(cloud);
+    out.cloud = out.own;
+    look_at_cloud(device, out);
+    return out;
+}
+
+Ingested ingest_view(device::Device& device, const CloudView& cloud, const ParseOptions& options) {
+    if (options.unit_m != 1) {
+        throw Error(ErrorKind::usage,
+                    "unit_m is for files; scale a cloud in memory to metres before it is parsed");
+    }
+    Ingested out;
+    out.cloud = cloud;
+    if (out.cloud.source.empty()) out.cloud.source = "cloud";
+    if (std::optional<FinitePoints> finite = finite_points(out.cloud)) {
+        out.own = std::move(finite->cloud);
+        out.index = std::move(finite->index);
+        out.cloud = out.own;
+    }
+    look_at_cloud(device, out);
     return out;
 }
 

@@ -9,7 +9,7 @@
 
 #include "device/device.h"
 #include "device/native/thread_pool.h"
-#include "topple/input.h"
+#include "topple/cloud_view.h"
 #include "topple/parse.h"
 
 namespace topple {
@@ -29,7 +29,11 @@ void for_each_frame(const FrameStream& frames, device::ThreadPool& threads,
 
 // What every later stage starts from, whatever the input was.
 struct Ingested {
-    PointCloud cloud;
+    // The points, in the caller's memory or in `own`: what came from a file or from frames, or lost
+    // points that were not finite; then `index` holds the place of each in the caller's arrays.
+    CloudView cloud;
+    PointCloud own;
+    std::vector<std::uint64_t> index;
     std::vector<Vec3> viewpoints;                   // where the sensor was
     std::vector<std::uint32_t> viewpoint_of_point;  // of each point, or empty: viewpoint 0 for all
     std::unique_ptr<FrameStream> frames;            // what carves the free space; null: nothing can
@@ -41,5 +45,8 @@ struct Ingested {
 Ingested ingest(device::Device& device, const std::filesystem::path& input,
                 const ParseOptions& options);
 Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options);
+// The cloud must stay as long as what is returned. Without points that are not finite, no copy of
+// it is made.
+Ingested ingest_view(device::Device& device, const CloudView& cloud, const ParseOptions& options);
 
 }  // namespace topple

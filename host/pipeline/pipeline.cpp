@@ -45,15 +45,15 @@ std::string size_text(std::uint64_t bytes) {
 
 // What the stages after ingest will hold at their peak, bytes: measured at about 400 per point
 // (cloud, surfels, regions, output) and 40 per voxel of the scene's box.
-std::uint64_t estimated_bytes(const PointCloud& cloud, double voxel_m) {
+std::uint64_t estimated_bytes(const CloudView& cloud, double voxel_m) {
     const Bounds<float> bounds =
-        scene_bounds<float>({cloud.x, cloud.y, cloud.z}, static_cast<float>(voxel_m));
+        scene_bounds<float, FloatColumn>({cloud.x, cloud.y, cloud.z}, static_cast<float>(voxel_m));
     double box = 1;
     for (std::size_t a = 0; a < 3; ++a) box *= (bounds.high[a] - bounds.low[a]) / voxel_m + 16;
     return static_cast<std::uint64_t>(400.0 * static_cast<double>(cloud.size()) + 40.0 * box);
 }
 
-void check_memory(const PointCloud& cloud, double voxel_m, const ParseOptions& options) {
+void check_memory(const CloudView& cloud, double voxel_m, const ParseOptions& options) {
     if (options.max_memory_bytes == 0) return;
     const std::uint64_t need = estimated_bytes(cloud, voxel_m);
     if (need > options.max_memory_bytes) {
@@ -65,8 +65,8 @@ void check_memory(const PointCloud& cloud, double voxel_m, const ParseOptions& o
     }
 }
 
-ParseResult parse_ingested(device::Device& device, const Ingested& input,
-                           const ParseOptions& options, Scene scene, StageClock& stage) {
+ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOptions& options,
+                           Scene scene, StageClock& stage) {
     const double voxel_m = options.voxel_m > 0 ? options.voxel_m : voxel_for_cell(input.cell_m);
     check_memory(input.cloud, voxel_m, options);
     scene.topple_version = version;
@@ -106,6 +106,7 @@ ParseResult parse_ingested(device::Device& device, const Ingested& input,
     stage("assembly", [&] {
         assemble_objects(parts, objects, safety, scene);
         assemble_points(input, geometry, parts, objects, safety, *voxels.scene, scene);
+        if (options.coordinates) take_coordinates(input, scene.points);
     });
     return {std::move(scene), std::move(voxels.scene)};
 }
@@ -117,10 +118,11 @@ ParseResult run(const std::string& source, const ParseOptions& options, Ingest i
     // The clock writes into a list of its own: the scene moves while stages are still running.
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options);
-    const Ingested input = stage("ingest", [&] { return ingest_input(*device); });
+    Ingested input = stage("ingest", [&] { return ingest_input(*device); });
     Scene scene;
     scene.source = source;
-    ParseResult result = parse_ingested(*device, input, options, std::move(scene), stage);
+    ParseResult result =
+        parse_ingested(*device, std::move(input), options, std::move(scene), stage);
     result.scene.timings_s = std::move(timings);
     return result;
 }
@@ -162,9 +164,32 @@ ParseResult parse(const std::filesystem::path& input, const ParseOptions& option
                [&](device::Device& device) { return ingest(device, input, options); });
 }
 
-ParseResult parse(const PointCloud& cloud, const ParseOptions& options) {
-    return run(cloud.source, options,
-               [&](device::Device& device) { return ingest_cloud(device, cloud, options); });
+ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
+    return run(cloud.source.empty() ? "cloud" : cloud.source, options,
+               [&](device::Device& device) { return ingest_view(device, cloud, options); });
+}
+
+void add_coordinates(const CloudView& cloud, ParseResult& result) {
+    ScenePoints& points = result.scene.points;
+    const std::size_t count = points.primitive.size();
+    const bool fits = points.index.empty() ? cloud.size() == count
+                                           : points.index.back() < cloud.size();  // ascending
+    if (!fits || cloud.y.size() != cloud.size() || cloud.z.size() != cloud.size()) {
+        throw Error(ErrorKind::usage, "add_coordinates: a cloud of " +
+                                          std::to_string(cloud.size()) +
+                                          " points is not what the result of " +
+                                          std::to_string(count) + " came from");
+    }
+    const auto taken = [&](const FloatColumn& from) {
+        if (points.index.empty()) return std::vector<float>(from.begin(), from.end());
+        std::vector<float> out;
+        out.reserve(count);
+        for (const std::uint64_t i : points.index) out.push_back(from[i]);
+        return out;
+    };
+    points.x = taken(cloud.x);
+    points.y = taken(cloud.y);
+    points.z = taken(cloud.z);
 }
 
 }  // namespace topple

@@ -12,6 +12,10 @@ namespace topple {
 
 void write_outputs(const ParseResult& result, const std::filesystem::path& folder,
                    const OutputOptions& options) {
+    if (result.scene.points.x.size() != result.scene.points.primitive.size()) {
+        throw Error(ErrorKind::usage,
+                    "the result has no coordinates of its points: call add_coordinates() first");
+    }
     io::OutputFolder out(folder);
     io::write_points_ply(out.folder() / "points.ply", result.scene.points);
     io::write_solid_ply(out.folder() / "solid.ply", result.scene.solid);

@@ -16,7 +16,7 @@ namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
-Cloud::Ptr as_pcl(const PointCloud& cloud) {
+Cloud::Ptr as_pcl(const CloudView& cloud) {
     Cloud::Ptr out(new Cloud);
     out->reserve(cloud.size());
     for (std::size_t n = 0; n < cloud.size(); ++n)
@@ -40,7 +40,7 @@ class Stopwatch {
 
 }  // namespace
 
-std::optional<PeerSegments> pcl_region_growing(const PointCloud& cloud) {
+std::optional<PeerSegments> pcl_region_growing(const CloudView& cloud) {
     const Cloud::Ptr points = as_pcl(cloud);
     PeerSegments out;
     out.name = "pcl_region_growing";
@@ -74,7 +74,7 @@ std::optional<PeerSegments> pcl_region_growing(const PointCloud& cloud) {
     return out;
 }
 
-std::optional<PeerSegments> pcl_lccp(const PointCloud& cloud) {
+std::optional<PeerSegments> pcl_lccp(const CloudView& cloud) {
     const Cloud::Ptr points = as_pcl(cloud);
     PeerSegments out;
     out.name = "pcl_lccp";

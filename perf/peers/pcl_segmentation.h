@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "topple/input.h"
+#include "topple/cloud_view.h"
 
 // What the Point Cloud Library makes of a cloud, for comparison. nullopt where the build found
 // none.
@@ -21,10 +21,10 @@ struct PeerSegments {
 
 // Normals of 30 neighbours (OpenMP, all cores), then RegionGrowing with the parameters of PCL's
 // tutorial: 30 neighbours, 3 degrees, curvature below 1, 50 points at least.
-std::optional<PeerSegments> pcl_region_growing(const PointCloud& cloud);
+std::optional<PeerSegments> pcl_region_growing(const CloudView& cloud);
 
 // Supervoxels (voxels of 2 cm, seeds 12 cm apart), then LCCP (10 degrees, sanity check, segments of
 // one supervoxel filtered). Supervoxels make their own normals: normals_s is 0.
-std::optional<PeerSegments> pcl_lccp(const PointCloud& cloud);
+std::optional<PeerSegments> pcl_lccp(const CloudView& cloud);
 
 }  // namespace topple::perf

@@ -100,9 +100,9 @@ RoomParts scan_parts(const RoomOptions& options) {
     GeometryStage geometry = find_primitives(device, input, options.parse, stage);
     VoxelStage voxels = make_solids(device, input, geometry, options.parse.voxel_m, stage);
     ScenePoints points;
-    points.x = input.cloud.x;
-    points.y = input.cloud.y;
-    points.z = input.cloud.z;
+    points.x.assign(input.cloud.x.begin(), input.cloud.x.end());
+    points.y.assign(input.cloud.y.begin(), input.cloud.y.end());
+    points.z.assign(input.cloud.z.begin(), input.cloud.z.end());
     points.primitive = geometry.primitive_of_point;
     std::vector<std::int32_t> part = scenes::true_parts(world, points);
     SolidParts solid = solid_parts(geometry, voxels);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "topple/cloud_view.h"
 #include "topple/device.h"
 #include "topple/error.h"
 #include "topple/input.h"
@@ -49,6 +50,9 @@ struct ParseOptions {
     // Seconds for the search for objects, about; none: as long as it takes. Where a limit is met,
     // the objects depend on the machine.
     std::optional<double> grouping_time_s;
+    // Whether the result holds its points' coordinates. Without, it takes 12 bytes a point less,
+    // and add_coordinates() is needed before write_outputs().
+    bool coordinates = true;
     // Called when a stage starts and while it goes on: its name, and how much of it is done, 0
     // to 1.
     std::function<void(const std::string&, double)> progress;
@@ -70,16 +74,21 @@ struct ParseResult {
 // parsed into a scene), usage (an option is out of range), device (it can't be opened, or failed).
 ParseResult parse(const std::filesystem::path& input, const ParseOptions& options = {});
 
-// The same on a cloud in memory. Frame and units: metres, any right-handed frame.
-ParseResult parse(const PointCloud& cloud, const ParseOptions& options = {});
+// The same on a cloud in memory, a PointCloud or the caller's own arrays. No copy of the points is
+// made on the way in, unless some are not finite.
+ParseResult parse(const CloudView& cloud, const ParseOptions& options = {});
+
+// Puts the coordinates of the cloud that was parsed into the result. Throws Error(usage) where it
+// can't be that cloud, by its number of points.
+void add_coordinates(const CloudView& cloud, ParseResult& result);
 
 struct OutputOptions {
     bool pictures = false;  // the report's main views, too, as view-*.png
 };
 
 // Writes points.ply, solid.ply, volume.vdb, scene.json, landscapes.json and report.html into the
-// folder, which appears whole or not at all. Throws Error(input) naming the path where it can't be
-// written.
+// folder, which appears whole or not at all. Throws Error: input (it can't be written: the path and
+// why), usage (the result has no coordinates of its points).
 void write_outputs(const ParseResult& result, const std::filesystem::path& folder,
                    const OutputOptions& options = {});
 

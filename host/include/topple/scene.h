@@ -153,9 +153,13 @@ struct Support {
 
 // Point of the parsed cloud, one array per field, input order (for frames: the fused cloud).
 struct ScenePoints {
-    std::vector<float> x, y, z, nx, ny, nz;
+    std::vector<float> x, y, z;  // empty without ParseOptions::coordinates
+    std::vector<float> nx, ny, nz;
     std::vector<std::int32_t> primitive, object;
     std::vector<std::int32_t> region{};  // smooth piece of surface that primitives are merged of
+    // Of a cloud in memory with points that are not finite: the place of each of the others in the
+    // caller's arrays, ascending. Empty: all are here.
+    std::vector<std::uint64_t> index{};
 };
 
 // Solid voxels at their centres.

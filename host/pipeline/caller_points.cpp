@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/caller_points.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "io/cloud_builder.h"
+#include "topple/error.h"
+
+namespace topple {
+namespace {
+
+[[noreturn]] void refuse(const CloudView& view, const std::string& why) {
+    throw Error(ErrorKind::input, view.source + ": " + why);
+}
+
+void check_arrays(const CloudView& view) {
+    const bool normals = !view.nx.empty() || !view.ny.empty() || !view.nz.empty();
+    const std::array<std::pair<const char*, const FloatColumn*>, 6> columns{{{"x", &view.x},
+                                                                             {"y", &view.y},
+                                                                             {"z", &view.z},
+                                                                             {"nx", &view.nx},
+                                                                             {"ny", &view.ny},
+                                                                             {"nz", &view.nz}}};
+    for (std::size_t c = 0; c < (normals ? 6 : 3); ++c) {
+        const auto& [name, column] = columns[c];
+        if (column->size() != view.size()) {
+            refuse(view, std::string(name) + " has " + std::to_string(column->size()) +
+                             " values, but x has " + std::to_string(view.size()));
+        }
+        if (!column->data() && view.size() > 0)
+            refuse(view, std::string(name) + " is a null pointer");
+    }
+    if (!view.pixel.empty() && view.pixel.size() != view.size()) {
+        refuse(view, "pixel has " + std::to_string(view.pixel.size()) + " values, but x has " +
+                         std::to_string(view.size()));
+    }
+}
+
+bool finite(const FloatColumn& a, const FloatColumn& b, const FloatColumn& c, std::size_t i) {
+    return std::isfinite(a[i]) && std::isfinite(b[i]) && std::isfinite(c[i]);
+}
+
+// Whether all are finite. Coordinates that can't be metres are refused.
+bool all_finite(const CloudView& view) {
+    bool all = true;
+    for (std::size_t i = 0; i < view.size(); ++i) {
+        if (!finite(view.x, view.y, view.z, i)) {
+            all = false;
+            continue;
+        }
+        for (const float v : {view.x[i], view.y[i], view.z[i]}) {
+            if (std::abs(v) > io::farthest_m) refuse(view, io::too_far(i, v));
+        }
+    }
+    for (std::size_t i = 0; all && i < view.nx.size(); ++i)
+        all = finite(view.nx, view.ny, view.nz, i);
+    return all;
+}
+
+}  // namespace
+
+std::optional<FinitePoints> finite_points(const CloudView& view) {
+    check_arrays(view);
+    if (all_finite(view)) return {};
+    FinitePoints out;
+    PointCloud& to = out.cloud;
+    for (std::size_t i = 0; i < view.size(); ++i) {
+        if (!finite(view.x, view.y, view.z, i)) continue;
+        out.index.push_back(i);
+        to.x.push_back(view.x[i]);
+        to.y.push_back(view.y[i]);
+        to.z.push_back(view.z[i]);
+        if (view.height > 1) to.pixel.push_back(static_cast<std::uint32_t>(view.pixel_of(i)));
+        if (view.nx.empty()) continue;
+        const bool usable = finite(view.nx, view.ny, view.nz, i);
+        to.nx.push_back(usable ? view.nx[i] : 0);
+        to.ny.push_back(usable ? view.ny[i] : 0);
+        to.nz.push_back(usable ? view.nz[i] : 0);
+    }
+    if (to.x.empty()) {
+        refuse(view, "none of its " + std::to_string(view.size()) +
+                         " points is finite; at least one must be");
+    }
+    to.dropped = view.dropped + view.size() - to.size();
+    to.width = view.width;
+    to.height = view.height;
+    to.has_viewpoint = view.has_viewpoint;
+    to.viewpoint = view.viewpoint;
+    to.source = view.source;
+    to.notes = view.notes;
+    return out;
+}
+
+}  // namespace topple

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "topple/cloud_view.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <thread>
+#include <vector>
+
+#include "device/device.h"
+#include "host/io/files.h"
+#include "host/pipeline/scan.h"
+#include "host/pipeline/small_room.h"
+#include "pipeline/ingest.h"
+
+// Clouds in the caller's memory, whatever their layout.
+namespace topple::test {
+namespace {
+
+struct Record {
+    float x, y, z;
+    std::uint8_t colour[3];
+};
+
+std::vector<Record> records_of(const PointCloud& cloud) {
+    std::vector<Record> out;
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+        out.push_back({cloud.x[i], cloud.y[i], cloud.z[i], {1, 2, 3}});
+    return out;
+}
+
+CloudView view_of(const std::vector<Record>& records) {
+    return CloudView::of_records(&records[0].x, records.size(), sizeof(Record));
+}
+
+ParseOptions quick() {
+    ParseOptions options = on(device::open_device("native"));
+    options.disturbances = {};
+    return options;
+}
+
+TEST(CloudView, TakesNoCopyOfRecordsOrOfArrays) {
+    const SmallRoom room = SmallRoom::scattered();
+    const std::vector<Record> records = records_of(room.cloud);
+    const ParseOptions options = quick();
+    const Ingested of_records = ingest_view(*options.device, view_of(records), options);
+    EXPECT_EQ(of_records.own.x.capacity(), 0u);
+    EXPECT_EQ(of_records.cloud.y.data(), reinterpret_cast<const std::byte*>(&records[0].y));
+    const Ingested of_arrays = ingest_view(*options.device, room.cloud, options);
+    EXPECT_EQ(of_arrays.own.x.capacity(), 0u);
+    EXPECT_EQ(of_arrays.cloud.z.data(), reinterpret_cast<const std::byte*>(room.cloud.z.data()));
+}
+
+TEST(CloudView, ParsesRecordsAsItParsesArrays) {
+    const SmallRoom room = SmallRoom::scattered();
+    const std::vector<Record> records = records_of(room.cloud);
+    const Scene arrays = parse(room.cloud, quick()).scene;
+    const Scene strided = parse(view_of(records), quick()).scene;
+    EXPECT_EQ(strided.points.x, room.cloud.x);
+    EXPECT_EQ(strided.points.primitive, arrays.points.primitive);
+    EXPECT_EQ(strided.points.object, arrays.points.object);
+    EXPECT_EQ(strided.points.nz, arrays.points.nz);
+    EXPECT_TRUE(strided.points.index.empty());
+}
+
+TEST(CloudView, LeavesOutPointsThatAreNotFinite) {
+    const SmallRoom room = SmallRoom::scattered();
+    std::vector<Record> records = records_of(room.cloud);
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    records.insert(records.begin() + 100, {nan, 0, 0, {}});
+    records.push_back({0, std::numeric_limits<float>::infinity(), 0, {}});
+    const Scene whole = parse(room.cloud, quick()).scene;
+    const Scene spoilt = parse(view_of(records), quick()).scene;
+    EXPECT_EQ(spoilt.points.primitive, whole.points.primitive);
+    ASSERT_EQ(spoilt.points.index.size(), room.cloud.size());
+    EXPECT_EQ(spoilt.points.index[99], 99u);
+    EXPECT_EQ(spoilt.points.index[100], 101u);
+}
+
+class CloudViewFiles : public Files {};
+
+TEST_F(CloudViewFiles, CoordinatesMayStayWithTheCaller) {
+    const SmallRoom room = SmallRoom::scattered();
+    std::vector<Record> records = records_of(room.cloud);
+    records.insert(records.begin(), {std::numeric_limits<float>::quiet_NaN(), 0, 0, {}});
+    ParseOptions options = quick();
+    options.coordinates = false;
+    ParseResult result = parse(view_of(records), options);
+    EXPECT_TRUE(result.scene.points.x.empty());
+    EXPECT_EQ(result.scene.points.object.size(), room.cloud.size());
+    EXPECT_THROW(write_outputs(result, path("out")), Error);
+    EXPECT_THROW(add_coordinates(CloudView::of_records(&records[0].x, 5, sizeof(Record)), result),
+                 Error);
+    add_coordinates(view_of(records), result);
+    EXPECT_EQ(result.scene.points.y, room.cloud.y);
+    write_outputs(result, path("out"));
+    EXPECT_TRUE(std::filesystem::exists(path("out/points.ply")));
+}
+
+std::string refusal(const CloudView& view, ErrorKind kind = ErrorKind::input) {
+    try {
+        parse(view, quick());
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), kind);
+        return error.what();
+    }
+    return "parsed";
+}
+
+TEST(CloudView, RefusesWhatIsNoCloud) {
+    const SmallRoom room = SmallRoom::scattered();
+    CloudView view = room.cloud;
+    view.y = {&room.cloud.y[0], 7};
+    EXPECT_EQ(refusal(view),
+              "room: y has 7 values, but x has " + std::to_string(room.cloud.size()));
+    view = room.cloud;
+    view.nx = room.cloud.x;
+    EXPECT_EQ(refusal(view),
+              "room: ny has 0 values, but x has " + std::to_string(room.cloud.size()));
+    view = room.cloud;
+    view.z = {nullptr, room.cloud.size()};
+    EXPECT_EQ(refusal(view), "room: z is a null pointer");
+    const std::vector<std::uint32_t> pixel(3);
+    view = room.cloud;
+    view.pixel = pixel;
+    EXPECT_EQ(refusal(view),
+              "room: pixel has 3 values, but x has " + std::to_string(room.cloud.size()));
+    EXPECT_EQ(refusal({}).substr(0, 25), "cloud: 0 points were foun");
+    const std::vector<float> none(40, std::numeric_limits<float>::quiet_NaN());
+    view.pixel = {};
+    view.x = view.y = view.z = none;
+    EXPECT_EQ(refusal(view), "room: none of its 40 points is finite; at least one must be");
+    SmallRoom far = room;
+    far.cloud.x[8] = 3e6f;
+    EXPECT_EQ(refusal(far.cloud).substr(0, 44), "room: point 8 has a coordinate of 3e+06, bey");
+}
+
+// Two parses at once, each on a device of its own, share nothing that they write.
+TEST(CloudView, TwoDevicesParseAtOnce) {
+    const SmallRoom room = SmallRoom::scattered();
+    std::vector<Scene> scenes(2);
+    std::vector<std::thread> threads;
+    for (Scene& scene : scenes)
+        threads.emplace_back([&] { scene = parse(room.cloud, quick()).scene; });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(scenes[0].points.object, scenes[1].points.object);
+    EXPECT_FALSE(scenes[0].objects.empty());
+}
+
+}  // namespace
+}  // namespace topple::test
