@@ -232,6 +232,9 @@ Command add_parse(CLI::App& app) {
     app.add_option("--max-memory", a->max_memory, "Refuse a scan that would need more, such as 4G");
     app.add_flag("--png", a->output.pictures,
                  "Write the report's main views as pictures, too: view-*.png");
+    app.add_flag(
+        "--glb", a->output.glb,
+        "Write the solids as meshes, too, one per object coloured by unsafety: objects.glb");
     app.add_flag("--quiet", a->quiet, "Print errors only");
     return [a] { return run(*a); };
 }

@@ -3,6 +3,7 @@
 #include "io/output_folder.h"
 #include "io/scene_json.h"
 #include "io/write_ply.h"
+#include "pipeline/objects_glb.h"
 #include "report/pictures.h"
 #include "report/report.h"
 #include "topple/parse.h"
@@ -22,6 +23,7 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
     result.voxels->write(out.folder() / "volume.vdb");
     report::write_report(out.folder() / "report.html", result.scene);
     if (options.pictures) report::write_pictures(out.folder(), result.scene);
+    if (options.glb) write_objects_glb(out.folder() / "objects.glb", result.scene, *result.voxels);
     io::write_landscapes_json(out.folder() / "landscapes.json", result.scene);
     io::write_scene_json(out.folder() / "scene.json", result.scene);
     out.commit();

@@ -84,6 +84,7 @@ void add_coordinates(const CloudView& cloud, ParseResult& result);
 
 struct OutputOptions {
     bool pictures = false;  // the report's main views, too, as view-*.png
+    bool glb = false;       // the solids as a mesh per object, too: objects.glb
 };
 
 // Writes points.ply, solid.ply, volume.vdb, scene.json, landscapes.json and report.html into the

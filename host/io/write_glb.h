@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/voxel_mesh.h"
+
+namespace topple::io {
+
+struct GlbNode {
+    std::string name;
+    std::array<std::uint8_t, 3> colour{};  // sRGB
+    TriangleMesh mesh;                     // the input's frame, metres
+};
+
+// Writes a binary glTF 2.0: one node per mesh below a root that turns them, by `y_up_from_input`,
+// so that up is glTF's y. Throws Error(input) where the file can't be written.
+void write_glb(const std::filesystem::path& file, const std::vector<GlbNode>& nodes,
+               const std::array<Vec3, 3>& y_up_from_input);
+
+}  // namespace topple::io

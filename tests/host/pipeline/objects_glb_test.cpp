@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/objects_glb.h"
+
+#include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <string>
+
+#include "host/io/files.h"
+
+namespace topple {
+namespace {
+
+class ObjectsGlb : public test::Files {};
+
+// Two blocks of voxels and a scrap, on a grid that is turned and whose up is the input's -y.
+TEST_F(ObjectsGlb, each_object_is_a_closed_mesh_of_its_voxels) {
+    const double c = std::cos(0.3), s = std::sin(0.3), h = 0.04;
+    const vdb::VoxelFrame frame{h, {Vec3{c, 0, s}, Vec3{-s, 0, c}, Vec3{0, -1, 0}}};
+    PointCloud cloud;
+    std::vector<std::int32_t> label;
+    const auto block = [&](std::int32_t primitive, std::array<int, 3> low,
+                           std::array<int, 3> size) {
+        for (int n = 0; n < size[0] * size[1] * size[2]; ++n) {
+            const std::array<double, 3> at{low[0] + n % size[0] + 0.5,
+                                           low[1] + n / size[0] % size[1] + 0.5,
+                                           low[2] + n / size[0] / size[1] + 0.5};
+            const auto& r = frame.grid_from_input;
+            const auto along = [&](std::size_t d) {
+                return static_cast<float>(h *
+                                          (r[0][d] * at[0] + r[1][d] * at[1] + r[2][d] * at[2]));
+            };
+            cloud.x.push_back(along(0));
+            cloud.y.push_back(along(1));
+            cloud.z.push_back(along(2));
+            label.push_back(primitive);
+        }
+    };
+    block(0, {-5, -5, -1}, {20, 20, 1});
+    block(1, {0, 0, 0}, {4, 3, 10});
+    block(2, {0, 0, 10}, {4, 3, 2});
+    block(-1, {9, 9, 5}, {1, 1, 1});
+    const vdb::VoxelScene voxels(frame, cloud, label);
+    Scene scene;
+    scene.primitives.resize(3);
+    scene.objects.resize(2);
+    scene.primitives[0].object = 0;
+    scene.primitives[1].object = scene.primitives[2].object = 1;
+    scene.objects[0].grounded = true;
+    scene.objects[1].unsafety = 10;
+    write_objects_glb(path("objects.glb"), scene, voxels);
+
+    Assimp::Importer importer;
+    const aiScene* read = importer.ReadFile(path("objects.glb").string(), 0);
+    ASSERT_TRUE(read) << importer.GetErrorString();
+    const struct {
+        const char* name;
+        double voxels, red, green;
+    } expected[] = {{"unassigned", 1, 0.305, 0.305},
+                    {"object 0", 400, 0.305, 0.305},
+                    {"object 1", 144, 0.162, 0.003}};
+    ASSERT_EQ(read->mRootNode->mNumChildren, std::size(expected));
+    const aiMatrix3x3 turn(read->mRootNode->mTransformation);
+    EXPECT_NEAR((turn * aiVector3D(0, -1, 0)).y, 1, 1e-6) << "up becomes y";
+    for (unsigned n = 0; n < std::size(expected); ++n) {
+        const auto& e = expected[n];
+        SCOPED_TRACE(e.name);
+        const aiNode& node = *read->mRootNode->mChildren[n];
+        EXPECT_EQ(std::string(node.mName.C_Str()), e.name);
+        const aiMesh& mesh = *read->mMeshes[node.mMeshes[0]];
+        double volume = 0;
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const unsigned* i = mesh.mFaces[f].mIndices;
+            const aiVector3D &p = mesh.mVertices[i[0]], &q = mesh.mVertices[i[1]];
+            volume += double(p * (q ^ mesh.mVertices[i[2]])) / 6;
+        }
+        EXPECT_NEAR(volume, e.voxels * h * h * h, 1e-4 * e.voxels * h * h * h);
+        aiColor4D colour;
+        ASSERT_EQ(read->mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_BASE_COLOR, colour),
+                  aiReturn_SUCCESS);
+        EXPECT_NEAR(colour.r, e.red, 2e-3);
+        EXPECT_NEAR(colour.g, e.green, 2e-3);
+    }
+}
+
+}  // namespace
+}  // namespace topple
