@@ -5,6 +5,8 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "scenes/building.h"
 #include "scenes/depth_camera.h"
 #include "scenes/furnished_room.h"
 #include "scenes/ground_truth.h"
@@ -17,7 +19,21 @@ struct Arguments {
     std::string out;
     scenes::RoomOptions room;
     scenes::CameraOptions camera;
+    bool is_building = false;
+    scenes::BuildingOptions building;
 };
+
+int run_building(const Arguments& a) {
+    catch_interrupts();
+    const auto summary = scenes::write_building(
+        a.out, a.building, [](std::size_t, std::size_t) { return interrupted() == 0; });
+    if (interrupted() != 0) return interrupted_exit();
+    std::printf("%s: %llu points %.1f mm apart, %zu rooms on %zu storeys, %llu objects\n",
+                a.out.c_str(), static_cast<unsigned long long>(a.building.points),
+                1000 * summary.spacing_m, summary.rooms, summary.storeys,
+                static_cast<unsigned long long>(summary.objects));
+    return 0;
+}
 
 int run(const Arguments& a) {
     if (a.camera.frames < 1 || a.camera.frames > 10000) {
@@ -37,7 +53,10 @@ int run(const Arguments& a) {
 
 Command add_generate(CLI::App& app) {
     auto a = std::make_shared<Arguments>();
-    app.add_option("OUT", a->out, "Folder for the depth frames, poses, fused cloud and truth.json")
+    app.add_option(
+           "OUT", a->out,
+           "Folder for the depth frames, poses, fused cloud and truth.json; with --building\n"
+           "a .ply, beside which the truth is put as .truth.json")
         ->required();
     app.add_option("--seed", a->room.seed, "Seed of the room and of the sensor's noise")
         ->check(whole_number)
@@ -49,7 +68,26 @@ Command add_generate(CLI::App& app) {
         ->capture_default_str();
     add_furniture(app, a->room.varied);
     app.add_flag("--single", a->camera.single, "One frame only, without a trajectory");
+    auto* building = app.add_flag("--building", a->is_building,
+                                  "A building of such rooms from a laser scanner, as one cloud");
+    app.add_option("--points", a->building.points, "Points of the building")
+        ->needs(building)
+        ->check(whole_number)
+        ->capture_default_str();
+    app.add_option("--spacing", a->building.spacing_m,
+                   "Metres between neighbouring points; with --points it gives the number of rooms")
+        ->needs(building)
+        ->capture_default_str();
+    app.add_option("--storeys", a->building.storeys,
+                   "Storeys of the building (default: one for every 40 rooms)")
+        ->needs(building)
+        ->check(whole_number);
     return [a] {
+        if (a->is_building) {
+            a->building.seed = a->room.seed;
+            a->building.varied = a->room.varied;
+            return run_building(*a);
+        }
         a->camera.seed = a->room.seed;
         return run(*a);
     };

@@ -18,6 +18,12 @@ World furnished_room(const RoomOptions& options) {
         throw Error(ErrorKind::usage, "room: clutter is " + std::to_string(options.clutter) +
                                           " and must be 0 to 10; the tilt must be finite");
     }
+    if (options.size &&
+        !((*options.size)[0] >= 2 && (*options.size)[1] >= 2 && (*options.size)[2] >= 2 &&
+          (*options.size)[0] <= 100 && (*options.size)[1] <= 100 && (*options.size)[2] <= 10)) {
+        throw Error(ErrorKind::usage,
+                    "room: its size must be 2 to 100 m by 2 to 100 m, and 2 to 10 m high");
+    }
     return options.varied ? varied_room(options) : plain_room(options);
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "scenes/scene.h"
 
@@ -14,6 +17,9 @@ struct RoomOptions {
     // Turned, hollow, rounded, splayed, leaning and piled things, levels and a ceiling, instead of
     // the plain furniture.
     bool varied = false;
+    std::optional<Vec3> size{};  // inner width, depth and height; by chance where not given
+    // Boxes (lowest, highest corner) that nothing but a rug reaches into, such as ways to doors.
+    std::vector<std::array<Vec3, 2>> keep_free{};
 };
 
 // A furnished room: floor, walls, perhaps a pillar; furniture along the walls and what stands on

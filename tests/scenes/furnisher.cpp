@@ -6,8 +6,6 @@
 #include <numbers>
 #include <utility>
 
-#include "scenes/furnished_room.h"
-
 namespace topple::scenes {
 namespace {
 
@@ -18,14 +16,23 @@ constexpr double margin = 0.012;     // between objects that don't touch
 constexpr double head_height = 2.0;  // what hangs higher may reach over the free middle
 constexpr std::int32_t floor_part = 0;
 
+// Whether two boxes have a volume in common.
+bool overlap(const std::array<Vec3, 2>& p, const std::array<Vec3, 2>& q) {
+    for (std::size_t a = 0; a < 3; ++a) {
+        if (p[0][a] >= q[1][a] || q[0][a] >= p[1][a]) return false;
+    }
+    return true;
+}
+
 bool has(const std::vector<int>& list, std::size_t k) {
     return std::find(list.begin(), list.end(), static_cast<int>(k)) != list.end();
 }
 
 }  // namespace
 
-Furnisher::Furnisher(std::uint64_t seed, std::uint64_t stream) : random_(seed, stream) {
-    world_.seed = seed;
+Furnisher::Furnisher(const RoomOptions& options, std::uint64_t stream)
+    : random_(options.seed, stream), size_(options.size), keep_free_(options.keep_free) {
+    world_.seed = options.seed;
 }
 
 std::int32_t Furnisher::add_room_part(const char* name, double x, double y, double bottom,
@@ -37,9 +44,10 @@ std::int32_t Furnisher::add_room_part(const char* name, double x, double y, doub
 }
 
 void Furnisher::build_room() {
-    const double w = random_.uniform(3.9, 6.2), d = random_.uniform(3.5, 5.2);
-    const double h = random_.uniform(2.35, 2.8), t = wall_thickness;
-    world_.room = {w, d, h};
+    const double width = random_.uniform(3.9, 6.2), depth = random_.uniform(3.5, 5.2);
+    const double height = random_.uniform(2.35, 2.8), t = wall_thickness;
+    world_.room = size_.value_or(Vec3{width, depth, height});
+    const auto [w, d, h] = world_.room;
     world_.objects.push_back({"room", "room"});
     add_room_part("floor", w / 2, d / 2, -t, {w + 2 * t, d + 2 * t, t}, {});
     add_room_part("wall", w / 2, -t / 2, 0, {w + 2 * t, t, h}, {floor_part});
@@ -55,7 +63,15 @@ void Furnisher::build_room() {
 void Furnisher::add_corner(const char* name, const Vec3& size, bool right, bool far) {
     const double x = right ? world_.room[0] - size[0] / 2 : size[0] / 2;
     const double y = far ? world_.room[1] - size[1] / 2 : size[1] / 2;
+    const std::array<Vec3, 2> box{Vec3{x - size[0] / 2, y - size[1] / 2, 0},
+                                  Vec3{x + size[0] / 2, y + size[1] / 2, size[2]}};
+    if (is_kept_free(box)) return;
     add_room_part(name, x, y, 0, size, {floor_part, far ? 2 : 1, right ? 4 : 3});
+}
+
+bool Furnisher::is_kept_free(const std::array<Vec3, 2>& box) const {
+    return std::any_of(keep_free_.begin(), keep_free_.end(),
+                       [&](const auto& free) { return overlap(free, box); });
 }
 
 bool Furnisher::fits(const Blueprint& blueprint, const Pose& pose, std::int32_t supporter,
@@ -71,6 +87,7 @@ bool Furnisher::fits(const Blueprint& blueprint, const Pose& pose, std::int32_t 
             box[1][1] > world_.room[1] / 2 - middle[1]) {
             return false;
         }
+        if (!blueprint.underfoot && is_kept_free(box)) return false;
         const bool foot = has(blueprint.feet, k);
         const bool at_wall = has(blueprint.wall_parts, k) || has(blueprint.leans, k);
         for (std::size_t other = 0; other < world_.parts.size(); ++other) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scenes/blueprint.h"
+#include "scenes/furnished_room.h"
 #include "scenes/pose.h"
 #include "scenes/scene.h"
 
@@ -17,7 +18,7 @@ namespace topple::scenes {
 
 class Furnisher {
   public:
-    explicit Furnisher(std::uint64_t seed, std::uint64_t stream = 0);
+    explicit Furnisher(const RoomOptions& options, std::uint64_t stream = 0);
 
     // Floor and walls, perhaps a pillar: parts 0 to 4 or 5. First of all.
     void build_room();
@@ -26,7 +27,7 @@ class Furnisher {
                                const Vec3& size, const std::vector<std::int32_t>& to);
 
     // A block from floor to ceiling in a corner: at the right (high x) or left, far (high y) or
-    // near.
+    // near. None where that would reach into what is kept free.
     void add_corner(const char* name, const Vec3& size, bool right, bool far);
 
     // A blueprint that stands somewhere: where its parts begin, and how it was moved.
@@ -73,10 +74,13 @@ class Furnisher {
   private:
     bool place_in_plane_of_wall(const Blueprint& blueprint, std::int32_t supporter,
                                 const std::function<double()>& height);
+    bool is_kept_free(const std::array<Vec3, 2>& box) const;
     Pose at_wall(std::int32_t wall, double along, double off, double z, double turn) const;
 
     World world_;
     Random random_;
+    std::optional<Vec3> size_;
+    std::vector<std::array<Vec3, 2>> keep_free_;
     std::vector<Placed> placed_;
 };
 

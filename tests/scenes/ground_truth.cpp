@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "scenes/part_json.h"
 #include "topple/error.h"
 
 namespace topple::scenes {
@@ -71,22 +72,23 @@ World from_json(const json& root) {
 
 }  // namespace
 
+json part_json(const Part& p) {
+    json out{
+        {"kind", to_string(p.shape)}, {"center", p.center}, {"size", p.size},      {"yaw", p.yaw},
+        {"top_ratio", p.top_ratio},   {"name", p.name},     {"volume", p.volume()}};
+    if (p.lean != 0) out["lean"] = p.lean;
+    if (p.shape == Shape::rounded_box) out["rounding"] = p.rounding;
+    if (p.shape == Shape::revolved) out["profile"] = p.profile;
+    return out;
+}
+
 void write_truth(const std::filesystem::path& path, const World& world) {
     json parts = json::array(), objects = json::array();
     for (std::size_t k = 0; k < world.parts.size(); ++k) {
         const Part& p = world.parts[k];
-        parts.push_back({{"id", k},
-                         {"kind", to_string(p.shape)},
-                         {"center", p.center},
-                         {"size", p.size},
-                         {"yaw", p.yaw},
-                         {"top_ratio", p.top_ratio},
-                         {"object", p.object},
-                         {"name", p.name},
-                         {"volume", p.volume()}});
-        if (p.lean != 0) parts.back()["lean"] = p.lean;
-        if (p.shape == Shape::rounded_box) parts.back()["rounding"] = p.rounding;
-        if (p.shape == Shape::revolved) parts.back()["profile"] = p.profile;
+        parts.push_back(part_json(p));
+        parts.back()["id"] = k;
+        parts.back()["object"] = p.object;
     }
     for (std::size_t k = 0; k < world.objects.size(); ++k) {
         objects.push_back(

@@ -35,8 +35,8 @@ Vec3 turn(const Part& part, const Part::Heading& h, const Vec3& v) {
             -h.lean_sine * q[1] + h.lean_cosine * q[2]};
 }
 
-// The part's own axes in the room's frame, as columns.
-std::array<Vec3, 3> axes(const Part::Heading& h) {
+// The part's x, y and z in the room's frame, as columns.
+std::array<Vec3, 3> columns(const Part::Heading& h) {
     return {Vec3{h.cosine, -h.sine * h.lean_cosine, h.sine * h.lean_sine},
             Vec3{h.sine, h.cosine * h.lean_cosine, -h.cosine * h.lean_sine},
             Vec3{0, h.lean_sine, h.lean_cosine}};
@@ -59,7 +59,7 @@ std::array<Vec3, 2> reach(const Part& part) {
         const double r = part.size[0] / 2;
         return {Vec3{-r, -r, -r}, Vec3{r, r, r}};
     }
-    const auto turned = axes(part.heading());
+    const auto turned = columns(part.heading());
     std::array<Vec3, 2> out{};
     for (std::size_t k = 0; k < 3; ++k) {
         if (is_boxy(part.shape)) {
@@ -131,7 +131,7 @@ Vec3 Part::center_of_mass() const {
     } else if (shape == Shape::revolved) {
         above = solids::revolved_center_z(profile);
     }
-    const auto turned = axes(heading());
+    const auto turned = columns(heading());
     return {center[0] + turned[0][2] * above, center[1] + turned[1][2] * above,
             center[2] + turned[2][2] * above};
 }
@@ -190,6 +190,14 @@ double Part::hit(const Vec3& origin, const Vec3& direction, const Heading& headi
         default:
             return solids::frustum_hit(o, d, frustum(*this));
     }
+}
+
+std::array<Vec3, 3> Part::axes() const {
+    const auto c = columns(heading());
+    const Vec3 x{c[0][0], c[1][0], c[2][0]}, y{c[0][1], c[1][1], c[2][1]},
+        z{c[0][2], c[1][2], c[2][2]};
+    if (shape == Shape::lying_cylinder) return {y, z, x};
+    return {x, y, z};
 }
 
 double Part::bounding_radius() const {

@@ -53,6 +53,8 @@ struct Part {
         return hit(origin, direction, heading());
     }
     double hit(const Vec3& origin, const Vec3& direction, const Heading& heading) const;
+    // Its own axes as unit vectors of the room's frame; bodies of revolution turn about the third.
+    std::array<Vec3, 3> axes() const;
     double bounding_radius() const;      // about center
     std::array<Vec3, 2> bounds() const;  // axis-aligned in the room's frame: lowest, highest corner
     double bottom() const { return bounds()[0][2]; }

@@ -12,7 +12,7 @@ namespace {
 class PlainRoom {
   public:
     explicit PlainRoom(const RoomOptions& options)
-        : room_(options.seed), random_(room_.random()), clutter_(options.clutter) {
+        : room_(options), random_(room_.random()), clutter_(options.clutter) {
         room_.build_room();
         place_furniture();
         place_on_walls();

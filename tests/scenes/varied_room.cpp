@@ -15,7 +15,7 @@ class VariedRoom {
   public:
     // A stream of its own: a seed's varied room is not its plain room with other things.
     explicit VariedRoom(const RoomOptions& options)
-        : room_(options.seed, 1), random_(room_.random()), clutter_(options.clutter) {
+        : room_(options, 1), random_(room_.random()), clutter_(options.clutter) {
         build_shell();
         place_large_things();
         place_seating();
