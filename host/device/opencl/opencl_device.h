@@ -34,6 +34,8 @@ class OpenClDevice;
 class OpenClMemory final : public Memory {
   public:
     OpenClMemory(OpenClDevice& device, std::uint64_t bytes, std::string name);
+    // The caller's buffer of that size, which stays theirs.
+    OpenClMemory(OpenClDevice& device, cl_mem buffer, std::uint64_t bytes, std::string name);
     ~OpenClMemory() override;
     OpenClMemory(const OpenClMemory&) = delete;
     OpenClMemory& operator=(const OpenClMemory&) = delete;

@@ -30,6 +30,12 @@ OpenClMemory::OpenClMemory(OpenClDevice& device, std::uint64_t bytes, std::strin
     cl_check(code, "buffer " + name_ + " of " + std::to_string(bytes) + " bytes");
 }
 
+OpenClMemory::OpenClMemory(OpenClDevice& device, cl_mem buffer, std::uint64_t bytes,
+                           std::string name)
+    : device_(device), bytes_(bytes), name_(std::move(name)), buffer_(buffer) {
+    cl_check(clRetainMemObject(buffer_), "buffer " + name_);
+}
+
 OpenClMemory::~OpenClMemory() {
     if (mapped_) {
         clEnqueueUnmapMemObject(device_.handles().queue, buffer_, host_.get(), 0, nullptr, nullptr);

@@ -34,6 +34,8 @@ class VulkanDevice;
 class VulkanMemory final : public Memory {
   public:
     VulkanMemory(VulkanDevice& device, std::uint64_t bytes, std::string name);
+    // The caller's buffer, which stays theirs.
+    VulkanMemory(VulkanDevice& device, VkBuffer buffer, std::uint64_t bytes, std::string name);
     ~VulkanMemory() override;
     VulkanMemory(const VulkanMemory&) = delete;
     VulkanMemory& operator=(const VulkanMemory&) = delete;
@@ -49,6 +51,7 @@ class VulkanMemory final : public Memory {
     std::uint64_t bytes_;
     std::string name_;
     VulkanBuffer buffer_;
+    bool owned_ = true;
 };
 
 class VulkanDevice final : public Device {

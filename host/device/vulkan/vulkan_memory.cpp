@@ -24,8 +24,14 @@ VulkanMemory::VulkanMemory(VulkanDevice& device, std::uint64_t bytes, std::strin
       name_(std::move(name)),
       buffer_(device.create_storage(bytes + tail, name_)) {}
 
+VulkanMemory::VulkanMemory(VulkanDevice& device, VkBuffer buffer, std::uint64_t bytes,
+                           std::string name)
+    : device_(device), bytes_(bytes), name_(std::move(name)), owned_(false) {
+    buffer_.buffer = buffer;
+}
+
 VulkanMemory::~VulkanMemory() {
-    device_.destroy(buffer_);
+    if (owned_) device_.destroy(buffer_);
 }
 
 std::unique_ptr<Memory> VulkanDevice::allocate(std::uint64_t bytes, const std::string& name) {

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "api/arrays.h"
+#include "geometry/surfels.h"
+#include "pipeline/caller_points.h"
+#include "vdb/voxel_scene.h"
+
+namespace topple::stages {
+namespace {
+
+// The points that can be worked with, in the caller's memory or copied.
+class Usable {
+  public:
+    explicit Usable(const CloudView& cloud) : view_(cloud) {
+        if (view_.source.empty()) view_.source = "cloud";
+        if ((finite_ = finite_points(view_))) view_ = finite_->cloud;
+    }
+    const CloudView& view() const { return view_; }
+    // Where the point lies in the caller's arrays.
+    std::size_t place(std::size_t i) const { return finite_ ? finite_->index[i] : i; }
+
+  private:
+    CloudView view_;
+    std::optional<FinitePoints> finite_;
+};
+
+// Frames are copied in batches of this many bytes of depth.
+constexpr std::uint64_t batch_bytes = 16u << 20;
+
+}  // namespace
+
+double point_spacing(const CloudView& cloud) {
+    return geometry::point_spacing(Usable(cloud).view());
+}
+
+void normals(device::Device& device, const CloudView& cloud, double cell_m, const Vec3* eye_m,
+             std::span<float> nx, std::span<float> ny, std::span<float> nz) {
+    for (const std::span<float>& out : {nx, ny, nz}) {
+        require(out.size() == cloud.size(), "normals",
+                std::to_string(out.size()) + " values of output for " +
+                    std::to_string(cloud.size()) + " points");
+    }
+    const Usable usable(cloud);
+    const std::span<const Vec3> eyes(eye_m, eye_m ? 1 : 0);
+    const geometry::Surfels s = geometry::make_surfels(device, usable.view(), cell_m, eyes, {});
+    if (usable.view().size() < cloud.size()) {
+        for (const std::span<float>& out : {nx, ny, nz}) std::fill(out.begin(), out.end(), 0.0f);
+    }
+    for (std::size_t i = 0; i < s.of_point.size(); ++i) {
+        const std::size_t at = usable.place(i);
+        nx[at] = s.nx[s.of_point[i]];
+        ny[at] = s.ny[s.of_point[i]];
+        nz[at] = s.nz[s.of_point[i]];
+    }
+}
+
+Volume::Volume(const CloudView& cloud, std::span<const std::int32_t> label, double voxel_m) {
+    require(
+        label.size() == cloud.size(), "Volume",
+        std::to_string(label.size()) + " labels for " + std::to_string(cloud.size()) + " points");
+    const Usable usable(cloud);
+    std::vector<std::int32_t> kept;
+    for (std::size_t i = 0; i < usable.view().size(); ++i) {
+        kept.push_back(label[usable.place(i)]);
+        require(kept.back() >= -1, "Volume",
+                "a label of " + std::to_string(kept.back()) + ": they count from 0, or are -1");
+        labels_ = std::max(labels_, kept.back() + 1);
+    }
+    // The kernels keep labels in 16 bits beside three states.
+    require(labels_ < 65000, "Volume",
+            "labels up to " + std::to_string(labels_ - 1) + ", more than 64999");
+    vdb::VoxelFrame frame;
+    frame.voxel_m = voxel_m;
+    scene_ = std::make_unique<vdb::VoxelScene>(frame, usable.view(), kept);
+}
+Volume::~Volume() = default;
+Volume::Volume(Volume&&) noexcept = default;
+Volume& Volume::operator=(Volume&&) noexcept = default;
+
+void Volume::carve(device::Device& device, const Intrinsics& intrinsics,
+                   std::span<const DepthView> frames) {
+    const std::uint64_t pixels = std::uint64_t{intrinsics.width} * intrinsics.height;
+    std::vector<DepthFrame> batch;
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+        require(frames[f].depth.size() == pixels, "carve",
+                "frame " + std::to_string(f) + " has " + std::to_string(frames[f].depth.size()) +
+                    " pixels, not " + std::to_string(pixels));
+        batch.push_back(
+            {{frames[f].depth.begin(), frames[f].depth.end()}, frames[f].camera_to_world});
+        if (f + 1 < frames.size() && batch.size() < 64 && batch.size() * pixels * 2 < batch_bytes)
+            continue;
+        scene_->carve(device, intrinsics, batch);
+        batch.clear();
+    }
+}
+
+std::uint64_t Volume::fill(device::Device& device, unsigned votes,
+                           std::span<const std::int32_t> hollow) {
+    require(votes >= 1 && votes <= 6, "fill", std::to_string(votes) + " votes: from 1 to 6");
+    vdb::VoxelScene::FillOptions options;
+    options.votes = votes;
+    options.hollow.assign(static_cast<std::size_t>(labels_), false);
+    for (const std::int32_t label : hollow) {
+        require(
+            label >= 0 && label < labels_, "fill",
+            "hollow label " + std::to_string(label) + " is none of the " + std::to_string(labels_));
+        options.hollow[static_cast<std::size_t>(label)] = true;
+    }
+    return scene_->fill(device, options);
+}
+
+int Volume::state_at(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    return static_cast<int>(scene_->state_at(i, j, k));
+}
+
+Voxels Volume::solid() const {
+    vdb::SolidCellArrays cells = scene_->solid_cells();
+    Voxels out;
+    for (const vdb::State s : cells.state) out.state.push_back(static_cast<std::uint8_t>(s));
+    out.i = std::move(cells.i);
+    out.j = std::move(cells.j);
+    out.k = std::move(cells.k);
+    out.label = std::move(cells.primitive);
+    return out;
+}
+
+}  // namespace topple::stages

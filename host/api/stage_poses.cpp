@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "api/arrays.h"
+#include "device/queue.h"
+#include "physics/landscape.h"
+#include "physics/tipping.h"
+#include "support_function.hpp"
+
+namespace topple::stages {
+namespace {
+
+constexpr std::uint64_t direction_block = 32;  // what one work-item takes, on any backend
+// Of the output at once, where it goes to host memory: half of the smallest binding.
+constexpr std::uint64_t tile_values = (std::uint64_t{64} << 20) / sizeof(float);
+constexpr unsigned sphere_frequency = 16;  // of the directions that landscapes are sampled in
+constexpr const char* stage = "support_functions";
+
+void check(const Coordinates& vertices, std::span<const std::uint64_t> first,
+           const Coordinates& directions, const Array<float>& out) {
+    const auto equal = [](const Coordinates& c) {
+        return c.x.count == c.y.count && c.x.count == c.z.count;
+    };
+    require(equal(vertices) && equal(directions), stage, "x, y and z differ in length");
+    require(directions.x.count > 0, stage, "there are no directions");
+    require(
+        !first.empty() && first.front() == 0 && first.back() == vertices.x.count &&
+            std::adjacent_find(first.begin(), first.end(), std::greater_equal<>()) == first.end(),
+        stage,
+        "first must rise from 0 to the " + std::to_string(vertices.x.count) +
+            " vertices, with no set empty");
+    const std::uint64_t sets = first.size() - 1;
+    constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+    require(vertices.x.count <= most && directions.x.count <= most / 2 &&
+                sets <= most / (directions.x.count + direction_block),
+            stage, "more than 2^32 vertices or values of output");
+    require(out.count == sets * directions.x.count, stage,
+            "out has " + std::to_string(out.count) + " values, not " +
+                std::to_string(sets * directions.x.count));
+    const bool on_device = directions.x.on_device() || directions.y.on_device() ||
+                           directions.z.on_device() || out.on_device();
+    require(!on_device || directions.x.count % direction_block == 0, stage,
+            std::to_string(directions.x.count) +
+                " directions: a multiple of 32 is needed in a device's buffer");
+}
+
+// To whole blocks; the rest repeats the first direction.
+std::vector<float> padded(const Array<const float>& axis, std::uint64_t count) {
+    std::vector<float> out(axis.host.begin(), axis.host.end());
+    out.resize(axis.on_device() ? 0 : count, out.empty() ? 0 : out[0]);
+    return out;
+}
+
+}  // namespace
+
+void support_functions(device::Device& device, const Coordinates& vertices,
+                       std::span<const std::uint64_t> first, const Coordinates& directions,
+                       const Array<float>& out) {
+    check(vertices, first, directions, out);
+    const std::uint64_t sets = first.size() - 1, count = directions.x.count;
+    const std::uint64_t row = (count + direction_block - 1) / direction_block * direction_block;
+    if (sets == 0) return;
+    const std::vector<float> dx = padded(directions.x, row), dy = padded(directions.y, row),
+                             dz = padded(directions.z, row);
+    const auto axis = [](const Array<const float>& given, const std::vector<float>& wide) {
+        return given.on_device() ? given : Array<const float>(wide);
+    };
+    const Bound<const float> vx(device, vertices.x, vertices.x.count, "vertices x"),
+        vy(device, vertices.y, vertices.y.count, "vertices y"),
+        vz(device, vertices.z, vertices.z.count, "vertices z"),
+        ax(device, axis(directions.x, dx), row, "directions x"),
+        ay(device, axis(directions.y, dy), row, "directions y"),
+        az(device, axis(directions.z, dz), row, "directions z");
+    const std::uint64_t at_once =
+        out.on_device() ? sets : std::min(sets, std::max<std::uint64_t>(1, tile_values / row));
+    const Bound<float> s(device, out, at_once * row, "support functions");
+    for (std::uint64_t from = 0; from < sets; from += at_once) {
+        device::Queue queue(device);
+        const std::uint64_t to = std::min(sets, from + at_once);
+        for (std::uint64_t n = from; n < to; ++n) {
+            queue.add<kernels::SupportFunction>(
+                row,
+                {.vx = vx.slice(),
+                 .vy = vy.slice(),
+                 .vz = vz.slice(),
+                 .dx = ax.slice(),
+                 .dy = ay.slice(),
+                 .dz = az.slice(),
+                 .s = s.slice()},
+                {.vertex_count = static_cast<std::uint32_t>(first[n + 1] - first[n]),
+                 .vertex_first = static_cast<std::uint32_t>(first[n]),
+                 .direction_count = static_cast<std::uint32_t>(row),
+                 .output_first = static_cast<std::uint32_t>((n - from) * row)});
+        }
+        queue.run();
+        for (std::uint64_t n = from; !out.on_device() && n < to; ++n)
+            s.own().download(out.host.subspan(n * count, count), (n - from) * row);
+    }
+}
+
+std::vector<Barrier> barriers(device::Device& device, std::span<const StandingBody> bodies,
+                              double resolution_m) {
+    require(resolution_m >= 0 && std::isfinite(resolution_m), "barriers",
+            "resolution_m must be 0 or above");
+    std::vector<std::vector<Vec3>> points;
+    std::vector<physics::Candidate> candidates;
+    for (const StandingBody& body : bodies) {
+        const std::string name = "body " + std::to_string(points.size());
+        require(!body.points.empty(), "barriers", name + " has no points");
+        bool finite = std::isfinite(body.mass_kg) && body.mass_kg > 0;
+        for (const double c : body.center_of_mass_m) finite = finite && std::isfinite(c);
+        require(finite, "barriers",
+                name + ": its mass must be above 0, and its centre of mass finite");
+        physics::Candidate c;
+        c.primitives = {static_cast<std::int32_t>(points.size())};
+        c.body.mass_kg = body.mass_kg;
+        c.body.center = body.center_of_mass_m;
+        c.support_height_m = std::numeric_limits<double>::infinity();
+        for (const Vec3& p : body.points) c.support_height_m = std::min(c.support_height_m, p[2]);
+        std::vector<std::array<double, 2>> bearing;
+        for (const Vec3& p : body.points) {
+            if (p[2] <= c.support_height_m + resolution_m) bearing.push_back({p[0], p[1]});
+        }
+        points.emplace_back(body.points.begin(), body.points.end());
+        c.support_polygon = physics::convex_polygon(bearing);
+        candidates.push_back(std::move(c));
+    }
+    const physics::SupportTable table(device, points, resolution_m,
+                                      physics::geodesic_sphere(sphere_frequency));
+    std::vector<Barrier> out;
+    for (physics::Stability& s :
+         physics::evaluate(device, table, candidates, physics::Passes::exact)) {
+        out.push_back({s.barrier_J, s.release_J, s.easiest.direction, std::move(s.curve)});
+    }
+    return out;
+}
+
+}  // namespace topple::stages
