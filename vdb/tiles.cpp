@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <numeric>
+#include <string>
 
 #include "topple/error.h"
 #include "vdb/grids.h"
@@ -19,6 +20,36 @@ std::vector<LeafTable::Leaf> solid_leaves(const openvdb::Int32Grid& state) {
 }
 
 }  // namespace
+
+void VoxelScene::put_leaf(const std::array<std::int32_t, 3>& lowest,
+                          std::span<const std::uint8_t> states) {
+    if (states.size() != 512)
+        throw Error(ErrorKind::usage, "put_leaf: " + std::to_string(states.size()) + " states");
+    const openvdb::Coord origin(lowest[0], lowest[1], lowest[2]);
+    auto& tree = grids_->state->tree();
+    if (std::ranges::all_of(states, [&](std::uint8_t s) { return s == states[0]; }) &&
+        states[0] == static_cast<std::uint8_t>(State::empty)) {
+        tree.addTile(1, origin, states[0], false);
+        return;
+    }
+    auto* leaf = tree.touchLeaf(origin);
+    bool solid = false;
+    for (openvdb::Index v = 0; v < 512; ++v) {
+        const auto state = static_cast<State>(states[v]);
+        if (state == State::surface || state == State::completed) {
+            leaf->setValueOn(v, states[v]);
+            solid = true;
+        } else {
+            leaf->setValueOff(v, states[v]);
+        }
+    }
+    if (solid) grids_->primitive->tree().touchLeaf(origin);
+}
+
+void VoxelScene::put_label(std::int32_t i, std::int32_t j, std::int32_t k,
+                           std::int32_t primitive) {
+    grids_->primitive->tree().setValueOn({i, j, k}, primitive);
+}
 
 Tiles VoxelScene::tiles(bool all) const {
     std::vector<LeafTable::Leaf> leaves;

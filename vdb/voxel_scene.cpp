@@ -120,15 +120,18 @@ std::int32_t majority(std::span<const Sample> samples) {
 
 }  // namespace
 
+VoxelScene::VoxelScene(const VoxelFrame& frame) : grids_(std::make_unique<Grids>()) {
+    openvdb::initialize();
+    grids_->frame = frame;
+    grids_->state = openvdb::Int32Grid::create(static_cast<std::int32_t>(State::invisible));
+    grids_->primitive = openvdb::Int32Grid::create(-1);
+}
+
 VoxelScene::VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
                        std::span<const std::int32_t> label)
-    : grids_(std::make_unique<Grids>()) {
+    : VoxelScene(frame) {
     check(frame, cloud, label);
-    openvdb::initialize();
     Grids& g = *grids_;
-    g.frame = frame;
-    g.state = openvdb::Int32Grid::create(static_cast<std::int32_t>(State::invisible));
-    g.primitive = openvdb::Int32Grid::create(-1);
 
     const Placed placed = place(frame, cloud);
     for (int a = 0; a < 3; ++a) {

@@ -68,8 +68,15 @@ class VoxelScene {
     // the bounds hold more leaves than memory allows.
     VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
                std::span<const std::int32_t> label);
+    // A scene without points or bounds, for put_leaf(), labels and write().
+    explicit VoxelScene(const VoxelFrame& frame);
     ~VoxelScene();
     VoxelScene(VoxelScene&&) noexcept;
+
+    // Takes over a leaf of 8x8x8 voxels, found elsewhere: 512 states in the order of Tiles. Of a solid
+    // voxel put_label() names the primitive.
+    void put_leaf(const std::array<std::int32_t, 3>& lowest, std::span<const std::uint8_t> states);
+    void put_label(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive);
 
     const VoxelFrame& frame() const;
 
@@ -142,9 +149,12 @@ class VoxelScene {
     // Object of each primitive, for solid_voxels() and write(); -1 where the span ends.
     void set_objects(std::span<const std::int32_t> object_of_primitive);
 
-    // Adds a float grid to what write() stores: value per voxel of `tiles`, zeros are not stored.
-    // Throws Error(usage) for a name that is taken or an array that doesn't match the tiles.
-    void add_field(const std::string& name, const Tiles& tiles, std::span<const float> values);
+    // Adds a float grid to what write() stores: a value for each of the voxels (i, j, k); zeros are
+    // not stored. Throws Error(usage) for a name that is taken or arrays that differ in length.
+    void add_field(const std::string& name, std::span<const std::int32_t> i,
+                   std::span<const std::int32_t> j, std::span<const std::int32_t> k,
+                   std::span<const float> values);
+
 
     // Grids `state`, `primitive`, `object` (Int32Grid; inactive background -1 for the last two, 2
     // for `state`, whose active voxels are the solid ones) and the added fields. The transform

@@ -18,24 +18,20 @@ openvdb::math::Transform::Ptr VoxelScene::Grids::transform() const {
     return openvdb::math::Transform::createLinearTransform(m);
 }
 
-void VoxelScene::add_field(const std::string& name, const Tiles& tiles,
+void VoxelScene::add_field(const std::string& name, std::span<const std::int32_t> i,
+                           std::span<const std::int32_t> j, std::span<const std::int32_t> k,
                            std::span<const float> values) {
     bool taken = name.empty() || name == "state" || name == "primitive" || name == "object";
     for (const auto& field : grids_->fields) taken = taken || field.first == name;
     if (taken) throw Error(ErrorKind::usage, "field \"" + name + "\": the name is taken or empty");
-    if (values.size() != tiles.size() * 512) {
+    if (i.size() != values.size() || j.size() != values.size() || k.size() != values.size()) {
         throw Error(ErrorKind::usage, "field \"" + name + "\": " + std::to_string(values.size()) +
-                                          " values for " + std::to_string(tiles.size() * 512) +
-                                          " voxels");
+                                          " values for " + std::to_string(i.size()) + " voxels");
     }
     auto grid = openvdb::FloatGrid::create(0);
-    for (std::size_t n = 0; n < tiles.size(); ++n) {
-        const float* from = values.data() + n * 512;
-        if (std::all_of(from, from + 512, [](float v) { return v == 0; })) continue;
-        auto* leaf = grid->tree().touchLeaf({tiles.x[n], tiles.y[n], tiles.z[n]});
-        for (openvdb::Index v = 0; v < 512; ++v) {
-            if (from[v] != 0) leaf->setValueOn(v, from[v]);
-        }
+    auto to = grid->getAccessor();
+    for (std::size_t n = 0; n < values.size(); ++n) {
+        if (values[n] != 0) to.setValueOn({i[n], j[n], k[n]}, values[n]);
     }
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     grids_->fields.emplace_back(name, grid);

@@ -35,18 +35,26 @@ constexpr double floor_piece_m2 = 0.25, least_thing_m2 = 0.01, noise_cells = 0.6
 // as a step, is another floor: a gallery, a platform. Tables are between them, beds smaller.
 constexpr double other_floor_m2 = 4, storey_m = 1.8, lowest_step_m = 0.12, highest_step_m = 0.45;
 
+double dot(const Vec3& a, double x, double y, double z) {
+    return a[0] * x + a[1] * y + a[2] * z;
+}
+
+// Ceilings of a building hang no lower above the floor; walls without a ceiling are no lower and no
+// smaller, and end no lower than this below one.
+constexpr double lowest_ceiling_m = 2.0, high_wall_m = 2.0, high_wall_m2 = 1.5;
+constexpr double below_ceiling_m = 0.2;
+// A storey's floor strays from its height by no more.
+constexpr double uneven_storey_m = 0.1;
+
 // Area-weighted mean plane of one primitive: point, normal, and how much of it agrees.
 struct Face {
     double area_m2 = 0;  // of surfels whose normal agrees with the mean
     double nx = 0, ny = 0, nz = 0, px = 0, py = 0, pz = 0;
     double flatness = 0;  // length of the mean normal: 1 for a plane, less for a box
+    double lowest_m = INFINITY, highest_m = -INFINITY;  // along up
 };
 
-double dot(const Vec3& a, double x, double y, double z) {
-    return a[0] * x + a[1] * y + a[2] * z;
-}
-
-std::vector<Face> faces(const Surfels& s, const PrimitiveSet& primitives) {
+std::vector<Face> faces(const Surfels& s, const PrimitiveSet& primitives, const Vec3& up) {
     std::vector<Face> out(primitives.model.size());
     const double cell_area = s.cell_m * s.cell_m;
     for (std::size_t n = 0; n < s.size(); ++n) {
@@ -55,6 +63,9 @@ std::vector<Face> faces(const Surfels& s, const PrimitiveSet& primitives) {
         f.area_m2 += cell_area;
         f.nx += s.nx[n], f.ny += s.ny[n], f.nz += s.nz[n];
         f.px += s.x[n], f.py += s.y[n], f.pz += s.z[n];
+        const double height = dot(up, s.x[n], s.y[n], s.z[n]);
+        f.lowest_m = std::min(f.lowest_m, height);
+        f.highest_m = std::max(f.highest_m, height);
     }
     for (Face& f : out) {
         const double count = std::max(1.0, f.area_m2 / cell_area);
@@ -142,11 +153,23 @@ std::vector<bool> continued_floor(const Surfels& s, const PrimitiveSet& primitiv
     return floor;
 }
 
+// Of the highest large plane that looks down from above a person's head; infinite where there is none.
+template <class Level>
+double ceiling_height(const std::vector<Face>& face, const Level& level, double floor_height) {
+    double height = -INFINITY;
+    for (const Face& f : face) {
+        if (level(f) < -horizontal_cos && f.area_m2 >= wall_area_m2 &&
+            f.lowest_m - floor_height >= lowest_ceiling_m)
+            height = std::max(height, f.lowest_m);
+    }
+    return std::isfinite(height) ? height : INFINITY;
+}
+
 }  // namespace
 
 std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet& primitives,
-                                      const Vec3& up) {
-    const std::vector<Face> face = faces(surfels, primitives);
+                                      const Vec3& up, const std::optional<StoreyHint>& storey) {
+    const std::vector<Face> face = faces(surfels, primitives, up);
     std::vector<Structure> out(face.size(), Structure::none);
     const auto level = [&](const Face& f) { return dot(up, f.nx, f.ny, f.nz); };
     constexpr double flat = 0.85;
@@ -164,8 +187,19 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
     };
     double floor_height = INFINITY;
     for (const Face& f : face) {
-        if (may_be_floor(f)) floor_height = std::min(floor_height, dot(up, f.px, f.py, f.pz));
+        const double height = dot(up, f.px, f.py, f.pz);
+        // With a storey, whose floor may be out of sight, a table top is not taken for it.
+        if (storey && !(std::abs(height - storey->floor_m) < uneven_storey_m)) continue;
+        if (may_be_floor(f)) floor_height = std::min(floor_height, height);
     }
+    if (storey && std::isinf(floor_height)) floor_height = storey->floor_m;
+    const double ceiling = storey ? ceiling_height(face, level, floor_height) : INFINITY;
+    const auto ends_room = [&](const Face& f) {
+        if (!storey) return share_behind(surfels, f) < behind_share;
+        if (level(f) < -horizontal_cos) return f.lowest_m - floor_height >= lowest_ceiling_m;
+        if (std::isfinite(ceiling)) return f.highest_m >= ceiling - below_ceiling_m;
+        return f.highest_m - f.lowest_m >= high_wall_m && f.area_m2 >= high_wall_m2;
+    };
     const double noise = noise_cells * surfels.cell_m, uneven = std::max(0.03, 2 * surfels.cell_m);
     std::vector<std::size_t> large;
     std::vector<bool> small(face.size()), other(face.size());
@@ -185,8 +219,7 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
         if (small[p] || other[p] || continued[p]) {
             out[p] = Structure::floor;
         } else if (f.flatness > flat && f.area_m2 >= wall_area_m2 &&
-                   f.area_m2 >= wall_share * largest_upright &&
-                   share_behind(surfels, f) < behind_share) {
+                   f.area_m2 >= wall_share * largest_upright && ends_room(f)) {
             if (std::abs(level(f)) < vertical_sin) out[p] = Structure::wall;
             if (level(f) < -horizontal_cos) out[p] = Structure::ceiling;
         }
@@ -196,7 +229,7 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
 
 void absorb_into_shell(const Surfels& s, PrimitiveSet& primitives,
                        std::vector<Structure>& structure) {
-    const std::vector<Face> face = faces(s, primitives);
+    const std::vector<Face> face = faces(s, primitives, {0, 0, 0});
     const double slack = shell_slack_cells * s.cell_m;
     std::vector<std::int32_t> home(face.size(), -1);
     std::vector<std::vector<std::size_t>> beside(face.size());  // shell planes that it is close to

@@ -10,6 +10,9 @@
 namespace topple::io {
 namespace {
 
+// Points that a sink gets at a time.
+constexpr std::uint64_t portion = 1u << 20;
+
 bool finite(const std::array<double, 3>& v) {
     return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
@@ -28,21 +31,35 @@ double robust_extent(const std::vector<float>& values) {
 }  // namespace
 
 CloudBuilder::CloudBuilder(const std::filesystem::path& file, std::uint64_t promised,
-                           bool with_normals)
-    : file_(file), with_normals_(with_normals) {
-    cloud_.source = file.string();
+                           bool with_normals, const CloudSink* sink)
+    : file_(file), sink_(sink), with_normals_(with_normals) {
+    if (sink) {
+        promised = std::min(promised, portion);
+    } else {
+        cloud_.source = file.string();
+    }
     try {
         for (auto* values : {&cloud_.x, &cloud_.y, &cloud_.z}) values->reserve(promised);
         if (with_normals) {
             for (auto* values : {&cloud_.nx, &cloud_.ny, &cloud_.nz}) values->reserve(promised);
         }
-        cloud_.pixel.reserve(promised);
+        if (!sink) cloud_.pixel.reserve(promised);
     } catch (const std::exception&) {
         fail(file, counted(promised, "point") + " don't fit into memory; thin the cloud");
     }
 }
 
+void CloudBuilder::pass_on() {
+    passed_on_ += cloud_.size();
+    PointCloud next;
+    for (const auto values : {&PointCloud::x, &PointCloud::y, &PointCloud::z})
+        (next.*values).reserve(portion);
+    std::swap(cloud_, next);
+    (*sink_)(std::move(next));
+}
+
 void CloudBuilder::add(const std::array<double, 3>& point, const std::array<double, 3>& normal) {
+    if (sink_ && cloud_.size() == portion) pass_on();
     const auto index = seen_++;
     if (!finite(point)) {
         ++cloud_.dropped;
@@ -55,7 +72,7 @@ void CloudBuilder::add(const std::array<double, 3>& point, const std::array<doub
     cloud_.y.push_back(static_cast<float>(point[1]));
     cloud_.z.push_back(static_cast<float>(point[2]));
     // Whether the cloud is organised shows at the end; 2^32 pixels and more are refused before.
-    cloud_.pixel.push_back(static_cast<std::uint32_t>(index));
+    if (!sink_) cloud_.pixel.push_back(static_cast<std::uint32_t>(index));
     if (!with_normals_) return;
     const double length =
         std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
@@ -67,10 +84,14 @@ void CloudBuilder::add(const std::array<double, 3>& point, const std::array<doub
 }
 
 PointCloud CloudBuilder::finish(std::uint32_t width, std::uint32_t height) {
-    if (cloud_.x.empty()) {
+    if (cloud_.x.empty() && passed_on_ == 0) {
         fail(file_, seen_ == 0 ? std::string("has no points")
                                : "none of its " + counted(seen_, "point") +
                                      " is finite; at least one must be");
+    }
+    if (sink_) {
+        if (cloud_.size() + cloud_.dropped > 0) pass_on();
+        return {};
     }
     if (height > 1) {
         cloud_.width = width;

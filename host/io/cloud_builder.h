@@ -4,18 +4,25 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "topple/input.h"
 
 namespace topple::io {
 
+// Takes the points of a file while it is read, in its order and about a million at a time: clouds
+// without `pixel`, size, viewpoint or source. `dropped` is of this portion.
+using CloudSink = std::function<void(PointCloud)>;
+
 // Collects the points of a file into a PointCloud: drops and counts the ones that are not finite,
 // refuses coordinates that can't be metres, and makes normals unit length.
 class CloudBuilder {
   public:
-    // `promised` points are reserved: check it against the file's size first.
-    CloudBuilder(const std::filesystem::path& file, std::uint64_t promised, bool with_normals);
+    // `promised` points are reserved: check it against the file's size first. With a sink, which
+    // must outlive the builder, only a portion of them is held at a time.
+    CloudBuilder(const std::filesystem::path& file, std::uint64_t promised, bool with_normals,
+                 const CloudSink* sink = nullptr);
 
     // Adds point number seen(). `normal` is read with normals only; one that is not finite or has
     // no length is stored as 0, 0, 0. Throws Error(input) for a coordinate beyond 1e6 m.
@@ -23,11 +30,16 @@ class CloudBuilder {
     std::uint64_t seen() const { return seen_; }
 
     // All points are in. `width`, `height` > 0: the points are the pixels of one image, row by row.
-    // Throws Error(input) where no point is finite.
+    // Throws Error(input) where no point is finite. With a sink all points have gone there, and the
+    // cloud has none.
     PointCloud finish(std::uint32_t width = 0, std::uint32_t height = 0);
 
   private:
+    void pass_on();
+
     std::filesystem::path file_;
+    const CloudSink* sink_;
+    std::uint64_t passed_on_ = 0;  // points that the sink has
     PointCloud cloud_;
     bool with_normals_;
     bool any_normal_ = false;

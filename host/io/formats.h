@@ -4,23 +4,28 @@
 #include <filesystem>
 #include <string_view>
 
+#include "io/cloud_builder.h"
 #include "topple/input.h"
 
-// One parser for each cloud format. `bytes` is the whole file; `file` is for messages only.
+// One parser for each cloud format. `bytes` is the whole file; `file` is for messages only. With a
+// sink the points go there, and the cloud returned has none.
 namespace topple::io {
 
 // PLY 1.0: ascii, binary_little_endian, binary_big_endian. Reads x y z and nx ny nz (any scalar
 // type) of the element `vertex`; skips every other property, list and element.
-PointCloud parse_ply(const std::filesystem::path& file, std::string_view bytes);
+PointCloud parse_ply(const std::filesystem::path& file, std::string_view bytes,
+                     const CloudSink* sink = nullptr);
 
 // PCD 0.5 to 0.7: ascii, binary (the writer's byte order, taken as little-endian) and
 // binary_compressed. Reads x y z and normal_x normal_y normal_z; any other FIELDS are skipped.
-PointCloud parse_pcd(const std::filesystem::path& file, std::string_view bytes);
+PointCloud parse_pcd(const std::filesystem::path& file, std::string_view bytes,
+                     const CloudSink* sink = nullptr);
 
 // One point a line, separated by white space, commas or semicolons; # and // start comments. A line
 // of names may come first: then x, y, z (and nx, ny, nz) are found by name. Without one the first
 // three columns are the point, and the next three of exactly six are normals if their length is 1.
 // A first line of one whole number is the count of points (.pts).
-PointCloud parse_xyz(const std::filesystem::path& file, std::string_view bytes);
+PointCloud parse_xyz(const std::filesystem::path& file, std::string_view bytes,
+                     const CloudSink* sink = nullptr);
 
 }  // namespace topple::io

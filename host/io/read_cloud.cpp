@@ -6,9 +6,11 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "io/cloud_builder.h"
 #include "io/formats.h"
+#include "io/mapped_file.h"
 #include "io/mesh_checks.h"
 #include "io/read_mesh.h"
 #include "io/text.h"
@@ -65,9 +67,11 @@ PointCloud parse_ply_or_mesh(const std::filesystem::path& file, std::string_view
     return cloud;
 }
 
-PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text, double unit_m) {
-    if (starts_as_ply(text)) return parse_ply_or_mesh(file, text, unit_m);
-    if (text.starts_with("# .PCD")) return parse_pcd(file, text);
+PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text, double unit_m,
+                       const CloudSink* sink = nullptr) {
+    if (starts_as_ply(text))
+        return sink ? parse_ply(file, text, sink) : parse_ply_or_mesh(file, text, unit_m);
+    if (text.starts_with("# .PCD")) return parse_pcd(file, text, sink);
 
     const auto extension = lower_extension(file);
     if (const auto format = mesh_format(text, extension)) {
@@ -82,9 +86,9 @@ PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text,
         fail(file, "starts with " + in_quotes(text.substr(0, 8)) +
                        ", where a PLY file starts with \"ply\"; it is another format or damaged");
     }
-    if (extension == ".pcd") return parse_pcd(file, text);
+    if (extension == ".pcd") return parse_pcd(file, text, sink);
     for (const char* known : {".xyz", ".txt", ".csv", ".asc", ".pts"}) {
-        if (extension == known) return parse_xyz(file, text);
+        if (extension == known) return parse_xyz(file, text, sink);
     }
     fail(file, "is no known kind of point cloud or mesh (its extension is " + in_quotes(extension) +
                    "); give a .ply, .pcd, .xyz, .obj, .stl, .glb or .gltf file, or a folder with "
@@ -99,6 +103,16 @@ void scale(PointCloud& cloud, double unit_m) {
 }
 
 }  // namespace
+
+void stream_cloud(const std::filesystem::path& file, double unit_m, const CloudSink& sink) {
+    const MappedFile bytes(file);
+    const CloudSink scaled = [&](PointCloud portion) {
+        if (unit_m != 1) scale(portion, unit_m);
+        sink(std::move(portion));
+        bytes.release();
+    };
+    parse_cloud(file, bytes.text(), &scaled);
+}
 
 PointCloud read_cloud(const std::filesystem::path& file, double unit_m) {
     std::error_code error;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "io/cloud_builder.h"
 #include "topple/input.h"
 
 // Point clouds from files. Nothing in a file is trusted: sizes are checked against the file's
@@ -19,5 +20,9 @@ namespace topple::io {
 // point, or with a coordinate beyond 1e6 units, is refused. Normals are kept, made unit length,
 // where the file has them (0, 0, 0 for single points without one).
 PointCloud read_cloud(const std::filesystem::path& file, double unit_m = 1);
+
+// The same file in portions, for clouds larger than memory; its points come in its order. A
+// binary_compressed PCD is unpacked whole.
+void stream_cloud(const std::filesystem::path& file, double unit_m, const CloudSink& sink);
 
 }  // namespace topple::io

@@ -358,7 +358,8 @@ void set_viewpoint(const Header& header, PointCloud& cloud) {
 
 }  // namespace
 
-PointCloud parse_pcd(const std::filesystem::path& file, std::string_view bytes) {
+PointCloud parse_pcd(const std::filesystem::path& file, std::string_view bytes,
+                     const CloudSink* sink) {
     const auto header = HeaderParser(file, bytes).parse();
     const auto wanted = find_wanted(file, header);
     const auto points = *header.points;
@@ -377,7 +378,7 @@ PointCloud parse_pcd(const std::filesystem::path& file, std::string_view bytes) 
         unpacked = decompress(file, data, needed);
     }
 
-    CloudBuilder cloud(file, points, wanted.has_normal);
+    CloudBuilder cloud(file, points, wanted.has_normal, sink);
     if (header.data == Data::ascii) {
         read_ascii(file, bytes, header, wanted, cloud);
     } else {

@@ -218,7 +218,7 @@ Wanted find_wanted(const std::filesystem::path& file, const Element& vertex) {
 
 // Reads vertex lines. Every item is one line.
 PointCloud read_ascii(const std::filesystem::path& file, std::string_view bytes,
-                      const Header& header) {
+                      const Header& header, const CloudSink* sink) {
     Lines lines(bytes, header.data_offset, header.lines);
     std::string_view line;
     for (const auto& element : header.elements) {
@@ -234,7 +234,7 @@ PointCloud read_ascii(const std::filesystem::path& file, std::string_view bytes,
             continue;
         }
         const auto wanted = find_wanted(file, element);
-        CloudBuilder cloud(file, element.count, wanted.has_normal);
+        CloudBuilder cloud(file, element.count, wanted.has_normal, sink);
         // What to do with each value on the line: 0-2 point, 3-5 normal, -1 skip.
         std::vector<int> role(element.properties.size(), -1);
         for (int axis = 0; axis < 3; ++axis) {
@@ -291,11 +291,11 @@ class BinaryReader {
           end_(bytes.data() + bytes.size()),
           swapped_(must_swap(header.encoding == Encoding::big)) {}
 
-    PointCloud read() {
+    PointCloud read(const CloudSink* sink) {
         for (const auto& element : header_.elements) {
             const auto needed = saturating_multiply(element.count, element.least_bytes());
             if (needed > left()) cut_short(file_, element, needed, left());
-            if (element.name == "vertex") return read_vertices(element);
+            if (element.name == "vertex") return read_vertices(element, sink);
             if (!element.has_lists()) {
                 at_ += needed;
                 continue;
@@ -308,9 +308,9 @@ class BinaryReader {
   private:
     std::uint64_t left() const { return static_cast<std::uint64_t>(end_ - at_); }
 
-    PointCloud read_vertices(const Element& vertex) {
+    PointCloud read_vertices(const Element& vertex, const CloudSink* sink) {
         const auto wanted = find_wanted(file_, vertex);
-        CloudBuilder cloud(file_, vertex.count, wanted.has_normal);
+        CloudBuilder cloud(file_, vertex.count, wanted.has_normal, sink);
         // Where each property of the current vertex starts.
         std::vector<const char*> starts(vertex.properties.size());
         const bool fixed = !vertex.has_lists();
@@ -375,10 +375,11 @@ class BinaryReader {
 
 }  // namespace
 
-PointCloud parse_ply(const std::filesystem::path& file, std::string_view bytes) {
+PointCloud parse_ply(const std::filesystem::path& file, std::string_view bytes,
+                     const CloudSink* sink) {
     const auto header = HeaderParser(file, bytes).parse();
-    if (header.encoding == Encoding::ascii) return read_ascii(file, bytes, header);
-    return BinaryReader(file, bytes, header).read();
+    if (header.encoding == Encoding::ascii) return read_ascii(file, bytes, header, sink);
+    return BinaryReader(file, bytes, header).read(sink);
 }
 
 }  // namespace topple::io

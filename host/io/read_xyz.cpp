@@ -75,8 +75,8 @@ bool are_unit(const std::vector<std::array<double, 3>>& triples) {
 
 class XyzParser {
   public:
-    XyzParser(const std::filesystem::path& file, std::string_view bytes)
-        : file_(file), lines_(bytes) {}
+    XyzParser(const std::filesystem::path& file, std::string_view bytes, const CloudSink* sink)
+        : file_(file), sink_(sink), lines_(bytes) {}
 
     PointCloud parse() {
         std::string_view line;
@@ -92,17 +92,20 @@ class XyzParser {
                 if (count == 6) columns_.normal = {3, 4, 5};
             }
             add_row(count);
+            if (sink_ && points_.size() == rows_at_once) hand_over();
         }
-        if (promised_ && *promised_ != points_.size()) {
+        if (promised_ && *promised_ != rows_) {
             fail(file_, "its first line promises " + counted(*promised_, "point") +
-                            ", the file has " + std::to_string(points_.size()) +
+                            ", the file has " + std::to_string(rows_) +
                             "; it is cut short, or that line is wrong");
         }
-        return build();
+        hand_over();
+        return cloud_->finish();
     }
 
   private:
     void add_row(std::size_t count) {
+        ++rows_;
         points_.push_back(triple(columns_.point, count));
         // A row that has not six columns like the first: the columns beyond three are no normals.
         if (columns_.has_normals() && !columns_.normals_by_name && count != 6)
@@ -128,17 +131,28 @@ class XyzParser {
         fail(file_, "line " + std::to_string(lines_.number()) + ": " + message);
     }
 
-    PointCloud build() {
-        const bool normals =
-            columns_.has_normals() && (columns_.normals_by_name || are_unit(normals_));
-        CloudBuilder cloud(file_, points_.size(), normals);
-        for (std::size_t i = 0; i < points_.size(); ++i) {
-            cloud.add(points_[i], normals ? normals_[i] : std::array<double, 3>{});
+    // The first rows, which without a sink are all, tell whether the file has normals.
+    void hand_over() {
+        if (!cloud_) {
+            const bool normals =
+                columns_.has_normals() && (columns_.normals_by_name || are_unit(normals_));
+            if (!normals) columns_.normal.fill(none);
+            cloud_.emplace(file_, points_.size(), normals, sink_);
         }
-        return cloud.finish();
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            cloud_->add(points_[i],
+                        columns_.has_normals() ? normals_[i] : std::array<double, 3>{});
+        }
+        points_.clear();
+        normals_.clear();
     }
 
+    static constexpr std::size_t rows_at_once = 1u << 16;  // with a sink
+
     const std::filesystem::path& file_;
+    const CloudSink* sink_;
+    std::optional<CloudBuilder> cloud_;
+    std::uint64_t rows_ = 0;
     Lines lines_;
     Columns columns_;
     std::optional<std::uint64_t> promised_;
@@ -148,14 +162,15 @@ class XyzParser {
 
 }  // namespace
 
-PointCloud parse_xyz(const std::filesystem::path& file, std::string_view bytes) {
+PointCloud parse_xyz(const std::filesystem::path& file, std::string_view bytes,
+                     const CloudSink* sink) {
     if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);  // byte order mark
     if (bytes.substr(0, 4096).find('\0') != std::string_view::npos) {
         fail(file,
              "is not text: it has zero bytes near its start; give text in UTF-8 or ASCII, or a "
              ".ply or .pcd file");
     }
-    return XyzParser(file, bytes).parse();
+    return XyzParser(file, bytes, sink).parse();
 }
 
 }  // namespace topple::io

@@ -122,25 +122,6 @@ void add_points(Ingested& input, const GeometryStage& geometry, const ObjectStag
     }
 }
 
-// Each field's strength at the solid voxels it acts on, for volume.vdb.
-void add_exposures(const SafetyStage& safety, const physics::SolidCells& cells,
-                   vdb::VoxelScene& voxels) {
-    const vdb::Tiles tiles = voxels.tiles();
-    std::map<std::array<std::int32_t, 3>, std::size_t> leaf;
-    for (std::size_t n = 0; n < tiles.size(); ++n) leaf[{tiles.x[n], tiles.y[n], tiles.z[n]}] = n;
-    for (const safety::Disturbance& d : safety.disturbances) {
-        std::vector<float> values(tiles.size() * 512, 0.0f);
-        for (std::size_t c = 0; c < d.exposure.size(); ++c) {
-            const std::int32_t i = cells.i[c], j = cells.j[c], k = cells.k[c];
-            const auto at = leaf.find({i & ~7, j & ~7, k & ~7});
-            if (at == leaf.end()) continue;
-            values[at->second * 512 +
-                   static_cast<std::size_t>((i & 7) * 64 + (j & 7) * 8 + (k & 7))] = d.exposure[c];
-        }
-        voxels.add_field(d.name, tiles, values);
-    }
-}
-
 void add_fields(const SafetyStage& safety, const ToInput& to_input, Scene& scene) {
     for (const safety::Disturbance& d : safety.disturbances) {
         FieldSamples samples = d.samples;
@@ -235,6 +216,12 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     scene.swc_energy = objects.grouping.energy_curve;
     explain(parts, objects, to_input, scene);
     foretell(objects, safety.advice, to_input, scene);
+}
+
+void add_exposures(const SafetyStage& safety, const physics::SolidCells& cells,
+                   vdb::VoxelScene& voxels) {
+    for (const safety::Disturbance& d : safety.disturbances)
+        if (!d.exposure.empty()) voxels.add_field(d.name, cells.i, cells.j, cells.k, d.exposure);
 }
 
 void assemble_points(Ingested& input, const GeometryStage& geometry, const SolidParts& parts,

@@ -26,7 +26,9 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
                                       input.viewpoints, input.viewpoint_of_point);
     });
     g.frame = stage("frame", [&] {
-        return geometry::find_scene_frame(device, g.surfels, {options.up, input.camera_up});
+        return input.frame ? *input.frame
+                           : geometry::find_scene_frame(device, g.surfels,
+                                                        {options.up, input.camera_up});
     });
     const geometry::Regions regions =
         stage("splitting", [&] { return geometry::split(g.surfels, device.threads()); });
@@ -38,7 +40,7 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
         geometry::absorb_fragments(g.surfels, least_surfels, primitives);
         return primitives;
     });
-    g.structure = geometry::find_structure(g.surfels, g.primitives, g.frame.axes[2]);
+    g.structure = geometry::find_structure(g.surfels, g.primitives, g.frame.axes[2], input.storey);
     geometry::absorb_into_shell(g.surfels, g.primitives, g.structure);
     g.region_of_point.reserve(input.cloud.size());
     g.primitive_of_point.reserve(input.cloud.size());
@@ -70,14 +72,15 @@ std::vector<std::int32_t> keep_primitives(GeometryStage& g, const std::vector<bo
     return number;
 }
 
-graph::SurfaceSeams surface_seams(const GeometryStage& g) {
+graph::SurfaceSeams surface_seams(const GeometryStage& g,
+                                  const std::function<bool(std::size_t)>& counts) {
     const geometry::Surfels& s = g.surfels;
     const std::vector<std::int32_t>& label = g.primitives.label;
     graph::SurfaceSeams out;
     out.inside.resize(g.primitives.model.size());
     for (std::size_t n = 0; n < s.size(); ++n) {
         const std::int32_t a = label[n];
-        if (a < 0) continue;
+        if (a < 0 || (counts && !counts(n))) continue;
         for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
             const std::uint32_t m = s.neighbours[k];
             const std::int32_t b = label[m];

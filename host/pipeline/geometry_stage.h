@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "device/device.h"
@@ -30,7 +31,9 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
 // the new number of each, -1 for the dropped.
 std::vector<std::int32_t> keep_primitives(GeometryStage& geometry, const std::vector<bool>& keep);
 
-// The seen surface inside primitives and at their seams.
-graph::SurfaceSeams surface_seams(const GeometryStage& geometry);
+// The seen surface inside primitives and at their seams; of all surfels, or of those that count. A
+// pair of neighbours counts with the first of the two.
+graph::SurfaceSeams surface_seams(const GeometryStage& geometry,
+                                  const std::function<bool(std::size_t)>& counts = nullptr);
 
 }  // namespace topple

@@ -263,6 +263,14 @@ Ingested ingest_view(device::Device& device, const CloudView& cloud, const Parse
     return out;
 }
 
+Ingested ingest_part(device::Device& device, PointCloud cloud, double cell_m) {
+    Ingested out;
+    out.cell_m = cell_m;
+    out.cloud = std::move(cloud);
+    look_from_free_places(device, std::nullopt, out);
+    return out;
+}
+
 Ingested ingest(device::Device& device, const std::filesystem::path& input,
                 const ParseOptions& options) {
     if (options.progress) options.progress("ingest", 0);

@@ -9,6 +9,8 @@
 
 #include "device/device.h"
 #include "device/native/thread_pool.h"
+#include "geometry/manhattan.h"
+#include "geometry/structure.h"
 #include "topple/cloud_view.h"
 #include "topple/parse.h"
 
@@ -38,6 +40,9 @@ struct Ingested {
     std::vector<std::uint32_t> viewpoint_of_point;  // of each point, or empty: viewpoint 0 for all
     std::unique_ptr<FrameStream> frames;            // what carves the free space; null: nothing can
     std::optional<Vec3> camera_up;
+    // Where the cloud is part of a building whose frame was found from all of it.
+    std::optional<geometry::SceneFrame> frame;
+    std::optional<geometry::StoreyHint> storey;
     double cell_m = 0;  // working resolution, from the point spacing and the sensor's noise
     std::vector<std::string> notes;
 };
@@ -48,5 +53,8 @@ Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptio
 // The cloud must stay as long as what is returned. Without points that are not finite, no copy of
 // it is made.
 Ingested ingest_view(device::Device& device, const CloudView& cloud, const ParseOptions& options);
+
+// A part of a larger cloud, thinned to one point a cell, whose sides are not known.
+Ingested ingest_part(device::Device& device, PointCloud cloud, double cell_m);
 
 }  // namespace topple

@@ -36,13 +36,16 @@ TEST_F(WriteVdb, ReadsBackTheSame) {
     scene.carve(*device, boxes.intrinsics, boxes.frames);
     scene.fill(*device, {.votes = 2, .hollow = {true}});
     scene.set_objects(std::vector<std::int32_t>{7, 8});
-    const auto tiles = scene.tiles();
-    std::vector<float> wind(tiles.size() * 512, 0.0f);
+    const auto solids = scene.solid_cells();
+    std::vector<float> wind(solids.size(), 0.0f);
     wind[5] = 2.5f;
-    scene.add_field("wind", tiles, wind);
-    EXPECT_THROW(scene.add_field("wind", tiles, wind), Error);
-    EXPECT_THROW(scene.add_field("state", tiles, wind), Error);
-    EXPECT_THROW(scene.add_field("human", tiles, std::span(wind).first(3)), Error);
+    const auto add = [&](const char* name, std::span<const float> values) {
+        scene.add_field(name, solids.i, solids.j, solids.k, values);
+    };
+    add("wind", wind);
+    EXPECT_THROW(add("wind", wind), Error);
+    EXPECT_THROW(add("state", wind), Error);
+    EXPECT_THROW(add("human", std::span(wind).first(3)), Error);
     const auto path = folder_ / "volume.vdb";
     scene.write(path);
 
@@ -83,7 +86,7 @@ TEST_F(WriteVdb, ReadsBackTheSame) {
     }
     EXPECT_EQ(wrong, 0u);
     EXPECT_EQ(field->activeVoxelCount(), 1u);
-    EXPECT_EQ(field->tree().getValue({tiles.x[0], tiles.y[0], tiles.z[0] + 5}), 2.5f);
+    EXPECT_EQ(field->tree().getValue({solids.i[5], solids.j[5], solids.k[5]}), 2.5f);
 }
 
 TEST_F(WriteVdb, OpensWithVdbPrint) {

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/block_stage.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+#include "pipeline/geometry_stage.h"
+#include "pipeline/ingest.h"
+#include "pipeline/voxel_stage.h"
+#include "tiles/binary_file.h"
+
+namespace topple {
+namespace {
+
+// Fewer points show no surface: a patch of ten by ten cells.
+constexpr std::size_t least_points = 100;
+
+void add_labels(const tiles::BlockPoints& points, const std::vector<std::int32_t>& primitive,
+                BlockParts& out) {
+    std::size_t n = 0;
+    for (const tiles::BlockPoints::Part& part : points.parts) {
+        BlockParts::Labels labels;
+        labels.bin = part.bin;
+        for (std::size_t m = 0; m < part.cells.size(); ++m, ++n) {
+            if (!part.in_core[m]) continue;
+            labels.cells.push_back(part.cells[m]);
+            labels.primitive.push_back(primitive[n]);
+        }
+        if (!labels.cells.empty()) out.labels.push_back(std::move(labels));
+    }
+}
+
+void add_states(const vdb::VoxelScene& scene, const tiles::VoxelBox& core, BlockParts& out) {
+    vdb::Tiles all = scene.tiles(true), inside;
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        if (!core.holds(all.x[n], all.y[n], all.z[n])) continue;
+        inside.x.push_back(all.x[n]);
+        inside.y.push_back(all.y[n]);
+        inside.z.push_back(all.z[n]);
+    }
+    const std::vector<std::uint8_t> states = scene.states(inside);
+    for (std::size_t n = 0; n < inside.size(); ++n) {
+        const auto first = states.begin() + static_cast<std::ptrdiff_t>(n * 512);
+        const auto all_are = [&](vdb::State s) {
+            return std::all_of(first, first + 512,
+                               [&](std::uint8_t v) { return v == static_cast<std::uint8_t>(s); });
+        };
+        if (all_are(vdb::State::invisible)) continue;
+        const bool empty = all_are(vdb::State::empty);
+        auto& leaves = empty ? out.empty_leaves : out.leaves;
+        leaves.insert(leaves.end(), {inside.x[n], inside.y[n], inside.z[n]});
+        if (!empty) out.states.insert(out.states.end(), first, first + 512);
+    }
+}
+
+// What seams are written as.
+struct SeamRecord {
+    std::int32_t a = -1, b = -1;
+    double variation = 0;
+    std::uint64_t pairs = 0, flush = 0;
+};
+
+}  // namespace
+
+BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
+                       const tiles::Layout& layout, const tiles::Block& block,
+                       const ParseOptions& options) {
+    BlockParts out;
+    const std::vector<std::int32_t> none(points.cloud.size(), -1);
+    if (points.cloud.size() < least_points) {
+        add_labels(points, none, out);
+        return out;
+    }
+    ParseOptions quiet = options;  // progress is told by the block, not by its stages
+    quiet.progress = nullptr;
+    std::vector<std::pair<std::string, double>> timings;
+    StageClock stage(timings, quiet);
+    Ingested input = ingest_part(device, points.cloud, layout.cell_m);
+    input.frame = layout.frame;
+    input.storey = geometry::StoreyHint{block.floor_m};
+    GeometryStage geometry = find_primitives(device, input, quiet, stage);
+    const VoxelStage voxels = make_solids(device, input, geometry, layout.voxel_m, stage);
+    for (std::size_t p = 0; p < geometry.primitives.model.size(); ++p)
+        out.primitives.push_back({geometry.primitives.model[p].front(), geometry.structure[p]});
+    out.cells = {voxels.cells.i,         voxels.cells.j,       voxels.cells.k,
+                 voxels.cells.primitive, voxels.cells.surface, voxels.cells.unseen_below};
+    const geometry::Surfels& s = geometry.surfels;
+    out.seams = surface_seams(geometry, [&](std::size_t n) {
+        const auto at = tiles::voxel_at(layout.frame, layout.voxel_m, s.x[n], s.y[n], s.z[n]);
+        return block.core.holds(at[0], at[1], at[2]);
+    });
+    add_states(*voxels.scene, block.core, out);
+    add_labels(points, geometry.primitive_of_point, out);
+    return out;
+}
+
+std::filesystem::path block_file(const std::filesystem::path& folder, std::size_t block) {
+    return folder / ("block-" + std::to_string(block));
+}
+
+void write_block(const std::filesystem::path& folder, std::size_t block, const BlockParts& parts) {
+    tiles::BinaryWriter out(block_file(folder, block));
+    out.array(parts.primitives);
+    const BlockParts::Cells& c = parts.cells;
+    for (const auto* values : {&c.i, &c.j, &c.k, &c.primitive}) out.array(*values);
+    for (const auto* values : {&c.surface, &c.unseen_below}) out.array(*values);
+    std::vector<SeamRecord> seams;
+    for (std::size_t p = 0; p < parts.seams.inside.size(); ++p) {
+        const graph::Seam& s = parts.seams.inside[p];
+        const auto id = static_cast<std::int32_t>(p);
+        seams.push_back({id, id, s.variation, s.pairs, s.flush});
+    }
+    for (const auto& [pair, s] : parts.seams.between)
+        seams.push_back({pair.first, pair.second, s.variation, s.pairs, s.flush});
+    out.array(seams);
+    for (const auto* values : {&parts.empty_leaves, &parts.leaves}) out.array(*values);
+    out.array(parts.states);
+    out.value(static_cast<std::uint64_t>(parts.labels.size()));
+    for (const BlockParts::Labels& labels : parts.labels) {
+        out.value(labels.bin);
+        out.array(labels.cells);
+        out.array(labels.primitive);
+    }
+    out.finish();
+}
+
+BlockParts read_block(const std::filesystem::path& folder, std::size_t block) {
+    tiles::BinaryReader in(block_file(folder, block));
+    BlockParts out;
+    out.primitives = in.array<BlockParts::Primitive>();
+    BlockParts::Cells& c = out.cells;
+    for (auto* values : {&c.i, &c.j, &c.k, &c.primitive}) *values = in.array<std::int32_t>();
+    for (auto* values : {&c.surface, &c.unseen_below}) *values = in.array<std::uint8_t>();
+    const auto count = static_cast<std::int32_t>(out.primitives.size());
+    if (c.j.size() != c.size() || c.k.size() != c.size() || c.primitive.size() != c.size() ||
+        c.surface.size() != c.size() || c.unseen_below.size() != c.size())
+        in.damaged();
+    const auto is_primitive = [&](std::int32_t p) { return p >= -1 && p < count; };
+    if (!std::ranges::all_of(c.primitive, is_primitive)) in.damaged();
+    out.seams.inside.resize(out.primitives.size());
+    for (const SeamRecord& s : in.array<SeamRecord>()) {
+        if (s.a < 0 || s.b < s.a || s.b >= count) in.damaged();
+        const graph::Seam seam{s.variation, s.pairs, s.flush};
+        if (s.a == s.b) {
+            out.seams.inside[static_cast<std::size_t>(s.a)] = seam;
+        } else {
+            out.seams.between[{s.a, s.b}] = seam;
+        }
+    }
+    for (auto* values : {&out.empty_leaves, &out.leaves}) *values = in.array<std::int32_t>();
+    out.states = in.array<std::uint8_t>();
+    if (out.empty_leaves.size() % 3 || out.states.size() != out.leaves.size() / 3 * 512)
+        in.damaged();
+    const auto lists = in.value<std::uint64_t>();
+    for (std::uint64_t n = 0; n < lists; ++n) {
+        BlockParts::Labels labels;
+        labels.bin = in.value<std::uint64_t>();
+        labels.cells = in.array<std::uint32_t>();
+        labels.primitive = in.array<std::int32_t>();
+        if (labels.primitive.size() != labels.cells.size() ||
+            !std::ranges::all_of(labels.primitive, is_primitive))
+            in.damaged();
+        out.labels.push_back(std::move(labels));
+    }
+    return out;
+}
+
+}  // namespace topple

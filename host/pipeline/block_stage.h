@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "device/device.h"
+#include "geometry/structure.h"
+#include "graph/surface_seams.h"
+#include "pipeline/stage_clock.h"
+#include "tiles/blocks.h"
+
+// Section 2 of the paper for one block of a cloud that is larger than memory.
+namespace topple {
+
+// What a block says of the scene. Primitives are the block's own.
+struct BlockParts {
+    struct Primitive {
+        char model = 'p';  // 'p' plane, 'q' quadric, 'm' merged
+        geometry::Structure structure = geometry::Structure::none;
+    };
+    std::vector<Primitive> primitives;
+    // Solid voxels of core and halo, sorted by (i, j, k), grid frame.
+    struct Cells {
+        std::vector<std::int32_t> i, j, k, primitive;
+        std::vector<std::uint8_t> surface, unseen_below;
+        std::size_t size() const { return i.size(); }
+    } cells;
+    graph::SurfaceSeams seams;  // of the surface in the core
+    // The leaves of the core that are not all invisible: lowest voxels, three numbers each, and their
+    // voxels' states, 512 each, or none where the leaf is all empty.
+    std::vector<std::int32_t> empty_leaves, leaves;
+    std::vector<std::uint8_t> states;
+    // Primitive of each thinned point of the core, -1 for none: by bin (an index into the bins), cells
+    // of it.
+    struct Labels {
+        std::uint64_t bin = 0;
+        std::vector<std::uint32_t> cells;
+        std::vector<std::int32_t> primitive;
+    };
+    std::vector<Labels> labels;
+};
+
+// Grid frame. A block without a surface has no primitives.
+BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
+                       const tiles::Layout& layout, const tiles::Block& block,
+                       const ParseOptions& options);
+
+std::filesystem::path block_file(const std::filesystem::path& folder, std::size_t block);
+void write_block(const std::filesystem::path& folder, std::size_t block, const BlockParts& parts);
+BlockParts read_block(const std::filesystem::path& folder, std::size_t block);
+
+}  // namespace topple

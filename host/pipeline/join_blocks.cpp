@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/join_blocks.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <boost/pending/disjoint_sets.hpp>
+#include <utility>
+
+#include "geometry/cell_grid.h"
+#include "pipeline/block_stage.h"
+
+namespace topple {
+namespace {
+
+// Of what two blocks have both seen, this share of the halo on each side of the border is compared:
+// further out a block sees things cut off.
+constexpr double compared_share = 0.5;
+// Voxels that two primitives share at least, and their share of the smaller one.
+constexpr std::uint64_t least_shared = 6;
+constexpr double least_share = 0.5;
+
+using Sets = boost::disjoint_sets_with_storage<>;
+
+// A primitive of a block.
+struct Member {
+    std::size_t block = 0;
+    std::int32_t primitive = -1;
+};
+
+// What is kept of a block while its neighbours are read: its voxels near its border.
+struct Border {
+    std::vector<std::array<std::int32_t, 3>> at;  // ascending
+    std::vector<std::int32_t> primitive;
+};
+
+bool meet(const tiles::VoxelBox& a, const tiles::VoxelBox& b) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (a.low[axis] >= b.high[axis] || b.low[axis] >= a.high[axis]) return false;
+    }
+    return true;
+}
+
+Border border_of(const BlockParts& parts, const tiles::VoxelBox& core, std::int32_t width) {
+    const tiles::VoxelBox outer = core.grown(width), inner = core.grown(-width);
+    Border out;
+    const BlockParts::Cells& c = parts.cells;
+    for (std::size_t n = 0; n < c.size(); ++n) {
+        if (c.primitive[n] < 0 || !outer.holds(c.i[n], c.j[n], c.k[n]) ||
+            inner.holds(c.i[n], c.j[n], c.k[n]))
+            continue;
+        out.at.push_back({c.i[n], c.j[n], c.k[n]});
+        out.primitive.push_back(c.primitive[n]);
+    }
+    return out;
+}
+
+// Pairs of primitives (of a, of b) that are one.
+std::vector<std::pair<std::int32_t, std::int32_t>> matches(const Border& a, const Border& b,
+                                                           const tiles::VoxelBox& region) {
+    std::map<std::pair<std::int32_t, std::int32_t>, std::uint64_t> shared;
+    std::map<std::int32_t, std::uint64_t> of_a, of_b;
+    for (std::size_t n = 0; n < a.at.size(); ++n)
+        if (region.holds(a.at[n][0], a.at[n][1], a.at[n][2])) ++of_a[a.primitive[n]];
+    std::size_t m = 0;
+    for (std::size_t n = 0; n < b.at.size(); ++n) {
+        if (!region.holds(b.at[n][0], b.at[n][1], b.at[n][2])) continue;
+        ++of_b[b.primitive[n]];
+        while (m < a.at.size() && a.at[m] < b.at[n]) ++m;
+        if (m < a.at.size() && a.at[m] == b.at[n]) ++shared[{a.primitive[m], b.primitive[n]}];
+    }
+    struct Best {
+        std::int32_t other = -1;
+        std::uint64_t count = 0;
+    };
+    std::map<std::int32_t, Best> best_of_a, best_of_b;
+    for (const auto& [pair, count] : shared) {
+        Best& p = best_of_a[pair.first];
+        if (count > p.count) p = {pair.second, count};
+        Best& q = best_of_b[pair.second];
+        if (count > q.count) q = {pair.first, count};
+    }
+    std::vector<std::pair<std::int32_t, std::int32_t>> out;
+    for (const auto& [p, best] : best_of_a) {
+        if (best_of_b[best.other].other != p || best.count < least_shared) continue;
+        const std::uint64_t smaller = std::min(of_a[p], of_b[best.other]);
+        if (static_cast<double>(best.count) >= least_share * static_cast<double>(smaller))
+            out.emplace_back(p, best.other);
+    }
+    return out;
+}
+
+const char* model_named(char initial) {
+    return initial == 'p' ? "plane" : initial == 'q' ? "quadric" : "merged";
+}
+
+// Sorts the voxels of all cores, which come block by block, by (i, j, k).
+void sort_cells(physics::SolidCells& cells) {
+    if (cells.size() == 0) return;
+    std::array<std::int64_t, 3> low{}, high{};
+    const std::array<std::vector<std::int32_t>*, 3> axes{&cells.i, &cells.j, &cells.k};
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto [least, most] = std::minmax_element(axes[a]->begin(), axes[a]->end());
+        low[a] = *least;
+        high[a] = *most;
+    }
+    const geometry::CellPacking packing(low, high);
+    std::vector<std::uint64_t> keys(cells.size());
+    for (std::size_t n = 0; n < keys.size(); ++n)
+        keys[n] = packing(cells.i[n], cells.j[n], cells.k[n]);
+    const std::vector<std::uint32_t> order = geometry::sorted_order(keys);
+    keys = {};
+    const auto sort = [&](auto& values) {
+        auto sorted = values;
+        for (std::size_t n = 0; n < order.size(); ++n) sorted[n] = values[order[n]];
+        values = std::move(sorted);
+    };
+    for (auto* values : axes) sort(*values);
+    sort(cells.primitive);
+    sort(cells.surface);
+    sort(cells.unseen_below);
+}
+
+class Joiner {
+  public:
+    Joiner(const std::filesystem::path& folder, const tiles::Layout& layout)
+        : folder_(folder), layout_(layout) {}
+
+    JoinedBlocks join(StageClock& stage) {
+        const std::size_t blocks = layout_.blocks.size();
+        const auto width = static_cast<std::int32_t>(compared_share * layout_.halo);
+        std::vector<Border> border(blocks);
+        // Voxels of each primitive in its block's core.
+        std::vector<std::vector<std::uint64_t>> in_core(blocks);
+        for (std::size_t b = 0; b < blocks; ++b) {
+            const BlockParts parts = read_block(folder_, b);
+            const tiles::VoxelBox& core = layout_.blocks[b].core;
+            border[b] = border_of(parts, core, width);
+            first_.push_back(static_cast<std::int32_t>(members_.size()));
+            in_core[b].resize(parts.primitives.size());
+            for (std::size_t n = 0; n < parts.cells.size(); ++n) {
+                const BlockParts::Cells& c = parts.cells;
+                if (c.primitive[n] >= 0 && core.holds(c.i[n], c.j[n], c.k[n]))
+                    ++in_core[b][static_cast<std::size_t>(c.primitive[n])];
+            }
+            for (std::size_t p = 0; p < parts.primitives.size(); ++p) {
+                members_.push_back({b, static_cast<std::int32_t>(p)});
+                about_.push_back(parts.primitives[p]);
+                voxels_.push_back(in_core[b][p]);
+            }
+            stage.progress("joining", 0.5 * static_cast<double>(b + 1) / static_cast<double>(blocks));
+        }
+        unite(border, width);
+        number();
+        JoinedBlocks out = collect(stage);
+        sort_cells(out.parts.cells);
+        return out;
+    }
+
+  private:
+    std::int32_t id(std::size_t block, std::int32_t primitive) const {
+        return first_[block] + primitive;
+    }
+
+    void unite(const std::vector<Border>& border, std::int32_t width) {
+        sets_ = Sets(members_.size());
+        for (std::size_t a = 0; a < border.size(); ++a) {
+            const tiles::VoxelBox near = layout_.blocks[a].core.grown(width);
+            for (std::size_t b = a + 1; b < border.size(); ++b) {
+                tiles::VoxelBox region = layout_.blocks[b].core.grown(width);
+                if (!meet(near, region)) continue;
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    region.low[axis] = std::max(region.low[axis], near.low[axis]);
+                    region.high[axis] = std::min(region.high[axis], near.high[axis]);
+                }
+                for (const auto& [p, q] : matches(border[a], border[b], region))
+                    sets_.union_set(static_cast<std::size_t>(id(a, p)),
+                                    static_cast<std::size_t>(id(b, q)));
+            }
+        }
+    }
+
+    // Numbers the sets that have voxels in a core, by their first member.
+    void number() {
+        std::vector<std::uint64_t> voxels(members_.size(), 0);  // by root
+        for (std::size_t m = 0; m < members_.size(); ++m) voxels[sets_.find_set(m)] += voxels_[m];
+        std::vector<std::int32_t> of_root(members_.size(), -1);
+        for (std::size_t m = 0; m < members_.size(); ++m) {
+            const std::size_t root = sets_.find_set(m);
+            if (of_root[root] < 0 && voxels[root] >= least_voxels) of_root[root] = count_++;
+            number_.push_back(of_root[root]);
+        }
+    }
+
+    JoinedBlocks collect(StageClock& stage) {
+        JoinedBlocks out;
+        SolidParts& parts = out.parts;
+        parts.frame = layout_.frame;
+        parts.cells.voxel_m = layout_.voxel_m;
+        name(parts);
+        parts.points.resize(parts.model.size());
+        parts.seams.inside.resize(parts.model.size());
+        for (std::size_t b = 0; b < layout_.blocks.size(); ++b) {
+            const BlockParts block = read_block(folder_, b);
+            std::vector<std::int32_t> numbers;
+            for (std::size_t p = 0; p < block.primitives.size(); ++p)
+                numbers.push_back(number_[static_cast<std::size_t>(
+                    id(b, static_cast<std::int32_t>(p)))]);
+            add_cells(block, layout_.blocks[b].core, numbers, parts.cells);
+            add_seams(block.seams, numbers, parts.seams);
+            out.number.push_back(std::move(numbers));
+            stage.progress("joining",
+                           0.5 + 0.5 * static_cast<double>(b + 1) /
+                                     static_cast<double>(layout_.blocks.size()));
+        }
+        return out;
+    }
+
+    // What most of a primitive's voxels lie in decides what it is.
+    void name(SolidParts& parts) const {
+        const auto count = static_cast<std::size_t>(count_);
+        std::vector<std::map<char, std::uint64_t>> model(count);
+        std::vector<std::map<geometry::Structure, std::uint64_t>> structure(count);
+        for (std::size_t m = 0; m < members_.size(); ++m) {
+            if (number_[m] < 0) continue;
+            const auto p = static_cast<std::size_t>(number_[m]);
+            model[p][about_[m].model] += voxels_[m];
+            structure[p][about_[m].structure] += voxels_[m];
+        }
+        const auto most = [](const auto& votes) {
+            return std::ranges::max_element(votes, {}, [](const auto& v) { return v.second; })->first;
+        };
+        for (std::size_t p = 0; p < count; ++p) {
+            parts.model.emplace_back(model_named(most(model[p])));
+            parts.structure.push_back(most(structure[p]));
+        }
+    }
+
+    static void add_cells(const BlockParts& block, const tiles::VoxelBox& core,
+                          const std::vector<std::int32_t>& numbers, physics::SolidCells& to) {
+        const BlockParts::Cells& c = block.cells;
+        for (std::size_t n = 0; n < c.size(); ++n) {
+            if (!core.holds(c.i[n], c.j[n], c.k[n])) continue;
+            const std::int32_t p = c.primitive[n];
+            to.i.push_back(c.i[n]);
+            to.j.push_back(c.j[n]);
+            to.k.push_back(c.k[n]);
+            to.primitive.push_back(p < 0 ? -1 : numbers[static_cast<std::size_t>(p)]);
+            to.surface.push_back(c.surface[n]);
+            to.unseen_below.push_back(c.unseen_below[n]);
+        }
+    }
+
+    static void add_seams(const graph::SurfaceSeams& from, const std::vector<std::int32_t>& numbers,
+                          graph::SurfaceSeams& to) {
+        const auto add = [](graph::Seam& seam, const graph::Seam& more) {
+            seam.variation += more.variation;
+            seam.pairs += more.pairs;
+            seam.flush += more.flush;
+        };
+        const auto number = [&](std::int32_t p) { return numbers[static_cast<std::size_t>(p)]; };
+        for (std::size_t p = 0; p < from.inside.size(); ++p) {
+            if (numbers[p] >= 0) add(to.inside[static_cast<std::size_t>(numbers[p])], from.inside[p]);
+        }
+        for (const auto& [pair, seam] : from.between) {
+            const std::int32_t a = number(pair.first), b = number(pair.second);
+            if (a < 0 || b < 0) continue;
+            if (a == b) {
+                add(to.inside[static_cast<std::size_t>(a)], seam);
+            } else {
+                add(to.between[std::minmax(a, b)], seam);
+            }
+        }
+    }
+
+    const std::filesystem::path& folder_;
+    const tiles::Layout& layout_;
+    std::vector<std::int32_t> first_;  // member that is a block's primitive 0
+    std::vector<Member> members_;
+    std::vector<BlockParts::Primitive> about_;  // by member
+    std::vector<std::uint64_t> voxels_;         // of each member in its block's core
+    Sets sets_{0};
+    std::vector<std::int32_t> number_;  // by member
+    std::int32_t count_ = 0;
+};
+
+}  // namespace
+
+JoinedBlocks join_blocks(const std::filesystem::path& folder, const tiles::Layout& layout,
+                         StageClock& stage) {
+    return Joiner(folder, layout).join(stage);
+}
+
+}  // namespace topple

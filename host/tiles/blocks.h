@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "geometry/manhattan.h"
+#include "tiles/storeys.h"
+#include "tiles/thinned_bin.h"
+
+namespace topple::tiles {
+
+// A box of voxels in the grid frame: [low, high) per axis.
+struct VoxelBox {
+    std::array<std::int32_t, 3> low{}, high{};
+    bool holds(std::int32_t i, std::int32_t j, std::int32_t k) const {
+        return i >= low[0] && i < high[0] && j >= low[1] && j < high[1] && k >= low[2] &&
+               k < high[2];
+    }
+    VoxelBox grown(std::int32_t by) const {
+        VoxelBox out = *this;
+        for (std::size_t a = 0; a < 3; ++a) out.low[a] -= by, out.high[a] += by;
+        return out;
+    }
+};
+
+// Part of a storey that is looked at in one piece. Each voxel is in the core of one block; around
+// its core a block sees `Layout::halo` voxels more.
+struct Block {
+    VoxelBox core;
+    double floor_m = 0;       // of its storey, NaN where that has none
+    std::uint64_t cells = 0;  // thinned cells in its core
+};
+
+// How a cloud is cut, and what all blocks have in common. Depends on the cloud and the options alone.
+struct Layout {
+    double cell_m = 0, voxel_m = 0;
+    std::int32_t halo = 0;  // voxels
+    geometry::SceneFrame frame;
+    std::vector<Block> blocks;  // by (storey, i, j)
+};
+
+// Edge of blocks, and what they see beyond it, metres. A halo is wider than what the stages up to
+// filling look around for, and than most parts of furniture.
+inline constexpr double default_block_m = 5, halo_m = 0.8;
+
+// Cuts the thinned bins of `folder`. block_m: edge of the blocks, rounded to whole leaves of 8
+// voxels; they lie at multiples of it, whatever the cloud's extent.
+Layout cut_into_blocks(const std::filesystem::path& folder, std::span<const Bin> bins,
+                       const geometry::SceneFrame& frame, double cell_m, double voxel_m,
+                       double block_m);
+
+void write_layout(const std::filesystem::path& folder, const Layout& layout);
+Layout read_layout(const std::filesystem::path& folder);
+
+// The voxel of a point.
+std::array<std::int32_t, 3> voxel_at(const geometry::SceneFrame& frame, double voxel_m, float x,
+                                     float y, float z);
+
+// The thinned points that a block sees, and which of their bins' cells they are.
+struct BlockPoints {
+    PointCloud cloud;
+    struct Part {
+        std::size_t bin = 0;                // index into the bins
+        std::vector<std::uint32_t> cells;   // ascending; of the next cells.size() points
+        std::vector<std::uint8_t> in_core;  // of the same points
+    };
+    std::vector<Part> parts;
+};
+BlockPoints points_of_block(const std::filesystem::path& folder, std::span<const Bin> bins,
+                            const Layout& layout, const Block& block);
+
+}  // namespace topple::tiles

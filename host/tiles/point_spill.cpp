@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "tiles/point_spill.h"
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <utility>
+
+#include "tiles/binary_file.h"
+
+namespace topple::tiles {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A portion that is written at a time: long enough to be read back without seeking about.
+constexpr std::size_t portion_points = 1u << 15;
+
+// A square kilometre of buildings, five storeys high; and fewer points a bin than show a surface.
+constexpr std::size_t most_bins = 200'000;
+constexpr std::uint64_t sparse_points = 500;
+constexpr std::size_t few_bins = 2000;
+
+// Bins lie within 10^6 m of the origin: 21 bits hold their index.
+std::uint64_t key_of(const Bin& bin) {
+    std::uint64_t key = 0;
+    for (const std::int32_t b : bin) key = (key << 21) | static_cast<std::uint32_t>(b + (1 << 20));
+    return key;
+}
+
+}  // namespace
+
+SpilledPoints::SpilledPoints(const fs::path& folder) : file_(folder / "points.bin") {
+    BinaryReader in(folder / "bins.bin");
+    points_ = in.value<std::uint64_t>();
+    dropped_ = in.value<std::uint64_t>();
+    const auto count = in.value<std::uint64_t>();
+    if (count > most_bins) in.damaged();
+    for (std::uint64_t n = 0; n < count; ++n) {
+        BinPoints bin;
+        bin.bin = in.value<Bin>();
+        bin.points = in.value<std::uint64_t>();
+        bin.portions = in.array<Portion>();
+        bins_.push_back(std::move(bin));
+    }
+    std::error_code error;
+    if (fs::file_size(file_, error) != points_ * sizeof(Point) || error) in.damaged();
+}
+
+void SpilledPoints::read(std::size_t bin,
+                         const std::function<void(std::span<const Point>)>& use) const {
+    std::ifstream in(file_, std::ios::binary);
+    std::vector<Point> points;
+    for (const auto& [offset, count] : bins_[bin].portions) {
+        points.resize(count);
+        in.seekg(static_cast<std::streamoff>(offset));
+        in.read(reinterpret_cast<char*>(points.data()),
+                static_cast<std::streamsize>(count * sizeof(Point)));
+        if (!in) io::fail(file_, "can't be read: it was cut short or removed");
+        use(points);
+    }
+}
+
+PointSpill::PointSpill(const fs::path& folder, std::uint64_t buffer_bytes)
+    : folder_(folder),
+      writer_(std::make_unique<io::FileWriter>(folder / "points.bin")),
+      buffer_bytes_(buffer_bytes) {}
+
+void PointSpill::flush(Open& bin) {
+    if (bin.buffer.empty()) return;
+    writer_->write(bin.buffer.data(), bin.buffer.size() * sizeof(Point));
+    bin.written.portions.push_back({offset_, bin.buffer.size()});
+    bin.written.points += bin.buffer.size();
+    offset_ += bin.buffer.size() * sizeof(Point);
+    buffered_ -= bin.buffer.size() * sizeof(Point);
+    bin.buffer.clear();
+}
+
+void PointSpill::add(const PointCloud& portion, const std::string& source) {
+    dropped_ += portion.dropped;
+    points_ += portion.size();
+    Bin last{};
+    Open* open = nullptr;
+    for (std::size_t n = 0; n < portion.size(); ++n) {
+        const Point p{portion.x[n], portion.y[n], portion.z[n]};
+        const Bin bin = bin_of(p.x, p.y, p.z);
+        if (!open || bin != last) {
+            const auto [at, fresh] = place_.try_emplace(key_of(bin), bins_.size());
+            if (fresh) {
+                bins_.emplace_back().written.bin = bin;
+                if (bins_.size() > most_bins ||
+                    (bins_.size() > few_bins && points_ < sparse_points * bins_.size())) {
+                    throw Error(ErrorKind::input,
+                                source + ": the first " + std::to_string(points_) +
+                                    " points lie in " + std::to_string(bins_.size()) +
+                                    " cubes of 5 m, too sparsely for surfaces; if the unit is the "
+                                    "millimetre, say --unit mm");
+                }
+            }
+            open = &bins_[at->second];
+            last = bin;
+        }
+        open->buffer.push_back(p);
+        buffered_ += sizeof(Point);
+        if (open->buffer.size() == portion_points) flush(*open);
+    }
+    if (buffered_ > buffer_bytes_) {
+        for (Open& bin : bins_) flush(bin);
+        // The capacity stays; a bin that grows large often will again.
+        std::uint64_t held = 0;
+        for (const Open& bin : bins_) held += bin.buffer.capacity() * sizeof(Point);
+        if (held > 2 * buffer_bytes_) {
+            for (Open& bin : bins_) bin.buffer = {};
+        }
+    }
+}
+
+void PointSpill::finish() {
+    for (Open& bin : bins_) flush(bin);
+    writer_->close();
+    std::ranges::sort(bins_, {}, [](const Open& bin) { return bin.written.bin; });
+    BinaryWriter out(folder_ / "bins.bin");
+    out.value(points_);
+    out.value(dropped_);
+    out.value(static_cast<std::uint64_t>(bins_.size()));
+    for (const Open& bin : bins_) {
+        out.value(bin.written.bin);
+        out.value(bin.written.points);
+        out.array(bin.written.portions);
+    }
+    out.finish();
+}
+
+}  // namespace topple::tiles

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "io/file_writer.h"
+#include "tiles/bins.h"
+#include "topple/input.h"
+
+namespace topple::tiles {
+
+// A cloud on disk, sorted into bins. Within a bin the points keep their order.
+class SpilledPoints {
+  public:
+    struct Portion {
+        std::uint64_t offset = 0, points = 0;
+    };
+    struct BinPoints {
+        Bin bin{};
+        std::uint64_t points = 0;
+        std::vector<Portion> portions;
+    };
+
+    // Opens what a PointSpill wrote. Throws Error(input) naming the file where it is damaged.
+    explicit SpilledPoints(const std::filesystem::path& folder);
+
+    const std::vector<BinPoints>& bins() const { return bins_; }  // ascending
+    std::uint64_t points() const { return points_; }
+    std::uint64_t dropped() const { return dropped_; }  // points that were not finite
+
+    // Calls use(points) for the bin's portions in order.
+    void read(std::size_t bin, const std::function<void(std::span<const Point>)>& use) const;
+
+  private:
+    std::filesystem::path file_;
+    std::vector<BinPoints> bins_;
+    std::uint64_t points_ = 0, dropped_ = 0;
+};
+
+// Writes points into `folder` as they come, sorted into bins: points.bin, and bins.bin when all are
+// in.
+class PointSpill {
+  public:
+    // Holds at most about `buffer_bytes` of points.
+    PointSpill(const std::filesystem::path& folder, std::uint64_t buffer_bytes);
+
+    // Throws Error(input) naming `source` where the points lie in more bins than a building has.
+    void add(const PointCloud& portion, const std::string& source);
+    void finish();
+    std::uint64_t points() const { return points_; }
+
+  private:
+    struct Open {
+        SpilledPoints::BinPoints written;
+        std::vector<Point> buffer;
+    };
+    void flush(Open& bin);
+
+    std::filesystem::path folder_;
+    std::unique_ptr<io::FileWriter> writer_;
+    std::vector<Open> bins_;
+    std::unordered_map<std::uint64_t, std::size_t> place_;
+    std::uint64_t buffer_bytes_, buffered_ = 0, offset_ = 0, points_ = 0, dropped_ = 0;
+};
+
+}  // namespace topple::tiles

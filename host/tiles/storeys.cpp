@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "tiles/storeys.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace topple::tiles {
+namespace {
+
+// A level holds at least this share of the largest one's surface.
+constexpr double least_share = 0.3;
+// Nobody builds lower rooms, nor thicker slabs.
+constexpr double lowest_room_m = 2.0, thickest_slab_m = 0.8;
+// A level's surface spreads over its noise.
+constexpr double spread_m = 0.05;
+
+struct Level {
+    double height_m = 0, area_m2 = 0;
+};
+
+// Levels by rising height: the surface within a window of the spread, where no window nearby has more.
+std::vector<Level> find_levels(const std::vector<double>& area, double low, double step) {
+    const auto reach = static_cast<std::ptrdiff_t>(std::max(1.0, std::round(spread_m / step)));
+    const auto count = static_cast<std::ptrdiff_t>(area.size());
+    std::vector<double> window(area.size(), 0.0);
+    for (std::ptrdiff_t n = 0; n < count; ++n) {
+        for (std::ptrdiff_t m = std::max<std::ptrdiff_t>(0, n - reach);
+             m <= std::min(count - 1, n + reach); ++m)
+            window[static_cast<std::size_t>(n)] += area[static_cast<std::size_t>(m)];
+    }
+    const double most = window.empty() ? 0 : *std::ranges::max_element(window);
+    std::vector<Level> levels;
+    for (std::ptrdiff_t n = 0; n < count; ++n) {
+        const double here = window[static_cast<std::size_t>(n)];
+        if (here < least_share * most || here <= 0) continue;
+        const double height = low + (static_cast<double>(n) + 0.5) * step;
+        if (levels.empty() || height - levels.back().height_m > 2 * spread_m) {
+            levels.push_back({height, here});
+        } else if (here > levels.back().area_m2) {
+            levels.back() = {height, here};
+        }
+    }
+    return levels;
+}
+
+}  // namespace
+
+std::vector<Storey> find_storeys(const std::vector<double>& area_m2, double low_m, double step_m) {
+    const std::vector<Level> levels = find_levels(area_m2, low_m, step_m);
+    std::vector<Storey> storeys{{std::numeric_limits<double>::quiet_NaN(),
+                                 -std::numeric_limits<double>::infinity()}};
+    if (levels.empty()) return storeys;
+    storeys.front().floor_m = levels.front().height_m;
+    std::optional<double> ceiling;  // of the storey in hand
+    for (const Level& level : levels) {
+        const double height = level.height_m;
+        if (ceiling && height - *ceiling <= thickest_slab_m) {
+            storeys.push_back({height, (*ceiling + height) / 2});
+            ceiling.reset();
+        } else if (height - storeys.back().floor_m >= lowest_room_m) {
+            ceiling = height;
+        }
+    }
+    return storeys;
+}
+
+}  // namespace topple::tiles

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "tiles/thinned_bin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numeric>
+#include <string>
+
+#include "tiles/binary_file.h"
+
+namespace topple::tiles {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string name_of(const Bin& bin) {
+    return std::to_string(bin[0]) + "_" + std::to_string(bin[1]) + "_" + std::to_string(bin[2]);
+}
+
+// For each point, in order, the place of its cell; and the cell of each place.
+fs::path places_file(const fs::path& folder, const Bin& bin) {
+    return folder / ("places-" + name_of(bin));
+}
+fs::path order_file(const fs::path& folder, const Bin& bin) {
+    return folder / ("order-" + name_of(bin));
+}
+fs::path cells_file(const fs::path& folder, const Bin& bin) {
+    return folder / ("cells-" + name_of(bin));
+}
+
+// Points whose cells are read at a time.
+constexpr std::size_t portion_points = 1u << 13;
+
+// Sums of the points in each cell, found by key through open addressing. Places are given out in the
+// order in which cells are met.
+class CellSums {
+  public:
+    CellSums() { grow(1u << 12); }
+
+    std::uint32_t add(std::uint64_t key, const std::array<double, 3>& point) {
+        if (2 * keys_.size() >= slots_.size()) grow(2 * slots_.size());
+        std::size_t at = slot(key);
+        if (slots_[at] == none) {
+            slots_[at] = static_cast<std::uint32_t>(keys_.size());
+            keys_.push_back(key);
+            for (auto& axis : sum_) axis.push_back(0);
+            count_.push_back(0);
+        }
+        const std::uint32_t place = slots_[at];
+        for (std::size_t a = 0; a < 3; ++a) sum_[a][place] += point[a];
+        ++count_[place];
+        return place;
+    }
+    places.close();
+    const std::vector<std::uint64_t>& keys() const { return keys_; }
+    std::uint32_t count(std::uint32_t place) const { return count_[place]; }
+    double mean(std::uint32_t place, std::size_t axis) const {
+        return sum_[axis][place] / count_[place];
+    }
+
+  private:
+    static constexpr std::uint32_t none = UINT32_MAX;
+
+    // The slot that holds the key, or the free one for it.
+    std::size_t slot(std::uint64_t key) const {
+        const std::size_t mask = slots_.size() - 1;
+        std::size_t at = (key * 0x9e3779b97f4a7c15ULL >> 20) & mask;
+        while (slots_[at] != none && keys_[slots_[at]] != key) at = (at + 1) & mask;
+        return at;
+    }
+    void grow(std::size_t size) {
+        slots_.assign(size, none);
+        for (std::uint32_t n = 0; n < keys_.size(); ++n) slots_[slot(keys_[n])] = n;
+    }
+
+    std::vector<std::uint32_t> slots_;  // places; a power of two of them
+    std::vector<std::uint64_t> keys_;   // by place
+    std::array<std::vector<double>, 3> sum_;
+    std::vector<std::uint32_t> count_;
+};
+
+}  // namespace
+
+double dividing_cell(double cell_m) {
+    return bin_edge_m / std::ceil(bin_edge_m / cell_m - 1e-9);
+}
+
+bool is_thinned(const fs::path& folder, const Bin& bin) {
+    std::error_code error;
+    return fs::exists(cells_file(folder, bin), error);
+}
+
+void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m,
+              const fs::path& folder) {
+    const Bin& at = points.bins()[bin].bin;
+    const auto cells = static_cast<std::int64_t>(std::llround(bin_edge_m / cell_m));
+    const std::array<double, 3> low{at[0] * bin_edge_m, at[1] * bin_edge_m, at[2] * bin_edge_m};
+    CellSums sums;
+    io::FileWriter places(places_file(folder, at));
+    points.read(bin, [&](std::span<const Point> portion) {
+        for (const Point& p : portion) {
+            // Relative to the bin, so that the mean keeps the floats' accuracy.
+            const std::array<double, 3> in_bin{p.x - low[0], p.y - low[1], p.z - low[2]};
+            std::uint64_t key = 0;
+            for (const double c : in_bin) {
+                const auto cell = std::clamp<std::int64_t>(
+                    static_cast<std::int64_t>(std::floor(c / cell_m)), 0, cells - 1);
+                key = key * static_cast<std::uint64_t>(cells) + static_cast<std::uint64_t>(cell);
+            }
+            const std::uint32_t place = sums.add(key, in_bin);
+            places.write(&place, sizeof(place));
+        }
+    });
+    places.close();
+    const std::vector<std::uint64_t>& keys = sums.keys();
+    std::vector<std::uint32_t> order(keys.size()), rank(keys.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::sort(order, {}, [&](std::uint32_t n) { return keys[n]; });
+    ThinnedBin out;
+    for (std::uint32_t n = 0; n < order.size(); ++n) {
+        rank[order[n]] = n;
+        out.x.push_back(static_cast<float>(low[0] + sums.mean(order[n], 0)));
+        out.y.push_back(static_cast<float>(low[1] + sums.mean(order[n], 1)));
+        out.z.push_back(static_cast<float>(low[2] + sums.mean(order[n], 2)));
+        out.points.push_back(sums.count(order[n]));
+    }
+    BinaryWriter order_out(order_file(folder, at));
+    order_out.array(rank);
+    order_out.finish();
+    // Comes last: where it is, the bin is done.
+    BinaryWriter file(cells_file(folder, at));
+    file.array(out.x);
+    file.array(out.y);
+    file.array(out.z);
+    file.array(out.points);
+    file.finish();
+}
+
+CellsOfPoints::CellsOfPoints(const fs::path& folder, const Bin& bin)
+    : file_(places_file(folder, bin)),
+      cell_of_place_(BinaryReader(order_file(folder, bin)).array<std::uint32_t>()) {}
+
+std::uint32_t CellsOfPoints::next() {
+    if (at_ == portion_.size()) {
+        std::ifstream in(file_, std::ios::binary);
+        in.seekg(static_cast<std::streamoff>(offset_));
+        portion_.resize(portion_points);
+        in.read(reinterpret_cast<char*>(portion_.data()),
+                static_cast<std::streamsize>(portion_points * sizeof(std::uint32_t)));
+        portion_.resize(static_cast<std::size_t>(in.gcount()) / sizeof(std::uint32_t));
+        offset_ += portion_.size() * sizeof(std::uint32_t);
+        at_ = 0;
+        if (portion_.empty())
+            io::fail(file_, "has fewer points than the scan: the scan changed while it was parsed");
+    }
+    const std::uint32_t place = portion_[at_++];
+    if (place >= cell_of_place_.size()) io::fail(file_, "is damaged");
+    return cell_of_place_[place];
+}
+
+ThinnedBin read_thinned(const fs::path& folder, const Bin& bin) {
+    BinaryReader in(cells_file(folder, bin));
+    ThinnedBin out{in.array<float>(), in.array<float>(), in.array<float>(),
+                   in.array<std::uint32_t>()};
+    if (out.y.size() != out.size() || out.z.size() != out.size() || out.points.size() != out.size())
+        in.damaged();
+    return out;
+}
+
+}  // namespace topple::tiles

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "tiles/point_spill.h"
+
+namespace topple::tiles {
+
+// The cells of the cubic grid of cell_m that hold points of a bin, in the order of their indices (x,
+// then y, then z): the mean of each cell's points, in the input's frame, metres. cell_m divides
+// bin_edge_m, so that each cell is in one bin.
+struct ThinnedBin {
+    std::vector<float> x, y, z;
+    std::vector<std::uint32_t> points;  // of each cell
+    std::size_t size() const { return x.size(); }
+};
+
+// The largest size that divides bin_edge_m and is not above `cell_m`.
+double dividing_cell(double cell_m);
+
+// Thins a bin and writes it to `folder`, with the cell of each of its points. Holds the cells, and a
+// portion of the points at a time.
+void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m,
+              const std::filesystem::path& folder);
+
+bool is_thinned(const std::filesystem::path& folder, const Bin& bin);
+ThinnedBin read_thinned(const std::filesystem::path& folder, const Bin& bin);
+
+// The cells of a bin's points, in the points' order, a portion at a time.
+class CellsOfPoints {
+  public:
+    CellsOfPoints(const std::filesystem::path& folder, const Bin& bin);
+    // Throws Error(input) beyond the last point.
+    std::uint32_t next();
+
+  private:
+    std::filesystem::path file_;
+    std::uint64_t offset_ = 0;                // of what is read next, bytes
+    std::vector<std::uint32_t> cell_of_place_, portion_;
+    std::size_t at_ = 0;
+};
+
+}  // namespace topple::tiles
