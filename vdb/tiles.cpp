@@ -46,8 +46,7 @@ void VoxelScene::put_leaf(const std::array<std::int32_t, 3>& lowest,
     if (solid) grids_->primitive->tree().touchLeaf(origin);
 }
 
-void VoxelScene::put_label(std::int32_t i, std::int32_t j, std::int32_t k,
-                           std::int32_t primitive) {
+void VoxelScene::put_label(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive) {
     grids_->primitive->tree().setValueOn({i, j, k}, primitive);
 }
 

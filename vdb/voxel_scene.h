@@ -73,8 +73,8 @@ class VoxelScene {
     ~VoxelScene();
     VoxelScene(VoxelScene&&) noexcept;
 
-    // Takes over a leaf of 8x8x8 voxels, found elsewhere: 512 states in the order of Tiles. Of a solid
-    // voxel put_label() names the primitive.
+    // Takes over a leaf of 8x8x8 voxels, found elsewhere: 512 states in the order of Tiles. Of a
+    // solid voxel put_label() names the primitive.
     void put_leaf(const std::array<std::int32_t, 3>& lowest, std::span<const std::uint8_t> states);
     void put_label(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive);
 
@@ -154,7 +154,6 @@ class VoxelScene {
     void add_field(const std::string& name, std::span<const std::int32_t> i,
                    std::span<const std::int32_t> j, std::span<const std::int32_t> k,
                    std::span<const float> values);
-
 
     // Grids `state`, `primitive`, `object` (Int32Grid; inactive background -1 for the last two, 2
     // for `state`, whose active voxels are the solid ones) and the added fields. The transform

@@ -28,7 +28,7 @@ struct Arguments {
     std::string input, backend = "auto", up, disturbance = "human,wind,earthquake", max_memory;
     ParseOptions options;
     std::optional<std::string> out;
-    std::optional<double> voxel_m;
+    std::optional<double> voxel_m, tile_m;
     std::string motion, motion_up;
     MotionFileOptions motion_file;
     unsigned threads = 0;
@@ -107,6 +107,12 @@ void read_options(Arguments& a) {
                         "size found from the scan");
         a.options.voxel_m = *a.voxel_m;
     }
+    if (a.tile_m) {
+        if (*a.tile_m == 0)
+            throw Error(ErrorKind::usage,
+                        "--tile 0: expected metres above 0; leave it out for the default");
+        a.options.tile_m = *a.tile_m;
+    }
     if (!a.up.empty()) a.options.up = parse_up("--up", a.up);
     if (!a.max_memory.empty()) a.options.max_memory_bytes = parse_size(a.max_memory);
     a.options.disturbances = split_commas(a.disturbance);
@@ -134,6 +140,8 @@ int run(Arguments& a) {
     catch_interrupts();
     // Throws now, not after the parse, where nothing can be written there.
     { const io::OutputFolder probe(out); }
+    // Beside the output, where there is room for it, and where the next run finds it.
+    a.options.work_folder = out.parent_path() / ("." + out.filename().string() + ".topple-work");
     a.options.device = device::open_device(a.backend, a.threads);
     Progress progress(a.quiet);
     a.options.progress = [&](const std::string& stage, double done) { progress(stage, done); };
@@ -229,6 +237,9 @@ Command add_parse(CLI::App& app) {
                    "Seconds for the search for objects, about; where that is too few, the\n"
                    "objects depend on the machine (default: as long as it takes)");
     app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
+    app.add_option("--tile", a->tile_m,
+                   "Parse a cloud in blocks of this edge in metres, so that it may be larger than\n"
+                   "memory (default: 5 for clouds of over 4 million points, else in one piece)");
     app.add_option("--max-memory", a->max_memory, "Refuse a scan that would need more, such as 4G");
     app.add_flag("--png", a->output.pictures,
                  "Write the report's main views as pictures, too: view-*.png");

@@ -12,8 +12,14 @@ namespace {
 
 // What a stage does, short enough that the line fits on a terminal of 80 columns.
 const char* what_it_does(const std::string& stage) {
-    static constexpr std::array<std::pair<const char*, const char*>, 20> stages{
+    static constexpr std::array<std::pair<const char*, const char*>, 26> stages{
         {{"ingest", "reading the scan"},
+         {"sorting", "sorting the points into cubes on disk"},
+         {"spacing", "measuring how dense the scan is"},
+         {"thinning", "keeping one point a cell"},
+         {"layout", "cutting the scan into blocks"},
+         {"blocks", "turning each block's surfaces into solid parts"},
+         {"joining", "joining parts across the blocks' borders"},
          {"normals", "fitting surface elements"},
          {"frame", "finding up and the walls' directions"},
          {"splitting", "growing smooth surfaces"},

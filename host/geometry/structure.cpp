@@ -153,7 +153,8 @@ std::vector<bool> continued_floor(const Surfels& s, const PrimitiveSet& primitiv
     return floor;
 }
 
-// Of the highest large plane that looks down from above a person's head; infinite where there is none.
+// Of the highest large plane that looks down from above a person's head; infinite where there is
+// none.
 template <class Level>
 double ceiling_height(const std::vector<Face>& face, const Level& level, double floor_height) {
     double height = -INFINITY;

@@ -14,7 +14,8 @@ namespace topple::geometry {
 // The part that a primitive plays in the room's shell.
 enum class Structure : std::uint8_t { none, floor, wall, ceiling };
 
-// Of a part of a building: what lies beyond its edge is not seen, and walls have rooms on both sides.
+// Of a part of a building: what lies beyond its edge is not seen, and walls have rooms on both
+// sides.
 struct StoreyHint {
     double floor_m = 0;  // height of the storey's floor along up; NaN: not known
 };
@@ -23,8 +24,8 @@ struct StoreyHint {
 // table takes its place), and so are galleries and platforms of four square metres; large planes
 // that have the whole scene on one side are walls or ceiling. A scene without such planes has no
 // shell. With a storey the floor is what lies at its height; ceilings look down from at least two
-// metres above it; and walls, whatever lies behind them, are the large upright planes that end at the
-// ceiling, or where none was seen, those two metres high.
+// metres above it; and walls, whatever lies behind them, are the large upright planes that end at
+// the ceiling, or where none was seen, those two metres high.
 std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet& primitives,
                                       const Vec3& up,
                                       const std::optional<StoreyHint>& storey = std::nullopt);

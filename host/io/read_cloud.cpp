@@ -2,6 +2,7 @@
 #include "io/read_cloud.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <optional>
 #include <string>
@@ -104,6 +105,13 @@ void scale(PointCloud& cloud, double unit_m) {
 
 }  // namespace
 
+bool can_stream(const std::filesystem::path& file) {
+    const auto extension = lower_extension(file);
+    constexpr std::array<std::string_view, 7> clouds{".ply", ".pcd", ".xyz", ".txt",
+                                                     ".csv", ".asc", ".pts"};
+    return std::ranges::find(clouds, extension) != clouds.end();
+}
+
 void stream_cloud(const std::filesystem::path& file, double unit_m, const CloudSink& sink) {
     const MappedFile bytes(file);
     const CloudSink scaled = [&](PointCloud portion) {
@@ -111,7 +119,7 @@ void stream_cloud(const std::filesystem::path& file, double unit_m, const CloudS
         sink(std::move(portion));
         bytes.release();
     };
-    parse_cloud(file, bytes.text(), &scaled);
+    parse_cloud(file, bytes.text(), 1, &scaled);
 }
 
 PointCloud read_cloud(const std::filesystem::path& file, double unit_m) {

@@ -23,6 +23,7 @@ PointCloud read_cloud(const std::filesystem::path& file, double unit_m = 1);
 
 // The same file in portions, for clouds larger than memory; its points come in its order. A
 // binary_compressed PCD is unpacked whole.
+bool can_stream(const std::filesystem::path& file);  // a cloud by its extension, no mesh
 void stream_cloud(const std::filesystem::path& file, double unit_m, const CloudSink& sink);
 
 }  // namespace topple::io

@@ -140,8 +140,7 @@ class XyzParser {
             cloud_.emplace(file_, points_.size(), normals, sink_);
         }
         for (std::size_t i = 0; i < points_.size(); ++i) {
-            cloud_->add(points_[i],
-                        columns_.has_normals() ? normals_[i] : std::array<double, 3>{});
+            cloud_->add(points_[i], columns_.has_normals() ? normals_[i] : std::array<double, 3>{});
         }
         points_.clear();
         normals_.clear();

@@ -8,6 +8,7 @@
 
 #include "io/file_writer.h"
 #include "io/palette.h"
+#include "io/text.h"
 
 namespace topple::io {
 namespace {
@@ -76,6 +77,32 @@ void write_points_ply(const std::filesystem::path& file, const ScenePoints& poin
         record.write_to(writer);
     }
     writer.close();
+}
+
+PointsPlyWriter::PointsPlyWriter(const std::filesystem::path& file, std::uint64_t count)
+    : path_(file), writer_(file), left_(count) {
+    writer_.write(header(count, ""));
+}
+
+void PointsPlyWriter::add(const std::array<float, 3>& point, std::int32_t primitive,
+                          std::int32_t object) {
+    if (left_ == 0) fail(path_, "more points come than were announced");
+    --left_;
+    if (object != coloured_) {
+        coloured_ = object;
+        colour_ = colour_of(object);
+    }
+    Record record;
+    for (const float value : point) record.put(value);
+    record.put(primitive);
+    record.put(object);
+    for (const std::uint8_t channel : colour_) record.put(channel);
+    record.write_to(writer_);
+}
+
+void PointsPlyWriter::close() {
+    if (left_ > 0) fail(path_, counted(left_, "point") + " of those announced did not come");
+    writer_.close();
 }
 
 void write_solid_ply(const std::filesystem::path& file, const SolidVoxels& voxels) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pipeline/explain.h"
+#include "topple/version.h"
 
 namespace topple {
 namespace {
@@ -194,6 +195,29 @@ void note_uncertain_barriers(Scene& scene) {
 }
 
 }  // namespace
+
+void record_run(const device::Device& device, const ParseOptions& options, double voxel_m,
+                Scene& scene) {
+    scene.topple_version = version;
+    scene.backend = device::to_string(device.info().backend);
+    scene.device = device.info().name;
+    scene.seed = options.seed;
+    scene.voxel_size_m = voxel_m;
+    scene.density_kg_m3 = options.density_kg_m3;
+    scene.friction = options.friction;
+    scene.events["tolerable_J"] = options.tolerable_J;
+    for (const std::string& name : options.disturbances) {
+        if (name == "human") scene.events["walks"] = options.walks;
+        if (name == "wind") scene.events["wind_m_s"] = options.wind_m_s;
+        if (name == "wind" && options.wind_from_deg)
+            scene.events["wind_from_deg"] = *options.wind_from_deg;
+        if (name == "earthquake") {
+            scene.events["pga_m_s2"] = options.pga_m_s2.value_or(
+                options.accelerogram ? options.accelerogram->peak_m_s2()
+                                     : safety::EarthquakeOptions{}.pga_m_s2);
+        }
+    }
+}
 
 void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
                       const SafetyStage& safety, Scene& scene) {

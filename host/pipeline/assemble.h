@@ -11,6 +11,10 @@
 
 namespace topple {
 
+// Notes what is parsed with what: version, device, options and voxel size.
+void record_run(const device::Device& device, const ParseOptions& options, double voxel_m,
+                Scene& scene);
+
 // Gathers what was found of primitives, objects and fields into the public result, in the input's
 // frame.
 void assemble_objects(const SolidParts& parts, const ObjectStage& objects,

@@ -29,12 +29,12 @@ struct BlockParts {
         std::size_t size() const { return i.size(); }
     } cells;
     graph::SurfaceSeams seams;  // of the surface in the core
-    // The leaves of the core that are not all invisible: lowest voxels, three numbers each, and their
-    // voxels' states, 512 each, or none where the leaf is all empty.
+    // The leaves of the core that are not all invisible: lowest voxels, three numbers each, and
+    // their voxels' states, 512 each, or none where the leaf is all empty.
     std::vector<std::int32_t> empty_leaves, leaves;
     std::vector<std::uint8_t> states;
-    // Primitive of each thinned point of the core, -1 for none: by bin (an index into the bins), cells
-    // of it.
+    // Primitive of each thinned point of the core, -1 for none: by bin (an index into the bins),
+    // cells of it.
     struct Labels {
         std::uint64_t bin = 0;
         std::vector<std::uint32_t> cells;

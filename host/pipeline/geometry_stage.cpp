@@ -26,9 +26,9 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
                                       input.viewpoints, input.viewpoint_of_point);
     });
     g.frame = stage("frame", [&] {
-        return input.frame ? *input.frame
-                           : geometry::find_scene_frame(device, g.surfels,
-                                                        {options.up, input.camera_up});
+        return input.frame
+                   ? *input.frame
+                   : geometry::find_scene_frame(device, g.surfels, {options.up, input.camera_up});
     });
     const geometry::Regions regions =
         stage("splitting", [&] { return geometry::split(g.surfels, device.threads()); });

@@ -266,7 +266,8 @@ Ingested ingest_view(device::Device& device, const CloudView& cloud, const Parse
 Ingested ingest_part(device::Device& device, PointCloud cloud, double cell_m) {
     Ingested out;
     out.cell_m = cell_m;
-    out.cloud = std::move(cloud);
+    out.own = std::move(cloud);
+    out.cloud = out.own;
     look_from_free_places(device, std::nullopt, out);
     return out;
 }

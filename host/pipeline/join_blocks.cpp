@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <boost/pending/disjoint_sets.hpp>
+#include <map>
 #include <utility>
 
 #include "geometry/cell_grid.h"
@@ -148,7 +148,8 @@ class Joiner {
                 about_.push_back(parts.primitives[p]);
                 voxels_.push_back(in_core[b][p]);
             }
-            stage.progress("joining", 0.5 * static_cast<double>(b + 1) / static_cast<double>(blocks));
+            stage.progress("joining",
+                           0.5 * static_cast<double>(b + 1) / static_cast<double>(blocks));
         }
         unite(border, width);
         number();
@@ -204,14 +205,13 @@ class Joiner {
             const BlockParts block = read_block(folder_, b);
             std::vector<std::int32_t> numbers;
             for (std::size_t p = 0; p < block.primitives.size(); ++p)
-                numbers.push_back(number_[static_cast<std::size_t>(
-                    id(b, static_cast<std::int32_t>(p)))]);
+                numbers.push_back(
+                    number_[static_cast<std::size_t>(id(b, static_cast<std::int32_t>(p)))]);
             add_cells(block, layout_.blocks[b].core, numbers, parts.cells);
             add_seams(block.seams, numbers, parts.seams);
             out.number.push_back(std::move(numbers));
-            stage.progress("joining",
-                           0.5 + 0.5 * static_cast<double>(b + 1) /
-                                     static_cast<double>(layout_.blocks.size()));
+            stage.progress("joining", 0.5 + 0.5 * static_cast<double>(b + 1) /
+                                                static_cast<double>(layout_.blocks.size()));
         }
         return out;
     }
@@ -228,7 +228,8 @@ class Joiner {
             structure[p][about_[m].structure] += voxels_[m];
         }
         const auto most = [](const auto& votes) {
-            return std::ranges::max_element(votes, {}, [](const auto& v) { return v.second; })->first;
+            return std::ranges::max_element(votes, {}, [](const auto& v) { return v.second; })
+                ->first;
         };
         for (std::size_t p = 0; p < count; ++p) {
             parts.model.emplace_back(model_named(most(model[p])));
@@ -260,7 +261,8 @@ class Joiner {
         };
         const auto number = [&](std::int32_t p) { return numbers[static_cast<std::size_t>(p)]; };
         for (std::size_t p = 0; p < from.inside.size(); ++p) {
-            if (numbers[p] >= 0) add(to.inside[static_cast<std::size_t>(numbers[p])], from.inside[p]);
+            if (numbers[p] >= 0)
+                add(to.inside[static_cast<std::size_t>(numbers[p])], from.inside[p]);
         }
         for (const auto& [pair, seam] : from.between) {
             const std::int32_t a = number(pair.first), b = number(pair.second);

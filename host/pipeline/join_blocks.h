@@ -19,11 +19,10 @@ struct JoinedBlocks {
     BlockNumbers number;
 };
 
-// Joins the primitives of neighbouring blocks. Around the border of two cores both have seen the same
-// surface: primitives of which each is the one that shares most voxels with the other there are one,
-// if these are at least half of the smaller one's. Every voxel is
-// taken from the block whose core it is in. Primitives are numbered by their first block, and within
-// it in its order.
+// Joins the primitives of neighbouring blocks. Around the border of two cores both have seen the
+// same surface: primitives of which each is the one that shares most voxels with the other there
+// are one, if these are at least half of the smaller one's. Every voxel is taken from the block
+// whose core it is in. Primitives are numbered by their first block, and within it in its order.
 JoinedBlocks join_blocks(const std::filesystem::path& folder, const tiles::Layout& layout,
                          StageClock& stage);
 

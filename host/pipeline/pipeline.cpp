@@ -11,9 +11,9 @@
 #include "pipeline/object_stage.h"
 #include "pipeline/safety_stage.h"
 #include "pipeline/stage_clock.h"
+#include "pipeline/tiled_parse.h"
 #include "pipeline/voxel_stage.h"
 #include "topple/parse.h"
-#include "topple/version.h"
 
 namespace topple {
 namespace {
@@ -57,11 +57,12 @@ void check_memory(const CloudView& cloud, double voxel_m, const ParseOptions& op
     if (options.max_memory_bytes == 0) return;
     const std::uint64_t need = estimated_bytes(cloud, voxel_m);
     if (need > options.max_memory_bytes) {
-        throw Error(ErrorKind::input, std::to_string(cloud.size()) + " points at voxels of " +
-                                          std::to_string(voxel_m) + " m would need about " +
-                                          size_text(need) + ", more than the " +
-                                          size_text(options.max_memory_bytes) +
-                                          " of --max-memory; use a larger --voxel");
+        throw Error(ErrorKind::input,
+                    std::to_string(cloud.size()) + " points at voxels of " +
+                        std::to_string(voxel_m) + " m would need about " + size_text(need) +
+                        ", more than the " + size_text(options.max_memory_bytes) +
+                        " of --max-memory; use a larger --voxel, or --tile 5 to have it parsed "
+                        "in blocks");
     }
 }
 
@@ -69,25 +70,7 @@ ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOp
                            Scene scene, StageClock& stage) {
     const double voxel_m = options.voxel_m > 0 ? options.voxel_m : voxel_for_cell(input.cell_m);
     check_memory(input.cloud, voxel_m, options);
-    scene.topple_version = version;
-    scene.backend = device::to_string(device.info().backend);
-    scene.device = device.info().name;
-    scene.seed = options.seed;
-    scene.voxel_size_m = voxel_m;
-    scene.density_kg_m3 = options.density_kg_m3;
-    scene.friction = options.friction;
-    scene.events["tolerable_J"] = options.tolerable_J;
-    for (const std::string& name : options.disturbances) {
-        if (name == "human") scene.events["walks"] = options.walks;
-        if (name == "wind") scene.events["wind_m_s"] = options.wind_m_s;
-        if (name == "wind" && options.wind_from_deg)
-            scene.events["wind_from_deg"] = *options.wind_from_deg;
-        if (name == "earthquake") {
-            scene.events["pga_m_s2"] = options.pga_m_s2.value_or(
-                options.accelerogram ? options.accelerogram->peak_m_s2()
-                                     : safety::EarthquakeOptions{}.pga_m_s2);
-        }
-    }
+    record_run(device, options, voxel_m, scene);
     scene.notes.insert(scene.notes.end(), input.notes.begin(), input.notes.end());
 
     GeometryStage geometry = find_primitives(device, input, options, stage);  // 2.1
@@ -108,7 +91,7 @@ ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOp
         assemble_points(input, geometry, parts, objects, safety, *voxels.scene, scene);
         if (options.coordinates) take_coordinates(input, scene.points);
     });
-    return {std::move(scene), std::move(voxels.scene)};
+    return {std::move(scene), std::move(voxels.scene), nullptr};
 }
 
 template <class Ingest>
@@ -150,6 +133,7 @@ void check_options(const ParseOptions& o) {
                     std::isfinite(sum) ? o.accelerogram->peak_m_s2() : NAN, 0, 100);
     }
     check_range("--tolerable", o.tolerable_J, 0, 1e9);
+    if (o.tile_m != 0) check_range("--tile", o.tile_m, least_tile_m, 1000);
     if (o.grouping_time_s) check_range("--grouping-time", *o.grouping_time_s, 0, 86400);
     for (const std::string& d : o.disturbances) {
         if (d != "human" && d != "wind" && d != "earthquake") {
@@ -160,6 +144,7 @@ void check_options(const ParseOptions& o) {
 }
 
 ParseResult parse(const std::filesystem::path& input, const ParseOptions& options) {
+    if (std::optional<ParseResult> tiled = parse_tiled(input, options)) return *std::move(tiled);
     return run(input.string(), options,
                [&](device::Device& device) { return ingest(device, input, options); });
 }

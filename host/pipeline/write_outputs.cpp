@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <memory>
+
 #include "io/landscapes_json.h"
 #include "io/output_folder.h"
 #include "io/scene_json.h"
 #include "io/write_ply.h"
 #include "pipeline/objects_glb.h"
+#include "pipeline/tiled_result.h"
 #include "report/pictures.h"
 #include "report/report.h"
 #include "topple/parse.h"
@@ -18,15 +21,23 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
                     "the result has no coordinates of its points: call add_coordinates() first");
     }
     io::OutputFolder out(folder);
-    io::write_points_ply(out.folder() / "points.ply", result.scene.points);
+    if (result.tiled) {
+        result.tiled->write_points(out.folder() / "points.ply");
+    } else {
+        io::write_points_ply(out.folder() / "points.ply", result.scene.points);
+    }
+    const auto voxels =
+        result.tiled ? std::make_shared<const vdb::VoxelScene>(result.tiled->load_voxels())
+                     : result.voxels;
+    voxels->write(out.folder() / "volume.vdb");
     io::write_solid_ply(out.folder() / "solid.ply", result.scene.solid);
-    result.voxels->write(out.folder() / "volume.vdb");
     report::write_report(out.folder() / "report.html", result.scene);
     if (options.pictures) report::write_pictures(out.folder(), result.scene);
-    if (options.glb) write_objects_glb(out.folder() / "objects.glb", result.scene, *result.voxels);
+    if (options.glb) write_objects_glb(out.folder() / "objects.glb", result.scene, *voxels);
     io::write_landscapes_json(out.folder() / "landscapes.json", result.scene);
     io::write_scene_json(out.folder() / "scene.json", result.scene);
     out.commit();
+    if (result.tiled) result.tiled->finished();
 }
 
 }  // namespace topple

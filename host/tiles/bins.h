@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
-// Clouds larger than memory: sorted into cubes on disk, thinned there to one point a cell, and taken
-// up again block by block.
+// Clouds larger than memory: sorted into cubes on disk, thinned there to one point a cell, and
+// taken up again block by block.
 namespace topple::tiles {
 
 // A cube of the input's frame: bin (x, y, z) spans [x, x + 1] * bin_edge_m per axis.

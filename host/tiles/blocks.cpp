@@ -36,8 +36,8 @@ std::vector<Storey> storeys_of(const fs::path& folder, std::span<const Bin> bins
     if (cells.empty()) return find_storeys({}, 0, step_m);
     const std::int64_t first = cells.begin()->first, last = cells.rbegin()->first;
     // Strays may lie far above; no building is higher than a kilometre.
-    const auto steps = std::min<std::int64_t>(last - first + 1,
-                                              static_cast<std::int64_t>(1000 / step_m));
+    const auto steps =
+        std::min<std::int64_t>(last - first + 1, static_cast<std::int64_t>(1000 / step_m));
     std::vector<double> area(static_cast<std::size_t>(steps), 0.0);
     for (const auto& [step, count] : cells) {
         if (step - first < steps)
@@ -77,10 +77,10 @@ Layout cut_into_blocks(const fs::path& folder, std::span<const Bin> bins,
     const std::vector<Storey> storeys = storeys_of(folder, bins, frame, cell_m, voxel_m);
     std::vector<std::int32_t> begins;  // of each storey, voxels
     for (const Storey& s : storeys)
-        begins.push_back(std::isinf(s.below_m)
-                             ? -far
-                             : floored(static_cast<std::int32_t>(std::lround(s.below_m / voxel_m)),
-                                       leaf));
+        begins.push_back(
+            std::isinf(s.below_m)
+                ? -far
+                : floored(static_cast<std::int32_t>(std::lround(s.below_m / voxel_m)), leaf));
     std::map<std::array<std::int32_t, 3>, std::uint64_t> cells;  // by storey, i, j
     for (const Bin& bin : bins) {
         const ThinnedBin points = read_thinned(folder, bin);
@@ -134,8 +134,8 @@ Layout read_layout(const fs::path& folder) {
     return out;
 }
 
-BlockPoints points_of_block(const fs::path& folder, std::span<const Bin> bins,
-                            const Layout& layout, const Block& block) {
+BlockPoints points_of_block(const fs::path& folder, std::span<const Bin> bins, const Layout& layout,
+                            const Block& block) {
     const VoxelBox seen = block.core.grown(layout.halo);
     BlockPoints out;
     for (std::size_t b = 0; b < bins.size(); ++b) {

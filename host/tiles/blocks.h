@@ -35,7 +35,8 @@ struct Block {
     std::uint64_t cells = 0;  // thinned cells in its core
 };
 
-// How a cloud is cut, and what all blocks have in common. Depends on the cloud and the options alone.
+// How a cloud is cut, and what all blocks have in common. Depends on the cloud and the options
+// alone.
 struct Layout {
     double cell_m = 0, voxel_m = 0;
     std::int32_t halo = 0;  // voxels

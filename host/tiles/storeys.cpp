@@ -20,7 +20,8 @@ struct Level {
     double height_m = 0, area_m2 = 0;
 };
 
-// Levels by rising height: the surface within a window of the spread, where no window nearby has more.
+// Levels by rising height: the surface within a window of the spread, where no window nearby has
+// more.
 std::vector<Level> find_levels(const std::vector<double>& area, double low, double step) {
     const auto reach = static_cast<std::ptrdiff_t>(std::max(1.0, std::round(spread_m / step)));
     const auto count = static_cast<std::ptrdiff_t>(area.size());
@@ -49,8 +50,8 @@ std::vector<Level> find_levels(const std::vector<double>& area, double low, doub
 
 std::vector<Storey> find_storeys(const std::vector<double>& area_m2, double low_m, double step_m) {
     const std::vector<Level> levels = find_levels(area_m2, low_m, step_m);
-    std::vector<Storey> storeys{{std::numeric_limits<double>::quiet_NaN(),
-                                 -std::numeric_limits<double>::infinity()}};
+    std::vector<Storey> storeys{
+        {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}};
     if (levels.empty()) return storeys;
     storeys.front().floor_m = levels.front().height_m;
     std::optional<double> ceiling;  // of the storey in hand

@@ -6,7 +6,8 @@
 
 namespace topple::tiles {
 
-// Where a building may be cut between its storeys: in the slab between a ceiling and the floor above.
+// Where a building may be cut between its storeys: in the slab between a ceiling and the floor
+// above.
 struct Storey {
     double floor_m = 0;  // height of its floor along up
     double below_m = 0;  // where it begins: within the slab below its floor
@@ -14,8 +15,9 @@ struct Storey {
 
 // Storeys by rising height; the first begins at minus infinity. area_m2: level histogram of the
 // surface, `step_m` a step, the first of which begins at low_m. Floors and ceilings hold much more
-// surface than any height between them; a level that lies closely above another is the floor on that
-// one's slab. A scan without such levels is one storey, whose floor is its lowest such level, or NaN.
+// surface than any height between them; a level that lies closely above another is the floor on
+// that one's slab. A scan without such levels is one storey, whose floor is its lowest such level,
+// or NaN.
 std::vector<Storey> find_storeys(const std::vector<double>& area_m2, double low_m, double step_m);
 
 }  // namespace topple::tiles

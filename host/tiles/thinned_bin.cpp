@@ -32,8 +32,8 @@ fs::path cells_file(const fs::path& folder, const Bin& bin) {
 // Points whose cells are read at a time.
 constexpr std::size_t portion_points = 1u << 13;
 
-// Sums of the points in each cell, found by key through open addressing. Places are given out in the
-// order in which cells are met.
+// Sums of the points in each cell, found by key through open addressing. Places are given out in
+// the order in which cells are met.
 class CellSums {
   public:
     CellSums() { grow(1u << 12); }
@@ -52,7 +52,6 @@ class CellSums {
         ++count_[place];
         return place;
     }
-    places.close();
     const std::vector<std::uint64_t>& keys() const { return keys_; }
     std::uint32_t count(std::uint32_t place) const { return count_[place]; }
     double mean(std::uint32_t place, std::size_t axis) const {
@@ -91,8 +90,7 @@ bool is_thinned(const fs::path& folder, const Bin& bin) {
     return fs::exists(cells_file(folder, bin), error);
 }
 
-void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m,
-              const fs::path& folder) {
+void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const fs::path& folder) {
     const Bin& at = points.bins()[bin].bin;
     const auto cells = static_cast<std::int64_t>(std::llround(bin_edge_m / cell_m));
     const std::array<double, 3> low{at[0] * bin_edge_m, at[1] * bin_edge_m, at[2] * bin_edge_m};

@@ -9,8 +9,8 @@
 
 namespace topple::tiles {
 
-// The cells of the cubic grid of cell_m that hold points of a bin, in the order of their indices (x,
-// then y, then z): the mean of each cell's points, in the input's frame, metres. cell_m divides
+// The cells of the cubic grid of cell_m that hold points of a bin, in the order of their indices
+// (x, then y, then z): the mean of each cell's points, in the input's frame, metres. cell_m divides
 // bin_edge_m, so that each cell is in one bin.
 struct ThinnedBin {
     std::vector<float> x, y, z;
@@ -21,8 +21,8 @@ struct ThinnedBin {
 // The largest size that divides bin_edge_m and is not above `cell_m`.
 double dividing_cell(double cell_m);
 
-// Thins a bin and writes it to `folder`, with the cell of each of its points. Holds the cells, and a
-// portion of the points at a time.
+// Thins a bin and writes it to `folder`, with the cell of each of its points. Holds the cells, and
+// a portion of the points at a time.
 void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m,
               const std::filesystem::path& folder);
 
@@ -38,7 +38,7 @@ class CellsOfPoints {
 
   private:
     std::filesystem::path file_;
-    std::uint64_t offset_ = 0;                // of what is read next, bytes
+    std::uint64_t offset_ = 0;  // of what is read next, bytes
     std::vector<std::uint32_t> cell_of_place_, portion_;
     std::size_t at_ = 0;
 };

@@ -48,8 +48,9 @@ WorkFolder::WorkFolder(const fs::path& folder, const std::string& manifest) {
         taken_up_ = found == text;
         if (!taken_up_ && !fs::is_empty(folder_, error)) {
             if (!found.starts_with(first_line))
-                io::fail(folder_, "holds files that are not topple's; it is needed to work in: move "
-                                  "them, or choose another output folder");
+                io::fail(folder_,
+                         "holds files that are not topple's; it is needed to work in: move "
+                         "them, or choose another output folder");
             for (const auto& entry : fs::directory_iterator(folder_, error))
                 fs::remove(entry.path(), error);
         }

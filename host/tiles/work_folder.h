@@ -10,9 +10,9 @@ namespace topple::tiles {
 // again by the next one with the same manifest; with another one it is removed first.
 class WorkFolder {
   public:
-    // `folder`: empty for one in the system's place for temporary files, which nobody takes up again.
-    // `manifest`: one line that names the input and all that what is in the folder depends on. Throws
-    // Error(input) where the folder can't be made or holds files that are not ours.
+    // `folder`: empty for one in the system's place for temporary files, which nobody takes up
+    // again. `manifest`: one line that names the input and all that what is in the folder depends
+    // on. Throws Error(input) where the folder can't be made or holds files that are not ours.
     WorkFolder(const std::filesystem::path& folder, const std::string& manifest);
     // Removes the folder if it is temporary or finished() was called.
     ~WorkFolder();

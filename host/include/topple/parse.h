@@ -22,6 +22,8 @@ class VoxelScene;
 
 namespace topple {
 
+class TiledResult;
+
 struct ParseOptions {
     // What to compute on, from topple/device.h or topple/embed.h; one parse at a time uses it.
     // Null: what open_device("auto") gives, opened for this parse alone.
@@ -53,6 +55,13 @@ struct ParseOptions {
     // Whether the result holds its points' coordinates. Without, it takes 12 bytes a point less,
     // and add_coordinates() is needed before write_outputs().
     bool coordinates = true;
+    // Clouds in files of over 4 million points are parsed in blocks of this edge, metres, so that
+    // they may be larger than memory; 0: 5 m, and smaller clouds in one piece. Where it is given,
+    // every cloud file is.
+    double tile_m = 0;
+    // Where the blocks are kept meanwhile; a run that was killed goes on from what it finds there.
+    // Is removed by write_outputs(). Empty: a temporary folder.
+    std::filesystem::path work_folder;
     // Called when a stage starts and while it goes on: its name, and how much of it is done, 0
     // to 1.
     std::function<void(const std::string&, double)> progress;
@@ -67,6 +76,9 @@ void check_options(const ParseOptions& options);
 struct ParseResult {
     Scene scene;
     std::shared_ptr<const vdb::VoxelScene> voxels;
+    // Of a cloud that was parsed in blocks: its points' labels and the voxel grids, on disk.
+    // scene.points is a sample then, and `voxels` is null.
+    std::shared_ptr<const TiledResult> tiled;
 };
 
 // Parses a scan: a point cloud (.ply, .pcd, .xyz), a sequence folder of depth frames with poses, or

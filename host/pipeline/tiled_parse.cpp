@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/tiled_parse.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "device/device.h"
+#include "device/native/thread_pool.h"
+#include "geometry/surfels.h"
+#include "io/read_cloud.h"
+#include "io/text.h"
+#include "pipeline/assemble.h"
+#include "pipeline/block_stage.h"
+#include "pipeline/explain.h"
+#include "pipeline/ingest.h"
+#include "pipeline/join_blocks.h"
+#include "pipeline/object_stage.h"
+#include "pipeline/safety_stage.h"
+#include "pipeline/solid_parts.h"
+#include "pipeline/stage_clock.h"
+#include "pipeline/tiled_result.h"
+#include "tiles/blocks.h"
+#include "tiles/point_spill.h"
+#include "tiles/work_folder.h"
+#include "topple/version.h"
+
+namespace topple {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Clouds of more points are parsed in blocks: in one piece these take some 20 s and 2 GB.
+constexpr std::uint64_t most_at_once = 4'000'000;
+// Files below this size hold no more points than that: ten bytes a point are hardly ever too few.
+constexpr std::uint64_t small_file = 10 * most_at_once;
+
+// The working resolution of a building, metres: furniture shows its shape, and a room has under a
+// million cells, however dense the scan.
+constexpr double building_cell_m = 0.0125;
+// Voxels are about two cells wide.
+constexpr double voxel_cells = 2;
+// Points farther apart show no surface at the coarsest resolution.
+constexpr double sparsest_m = 0.25, largest_cell_m = 0.05;
+
+// Points, and thinned points, that a guess at the whole is made from.
+constexpr std::uint64_t spacing_points = 1'500'000, frame_points = 1'200'000;
+// Points of the scene that a caller gets, and the report shows.
+constexpr std::size_t sampled_points = 3'000'000;
+
+std::string manifest(const fs::path& input, const ParseOptions& o) {
+    std::error_code error;
+    const auto changed = fs::last_write_time(input, error).time_since_epoch().count();
+    char text[256];
+    std::snprintf(text, sizeof(text), " %llu %lld voxel %a unit %a tile %a up %a %a %a version %s",
+                  static_cast<unsigned long long>(fs::file_size(input, error)),
+                  static_cast<long long>(changed), o.voxel_m, o.unit_m, o.tile_m,
+                  o.up ? (*o.up)[0] : 0, o.up ? (*o.up)[1] : 0, o.up ? (*o.up)[2] : 0, version);
+    return fs::absolute(input, error).string() + text;
+}
+
+// Half of what a run may take is for the points in hand; the rest is for the others.
+std::uint64_t spill_bytes(const ParseOptions& options) {
+    constexpr std::uint64_t most = std::uint64_t{256} << 20, least = std::uint64_t{16} << 20;
+    if (options.max_memory_bytes == 0) return most;
+    return std::clamp(options.max_memory_bytes / 8, least, most);
+}
+
+// Sorts the cloud's points into bins on disk.
+void spill(const fs::path& input, const tiles::WorkFolder& work, const ParseOptions& options,
+           StageClock& stage) {
+    if (work.has("bins.bin")) return;
+    tiles::PointSpill out(work.path(), spill_bytes(options));
+    std::error_code error;
+    // A guess, for the progress alone.
+    const double expected = static_cast<double>(fs::file_size(input, error)) / 15;
+    io::stream_cloud(input, options.unit_m, [&](const PointCloud& portion) {
+        out.add(portion, input.string());
+        stage.progress("sorting", std::min(0.99, static_cast<double>(out.points()) / expected));
+    });
+    out.finish();
+}
+
+// The spacing of the points in a bin: of all, or of a slab of it that holds enough of them.
+double spacing_in(const tiles::SpilledPoints& points, std::size_t bin) {
+    const auto& of_bin = points.bins()[bin];
+    const double share =
+        std::min(1.0, static_cast<double>(spacing_points) / static_cast<double>(of_bin.points));
+    const double end = (of_bin.bin[0] + share) * tiles::bin_edge_m;
+    PointCloud cloud;
+    points.read(bin, [&](std::span<const tiles::Point> portion) {
+        for (const tiles::Point& p : portion) {
+            if (p.x > end) continue;
+            cloud.x.push_back(p.x);
+            cloud.y.push_back(p.y);
+            cloud.z.push_back(p.z);
+        }
+    });
+    return geometry::point_spacing(cloud);
+}
+
+// The median over bins with many points.
+double find_spacing(const tiles::SpilledPoints& points, const fs::path& input) {
+    std::vector<std::size_t> bins(points.bins().size());
+    for (std::size_t b = 0; b < bins.size(); ++b) bins[b] = b;
+    std::ranges::stable_sort(bins, {}, [&](std::size_t b) { return points.bins()[b].points; });
+    std::vector<double> spacings;
+    for (const double quantile : {0.5, 0.6, 0.7, 0.8, 0.9}) {
+        const double s = spacing_in(
+            points, bins[static_cast<std::size_t>(quantile * static_cast<double>(bins.size()))]);
+        if (s > 0) spacings.push_back(s);
+    }
+    std::ranges::sort(spacings);
+    const double spacing = spacings.empty() ? INFINITY : spacings[spacings.size() / 2];
+    if (spacing > sparsest_m)
+        io::fail(input,
+                 "its points are " + io::short_number(spacing) + " m apart, more than the " +
+                     io::short_number(sparsest_m) +
+                     " m at which surfaces can be found; check --unit, or give a denser scan");
+    return spacing;
+}
+
+std::vector<tiles::Bin> bins_of(const tiles::SpilledPoints& points) {
+    std::vector<tiles::Bin> out;
+    for (const auto& bin : points.bins()) out.push_back(bin.bin);
+    return out;
+}
+
+// Calls work(i) for each i of [0, count) on the device's threads, and throws what it threw first.
+void each(device::Device& device, std::size_t count, const std::function<void(std::size_t)>& work) {
+    std::vector<std::exception_ptr> errors(count);
+    device.threads().each(count, 1, [&](std::size_t n) {
+        try {
+            work(n);
+        } catch (...) {
+            errors[n] = std::current_exception();
+        }
+    });
+    for (const std::exception_ptr& error : errors)
+        if (error) std::rethrow_exception(error);
+}
+
+void thin(device::Device& device, const tiles::SpilledPoints& points, double cell_m,
+          const fs::path& folder, StageClock& stage) {
+    const std::size_t count = points.bins().size(), batch = device.threads().threads();
+    for (std::size_t first = 0; first < count; first += batch) {
+        each(device, std::min(batch, count - first), [&](std::size_t n) {
+            if (!tiles::is_thinned(folder, points.bins()[first + n].bin))
+                tiles::thin_bin(points, first + n, cell_m, folder);
+        });
+        stage.progress("thinning", static_cast<double>(first) / static_cast<double>(count));
+    }
+}
+
+// The frame of the whole, from the densest bin and those around it.
+geometry::SceneFrame find_frame(device::Device& device, const fs::path& folder,
+                                const tiles::SpilledPoints& points, double cell_m,
+                                const ParseOptions& options) {
+    const auto& bins = points.bins();
+    const tiles::Bin middle =
+        std::ranges::max_element(bins, {}, &tiles::SpilledPoints::BinPoints::points)->bin;
+    std::vector<std::pair<std::int32_t, std::size_t>> near;  // distance, index
+    for (std::size_t b = 0; b < bins.size(); ++b) {
+        std::int32_t away = 0;
+        for (std::size_t a = 0; a < 3; ++a)
+            away = std::max(away, std::abs(bins[b].bin[a] - middle[a]));
+        near.emplace_back(away, b);
+    }
+    std::ranges::sort(near);
+    PointCloud cloud;
+    for (const auto& [away, b] : near) {
+        if (cloud.size() > 0 && cloud.size() + bins[b].points > frame_points && away > 1) break;
+        const tiles::ThinnedBin bin = tiles::read_thinned(folder, bins[b].bin);
+        if (cloud.size() > 0 && cloud.size() + bin.size() > frame_points) break;
+        cloud.x.insert(cloud.x.end(), bin.x.begin(), bin.x.end());
+        cloud.y.insert(cloud.y.end(), bin.y.begin(), bin.y.end());
+        cloud.z.insert(cloud.z.end(), bin.z.begin(), bin.z.end());
+    }
+    const Ingested part = ingest_part(device, std::move(cloud), cell_m);
+    const geometry::Surfels surfels = geometry::make_surfels(
+        device, part.cloud, 2 * cell_m, part.viewpoints, part.viewpoint_of_point);
+    return geometry::find_scene_frame(device, surfels, {options.up, part.camera_up});
+}
+
+tiles::Layout find_layout(device::Device& device, const tiles::WorkFolder& work,
+                          const tiles::SpilledPoints& points, const fs::path& input,
+                          const ParseOptions& options, StageClock& stage) {
+    if (work.has("layout.bin")) return tiles::read_layout(work.path());
+    const double cell_m = stage("spacing", [&] {
+        const double finest = 1.25 * find_spacing(points, input);
+        const double wanted = options.voxel_m > 0 ? options.voxel_m / voxel_cells : building_cell_m;
+        return tiles::dividing_cell(std::min(largest_cell_m, std::max(finest, wanted)));
+    });
+    const double voxel_m = options.voxel_m > 0 ? options.voxel_m : voxel_cells * cell_m;
+    stage("thinning", [&] { thin(device, points, cell_m, work.path(), stage); });
+    const geometry::SceneFrame frame =
+        stage("frame", [&] { return find_frame(device, work.path(), points, cell_m, options); });
+    return stage("layout", [&] {
+        const std::vector<tiles::Bin> bins = bins_of(points);
+        tiles::Layout layout =
+            tiles::cut_into_blocks(work.path(), bins, frame, cell_m, voxel_m,
+                                   options.tile_m > 0 ? options.tile_m : tiles::default_block_m);
+        if (layout.blocks.empty())
+            io::fail(input, io::counted(points.points(), "point") +
+                                " were found, but nowhere enough of them for a surface; give a "
+                                "denser scan, or a larger --voxel");
+        tiles::write_layout(work.path(), layout);
+        return layout;
+    });
+}
+
+void parse_blocks(device::Device& device, const fs::path& folder,
+                  const std::vector<tiles::Bin>& bins, const tiles::Layout& layout,
+                  const ParseOptions& options, StageClock& stage) {
+    std::uint64_t all = 0, done = 0;
+    for (const tiles::Block& b : layout.blocks) all += b.cells;
+    for (std::size_t b = 0; b < layout.blocks.size(); ++b) {
+        const tiles::Block& block = layout.blocks[b];
+        if (!fs::exists(block_file(folder, b))) {
+            const tiles::BlockPoints points = tiles::points_of_block(folder, bins, layout, block);
+            write_block(folder, b, parse_block(device, points, layout, block, options));
+        }
+        done += block.cells;
+        stage.progress("blocks", static_cast<double>(done) / static_cast<double>(all));
+    }
+}
+
+// Centres in the input's frame.
+SolidVoxels solid_voxels(const SolidParts& parts, const ObjectStage& objects) {
+    const ToInput to_input(parts.frame.axes);
+    const physics::SolidCells& cells = parts.cells;
+    SolidVoxels out;
+    for (auto* values : {&out.x, &out.y, &out.z}) values->reserve(cells.size());
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const Vec3 at =
+            to_input({(cells.i[n] + 0.5) * cells.voxel_m, (cells.j[n] + 0.5) * cells.voxel_m,
+                      (cells.k[n] + 0.5) * cells.voxel_m});
+        out.x.push_back(static_cast<float>(at[0]));
+        out.y.push_back(static_cast<float>(at[1]));
+        out.z.push_back(static_cast<float>(at[2]));
+        const std::int32_t p = cells.primitive[n];
+        out.object.push_back(p < 0 ? -1 : objects.object_of_primitive[static_cast<std::size_t>(p)]);
+        out.state.push_back(cells.surface[n] ? 0 : 1);
+    }
+    out.primitive = cells.primitive;
+    return out;
+}
+
+void add_notes(const tiles::SpilledPoints& points, const tiles::Layout& layout, Scene& scene) {
+    if (!layout.frame.note.empty()) scene.notes.push_back(layout.frame.note);
+    if (points.dropped() > 0)
+        scene.notes.push_back(io::counted(points.dropped(), "point") +
+                              " of the input were not finite and are left out.");
+    scene.notes.push_back("The cloud of " + io::counted(points.points(), "point") +
+                          " was parsed in " + io::counted(layout.blocks.size(), "block") +
+                          ", thinned to one point per " +
+                          io::short_number(std::round(layout.cell_m * 1e4) / 10) +
+                          " mm; its sensor's places were not known, and free space was estimated.");
+}
+
+ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
+                            std::unique_ptr<tiles::WorkFolder> work, device::Device& device,
+                            StageClock& stage) {
+    const tiles::SpilledPoints points(work->path());
+    const std::vector<tiles::Bin> bins = bins_of(points);
+    const tiles::Layout layout = find_layout(device, *work, points, input, options, stage);
+    stage("blocks", [&] { parse_blocks(device, work->path(), bins, layout, options, stage); });
+    JoinedBlocks joined =
+        stage("joining", [&] { return join_blocks(work->path(), layout, stage); });
+    SolidParts& parts = joined.parts;
+    if (parts.model.empty())
+        io::fail(input, "no surface in it fills the " + std::to_string(least_voxels) +
+                            " voxels that a solid takes; give a denser scan, or a smaller --voxel");
+    ParseResult result;
+    Scene& scene = result.scene;
+    scene.source = input.string();
+    record_run(device, options, layout.voxel_m, scene);
+    add_notes(points, layout, scene);
+    const auto tiled = std::make_shared<TiledResult>(std::move(work), input, options.unit_m, bins,
+                                                     layout, std::move(joined.number));
+    parts.points = tiled->count_points(parts.model.size());
+    const ObjectStage objects = find_objects(device, parts, options, stage);
+    SafetyStage safety = assess_safety(device, parts, objects, options, stage);
+    stage("assembly", [&] {
+        assemble_objects(parts, objects, safety, scene);
+        scene.solid = solid_voxels(parts, objects);
+        tiled->set_objects(objects.object_of_primitive);
+        scene.points = tiled->sample(sampled_points);
+        std::vector<TiledResult::Exposure> exposures;
+        for (safety::Disturbance& d : safety.disturbances)
+            if (!d.exposure.empty()) exposures.push_back({d.name, std::move(d.exposure)});
+        tiled->set_exposures(std::move(parts.cells), std::move(exposures));
+    });
+    result.tiled = tiled;
+    return result;
+}
+
+}  // namespace
+
+std::optional<ParseResult> parse_tiled(const fs::path& input, const ParseOptions& options) {
+    std::error_code error;
+    if (!fs::is_regular_file(input, error) || !io::can_stream(input)) return std::nullopt;
+    if (options.tile_m == 0 && fs::file_size(input, error) < small_file) return std::nullopt;
+    check_options(options);
+    std::vector<std::pair<std::string, double>> timings;
+    StageClock stage(timings, options);
+    auto work = std::make_unique<tiles::WorkFolder>(options.work_folder, manifest(input, options));
+    stage("sorting", [&] { spill(input, *work, options, stage); });
+    if (options.tile_m == 0 && tiles::SpilledPoints(work->path()).points() <= most_at_once) {
+        work->finished();
+        return std::nullopt;
+    }
+    const auto device = options.device ? options.device : device::open_device("auto");
+    ParseResult result = parse_in_blocks(input, options, std::move(work), *device, stage);
+    result.scene.timings_s = std::move(timings);
+    return result;
+}
+
+}  // namespace topple

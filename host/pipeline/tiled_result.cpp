@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/tiled_result.h"
+
+#include <algorithm>
+#include <map>
+#include <span>
+
+#include "io/read_cloud.h"
+#include "io/text.h"
+#include "io/write_ply.h"
+#include "pipeline/block_stage.h"
+
+namespace topple {
+
+TiledResult::TiledResult(std::unique_ptr<tiles::WorkFolder> work, std::filesystem::path input,
+                         double unit_m, std::vector<tiles::Bin> bins, tiles::Layout layout,
+                         BlockNumbers number)
+    : work_(std::move(work)),
+      input_(std::move(input)),
+      unit_m_(unit_m),
+      bins_(std::move(bins)),
+      layout_(std::move(layout)),
+      number_(std::move(number)) {
+    for (const tiles::Bin& bin : bins_)
+        label_.emplace_back(tiles::read_thinned(work_->path(), bin).size(), -1);
+    for (std::size_t b = 0; b < layout_.blocks.size(); ++b) {
+        for (const BlockParts::Labels& labels : read_block(work_->path(), b).labels) {
+            std::vector<std::int32_t>& of_bin = label_.at(labels.bin);
+            for (std::size_t n = 0; n < labels.cells.size(); ++n) {
+                const std::int32_t p = labels.primitive[n];
+                of_bin.at(labels.cells[n]) = p < 0 ? -1 : number_[b][static_cast<std::size_t>(p)];
+            }
+        }
+    }
+}
+
+std::vector<std::uint64_t> TiledResult::count_points(std::size_t primitives) const {
+    std::vector<std::uint64_t> out(primitives, 0);
+    for (std::size_t b = 0; b < bins_.size(); ++b) {
+        const tiles::ThinnedBin bin = tiles::read_thinned(work_->path(), bins_[b]);
+        for (std::size_t n = 0; n < bin.size(); ++n) {
+            if (label_[b][n] >= 0) out[static_cast<std::size_t>(label_[b][n])] += bin.points[n];
+        }
+    }
+    return out;
+}
+
+ScenePoints TiledResult::sample(std::size_t most) const {
+    std::size_t all = 0;
+    for (const auto& of_bin : label_) all += of_bin.size();
+    const std::size_t step = std::max<std::size_t>(1, (all + most - 1) / most);
+    ScenePoints out;
+    std::size_t at = 0;
+    for (std::size_t b = 0; b < bins_.size(); ++b) {
+        const tiles::ThinnedBin bin = tiles::read_thinned(work_->path(), bins_[b]);
+        for (std::size_t n = 0; n < bin.size(); ++n) {
+            if (at++ % step) continue;
+            out.x.push_back(bin.x[n]);
+            out.y.push_back(bin.y[n]);
+            out.z.push_back(bin.z[n]);
+            out.primitive.push_back(label_[b][n]);
+            out.object.push_back(object_of(label_[b][n]));
+        }
+    }
+    return out;
+}
+
+void TiledResult::write_points(const std::filesystem::path& file) const {
+    const tiles::SpilledPoints points(work_->path());
+    io::PointsPlyWriter writer(file, points.points());
+    struct Open {
+        tiles::CellsOfPoints cells;
+        const std::vector<std::int32_t>& label;
+    };
+    std::map<tiles::Bin, Open> open;
+    io::stream_cloud(input_, unit_m_, [&](const PointCloud& portion) {
+        for (std::size_t n = 0; n < portion.size(); ++n) {
+            const tiles::Bin bin = tiles::bin_of(portion.x[n], portion.y[n], portion.z[n]);
+            auto at = open.find(bin);
+            if (at == open.end()) {
+                const auto place = std::ranges::lower_bound(bins_, bin);
+                if (place == bins_.end() || *place != bin)
+                    io::fail(input_, "changed while it was parsed");
+                at =
+                    open.emplace(bin, Open{tiles::CellsOfPoints(work_->path(), bin),
+                                           label_[static_cast<std::size_t>(place - bins_.begin())]})
+                        .first;
+            }
+            const std::int32_t primitive = at->second.label.at(at->second.cells.next());
+            writer.add({portion.x[n], portion.y[n], portion.z[n]}, primitive, object_of(primitive));
+        }
+    });
+    writer.close();
+}
+
+vdb::VoxelScene TiledResult::load_voxels() const {
+    vdb::VoxelScene scene(vdb::VoxelFrame{layout_.voxel_m, layout_.frame.axes});
+    for (std::size_t b = 0; b < layout_.blocks.size(); ++b) {
+        const BlockParts block = read_block(work_->path(), b);
+        const std::vector<std::uint8_t> empty(512, static_cast<std::uint8_t>(vdb::State::empty));
+        const auto lowest = [](const std::vector<std::int32_t>& leaves, std::size_t n) {
+            return std::array<std::int32_t, 3>{leaves[3 * n], leaves[3 * n + 1], leaves[3 * n + 2]};
+        };
+        for (std::size_t n = 0; n < block.empty_leaves.size() / 3; ++n)
+            scene.put_leaf(lowest(block.empty_leaves, n), empty);
+        for (std::size_t n = 0; n < block.leaves.size() / 3; ++n)
+            scene.put_leaf(lowest(block.leaves, n), std::span(block.states).subspan(n * 512, 512));
+    }
+    for (std::size_t n = 0; n < cells_.size(); ++n)
+        scene.put_label(cells_.i[n], cells_.j[n], cells_.k[n], cells_.primitive[n]);
+    scene.set_objects(object_of_primitive_);
+    for (const Exposure& e : exposures_)
+        scene.add_field(e.name, cells_.i, cells_.j, cells_.k, e.values);
+    return scene;
+}
+
+}  // namespace topple
