@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "io/text.h"
 #include "scenes/building.h"
 #include "scenes/depth_camera.h"
 #include "scenes/furnished_room.h"
@@ -24,14 +25,18 @@ struct Arguments {
 };
 
 int run_building(const Arguments& a) {
+    if (std::filesystem::path(a.out).extension() != ".ply") {
+        throw Error(ErrorKind::usage, a.out + ": a building is one cloud; choose a name with .ply");
+    }
     catch_interrupts();
     const auto summary = scenes::write_building(
         a.out, a.building, [](std::size_t, std::size_t) { return interrupted() == 0; });
     if (interrupted() != 0) return interrupted_exit();
-    std::printf("%s: %llu points %.1f mm apart, %zu rooms on %zu storeys, %llu objects\n",
-                a.out.c_str(), static_cast<unsigned long long>(a.building.points),
-                1000 * summary.spacing_m, summary.rooms, summary.storeys,
-                static_cast<unsigned long long>(summary.objects));
+    std::printf("%s: %s, %.1f mm apart, in %s on %s, %s\n", a.out.c_str(),
+                io::counted(a.building.points, "point").c_str(), 1000 * summary.spacing_m,
+                io::counted(summary.rooms, "room").c_str(),
+                io::counted(summary.storeys, "storey").c_str(),
+                io::counted(summary.objects, "object").c_str());
     return 0;
 }
 
@@ -61,15 +66,18 @@ Command add_generate(CLI::App& app) {
     app.add_option("--seed", a->room.seed, "Seed of the room and of the sensor's noise")
         ->check(whole_number)
         ->capture_default_str();
-    app.add_option("--frames", a->camera.frames, "Depth frames of the walk through the room")
-        ->capture_default_str();
-    app.add_option("--tilt", a->room.tilt_deg,
-                   "Tilt of the input's frame against the room, degrees")
-        ->capture_default_str();
+    auto* frames =
+        app.add_option("--frames", a->camera.frames, "Depth frames of the walk through the room")
+            ->capture_default_str();
+    auto* tilt = app.add_option("--tilt", a->room.tilt_deg,
+                                "Tilt of the input's frame against the room, degrees")
+                     ->capture_default_str();
     add_furniture(app, a->room.varied);
-    app.add_flag("--single", a->camera.single, "One frame only, without a trajectory");
+    auto* single =
+        app.add_flag("--single", a->camera.single, "One frame only, without a trajectory");
     auto* building = app.add_flag("--building", a->is_building,
                                   "A building of such rooms from a laser scanner, as one cloud");
+    for (auto* option : {frames, tilt, single}) building->excludes(option);
     app.add_option("--points", a->building.points, "Points of the building")
         ->needs(building)
         ->check(whole_number)

@@ -80,6 +80,8 @@ TEST_F(Usage, refuses_values_before_it_parses) {
     expect_failure(2, {"parse", "plane.xyz", "--backend", "opencl", "--voxel", "0"}, {"--voxel"});
     expect_failure(2, {"generate", "scan", "--frames", "0"}, {"--frames"});
     expect_failure(2, {"generate", "scan", "--seed", "-1"}, {"--seed"});
+    expect_failure(2, {"generate", "scan", "--building"}, {"scan", ".ply"});
+    expect_failure(2, {"generate", "b.ply", "--building", "--tilt", "5"}, {"--tilt"});
     expect_failure(2, {"generate", "b.ply", "--points", "1000"}, {"--points", "--building"});
     expect_failure(2, {"generate", "b.ply", "--building", "--points", "0"}, {"--points 0"});
     expect_failure(2, {"generate", "b.ply", "--building", "--spacing", "9"}, {"--spacing 9"});

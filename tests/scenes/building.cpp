@@ -94,9 +94,8 @@ std::vector<Part> shell(const Vec3& size, const std::vector<Building::Door>& doo
     return parts;
 }
 
-// The furnished room with this shell instead of its own floor, walls and ceiling. Pairs of parts
-// follow the parts' new places; those of what is gone go, but for the first floor and wall part,
-// which stand for the whole.
+// The furnished room with this shell instead of its own floor, walls and ceiling. What is fixed to
+// any wall is then fixed to the first piece of a wall.
 World with_shell(World room, std::vector<Part> shell) {
     std::vector<std::int32_t> place(room.parts.size(), 0);
     std::vector<Part> parts = std::move(shell);

@@ -36,7 +36,12 @@ constexpr std::uint64_t noise_stream = 5ULL << 40;
 class PendingFile {
   public:
     explicit PendingFile(fs::path file)
-        : file_(std::move(file)), temporary_(file_.string() + ".part"), writer_(temporary_) {}
+        : file_(std::move(file)), temporary_(file_.string() + ".part"), writer_(temporary_) {
+        if (fs::is_directory(file_)) {
+            fs::remove(temporary_);
+            throw Error(ErrorKind::input, file_.string() + ": is a folder; choose another name");
+        }
+    }
     ~PendingFile() {
         std::error_code ignored;
         if (!temporary_.empty()) fs::remove(temporary_, ignored);

@@ -298,6 +298,8 @@ TEST(Building, LeavesNothingWhenItStops) {
     EXPECT_EQ(asked, 4u);
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
     EXPECT_THROW(write_building(folder.path() / "none" / "b.ply", small, go_on), Error);
+    std::filesystem::create_directory(folder.path() / "b.ply");
+    EXPECT_THROW(write_building(folder.path() / "b.ply", small, go_on), Error);
 }
 
 TEST(Building, RefusesWhatMakesNoSense) {
