@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "api/c_result.h"
+#include "api/c_support.h"
+
+namespace topple::c_api {
+namespace {
+
+topple_options defaults() {
+    const ParseOptions from;
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    topple_options o{};
+    o.size = sizeof(o);
+    o.unit_m = from.unit_m;
+    o.disturbances = TOPPLE_HUMAN | TOPPLE_WIND | TOPPLE_EARTHQUAKE;
+    o.walks = from.walks;
+    o.seed = from.seed;
+    o.density_kg_m3 = from.density_kg_m3;
+    o.friction = from.friction;
+    o.wind_m_s = from.wind_m_s;
+    o.wind_from_deg = none;
+    o.pga_m_s2 = none;
+    o.tolerable_J = from.tolerable_J;
+    o.grouping_time_s = none;
+    return o;
+}
+
+std::optional<double> given(double value) {
+    return std::isnan(value) ? std::nullopt : std::optional(value);
+}
+
+// The callbacks must not outlive `o`, nor `cancelled`, which becomes true where the caller's does.
+ParseOptions parse_options(const topple_options& o, bool& cancelled) {
+    ParseOptions to;
+    if (o.device) to.device = o.device->device;
+    to.voxel_m = o.voxel_m;
+    to.unit_m = o.unit_m;
+    if (o.up[0] != 0 || o.up[1] != 0 || o.up[2] != 0) to.up = Vec3{o.up[0], o.up[1], o.up[2]};
+    to.disturbances.clear();
+    if (o.disturbances & ~7u) {
+        throw Error(ErrorKind::usage, "disturbances: " + std::to_string(o.disturbances) +
+                                          " has bits beyond TOPPLE_HUMAN, TOPPLE_WIND and "
+                                          "TOPPLE_EARTHQUAKE");
+    }
+    if (o.disturbances & TOPPLE_HUMAN) to.disturbances.push_back("human");
+    if (o.disturbances & TOPPLE_WIND) to.disturbances.push_back("wind");
+    if (o.disturbances & TOPPLE_EARTHQUAKE) to.disturbances.push_back("earthquake");
+    to.walks = o.walks;
+    to.seed = o.seed;
+    to.max_memory_bytes = o.max_memory_bytes;
+    to.density_kg_m3 = o.density_kg_m3;
+    to.friction = o.friction;
+    to.wind_m_s = o.wind_m_s;
+    to.wind_from_deg = given(o.wind_from_deg);
+    to.pga_m_s2 = given(o.pga_m_s2);
+    to.tolerable_J = o.tolerable_J;
+    to.grouping_time_s = given(o.grouping_time_s);
+    to.coordinates = !o.without_coordinates;
+    if (o.progress || o.log) {
+        to.progress = [&o](const std::string& stage, double done) {
+            if (o.progress) o.progress(stage.c_str(), done, o.user);
+            if (o.log && done == 0) o.log(TOPPLE_LOG_INFO, stage.c_str(), o.user);
+        };
+    }
+    if (o.cancelled) {
+        to.cancelled = [&o, &cancelled] {
+            cancelled = cancelled || o.cancelled(o.user) != 0;
+            return cancelled;
+        };
+    }
+    return to;
+}
+
+template <class Parse>
+int parsed(const topple_options* given_options, topple_result** result, topple_status* status,
+           const Parse& parse_with) {
+    return guarded(status, [&] {
+        needed(result, "result") = nullptr;
+        const topple_options o = known(given_options, defaults(), "options");
+        bool cancelled = false;
+        const ParseOptions options = parse_options(o, cancelled);
+        ParseResult done;
+        try {
+            done = parse_with(options);
+        } catch (const Error&) {
+            if (cancelled) throw Cancelled{};
+            throw;
+        }
+        for (const std::string& note : done.scene.notes)
+            if (o.log) o.log(TOPPLE_LOG_WARNING, note.c_str(), o.user);
+        *result = new topple_result(std::move(done), o.allocator);
+    });
+}
+
+}  // namespace
+
+Arrays::Arrays(const topple_allocator* allocator) {
+    if (!allocator) return;
+    if (!allocator->allocate || !allocator->release)
+        throw Error(ErrorKind::usage, "allocator: allocate and release must not be NULL");
+    allocator_ = *allocator;
+}
+
+Arrays::~Arrays() {
+    for (const Block& b : blocks_) allocator_->release(b.memory, b.bytes, allocator_->user);
+}
+
+const void* Arrays::copy(const void* from, std::size_t bytes, std::size_t alignment) {
+    blocks_.reserve(blocks_.size() + 1);  // so that no block is lost
+    void* memory = allocator_->allocate(bytes, alignment, allocator_->user);
+    if (!memory) throw OutOfMemory{bytes};
+    blocks_.push_back({memory, bytes});
+    std::memcpy(memory, from, bytes);
+    return memory;
+}
+
+}  // namespace topple::c_api
+
+using namespace topple;
+using namespace topple::c_api;
+
+static_assert(sizeof(topple_step) == sizeof(InstabilityStep) &&
+              offsetof(topple_step, S_J) == offsetof(InstabilityStep, S_J));
+
+topple_result::topple_result(ParseResult parsed, const topple_allocator* allocator)
+    : result(std::move(parsed)), arrays(allocator) {
+    for (const Object& o : result.scene.objects) {
+        objects.push_back({arrays.hand(o.primitives),
+                           reinterpret_cast<const topple_step*>(arrays.hand(o.instability))});
+    }
+    const ScenePoints& points = result.scene.points;
+    primitive = arrays.hand(points.primitive);
+    object = arrays.hand(points.object);
+    normal[0] = arrays.hand(points.nx);
+    normal[1] = arrays.hand(points.ny);
+    normal[2] = arrays.hand(points.nz);
+    index = arrays.hand(points.index);
+}
+
+void topple_options_init(topple_options* options, size_t size) {
+    if (!options || size < sizeof(size_t)) return;
+    std::memset(options, 0, size);
+    const topple_options from = defaults();
+    std::memcpy(options, &from, std::min(size, sizeof(from)));
+    options->size = size;
+}
+
+int topple_parse(const char* path, const topple_options* options, topple_result** result,
+                 topple_status* status) {
+    return parsed(options, result, status, [&](const ParseOptions& o) {
+        return parse(std::filesystem::path(&needed(path, "path")), o);
+    });
+}
+
+int topple_parse_cloud(const topple_cloud* cloud, const topple_options* options,
+                       topple_result** result, topple_status* status) {
+    return parsed(options, result, status,
+                  [&](const ParseOptions& o) { return parse(view_of(cloud), o); });
+}
+
+void topple_result_release(topple_result* result) {
+    delete result;
+}
+
+int topple_result_write(const topple_result* result, const char* folder, uint32_t what,
+                        topple_status* status) {
+    return guarded(status, [&] {
+        if (what & ~3u)
+            throw Error(ErrorKind::usage, "what: " + std::to_string(what) + " has unknown bits");
+        OutputOptions options;
+        options.pictures = what & TOPPLE_WRITE_PICTURES;
+        options.glb = what & TOPPLE_WRITE_GLB;
+        write_outputs(needed(result, "result").result, &needed(folder, "folder"), options);
+    });
+}
+
+int topple_result_add_coordinates(topple_result* result, const topple_cloud* cloud,
+                                  topple_status* status) {
+    return guarded(status,
+                   [&] { add_coordinates(view_of(cloud), needed(result, "result").result); });
+}

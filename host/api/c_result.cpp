@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "api/c_result.h"
+
+#include <limits>
+
+#include "api/c_support.h"
+
+using namespace topple;
+using namespace topple::c_api;
+
+namespace {
+
+void copy_vector(const Vec3& from, double (&to)[3]) {
+    std::copy(from.begin(), from.end(), to);
+}
+
+const Scene& scene_of(const topple_result* result) {
+    return needed(result, "result").result.scene;
+}
+
+template <class Item>
+const Item& item(const std::vector<Item>& items, std::uint64_t index, const char* what) {
+    if (index >= items.size()) {
+        throw Error(ErrorKind::usage, std::string(what) + " " + std::to_string(index) +
+                                          ": there are " + std::to_string(items.size()));
+    }
+    return items[index];
+}
+
+double risk(const Object& object, const char* disturbance) {
+    const auto found = object.risk_J.find(disturbance);
+    return found == object.risk_J.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
+}
+
+}  // namespace
+
+int topple_result_scene(const topple_result* result, topple_scene* scene, topple_status* status) {
+    return guarded(status, [&] {
+        const Scene& from = scene_of(result);
+        topple_scene to{};
+        to.source = from.source.c_str();
+        to.backend = from.backend.c_str();
+        to.device = from.device.c_str();
+        to.up_method = from.up_method.c_str();
+        to.voxel_size_m = from.voxel_size_m;
+        to.density_kg_m3 = from.density_kg_m3;
+        to.friction = from.friction;
+        copy_vector(from.up, to.up);
+        std::copy(from.manhattan_from_input.begin(), from.manhattan_from_input.end(),
+                  to.manhattan_from_input);
+        to.seed = from.seed;
+        to.points = from.points.primitive.size();
+        to.primitives = from.primitives.size();
+        to.objects = from.objects.size();
+        to.contacts = from.contacts.size();
+        to.supports = from.supports.size();
+        to.notes = from.notes.size();
+        give(to, scene, "scene");
+    });
+}
+
+int topple_result_primitive(const topple_result* result, uint64_t index,
+                            topple_primitive* primitive, topple_status* status) {
+    return guarded(status, [&] {
+        const Primitive& from = item(scene_of(result).primitives, index, "primitive");
+        topple_primitive to{};
+        to.id = from.id;
+        to.object = from.object;
+        to.model = from.model.c_str();
+        to.points = from.points;
+        to.solid_voxels = from.solid_voxels;
+        to.volume_m3 = from.volume_m3;
+        to.mass_kg = from.mass_kg;
+        copy_vector(from.center_of_mass_m, to.center_of_mass_m);
+        give(to, primitive, "primitive");
+    });
+}
+
+int topple_result_object(const topple_result* result, uint64_t index, topple_object* object,
+                         topple_status* status) {
+    return guarded(status, [&] {
+        const Object& from = item(scene_of(result).objects, index, "object");
+        topple_object to{};
+        to.id = from.id;
+        to.grounded = from.grounded;
+        to.primitives = result->objects[index].primitives;
+        to.primitive_count = from.primitives.size();
+        to.mass_kg = from.mass_kg;
+        copy_vector(from.center_of_mass_m, to.center_of_mass_m);
+        to.barrier_J = from.barrier_J;
+        to.barrier_error_J = from.barrier_error_J;
+        to.release_J = from.release_J;
+        to.mode = from.mode.c_str();
+        copy_vector(from.direction, to.direction);
+        to.instability = result->objects[index].instability;
+        to.instability_count = from.instability.size();
+        to.risk_human_J = risk(from, "human");
+        to.risk_wind_J = risk(from, "wind");
+        to.risk_earthquake_J = risk(from, "earthquake");
+        to.unsafety = from.unsafety;
+        to.agreement = from.agreement;
+        to.why = from.why.sentence.c_str();
+        to.advice = from.advice.sentence.c_str();
+        give(to, object, "object");
+    });
+}
+
+int topple_result_contact(const topple_result* result, uint64_t index, topple_contact* contact,
+                          topple_status* status) {
+    return guarded(status, [&] {
+        const Contact& from = item(scene_of(result).contacts, index, "contact");
+        topple_contact to{};
+        to.a = from.a;
+        to.b = from.b;
+        to.area_m2 = from.area_m2;
+        copy_vector(from.normal, to.normal);
+        to.relation = from.relation.c_str();
+        to.probability = from.probability;
+        give(to, contact, "contact");
+    });
+}
+
+int topple_result_support(const topple_result* result, uint64_t index, topple_support* support,
+                          topple_status* status) {
+    return guarded(status, [&] {
+        const Support& from = item(scene_of(result).supports, index, "support");
+        give(topple_support{sizeof(topple_support), from.supporter, from.supported, from.area_m2},
+             support, "support");
+    });
+}
+
+const char* topple_result_note(const topple_result* result, uint64_t index) {
+    if (!result || index >= result->result.scene.notes.size()) return nullptr;
+    return result->result.scene.notes[index].c_str();
+}
+
+const int32_t* topple_result_point_primitives(const topple_result* result) {
+    return result ? result->primitive : nullptr;
+}
+
+const int32_t* topple_result_point_objects(const topple_result* result) {
+    return result ? result->object : nullptr;
+}
+
+const float* topple_result_point_normals(const topple_result* result, int axis) {
+    return result && axis >= 0 && axis < 3 ? result->normal[axis] : nullptr;
+}
+
+const uint64_t* topple_result_point_index(const topple_result* result) {
+    return result ? result->index : nullptr;
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <string>
+
+#include "topple/device.h"
+#include "topple/error.h"
+#include "topple/parse.h"
+#include "topple/topple.h"
+
+// What the parts of the C interface share.
+struct topple_device {
+    std::shared_ptr<topple::device::Device> device;
+};
+
+namespace topple::c_api {
+
+// A parse that its callback stopped.
+struct Cancelled {};
+// The caller's allocator gave nothing.
+struct OutOfMemory {
+    std::size_t bytes;
+};
+
+int set(topple_status* status, int code, const std::string& message) noexcept;
+
+// Runs `body`, and makes a code and a message of what it throws.
+template <class Body>
+int guarded(topple_status* status, const Body& body) noexcept {
+    try {
+        body();
+        return set(status, TOPPLE_OK, {});
+    } catch (const Cancelled&) {
+        return set(status, TOPPLE_ERROR_CANCELLED, "cancelled");
+    } catch (const OutOfMemory& e) {
+        return set(status, TOPPLE_ERROR_MEMORY,
+                   "the allocator gave no " + std::to_string(e.bytes) + " bytes");
+    } catch (const Error& e) {
+        return set(status,
+                   e.kind() == ErrorKind::usage    ? TOPPLE_ERROR_USAGE
+                   : e.kind() == ErrorKind::device ? TOPPLE_ERROR_DEVICE
+                                                   : TOPPLE_ERROR_INPUT,
+                   e.what());
+    } catch (const std::bad_alloc&) {
+        return set(status, TOPPLE_ERROR_MEMORY, "memory ran out");
+    } catch (const std::exception& e) {
+        return set(status, TOPPLE_ERROR_INTERNAL, e.what());
+    } catch (...) {
+        return set(status, TOPPLE_ERROR_INTERNAL, "an exception of no known kind");
+    }
+}
+
+// Throws Error(usage) naming the argument that is null.
+template <class T>
+T& needed(T* argument, const char* name) {
+    if (!argument) throw Error(ErrorKind::usage, std::string(name) + " is NULL");
+    return *argument;
+}
+template <class T>
+T* array(T* argument, const char* name, std::uint64_t count) {
+    if (!argument && count > 0) throw Error(ErrorKind::usage, std::string(name) + " is NULL");
+    return argument;
+}
+
+// The struct as this library knows it: the caller's part of it, and `defaults` beyond.
+template <class Struct>
+Struct known(const Struct* given, const Struct& defaults, const char* name) {
+    Struct out = defaults;
+    if (!given) return out;
+    if (given->size < sizeof(std::size_t))
+        throw Error(ErrorKind::usage, std::string(name) + ": size is not set");
+    std::memcpy(&out, given, std::min(given->size, sizeof(Struct)));
+    out.size = sizeof(Struct);
+    return out;
+}
+
+// Writes the caller's part of the struct, whose size stays.
+template <class Struct>
+void give(const Struct& from, Struct* to, const char* name) {
+    needed(to, name);
+    const std::size_t size = to->size;
+    if (size < sizeof(std::size_t))
+        throw Error(ErrorKind::usage, std::string(name) + ": size is not set");
+    std::memcpy(to, &from, std::min(size, sizeof(Struct)));
+    to->size = size;
+}
+
+// Throws Error(usage) for a cloud without points to read.
+CloudView view_of(const topple_cloud* cloud);
+
+}  // namespace topple::c_api

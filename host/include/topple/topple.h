@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef TOPPLE_TOPPLE_H
+#define TOPPLE_TOPPLE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* topple for C, and for what calls C: C99, no other headers of topple.
+ *
+ * - Functions return TOPPLE_OK or another code of topple_code, and then say why in `status`, which
+ *   may be NULL. A message is one line that names the object, the value, the limit and the mend.
+ *   Nothing is global, nothing is printed, no exception leaves a function.
+ * - Structs with a member `size` grow with the library: set it to sizeof of the struct, or call the
+ *   struct's _init where there is one. What lies beyond the caller's size keeps its default.
+ * - Different handles are independent and may be used from different threads at once. One device
+ *   is used by one call at a time; a result may be read by several.
+ * - Lengths in metres, masses in kilograms, energies in joules, directions unit; coordinates are in
+ *   the input's frame. Ids count from 0, -1 means unassigned.
+ * - Pointers that getters give belong to the handle and end with it. _release takes NULL, too. */
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum topple_code {
+    TOPPLE_OK = 0,
+    TOPPLE_ERROR_INPUT = 1,     /* the input can't be parsed, or the output can't be written */
+    TOPPLE_ERROR_USAGE = 2,     /* an option or argument is wrong */
+    TOPPLE_ERROR_DEVICE = 3,    /* the device can't be used */
+    TOPPLE_ERROR_CANCELLED = 4, /* the callback `cancelled` said so */
+    TOPPLE_ERROR_MEMORY = 5,    /* memory ran out, or the allocator gave NULL */
+    TOPPLE_ERROR_INTERNAL = 6   /* anything else: a fault of the library */
+} topple_code;
+
+/* What went wrong in a call; written by every call that is given one. */
+typedef struct topple_status {
+    int32_t code;
+    char message[1020]; /* ends with 0; cut where it is longer; empty for TOPPLE_OK */
+} topple_status;
+
+/* "0.1.0"; and 10000 * major + 100 * minor + patch. */
+const char* topple_version(void);
+uint32_t topple_version_number(void);
+
+/* --- Devices ------------------------------------------------------------------------------- */
+
+typedef struct topple_device topple_device;
+
+/* backend: "auto" (or NULL), "native", "opencl" or "vulkan". threads bounds those of the native
+ * backend; 0: all cores. */
+int topple_device_open(const char* backend, uint32_t threads, topple_device** device,
+                       topple_status* status);
+/* The caller's own device, as topple/embed.h adopts it: cl_context, cl_device_id and an in-order
+ * cl_command_queue; or VkInstance, VkPhysicalDevice, VkDevice, VkQueue and its family. The handles
+ * stay the caller's, and must outlive the topple_device. */
+int topple_device_adopt_opencl(void* context, void* device_id, void* queue, topple_device** device,
+                               topple_status* status);
+int topple_device_adopt_vulkan(void* instance, void* physical_device, void* logical_device,
+                               void* queue, uint32_t queue_family, topple_device** device,
+                               topple_status* status);
+const char* topple_device_backend(const topple_device* device);
+const char* topple_device_name(const topple_device* device);
+void topple_device_release(topple_device* device);
+
+/* One device of the machine, or why a backend offers none. */
+typedef struct topple_device_info {
+    char backend[16];
+    char name[256];
+    char driver[256];
+    char problem[512]; /* empty: it can be used */
+    int32_t usable, gpu;
+    uint64_t memory_bytes;
+} topple_device_info;
+/* The number of devices goes to `count`, and the first `capacity` of them to `devices`. */
+int topple_list_devices(topple_device_info* devices, uint64_t capacity, uint64_t* count,
+                        topple_status* status);
+
+/* --- Parsing ------------------------------------------------------------------------------- */
+
+/* A point cloud in the caller's memory, metres. It is read where it lies, strided or not, and not
+ * kept; points that are not finite are left out, which takes a copy of the others. */
+typedef struct topple_cloud {
+    size_t size;
+    const float *x, *y, *z; /* of the first point */
+    uint64_t count;
+    int64_t stride_bytes;        /* from one point to the next; 0: sizeof(float) */
+    const float *nx, *ny, *nz;   /* unit normals, or NULL */
+    int64_t normal_stride_bytes; /* 0: sizeof(float) */
+    uint32_t width, height;      /* of an organised cloud, with all its pixels; else 0 */
+    const double* viewpoint;     /* 3 numbers: where the sensor was; or NULL */
+    const char* name;            /* for messages; NULL: "cloud" */
+} topple_cloud;
+void topple_cloud_init(topple_cloud* cloud, size_t size);
+
+/* Where the memory of a result's arrays comes from. `release` gets the size that was asked for. */
+typedef struct topple_allocator {
+    void* (*allocate)(size_t bytes, size_t alignment, void* user);
+    void (*release)(void* memory, size_t bytes, void* user);
+    void* user;
+} topple_allocator;
+
+enum { TOPPLE_HUMAN = 1, TOPPLE_WIND = 2, TOPPLE_EARTHQUAKE = 4 };
+enum { TOPPLE_LOG_INFO = 0, TOPPLE_LOG_WARNING = 1 };
+
+/* Options of a parse; the command line's --help and topple/parse.h say more of each. NaN means
+ * "not given" where said so. */
+typedef struct topple_options {
+    size_t size;
+    topple_device* device;     /* stays the caller's; NULL: the best, opened for this parse alone */
+    double voxel_m;            /* edge of a solid voxel; 0: found */
+    double unit_m;             /* metres in a cloud file's unit; 1 */
+    double up[3];              /* in the input's frame; 0, 0, 0: found */
+    uint32_t disturbances;     /* TOPPLE_HUMAN | TOPPLE_WIND | TOPPLE_EARTHQUAKE */
+    uint32_t walks;            /* 500 */
+    uint64_t seed;             /* 1 */
+    uint64_t max_memory_bytes; /* 0: no limit */
+    double density_kg_m3;      /* 700 */
+    double friction;           /* 0.3 */
+    double wind_m_s;           /* 12 */
+    double wind_from_deg;      /* NaN: from all sides */
+    double pga_m_s2;           /* NaN: 3 */
+    double tolerable_J;        /* 0.1 */
+    double grouping_time_s;    /* NaN: as long as it takes */
+    int32_t without_coordinates; /* not 0: the result keeps no coordinates of its points */
+    /* Called on the thread that parses, with `user`. They must return, and not by longjmp. */
+    void (*progress)(const char* stage, double done, void* user); /* done: 0 to 1 */
+    int (*cancelled)(void* user);                                 /* not 0: stop */
+    /* Each stage as it starts, at level TOPPLE_LOG_INFO; what the reader of the result should
+     * know, at level TOPPLE_LOG_WARNING. Single lines. */
+    void (*log)(int level, const char* message, void* user);
+    void* user;
+    /* Where the arrays lie that getters of the result hand out; it must outlive the result. The
+     * library's own working memory, handles and strings do not come from it. NULL: the library's
+     * memory, which saves a copy of them. */
+    const topple_allocator* allocator;
+} topple_options;
+void topple_options_init(topple_options* options, size_t size);
+
+typedef struct topple_result topple_result;
+
+/* options: NULL for the defaults. A file or folder as the command line takes it; or a cloud. */
+int topple_parse(const char* path, const topple_options* options, topple_result** result,
+                 topple_status* status);
+int topple_parse_cloud(const topple_cloud* cloud, const topple_options* options,
+                       topple_result** result, topple_status* status);
+void topple_result_release(topple_result* result);
+
+/* --- Results ------------------------------------------------------------------------------- */
+
+typedef struct topple_scene {
+    size_t size;
+    const char *source, *backend, *device, *up_method;
+    double voxel_size_m, density_kg_m3, friction;
+    double up[3];
+    double manhattan_from_input[16]; /* row-major 4x4 */
+    uint64_t seed, points, primitives, objects, contacts, supports, notes;
+} topple_scene;
+typedef struct topple_primitive {
+    size_t size;
+    int32_t id, object;
+    const char* model;
+    uint64_t points, solid_voxels;
+    double volume_m3, mass_kg, center_of_mass_m[3];
+} topple_primitive;
+typedef struct topple_step { /* of the instability curve S(W) */
+    double W_J, S_J;
+} topple_step;
+typedef struct topple_object {
+    size_t size;
+    int32_t id, grounded;
+    const int32_t* primitives;
+    uint64_t primitive_count;
+    double mass_kg, center_of_mass_m[3];
+    double barrier_J, barrier_error_J, release_J;
+    const char* mode; /* "tip", "slide" or "none" */
+    double direction[3];
+    const topple_step* instability;
+    uint64_t instability_count;
+    double risk_human_J, risk_wind_J, risk_earthquake_J; /* per event; NaN: not asked for */
+    double unsafety, agreement;
+    const char *why, *advice; /* sentences */
+} topple_object;
+typedef struct topple_contact {
+    size_t size;
+    int32_t a, b; /* primitives */
+    double area_m2, normal[3];
+    const char* relation; /* "fixed", "support" or "adjacent" */
+    double probability;
+} topple_contact;
+typedef struct topple_support {
+    size_t size;
+    int32_t supporter, supported; /* objects */
+    double area_m2;
+} topple_support;
+
+int topple_result_scene(const topple_result* result, topple_scene* scene, topple_status* status);
+/* These fill in the item of that index. */
+int topple_result_primitive(const topple_result* result, uint64_t index,
+                            topple_primitive* primitive, topple_status* status);
+int topple_result_object(const topple_result* result, uint64_t index, topple_object* object,
+                         topple_status* status);
+int topple_result_contact(const topple_result* result, uint64_t index, topple_contact* contact,
+                          topple_status* status);
+int topple_result_support(const topple_result* result, uint64_t index, topple_support* support,
+                          topple_status* status);
+const char* topple_result_note(const topple_result* result, uint64_t index); /* NULL: no such */
+
+/* Arrays over the points, `points` of the topple_scene long, in the input's order. */
+const int32_t* topple_result_point_primitives(const topple_result* result);
+const int32_t* topple_result_point_objects(const topple_result* result);
+const float* topple_result_point_normals(const topple_result* result, int axis); /* 0, 1, 2 */
+/* Where points that are not finite were left out: the place of each other one in the caller's
+ * arrays; else NULL. */
+const uint64_t* topple_result_point_index(const topple_result* result);
+
+enum { TOPPLE_WRITE_PICTURES = 1, TOPPLE_WRITE_GLB = 2 };
+/* The folder of outputs, which appears whole or not at all. A result without coordinates needs
+ * topple_result_add_coordinates() first, with the cloud that was parsed. */
+int topple_result_write(const topple_result* result, const char* folder, uint32_t what,
+                        topple_status* status);
+int topple_result_add_coordinates(topple_result* result, const topple_cloud* cloud,
+                                  topple_status* status);
+
+/* --- Single stages: topple/stages.h says more ----------------------------------------------- */
+
+/* An array in host memory, or in the caller's buffer on an adopted device: then `data` is the
+ * cl_mem or VkBuffer, and buffer_bytes its whole size, not 0. */
+typedef struct topple_array {
+    void* data;
+    uint64_t count;
+    uint64_t buffer_bytes;
+    uint64_t offset_bytes; /* of the array in the buffer, a multiple of 512 */
+} topple_array;
+
+int topple_point_spacing(const topple_cloud* cloud, double* spacing_m, topple_status* status);
+/* eye: 3 numbers, or NULL. nx, ny, nz: a float for each point. */
+int topple_normals(topple_device* device, const topple_cloud* cloud, double cell_m,
+                   const double* eye, float* nx, float* ny, float* nz, topple_status* status);
+
+/* Arrays of float. first: `sets` + 1 numbers; out: sets rows of as many values as directions. */
+int topple_support_functions(topple_device* device, const topple_array vertices[3],
+                             const uint64_t* first, uint64_t sets, const topple_array directions[3],
+                             const topple_array* out, topple_status* status);
+
+/* Bodies on level ground, z up: points[3 * first[n]] to points[3 * first[n + 1]] are those of body
+ * n, x y z each. mass_kg and center_of_mass_m (x y z each) have an entry for each body, and so do
+ * barrier_J and release_J, which are written. */
+int topple_barriers(topple_device* device, const double* points, const uint64_t* first,
+                    uint64_t bodies, const double* mass_kg, const double* center_of_mass_m,
+                    double resolution_m, double* barrier_J, double* release_J,
+                    topple_status* status);
+
+typedef struct topple_footprint_entry {
+    int32_t dx, dy;
+    float weight;
+} topple_footprint_entry;
+/* first: directions + 1 numbers. primary, density: arrays of float. */
+int topple_convolve(topple_device* device, uint32_t width, uint32_t height, uint32_t directions,
+                    uint32_t margin, const topple_array* primary,
+                    const topple_footprint_entry* footprint, const uint32_t* first,
+                    const topple_array* density, topple_status* status);
+
+/* A voxel grid to carve and fill, z up. */
+typedef struct topple_volume topple_volume;
+typedef struct topple_intrinsics {
+    uint32_t width, height;
+    double fx, fy, cx, cy, depth_scale; /* pixels; metres = stored value / depth_scale */
+} topple_intrinsics;
+/* label: of each point, -1 for none. */
+int topple_volume_create(const topple_cloud* cloud, const int32_t* label, double voxel_m,
+                         topple_volume** volume, topple_status* status);
+/* depth: `frames` images in a row; camera_to_world: 16 numbers for each, row-major. */
+int topple_volume_carve(topple_volume* volume, topple_device* device,
+                        const topple_intrinsics* intrinsics, const uint16_t* depth,
+                        const double* camera_to_world, uint64_t frames, topple_status* status);
+/* hollow: labels that are not filled. `filled`: voxels completed; may be NULL. */
+int topple_volume_fill(topple_volume* volume, topple_device* device, uint32_t votes,
+                       const int32_t* hollow, uint64_t hollow_count, uint64_t* filled,
+                       topple_status* status);
+/* 0 seen empty, 1 seen surface, 2 never seen, 3 completed. */
+int topple_volume_state(const topple_volume* volume, int32_t i, int32_t j, int32_t k);
+void topple_volume_release(topple_volume* volume);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
