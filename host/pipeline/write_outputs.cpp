@@ -26,9 +26,9 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
     } else {
         io::write_points_ply(out.folder() / "points.ply", result.scene.points);
     }
-    const auto voxels =
-        result.tiled ? std::make_shared<const vdb::VoxelScene>(result.tiled->load_voxels())
-                     : result.voxels;
+    const auto voxels = result.tiled
+                            ? std::make_shared<const vdb::VoxelScene>(result.tiled->load_voxels())
+                            : result.voxels;
     voxels->write(out.folder() / "volume.vdb");
     io::write_solid_ply(out.folder() / "solid.ply", result.scene.solid);
     report::write_report(out.folder() / "report.html", result.scene);

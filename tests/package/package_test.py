@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Installs what was built, and uses it as a stranger's project would.
 
-  package_test.py install|example|headers|adopt_opencl --source DIR --build DIR --work DIR ...
+  package_test.py install|example|headers|adopt_opencl|examples|pkg_config --source DIR --build DIR --work DIR ...
 
 `install` comes first: it installs into WORK, moves the whole elsewhere, so that nothing can depend on where
 it was first, and parses a small generated scan with the program there. Each of the others configures, builds
@@ -77,7 +77,8 @@ class Package:
         folder = os.path.join(self.a.work, name)
         shutil.rmtree(folder, ignore_errors=True)
         run(self.a.cmake, '-S', source, '-B', folder, '-G', self.a.generator, '-DCMAKE_PREFIX_PATH=' + self.prefix,
-            '-DCMAKE_CXX_COMPILER=' + self.a.compiler, '-DCMAKE_BUILD_TYPE=' + self.a.build_type)
+            '-DCMAKE_CXX_COMPILER=' + self.a.compiler, '-DCMAKE_BUILD_TYPE=' + self.a.build_type,
+            '-DEXAMPLES=' + os.path.join(self.a.source, 'docs/examples'))
         with open(os.path.join(folder, 'CMakeCache.txt'), encoding='utf-8') as file:
             found = re.search(r'^topple_DIR:PATH=(.*)$', file.read(), re.M).group(1)
         check(found.startswith(self.prefix), f'found topple in {found}, not below {self.prefix}')
@@ -108,18 +109,41 @@ class Package:
         program = os.path.join(self.build(source, 'adopt-build', 'adopt_opencl'), 'adopt_opencl')
         self.compare(run(program, self.scan), 'native')
 
+    def examples(self):
+        """docs/examples in C++."""
+        source = os.path.join(self.a.source, 'tests/package/consumer')
+        program = os.path.join(self.build(source, 'examples-build', 'labels_in_place'), 'labels_in_place')
+        check(re.search(r'^[1-9]\d* objects of [1-9]\d* points$', run(program, self.scan), re.M), 'no objects were found')
+
+    def pkg_config(self):
+        """docs/examples in C, without CMake."""
+        folders = [folder for folder, _, names in os.walk(self.prefix) if 'topple.pc' in names]
+        check(len(folders) == 1, f'topple.pc lies in {folders}')
+        os.environ['PKG_CONFIG_PATH'] = folders[0]
+        flags = run('pkg-config', '--cflags', '--libs', 'topple').split()
+        with open(os.path.join(self.a.source, 'CMakeLists.txt'), encoding='utf-8') as file:
+            version = re.search(r'VERSION (\d+\.\d+\.\d+) LANGUAGES', file.read()).group(1)
+        check(run('pkg-config', '--modversion', 'topple').strip() == version, 'topple.pc names another version')
+        program = os.path.join(self.a.work, 'risky_objects')
+        run(self.a.c_compiler, '-std=c99', '-Wall', '-Wextra', '-Wpedantic', '-Werror',
+            os.path.join(self.a.source, 'docs/examples/risky_objects.c'), *flags, '-Wl,-rpath,' + folders[0] + '/..',
+            '-o', program)
+        printed = run(program, self.scan)
+        self.compare(printed, 'auto')
+        check(re.search(r"floor's normal is \(-0.60, -?0.00, 0.80\)", printed), 'the normal is wrong')
+
     def compare(self, printed, backend):
         """The number of objects that was printed is that of `topple parse` on that backend."""
         print(printed)
-        found = re.search(r'(\d+) objects', printed)
+        found = re.search(r'^(\d+) objects', printed, re.M)
         check(found, 'no number of objects was printed')
         check(int(found.group(1)) == self.parsed(backend), f'topple parse finds {self.parsed(backend)} objects')
 
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument('test', choices=['install', 'example', 'headers', 'adopt_opencl'])
-    for name in ('source', 'build', 'work', 'cmake', 'generator', 'compiler', 'build-type'):
+    parser.add_argument('test', choices=['install', 'example', 'headers', 'adopt_opencl', 'examples', 'pkg_config'])
+    for name in ('source', 'build', 'work', 'cmake', 'generator', 'c-compiler', 'compiler', 'build-type'):
         parser.add_argument('--' + name, required=True)
     arguments = parser.parse_args()
     getattr(Package(arguments), arguments.test)()
