@@ -43,8 +43,17 @@ double dot(const Vec3& a, double x, double y, double z) {
 // smaller, and end no lower than this below one.
 constexpr double lowest_ceiling_m = 2.0, high_wall_m = 2.0, high_wall_m2 = 1.5;
 constexpr double below_ceiling_m = 0.2;
+// What is no plane, but reaches that close to the ceiling, is built in: both faces of a wall
+// between doors, the lintel above one, a pillar.
+constexpr double touches_ceiling_m = 0.06;
+// Pieces of a wall's plane face as it does and lie as near to it, where doors and things before it
+// cut them off from the ceiling.
+constexpr double same_wall_cos = 0.98, same_wall_m = 0.04;
 // A storey's floor strays from its height by no more.
 constexpr double uneven_storey_m = 0.1;
+
+// Of a plane, the least length of the mean normal.
+constexpr double flat = 0.85;
 
 // Area-weighted mean plane of one primitive: point, normal, and how much of it agrees.
 struct Face {
@@ -54,12 +63,14 @@ struct Face {
     double lowest_m = INFINITY, highest_m = -INFINITY;  // along up
 };
 
-std::vector<Face> faces(const Surfels& s, const PrimitiveSet& primitives, const Vec3& up) {
-    std::vector<Face> out(primitives.model.size());
+// label: of each surfel, below `count` or -1.
+std::vector<Face> faces(const Surfels& s, const std::vector<std::int32_t>& label, std::size_t count,
+                        const Vec3& up) {
+    std::vector<Face> out(count);
     const double cell_area = s.cell_m * s.cell_m;
     for (std::size_t n = 0; n < s.size(); ++n) {
-        if (primitives.label[n] < 0) continue;
-        Face& f = out[static_cast<std::size_t>(primitives.label[n])];
+        if (label[n] < 0) continue;
+        Face& f = out[static_cast<std::size_t>(label[n])];
         f.area_m2 += cell_area;
         f.nx += s.nx[n], f.ny += s.ny[n], f.nz += s.nz[n];
         f.px += s.x[n], f.py += s.y[n], f.pz += s.z[n];
@@ -68,11 +79,11 @@ std::vector<Face> faces(const Surfels& s, const PrimitiveSet& primitives, const 
         f.highest_m = std::max(f.highest_m, height);
     }
     for (Face& f : out) {
-        const double count = std::max(1.0, f.area_m2 / cell_area);
+        const double surfels = std::max(1.0, f.area_m2 / cell_area);
         const double length = std::sqrt(f.nx * f.nx + f.ny * f.ny + f.nz * f.nz);
-        f.flatness = length / count;
+        f.flatness = length / surfels;
         if (length > 0) f.nx /= length, f.ny /= length, f.nz /= length;
-        f.px /= count, f.py /= count, f.pz /= count;
+        f.px /= surfels, f.py /= surfels, f.pz /= surfels;
     }
     return out;
 }
@@ -166,14 +177,45 @@ double ceiling_height(const std::vector<Face>& face, const Level& level, double 
     return std::isfinite(height) ? height : INFINITY;
 }
 
+// Upright planes that lie in the plane of a wall are walls.
+template <class Level>
+void add_wall_pieces(const Surfels& surfels, const PrimitiveSet& primitives, const Vec3& up,
+                     const std::vector<Face>& face, const Level& level,
+                     std::vector<Structure>& structure) {
+    // Of a wall with both of its faces, each.
+    const std::vector<Face> regions =
+        faces(surfels, primitives.faces.label, primitives.faces.regions.size(), up);
+    std::vector<const Face*> walls;
+    for (std::size_t p = 0; p < face.size(); ++p) {
+        if (structure[p] != Structure::wall) continue;
+        for (const std::int32_t r : primitives.regions[p]) {
+            const Face& f = regions[static_cast<std::size_t>(r)];
+            if (f.area_m2 >= wall_area_m2 && f.flatness > flat && std::abs(level(f)) < vertical_sin)
+                walls.push_back(&f);
+        }
+    }
+    for (std::size_t p = 0; p < face.size(); ++p) {
+        const Face& f = face[p];
+        if (structure[p] != Structure::none || f.flatness < flat || f.area_m2 < wall_area_m2 ||
+            std::abs(level(f)) > vertical_sin)
+            continue;
+        const bool in_wall = std::ranges::any_of(walls, [&](const Face* wall) {
+            const double off = (f.px - wall->px) * wall->nx + (f.py - wall->py) * wall->ny +
+                               (f.pz - wall->pz) * wall->nz;
+            return f.nx * wall->nx + f.ny * wall->ny + f.nz * wall->nz > same_wall_cos &&
+                   std::abs(off) < same_wall_m;
+        });
+        if (in_wall) structure[p] = Structure::wall;
+    }
+}
+
 }  // namespace
 
 std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet& primitives,
                                       const Vec3& up, const std::optional<StoreyHint>& storey) {
-    const std::vector<Face> face = faces(surfels, primitives, up);
+    const std::vector<Face> face = faces(surfels, primitives.label, primitives.model.size(), up);
     std::vector<Structure> out(face.size(), Structure::none);
     const auto level = [&](const Face& f) { return dot(up, f.nx, f.ny, f.nz); };
-    constexpr double flat = 0.85;
     double largest_level = 0, largest_upright = 0;
     for (const Face& f : face) {
         if (f.flatness < flat) continue;
@@ -219,24 +261,28 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
         const Face& f = face[p];
         if (small[p] || other[p] || continued[p]) {
             out[p] = Structure::floor;
+        } else if (f.area_m2 >= wall_area_m2 && f.highest_m >= ceiling - touches_ceiling_m &&
+                   level(f) > -horizontal_cos) {
+            out[p] = Structure::wall;
         } else if (f.flatness > flat && f.area_m2 >= wall_area_m2 &&
                    f.area_m2 >= wall_share * largest_upright && ends_room(f)) {
             if (std::abs(level(f)) < vertical_sin) out[p] = Structure::wall;
             if (level(f) < -horizontal_cos) out[p] = Structure::ceiling;
         }
     }
+    if (storey) add_wall_pieces(surfels, primitives, up, face, level, out);
     return out;
 }
 
 void absorb_into_shell(const Surfels& s, PrimitiveSet& primitives,
                        std::vector<Structure>& structure) {
-    const std::vector<Face> face = faces(s, primitives, {0, 0, 0});
+    const std::vector<Face> face = faces(s, primitives.label, primitives.model.size(), {0, 0, 0});
     const double slack = shell_slack_cells * s.cell_m;
     std::vector<std::int32_t> home(face.size(), -1);
     std::vector<std::vector<std::size_t>> beside(face.size());  // shell planes that it is close to
     for (std::size_t shell = 0; shell < face.size(); ++shell) {
-        if (structure[shell] == Structure::none) continue;
         const Face& f = face[shell];
+        if (structure[shell] == Structure::none || f.flatness < flat) continue;
         std::vector<std::uint64_t> near(face.size(), 0), close(face.size(), 0), all(face.size(), 0);
         std::vector<double> offset(face.size(), 0);
         for (std::size_t n = 0; n < s.size(); ++n) {

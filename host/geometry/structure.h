@@ -25,7 +25,8 @@ struct StoreyHint {
 // that have the whole scene on one side are walls or ceiling. A scene without such planes has no
 // shell. With a storey the floor is what lies at its height; ceilings look down from at least two
 // metres above it; and walls, whatever lies behind them, are the large upright planes that end at
-// the ceiling, or where none was seen, those two metres high.
+// the ceiling, or where none was seen, those two metres high; with what else lies in their planes,
+// and with all that reaches up to the ceiling.
 std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet& primitives,
                                       const Vec3& up,
                                       const std::optional<StoreyHint>& storey = std::nullopt);

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/random.h"
+#include "scenes/temporary_folder.h"
+#include "tiles/point_spill.h"
+#include "tiles/thinned_bin.h"
+#include "topple/error.h"
+
+namespace topple::tiles {
+namespace {
+
+// Points over a few bins, on both sides of the origin.
+PointCloud scattered(std::size_t count) {
+    Random random(3);
+    PointCloud cloud;
+    for (std::size_t n = 0; n < count; ++n) {
+        cloud.x.push_back(static_cast<float>(random.uniform(-7, 8)));
+        cloud.y.push_back(static_cast<float>(random.uniform(-1, 1)));
+        cloud.z.push_back(static_cast<float>(random.uniform(0, 0.2)));
+    }
+    return cloud;
+}
+
+void spill(const std::filesystem::path& folder, const PointCloud& cloud,
+           std::uint64_t buffer_bytes) {
+    PointSpill out(folder, buffer_bytes);
+    // In portions of an odd size.
+    for (std::size_t first = 0; first < cloud.size(); first += 777) {
+        PointCloud portion;
+        for (std::size_t n = first; n < std::min(cloud.size(), first + 777); ++n) {
+            portion.x.push_back(cloud.x[n]);
+            portion.y.push_back(cloud.y[n]);
+            portion.z.push_back(cloud.z[n]);
+        }
+        out.add(portion, "cloud");
+    }
+    out.finish();
+}
+
+TEST(Spill, KeepsThePointsOfEachBinInOrderWhateverItsBuffer) {
+    const PointCloud cloud = scattered(20'000);
+    std::map<Bin, std::vector<float>> expected;  // x of each bin's points
+    for (std::size_t n = 0; n < cloud.size(); ++n)
+        expected[bin_of(cloud.x[n], cloud.y[n], cloud.z[n])].push_back(cloud.x[n]);
+    for (const std::uint64_t buffer : {std::uint64_t{1}, std::uint64_t{1} << 30}) {
+        scenes::TemporaryFolder folder;
+        spill(folder.path(), cloud, buffer);
+        const SpilledPoints points(folder.path());
+        EXPECT_EQ(points.points(), cloud.size());
+        ASSERT_EQ(points.bins().size(), expected.size());
+        auto bin = expected.begin();
+        for (std::size_t b = 0; b < points.bins().size(); ++b, ++bin) {
+            EXPECT_EQ(points.bins()[b].bin, bin->first);
+            std::vector<float> x;
+            points.read(b, [&](std::span<const Point> portion) {
+                for (const Point& p : portion) x.push_back(p.x);
+            });
+            EXPECT_EQ(x, bin->second);
+        }
+    }
+}
+
+TEST(Spill, RefusesPointsThatAreSpreadTooThin) {
+    scenes::TemporaryFolder folder;
+    PointSpill out(folder.path(), 1 << 20);
+    PointCloud wide;
+    for (int n = 0; n < 3000; ++n) {
+        wide.x.push_back(static_cast<float>(n * 6));
+        wide.y.push_back(0);
+        wide.z.push_back(0);
+    }
+    try {
+        out.add(wide, "wide.ply");
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_THAT(error.what(), ::testing::HasSubstr("wide.ply"));
+        EXPECT_THAT(error.what(), ::testing::HasSubstr("--unit mm"));
+    }
+}
+
+TEST(Spill, ACutFileIsNoticed) {
+    scenes::TemporaryFolder folder;
+    spill(folder.path(), scattered(1000), 1 << 20);
+    std::filesystem::resize_file(folder.path() / "points.bin", 500);
+    EXPECT_THROW(SpilledPoints{folder.path()}, Error);
+    std::filesystem::resize_file(folder.path() / "bins.bin", 20);
+    EXPECT_THROW(SpilledPoints{folder.path()}, Error);
+}
+
+TEST(Thinning, KeepsTheMeanOfEachCellAndTheCellOfEachPoint) {
+    const PointCloud cloud = scattered(20'000);
+    scenes::TemporaryFolder folder;
+    spill(folder.path(), cloud, 1 << 20);
+    const SpilledPoints points(folder.path());
+    const double cell_m = dividing_cell(0.06);
+    EXPECT_NEAR(bin_edge_m / cell_m, std::round(bin_edge_m / cell_m), 1e-9);
+    EXPECT_LE(cell_m, 0.06);
+    for (std::size_t b = 0; b < points.bins().size(); ++b) {
+        thin_bin(points, b, cell_m, folder.path());
+        const Bin& bin = points.bins()[b].bin;
+        EXPECT_TRUE(is_thinned(folder.path(), bin));
+        const ThinnedBin thinned = read_thinned(folder.path(), bin);
+        CellsOfPoints cells(folder.path(), bin);
+        std::vector<std::array<double, 4>> sums(thinned.size());
+        std::vector<std::array<std::int64_t, 3>> cell(thinned.size());
+        points.read(b, [&](std::span<const Point> portion) {
+            for (const Point& p : portion) {
+                const std::uint32_t c = cells.next();
+                ASSERT_LT(c, thinned.size());
+                sums[c][0] += p.x, sums[c][1] += p.y, sums[c][2] += p.z, sums[c][3] += 1;
+                const std::array<std::int64_t, 3> at{
+                    static_cast<std::int64_t>(std::floor((p.x - bin[0] * bin_edge_m) / cell_m)),
+                    static_cast<std::int64_t>(std::floor((p.y - bin[1] * bin_edge_m) / cell_m)),
+                    static_cast<std::int64_t>(std::floor((p.z - bin[2] * bin_edge_m) / cell_m))};
+                if (sums[c][3] == 1) cell[c] = at;
+                EXPECT_EQ(cell[c], at);
+            }
+        });
+        EXPECT_THROW(cells.next(), Error);
+        EXPECT_TRUE(std::ranges::is_sorted(cell));
+        for (std::size_t c = 0; c < thinned.size(); ++c) {
+            EXPECT_EQ(thinned.points[c], sums[c][3]);
+            EXPECT_NEAR(thinned.x[c], sums[c][0] / sums[c][3], 1e-5);
+            EXPECT_NEAR(thinned.y[c], sums[c][1] / sums[c][3], 1e-5);
+            EXPECT_NEAR(thinned.z[c], sums[c][2] / sums[c][3], 1e-5);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace topple::tiles
