@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 // Two rooms with a door, sparse enough that the test takes seconds.
 const fs::path& building() {
-    static const scenes::TemporaryFolder folder;
+    static const scenes::TemporaryFolder folder("topple_tiles");
     static const fs::path cloud = [] {
         const fs::path file = folder.path() / "building.ply";
         scenes::write_building(file, {.seed = 4, .points = 350'000, .spacing_m = 0.025},
@@ -55,7 +55,7 @@ std::string text_of(const fs::path& file) {
 }
 
 Output output_of(const ParseResult& result) {
-    scenes::TemporaryFolder folder;
+    scenes::TemporaryFolder folder("topple_tiles");
     write_outputs(result, folder.path() / "out");
     Output out{text_of(folder.path() / "out/points.ply"),
                text_of(folder.path() / "out/solid.ply"),
@@ -84,7 +84,7 @@ class SlowTiles : public ::testing::Test {
 };
 
 TEST_F(SlowTiles, EveryPointComesBackInItsPlace) {
-    scenes::TemporaryFolder folder;
+    scenes::TemporaryFolder folder("topple_tiles");
     write_outputs(parse(building(), coarse()), folder.path() / "out");
     const PointCloud in = io::read_cloud(building());
     const PointCloud out = io::read_cloud(folder.path() / "out/points.ply");
@@ -107,7 +107,7 @@ TEST_F(SlowTiles, MemoryAndThreadsChangeNothing) {
 }
 
 TEST_F(SlowTiles, AStoppedRunGoesOnWhereItWas) {
-    scenes::TemporaryFolder folder;
+    scenes::TemporaryFolder folder("topple_tiles");
     ParseOptions options = coarse();
     options.work_folder = folder.path() / "work";
     // Stops within the blocks: the next run finds some of them done.
@@ -127,46 +127,39 @@ TEST_F(SlowTiles, AStoppedRunGoesOnWhereItWas) {
     ASSERT_FALSE(before.empty());
     const auto written = fs::last_write_time(before.front());
     options.cancelled = nullptr;
-    const ParseResult resumed = parse(building(), options);
-    EXPECT_GT(blocks().size(), before.size());
-    EXPECT_EQ(fs::last_write_time(before.front()), written);
-    EXPECT_TRUE(output_of(resumed) == *output_);
+    {
+        const ParseResult resumed = parse(building(), options);
+        EXPECT_GT(blocks().size(), before.size());
+        EXPECT_EQ(fs::last_write_time(before.front()), written);
+        EXPECT_TRUE(output_of(resumed) == *output_);
+    }
     EXPECT_FALSE(fs::exists(options.work_folder));
 }
 
-// Objects by the scanned points that they hold: those of one parse that another has as well.
-double share_found(const std::vector<std::int32_t>& a, const std::vector<std::int32_t>& b,
-                   std::uint64_t least_points) {
-    std::map<std::int32_t, std::uint64_t> of_a, of_b;
-    std::map<std::pair<std::int32_t, std::int32_t>, std::uint64_t> both;
-    for (std::size_t n = 0; n < a.size(); ++n) {
-        ++of_a[a[n]];
-        ++of_b[b[n]];
-        ++both[{a[n], b[n]}];
+// Share of the points that lie together in both: of each object of one parse, those in the object
+// of the other that has most of them.
+double share_together(const std::vector<std::int32_t>& a, const std::vector<std::int32_t>& b) {
+    std::map<std::int32_t, std::map<std::int32_t, std::uint64_t>> both;
+    for (std::size_t n = 0; n < a.size(); ++n) ++both[a[n]][b[n]];
+    std::uint64_t together = 0;
+    for (const auto& [object, others] : both) {
+        std::uint64_t most = 0;
+        for (const auto& [other, points] : others) most = std::max(most, points);
+        together += most;
     }
-    std::uint64_t objects = 0, found = 0;
-    for (const auto& [object, points] : of_a) {
-        if (object < 0 || points < least_points) continue;
-        ++objects;
-        for (const auto& [pair, shared] : both) {
-            if (pair.first != object) continue;
-            const std::uint64_t all = points + of_b[pair.second] - shared;
-            if (static_cast<double>(shared) > 0.7 * static_cast<double>(all)) {
-                ++found;
-                break;
-            }
-        }
-    }
-    return objects ? static_cast<double>(found) / static_cast<double>(objects) : 0;
+    return static_cast<double>(together) / static_cast<double>(a.size());
 }
 
+// Growing of surfaces and estimates of free space reach as far as a block sees: what is found near
+// its edge is not bit for bit what is found in the middle, and small parts may differ.
 TEST_F(SlowTiles, OneTileAndManyFindTheSameObjects) {
     ParseOptions options = coarse();
     options.tile_m = 100;
     const ParseResult whole = parse(building(), options);
-    ASSERT_EQ(whole.scene.points.x, result_->scene.points.x);
-    EXPECT_GE(share_found(whole.scene.points.object, result_->scene.points.object, 300), 0.8);
-    EXPECT_GE(share_found(result_->scene.points.object, whole.scene.points.object, 300), 0.8);
+    const ScenePoints &one = whole.scene.points, &many = result_->scene.points;
+    ASSERT_EQ(one.x, many.x);
+    EXPECT_GE(share_together(one.object, many.object), 0.95);
+    EXPECT_GE(share_together(many.object, one.object), 0.95);
 }
 
 }  // namespace

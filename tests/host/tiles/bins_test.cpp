@@ -53,7 +53,7 @@ TEST(Spill, KeepsThePointsOfEachBinInOrderWhateverItsBuffer) {
     for (std::size_t n = 0; n < cloud.size(); ++n)
         expected[bin_of(cloud.x[n], cloud.y[n], cloud.z[n])].push_back(cloud.x[n]);
     for (const std::uint64_t buffer : {std::uint64_t{1}, std::uint64_t{1} << 30}) {
-        scenes::TemporaryFolder folder;
+        scenes::TemporaryFolder folder("topple_tiles");
         spill(folder.path(), cloud, buffer);
         const SpilledPoints points(folder.path());
         EXPECT_EQ(points.points(), cloud.size());
@@ -71,7 +71,7 @@ TEST(Spill, KeepsThePointsOfEachBinInOrderWhateverItsBuffer) {
 }
 
 TEST(Spill, RefusesPointsThatAreSpreadTooThin) {
-    scenes::TemporaryFolder folder;
+    scenes::TemporaryFolder folder("topple_tiles");
     PointSpill out(folder.path(), 1 << 20);
     PointCloud wide;
     for (int n = 0; n < 3000; ++n) {
@@ -89,7 +89,7 @@ TEST(Spill, RefusesPointsThatAreSpreadTooThin) {
 }
 
 TEST(Spill, ACutFileIsNoticed) {
-    scenes::TemporaryFolder folder;
+    scenes::TemporaryFolder folder("topple_tiles");
     spill(folder.path(), scattered(1000), 1 << 20);
     std::filesystem::resize_file(folder.path() / "points.bin", 500);
     EXPECT_THROW(SpilledPoints{folder.path()}, Error);
@@ -99,7 +99,7 @@ TEST(Spill, ACutFileIsNoticed) {
 
 TEST(Thinning, KeepsTheMeanOfEachCellAndTheCellOfEachPoint) {
     const PointCloud cloud = scattered(20'000);
-    scenes::TemporaryFolder folder;
+    scenes::TemporaryFolder folder("topple_tiles");
     spill(folder.path(), cloud, 1 << 20);
     const SpilledPoints points(folder.path());
     const double cell_m = dividing_cell(0.06);

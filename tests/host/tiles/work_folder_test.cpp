@@ -13,7 +13,7 @@ namespace topple::tiles {
 namespace {
 
 TEST(WorkFolder, IsTakenUpByTheSameManifestOnly) {
-    scenes::TemporaryFolder outer;
+    scenes::TemporaryFolder outer("topple_tiles");
     const auto path = outer.path() / "work";
     {
         const WorkFolder first(path, "cloud 1");
@@ -32,7 +32,7 @@ TEST(WorkFolder, IsTakenUpByTheSameManifestOnly) {
 }
 
 TEST(WorkFolder, GoesWhenAllIsWritten) {
-    scenes::TemporaryFolder outer;
+    scenes::TemporaryFolder outer("topple_tiles");
     const auto path = outer.path() / "work";
     {
         WorkFolder work(path, "cloud");
@@ -49,7 +49,7 @@ TEST(WorkFolder, GoesWhenAllIsWritten) {
 }
 
 TEST(WorkFolder, LeavesWhatIsNotOurs) {
-    scenes::TemporaryFolder folder;
+    scenes::TemporaryFolder folder("topple_tiles");
     std::ofstream(folder.path() / "thesis.tex") << "x";
     EXPECT_THROW(WorkFolder(folder.path(), "cloud"), Error);
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "thesis.tex"));
