@@ -34,6 +34,7 @@ Command add_parse(CLI::App& app);
 Command add_devices(CLI::App& app);
 Command add_generate(CLI::App& app);
 Command add_evaluate(CLI::App& app);
+Command add_estimate(CLI::App& app);
 Command add_landscape(CLI::App& app);
 
 }  // namespace topple::cli

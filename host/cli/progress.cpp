@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -12,8 +13,9 @@ namespace {
 
 // What a stage does, short enough that the line fits on a terminal of 80 columns.
 const char* what_it_does(const std::string& stage) {
-    static constexpr std::array<std::pair<const char*, const char*>, 26> stages{
+    static constexpr std::array<std::pair<const char*, const char*>, 27> stages{
         {{"ingest", "reading the scan"},
+         {"estimate", "measuring the scan"},
          {"sorting", "sorting the points into cubes on disk"},
          {"spacing", "measuring how dense the scan is"},
          {"thinning", "keeping one point a cell"},
@@ -63,14 +65,35 @@ void Progress::operator()(const std::string& stage, double done) {
         if (!terminal_) finish();
         stage_ = stage;
         stage_start_ = Clock::now();
+        first_done_ = first_s_ = 0;
         if (!terminal_) std::fprintf(stderr, "%s: %s ...", stage.c_str(), what_it_does(stage));
     }
     if (terminal_) {
         std::fprintf(stderr, "\r\033[K%4.0f s  %s: %s", seconds_since(start_), stage.c_str(),
                      what_it_does(stage));
         if (done > 0) std::fprintf(stderr, " %.0f %%", 100 * done);
+        std::fprintf(stderr, "%s", time_left(done).c_str());
     }
     std::fflush(stderr);
+}
+
+// "", or ", about 3 min left" of this stage. What an earlier run had done was no work of this one.
+std::string Progress::time_left(double done) {
+    constexpr double least_s = 3, least_share = 0.02;
+    const double elapsed = seconds_since(stage_start_);
+    if (elapsed < least_s) {
+        first_done_ = done;
+        first_s_ = elapsed;
+        return "";
+    }
+    if (done - first_done_ < least_share || elapsed - first_s_ < least_s) return "";
+    const double left = (elapsed - first_s_) / (done - first_done_) * (1 - done);
+    char text[48];
+    if (left < 90)
+        std::snprintf(text, sizeof(text), ", about %.0f s left", std::ceil(left));
+    else
+        std::snprintf(text, sizeof(text), ", about %.0f min left", std::ceil(left / 60));
+    return text;
 }
 
 void Progress::finish() {

@@ -7,7 +7,8 @@
 namespace topple::cli {
 
 // What a long run is at, on stderr. On a terminal one line that is overwritten: the time so far,
-// the stage, what it does and how far it is. Elsewhere a line per stage, ended by its seconds.
+// the stage, what it does, how far it is, and of longer stages what time they have left. Elsewhere
+// a line per stage, ended by its seconds.
 class Progress {
   public:
     explicit Progress(bool quiet);
@@ -16,10 +17,14 @@ class Progress {
     void finish();
 
   private:
+    std::string time_left(double done);
+
     using Clock = std::chrono::steady_clock;
     bool quiet_, terminal_;
     std::string stage_;  // that runs; empty: none
     Clock::time_point start_, stage_start_;
+    // Of the stage: how far it was early on, and when.
+    double first_done_ = 0, first_s_ = 0;
 };
 
 }  // namespace topple::cli

@@ -35,14 +35,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Clouds of more points are parsed in blocks: in one piece these take some 20 s and 2 GB.
-constexpr std::uint64_t most_at_once = 4'000'000;
 // Files below this size hold no more points than that: ten bytes a point are hardly ever too few.
-constexpr std::uint64_t small_file = 10 * most_at_once;
+constexpr std::uint64_t small_file = 10 * most_points_at_once;
 
-// The working resolution of a building, metres: furniture shows its shape, and a room has under a
-// million cells, however dense the scan.
-constexpr double building_cell_m = 0.0125;
 // Voxels are about two cells wide.
 constexpr double voxel_cells = 2;
 // Points farther apart show no surface at the coarsest resolution.
@@ -311,7 +306,7 @@ std::optional<ParseResult> parse_tiled(const fs::path& input, const ParseOptions
     StageClock stage(timings, options);
     auto work = std::make_unique<tiles::WorkFolder>(options.work_folder, manifest(input, options));
     stage("sorting", [&] { spill(input, *work, options, stage); });
-    if (options.tile_m == 0 && tiles::SpilledPoints(work->path()).points() <= most_at_once) {
+    if (options.tile_m == 0 && tiles::SpilledPoints(work->path()).points() <= most_points_at_once) {
         work->finished();
         return std::nullopt;
     }

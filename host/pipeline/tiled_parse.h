@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 
 #include "topple/parse.h"
 
 namespace topple {
+
+// Clouds of more points are parsed in blocks: in one piece these take some 20 s and 2 GB.
+inline constexpr std::uint64_t most_points_at_once = 4'000'000;
+
+// The working resolution of a building, metres: furniture shows its shape, and a room has under a
+// million cells, however dense the scan.
+inline constexpr double building_cell_m = 0.0125;
 
 // Blocks hold at least a table, and their halos.
 inline constexpr double least_tile_m = 2;

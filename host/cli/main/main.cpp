@@ -45,6 +45,7 @@ int run(int argc, char** argv) {
         commands[sub] = define(*sub);
     };
     add("parse", "Parse a scan into solid objects, supports and risks", topple::cli::add_parse);
+    add("estimate", "Say what memory, disk and time a parse would take", topple::cli::add_estimate);
     add("landscape", "Draw the energy landscapes of an object that a parse has found",
         topple::cli::add_landscape);
     add("devices", "List every device of every backend, or why one is missing",

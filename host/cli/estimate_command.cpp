@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "pipeline/estimate.h"
+#include "topple/device.h"
+
+namespace topple::cli {
+namespace {
+
+struct Arguments {
+    std::string input, backend = "auto";
+    unsigned threads = 0;
+    bool quiet = false;
+    ParseOptions options;
+};
+
+// "650 MB", "4.6 GB".
+std::string bytes_text(std::uint64_t bytes) {
+    char text[32];
+    const double mb = static_cast<double>(bytes) / 1e6;
+    std::snprintf(text, sizeof(text), mb < 1000 ? "%.0f MB" : "%.1f GB",
+                  mb < 1000 ? mb : mb / 1000);
+    return text;
+}
+
+std::string time_text(double seconds) {
+    char text[32];
+    if (seconds < 90)
+        std::snprintf(text, sizeof(text), "%.0f s", std::ceil(seconds));
+    else
+        std::snprintf(text, sizeof(text), "%.0f min", std::ceil(seconds / 60));
+    return text;
+}
+
+int run(Arguments& a) {
+    catch_interrupts();
+    a.options.device = device::open_device(a.backend, a.threads);
+    Progress progress(a.quiet);
+    a.options.progress = [&](const std::string& stage, double done) { progress(stage, done); };
+    a.options.cancelled = [] { return interrupted() != 0; };
+    try {
+        const Estimate e = estimate(a.input, a.options);
+        progress.finish();
+        if (e.frames > 0)
+            std::printf("input    %llu frames, about %.2g million points when fused\n",
+                        static_cast<unsigned long long>(e.frames),
+                        static_cast<double>(e.points) / 1e6);
+        else
+            std::printf("input    %llu points\n", static_cast<unsigned long long>(e.points));
+        std::printf("surface  about %.3g m2\n", e.surface_m2);
+        if (e.tiled)
+            std::printf("parsed   in blocks, thinned to one point per %.3g mm\n", 1000 * e.cell_m);
+        else
+            std::printf("parsed   in one piece, at about %.2g mm\n", 1000 * e.cell_m);
+        std::printf("time     about %s\n", time_text(e.seconds).c_str());
+        std::printf("memory   about %s\n", bytes_text(e.memory_bytes).c_str());
+        if (e.work_bytes > 0)
+            std::printf("disk     about %s while it works\n", bytes_text(e.work_bytes).c_str());
+        std::printf("results  about %s\n", bytes_text(e.output_bytes).c_str());
+    } catch (...) {
+        progress.finish();
+        if (interrupted() != 0) return interrupted_exit();
+        throw;
+    }
+    return 0;
+}
+
+}  // namespace
+
+Command add_estimate(CLI::App& app) {
+    auto a = std::make_shared<Arguments>();
+    app.add_option("INPUT", a->input, "What `topple parse` would be given")->required();
+    app.add_option("--backend", a->backend, "As for parse")->capture_default_str();
+    app.add_option("--voxel", a->options.voxel_m, "Edge of a solid voxel in metres, as for parse")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--tile", a->options.tile_m, "Edge of the blocks in metres, as for parse")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
+    app.add_flag("--quiet", a->quiet, "Print the estimate and errors only");
+    return [a] { return run(*a); };
+}
+
+}  // namespace topple::cli

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/estimate.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <unordered_set>
+
+#include "device/device.h"
+#include "geometry/surfels.h"
+#include "io/frame_sequence.h"
+#include "io/read_cloud.h"
+#include "pipeline/tiled_parse.h"
+
+namespace topple {
+namespace {
+
+// The surface is measured by cells of this size, metres; a level or upright surface through them
+// occupies about one for each of its cells, others more: 1.1 is between.
+constexpr double surface_cell_m = 0.05, cells_per_area = 1.1;
+
+// Measured on two cores of the machine whose probe takes probe_reference_s: seconds a point of a
+// large cloud (sorting, thinning, writing), seconds and bytes a thinned point (blocks, whole); the
+// same of a point of a cloud in one piece, a frame's pixel; and what every run takes.
+constexpr double probe_reference_s = 0.030;
+constexpr double tiled_point_s = 0.45e-6, thinned_point_s = 4.1e-6, tiled_fixed_s = 4;
+constexpr double point_s = 5e-6, pixel_s = 8e-8, fixed_s = 0.5;
+constexpr double point_bytes = 420, thinned_point_bytes = 45, block_bytes = 450e6;
+constexpr double work_point_bytes = 16, work_thinned_bytes = 40;
+constexpr double output_point_bytes = 35, tiled_output_point_bytes = 23, output_fixed = 15e6;
+// Of a surface whose noise is about a seventh of the cell, cells a patch of a cell's size.
+constexpr double layers = 2.3;
+
+// The occupied cells of a cloud that comes in any order.
+class Surface {
+  public:
+    void add(double x, double y, double z) {
+        const std::array<std::int64_t, 3> at{cell(x), cell(y), cell(z)};
+        if (at == last_) return;
+        last_ = at;
+        std::uint64_t key = 0;
+        for (const std::int64_t c : at)
+            key = key << 21 | (static_cast<std::uint64_t>(c) & 0x1fffff);
+        cells_.insert(key);
+    }
+    double area_m2() const {
+        return static_cast<double>(cells_.size()) * surface_cell_m * surface_cell_m /
+               cells_per_area;
+    }
+
+  private:
+    static std::int64_t cell(double v) {
+        return static_cast<std::int64_t>(std::floor(v / surface_cell_m));
+    }
+    std::array<std::int64_t, 3> last_{INT64_MIN, 0, 0};
+    std::unordered_set<std::uint64_t> cells_;
+};
+
+// Seconds of the work that parses are full of, on a wavy sheet: least of three runs.
+double probe(device::Device& device) {
+    PointCloud cloud;
+    for (int i = 0; i < 300; ++i) {
+        for (int j = 0; j < 300; ++j) {
+            cloud.x.push_back(0.01f * static_cast<float>(i));
+            cloud.y.push_back(0.01f * static_cast<float>(j));
+            cloud.z.push_back(0.1f * std::sin(0.05f * static_cast<float>(i + 2 * j)));
+        }
+    }
+    double best = INFINITY;
+    for (int run = 0; run < 3; ++run) {
+        const auto start = std::chrono::steady_clock::now();
+        geometry::make_surfels(device, cloud, 0.018, {}, {});
+        best = std::min(
+            best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+    return best;
+}
+
+void tell(const ParseOptions& options, double done) {
+    if (options.cancelled && options.cancelled()) throw Error(ErrorKind::input, "cancelled");
+    if (options.progress) options.progress("estimate", done);
+}
+
+void look_at_cloud(const std::filesystem::path& input, const ParseOptions& options,
+                   Surface& surface, Estimate& out) {
+    const auto add = [&](const PointCloud& portion) {
+        out.points += portion.size();
+        for (std::size_t n = 0; n < portion.size(); ++n)
+            surface.add(portion.x[n], portion.y[n], portion.z[n]);
+        tell(options, 0);
+    };
+    if (io::can_stream(input)) {
+        io::stream_cloud(input, options.unit_m, add);
+    } else {
+        add(io::read_cloud(input, options.unit_m));
+    }
+}
+
+// Each frame of a sample covers what its neighbours cover, too: their union grows as that of all.
+void look_at_frames(const std::filesystem::path& input, const ParseOptions& options,
+                    Surface& surface, Estimate& out) {
+    const io::FrameSequence frames = io::FrameSequence::open(input);
+    const Intrinsics& k = frames.intrinsics();
+    constexpr std::size_t most_frames = 100;
+    const std::size_t step = std::max<std::size_t>(1, frames.size() / most_frames);
+    for (std::size_t f = 0; f < frames.size(); f += step) {
+        const DepthFrame frame = frames.load(f);
+        const Mat4& m = frame.camera_to_world;
+        for (std::uint32_t v = 0; v < k.height; v += 3) {
+            for (std::uint32_t u = 0; u < k.width; u += 3) {
+                const double z = frame.depth[std::size_t{v} * k.width + u] / k.depth_scale;
+                if (z <= 0) continue;
+                const double x = (u - k.cx) / k.fx * z, y = (v - k.cy) / k.fy * z;
+                surface.add(m[0] * x + m[1] * y + m[2] * z + m[3],
+                            m[4] * x + m[5] * y + m[6] * z + m[7],
+                            m[8] * x + m[9] * y + m[10] * z + m[11]);
+            }
+        }
+        tell(options, static_cast<double>(f) / static_cast<double>(frames.size()));
+    }
+    out.frames = frames.size();
+}
+
+}  // namespace
+
+Estimate estimate(const std::filesystem::path& input, const ParseOptions& options) {
+    check_options(options);
+    const auto device = options.device ? options.device : device::open_device("auto");
+    tell(options, 0);
+    Estimate out;
+    Surface surface;
+    if (io::looks_like_sequence(input)) {
+        look_at_frames(input, options, surface, out);
+    } else {
+        look_at_cloud(input, options, surface, out);
+    }
+    out.surface_m2 = surface.area_m2();
+    const double slower = probe(*device) / probe_reference_s;
+    const auto points = static_cast<double>(out.points);
+    const double voxel_cells = options.voxel_m > 0 ? options.voxel_m / 2 : 0;
+    out.tiled = out.frames == 0 && io::can_stream(input) &&
+                (options.tile_m > 0 || out.points > most_points_at_once);
+    if (out.tiled) {
+        out.cell_m = voxel_cells > 0 ? voxel_cells : building_cell_m;
+        const double thinned =
+            std::min(0.95 * points, layers * out.surface_m2 / (out.cell_m * out.cell_m));
+        out.seconds = tiled_fixed_s + tiled_point_s * points + thinned_point_s * thinned;
+        out.memory_bytes = static_cast<std::uint64_t>(block_bytes + thinned_point_bytes * thinned);
+        out.work_bytes =
+            static_cast<std::uint64_t>(work_point_bytes * points + work_thinned_bytes * thinned);
+        out.output_bytes =
+            static_cast<std::uint64_t>(tiled_output_point_bytes * points + 15 * thinned);
+    } else {
+        if (out.frames > 0) {
+            const Intrinsics k = io::FrameSequence::open(input).intrinsics();
+            out.cell_m = voxel_cells > 0 ? voxel_cells : 0.01;
+            out.points =
+                static_cast<std::uint64_t>(layers * out.surface_m2 / (out.cell_m * out.cell_m));
+            out.seconds = pixel_s * static_cast<double>(out.frames) * k.width * k.height;
+        } else if (out.points > 0) {
+            out.cell_m = std::clamp(1.25 * std::sqrt(out.surface_m2 / points), 0.003, 0.05);
+        }
+        const auto looked_at = static_cast<double>(out.points);
+        out.seconds += fixed_s + point_s * looked_at;
+        out.memory_bytes = static_cast<std::uint64_t>(60e6 + point_bytes * looked_at);
+        out.output_bytes =
+            static_cast<std::uint64_t>(output_fixed + output_point_bytes * looked_at);
+    }
+    out.seconds *= slower;
+    return out;
+}
+
+}  // namespace topple
