@@ -24,7 +24,7 @@ constexpr double surface_cell_m = 0.05, cells_per_area = 1.1;
 // Measured on two cores of the machine whose probe takes probe_reference_s: seconds a point of a
 // large cloud (sorting, thinning, writing), seconds and bytes a thinned point (blocks, whole); the
 // same of a point of a cloud in one piece, a frame's pixel; and what every run takes.
-constexpr double probe_reference_s = 0.030;
+constexpr double probe_reference_s = 0.075;
 constexpr double tiled_point_s = 0.45e-6, thinned_point_s = 4.1e-6, tiled_fixed_s = 4;
 constexpr double point_s = 5e-6, pixel_s = 8e-8, fixed_s = 0.5;
 constexpr double point_bytes = 420, thinned_point_bytes = 45, block_bytes = 450e6;
@@ -156,8 +156,7 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
         if (out.frames > 0) {
             const Intrinsics k = io::FrameSequence::open(input).intrinsics();
             out.cell_m = voxel_cells > 0 ? voxel_cells : 0.01;
-            out.points =
-                static_cast<std::uint64_t>(layers * out.surface_m2 / (out.cell_m * out.cell_m));
+            out.points = static_cast<std::uint64_t>(out.surface_m2 / (out.cell_m * out.cell_m));
             out.seconds = pixel_s * static_cast<double>(out.frames) * k.width * k.height;
         } else if (out.points > 0) {
             out.cell_m = std::clamp(1.25 * std::sqrt(out.surface_m2 / points), 0.003, 0.05);
