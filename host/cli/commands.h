@@ -4,7 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <string>
+
+#include "topple/crew.h"
 
 // Each command adds its options to the parser and returns what runs it. A command's result is the
 // program's exit code; errors leave it as topple::Error.
@@ -30,7 +33,15 @@ inline void add_furniture(CLI::App& app, bool& varied) {
         ->default_str("plain");
 }
 
-Command add_parse(CLI::App& app);
+// How a parse is one process' part of a job of several. Alone: nothing of it.
+struct Team {
+    std::shared_ptr<Crew> crew;
+    bool leads = true;
+    unsigned threads = 0;           // unless --threads says otherwise; 0: all cores
+    std::function<bool()> stopped;  // polled; true: another process has failed
+};
+inline constexpr const char* parse_purpose = "Parse a scan into solid objects, supports and risks";
+Command add_parse(CLI::App& app, const Team& team = {});
 Command add_devices(CLI::App& app);
 Command add_generate(CLI::App& app);
 Command add_evaluate(CLI::App& app);

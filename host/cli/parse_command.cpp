@@ -34,6 +34,7 @@ struct Arguments {
     unsigned threads = 0;
     bool quiet = false;
     OutputOptions output;
+    Team team;
 };
 
 std::vector<std::string> split_commas(const std::string& text) {
@@ -128,6 +129,23 @@ void read_options(Arguments& a) {
         a.options.accelerogram = read_accelerogram(*a.accelerogram, a.accelerogram_unit_m_s2);
 }
 
+// What all processes of a team do before their part of the parse.
+void get_ready(Arguments& a) {
+    a.options.device = device::open_device(a.backend, a.threads > 0 ? a.threads : a.team.threads);
+    a.options.crew = a.team.crew;
+    a.options.cancelled = [&team = a.team] {
+        return interrupted() != 0 || (team.stopped && team.stopped());
+    };
+}
+
+int help(Arguments& a) {
+    read_options(a);
+    catch_interrupts();
+    get_ready(a);
+    help_parse(*a.team.crew, a.options);
+    return 0;
+}
+
 int run(Arguments& a) {
     read_options(a);
     const std::filesystem::path out =
@@ -142,10 +160,9 @@ int run(Arguments& a) {
     { const io::OutputFolder probe(out); }
     // Beside the output, where there is room for it, and where the next run finds it.
     a.options.work_folder = out.parent_path() / ("." + out.filename().string() + ".topple-work");
-    a.options.device = device::open_device(a.backend, a.threads);
+    get_ready(a);
     Progress progress(a.quiet);
     a.options.progress = [&](const std::string& stage, double done) { progress(stage, done); };
-    a.options.cancelled = [] { return interrupted() != 0; };
     try {
         const ParseResult result = parse(a.input, a.options);
         progress("output", 0);
@@ -162,8 +179,9 @@ int run(Arguments& a) {
 
 }  // namespace
 
-Command add_parse(CLI::App& app) {
+Command add_parse(CLI::App& app, const Team& team) {
     auto a = std::make_shared<Arguments>();
+    a->team = team;
     app.add_option(
            "INPUT", a->input,
            "A point cloud (.ply, .pcd, .xyz), a mesh (.obj, .stl, .glb, .gltf, .ply with faces),\n"
@@ -247,7 +265,7 @@ Command add_parse(CLI::App& app) {
         "--glb", a->output.glb,
         "Write the solids as meshes, too, one per object coloured by unsafety: objects.glb");
     app.add_flag("--quiet", a->quiet, "Print errors only");
-    return [a] { return run(*a); };
+    return [a] { return a->team.leads ? run(*a) : help(*a); };
 }
 
 }  // namespace topple::cli

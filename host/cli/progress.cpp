@@ -47,6 +47,9 @@ const char* what_it_does(const std::string& stage) {
     return "";
 }
 
+// Between figures of how far a stage is, where there is no terminal.
+constexpr double between_figures_s = 30;
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -57,14 +60,15 @@ Progress::Progress(bool quiet)
     : quiet_(quiet),
       terminal_(isatty(STDERR_FILENO) != 0),
       start_(Clock::now()),
-      stage_start_(start_) {}
+      stage_start_(start_),
+      told_(start_) {}
 
 void Progress::operator()(const std::string& stage, double done) {
     if (quiet_) return;
     if (stage != stage_) {
         if (!terminal_) finish();
         stage_ = stage;
-        stage_start_ = Clock::now();
+        stage_start_ = told_ = Clock::now();
         first_done_ = first_s_ = 0;
         if (!terminal_) std::fprintf(stderr, "%s: %s ...", stage.c_str(), what_it_does(stage));
     }
@@ -73,6 +77,9 @@ void Progress::operator()(const std::string& stage, double done) {
                      what_it_does(stage));
         if (done > 0) std::fprintf(stderr, " %.0f %%", 100 * done);
         std::fprintf(stderr, "%s", time_left(done).c_str());
+    } else if (done > 0 && seconds_since(told_) > between_figures_s) {
+        told_ = Clock::now();
+        std::fprintf(stderr, " %.0f %%", 100 * done);
     }
     std::fflush(stderr);
 }

@@ -3,32 +3,29 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <exception>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "device/device.h"
-#include "device/native/thread_pool.h"
 #include "geometry/surfels.h"
 #include "io/read_cloud.h"
 #include "io/text.h"
 #include "pipeline/assemble.h"
-#include "pipeline/block_stage.h"
 #include "pipeline/explain.h"
 #include "pipeline/ingest.h"
 #include "pipeline/join_blocks.h"
 #include "pipeline/object_stage.h"
 #include "pipeline/safety_stage.h"
+#include "pipeline/shared_stage.h"
 #include "pipeline/solid_parts.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/tiled_result.h"
+#include "pipeline/tiled_stages.h"
 #include "tiles/blocks.h"
 #include "tiles/point_spill.h"
 #include "tiles/work_folder.h"
-#include "topple/version.h"
 
 namespace topple {
 namespace {
@@ -48,15 +45,11 @@ constexpr std::uint64_t spacing_points = 1'500'000, frame_points = 1'200'000;
 // Points of the scene that a caller gets, and the report shows.
 constexpr std::size_t sampled_points = 3'000'000;
 
-std::string manifest(const fs::path& input, const ParseOptions& o) {
+std::string manifest(const fs::path& input, const ParseOptions& options) {
     std::error_code error;
     const auto changed = fs::last_write_time(input, error).time_since_epoch().count();
-    char text[256];
-    std::snprintf(text, sizeof(text), " %llu %lld voxel %a unit %a tile %a up %a %a %a version %s",
-                  static_cast<unsigned long long>(fs::file_size(input, error)),
-                  static_cast<long long>(changed), o.voxel_m, o.unit_m, o.tile_m,
-                  o.up ? (*o.up)[0] : 0, o.up ? (*o.up)[1] : 0, o.up ? (*o.up)[2] : 0, version);
-    return fs::absolute(input, error).string() + text;
+    return fs::absolute(input, error).string() + " " + std::to_string(fs::file_size(input, error)) +
+           " " + std::to_string(changed) + options_text(options);
 }
 
 // Half of what a run may take is for the points in hand; the rest is for the others.
@@ -120,38 +113,6 @@ double find_spacing(const tiles::SpilledPoints& points, const fs::path& input) {
     return spacing;
 }
 
-std::vector<tiles::Bin> bins_of(const tiles::SpilledPoints& points) {
-    std::vector<tiles::Bin> out;
-    for (const auto& bin : points.bins()) out.push_back(bin.bin);
-    return out;
-}
-
-// Calls work(i) for each i of [0, count) on the device's threads, and throws what it threw first.
-void each(device::Device& device, std::size_t count, const std::function<void(std::size_t)>& work) {
-    std::vector<std::exception_ptr> errors(count);
-    device.threads().each(count, 1, [&](std::size_t n) {
-        try {
-            work(n);
-        } catch (...) {
-            errors[n] = std::current_exception();
-        }
-    });
-    for (const std::exception_ptr& error : errors)
-        if (error) std::rethrow_exception(error);
-}
-
-void thin(device::Device& device, const tiles::SpilledPoints& points, double cell_m,
-          const fs::path& folder, StageClock& stage) {
-    const std::size_t count = points.bins().size(), batch = device.threads().threads();
-    for (std::size_t first = 0; first < count; first += batch) {
-        each(device, std::min(batch, count - first), [&](std::size_t n) {
-            if (!tiles::is_thinned(folder, points.bins()[first + n].bin))
-                tiles::thin_bin(points, first + n, cell_m, folder);
-        });
-        stage.progress("thinning", static_cast<double>(first) / static_cast<double>(count));
-    }
-}
-
 // The frame of the whole, from the densest bin and those around it.
 geometry::SceneFrame find_frame(device::Device& device, const fs::path& folder,
                                 const tiles::SpilledPoints& points, double cell_m,
@@ -182,47 +143,31 @@ geometry::SceneFrame find_frame(device::Device& device, const fs::path& folder,
     return geometry::find_scene_frame(device, surfels, {options.up, part.camera_up});
 }
 
-tiles::Layout find_layout(device::Device& device, const tiles::WorkFolder& work,
-                          const tiles::SpilledPoints& points, const fs::path& input,
-                          const ParseOptions& options, StageClock& stage) {
-    if (work.has("layout.bin")) return tiles::read_layout(work.path());
+tiles::Layout find_layout(const SharedWork& shared, const tiles::SpilledPoints& points,
+                          const fs::path& input, const ParseOptions& options, StageClock& stage) {
+    if (tiles::names_in(shared.folder).contains(tiles::layout_name))
+        return tiles::read_layout(shared.folder);
     const double cell_m = stage("spacing", [&] {
         const double finest = 1.25 * find_spacing(points, input);
         const double wanted = options.voxel_m > 0 ? options.voxel_m / voxel_cells : building_cell_m;
         return tiles::dividing_cell(std::min(largest_cell_m, std::max(finest, wanted)));
     });
     const double voxel_m = options.voxel_m > 0 ? options.voxel_m : voxel_cells * cell_m;
-    stage("thinning", [&] { thin(device, points, cell_m, work.path(), stage); });
-    const geometry::SceneFrame frame =
-        stage("frame", [&] { return find_frame(device, work.path(), points, cell_m, options); });
+    stage("thinning", [&] { thin_bins(shared, points, cell_m, stage); });
+    const geometry::SceneFrame frame = stage(
+        "frame", [&] { return find_frame(shared.device, shared.folder, points, cell_m, options); });
     return stage("layout", [&] {
         const std::vector<tiles::Bin> bins = bins_of(points);
         tiles::Layout layout =
-            tiles::cut_into_blocks(work.path(), bins, frame, cell_m, voxel_m,
+            tiles::cut_into_blocks(shared.folder, bins, frame, cell_m, voxel_m,
                                    options.tile_m > 0 ? options.tile_m : tiles::default_block_m);
         if (layout.blocks.empty())
             io::fail(input, io::counted(points.points(), "point") +
                                 " were found, but nowhere enough of them for a surface; give a "
                                 "denser scan, or a larger --voxel");
-        tiles::write_layout(work.path(), layout);
+        tiles::write_layout(shared.folder, layout);
         return layout;
     });
-}
-
-void parse_blocks(device::Device& device, const fs::path& folder,
-                  const std::vector<tiles::Bin>& bins, const tiles::Layout& layout,
-                  const ParseOptions& options, StageClock& stage) {
-    std::uint64_t all = 0, done = 0;
-    for (const tiles::Block& b : layout.blocks) all += b.cells;
-    for (std::size_t b = 0; b < layout.blocks.size(); ++b) {
-        const tiles::Block& block = layout.blocks[b];
-        if (!fs::exists(block_file(folder, b))) {
-            const tiles::BlockPoints points = tiles::points_of_block(folder, bins, layout, block);
-            write_block(folder, b, parse_block(device, points, layout, block, options));
-        }
-        done += block.cells;
-        stage.progress("blocks", static_cast<double>(done) / static_cast<double>(all));
-    }
 }
 
 // Centres in the input's frame.
@@ -259,12 +204,13 @@ void add_notes(const tiles::SpilledPoints& points, const tiles::Layout& layout, 
 }
 
 ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
-                            std::unique_ptr<tiles::WorkFolder> work, device::Device& device,
+                            std::unique_ptr<tiles::WorkFolder> work, const SharedWork& shared,
                             StageClock& stage) {
+    device::Device& device = shared.device;
     const tiles::SpilledPoints points(work->path());
     const std::vector<tiles::Bin> bins = bins_of(points);
-    const tiles::Layout layout = find_layout(device, *work, points, input, options, stage);
-    stage("blocks", [&] { parse_blocks(device, work->path(), bins, layout, options, stage); });
+    const tiles::Layout layout = find_layout(shared, points, input, options, stage);
+    stage("blocks", [&] { parse_blocks(shared, points, layout, options, stage); });
     JoinedBlocks joined =
         stage("joining", [&] { return join_blocks(work->path(), layout, stage); });
     SolidParts& parts = joined.parts;
@@ -304,14 +250,18 @@ std::optional<ParseResult> parse_tiled(const fs::path& input, const ParseOptions
     check_options(options);
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options);
-    auto work = std::make_unique<tiles::WorkFolder>(options.work_folder, manifest(input, options));
+    const std::string about = manifest(input, options);
+    auto work = std::make_unique<tiles::WorkFolder>(options.work_folder, about);
     stage("sorting", [&] { spill(input, *work, options, stage); });
     if (options.tile_m == 0 && tiles::SpilledPoints(work->path()).points() <= most_points_at_once) {
         work->finished();
         return std::nullopt;
     }
     const auto device = options.device ? options.device : device::open_device("auto");
-    ParseResult result = parse_in_blocks(input, options, std::move(work), *device, stage);
+    const auto crew = options.crew ? options.crew : std::shared_ptr<Crew>(lone_crew());
+    const fs::path folder = fs::absolute(work->path());
+    const SharedWork shared{*crew, *device, folder, about};
+    ParseResult result = parse_in_blocks(input, options, std::move(work), shared, stage);
     result.scene.timings_s = std::move(timings);
     return result;
 }

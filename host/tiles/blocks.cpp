@@ -106,7 +106,7 @@ Layout cut_into_blocks(const fs::path& folder, std::span<const Bin> bins,
 }
 
 void write_layout(const fs::path& folder, const Layout& layout) {
-    BinaryWriter out(folder / "layout.bin");
+    BinaryWriter out(folder / layout_name);
     out.value(layout.cell_m);
     out.value(layout.voxel_m);
     out.value(layout.halo);
@@ -119,7 +119,7 @@ void write_layout(const fs::path& folder, const Layout& layout) {
 }
 
 Layout read_layout(const fs::path& folder) {
-    BinaryReader in(folder / "layout.bin");
+    BinaryReader in(folder / layout_name);
     Layout out;
     out.cell_m = in.value<double>();
     out.voxel_m = in.value<double>();

@@ -54,6 +54,7 @@ Layout cut_into_blocks(const std::filesystem::path& folder, std::span<const Bin>
                        const geometry::SceneFrame& frame, double cell_m, double voxel_m,
                        double block_m);
 
+inline constexpr const char* layout_name = "layout.bin";
 void write_layout(const std::filesystem::path& folder, const Layout& layout);
 Layout read_layout(const std::filesystem::path& folder);
 

@@ -26,7 +26,7 @@ fs::path order_file(const fs::path& folder, const Bin& bin) {
     return folder / ("order-" + name_of(bin));
 }
 fs::path cells_file(const fs::path& folder, const Bin& bin) {
-    return folder / ("cells-" + name_of(bin));
+    return folder / thinned_name(bin);
 }
 
 // Points whose cells are read at a time.
@@ -85,9 +85,8 @@ double dividing_cell(double cell_m) {
     return bin_edge_m / std::ceil(bin_edge_m / cell_m - 1e-9);
 }
 
-bool is_thinned(const fs::path& folder, const Bin& bin) {
-    std::error_code error;
-    return fs::exists(cells_file(folder, bin), error);
+std::string thinned_name(const Bin& bin) {
+    return "cells-" + name_of(bin);
 }
 
 void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const fs::path& folder) {
@@ -126,7 +125,6 @@ void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const
     BinaryWriter order_out(order_file(folder, at));
     order_out.array(rank);
     order_out.finish();
-    // Comes last: where it is, the bin is done.
     BinaryWriter file(cells_file(folder, at));
     file.array(out.x);
     file.array(out.y);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "tiles/point_spill.h"
@@ -26,7 +27,8 @@ double dividing_cell(double cell_m);
 void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m,
               const std::filesystem::path& folder);
 
-bool is_thinned(const std::filesystem::path& folder, const Bin& bin);
+// The file that comes last: where it is in the folder, the bin is done.
+std::string thinned_name(const Bin& bin);
 ThinnedBin read_thinned(const std::filesystem::path& folder, const Bin& bin);
 
 // The cells of a bin's points, in the points' order, a portion at a time.

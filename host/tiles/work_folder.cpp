@@ -16,6 +16,10 @@ namespace fs = std::filesystem;
 constexpr const char* manifest_file = "topple-work";
 constexpr const char* first_line = "topple.work/1\n";
 
+std::string manifest_text(const std::string& manifest) {
+    return first_line + manifest + "\n";
+}
+
 // The manifest of what is there; empty where there is none.
 std::string manifest_of(const fs::path& folder) {
     std::error_code error;
@@ -35,7 +39,7 @@ fs::path temporary_folder() {
 }  // namespace
 
 WorkFolder::WorkFolder(const fs::path& folder, const std::string& manifest) {
-    const std::string text = first_line + manifest + "\n";
+    const std::string text = manifest_text(manifest);
     if (folder.empty()) {
         folder_ = temporary_folder();
         remove_ = true;
@@ -67,6 +71,19 @@ WorkFolder::~WorkFolder() {
 bool WorkFolder::has(const std::string& file) const {
     std::error_code error;
     return fs::exists(folder_ / file, error);
+}
+
+bool is_work_folder(const fs::path& folder, const std::string& manifest) {
+    return manifest_of(folder) == manifest_text(manifest);
+}
+
+std::set<std::string> names_in(const fs::path& folder) {
+    std::set<std::string> names;
+    std::error_code error;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+        names.insert(at->path().filename().string());
+    if (error) io::fail(folder, "can't be read: " + error.message());
+    return names;
 }
 
 }  // namespace topple::tiles

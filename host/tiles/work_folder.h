@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 
 namespace topple::tiles {
@@ -28,5 +29,12 @@ class WorkFolder {
     std::filesystem::path folder_;
     bool remove_ = false, taken_up_ = false;
 };
+
+// Whether this is a work folder with that manifest.
+bool is_work_folder(const std::filesystem::path& folder, const std::string& manifest);
+
+// The names of the files in a folder. Unlike asking for a name, this leaves no trace in a network
+// file system's memory of what is missing, which would hide what another machine makes next.
+std::set<std::string> names_in(const std::filesystem::path& folder);
 
 }  // namespace topple::tiles

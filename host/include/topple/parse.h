@@ -22,6 +22,7 @@ class VoxelScene;
 
 namespace topple {
 
+class Crew;
 class TiledResult;
 
 struct ParseOptions {
@@ -62,6 +63,8 @@ struct ParseOptions {
     // Where the blocks are kept meanwhile; a run that was killed goes on from what it finds there.
     // Is removed by write_outputs(). Empty: a temporary folder.
     std::filesystem::path work_folder;
+    // With whom a parse in blocks is shared (topple/crew.h); null: nobody.
+    std::shared_ptr<Crew> crew;
     // Called when a stage starts and while it goes on: its name, and how much of it is done, 0
     // to 1.
     std::function<void(const std::string&, double)> progress;

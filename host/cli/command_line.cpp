@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "cli/command_line.h"
+
+#include <cstddef>
+#include <cstdio>
+#include <exception>
+#include <map>
+#include <new>
+#include <span>
+#include <string>
+
+#include "cli/unknown_option.h"
+#include "topple/version.h"
+
+namespace topple::cli {
+namespace {
+
+Error wrong_usage(const std::string& what) {
+    return {ErrorKind::usage, what + " (see topple --help)"};
+}
+
+int run(const std::vector<CommandEntry>& entries, int argc, char** argv) {
+    CLI::App app{
+        "topple tells which things in a 3D scan of a room are one solid object, what holds what "
+        "up,\n"
+        "and what may fall: when someone walks by, in wind, in an earthquake."};
+    // One help for all: with the options of every command.
+    app.set_help_flag();
+    app.set_help_all_flag("-h,--help", "Print this help and exit");
+    app.set_version_flag("--version", std::string("topple ") + version);
+    app.require_subcommand(1);
+    app.footer(
+        "Exit codes: 0 done; 1 the input can't be parsed, or the output can't be written; 2 wrong "
+        "usage;\n"
+        "3 the asked-for backend or device can't be used.");
+    std::map<CLI::App*, Command> commands;
+    for (const CommandEntry& entry : entries) {
+        CLI::App* sub = app.add_subcommand(entry.name, entry.what);
+        commands[sub] = entry.define(*sub);
+    }
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& done) {
+        return app.exit(done);
+    } catch (const CLI::ConversionError& error) {
+        // "Could not convert: --wind-from = abc"
+        std::string what = error.what();
+        const auto from = what.find("--"), is = what.find(" = ");
+        if (from != std::string::npos && is != std::string::npos && from < is)
+            what = what.substr(from, is - from) + " " + what.substr(is + 3) + ": expected a number";
+        throw wrong_usage(what);
+    } catch (const CLI::ParseError& error) {
+        const auto subcommands = app.get_subcommands();
+        const std::string unknown =
+            unknown_option(subcommands.empty() ? app : *subcommands.front(),
+                           std::span<const char* const>(argv, static_cast<std::size_t>(argc)));
+        throw wrong_usage(unknown.empty() ? error.what() : unknown);
+    }
+    return commands.at(app.get_subcommands().front())();
+}
+
+}  // namespace
+
+int exit_code(ErrorKind kind) {
+    switch (kind) {
+        case ErrorKind::input:
+            return 1;
+        case ErrorKind::usage:
+            return 2;
+        case ErrorKind::device:
+            return 3;
+    }
+    return 1;
+}
+
+void print_error(const Error& error) {
+    std::fprintf(stderr, "topple: %s\n", error.what());
+}
+
+int run_command_line(const std::vector<CommandEntry>& commands, int argc, char** argv,
+                     const std::function<void(const Error&)>& tell) {
+    const auto fail = [&](const Error& error) {
+        tell(error);
+        return exit_code(error.kind());
+    };
+    try {
+        return run(commands, argc, argv);
+    } catch (const Error& error) {
+        return fail(error);
+    } catch (const std::bad_alloc&) {
+        return fail({ErrorKind::input,
+                     "out of memory; use a larger --voxel or set --max-memory to be told earlier"});
+    } catch (const std::exception& error) {
+        return fail({ErrorKind::input, error.what()});
+    }
+}
+
+}  // namespace topple::cli

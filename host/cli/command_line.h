@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <vector>
+
+#include "cli/commands.h"
+#include "topple/error.h"
+
+// Programs that consist of commands.
+namespace topple::cli {
+
+struct CommandEntry {
+    const char* name;
+    const char* what;  // it does, for the help
+    std::function<Command(CLI::App&)> define;
+};
+
+int exit_code(ErrorKind kind);
+
+// On stderr, as one line.
+void print_error(const Error& error);
+
+// Runs the command that the arguments name, and returns the program's exit code. Whatever is wrong
+// with the arguments, or comes out of the command, is told by `tell`.
+int run_command_line(const std::vector<CommandEntry>& commands, int argc, char** argv,
+                     const std::function<void(const Error&)>& tell);
+
+}  // namespace topple::cli

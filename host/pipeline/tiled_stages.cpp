@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/tiled_stages.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "device/native/thread_pool.h"
+#include "io/text.h"
+#include "pipeline/block_stage.h"
+#include "pipeline/shared_stage.h"
+#include "tiles/work_folder.h"
+#include "topple/version.h"
+
+namespace topple {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What the leader tells the others of a stage. As text its parts are separated by zeros, which no
+// path holds.
+struct Order {
+    std::string stage;
+    fs::path folder;
+    std::string manifest;
+    double cell_m = 0;
+
+    std::string text() const {
+        char cell[40];
+        std::snprintf(cell, sizeof(cell), "%a", cell_m);
+        std::string out = stage;
+        for (const std::string& part : {folder.string(), manifest, std::string(cell)})
+            out.append(1, '\0').append(part);
+        return out;
+    }
+    static Order from(const std::string& text) {
+        std::vector<std::string> parts(1);
+        for (const char c : text) {
+            if (c == '\0') {
+                parts.emplace_back();
+            } else {
+                parts.back() += c;
+            }
+        }
+        if (parts.size() != 4)
+            throw Error(ErrorKind::input, "the leader's order is of another version of topple");
+        return {parts[0], parts[1], parts[2], std::strtod(parts[3].c_str(), nullptr)};
+    }
+};
+
+// A member's part of the thinning: a bin on each thread.
+void thin_some(Crew& crew, device::Device& device, const tiles::SpilledPoints& points,
+               const Order& order, const std::function<void()>& tell) {
+    work_off(
+        crew, device, device.threads().threads(),
+        [&](std::uint64_t bin) { tiles::thin_bin(points, bin, order.cell_m, order.folder); }, tell);
+}
+
+// A member's part of the blocks: one at a time, on all threads.
+void parse_some(Crew& crew, device::Device& device, const tiles::SpilledPoints& points,
+                const tiles::Layout& layout, const fs::path& folder, const ParseOptions& options,
+                const std::function<void()>& tell) {
+    const std::vector<tiles::Bin> bins = bins_of(points);
+    work_off(
+        crew, device, 1,
+        [&](std::uint64_t b) {
+            const tiles::Block& block = layout.blocks.at(b);
+            const tiles::BlockPoints seen = tiles::points_of_block(folder, bins, layout, block);
+            write_block(folder, b, parse_block(device, seen, layout, block, options));
+        },
+        tell);
+}
+
+// Tells the progress of a stage: of its whole weight `before` was done by an earlier run.
+std::function<void()> progress_of(const char* name, const Crew& crew, std::uint64_t before,
+                                  std::uint64_t all, StageClock& stage) {
+    return [=, &crew, &stage] {
+        stage.progress(name,
+                       static_cast<double>(before + crew.finished()) / static_cast<double>(all));
+    };
+}
+
+// What is wrong with a member that got this order.
+void check_order(const Order& order, const ParseOptions& options) {
+    if (!order.manifest.ends_with(options_text(options)))
+        throw Error(ErrorKind::usage,
+                    "was started with other options than the leader, or is another version of "
+                    "topple; start the same program with the same options everywhere");
+    if (!tiles::is_work_folder(order.folder, order.manifest))
+        io::fail(order.folder,
+                 "is not the leader's folder of that name; the output must be on a file system "
+                 "that all machines share");
+}
+
+// Another member's part of a stage, with all that can be wrong before its first task.
+std::function<void()> part_of_stage(Crew& crew, device::Device& device, const std::string& text,
+                                    const ParseOptions& options) {
+    const Order order = Order::from(text);
+    check_order(order, options);
+    const auto points = std::make_shared<const tiles::SpilledPoints>(order.folder);
+    const auto nothing = [] {};
+    if (order.stage == "thinning")
+        return [=, &crew, &device] { thin_some(crew, device, *points, order, nothing); };
+    const auto layout = std::make_shared<const tiles::Layout>(tiles::read_layout(order.folder));
+    return [=, &crew, &device, &options] {
+        parse_some(crew, device, *points, *layout, order.folder, options, nothing);
+    };
+}
+
+}  // namespace
+
+std::string options_text(const ParseOptions& o) {
+    char text[256];
+    std::snprintf(text, sizeof(text), " voxel %a unit %a tile %a up %a %a %a version %s", o.voxel_m,
+                  o.unit_m, o.tile_m, o.up ? (*o.up)[0] : 0, o.up ? (*o.up)[1] : 0,
+                  o.up ? (*o.up)[2] : 0, version);
+    return text;
+}
+
+std::vector<tiles::Bin> bins_of(const tiles::SpilledPoints& points) {
+    std::vector<tiles::Bin> out;
+    for (const auto& bin : points.bins()) out.push_back(bin.bin);
+    return out;
+}
+
+void thin_bins(const SharedWork& shared, const tiles::SpilledPoints& points, double cell_m,
+               StageClock& stage) {
+    const std::set<std::string> there = tiles::names_in(shared.folder);
+    std::vector<Crew::Task> tasks;
+    std::uint64_t before = 0;
+    for (std::size_t b = 0; b < points.bins().size(); ++b) {
+        const auto& bin = points.bins()[b];
+        if (there.contains(tiles::thinned_name(bin.bin))) {
+            before += bin.points;
+        } else {
+            tasks.push_back({b, bin.points});
+        }
+    }
+    large_first(tasks);
+    const Order order{"thinning", shared.folder, shared.manifest, cell_m};
+    shared.crew.begin(order.text(), std::move(tasks));
+    thin_some(shared.crew, shared.device, points, order,
+              progress_of("thinning", shared.crew, before, points.points(), stage));
+}
+
+void parse_blocks(const SharedWork& shared, const tiles::SpilledPoints& points,
+                  const tiles::Layout& layout, const ParseOptions& options, StageClock& stage) {
+    const std::set<std::string> there = tiles::names_in(shared.folder);
+    std::vector<Crew::Task> tasks;
+    std::uint64_t before = 0, all = 0;
+    for (std::size_t b = 0; b < layout.blocks.size(); ++b) {
+        const std::uint64_t cells = layout.blocks[b].cells;
+        all += cells;
+        if (there.contains(block_file(shared.folder, b).filename().string())) {
+            before += cells;
+        } else {
+            tasks.push_back({b, cells});
+        }
+    }
+    large_first(tasks);
+    shared.crew.begin(Order{"blocks", shared.folder, shared.manifest, layout.cell_m}.text(),
+                      std::move(tasks));
+    parse_some(shared.crew, shared.device, points, layout, shared.folder, options,
+               progress_of("blocks", shared.crew, before, all, stage));
+}
+
+void help_parse(Crew& crew, const ParseOptions& options) {
+    const auto device = options.device ? options.device : device::open_device("auto");
+    while (const std::optional<std::string> order = crew.wait()) {
+        std::function<void()> part;
+        try {
+            part = part_of_stage(crew, *device, *order, options);
+        } catch (...) {
+            crew.end(std::current_exception(), [] {});
+            continue;
+        }
+        part();
+    }
+}
+
+}  // namespace topple

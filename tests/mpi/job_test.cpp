@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#include <csignal>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+#include "scenes/building.h"
+#include "scenes/temporary_folder.h"
+
+// topple-mpi as a job of several ranks on this machine.
+namespace topple::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+// A room, sparse enough for seconds, and what one process makes of it.
+const fs::path& room() {
+    static const scenes::TemporaryFolder folder("topple_mpi");
+    static const fs::path cloud = [] {
+        const fs::path file = folder.path() / "room.ply";
+        scenes::write_building(file, {.points = 20'000, .spacing_m = 0.03},
+                               [](std::size_t, std::size_t) { return true; });
+        return file;
+    }();
+    return cloud;
+}
+
+class Job : public Program {
+  protected:
+    void SetUp() override {
+#ifndef TOPPLE_MPI
+        const char* required = std::getenv("TOPPLE_REQUIRE_BACKENDS");
+        if (required && std::string(required) == "1") FAIL() << "topple-mpi was not built";
+        GTEST_SKIP() << "topple-mpi was not built: MPI is missing";
+#endif
+    }
+
+    static Words ranks(int count, const Words& arguments, const Words& for_mpirun = {}) {
+        Words words{"-n", std::to_string(count)};
+        words.insert(words.end(), for_mpirun.begin(), for_mpirun.end());
+#ifdef TOPPLE_MPI
+        words.emplace_back(TOPPLE_MPI);
+#endif
+        words.insert(words.end(), arguments.begin(), arguments.end());
+        return words;
+    }
+    static Words parse(const std::string& out, const std::string& tile = "3") {
+        return {"parse", room().string(), "-o", out,         "--tile",
+                tile,    "--walks",       "20", "--backend", "native"};
+    }
+    // The first words run beside the second ones, as one job.
+    Finished job(const Words& first, const Words& second = {},
+                 const std::function<int(const std::string&)>& interrupt = {}) const {
+        Words words{"--allow-run-as-root", "--oversubscribe"};
+        words.insert(words.end(), first.begin(), first.end());
+        if (!second.empty()) words.emplace_back(":");
+        words.insert(words.end(), second.begin(), second.end());
+        return run(words, interrupt);
+    }
+
+    // All that must not depend on who did what.
+    struct Output {
+        nlohmann::json scene;
+        std::string points, solid;
+        bool operator==(const Output&) const = default;
+    };
+    Output output(const std::string& out) const {
+        Output result{nlohmann::json::parse(bytes_of_file(in(out) / "scene.json")),
+                      bytes_of_file(in(out) / "points.ply"), bytes_of_file(in(out) / "solid.ply")};
+        result.scene.erase("timings_s");
+        return result;
+    }
+    // Of one process. TOPPLE_ALONE knows nothing of MPI, but can be a job's only rank.
+    const Output& alone() const {
+        static const Output result = [&] {
+            Words words{"-n", "1", TOPPLE_ALONE};
+            const Words arguments = parse("alone");
+            words.insert(words.end(), arguments.begin(), arguments.end());
+            EXPECT_EQ(job(words).code, 0);
+            return output("alone");
+        }();
+        return result;
+    }
+
+    // The failure's one line, once; the rest of stderr is mpirun's.
+    static void expect_told(const Finished& job, int code, const Words& parts) {
+        EXPECT_EQ(job.code, code) << job.err;
+        const auto first = job.err.find("topple: ");
+        ASSERT_NE(first, std::string::npos) << job.err;
+        EXPECT_EQ(job.err.find("topple: ", first + 1), std::string::npos) << job.err;
+        const std::string line = job.err.substr(first, job.err.find('\n', first) - first);
+        for (const auto& part : parts)
+            EXPECT_NE(line.find(part), std::string::npos) << line << "\nshould say: " << part;
+    }
+
+    fs::path work() const {
+        return in(".out.topple-work");
+    }
+    std::vector<fs::path> files(const std::string& beginning) const {
+        std::vector<fs::path> found;
+        std::error_code error;
+        for (fs::directory_iterator at(work(), error), end; !error && at != end;
+             at.increment(error)) {
+            const std::string name = at->path().filename().string();
+            if (name.starts_with(beginning) && !name.ends_with(".part"))
+                found.push_back(at->path());
+        }
+        std::ranges::sort(found);
+        return found;
+    }
+
+    // The process of this test's job that is this rank, or 0.
+    pid_t process_of(int rank) const {
+        std::error_code error;
+        const std::string wanted = "OMPI_COMM_WORLD_RANK=" + std::to_string(rank);
+        for (fs::directory_iterator at("/proc", error), end; !error && at != end;
+             at.increment(error)) {
+            const std::string name = at->path().filename().string();
+            if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+            std::error_code gone;
+            if (fs::read_symlink(at->path() / "cwd", gone) != path("work")) continue;
+            const std::string all = bytes_of_file(at->path() / "environ");
+            for (std::size_t from = 0; from < all.size(); from += std::strlen(&all[from]) + 1)
+                if (wanted == &all[from]) return static_cast<pid_t>(std::stol(name));
+        }
+        return 0;
+    }
+};
+
+TEST_F(Job, ranks_give_what_one_process_gives) {
+    const Finished finished = job(ranks(3, parse("out")));
+    EXPECT_EQ(finished.code, 0) << finished.err;
+    // Only the leader speaks.
+    const auto once = finished.out.find("Report: ");
+    EXPECT_NE(once, std::string::npos) << finished.out;
+    EXPECT_EQ(finished.out.find("Report: ", once + 1), std::string::npos) << finished.out;
+    EXPECT_EQ(finished.err.find("blocks: "), finished.err.rfind("blocks: ")) << finished.err;
+    EXPECT_TRUE(output("out") == alone());
+    EXPECT_FALSE(fs::exists(work()));
+}
+
+TEST_F(Job, wrong_usage_is_told_once) {
+    expect_told(job(ranks(3, parse("out", "0.1"))), 2, {"--tile 0.1"});
+    expect_told(job(ranks(2, {"parse", "missing.ply", "--quiet"})), 1, {"missing.ply"});
+}
+
+TEST_F(Job, a_rank_of_other_options_ends_it) {
+    expect_told(job(ranks(1, parse("out")), ranks(1, parse("out", "4"))), 2,
+                {"rank 1: ", "other options"});
+    EXPECT_FALSE(fs::exists(in("out")));
+}
+
+TEST_F(Job, a_rank_without_the_device_ends_it) {
+    Words vulkan = parse("out");
+    vulkan.back() = "vulkan";
+    const Words no_driver{"-x", "VK_ICD_FILENAMES=/missing", "-x", "VK_DRIVER_FILES=/missing"};
+    expect_told(job(ranks(1, parse("out")), ranks(1, vulkan, no_driver)), 3,
+                {"rank 1: ", "Vulkan"});
+    EXPECT_FALSE(fs::exists(in("out")));
+}
+
+TEST_F(Job, a_killed_rank_ends_it_and_the_next_job_goes_on) {
+    bool killed = false;
+    const Finished broken = job(ranks(2, parse("out")), {}, [&](const std::string&) {
+        const pid_t rank = !killed && files("block-").size() >= 2 ? process_of(1) : 0;
+        if (rank > 0) killed = kill(rank, SIGKILL) == 0;
+        return 0;
+    });
+    ASSERT_TRUE(killed);
+    EXPECT_NE(broken.code, 0);
+    EXPECT_NE(broken.err.find("signal 9"), std::string::npos) << broken.err;
+    EXPECT_FALSE(fs::exists(in("out")));
+    const std::vector<fs::path> blocks = files("block-"), cells = files("cells-");
+    ASSERT_FALSE(blocks.empty());
+    ASSERT_FALSE(cells.empty());
+
+    // What both ranks now read is damaged: told once, by the one that saw it first.
+    std::vector<std::string> whole;
+    for (const fs::path& file : cells) {
+        whole.push_back(bytes_of_file(file));
+        fs::resize_file(file, 9);
+    }
+    expect_told(job(ranks(2, parse("out"))), 1, {"rank ", "cells-", "damaged"});
+    for (std::size_t n = 0; n < cells.size(); ++n)
+        put(".out.topple-work/" + cells[n].filename().string(), whole[n]);
+
+    // What was finished is not done again, even where it is damaged now.
+    const std::string block = bytes_of_file(blocks[0]);
+    fs::resize_file(blocks[0], block.size() / 2);
+    expect_told(job(ranks(2, parse("out"))), 1, {blocks[0].filename().string(), "damaged"});
+    put(".out.topple-work/" + blocks[0].filename().string(), block);
+
+    EXPECT_EQ(job(ranks(2, parse("out"))).code, 0);
+    EXPECT_TRUE(output("out") == alone());
+    EXPECT_FALSE(fs::exists(work()));
+}
+
+}  // namespace
+}  // namespace topple::test
