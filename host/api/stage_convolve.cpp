@@ -12,7 +12,7 @@ namespace topple::stages {
 namespace {
 
 constexpr std::uint32_t block = 64;  // cells that the kernel works on together
-constexpr const char* stage = "convolve";
+constexpr const char* convolve_stage = "convolve";
 
 // A footprint as the kernel wants it. Nothing stands in the way: one row of open cells for all.
 struct Entries {
@@ -32,22 +32,23 @@ std::uint32_t reach_of(std::span<const FootprintEntry> footprint) {
 
 void check(const MapShape& s, std::uint32_t reach, std::span<const FootprintEntry> footprint,
            std::span<const std::uint32_t> first) {
-    require(s.width > 0 && s.height > 0 && s.directions > 0, stage, "the map is empty");
+    require(s.width > 0 && s.height > 0 && s.directions > 0, convolve_stage, "the map is empty");
     require(first.size() == std::size_t{s.directions} + 1 && first.front() == 0 &&
                 first.back() == footprint.size() && std::is_sorted(first.begin(), first.end()),
-            stage,
+            convolve_stage,
             "first must rise from 0 to the " + std::to_string(footprint.size()) +
                 " entries of the footprint in " + std::to_string(s.directions) + " steps");
     const std::uint64_t added = s.margin ? 0 : 2 * (std::uint64_t{reach} + 1);
     const std::uint64_t width = s.width + added + block, height = s.height + added;
     constexpr std::uint64_t most = std::numeric_limits<std::int32_t>::max();
-    require(width < most && height < most && width * height <= most / s.directions, stage,
+    require(width < most && height < most && width * height <= most / s.directions, convolve_stage,
             "the map with its margin has more than 2^31 cells in all directions");
     if (s.margin == 0) return;
-    require(reach < s.margin, stage,
+    require(reach < s.margin, convolve_stage,
             "a footprint that reaches " + std::to_string(reach) +
                 " cells takes a wider margin than " + std::to_string(s.margin));
-    require(s.width % block == 0 && s.height > 2 * s.margin && s.width > 2 * s.margin, stage,
+    require(s.width % block == 0 && s.height > 2 * s.margin && s.width > 2 * s.margin,
+            convolve_stage,
             "with a margin, width must be a multiple of 64, and both sides larger than twice it");
 }
 
@@ -118,7 +119,7 @@ void convolve(device::Device& device, const MapShape& shape, const Array<const f
               std::span<const FootprintEntry> footprint, std::span<const std::uint32_t> first,
               const Array<float>& density) {
     const bool on_device = primary.on_device() || density.on_device();
-    require(on_device == (shape.margin > 0), stage,
+    require(on_device == (shape.margin > 0), convolve_stage,
             on_device ? "arrays in a device's buffers take a margin"
                       : "arrays in host memory have no margin");
     const std::uint32_t reach = reach_of(footprint);
@@ -132,11 +133,11 @@ void convolve(device::Device& device, const MapShape& shape, const Array<const f
     const std::uint64_t plane = std::uint64_t{shape.width} * shape.height;
     const std::uint32_t rows = inner.height - 2 * inner.margin;
     const std::uint64_t written = std::uint64_t{inner.width} * rows * shape.directions;
-    require(primary.count == plane * shape.directions, stage,
+    require(primary.count == plane * shape.directions, convolve_stage,
             "primary has " + std::to_string(primary.count) + " values, not " +
                 std::to_string(plane * shape.directions));
     const std::uint64_t expected = on_device ? written : primary.count;
-    require(density.count == expected, stage,
+    require(density.count == expected, convolve_stage,
             "density has " + std::to_string(density.count) + " values, not " +
                 std::to_string(expected));
     std::vector<float> with_margin;

@@ -17,32 +17,32 @@ constexpr std::uint64_t direction_block = 32;  // what one work-item takes, on a
 // Of the output at once, where it goes to host memory: half of the smallest binding.
 constexpr std::uint64_t tile_values = (std::uint64_t{64} << 20) / sizeof(float);
 constexpr unsigned sphere_frequency = 16;  // of the directions that landscapes are sampled in
-constexpr const char* stage = "support_functions";
+constexpr const char* support_stage = "support_functions";
 
 void check(const Coordinates& vertices, std::span<const std::uint64_t> first,
            const Coordinates& directions, const Array<float>& out) {
     const auto equal = [](const Coordinates& c) {
         return c.x.count == c.y.count && c.x.count == c.z.count;
     };
-    require(equal(vertices) && equal(directions), stage, "x, y and z differ in length");
-    require(directions.x.count > 0, stage, "there are no directions");
+    require(equal(vertices) && equal(directions), support_stage, "x, y and z differ in length");
+    require(directions.x.count > 0, support_stage, "there are no directions");
     require(
         !first.empty() && first.front() == 0 && first.back() == vertices.x.count &&
             std::adjacent_find(first.begin(), first.end(), std::greater_equal<>()) == first.end(),
-        stage,
+        support_stage,
         "first must rise from 0 to the " + std::to_string(vertices.x.count) +
             " vertices, with no set empty");
     const std::uint64_t sets = first.size() - 1;
     constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
     require(vertices.x.count <= most && directions.x.count <= most / 2 &&
                 sets <= most / (directions.x.count + direction_block),
-            stage, "more than 2^32 vertices or values of output");
-    require(out.count == sets * directions.x.count, stage,
+            support_stage, "more than 2^32 vertices or values of output");
+    require(out.count == sets * directions.x.count, support_stage,
             "out has " + std::to_string(out.count) + " values, not " +
                 std::to_string(sets * directions.x.count));
     const bool on_device = directions.x.on_device() || directions.y.on_device() ||
                            directions.z.on_device() || out.on_device();
-    require(!on_device || directions.x.count % direction_block == 0, stage,
+    require(!on_device || directions.x.count % direction_block == 0, support_stage,
             std::to_string(directions.x.count) +
                 " directions: a multiple of 32 is needed in a device's buffer");
 }

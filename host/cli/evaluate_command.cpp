@@ -21,14 +21,14 @@
 namespace topple::cli {
 namespace {
 
-struct Arguments {
+struct EvaluateArguments {
     std::string backend = "auto", out = "evaluation";
     evaluation::RoomOptions options;
     unsigned seeds = 8, first = 1;
     bool groupings = false, fit_joints = false;
 };
 
-void check(const Arguments& a) {
+void check(const EvaluateArguments& a) {
     const auto in_range = [](const char* option, unsigned value, unsigned most) {
         if (value >= 1 && value <= most) return;
         throw Error(ErrorKind::usage, std::string(option) + " " + std::to_string(value) +
@@ -58,7 +58,7 @@ void write(const std::filesystem::path& path, const std::string& text) {
 
 // Calls use() once for each room, with its options.
 template <typename Use>
-void for_each_room(Arguments& a, const Use& use) {
+void for_each_room(EvaluateArguments& a, const Use& use) {
     for (unsigned n = 0; n < a.seeds; ++n) {
         a.options.room.seed = a.options.camera.seed = a.first + n;
         std::fprintf(stderr, "room %u of %u\n", n + 1, a.seeds);
@@ -66,7 +66,7 @@ void for_each_room(Arguments& a, const Use& use) {
     }
 }
 
-void print_weights(Arguments& a) {
+void print_weights(EvaluateArguments& a) {
     evaluation::JointExamples examples;
     for_each_room(a,
                   [&] { evaluation::add_examples(evaluation::scan_parts(a.options), examples); });
@@ -75,7 +75,7 @@ void print_weights(Arguments& a) {
     std::printf("\n%zu joints of %u rooms\n", examples.joints.size(), a.seeds);
 }
 
-void compare_groupings(Arguments& a) {
+void compare_groupings(EvaluateArguments& a) {
     std::vector<evaluation::Groupings> rooms;
     for_each_room(a, [&] {
         rooms.push_back(evaluation::compare_groupings(*a.options.parse.device,
@@ -87,7 +87,7 @@ void compare_groupings(Arguments& a) {
     write(std::filesystem::path(a.out) / "groupings.txt", table);
 }
 
-void judge_parses(Arguments& a) {
+void judge_parses(EvaluateArguments& a) {
     const std::filesystem::path out = a.out;
     std::vector<evaluation::RoomScore> scores;
     std::optional<evaluation::Room> first;
@@ -107,7 +107,7 @@ void judge_parses(Arguments& a) {
     std::printf("\nPictures of the first room, charts and all figures: %s\n", a.out.c_str());
 }
 
-int run(Arguments& a) {
+int run(EvaluateArguments& a) {
     check(a);
     if (!a.fit_joints) make_folder(a.out);
     catch_interrupts();
@@ -131,7 +131,7 @@ int run(Arguments& a) {
 }  // namespace
 
 Command add_evaluate(CLI::App& app) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<EvaluateArguments>();
     a->options.camera.frames = 40;
     a->options.parse.voxel_m = 0.02;
     // No score depends on the disturbances; wind is the quickest.

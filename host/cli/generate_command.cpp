@@ -16,7 +16,7 @@
 namespace topple::cli {
 namespace {
 
-struct Arguments {
+struct GenerateArguments {
     std::string out;
     scenes::RoomOptions room;
     scenes::CameraOptions camera;
@@ -24,7 +24,7 @@ struct Arguments {
     scenes::BuildingOptions building;
 };
 
-int run_building(const Arguments& a) {
+int run_building(const GenerateArguments& a) {
     if (std::filesystem::path(a.out).extension() != ".ply") {
         throw Error(ErrorKind::usage, a.out + ": a building is one cloud; choose a name with .ply");
     }
@@ -40,7 +40,7 @@ int run_building(const Arguments& a) {
     return 0;
 }
 
-int run(const Arguments& a) {
+int run(const GenerateArguments& a) {
     if (a.camera.frames < 1 || a.camera.frames > 10000) {
         throw Error(ErrorKind::usage,
                     "--frames " + std::to_string(a.camera.frames) + ": expected 1 to 10000");
@@ -57,7 +57,7 @@ int run(const Arguments& a) {
 }  // namespace
 
 Command add_generate(CLI::App& app) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<GenerateArguments>();
     app.add_option(
            "OUT", a->out,
            "Folder for the depth frames, poses, fused cloud and truth.json; with --building\n"

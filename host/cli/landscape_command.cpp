@@ -14,7 +14,7 @@
 namespace topple::cli {
 namespace {
 
-struct Arguments {
+struct LandscapeArguments {
     std::string parsed, out;
     std::int64_t object = -1;
 };
@@ -43,7 +43,7 @@ const Object& chosen(const Scene& scene, std::int64_t id) {
     return object;
 }
 
-int run(const Arguments& a) {
+int run(const LandscapeArguments& a) {
     const std::filesystem::path folder = a.parsed;
     Scene scene = io::read_scene_json(folder / "scene.json");
     io::read_landscapes_json(folder / "landscapes.json", scene);
@@ -57,7 +57,7 @@ int run(const Arguments& a) {
 }  // namespace
 
 Command add_landscape(CLI::App& app) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<LandscapeArguments>();
     app.add_option("OUT", a->parsed, "Output folder of a parse")->required();
     app.add_option("--object", a->object, "Number of the object; else the most unsafe one")
         ->check(whole_number);

@@ -7,7 +7,7 @@
 namespace topple::geometry {
 namespace {
 
-constexpr std::uint64_t chunk = 1 << 13;  // cells handed to a thread at once
+constexpr std::uint64_t grid_chunk = 1 << 13;  // cells handed to a thread at once
 
 // sorted_order() for keys below the limit of Key.
 template <class Key>
@@ -90,12 +90,12 @@ CellGrid coarsen(const CellGrid& grid, device::ThreadPool& threads,
     }
     const CellPacking pack(lowest, highest);
     std::vector<std::uint64_t> keys(grid.size());
-    threads.each(grid.size(), chunk, [&](std::size_t i) {
+    threads.each(grid.size(), grid_chunk, [&](std::size_t i) {
         keys[i] = pack(halved(grid.x[i]), halved(grid.y[i]), halved(grid.z[i]));
     });
     const KeyGroups groups = group_keys(keys);
     coarse.resize(groups.size());
-    threads.each(groups.size(), chunk, [&](std::size_t cell) {
+    threads.each(groups.size(), grid_chunk, [&](std::size_t cell) {
         const auto children = groups.group(cell);
         coarse.x[cell] = halved(grid.x[children[0]]);
         coarse.y[cell] = halved(grid.y[children[0]]);
@@ -161,7 +161,7 @@ std::vector<std::uint32_t> column_table(const ColumnSweep& sweep,
                                         device::ThreadPool& threads) {
     const std::size_t count = cells.size();
     std::vector<std::uint32_t> table(count * sweep.columns());
-    threads.run(count, chunk, [&](std::uint64_t begin, std::uint64_t end) {
+    threads.run(count, grid_chunk, [&](std::uint64_t begin, std::uint64_t end) {
         sweep.run(
             begin, end, [&](std::size_t k) { return cells[k]; },
             [&](std::size_t k, std::size_t column, std::size_t lo, std::size_t hi) {
@@ -181,7 +181,7 @@ void cell_neighbours(std::span<const std::int32_t> x, std::span<const std::int32
     const ColumnSweep sweep(x, y, z, 1);
     const auto itself = [](std::size_t cell) { return cell; };
     first.assign(count + 1, 0);
-    threads.run(count, chunk, [&](std::uint64_t begin, std::uint64_t end) {
+    threads.run(count, grid_chunk, [&](std::uint64_t begin, std::uint64_t end) {
         sweep.run(begin, end, itself,
                   [&](std::size_t cell, std::size_t, std::size_t lo, std::size_t hi) {
                       first[cell + 1] += static_cast<std::uint32_t>(hi - lo);
@@ -190,7 +190,7 @@ void cell_neighbours(std::span<const std::int32_t> x, std::span<const std::int32
     });
     std::partial_sum(first.begin(), first.end(), first.begin());
     neighbours.resize(first[count]);
-    threads.run(count, chunk, [&](std::uint64_t begin, std::uint64_t end) {
+    threads.run(count, grid_chunk, [&](std::uint64_t begin, std::uint64_t end) {
         std::uint32_t* to = neighbours.data() + first[begin];
         sweep.run(begin, end, itself,
                   [&](std::size_t cell, std::size_t, std::size_t lo, std::size_t hi) {

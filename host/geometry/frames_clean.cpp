@@ -13,8 +13,8 @@ namespace topple::geometry {
 namespace {
 
 constexpr std::array<unsigned, 3> key_shift{42, 21, 0};
-constexpr std::uint8_t most_levels = 3, stays = 255;
-constexpr std::uint64_t chunk = 1 << 15;  // cells handed to a thread at once
+constexpr std::uint8_t most_fused_levels = 3, stays = 255;
+constexpr std::uint64_t fused_chunk = 1 << 15;  // cells handed to a thread at once
 
 // What lies in the 27 cells around a cell, its own among them.
 struct Around {
@@ -32,7 +32,7 @@ void visit_surroundings(const FusedCells& fused, device::ThreadPool& pool, const
         count[i + 1] = count[i] + fused.cells[i].count;
         weight[i + 1] = weight[i] + fused.cells[i].weight;
     }
-    pool.run(n, chunk, [&](std::uint64_t first, std::uint64_t last) {
+    pool.run(n, fused_chunk, [&](std::uint64_t first, std::uint64_t last) {
         std::array<std::uint64_t, 9> lowest{};  // of each column, relative to the cell's key
         std::array<std::size_t, 9> lo{}, hi{};
         for (std::size_t c = 0; c < 9; ++c) {
@@ -62,7 +62,7 @@ void visit_surroundings(const FusedCells& fused, device::ThreadPool& pool, const
 // surface runs. Coarser grids give the wider ones.
 std::uint8_t level_for(double sigma, double cell_m) {
     std::uint8_t level = 0;
-    while (level < most_levels && 3 * sigma > 2.5 * cell_m * (1 << level)) ++level;
+    while (level < most_fused_levels && 3 * sigma > 2.5 * cell_m * (1 << level)) ++level;
     return level;
 }
 
@@ -70,7 +70,7 @@ CellGrid grid_of(const FusedCells& fused, device::ThreadPool& pool) {
     CellGrid grid;
     grid.cell_m = fused.cell_m;
     grid.resize(fused.cells.size());
-    pool.each(fused.cells.size(), chunk, [&](std::size_t i) {
+    pool.each(fused.cells.size(), fused_chunk, [&](std::size_t i) {
         const CellSums& cell = fused.cells[i];
         const std::array<std::int32_t*, 3> index{&grid.x[i], &grid.y[i], &grid.z[i]};
         for (std::size_t a = 0; a < 3; ++a) {
@@ -121,7 +121,7 @@ void flatten_level(FusedCells& fused, const CellGrid& grid, double scale,
         for (std::size_t a = 0; a < 3; ++a) queries.at[a].push_back(grid.mean[a][cell]);
     }
     const PlaneFit fit = fit_planes(device, grid, std::move(queries));
-    pool.each(which.size(), chunk, [&](std::size_t k) {
+    pool.each(which.size(), fused_chunk, [&](std::size_t k) {
         CellSums& cell = fused.cells[which[k]];
         const std::uint32_t home = cell_of[which[k]], q = query_of[home];
         const std::array<std::int32_t, 3> index{grid.x[home], grid.y[home], grid.z[home]};
@@ -144,11 +144,11 @@ void flatten_level(FusedCells& fused, const CellGrid& grid, double scale,
 // Sorts the cells by key and sums up those of one key.
 void bin_anew(FusedCells& fused, device::ThreadPool& pool) {
     CellTables tables;
-    const std::size_t n = fused.cells.size(), blocks = (n + chunk - 1) / chunk;
+    const std::size_t n = fused.cells.size(), blocks = (n + fused_chunk - 1) / fused_chunk;
     std::vector<std::array<std::vector<std::uint32_t>, CellTables::shard_count>> parts(blocks);
-    pool.run(n, chunk, [&](std::uint64_t first, std::uint64_t last) {
+    pool.run(n, fused_chunk, [&](std::uint64_t first, std::uint64_t last) {
         for (std::uint64_t i = first; i < last; ++i) {
-            parts[first / chunk][CellTables::shard_of(fused.cells[i].key)].push_back(
+            parts[first / fused_chunk][CellTables::shard_of(fused.cells[i].key)].push_back(
                 static_cast<std::uint32_t>(i));
         }
     });
@@ -194,7 +194,7 @@ void flatten_layers(FusedCells& fused, double least_sigma_m, device::ThreadPool&
         sigma[i] = static_cast<float>(s);
         level_of[i] = s < least_sigma_m ? stays : level_for(s, fused.cell_m);
     });
-    std::array<std::vector<std::uint32_t>, most_levels + 1> which;
+    std::array<std::vector<std::uint32_t>, most_fused_levels + 1> which;
     for (std::size_t i = 0; i < n; ++i) {
         if (level_of[i] != stays) which[level_of[i]].push_back(static_cast<std::uint32_t>(i));
     }
@@ -209,7 +209,7 @@ void flatten_layers(FusedCells& fused, double least_sigma_m, device::ThreadPool&
         if (level > 0) {
             std::vector<std::uint32_t> parent;
             grid = coarsen(grid, pool, parent);
-            pool.each(n, chunk, [&](std::size_t i) { cell_of[i] = parent[cell_of[i]]; });
+            pool.each(n, fused_chunk, [&](std::size_t i) { cell_of[i] = parent[cell_of[i]]; });
         }
         if (which[level].empty()) continue;
         flatten_level(fused, grid, static_cast<double>(1 << level), which[level], cell_of, sigma,

@@ -11,9 +11,9 @@
 namespace topple::geometry {
 namespace {
 
-constexpr int most_cells = 48;
+constexpr int most_cells_along = 48;
 // To look in from outside: at least two cells, and a quarter of the scene's longest side.
-constexpr int margin = most_cells / 4;
+constexpr int margin = most_cells_along / 4;
 constexpr double cells_per_surfel = 3;
 constexpr int least_clearance = 2;
 
@@ -53,7 +53,7 @@ void FreePlaces::occupy(const Surfels& s) {
         extent[a] = high - low_[a];
     }
     const double longest = *std::max_element(extent.begin(), extent.end());
-    cell_m_ = std::max(cells_per_surfel * s.cell_m, longest / most_cells);
+    cell_m_ = std::max(cells_per_surfel * s.cell_m, longest / most_cells_along);
     for (std::size_t a = 0; a < 3; ++a) {
         size_[a] = static_cast<int>(extent[a] / cell_m_) + 1 + 2 * margin;
         low_[a] -= margin * cell_m_;

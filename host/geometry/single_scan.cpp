@@ -17,7 +17,7 @@ constexpr std::size_t least_points = 200;
 constexpr double nearer = 0.9;
 // Flying points and thin things at their edges; clouds of several views have ten times as many.
 constexpr double most_hidden = 0.003;
-constexpr double least_facing = 0.9;
+constexpr double least_facing_share = 0.9;
 // A surface goes through the eye where this many points lie within as many spacings of it: that is
 // the corner or the middle of a floor that someone chose for the origin, and seen edge-on it hides
 // nothing. One stray alone may lie there.
@@ -118,7 +118,7 @@ bool normals_face(const CloudView& cloud, const Vec3& eye) {
                       cloud.nz[i] * (eye[2] - cloud.z[i]) >=
                   0;
     }
-    return static_cast<double>(facing) >= least_facing * static_cast<double>(cloud.nx.size());
+    return static_cast<double>(facing) >= least_facing_share * static_cast<double>(cloud.nx.size());
 }
 
 bool surface_at(const CloudView& cloud, const Vec3& eye, double spacing_m) {

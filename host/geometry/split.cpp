@@ -19,13 +19,13 @@ float quantile(std::vector<float> values, double q) {
     return *at;
 }
 
-constexpr std::uint64_t chunk = 1 << 13;  // surfels handed to a thread at once
+constexpr std::uint64_t split_chunk = 1 << 13;  // surfels handed to a thread at once
 
 // The lower quartile of each surfel's neighbourhood, itself included: at most 27 values.
 std::vector<float> lower_neighbours(const Surfels& s, const std::vector<float>& value,
                                     device::ThreadPool& threads) {
     std::vector<float> out(value.size());
-    threads.each(value.size(), chunk, [&](std::size_t i) {
+    threads.each(value.size(), split_chunk, [&](std::size_t i) {
         const auto first = s.neighbour_first[i], last = s.neighbour_first[i + 1];
         const std::size_t kept = (1 + last - first) / 4 + 1;
         // The least ones so far, ascending.
@@ -72,7 +72,7 @@ SplitScale measure_scale(const Surfels& surfels, const SplitOptions& options,
     noise = lower_neighbours(surfels, noise, threads);
     const double floor_m = options.cell_noise_share * surfels.cell_m;
     scale.tolerance_m.resize(surfels.size());
-    threads.each(surfels.size(), chunk, [&](std::size_t i) {
+    threads.each(surfels.size(), split_chunk, [&](std::size_t i) {
         const double sigma = std::clamp(noise[i], 0.5f * typical, rough);
         scale.tolerance_m[i] =
             static_cast<float>(options.tolerance_sigma * std::hypot(sigma, floor_m));

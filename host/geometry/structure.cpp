@@ -35,7 +35,7 @@ constexpr double floor_piece_m2 = 0.25, least_thing_m2 = 0.01, noise_cells = 0.6
 // as a step, is another floor: a gallery, a platform. Tables are between them, beds smaller.
 constexpr double other_floor_m2 = 4, storey_m = 1.8, lowest_step_m = 0.12, highest_step_m = 0.45;
 
-double dot(const Vec3& a, double x, double y, double z) {
+double component(const Vec3& a, double x, double y, double z) {
     return a[0] * x + a[1] * y + a[2] * z;
 }
 
@@ -74,7 +74,7 @@ std::vector<Face> faces(const Surfels& s, const std::vector<std::int32_t>& label
         f.area_m2 += cell_area;
         f.nx += s.nx[n], f.ny += s.ny[n], f.nz += s.nz[n];
         f.px += s.x[n], f.py += s.y[n], f.pz += s.z[n];
-        const double height = dot(up, s.x[n], s.y[n], s.z[n]);
+        const double height = component(up, s.x[n], s.y[n], s.z[n]);
         f.lowest_m = std::min(f.lowest_m, height);
         f.highest_m = std::max(f.highest_m, height);
     }
@@ -113,7 +113,7 @@ std::optional<double> step_m(const Surfels& s, const PrimitiveSet& primitives, c
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, own = 0;
     std::uint64_t count = 0;
     const auto place = [&](std::size_t n, std::size_t axis) {
-        return dot(axis == 0 ? u : v, s.x[n], s.y[n], s.z[n]);
+        return component(axis == 0 ? u : v, s.x[n], s.y[n], s.z[n]);
     };
     for (std::size_t n = 0; n < s.size(); ++n) {
         if (primitives.label[n] != static_cast<std::int32_t>(piece)) continue;
@@ -121,7 +121,7 @@ std::optional<double> step_m(const Surfels& s, const PrimitiveSet& primitives, c
             low[a] = std::min(low[a], place(n, a) - around_m);
             high[a] = std::max(high[a], place(n, a) + around_m);
         }
-        own += dot(up, s.x[n], s.y[n], s.z[n]);
+        own += component(up, s.x[n], s.y[n], s.z[n]);
         ++count;
     }
     double theirs = 0;
@@ -131,7 +131,7 @@ std::optional<double> step_m(const Surfels& s, const PrimitiveSet& primitives, c
         if (l < 0 || !others[static_cast<std::size_t>(l)]) continue;
         const double x = place(n, 0), y = place(n, 1);
         if (x < low[0] || x > high[0] || y < low[1] || y > high[1]) continue;
-        theirs += dot(up, s.x[n], s.y[n], s.z[n]);
+        theirs += component(up, s.x[n], s.y[n], s.z[n]);
         ++near;
     }
     if (count == 0 || static_cast<double>(near) * s.cell_m * s.cell_m < least_area_m2)
@@ -215,7 +215,7 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
                                       const Vec3& up, const std::optional<StoreyHint>& storey) {
     const std::vector<Face> face = faces(surfels, primitives.label, primitives.model.size(), up);
     std::vector<Structure> out(face.size(), Structure::none);
-    const auto level = [&](const Face& f) { return dot(up, f.nx, f.ny, f.nz); };
+    const auto level = [&](const Face& f) { return component(up, f.nx, f.ny, f.nz); };
     double largest_level = 0, largest_upright = 0;
     for (const Face& f : face) {
         if (f.flatness < flat) continue;
@@ -230,7 +230,7 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
     };
     double floor_height = INFINITY;
     for (const Face& f : face) {
-        const double height = dot(up, f.px, f.py, f.pz);
+        const double height = component(up, f.px, f.py, f.pz);
         // With a storey, whose floor may be out of sight, a table top is not taken for it.
         if (storey && !(std::abs(height - storey->floor_m) < uneven_storey_m)) continue;
         if (may_be_floor(f)) floor_height = std::min(floor_height, height);
@@ -248,7 +248,7 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
     std::vector<bool> small(face.size()), other(face.size());
     for (std::size_t p = 0; p < face.size(); ++p) {
         const Face& f = face[p];
-        const double above = dot(up, f.px, f.py, f.pz) - floor_height;
+        const double above = component(up, f.px, f.py, f.pz) - floor_height;
         if (f.flatness < flat || level(f) < horizontal_cos || above < -uneven) continue;
         if (f.area_m2 >= floor_piece_m2 && above < uneven) large.push_back(p);
         other[p] = f.area_m2 >= other_floor_m2 &&

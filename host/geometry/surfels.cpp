@@ -41,7 +41,7 @@ void check(const CloudView& cloud, double cell_m, std::span<const Vec3> viewpoin
     }
 }
 
-constexpr std::uint64_t chunk = 1 << 14;  // points or cells handed to a thread at once
+constexpr std::uint64_t surfel_chunk = 1 << 14;  // points or cells handed to a thread at once
 
 using Axes = std::array<FloatColumn, 3>;
 
@@ -88,13 +88,13 @@ CellGrid bin(const CloudView& cloud, double cell_m, device::ThreadPool& threads,
     const CellPacking pack = packing_of(cloud, p, cell_m, threads);
     const auto index = [&](float v) { return static_cast<std::int64_t>(std::floor(v / cell_m)); };
     std::vector<std::uint64_t> keys(n);
-    threads.each(n, chunk, [&](std::size_t i) {
+    threads.each(n, surfel_chunk, [&](std::size_t i) {
         keys[i] = pack(index(cloud.x[i]), index(cloud.y[i]), index(cloud.z[i]));
     });
     const KeyGroups cells = group_keys(keys);
     grid.resize(cells.size());
     count.assign(cells.size(), 0);
-    threads.each(cells.size(), chunk, [&](std::size_t cell) {
+    threads.each(cells.size(), surfel_chunk, [&](std::size_t cell) {
         const auto points = cells.group(cell);
         const std::array<std::int64_t, 3> at{index(cloud.x[points[0]]), index(cloud.y[points[0]]),
                                              index(cloud.z[points[0]])};

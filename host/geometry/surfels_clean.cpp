@@ -11,7 +11,7 @@
 namespace topple::geometry {
 namespace {
 
-constexpr std::uint64_t chunk = 1 << 14;  // cells handed to a thread at once
+constexpr std::uint64_t clean_chunk = 1 << 14;  // cells handed to a thread at once
 
 // Roughness of most cells: the noise, as long as most of the scene is smooth.
 float median_rms(const PlaneFit& fit) {
@@ -60,7 +60,7 @@ PlaneFit flatten_noise(device::Device& device, CellGrid& grid, std::vector<float
     std::vector<std::array<double, 6>> spread(n);
     const std::array<const std::vector<std::int32_t>*, 3> index{&grid.x, &grid.y, &grid.z};
     std::atomic<bool> any = false;
-    threads.each(n, chunk, [&](std::size_t i) {
+    threads.each(n, clean_chunk, [&](std::size_t i) {
         const bool flat = fit.rms[i] <= 2.5f * noise && std::abs(fit.offset[i]) <= 3 * noise &&
                           fit.used[i] >= 6 &&
                           (fit.normal[0][i] != 0 || fit.normal[1][i] != 0 || fit.normal[2][i] != 0);
@@ -86,7 +86,7 @@ PlaneFit flatten_noise(device::Device& device, CellGrid& grid, std::vector<float
     }
     const CellPacking pack(lowest, highest);
     std::vector<std::uint64_t> keys(n);
-    threads.each(n, chunk, [&](std::size_t i) {
+    threads.each(n, clean_chunk, [&](std::size_t i) {
         keys[i] = pack(cell(moved[0][i]), cell(moved[1][i]), cell(moved[2][i]));
     });
     const KeyGroups cells = group_keys(keys);
@@ -99,7 +99,7 @@ PlaneFit flatten_noise(device::Device& device, CellGrid& grid, std::vector<float
     for (auto* field : {&planes.normal[0], &planes.normal[1], &planes.normal[2], &planes.rms,
                         &planes.offset, &planes.used})
         field->resize(cells.size());
-    threads.each(cells.size(), chunk, [&](std::size_t to) {
+    threads.each(cells.size(), clean_chunk, [&](std::size_t to) {
         const auto group = cells.group(to);
         std::array<double, 3> at{}, first{};
         for (std::size_t a = 0; a < 3; ++a) at[a] = std::floor(moved[a][group[0]]);

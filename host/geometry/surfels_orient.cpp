@@ -7,7 +7,7 @@
 namespace topple::geometry {
 namespace {
 
-float dot(const Surfels& s, std::size_t a, std::size_t b) {
+float normals_dot(const Surfels& s, std::size_t a, std::size_t b) {
     return s.nx[a] * s.nx[b] + s.ny[a] * s.ny[b] + s.nz[a] * s.nz[b];
 }
 
@@ -30,7 +30,7 @@ std::vector<std::uint32_t> spread_sign(Surfels& s, std::uint32_t seed, std::vect
         for (std::uint32_t k = s.neighbour_first[i]; k < s.neighbour_first[i + 1]; ++k) {
             const std::uint32_t j = s.neighbours[k];
             if (done[j]) continue;
-            const float parallel = std::min(std::abs(dot(s, i, j)), 1.0f);
+            const float parallel = std::min(std::abs(normals_dot(s, i, j)), 1.0f);
             const auto bucket = static_cast<std::size_t>(parallel * (buckets - 1));
             waiting[bucket].push_back({i, j});
             top = std::max(top, bucket);
@@ -43,7 +43,7 @@ std::vector<std::uint32_t> spread_sign(Surfels& s, std::uint32_t seed, std::vect
         const auto [from, to] = waiting[top].back();
         waiting[top].pop_back();
         if (done[to]) continue;
-        if (dot(s, from, to) < 0) flip(s, to);
+        if (normals_dot(s, from, to) < 0) flip(s, to);
         reach(to);
     }
 }

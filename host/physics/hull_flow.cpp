@@ -8,7 +8,6 @@
 namespace topple::physics {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 using Edge = HullPolytope::Edge;

@@ -2,7 +2,6 @@
 #include "physics/hull_polytope.h"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <sstream>
 
@@ -11,8 +10,6 @@
 
 namespace topple::physics {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 template <typename... Parts>
 [[noreturn]] void refuse(const Parts&... parts) {

@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "physics/vectors.h"
 
 namespace topple::physics {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // visit(v . direction, v) for all vertices that can be the lowest, to `rounding`, in a direction
 // that is at most `radius` radians away: that turn gains v on the one that is lowest now by no more

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "topple/input.h"
 
 // Arithmetic of vectors. For this folder.
 namespace topple::physics {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 inline double dot(const Vec3& a, const Vec3& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -22,9 +22,7 @@ namespace topple {
 namespace {
 
 // Working resolution stays within what indoor sensors deliver and what furniture needs.
-constexpr double least_cell_m = 0.003, largest_cell_m = 0.05;
-// Points farther apart than this show no surface: five cells of the coarsest resolution.
-constexpr double sparsest_m = 5 * largest_cell_m;
+constexpr double least_cell_m = 0.003;
 // What a scan of rooms extends over, for guesses at its unit.
 constexpr double least_room_m = 1.5, largest_room_m = 30;
 // Virtual views are drawn with surfels this wide: coarse enough that noise does not blur which side

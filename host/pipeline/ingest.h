@@ -16,6 +16,9 @@
 
 namespace topple {
 
+// The coarsest working resolution. Points farther apart than five of its cells show no surface.
+inline constexpr double largest_cell_m = 0.05, sparsest_m = 5 * largest_cell_m;
+
 // Depth frames that can be walked through more than once without holding them all.
 class FrameStream {
   public:

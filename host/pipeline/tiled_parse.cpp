@@ -37,8 +37,6 @@ constexpr std::uint64_t small_file = 10 * most_points_at_once;
 
 // Voxels are about two cells wide.
 constexpr double voxel_cells = 2;
-// Points farther apart show no surface at the coarsest resolution.
-constexpr double sparsest_m = 0.25, largest_cell_m = 0.05;
 
 // Points, and thinned points, that a guess at the whole is made from.
 constexpr std::uint64_t spacing_points = 1'500'000, frame_points = 1'200'000;

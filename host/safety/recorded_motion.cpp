@@ -17,7 +17,7 @@ namespace {
 
 using enum BodyJoint;
 
-constexpr unsigned levels = 8;
+constexpr unsigned energy_levels = 8;
 constexpr double least_energy_J = 0.05;  // what moves with less tips no cup
 constexpr unsigned group_bands = 4;      // bands that share a layer: as many as the kernel takes
 constexpr double bin_m = 0.05;           // of the offsets around the body
@@ -202,13 +202,15 @@ SecondaryMotion recorded_motion(const BodyMotion& motion, const HumanOptions& op
                             " % is faster than 15 m/s and was left out as noise.");
     }
     const double range = std::log(most / least_energy_J);
-    std::vector<double> weight(levels, 0.0), energies(levels, 0.0), masses(levels, 0.0);
+    std::vector<double> weight(energy_levels, 0.0), energies(energy_levels, 0.0),
+        masses(energy_levels, 0.0);
     std::map<std::pair<unsigned, unsigned>, LayerSums> layers;  // by level and group of bands
     each([&](const Visit& v, double speed) {
         const double W = energy(v);
         if (speed > fastest_m_s || W < least_energy_J) return;
-        const auto level = static_cast<unsigned>(std::min(
-            levels - 1.0, range > 0 ? levels * std::log(W / least_energy_J) / range : 0.0));
+        const auto level = static_cast<unsigned>(
+            std::min(energy_levels - 1.0,
+                     range > 0 ? energy_levels * std::log(W / least_energy_J) / range : 0.0));
         // Half as seen, half in the mirror; alike over the bands of the group.
         const double passes =
             speed / options.walking_speed_m_s / static_cast<double>(body.frames) / group_bands / 2;
@@ -223,8 +225,8 @@ SecondaryMotion recorded_motion(const BodyMotion& motion, const HumanOptions& op
         layer.by_turn[(direction_count - turn) % direction_count]
             .passes[Histogram::index(v.ahead, -v.aside)] += passes;
     });
-    std::vector<std::size_t> kept(levels, 0);
-    for (unsigned n = 0; n < levels; ++n) {
+    std::vector<std::size_t> kept(energy_levels, 0);
+    for (unsigned n = 0; n < energy_levels; ++n) {
         if (weight[n] <= 0) continue;
         kept[n] = out.energy_J.size();
         out.energy_J.push_back(energies[n] / weight[n]);

@@ -30,7 +30,7 @@ fs::path cells_file(const fs::path& folder, const Bin& bin) {
 }
 
 // Points whose cells are read at a time.
-constexpr std::size_t portion_points = 1u << 13;
+constexpr std::size_t thinned_portion = 1u << 13;
 
 // Sums of the points in each cell, found by key through open addressing. Places are given out in
 // the order in which cells are met.
@@ -141,9 +141,9 @@ std::uint32_t CellsOfPoints::next() {
     if (at_ == portion_.size()) {
         std::ifstream in(file_, std::ios::binary);
         in.seekg(static_cast<std::streamoff>(offset_));
-        portion_.resize(portion_points);
+        portion_.resize(thinned_portion);
         in.read(reinterpret_cast<char*>(portion_.data()),
-                static_cast<std::streamsize>(portion_points * sizeof(std::uint32_t)));
+                static_cast<std::streamsize>(thinned_portion * sizeof(std::uint32_t)));
         portion_.resize(static_cast<std::size_t>(in.gcount()) / sizeof(std::uint32_t));
         offset_ += portion_.size() * sizeof(std::uint32_t);
         at_ = 0;

@@ -17,7 +17,7 @@
 namespace topple::scenes {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unreached = std::numeric_limits<double>::infinity();
 using Cell = std::array<std::int32_t, 3>;
 
 // Points thinned to cells, sorted by cell, and which of them are neighbours.
@@ -99,7 +99,7 @@ double apart(const Vec3& a, const Vec3& b) {
 
 // Shortest ways from all cells to the nearest of `sources` (Dijkstra).
 std::vector<double> ways_to(const Cells& cells, const std::vector<std::uint32_t>& sources) {
-    std::vector<double> way(cells.at.size(), infinity);
+    std::vector<double> way(cells.at.size(), unreached);
     using Item = std::pair<double, std::uint32_t>;
     std::priority_queue<Item, std::vector<Item>, std::greater<>> open;
     for (const std::uint32_t s : sources) {

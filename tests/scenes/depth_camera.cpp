@@ -16,7 +16,7 @@ namespace topple::scenes {
 namespace {
 
 using std::numbers::pi;
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double no_hit = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t tile = 16;  // pixels, for culling
 
 Vec3 unit(const Vec3& v) {
@@ -86,13 +86,13 @@ class Caster {
     }
 
     double cast(const Ray& ray, const std::vector<Candidate>& list, std::int16_t& part) const {
-        double best = infinity;
+        double best = no_hit;
         part = -1;
         for (const Candidate& c : list) {
             if (c.from > best) break;
             const auto n = static_cast<std::size_t>(c.part);
             const double t = world_.parts[n].hit(eye_, ray.direction, headings_[n]);
-            if (t < best || (t == best && t < infinity && c.part < part)) {
+            if (t < best || (t == best && t < no_hit && c.part < part)) {
                 best = t;
                 part = c.part;
             }
@@ -225,7 +225,7 @@ std::vector<std::int16_t> render(const World& world, const CameraOptions& option
     const Intrinsics& k = options.intrinsics;
     const Caster caster(world, k, camera_to_room);
     const std::size_t pixels = std::size_t{k.width} * k.height;
-    std::vector<double> exact(pixels, infinity);
+    std::vector<double> exact(pixels, no_hit);
     std::vector<std::int16_t> part(pixels, -1);
     depth.assign(pixels, 0);
     std::vector<Candidate> list;

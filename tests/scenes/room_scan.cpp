@@ -15,12 +15,12 @@ constexpr int quarterings = 2;        // of patches that are near another solid
 constexpr double clearance = 0.003;   // between points and other solids
 constexpr double least_cosine = 0.1;  // flatter rays give no reading (84 degrees)
 constexpr double lift = 0.001;        // of a ray's end above the surface
-constexpr std::uint32_t columns = 512;
+constexpr std::uint32_t ring_columns = 512;
 
 Vec3 minus(const Vec3& a, const Vec3& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
-double dot(const Vec3& a, const Vec3& b) {
+double product(const Vec3& a, const Vec3& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
@@ -36,7 +36,7 @@ double diamond_angle(double x, double y) {
 bool faces_any(const Sheet& sheet, const std::vector<Vec3>& stations) {
     return sheet.kind != Sheet::Kind::flat ||
            std::any_of(stations.begin(), stations.end(), [&](const Vec3& station) {
-               return dot(minus(station, sheet.origin), sheet.axes[2]) > 0;
+               return product(minus(station, sheet.origin), sheet.axes[2]) > 0;
            });
 }
 
@@ -122,7 +122,7 @@ RoomScan::Room RoomScan::room_at(const Vec3& p, double radius, std::int32_t part
 // `last`: what blocked the view the last time, tried first.
 bool RoomScan::blocked(const Vec3& from, const Vec3& to, std::size_t& last) const {
     const Vec3 way = minus(to, from);
-    const double length = std::sqrt(dot(way, way));
+    const double length = std::sqrt(product(way, way));
     const Vec3 d{way[0] / length, way[1] / length, way[2] / length};
     const Vec3 inverse{1 / d[0], 1 / d[1], 1 / d[2]};
     const auto meets = [&](const Box& box) {
@@ -161,10 +161,11 @@ bool RoomScan::find_station(const Sheet::Place& place, std::vector<std::size_t>&
                      p[2] + lift * place.normal[2]};
     for (std::size_t n = 0; n < stations_.size(); ++n) {
         const Vec3 way = minus(stations_[n], p);
-        if (dot(way, place.normal) < least_cosine * std::sqrt(dot(way, way))) continue;
+        if (product(way, place.normal) < least_cosine * std::sqrt(product(way, way))) continue;
         if (blocked(stations_[n], above, last[n])) continue;
         seen.station = static_cast<std::uint8_t>(n);
-        seen.column = static_cast<std::uint32_t>(diamond_angle(-way[0], -way[1]) * (columns / 4));
+        seen.column =
+            static_cast<std::uint32_t>(diamond_angle(-way[0], -way[1]) * (ring_columns / 4));
         seen.slope = -way[2] / std::max(1e-6, std::sqrt(way[0] * way[0] + way[1] * way[1]));
         return true;
     }
@@ -184,7 +185,7 @@ void RoomScan::look(const Patch& patch, int depth, std::vector<std::size_t>& las
     for (const double u : patch.u) {
         for (const double v : patch.v) {
             const Vec3 way = minus(sheet.at(u, v).point, middle.point);
-            radius = std::max(radius, std::sqrt(dot(way, way)));
+            radius = std::max(radius, std::sqrt(product(way, way)));
         }
     }
     switch (room_at(middle.point, radius, sheet.part)) {
@@ -228,7 +229,7 @@ void RoomScan::sample(std::size_t patch, double noise_m, Random random,
             if (attempt == 8) break;
         }
         const Vec3 way = minus(point, station);
-        const double share = noise_m * random.normal() / std::sqrt(dot(way, way));
+        const double share = noise_m * random.normal() / std::sqrt(product(way, way));
         for (std::size_t k = 0; k < 3; ++k) point[k] += share * way[k];
     }
 }

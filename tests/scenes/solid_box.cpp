@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -9,8 +8,6 @@
 
 namespace topple::scenes::solids {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Where a ray is inside of something convex; in > out: nowhere.
 struct Interval {

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "scenes/solids.h"
 
 namespace topple::scenes::solids {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double nearer(double best, double t) {
     return t > 1e-9 && t < best ? t : best;

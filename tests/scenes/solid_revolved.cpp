@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "scenes/solids.h"
@@ -10,7 +9,6 @@ namespace topple::scenes::solids {
 namespace {
 
 using std::numbers::pi;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 using Point = std::array<double, 2>;  // r, z
 
 double to_segment(const Point& p, const Point& a, const Point& b) {

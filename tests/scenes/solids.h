@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "topple/input.h"
@@ -10,6 +11,8 @@
 // along a ray o + t * d (d unit) to the first surface with t > 0 or infinity, and closed-form
 // volume. Internal to Part.
 namespace topple::scenes::solids {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // A closed outline in the half plane r >= 0 as points (r, z), from the axis below, around the
 // outside, back to the axis: what turns about the axis. It may be concave.

@@ -94,6 +94,21 @@ bool cuts(const std::vector<btVector3>& planes, const btVector3& center, double 
     });
 }
 
+// Slower than this for a quarter of a second a body is at rest, even where it stood on an edge.
+class Rest {
+  public:
+    bool reached(const btRigidBody& body) {
+        constexpr double still = 2e-3, rest_s = 0.25;
+        const bool rests =
+            body.getLinearVelocity().length() < still && body.getAngularVelocity().length() < still;
+        resting_s_ = rests ? resting_s_ + step_s : 0;
+        return resting_s_ >= rest_s;
+    }
+
+  private:
+    double resting_s_ = 0;
+};
+
 struct Inertia {
     btTransform axes;  // principal, about the centre of mass
     btVector3 moments;
@@ -273,16 +288,11 @@ void Simulation::run(double seconds, double far_m) {
 }
 
 bool Simulation::sinks(double seconds, double by_m) {
-    // Slower than this for a quarter of a second it is at rest, even where it stood on an edge.
-    constexpr double still = 2e-3, rest_s = 0.25;
     const btRigidBody& body = *world_->loose;
-    double resting_s = 0;
-    for (double t = 0; t < seconds && resting_s < rest_s; t += step_s) {
+    Rest rest;
+    for (double t = 0; t < seconds && !rest.reached(body); t += step_s) {
         world_->dynamics.stepSimulation(step_s, 0);
         if (body.getCenterOfMassPosition().z() < -by_m) return true;
-        const bool rests =
-            body.getLinearVelocity().length() < still && body.getAngularVelocity().length() < still;
-        resting_s = rests ? resting_s + step_s : 0;
     }
     return false;
 }
@@ -295,7 +305,9 @@ bool Simulation::falls(double seconds, double by_m, double far_m, const Load& lo
         start.getBasis().transpose() * btVector3(load.at_m[0], load.at_m[1], load.at_m[2]);
     const btVector3 force(load.force_N[0], load.force_N[1], load.force_N[2]);
     bool fell = false;
+    Rest rest;
     for (double t = 0; t < seconds && !fell; t += step_s) {
+        if (!load.thrown_m_s2 && rest.reached(body)) break;
         const Vec3 thrown = load.thrown_m_s2 ? load.thrown_m_s2(t) : Vec3{};
         body.setGravity({thrown[0], thrown[1], thrown[2] - gravity});
         body.applyForce(force, body.getWorldTransform().getBasis() * at);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint64_t page = 4096;
 // An empty slice at a buffer's very end still binds something.
-constexpr std::uint64_t tail = 16;
+constexpr std::uint64_t opencl_tail = 16;
 
 }  // namespace
 
@@ -16,7 +16,7 @@ OpenClMemory::OpenClMemory(OpenClDevice& device, std::uint64_t bytes, std::strin
     : device_(device), bytes_(bytes), name_(std::move(name)) {
     cl_mem_flags flags = CL_MEM_READ_WRITE;
     if (device.shares_host_memory()) {
-        const std::uint64_t padded = (bytes + tail + page - 1) / page * page;
+        const std::uint64_t padded = (bytes + opencl_tail + page - 1) / page * page;
         host_.reset(static_cast<std::byte*>(std::aligned_alloc(page, padded)));
         if (!host_) {
             throw Error(ErrorKind::device, "buffer " + name_ + ": the system has no " +
@@ -26,7 +26,8 @@ OpenClMemory::OpenClMemory(OpenClDevice& device, std::uint64_t bytes, std::strin
         flags |= CL_MEM_USE_HOST_PTR;
     }
     cl_int code = CL_SUCCESS;
-    buffer_ = clCreateBuffer(device.handles().context, flags, bytes + tail, host_.get(), &code);
+    buffer_ =
+        clCreateBuffer(device.handles().context, flags, bytes + opencl_tail, host_.get(), &code);
     cl_check(code, "buffer " + name_ + " of " + std::to_string(bytes) + " bytes");
 }
 
@@ -54,7 +55,7 @@ void OpenClMemory::map() {
     if (mapped_) return;
     cl_int code = CL_SUCCESS;
     clEnqueueMapBuffer(device_.handles().queue, buffer_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
-                       bytes_ + tail, 0, nullptr, nullptr, &code);
+                       bytes_ + opencl_tail, 0, nullptr, nullptr, &code);
     cl_check(code, "mapping buffer " + name_);
     mapped_ = true;
 }

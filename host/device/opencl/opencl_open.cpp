@@ -11,7 +11,7 @@
 namespace topple::device {
 namespace {
 
-constexpr const char* mend = "; install a driver, such as the package pocl-opencl-icd";
+constexpr const char* opencl_mend = "; install a driver, such as the package pocl-opencl-icd";
 
 struct Found {
     cl_platform_id platform;
@@ -45,7 +45,7 @@ std::vector<Found> find_all() {
     const cl_int code = clGetPlatformIDs(0, nullptr, &count);
     if (code != CL_SUCCESS || count == 0) {
         throw Error(ErrorKind::device,
-                    "OpenCL finds no driver (" + cl_error_name(code) + ")" + mend);
+                    "OpenCL finds no driver (" + cl_error_name(code) + ")" + opencl_mend);
     }
     std::vector<cl_platform_id> platforms(count);
     cl_check(clGetPlatformIDs(count, platforms.data(), nullptr), "listing OpenCL platforms");
@@ -60,7 +60,8 @@ std::vector<Found> find_all() {
             continue;
         for (cl_device_id id : ids) found.push_back({platform, id, problem_of(id)});
     }
-    if (found.empty()) throw Error(ErrorKind::device, std::string("OpenCL finds no device") + mend);
+    if (found.empty())
+        throw Error(ErrorKind::device, std::string("OpenCL finds no device") + opencl_mend);
     return found;
 }
 
@@ -143,7 +144,7 @@ std::unique_ptr<Device> open_opencl() {
     const Found& best = all.front();
     if (!best.problem.empty()) {
         throw Error(ErrorKind::device, "OpenCL device " + cl_text(best.device, CL_DEVICE_NAME) +
-                                           " can't be used: " + best.problem + mend);
+                                           " can't be used: " + best.problem + opencl_mend);
     }
     return std::make_unique<OpenClDevice>(make_context(best));
 }

@@ -12,7 +12,7 @@
 namespace topple::device {
 namespace {
 
-constexpr const char* mend = "; install a driver, such as the package mesa-vulkan-drivers";
+constexpr const char* vulkan_mend = "; install a driver, such as the package mesa-vulkan-drivers";
 constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
 
 bool validation_wanted() {
@@ -83,7 +83,7 @@ void create_instance(VulkanContext& context) {
     if (result != VK_SUCCESS) {
         context.instance = VK_NULL_HANDLE;
         throw Error(ErrorKind::device,
-                    "Vulkan finds no driver (" + vk_result_name(result) + ")" + mend);
+                    "Vulkan finds no driver (" + vk_result_name(result) + ")" + vulkan_mend);
     }
     context.owned = true;
     if (context.log) {
@@ -103,7 +103,7 @@ std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
     vk_check(vkEnumeratePhysicalDevices(instance, &count, devices.data()),
              "listing Vulkan devices");
     if (devices.empty())
-        throw Error(ErrorKind::device, std::string("Vulkan finds no device") + mend);
+        throw Error(ErrorKind::device, std::string("Vulkan finds no device") + vulkan_mend);
     return devices;
 }
 
@@ -249,7 +249,7 @@ VulkanContext open_vulkan_context() {
     if (const std::string problem = vulkan_problem(context.physical); !problem.empty()) {
         throw Error(ErrorKind::device, std::string("Vulkan device ") +
                                            properties_of(context.physical).deviceName +
-                                           " can't be used: " + problem + mend);
+                                           " can't be used: " + problem + vulkan_mend);
     }
     context.queue_family = static_cast<std::uint32_t>(compute_family(context.physical));
     create_device(context);

@@ -14,7 +14,7 @@ constexpr VkMemoryPropertyFlags host_coherent =
 constexpr VkBufferUsageFlags copied =
     VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 // An empty slice at a buffer's very end still binds something.
-constexpr std::uint64_t tail = 16;
+constexpr std::uint64_t vulkan_tail = 16;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ VulkanMemory::VulkanMemory(VulkanDevice& device, std::uint64_t bytes, std::strin
     : device_(device),
       bytes_(bytes),
       name_(std::move(name)),
-      buffer_(device.create_storage(bytes + tail, name_)) {}
+      buffer_(device.create_storage(bytes + vulkan_tail, name_)) {}
 
 VulkanMemory::VulkanMemory(VulkanDevice& device, VkBuffer buffer, std::uint64_t bytes,
                            std::string name)

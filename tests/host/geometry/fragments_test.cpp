@@ -13,7 +13,7 @@ namespace {
 using Cell = std::array<std::int32_t, 3>;
 
 // Surfels in given cells, each with a label of its own choice.
-struct Scene {
+struct FragmentedScene {
     std::map<Cell, std::int32_t> label;
     std::int32_t labels = 0;
 
@@ -45,8 +45,8 @@ struct Scene {
     }
 };
 
-Scene floor_of_20() {
-    Scene scene;
+FragmentedScene floor_of_20() {
+    FragmentedScene scene;
     for (std::int32_t x = 0; x < 20; ++x)
         for (std::int32_t y = 0; y < 20; ++y) scene.label[{x, y, 0}] = 0;
     scene.labels = 1;
@@ -54,7 +54,7 @@ Scene floor_of_20() {
 }
 
 TEST(Fragments, PiecesOfAThinLegAreOnePrimitive) {
-    Scene scene = floor_of_20();
+    FragmentedScene scene = floor_of_20();
     for (std::int32_t z = 1; z <= 16; ++z) scene.label[{10, 10, z}] = z < 8 ? 1 : z < 12 ? -1 : 2;
     scene.labels = 3;
     PrimitiveSet primitives = scene.primitives();
@@ -67,7 +67,7 @@ TEST(Fragments, PiecesOfAThinLegAreOnePrimitive) {
 }
 
 TEST(Fragments, ScrapsAlongACreaseJoinWhatTheyLieOn) {
-    Scene scene = floor_of_20();
+    FragmentedScene scene = floor_of_20();
     for (std::int32_t x = 0; x < 20; ++x) scene.label[{x, 5, 1}] = scene.label[{x, 5, 2}] = 1;
     scene.labels = 2;
     PrimitiveSet primitives = scene.primitives();
@@ -77,7 +77,7 @@ TEST(Fragments, ScrapsAlongACreaseJoinWhatTheyLieOn) {
 }
 
 TEST(Fragments, WhatTouchesNothingLargerIsUnassigned) {
-    Scene scene = floor_of_20();
+    FragmentedScene scene = floor_of_20();
     for (std::int32_t z = 10; z < 30; ++z) scene.label[{3, 3, z}] = 1;
     scene.labels = 2;
     PrimitiveSet primitives = scene.primitives();

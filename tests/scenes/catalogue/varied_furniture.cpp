@@ -9,7 +9,7 @@
 namespace topple::scenes {
 namespace {
 
-constexpr double over_table = 0.60;  // free height that things on tables may take
+constexpr double over_varied_table = 0.60;  // free height that things on tables may take
 
 }  // namespace
 
@@ -29,7 +29,7 @@ Blueprint make_splayed_table(Random& random) {
             b.feet.push_back(leg);
         }
     }
-    b.stand_on(top, over_table, "table", 0.03);
+    b.stand_on(top, over_varied_table, "table", 0.03);
     return b;
 }
 
@@ -41,7 +41,7 @@ Blueprint make_drum_table(Random& random) {
     const int body = b.revolved("body", 0, 0, 0,
                                 solid_within(smooth_side({r, 0.9 * r, waist, waist, top, top}, h)));
     b.feet = {body};
-    b.surfaces.push_back({body, 0, 0, 0.65 * top, 0.65 * top, over_table, "table"});
+    b.surfaces.push_back({body, 0, 0, 0.65 * top, 0.65 * top, over_varied_table, "table"});
     return b;
 }
 

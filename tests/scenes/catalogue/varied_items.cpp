@@ -17,7 +17,7 @@ Blueprint turned(const char* name, const solids::Profile& profile) {
     return b;
 }
 
-Blueprint bottle(Random& random) {
+Blueprint glass_bottle(Random& random) {
     const double r = random.uniform(0.033, 0.05), neck = random.uniform(0.3, 0.45) * r;
     const double body = random.uniform(0.13, 0.19), shoulder = random.uniform(0.03, 0.07),
                  top = random.uniform(0.04, 0.08);
@@ -76,7 +76,7 @@ Blueprint wine_glass(Random& random) {
 }
 
 // Its screen leans back by more than a right angle to the keys.
-Blueprint laptop(Random& random) {
+Blueprint open_laptop(Random& random) {
     Blueprint b("open laptop");
     const double w = random.uniform(0.3, 0.38), d = random.uniform(0.21, 0.26), t = 0.02;
     const int keys = b.box("keyboard", 0, 0, 0, {w, d, t});
@@ -115,7 +115,7 @@ Blueprint arm_lamp(Random& random) {
 }
 
 // The panel's back leans against the upper front edge of the neck.
-Blueprint monitor(Random& random) {
+Blueprint tilted_monitor(Random& random) {
     Blueprint b("tilted monitor");
     const double w = random.uniform(0.45, 0.62), h = 0.6 * w, lean = random.uniform(0.08, 0.3);
     const double low = random.uniform(0.06, 0.12), top = low + 0.55 * h, neck = 0.04;
@@ -171,12 +171,12 @@ Group book_row(Random& random) {
     return row;
 }
 
-Group any_item(Random& random) {
+Group any_varied_item(Random& random) {
     const auto one = [](Blueprint b) { return Group{{std::move(b), {}}}; };
     switch (random.integer(0, 19)) {
         case 0:
         case 1:
-            return one(bottle(random));
+            return one(glass_bottle(random));
         case 2:
         case 3:
             return one(bowl(random));
@@ -191,13 +191,13 @@ Group any_item(Random& random) {
         case 8:
             return one(wine_glass(random));
         case 9:
-            return one(laptop(random));
+            return one(open_laptop(random));
         case 10:
             return one(photo_frame(random));
         case 11:
             return one(arm_lamp(random));
         case 12:
-            return one(monitor(random));
+            return one(tilted_monitor(random));
         case 13:
             return one(rounded_device(random));
         case 14:
@@ -246,7 +246,7 @@ std::array<double, 2> reach(const Group& group, double yaw) {
 
 Group make_varied_item(Random& random, double most_height, double radius) {
     for (int attempt = 0; attempt < 40; ++attempt) {
-        Group group = any_item(random);
+        Group group = any_varied_item(random);
         const auto far = reach(group, 0);
         if (!group.empty() && height(group) <= most_height && std::hypot(far[0], far[1]) <= radius)
             return group;
