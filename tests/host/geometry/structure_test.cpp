@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 namespace topple::geometry {
 namespace {
 
@@ -16,24 +18,64 @@ struct Scene {
         surfels.neighbour_first = {0};
     }
     std::size_t level(double x0, double y0, double x1, double y1, double z, double slope = 0) {
+        return piece([&](std::int32_t label) {
+            sheet(x0, x1, y0, y1, label, {0, 0, 1}, [&](double x, double y) {
+                return Vec3{x, y, z + slope * (x - x0)};
+            });
+        });
+    }
+    std::size_t ceiling(double x0, double y0, double x1, double y1, double z) {
+        return piece([&](std::int32_t label) {
+            sheet(x0, x1, y0, y1, label, {0, 0, -1}, [&](double x, double y) {
+                return Vec3{x, y, z};
+            });
+        });
+    }
+    // Upright, at x, towards +x or -x. With a back, which faces the other way, one part with it.
+    std::size_t upright(double x, double y0, double y1, double z0, double z1, double facing,
+                        double thick = 0) {
+        return piece([&](std::int32_t label) {
+            sheet(y0, y1, z0, z1, label, {facing, 0, 0}, [&](double y, double z) {
+                return Vec3{x, y, z};
+            });
+            if (thick > 0)
+                sheet(y0, y1, z0, z1, label, {-facing, 0, 0}, [&](double y, double z) {
+                    return Vec3{x - facing * thick, y, z};
+                });
+        });
+    }
+    std::vector<Structure> structure(std::optional<StoreyHint> storey = std::nullopt) const {
+        return find_structure(surfels, primitives, {0, 0, 1}, storey);
+    }
+
+  private:
+    template <class Fill>
+    std::size_t piece(const Fill& fill) {
         const auto label = static_cast<std::int32_t>(primitives.model.size());
-        for (double x = x0; x < x1; x += surfels.cell_m) {
-            for (double y = y0; y < y1; y += surfels.cell_m) {
-                surfels.x.push_back(static_cast<float>(x));
-                surfels.y.push_back(static_cast<float>(y));
-                surfels.z.push_back(static_cast<float>(z + slope * (x - x0)));
-                surfels.nx.push_back(0);
-                surfels.ny.push_back(0);
-                surfels.nz.push_back(1);
-                primitives.label.push_back(label);
-            }
-        }
+        primitives.regions.emplace_back();
+        fill(label);
         primitives.model.push_back("plane");
-        primitives.regions.push_back({label});
         return static_cast<std::size_t>(label);
     }
-    std::vector<Structure> structure() const {
-        return find_structure(surfels, primitives, {0, 0, 1});
+    template <class Place>
+    void sheet(double u0, double u1, double v0, double v1, std::int32_t label, const Vec3& normal,
+               const Place& place) {
+        const auto region = static_cast<std::int32_t>(primitives.faces.regions.size());
+        primitives.faces.regions.emplace_back();
+        primitives.regions.back().push_back(region);
+        for (double u = u0; u < u1; u += surfels.cell_m) {
+            for (double v = v0; v < v1; v += surfels.cell_m) {
+                const Vec3 p = place(u, v);
+                surfels.x.push_back(static_cast<float>(p[0]));
+                surfels.y.push_back(static_cast<float>(p[1]));
+                surfels.z.push_back(static_cast<float>(p[2]));
+                surfels.nx.push_back(static_cast<float>(normal[0]));
+                surfels.ny.push_back(static_cast<float>(normal[1]));
+                surfels.nz.push_back(static_cast<float>(normal[2]));
+                primitives.label.push_back(label);
+                primitives.faces.label.push_back(region);
+            }
+        }
     }
 };
 
@@ -81,6 +123,55 @@ TEST(Structure, AFloorInTwoPartsThatNothingJoinsIsFloor) {
     const auto found = scene.structure();
     EXPECT_EQ(found[here], Structure::floor);
     EXPECT_EQ(found[there], Structure::floor);
+}
+
+// Two rooms of a storey, x below and above 3, with a wall of both faces between them.
+struct TwoRooms : Scene {
+    std::size_t floor = level(0, 0, 6, 4, 3.1);
+    std::size_t roof = ceiling(0, 0, 6, 4, 5.8);
+    std::size_t wall = upright(3, 0, 2.5, 3.1, 5.8, 1, 0.12);  // up to the door
+};
+
+TEST(StructureOfAStorey, WallsBetweenRoomsAreWalls) {
+    TwoRooms rooms;
+    const auto lintel = rooms.upright(3, 2.5, 3.4, 5.15, 5.8, 1, 0.12);
+    const auto rest = rooms.upright(3, 3.4, 4, 3.1, 4.9, 1);  // in the wall's plane
+    const auto outer = rooms.upright(0, 0, 4, 3.1, 5.8, 1);
+    const auto found = rooms.structure(StoreyHint{3.1});
+    EXPECT_EQ(found[rooms.floor], Structure::floor);
+    EXPECT_EQ(found[rooms.roof], Structure::ceiling);
+    for (const std::size_t p : {rooms.wall, lintel, rest, outer})
+        EXPECT_EQ(found[p], Structure::wall) << p;
+}
+
+TEST(StructureOfAStorey, FurnitureIsNone) {
+    TwoRooms rooms;
+    const auto wardrobe = rooms.upright(0.6, 0, 2, 3.1, 5.3, 1, 0.6);
+    const auto front = rooms.upright(2.5, 0, 2, 3.1, 5.3, -1);  // of another, 40 cm before the wall
+    const auto table = rooms.level(4, 1, 5.5, 2, 3.85);
+    const auto under = rooms.ceiling(4, 1, 5.5, 2, 3.82);
+    const auto top = rooms.level(0, 0, 0.6, 2, 5.3);
+    const auto found = rooms.structure(StoreyHint{3.1});
+    for (const std::size_t p : {wardrobe, front, table, under, top})
+        EXPECT_EQ(found[p], Structure::none) << p;
+}
+
+// A block that sees no floor of its storey must not take a table top for it.
+TEST(StructureOfAStorey, TheFloorMayBeOutOfSight) {
+    Scene scene;
+    const auto table = scene.level(0, 0, 2, 1, 3.85);
+    EXPECT_EQ(scene.structure(StoreyHint{3.1})[table], Structure::none);
+    EXPECT_EQ(scene.structure()[table], Structure::floor);
+}
+
+TEST(StructureOfAStorey, WithoutACeilingHighPlanesAreWalls) {
+    Scene scene;
+    scene.level(0, 0, 6, 4, 0);
+    const auto wall = scene.upright(3, 0, 4, 0, 2.3, 1);
+    const auto desk = scene.upright(1, 0, 3, 0, 0.75, 1);
+    const auto found = scene.structure(StoreyHint{0});
+    EXPECT_EQ(found[wall], Structure::wall);
+    EXPECT_EQ(found[desk], Structure::none);
 }
 
 }  // namespace
