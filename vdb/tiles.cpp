@@ -27,6 +27,7 @@ void VoxelScene::put_leaf(const std::array<std::int32_t, 3>& lowest,
         throw Error(ErrorKind::usage, "put_leaf: " + std::to_string(states.size()) + " states");
     const openvdb::Coord origin(lowest[0], lowest[1], lowest[2]);
     auto& tree = grids_->state->tree();
+    grids_->leaves.beyond.push_back(leaf_of(origin));  // there is no box
     if (std::ranges::all_of(states, [&](std::uint8_t s) { return s == states[0]; }) &&
         states[0] == static_cast<std::uint8_t>(State::empty)) {
         tree.addTile(1, origin, states[0], false);
