@@ -73,8 +73,8 @@ class VoxelScene {
     ~VoxelScene();
     VoxelScene(VoxelScene&&) noexcept;
 
-    // Takes over a leaf of 8x8x8 voxels, found elsewhere, once each: 512 states in the order of Tiles. Of a
-    // solid voxel put_label() names the primitive.
+    // Takes over a leaf of 8x8x8 voxels, found elsewhere, once each: 512 states in the order of
+    // Tiles. Of a solid voxel put_label() names the primitive.
     void put_leaf(const std::array<std::int32_t, 3>& lowest, std::span<const std::uint8_t> states);
     void put_label(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive);
 

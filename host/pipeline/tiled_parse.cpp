@@ -72,6 +72,18 @@ void spill(const fs::path& input, const tiles::WorkFolder& work, const ParseOpti
     out.finish();
 }
 
+// What comes before the blocks. Where it fails the folder goes: another try would do no better, and
+// who stops it then has lost little.
+template <class Work>
+auto or_remove(tiles::WorkFolder& folder, const Work& work) {
+    try {
+        return work();
+    } catch (...) {
+        folder.finished();
+        throw;
+    }
+}
+
 // The spacing of the points in a bin: of all, or of a slab of it that holds enough of them.
 double spacing_in(const tiles::SpilledPoints& points, std::size_t bin) {
     const auto& of_bin = points.bins()[bin];
@@ -207,7 +219,8 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
     device::Device& device = shared.device;
     const tiles::SpilledPoints points(work->path());
     const std::vector<tiles::Bin> bins = bins_of(points);
-    const tiles::Layout layout = find_layout(shared, points, input, options, stage);
+    const tiles::Layout layout =
+        or_remove(*work, [&] { return find_layout(shared, points, input, options, stage); });
     stage("blocks", [&] { parse_blocks(shared, points, layout, options, stage); });
     JoinedBlocks joined =
         stage("joining", [&] { return join_blocks(work->path(), layout, stage); });
@@ -250,7 +263,7 @@ std::optional<ParseResult> parse_tiled(const fs::path& input, const ParseOptions
     StageClock stage(timings, options);
     const std::string about = manifest(input, options);
     auto work = std::make_unique<tiles::WorkFolder>(options.work_folder, about);
-    stage("sorting", [&] { spill(input, *work, options, stage); });
+    or_remove(*work, [&] { stage("sorting", [&] { spill(input, *work, options, stage); }); });
     if (options.tile_m == 0 && tiles::SpilledPoints(work->path()).points() <= most_points_at_once) {
         work->finished();
         return std::nullopt;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/tiled_stages.h"
 
+#include <algorithm>
+#include <climits>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <utility>
@@ -61,17 +64,76 @@ void thin_some(Crew& crew, device::Device& device, const tiles::SpilledPoints& p
         [&](std::uint64_t bin) { tiles::thin_bin(points, bin, order.cell_m, order.folder); }, tell);
 }
 
-// A member's part of the blocks: one at a time, on all threads.
+// Devices for blocks that are parsed at the same time. Much of a block's work is done by one
+// thread: of native devices each thread gets one of its own, as far as memory allows; another
+// device is alone.
+class BlockDevices {
+  public:
+    BlockDevices(device::Device& device, const tiles::Layout& layout, const ParseOptions& options) {
+        const unsigned threads = device.threads().threads();
+        if (device.info().backend != device::Backend::native || threads < 2) {
+            free_.push_back(&device);
+        } else {
+            const unsigned lanes = std::min(threads, most_lanes(layout, options));
+            for (unsigned n = 0; n < lanes; ++n) {
+                own_.push_back(device::open_device("native", lanes == 1 ? threads : 1));
+                free_.push_back(own_.back().get());
+            }
+        }
+        lanes_ = static_cast<unsigned>(free_.size());
+    }
+    unsigned lanes() const { return lanes_; }
+
+    // Calls work(device) with a device that nobody else uses. At most lanes() at a time.
+    template <class Work>
+    void with(const Work& work) {
+        device::Device* mine = nullptr;
+        {
+            const std::lock_guard lock(mutex_);
+            mine = free_.back();
+            free_.pop_back();
+        }
+        const auto give_back = [&](device::Device* d) {
+            const std::lock_guard lock(mutex_);
+            free_.push_back(d);
+        };
+        const std::unique_ptr<device::Device, decltype(give_back)> held(mine, give_back);
+        work(*mine);
+    }
+
+  private:
+    // Measured: what a block takes besides its points, and a point that it sees; which are more
+    // than those of its core.
+    static unsigned most_lanes(const tiles::Layout& layout, const ParseOptions& options) {
+        constexpr double block_bytes = 60e6, point_bytes = 450, seen = 1.75;
+        if (options.max_memory_bytes == 0) return UINT_MAX;
+        std::uint64_t cells = 0;
+        for (const tiles::Block& b : layout.blocks) cells = std::max(cells, b.cells);
+        const double each = block_bytes + point_bytes * seen * static_cast<double>(cells);
+        return static_cast<unsigned>(
+            std::clamp(static_cast<double>(options.max_memory_bytes) / each, 1.0, 1024.0));
+    }
+
+    std::mutex mutex_;
+    std::vector<std::shared_ptr<device::Device>> own_;
+    std::vector<device::Device*> free_;
+    unsigned lanes_ = 0;
+};
+
+// A member's part of the blocks.
 void parse_some(Crew& crew, device::Device& device, const tiles::SpilledPoints& points,
                 const tiles::Layout& layout, const fs::path& folder, const ParseOptions& options,
                 const std::function<void()>& tell) {
     const std::vector<tiles::Bin> bins = bins_of(points);
+    BlockDevices devices(device, layout, options);
     work_off(
-        crew, device, 1,
+        crew, device, devices.lanes(),
         [&](std::uint64_t b) {
             const tiles::Block& block = layout.blocks.at(b);
             const tiles::BlockPoints seen = tiles::points_of_block(folder, bins, layout, block);
-            write_block(folder, b, parse_block(device, seen, layout, block, options));
+            devices.with([&](device::Device& own) {
+                write_block(folder, b, parse_block(own, seen, layout, block, options));
+            });
         },
         tell);
 }
