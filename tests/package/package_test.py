@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Installs what was built, and uses it as a stranger's project would.
 
-  package_test.py install|example|headers|adopt_opencl|examples|pkg_config --source DIR --build DIR --work DIR ...
+  package_test.py install|example|headers|adopt_opencl|examples|pkg_config|python|python_example
+      --source DIR --build DIR --work DIR ...
 
 `install` comes first: it installs into WORK, moves the whole elsewhere, so that nothing can depend on where
 it was first, and parses a small generated scan with the program there. Each of the others configures, builds
@@ -132,6 +133,30 @@ class Package:
         self.compare(printed, 'auto')
         check(re.search(r"floor's normal is \(-0.60, -?0.00, 0.80\)", printed), 'the normal is wrong')
 
+    def use_python_package(self):
+        folders = [folder for folder, _, names in os.walk(self.prefix) if 'py.typed' in names]
+        check(len(folders) == 1, f'the Python package lies in {folders}')
+        os.environ['PYTHONPATH'] = os.path.dirname(folders[0])
+        os.chdir(self.a.work)
+        at = run(sys.executable, '-c', 'import topple; print(topple.__file__)').strip()
+        check(at.startswith(folders[0]), f'Python imports {at}')
+
+    def python(self):
+        """tests/python, by pytest."""
+        self.use_python_package()
+        print(run(sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', os.path.join(self.a.source, 'tests/python')))
+
+    def python_example(self):
+        """docs/examples in Python."""
+        self.use_python_package()
+        if subprocess.run([sys.executable, '-c', 'import matplotlib'], capture_output=True).returncode:
+            print('matplotlib is missing: apt-get install python3-matplotlib')
+            sys.exit(SKIPPED)
+        picture = os.path.join(self.a.work, 'room.png')
+        printed = run(sys.executable, os.path.join(self.a.source, 'docs/examples/room.py'), self.scan, picture)
+        self.compare(printed, 'auto')
+        check(os.path.getsize(picture) > 50000, 'the picture is as good as empty')
+
     def compare(self, printed, backend):
         """The number of objects that was printed is that of `topple parse` on that backend."""
         print(printed)
@@ -142,7 +167,8 @@ class Package:
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument('test', choices=['install', 'example', 'headers', 'adopt_opencl', 'examples', 'pkg_config'])
+    parser.add_argument('test', choices=['install', 'example', 'headers', 'adopt_opencl', 'examples', 'pkg_config', 'python',
+                                         'python_example'])
     for name in ('source', 'build', 'work', 'cmake', 'generator', 'c-compiler', 'compiler', 'build-type'):
         parser.add_argument('--' + name, required=True)
     arguments = parser.parse_args()

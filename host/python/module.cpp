@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "python.h"
+#include "topple/stages.h"
+#include "topple/version.h"
+
+namespace topple::python {
+namespace {
+
+const char* name_of(ErrorKind kind) {
+    return kind == ErrorKind::input ? "input" : kind == ErrorKind::usage ? "usage" : "device";
+}
+
+// topple::Error becomes topple.Error, with its kind.
+void bind_error(py::module_& module) {
+    static PyObject* type = PyErr_NewExceptionWithDoc(
+        "topple.Error", "What went wrong, in a line; `kind` is input, usage, device or cancelled.",
+        PyExc_RuntimeError, nullptr);
+    if (!type) throw py::error_already_set();
+    module.add_object("Error", py::reinterpret_borrow<py::object>(type));
+    py::register_exception_translator([](std::exception_ptr thrown) {
+        try {
+            if (thrown) std::rethrow_exception(thrown);
+        } catch (const Error& error) {
+            const bool cancelled = std::string(error.what()) == "cancelled";
+            py::object made = py::reinterpret_borrow<py::object>(type)(error.what());
+            made.attr("kind") = cancelled ? "cancelled" : name_of(error.kind());
+            PyErr_SetObject(type, made.ptr());
+        }
+    });
+}
+
+void bind_devices(py::module_& module) {
+    py::class_<SharedDevice, std::shared_ptr<SharedDevice>>(module, "Device")
+        .def_property_readonly("backend",
+                               [](const SharedDevice& d) {
+                                   return device::to_string(device::describe(*d.device).backend);
+                               })
+        .def_property_readonly(
+            "name", [](const SharedDevice& d) { return device::describe(*d.device).name; })
+        .def_property_readonly(
+            "gpu", [](const SharedDevice& d) { return device::describe(*d.device).gpu; })
+        .def("__repr__", [](const SharedDevice& d) {
+            const device::DeviceInfo& info = device::describe(*d.device);
+            return std::string("<topple.Device ") + device::to_string(info.backend) + ", " +
+                   info.name + ">";
+        });
+    module.def(
+        "open_device",
+        [](const std::string& backend, unsigned threads) {
+            auto opened = std::make_shared<SharedDevice>();
+            opened->device = device::open_device(backend, threads);
+            return opened;
+        },
+        py::arg("backend") = "auto", py::arg("threads") = 0,
+        py::call_guard<py::gil_scoped_release>());
+    module.def("list_devices", [] {
+        std::vector<device::Listing> listings;
+        {
+            const py::gil_scoped_release release;
+            listings = device::list_devices();
+        }
+        py::list out;
+        for (const device::Listing& l : listings)
+            out.append(py::make_tuple(device::to_string(l.backend), l.info.name, l.info.driver,
+                                      l.info.gpu, l.usable, l.problem));
+        return out;
+    });
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_topple, module) {
+    module.attr("__version__") = version;
+    bind_error(module);
+    bind_devices(module);
+    bind_result(module);
+    bind_parse(module);
+}
+
+}  // namespace topple::python

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "python.h"
+
+namespace topple::python {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Python's side of a running parse, which holds no lock of the interpreter: it is asked now and
+// then, on the thread that called.
+class Caller {
+  public:
+    Caller(py::object progress, py::object cancelled)
+        : progress_(std::move(progress)), cancelled_(std::move(cancelled)) {}
+
+    void progress(const std::string& stage, double done) {
+        if (progress_.is_none() || !mine() || stop_ || (done != 0 && done != 1 && !due(told_)))
+            return;
+        ask([&] { progress_(stage, done); });
+    }
+    // Whether it was told to stop, by the callback or by a signal such as Ctrl-C.
+    bool cancelled() {
+        if (!stop_ && mine() && due(asked_)) {
+            ask([&] {
+                if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+                if (!cancelled_.is_none() && cancelled_().cast<bool>()) stop_ = true;
+            });
+        }
+        return stop_;
+    }
+    // With the interpreter's lock: throws what a callback or a signal has thrown.
+    void rethrow() {
+        if (thrown_) throw *thrown_;
+    }
+
+  private:
+    bool mine() const { return std::this_thread::get_id() == thread_; }
+    static bool due(Clock::time_point& last) {
+        const Clock::time_point now = Clock::now();
+        if (now - last < std::chrono::milliseconds(50)) return false;
+        last = now;
+        return true;
+    }
+    template <class Question>
+    void ask(const Question& question) {
+        const py::gil_scoped_acquire acquire;
+        try {
+            question();
+        } catch (py::error_already_set& error) {
+            thrown_ = std::make_unique<py::error_already_set>(std::move(error));
+            stop_ = true;
+        } catch (const py::cast_error&) {
+            PyErr_SetString(PyExc_TypeError, "cancelled() must return a bool");
+            thrown_ = std::make_unique<py::error_already_set>();
+            stop_ = true;
+        }
+    }
+
+    py::object progress_, cancelled_;
+    const std::thread::id thread_ = std::this_thread::get_id();
+    std::atomic<bool> stop_ = false;
+    Clock::time_point told_{}, asked_{};
+    std::unique_ptr<py::error_already_set> thrown_;
+};
+
+template <class Parse>
+std::shared_ptr<Parsed> run(const std::shared_ptr<SharedDevice>& device, ParseOptions options,
+                            py::object progress, py::object cancelled, const Parse& parse_with) {
+    Caller caller(std::move(progress), std::move(cancelled));
+    options.progress = [&](const std::string& stage, double done) { caller.progress(stage, done); };
+    options.cancelled = [&] { return caller.cancelled(); };
+    std::unique_lock<std::mutex> lock;
+    if (device) {
+        lock = std::unique_lock(device->in_use, std::try_to_lock);
+        if (!lock)
+            throw Error(ErrorKind::usage,
+                        "the device is in use by another thread's parse; open one for each");
+        options.device = device->device;
+    }
+    auto out = std::make_shared<Parsed>();
+    try {
+        const py::gil_scoped_release release;
+        out->result = parse_with(options);
+    } catch (const Error&) {
+        caller.rethrow();
+        throw;
+    }
+    caller.rethrow();
+    return out;
+}
+
+// A one-dimensional array of float32 where it lies.
+FloatColumn column(const py::array& from, const char* name) {
+    if (from.ndim() != 1 || !py::isinstance<py::array_t<float>>(from))
+        throw Error(ErrorKind::usage, std::string(name) + " is no array of float32 in a row");
+    return {static_cast<const float*>(from.data()), static_cast<std::size_t>(from.shape(0)),
+            from.strides(0)};
+}
+
+CloudView view_of(const std::vector<py::array>& points, const std::vector<py::array>& normals,
+                  const std::optional<Vec3>& viewpoint) {
+    CloudView view;
+    view.source = "points";
+    view.x = column(points.at(0), "x");
+    view.y = column(points.at(1), "y");
+    view.z = column(points.at(2), "z");
+    if (!normals.empty()) {
+        view.nx = column(normals.at(0), "nx");
+        view.ny = column(normals.at(1), "ny");
+        view.nz = column(normals.at(2), "nz");
+    }
+    view.has_viewpoint = viewpoint.has_value();
+    view.viewpoint = viewpoint.value_or(Vec3{});
+    return view;
+}
+
+}  // namespace
+
+void bind_parse(py::module_& module) {
+    py::class_<ParseOptions>(module, "Options")
+        .def(py::init<>())
+        .def_readwrite("voxel_m", &ParseOptions::voxel_m)
+        .def_readwrite("unit_m", &ParseOptions::unit_m)
+        .def_readwrite("up", &ParseOptions::up)
+        .def_readwrite("disturbances", &ParseOptions::disturbances)
+        .def_readwrite("seed", &ParseOptions::seed)
+        .def_readwrite("max_memory_bytes", &ParseOptions::max_memory_bytes)
+        .def_readwrite("density_kg_m3", &ParseOptions::density_kg_m3)
+        .def_readwrite("friction", &ParseOptions::friction)
+        .def_readwrite("walks", &ParseOptions::walks)
+        .def_readwrite("wind_m_s", &ParseOptions::wind_m_s)
+        .def_readwrite("wind_from_deg", &ParseOptions::wind_from_deg)
+        .def_readwrite("pga_m_s2", &ParseOptions::pga_m_s2)
+        .def_readwrite("tolerable_J", &ParseOptions::tolerable_J)
+        .def_readwrite("grouping_time_s", &ParseOptions::grouping_time_s)
+        .def("read_motion",
+             [](ParseOptions& o, const std::string& file) {
+                 o.motion = std::make_shared<BodyMotion>(read_motion(file));
+             })
+        .def("read_accelerogram", [](ParseOptions& o, const std::string& file) {
+            o.accelerogram = read_accelerogram(file);
+        });
+    module.def(
+        "parse_path", [](const std::string& path, const std::shared_ptr<SharedDevice>& device,
+                         const ParseOptions& options, py::object progress, py::object cancelled) {
+            return run(
+                device, options, std::move(progress), std::move(cancelled),
+                [&](const ParseOptions& o) { return parse(std::filesystem::path(path), o); });
+        });
+    // The arrays are read without the interpreter's lock: nobody may write to them meanwhile.
+    module.def("parse_arrays",
+               [](const std::vector<py::array>& points, const std::vector<py::array>& normals,
+                  const std::optional<Vec3>& viewpoint, const std::shared_ptr<SharedDevice>& device,
+                  ParseOptions options, py::object progress, py::object cancelled) {
+                   const CloudView view = view_of(points, normals, viewpoint);
+                   options.coordinates = false;
+                   return run(device, options, std::move(progress), std::move(cancelled),
+                              [&](const ParseOptions& o) { return parse(view, o); });
+               });
+    module.def("write", [](Parsed& parsed, const std::string& folder, bool pictures, bool glb,
+                           const std::vector<py::array>& points) {
+        std::optional<CloudView> view;
+        if (!points.empty()) view = view_of(points, {}, {});
+        const py::gil_scoped_release release;
+        ScenePoints& kept = parsed.result.scene.points;
+        if (view) add_coordinates(*view, parsed.result);
+        struct Forget {
+            ScenePoints* points;
+            ~Forget() {
+                if (points) points->x = points->y = points->z = {};
+            }
+        } const forget{view ? &kept : nullptr};
+        OutputOptions options;
+        options.pictures = pictures;
+        options.glb = glb;
+        write_outputs(parsed.result, folder, options);
+    });
+}
+
+}  // namespace topple::python

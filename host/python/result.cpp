@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "python.h"
+
+namespace topple::python {
+namespace {
+
+// The vector's memory as an array, which keeps its owner alive.
+template <class T>
+py::array borrowed(const std::vector<T>& values, const py::object& owner) {
+    return py::array_t<T>({static_cast<py::ssize_t>(values.size())},
+                          {static_cast<py::ssize_t>(sizeof(T))}, values.data(), owner);
+}
+
+// References to the items, each of which keeps the result alive.
+template <class Item>
+py::list items(const std::vector<Item>& from, const py::object& owner) {
+    py::list out;
+    for (const Item& item : from)
+        out.append(py::cast(&item, py::return_value_policy::reference_internal, owner));
+    return out;
+}
+
+const Scene& scene_of(const py::object& self) {
+    return self.cast<const Parsed&>().result.scene;
+}
+
+void bind_items(py::module_& module) {
+    py::class_<Primitive>(module, "Primitive")
+        .def_readonly("id", &Primitive::id)
+        .def_readonly("object", &Primitive::object)
+        .def_readonly("model", &Primitive::model)
+        .def_readonly("points", &Primitive::points)
+        .def_readonly("solid_voxels", &Primitive::solid_voxels)
+        .def_readonly("volume_m3", &Primitive::volume_m3)
+        .def_readonly("mass_kg", &Primitive::mass_kg)
+        .def_readonly("center_of_mass_m", &Primitive::center_of_mass_m);
+    py::class_<Object>(module, "Object")
+        .def_readonly("id", &Object::id)
+        .def_readonly("primitives", &Object::primitives)
+        .def_readonly("grounded", &Object::grounded)
+        .def_readonly("agreement", &Object::agreement)
+        .def_readonly("mass_kg", &Object::mass_kg)
+        .def_readonly("center_of_mass_m", &Object::center_of_mass_m)
+        .def_readonly("barrier_J", &Object::barrier_J)
+        .def_readonly("barrier_error_J", &Object::barrier_error_J)
+        .def_readonly("release_J", &Object::release_J)
+        .def_readonly("mode", &Object::mode)
+        .def_readonly("direction", &Object::direction)
+        .def_readonly("risk_J", &Object::risk_J)
+        .def_readonly("risk_spread_J", &Object::risk_spread_J)
+        .def_readonly("fall_chance", &Object::fall_chance)
+        .def_readonly("unsafety", &Object::unsafety)
+        .def_property_readonly(
+            "instability",
+            [](const py::object& self) {
+                const auto& curve = self.cast<const Object&>().instability;
+                return py::array_t<double>(
+                    {static_cast<py::ssize_t>(curve.size()), py::ssize_t{2}},
+                    {py::ssize_t{sizeof(InstabilityStep)}, py::ssize_t{sizeof(double)}},
+                    reinterpret_cast<const double*>(curve.data()), self);
+            })
+        .def_property_readonly("why", [](const Object& o) { return o.why.sentence; })
+        .def_property_readonly("stands_on", [](const Object& o) { return o.why.stands_on; })
+        .def_property_readonly("advice", [](const Object& o) { return o.advice.sentence; })
+        .def("__repr__", [](const Object& o) {
+            return "<topple.Object " + std::to_string(o.id) + ", unsafety " +
+                   std::to_string(o.unsafety).substr(0, 4) + ">";
+        });
+    py::class_<Contact>(module, "Contact")
+        .def_readonly("a", &Contact::a)
+        .def_readonly("b", &Contact::b)
+        .def_readonly("area_m2", &Contact::area_m2)
+        .def_readonly("normal", &Contact::normal)
+        .def_readonly("relation", &Contact::relation)
+        .def_readonly("probability", &Contact::probability);
+    py::class_<Support>(module, "Support")
+        .def_readonly("supporter", &Support::supporter)
+        .def_readonly("supported", &Support::supported)
+        .def_readonly("area_m2", &Support::area_m2);
+}
+
+template <class Member>
+auto point_array(Member member) {
+    return
+        [member](const py::object& self) { return borrowed(scene_of(self).points.*member, self); };
+}
+
+py::dict solid(const py::object& self) {
+    const SolidVoxels& v = scene_of(self).solid;
+    py::dict out;
+    out["x"] = borrowed(v.x, self);
+    out["y"] = borrowed(v.y, self);
+    out["z"] = borrowed(v.z, self);
+    out["primitive"] = borrowed(v.primitive, self);
+    out["object"] = borrowed(v.object, self);
+    out["state"] = borrowed(v.state, self);
+    return out;
+}
+
+py::dict fields(const py::object& self) {
+    py::dict out;
+    for (const auto& [name, f] : scene_of(self).fields) {
+        py::dict field;
+        field["x"] = borrowed(f.x, self);
+        field["y"] = borrowed(f.y, self);
+        field["z"] = borrowed(f.z, self);
+        field["vx"] = borrowed(f.vx, self);
+        field["vy"] = borrowed(f.vy, self);
+        field["vz"] = borrowed(f.vz, self);
+        field["density"] = borrowed(f.density, self);
+        out[py::str(name)] = field;
+    }
+    return out;
+}
+
+}  // namespace
+
+void bind_result(py::module_& module) {
+    bind_items(module);
+    const auto scene = [](auto member) {
+        return [member](const Parsed& p) { return p.result.scene.*member; };
+    };
+    py::class_<Parsed, std::shared_ptr<Parsed>>(module, "Parsed")
+        .def_property_readonly("source", scene(&Scene::source))
+        .def_property_readonly("backend", scene(&Scene::backend))
+        .def_property_readonly("device", scene(&Scene::device))
+        .def_property_readonly("seed", scene(&Scene::seed))
+        .def_property_readonly("voxel_size_m", scene(&Scene::voxel_size_m))
+        .def_property_readonly("up", scene(&Scene::up))
+        .def_property_readonly("up_method", scene(&Scene::up_method))
+        .def_property_readonly("manhattan_from_input", scene(&Scene::manhattan_from_input))
+        .def_property_readonly("notes", scene(&Scene::notes))
+        .def_property_readonly("timings_s",
+                               [](const Parsed& p) {
+                                   py::dict out;
+                                   for (const auto& [name, s] : p.result.scene.timings_s)
+                                       out[py::str(name)] = s;
+                                   return out;
+                               })
+        .def_property_readonly("events", scene(&Scene::events))
+        .def_property_readonly(
+            "objects", [](const py::object& self) { return items(scene_of(self).objects, self); })
+        .def_property_readonly(
+            "primitives",
+            [](const py::object& self) { return items(scene_of(self).primitives, self); })
+        .def_property_readonly(
+            "contacts", [](const py::object& self) { return items(scene_of(self).contacts, self); })
+        .def_property_readonly(
+            "supports", [](const py::object& self) { return items(scene_of(self).supports, self); })
+        .def_property_readonly("x", point_array(&ScenePoints::x))
+        .def_property_readonly("y", point_array(&ScenePoints::y))
+        .def_property_readonly("z", point_array(&ScenePoints::z))
+        .def_property_readonly("nx", point_array(&ScenePoints::nx))
+        .def_property_readonly("ny", point_array(&ScenePoints::ny))
+        .def_property_readonly("nz", point_array(&ScenePoints::nz))
+        .def_property_readonly("point_primitive", point_array(&ScenePoints::primitive))
+        .def_property_readonly("point_object", point_array(&ScenePoints::object))
+        .def_property_readonly("point_region", point_array(&ScenePoints::region))
+        .def_property_readonly("point_index", point_array(&ScenePoints::index))
+        .def_property_readonly("solid", solid)
+        .def_property_readonly("fields", fields);
+}
+
+}  // namespace topple::python

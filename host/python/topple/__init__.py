@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: MIT
+"""Tells which things in a 3D scan of a room are one solid object, what holds what up, and what may fall.
+
+    result = topple.parse(points)           # NumPy, (N, 3), metres; or a file, or a folder of depth frames
+    for o in result.objects: print(o.id, o.unsafety, o.why)
+    result.write("out")
+
+Lengths in metres, masses in kilograms, energies in joules, in the input's frame; ids count from 0, -1 means
+unassigned. What goes wrong is raised as topple.Error.
+"""
+import os
+from typing import NamedTuple
+
+import numpy as np
+
+from . import _topple
+from ._topple import Contact, Device, Error, Object, Primitive, Support, __version__, open_device
+
+__all__ = ['Contact', 'Device', 'DeviceInfo', 'Error', 'Object', 'Primitive', 'Result', 'Support', '__version__',
+           'devices', 'open_device', 'parse']
+
+
+class DeviceInfo(NamedTuple):
+    """A device of this machine, or why a backend offers none."""
+    backend: str
+    name: str
+    driver: str
+    gpu: bool
+    usable: bool
+    problem: str
+
+
+def devices():
+    """Every device of every backend, as `topple devices` lists them."""
+    return [DeviceInfo(*listed) for listed in _topple.list_devices()]
+
+
+def _usage(message):
+    error = Error(message)
+    error.kind = 'usage'
+    return error
+
+
+def _column(values, name):
+    """One coordinate of each point as float32: where it lies, if it is that already."""
+    values = np.asarray(values)
+    if values.ndim != 1 or values.dtype.kind != 'f':
+        raise _usage(f'{name}: expected floats in a row, not {values.dtype} of shape {values.shape}')
+    return values if values.dtype == np.float32 else values.astype(np.float32)
+
+
+def _columns(source, names, what):
+    """The three coordinates of an array, of records with fields of these names, or of three arrays."""
+    if isinstance(source, tuple) and len(source) == 3:
+        return [_column(c, f'{what} {name}') for c, name in zip(source, names)]
+    if hasattr(source, '__dlpack__') and not isinstance(source, np.ndarray):
+        source = np.from_dlpack(source)
+    source = np.asarray(source)
+    if source.dtype.names:
+        missing = [name for name in names if name not in source.dtype.names]
+        if missing:
+            raise _usage(f'{what}: the records have no field {missing[0]}')
+        return [_column(source[name], f'{what} {name}') for name in names]
+    if source.ndim != 2 or source.shape[1] != 3 or source.dtype.kind != 'f':
+        raise _usage(f'{what}: expected floats of shape (N, 3), not {source.dtype} of shape {source.shape}; '
+                     'points[:, :3] takes the first three columns')
+    if source.dtype != np.float32:
+        source = source.astype(np.float32)
+    return [source[:, axis] for axis in range(3)]
+
+
+class Result:
+    """What a scan holds. Arrays over its points and voxels are the result's own memory, not copies: they keep
+    it alive, and writing to them changes what write() writes."""
+
+    def __init__(self, parsed, points):
+        self._parsed = parsed
+        self._points = points  # the caller's, where they are theirs
+
+    def __getattr__(self, name):
+        if name.startswith('_'):
+            raise AttributeError(name)
+        return getattr(self._parsed, name)
+
+    def __dir__(self):
+        return sorted(set(object.__dir__(self)) | {n for n in dir(self._parsed) if not n.startswith('_')})
+
+    def __repr__(self):
+        return f'<topple.Result of {self.source}: {len(self.objects)} objects on {self.backend}>'
+
+    @property
+    def xyz(self):
+        """Three arrays: the coordinates of the points that the labels are of. Of arrays that were given, views of
+        these, unless points that are not finite were left out."""
+        if self._points is None:
+            return self._parsed.x, self._parsed.y, self._parsed.z
+        index = self._parsed.point_index
+        return tuple(c[index] if len(index) else c for c in self._points)
+
+    @property
+    def normals(self):
+        """Three arrays: unit normals of the points, towards the side that was seen; 0 where there is none."""
+        return self._parsed.nx, self._parsed.ny, self._parsed.nz
+
+    def write(self, folder, *, pictures=False, glb=False):
+        """Writes the folder of outputs (docs/output.md), which appears whole or not at all."""
+        _topple.write(self._parsed, os.fspath(folder), pictures, glb, self._points or [])
+
+
+def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=('human', 'wind', 'earthquake'),
+          seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, walks=500, motion=None, wind_m_s=12.0,
+          wind_from_deg=None, pga_m_s2=None, accelerogram=None, tolerable_J=0.1, grouping_time_s=None, normals=None,
+          viewpoint=None, progress=None, cancelled=None):
+    """Parses a scan into a Result.
+
+    source: a path, as the command line takes it; or points in metres: an array of shape (N, 3), records with
+    fields x, y, z, a tuple of three arrays, or whatever has __dlpack__. float32 is read where it lies, with any
+    strides, and must not change meanwhile; float64 is converted, which takes 12 bytes a point. Points that are not
+    finite are left out: Result.point_index then says where the others are.
+
+    device: a Device of open_device(), or a backend's name. motion, accelerogram: files. normals, viewpoint: of
+    points, as they are given; where the sensor was. progress(stage, done) is called as stages start and go on;
+    cancelled() is polled, and True stops the parse with an Error of kind "cancelled". Ctrl-C stops it, too, with
+    KeyboardInterrupt. Other threads of Python run meanwhile. The other options are those of `topple parse --help`.
+    """
+    options = _topple.Options()
+    options.voxel_m, options.unit_m, options.up = voxel_m, unit_m, up
+    options.disturbances, options.seed = list(disturbances), seed
+    options.max_memory_bytes, options.density_kg_m3, options.friction = max_memory_bytes, density_kg_m3, friction
+    options.walks, options.wind_m_s, options.wind_from_deg = walks, wind_m_s, wind_from_deg
+    options.pga_m_s2, options.tolerable_J, options.grouping_time_s = pga_m_s2, tolerable_J, grouping_time_s
+    if motion is not None:
+        options.read_motion(os.fspath(motion))
+    if accelerogram is not None:
+        options.read_accelerogram(os.fspath(accelerogram))
+    if isinstance(device, str):
+        device = open_device(device)
+    if isinstance(source, (str, os.PathLike)):
+        if normals is not None or viewpoint is not None:
+            raise _usage('normals and viewpoint are for points in memory; a file brings its own')
+        return Result(_topple.parse_path(os.fspath(source), device, options, progress, cancelled), None)
+    points = _columns(source, ('x', 'y', 'z'), 'points')
+    directions = [] if normals is None else _columns(normals, ('nx', 'ny', 'nz'), 'normals')
+    return Result(_topple.parse_arrays(points, directions, viewpoint, device, options, progress, cancelled), points)

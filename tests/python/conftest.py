@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+
+import topple
+
+
+def room_points():
+    """Floor, four walls, a crate on the floor and a box on the crate, z up: (N, 3), float32, metres."""
+    random = np.random.default_rng(1)
+
+    def face(corner, u, v):
+        u, v = np.array(u), np.array(v)
+        s, t = random.random((2, int(2500 * u.sum() * v.sum()), 1))
+        return np.array(corner) + s * u + t * v
+
+    def box(low, size):
+        low, (x, y, z) = np.array(low), np.diag(size)
+        return [face(low + z, x, y), face(low, x, z), face(low + y, x, z), face(low, y, z), face(low + x, y, z)]
+
+    x, y, z = np.diag([2.8, 2.4, 1.4])
+    faces = [face([0, 0, 0], x, y), face([0, 0, 0], y, z), face([0, 0, 0], x, z), face(x, y, z), face(y, x, z)]
+    faces += box([1.0, 0.9, 0], [0.7, 0.6, 0.5]) + box([1.2, 1.1, 0.5], [0.25, 0.2, 0.35])
+    return np.concatenate(faces).astype(np.float32)
+
+
+@pytest.fixture(scope='session')
+def points():
+    return room_points()
+
+
+@pytest.fixture(scope='session')
+def device():
+    return topple.open_device('native')
+
+
+@pytest.fixture(scope='session')
+def result(points, device):
+    return topple.parse(points, device=device, disturbances=['wind'])

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: MIT
+"""topple.parse: what it takes, what it gives, and how it is stopped."""
+import gc
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import topple
+
+
+def quick(points, device, **options):
+    return topple.parse(points, device=device, disturbances=[], **options)
+
+
+def test_finds_what_is_there(result, points):
+    boxes = [o for o in result.objects if not o.grounded]
+    assert len(boxes) >= 2
+    assert result.backend == 'native' and result.source == 'points'
+    top = result.point_object[(np.abs(points[:, 2] - 0.85) < 0.01) & (np.abs(points[:, 0] - 1.3) < 0.05)]
+    upper = result.objects[np.bincount(top[top >= 0]).argmax()]
+    assert not upper.grounded and upper.barrier_J > 0 and upper.risk_J['wind'] >= 0
+    assert upper.why.endswith('.') and upper.instability.shape[1] == 2
+    assert {(s.supporter, s.supported) for s in result.supports} == {
+        (lower, o.id) for o in result.objects for lower in o.stands_on}
+    assert {c.relation for c in result.contacts} <= {'fixed', 'support', 'adjacent'}
+    assert sum(p.points for p in result.primitives) == np.count_nonzero(result.point_primitive >= 0)
+    assert set(result.fields) == {'wind'} and len(result.solid['state']) > 1000
+    assert result.timings_s['normals'] > 0 and result.notes
+
+
+def test_arrays_are_the_results_own(result, points):
+    for name in ('point_object', 'point_primitive', 'point_region'):
+        array = getattr(result, name)
+        assert array.dtype == np.int32 and array.shape == (len(points),)
+        assert np.shares_memory(array, getattr(result, name))
+    assert np.shares_memory(result.normals[2], result.normals[2])
+    assert all(np.shares_memory(c, points) for c in result.xyz)
+    assert len(result.point_index) == 0
+    assert np.shares_memory(np.from_dlpack(result.point_object), result.point_object)
+
+
+def test_arrays_outlive_the_result(points, device):
+    parsed = quick(points, device)
+    labels, item, expected = parsed.point_object, parsed.objects[-1], parsed.point_object.copy()
+    number = item.id
+    del parsed
+    gc.collect()
+    assert np.array_equal(labels, expected) and item.id == number
+
+
+def wide(points):
+    records = np.zeros((len(points), 5), np.float32)
+    records[:, 1:4] = points
+    return records[:, 1:4]
+
+
+def fields(points):
+    records = np.zeros(len(points), [('x', 'f4'), ('colour', 'u1', 3), ('y', 'f4'), ('z', 'f4')])
+    for axis, name in enumerate('xyz'):
+        records[name] = points[:, axis]
+    return records
+
+
+class Exported:
+    def __init__(self, array):
+        self.array = array
+
+    def __dlpack__(self, **options):
+        return self.array.__dlpack__(**options)
+
+    def __dlpack_device__(self):
+        return self.array.__dlpack_device__()
+
+
+@pytest.mark.parametrize('layout', [wide, fields, np.asfortranarray, np.float64, Exported,
+                                    lambda p: tuple(np.ascontiguousarray(c) for c in p.T)])
+def test_takes_every_layout(points, result, device, layout):
+    assert np.array_equal(quick(layout(points), device).point_object, result.point_object)
+
+
+def test_float32_is_not_copied(points, device):
+    for given in (points, wide(points), np.asfortranarray(points)):
+        assert np.shares_memory(quick(given, device).xyz[1], given)
+
+
+def test_points_that_are_not_finite_are_left_out(points, result, device):
+    spoilt = np.concatenate([points[:5], [[np.nan, 0, 0]], points[5:]]).astype(np.float32)
+    parsed = quick(spoilt, device)
+    assert np.array_equal(parsed.point_object, result.point_object)
+    assert parsed.point_index[4] == 4 and parsed.point_index[5] == 6
+    assert np.array_equal(np.stack(parsed.xyz, 1), points)
+
+
+@pytest.mark.parametrize('given, words', [
+    (np.zeros((30, 4), np.float32), 'points: expected floats of shape (N, 3), not float32 of shape (30, 4)'),
+    (np.zeros((30, 3), int), 'not int64'),
+    (np.zeros(5, [('x', 'f4'), ('y', 'f4')]), 'the records have no field z'),
+    (np.zeros((4, 3), np.float32), 'points: 4 points were found, but the smallest solid takes 27'),
+    (np.full((40, 3), np.nan, np.float32), 'none of its 40 points is finite'),
+    ('nowhere.ply', 'nowhere.ply'),
+])
+def test_errors_say_what_is_wrong(given, words, device):
+    with pytest.raises(topple.Error) as raised:
+        quick(given, device)
+    assert words in str(raised.value)
+    assert raised.value.kind == ('usage' if 'expected' in words or 'int64' in words or 'field' in words else 'input')
+
+
+def test_errors_of_options_and_devices(points):
+    with pytest.raises(topple.Error, match='--friction -1: expected') as raised:
+        topple.parse(points, friction=-1)
+    assert raised.value.kind == 'usage'
+    with pytest.raises(topple.Error) as raised:
+        topple.parse(points, device='abacus')
+    assert raised.value.kind == 'usage'
+    assert 'native' in {d.backend for d in topple.devices() if d.usable}
+    assert repr(topple.open_device('native')).startswith('<topple.Device native')
+
+
+def test_progress_and_cancelling(points, device):
+    stages = []
+    quick(points, device, progress=lambda stage, done: stages.append((stage, done)))
+    names = [stage for stage, done in stages if done == 0]
+    assert names[0] == 'ingest' and 'grouping' in names and names[-1] == 'assembly'
+    with pytest.raises(topple.Error, match='^cancelled$') as raised:
+        quick(points, device, cancelled=lambda: True)
+    assert raised.value.kind == 'cancelled'
+
+    def fails(stage, done):
+        raise KeyError(stage)
+    with pytest.raises(KeyError):
+        quick(points, device, progress=fails)
+    with pytest.raises(TypeError):
+        quick(points, device, cancelled=lambda: 'yes')
+
+
+def test_ctrl_c_stops_a_parse(points, device):
+    def interrupt(stage, done):
+        if stage == 'normals':
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0.06)  # beyond the time between two looks at signals
+    with pytest.raises(KeyboardInterrupt):
+        quick(points, device, progress=interrupt)
+
+
+def test_other_threads_run_meanwhile(points):
+    labels, ticks, done = [None, None], 0, threading.Event()
+
+    def work(n):
+        labels[n] = quick(points, topple.open_device('native', 1)).point_object
+        done.set()
+    threads = [threading.Thread(target=work, args=(n,)) for n in range(2)]
+    for thread in threads:
+        thread.start()
+    while not done.is_set():
+        ticks += 1
+        time.sleep(0.001)
+    for thread in threads:
+        thread.join()
+    assert ticks > 20 and np.array_equal(*labels)
+
+
+def test_a_device_serves_one_parse_at_a_time(points, device):
+    def again(stage, done):
+        with pytest.raises(topple.Error, match='in use by another'):
+            quick(points, device)
+        raise StopIteration
+    with pytest.raises(StopIteration):
+        quick(points, device, progress=again)
+
+
+def test_writes_the_outputs(result, points, tmp_path, device):
+    result.write(tmp_path / 'out')
+    assert {'scene.json', 'points.ply', 'report.html'} <= {p.name for p in (tmp_path / 'out').iterdir()}
+    again = quick(tmp_path / 'out' / 'points.ply', device)
+    assert np.array_equal(np.stack(again.xyz, 1), points) and again.source.endswith('points.ply')
+    with pytest.raises(topple.Error):
+        result.write(tmp_path)
+
+
+def test_the_stubs_name_what_there_is(result):
+    stub = open(os.path.join(os.path.dirname(topple.__file__), '__init__.pyi'), encoding='utf-8').read()
+    for kind, item in (('Object', result.objects[0]), ('Primitive', result.primitives[0]), ('Result', result),
+                       ('Contact', result.contacts[0]), ('Support', result.supports[0])):
+        block = stub.split(f'class {kind}:')[1].split('\nclass ')[0].split('\ndef ')[0]
+        named = {line.split('def ')[1].split('(')[0] for line in block.splitlines() if ' def ' in line}
+        assert named == {n for n in dir(item) if not n.startswith('_')} - {'x', 'y', 'z', 'nx', 'ny', 'nz'}
