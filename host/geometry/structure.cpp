@@ -167,11 +167,12 @@ std::vector<bool> continued_floor(const Surfels& s, const PrimitiveSet& primitiv
 // Of the highest large plane that looks down from above a person's head; infinite where there is
 // none.
 template <class Level>
-double ceiling_height(const std::vector<Face>& face, const Level& level, double floor_height) {
+double ceiling_height(const std::vector<Face>& face, const Level& level, double floor_height,
+                      double top_m) {
     double height = -INFINITY;
     for (const Face& f : face) {
         if (level(f) < -horizontal_cos && f.area_m2 >= wall_area_m2 &&
-            f.lowest_m - floor_height >= lowest_ceiling_m)
+            f.lowest_m - floor_height >= lowest_ceiling_m && f.highest_m < top_m)
             height = std::max(height, f.lowest_m);
     }
     return std::isfinite(height) ? height : INFINITY;
@@ -236,7 +237,8 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
         if (may_be_floor(f)) floor_height = std::min(floor_height, height);
     }
     if (storey && std::isinf(floor_height)) floor_height = storey->floor_m;
-    const double ceiling = storey ? ceiling_height(face, level, floor_height) : INFINITY;
+    const double ceiling =
+        storey ? ceiling_height(face, level, floor_height, storey->top_m) : INFINITY;
     const auto ends_room = [&](const Face& f) {
         if (!storey) return share_behind(surfels, f) < behind_share;
         if (level(f) < -horizontal_cos) return f.lowest_m - floor_height >= lowest_ceiling_m;

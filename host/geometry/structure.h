@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,7 @@ enum class Structure : std::uint8_t { none, floor, wall, ceiling };
 // sides.
 struct StoreyHint {
     double floor_m = 0;  // height of the storey's floor along up; NaN: not known
+    double top_m = std::numeric_limits<double>::infinity();  // where the next storey begins
 };
 
 // Finds the shell: the lowest large horizontal plane is the floor (on a scan of a table top, the

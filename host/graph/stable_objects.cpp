@@ -94,8 +94,8 @@ Grouping group_primitives(device::Device& device, const physics::SupportTable& t
     sampler.chains = 4;
     sampler.threads = device.threads().threads();
     sampler.last_temperature = 0.005;
-    sampler.anneal_steps =
-        static_cast<unsigned>(std::clamp<std::int64_t>(100 * graph.primitives, 2000, 12000));
+    sampler.anneal_steps = static_cast<unsigned>(std::clamp<std::int64_t>(
+        100 * graph.primitives, 2000, std::max<std::int64_t>(12000, 25 * graph.primitives)));
     sampler.sample_steps = sampler.anneal_steps / 2;
     sampler.time_limit_s = options.time_limit_s;
     sampler.cancelled = options.cancelled;

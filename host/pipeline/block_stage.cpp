@@ -79,7 +79,7 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
     StageClock stage(timings, quiet);
     Ingested input = ingest_part(device, points.cloud, layout.cell_m);
     input.frame = layout.frame;
-    input.storey = geometry::StoreyHint{block.floor_m};
+    input.storey = geometry::StoreyHint{block.floor_m, block.top_m};
     GeometryStage geometry = find_primitives(device, input, quiet, stage);
     const VoxelStage voxels = make_solids(device, input, geometry, layout.voxel_m, stage);
     for (std::size_t p = 0; p < geometry.primitives.model.size(); ++p)

@@ -99,6 +99,8 @@ Layout cut_into_blocks(const fs::path& folder, std::span<const Bin> bins,
         block.core.high = {at[1] + edge, at[2] + edge,
                            storey + 1 < begins.size() ? begins[storey + 1] : far};
         block.floor_m = storeys[storey].floor_m;
+        block.top_m = storey + 1 < storeys.size() ? storeys[storey + 1].below_m
+                                                  : std::numeric_limits<double>::infinity();
         block.cells = count;
         out.blocks.push_back(block);
     }

@@ -32,6 +32,7 @@ struct VoxelBox {
 struct Block {
     VoxelBox core;
     double floor_m = 0;       // of its storey, NaN where that has none
+    double top_m = 0;         // where the next storey begins; infinite above the last
     std::uint64_t cells = 0;  // thinned cells in its core
 };
 

@@ -137,7 +137,8 @@ TEST(StructureOfAStorey, WallsBetweenRoomsAreWalls) {
     const auto lintel = rooms.upright(3, 2.5, 3.4, 5.15, 5.8, 1, 0.12);
     const auto rest = rooms.upright(3, 3.4, 4, 3.1, 4.9, 1);  // in the wall's plane
     const auto outer = rooms.upright(0, 0, 4, 3.1, 5.8, 1);
-    const auto found = rooms.structure(StoreyHint{3.1});
+    rooms.ceiling(4, 1, 5.5, 2, 6.6);  // under a bench of the next storey
+    const auto found = rooms.structure(StoreyHint{3.1, 6.0});
     EXPECT_EQ(found[rooms.floor], Structure::floor);
     EXPECT_EQ(found[rooms.roof], Structure::ceiling);
     for (const std::size_t p : {rooms.wall, lintel, rest, outer})
@@ -151,7 +152,7 @@ TEST(StructureOfAStorey, FurnitureIsNone) {
     const auto table = rooms.level(4, 1, 5.5, 2, 3.85);
     const auto under = rooms.ceiling(4, 1, 5.5, 2, 3.82);
     const auto top = rooms.level(0, 0, 0.6, 2, 5.3);
-    const auto found = rooms.structure(StoreyHint{3.1});
+    const auto found = rooms.structure(StoreyHint{3.1, 6.0});
     for (const std::size_t p : {wardrobe, front, table, under, top})
         EXPECT_EQ(found[p], Structure::none) << p;
 }
@@ -160,7 +161,7 @@ TEST(StructureOfAStorey, FurnitureIsNone) {
 TEST(StructureOfAStorey, TheFloorMayBeOutOfSight) {
     Scene scene;
     const auto table = scene.level(0, 0, 2, 1, 3.85);
-    EXPECT_EQ(scene.structure(StoreyHint{3.1})[table], Structure::none);
+    EXPECT_EQ(scene.structure(StoreyHint{3.1, 6.0})[table], Structure::none);
     EXPECT_EQ(scene.structure()[table], Structure::floor);
 }
 
@@ -169,7 +170,7 @@ TEST(StructureOfAStorey, WithoutACeilingHighPlanesAreWalls) {
     scene.level(0, 0, 6, 4, 0);
     const auto wall = scene.upright(3, 0, 4, 0, 2.3, 1);
     const auto desk = scene.upright(1, 0, 3, 0, 0.75, 1);
-    const auto found = scene.structure(StoreyHint{0});
+    const auto found = scene.structure(StoreyHint{0, 3.0});
     EXPECT_EQ(found[wall], Structure::wall);
     EXPECT_EQ(found[desk], Structure::none);
 }
