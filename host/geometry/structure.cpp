@@ -264,7 +264,7 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
         if (small[p] || other[p] || continued[p]) {
             out[p] = Structure::floor;
         } else if (f.area_m2 >= wall_area_m2 && f.highest_m >= ceiling - touches_ceiling_m &&
-                   level(f) > -horizontal_cos) {
+                   (f.flatness < flat || level(f) > -horizontal_cos)) {
             out[p] = Structure::wall;
         } else if (f.flatness > flat && f.area_m2 >= wall_area_m2 &&
                    f.area_m2 >= wall_share * largest_upright && ends_room(f)) {

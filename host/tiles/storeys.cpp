@@ -11,8 +11,8 @@ namespace {
 
 // A level holds at least this share of the largest one's surface.
 constexpr double least_share = 0.3;
-// Nobody builds lower rooms, nor thicker slabs.
-constexpr double lowest_room_m = 2.0, thickest_slab_m = 0.8;
+// Nobody builds lower rooms, nor thicker or thinner slabs.
+constexpr double lowest_room_m = 2.0, thickest_slab_m = 0.8, thinnest_slab_m = 0.08;
 // A level's surface spreads over its noise.
 constexpr double spread_m = 0.05;
 
@@ -20,28 +20,35 @@ struct Level {
     double height_m = 0, area_m2 = 0;
 };
 
-// Levels by rising height: the surface within a window of the spread, where no window nearby has
-// more.
+// Levels by rising height: where a window of the spread holds more surface than any other that it
+// touches, the lowest of equals; at the middle of that surface.
 std::vector<Level> find_levels(const std::vector<double>& area, double low, double step) {
     const auto reach = static_cast<std::ptrdiff_t>(std::max(1.0, std::round(spread_m / step)));
     const auto count = static_cast<std::ptrdiff_t>(area.size());
-    std::vector<double> window(area.size(), 0.0);
+    const auto at = [](const std::vector<double>& values, std::ptrdiff_t n) {
+        return values[static_cast<std::size_t>(n)];
+    };
+    std::vector<double> window(area.size(), 0.0), middle(area.size(), 0.0);
     for (std::ptrdiff_t n = 0; n < count; ++n) {
-        for (std::ptrdiff_t m = std::max<std::ptrdiff_t>(0, n - reach);
-             m <= std::min(count - 1, n + reach); ++m)
-            window[static_cast<std::size_t>(n)] += area[static_cast<std::size_t>(m)];
+        double moment = 0;
+        const std::ptrdiff_t last = std::min(count - 1, n + reach);
+        for (std::ptrdiff_t m = std::max<std::ptrdiff_t>(0, n - reach); m <= last; ++m) {
+            window[static_cast<std::size_t>(n)] += at(area, m);
+            moment += at(area, m) * (low + (static_cast<double>(m) + 0.5) * step);
+        }
+        if (at(window, n) > 0) middle[static_cast<std::size_t>(n)] = moment / at(window, n);
     }
     const double most = window.empty() ? 0 : *std::ranges::max_element(window);
     std::vector<Level> levels;
     for (std::ptrdiff_t n = 0; n < count; ++n) {
-        const double here = window[static_cast<std::size_t>(n)];
+        const double here = at(window, n);
         if (here < least_share * most || here <= 0) continue;
-        const double height = low + (static_cast<double>(n) + 0.5) * step;
-        if (levels.empty() || height - levels.back().height_m > 2 * spread_m) {
-            levels.push_back({height, here});
-        } else if (here > levels.back().area_m2) {
-            levels.back() = {height, here};
+        bool peak = true;
+        for (std::ptrdiff_t m = n - 2 * reach - 1; m <= n + 2 * reach + 1 && peak; ++m) {
+            if (m < 0 || m >= count || m == n) continue;
+            peak = at(window, m) < here || (at(window, m) == here && m > n);
         }
+        if (peak) levels.push_back({at(middle, n), here});
     }
     return levels;
 }
@@ -57,7 +64,8 @@ std::vector<Storey> find_storeys(const std::vector<double>& area_m2, double low_
     std::optional<double> ceiling;  // of the storey in hand
     for (const Level& level : levels) {
         const double height = level.height_m;
-        if (ceiling && height - *ceiling <= thickest_slab_m) {
+        const double slab = ceiling ? height - *ceiling : 0;
+        if (slab >= thinnest_slab_m && slab <= thickest_slab_m) {
             storeys.push_back({height, (*ceiling + height) / 2});
             ceiling.reset();
         } else if (height - storeys.back().floor_m >= lowest_room_m) {

@@ -42,6 +42,16 @@ TEST(Storeys, TablesAndLoweredCeilingsAreNone) {
     for (std::size_t s = 1; s < storeys.size(); ++s) EXPECT_GT(storeys[s].below_m, 2.3);
 }
 
+// One level of a scan without noise, wherever it lies in the histogram's steps, is one.
+TEST(Storeys, ASharpCeilingIsNoSlab) {
+    for (double offset = 0; offset < step_m; offset += 0.004) {
+        const auto storeys =
+            find_storeys(histogram({{0.01 + offset, 90}, {2.7 + offset, 88}, {2.72 + offset, 3}}),
+                         low_m, step_m);
+        EXPECT_EQ(storeys.size(), 1u) << offset;
+    }
+}
+
 TEST(Storeys, AScanWithoutCeilingIsOne) {
     const auto storeys = find_storeys(histogram({{0.3, 50}}), low_m, step_m);
     ASSERT_EQ(storeys.size(), 1u);
