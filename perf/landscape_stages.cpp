@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "perf/landscape_stages.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <memory>
-#include <sstream>
 
-#include "perf/peers/bullet_pushes.h"
 #include "physics/hull_landscape.h"
 #include "physics/landscape.h"
 #include "scenes/random.h"
-#include "simulation/pushes.h"
-#include "topple/error.h"
 
 namespace topple::perf {
 namespace {
@@ -40,13 +31,6 @@ std::vector<Vec3> shell(scenes::Random& random, std::size_t count, const Vec3& c
         out.push_back(p);
     }
     return out;
-}
-
-std::vector<std::vector<Vec3>> hull_points() {
-    scenes::Random random(2);
-    std::vector<std::vector<Vec3>> all;
-    for (std::size_t n = 0; n < hulls; ++n) all.push_back(shell(random, points, {0, 0, 0}));
-    return all;
 }
 
 // Groups that stand on a square as wide as they are: 20 cm.
@@ -91,12 +75,8 @@ Result measure_hulls(device::Device& device, unsigned runs) {
     return result;
 }
 
-std::vector<simulation::StandingObject> standing_objects() {
-    return simulation::standing_objects(1, 24);
-}
-
 Result measure_objects(device::Device& device, unsigned runs) {
-    const auto objects = standing_objects();
+    const auto objects = standing_things();
     const simulation::StandingScene scene(device, objects);
     Result result =
         named(device, "landscapes/objects", {static_cast<double>(objects.size()), "objects", 0, 0});
@@ -108,13 +88,18 @@ Result measure_objects(device::Device& device, unsigned runs) {
     return result;
 }
 
-// What was measured of a stage on the first backend that has it.
-const Result* first_of(const std::vector<Result>& own, const char* name) {
-    const auto at = std::ranges::find(own, name, &Result::name);
-    return at == own.end() ? nullptr : &*at;
+}  // namespace
+
+std::vector<std::vector<Vec3>> hull_points() {
+    scenes::Random random(2);
+    std::vector<std::vector<Vec3>> all;
+    for (std::size_t n = 0; n < hulls; ++n) all.push_back(shell(random, points, {0, 0, 0}));
+    return all;
 }
 
-}  // namespace
+std::vector<simulation::StandingObject> standing_things() {
+    return simulation::standing_objects(1, 24);
+}
 
 std::vector<std::string> landscape_names() {
     return {"landscapes/table", "landscapes/groups", "landscapes/hulls", "landscapes/objects"};
@@ -149,68 +134,6 @@ std::vector<Result> measure_landscapes(device::Device& device, unsigned runs) {
     results.push_back(measure_hulls(device, runs));
     results.push_back(measure_objects(device, runs));
     return results;
-}
-
-std::optional<Result> compare_with_trimesh(const std::vector<Result>& own) {
-    const Result* mine = first_of(own, "landscapes/hulls");
-    if (!mine) return std::nullopt;
-    const auto path = std::filesystem::temp_directory_path() /
-                      ("topple-hulls-" + std::to_string(getpid()) + ".txt");
-    std::ofstream file(path);
-    file.precision(17);
-    for (const auto& hull : hull_points()) {
-        for (const Vec3& p : hull) file << p[0] << ' ' << p[1] << ' ' << p[2] << ' ';
-        file << '\n';
-    }
-    file.close();
-    if (!file) throw Error(ErrorKind::input, path.string() + ": can't be written");
-    const std::string command =
-        "python3 " TOPPLE_PERF_DIR "/peers/trimesh_poses.py '" + path.string() + "'";
-    std::string answer;
-    if (std::FILE* pipe = popen(command.c_str(), "r")) {
-        char text[256];
-        while (std::fgets(text, sizeof(text), pipe)) answer += text;
-        pclose(pipe);
-    }
-    std::filesystem::remove(path);
-    Result peer;
-    std::istringstream words(answer);
-    std::string version;
-    double seconds = 0, poses = 0;
-    if (!(words >> version >> seconds >> poses)) {
-        std::printf("trimesh: not found by python3; it is on PyPI, with scipy and networkx\n");
-        return std::nullopt;
-    }
-    peer.backend = "peer";
-    peer.device = "trimesh " + version;
-    peer.name = "landscapes/hulls/trimesh";
-    peer.work = mine->work;
-    peer.samples_s = {seconds};
-    std::size_t own_poses = 0;
-    for (const auto& hull : hull_points())
-        own_poses += physics::hull_landscape(hull, {0, 0, 0}).poses.size();
-    std::printf("%-32s %9.4f %9.3f %8.1fx  %zu poses against %.0f\n", peer.name.c_str(),
-                mine->best(), seconds, seconds / mine->best(), own_poses, poses);
-    return peer;
-}
-
-std::optional<Result> compare_with_bullet(const std::vector<Result>& own) {
-    const Result* mine = first_of(own, "landscapes/objects");
-    if (!mine) return std::nullopt;
-    const auto pushes = bullet_pushes(standing_objects());
-    if (!pushes) {
-        std::printf("Bullet: not in this build; apt-get install libbullet-dev\n");
-        return std::nullopt;
-    }
-    Result peer;
-    peer.backend = "peer";
-    peer.device = pushes->library;
-    peer.name = "landscapes/objects/bullet";
-    peer.work = mine->work;
-    peer.samples_s = {pushes->seconds};
-    std::printf("%-32s %9.4f %9.3f %8.1fx\n", peer.name.c_str(), mine->best(), pushes->seconds,
-                pushes->seconds / mine->best());
-    return peer;
 }
 
 }  // namespace topple::perf

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "perf/measure.h"
+#include "simulation/pushes.h"
 
 // Pose landscapes as grouping and the barriers of objects use them, host and kernels together.
 namespace topple::perf {
@@ -19,12 +19,8 @@ std::vector<std::string> landscape_names();
 // "landscapes/objects": S(W) of 24 objects that stand on tables and floors, in one batch.
 std::vector<Result> measure_landscapes(device::Device& device, unsigned runs);
 
-// The same hulls by compute_stable_poses of trimesh, if the python3 of PATH has it. Prints both
-// beside each other, or that it is missing.
-std::optional<Result> compare_with_trimesh(const std::vector<Result>& own);
-
-// The same objects toppled by blows in Bullet, if the build has it. Prints both beside each other,
-// or that it is missing.
-std::optional<Result> compare_with_bullet(const std::vector<Result>& own);
+// The points of the hulls, about their centres of mass, and the objects.
+std::vector<std::vector<Vec3>> hull_points();
+std::vector<simulation::StandingObject> standing_things();
 
 }  // namespace topple::perf

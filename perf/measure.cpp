@@ -2,16 +2,15 @@
 #include "perf/measure.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace topple::perf {
 namespace {
 
-double seconds_of(device::Queue& queue) {
-    const auto start = std::chrono::steady_clock::now();
+Span time_of(device::Queue& queue) {
+    const Stopwatch watch;
     queue.run();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return watch.elapsed();
 }
 
 }  // namespace
@@ -20,6 +19,8 @@ Result named(const device::Device& device, std::string name, Work work) {
     Result result;
     result.backend = device::to_string(device.info().backend);
     result.device = device.info().name;
+    result.driver = device.info().driver;
+    result.gpu = device.info().gpu;
     result.name = std::move(name);
     result.work = work;
     return result;
@@ -29,10 +30,9 @@ void sample(device::Device& device, Result& result, unsigned runs,
             const std::function<void()>& run) {
     for (unsigned n = 0; n < runs; ++n) {
         const device::Counters before = device.counters();
-        const auto start = std::chrono::steady_clock::now();
+        const Stopwatch watch;
         run();
-        result.samples_s.push_back(
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        result.add(watch.elapsed());
         if (n == 0) result.counters = device.counters() - before;
     }
 }
@@ -43,6 +43,14 @@ device::Counters operator-(const device::Counters& a, const device::Counters& b)
             a.bytes_read - b.bytes_read,       a.bytes_bound - b.bytes_bound};
 }
 
+void Result::add(const Span& span, double runs) {
+    samples_s.push_back(span.wall_s / runs);
+    samples_cpu_s.push_back(span.cpu_s / runs);
+}
+double Result::best_cpu() const {
+    if (samples_cpu_s.empty()) return 0;
+    return *std::min_element(samples_cpu_s.begin(), samples_cpu_s.end());
+}
 double Result::best() const {
     return *std::min_element(samples_s.begin(), samples_s.end());
 }
@@ -62,19 +70,15 @@ Result measure(device::Device& device, const Case& test, const MeasureOptions& o
     device::Queue queue(device);
     if (prepared.reset) prepared.reset();
     prepared.enqueue(queue);
-    const double first = seconds_of(queue);  // builds the kernel
-    Result result;
-    result.backend = device::to_string(device.info().backend);
-    result.device = device.info().name;
-    result.name = test.name;
-    result.work = prepared.work;
+    const double first = time_of(queue).wall_s;  // builds the kernel
+    Result result = named(device, test.name, prepared.work);
     result.hash = prepared.hash();
     result.counters = device.counters() - before;
 
     unsigned batch = 1;
     if (!prepared.reset) {
         prepared.enqueue(queue);
-        const double once = std::min(first, seconds_of(queue));
+        const double once = std::min(first, time_of(queue).wall_s);
         batch = static_cast<unsigned>(std::clamp(std::ceil(0.001 / once), 1.0, 1000.0));
     }
     double spent = 0;
@@ -83,9 +87,9 @@ Result measure(device::Device& device, const Case& test, const MeasureOptions& o
         if (!options.runs && n >= 7 && spent >= options.seconds) break;
         if (prepared.reset) prepared.reset();
         for (unsigned k = 0; k < batch; ++k) prepared.enqueue(queue);
-        const double sample = seconds_of(queue);
-        spent += sample;
-        result.samples_s.push_back(sample / batch);
+        const Span span = time_of(queue);
+        spent += span.wall_s;
+        result.add(span, batch);
     }
     return result;
 }

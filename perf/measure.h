@@ -8,6 +8,7 @@
 
 #include "device/device.h"
 #include "perf/case.h"
+#include "perf/stopwatch.h"
 
 namespace topple::perf {
 
@@ -18,15 +19,19 @@ struct MeasureOptions {
 
 // Figures of one case on one backend, or of one stage of the pipeline.
 struct Result {
-    std::string backend, device, name;
+    std::string backend, device, driver, name;
+    bool gpu = false;  // the device is a real GPU: processor times do not tell its work
     Work work;
-    std::vector<double> samples_s;  // wall time of one run each, in the order taken
+    std::vector<double> samples_s;      // wall time of one run each, in the order taken
+    std::vector<double> samples_cpu_s;  // of all threads; empty for stages within a whole
     std::uint64_t hash = 0;
     device::Counters counters;  // of one run: what can be gated exactly
     double share = 0;           // of the roofline; 0 where there is none
     const char* bound = "";  // what the roofline's least time comes from: "memory" | "arithmetic"
 
+    void add(const Span& span, double runs = 1);
     double best() const;
+    double best_cpu() const;  // 0 where there is none
     double median() const;
     double worst() const;
 };
@@ -34,7 +39,7 @@ struct Result {
 // One without samples, on this device.
 Result named(const device::Device& device, std::string name, Work work);
 
-// Adds the wall time of `runs` runs; the counts are those of the first.
+// Adds the times of `runs` runs; the counts are those of the first.
 void sample(device::Device& device, Result& result, unsigned runs,
             const std::function<void()>& run);
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "perf/pipeline_case.h"
 
-#include <chrono>
-
 #include "scenes/depth_camera.h"
 #include "scenes/furnished_room.h"
 #include "scenes/temporary_folder.h"
@@ -30,7 +28,7 @@ std::vector<Result> measure_pipeline(const std::shared_ptr<device::Device>& devi
     scenes::CameraOptions camera;
     camera.frames = options.frames;
     camera.seed = options.seed;
-    const scenes::TemporaryFolder folder("topple_perf");
+    const scenes::TemporaryFolder folder("topple-perf");
     scenes::write_sequence(folder.path(), world, scenes::walk(world, camera));
 
     ParseOptions parse_options;
@@ -40,21 +38,16 @@ std::vector<Result> measure_pipeline(const std::shared_ptr<device::Device>& devi
         for (Result& r : results) {
             if (r.name == name) return r;
         }
-        results.emplace_back();
-        results.back().backend = device::to_string(device->info().backend);
-        results.back().device = device->info().name;
-        results.back().name = name;
-        return results.back();
+        return results.emplace_back(named(*device, name, {}));
     };
     for (unsigned run = 0; run < options.runs; ++run) {
         const device::Counters before = device->counters();
-        const auto start = std::chrono::steady_clock::now();
+        const Stopwatch watch;
         const ParseResult parsed = parse(folder.path(), parse_options);
-        const double all =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const Span all = watch.elapsed();
         const device::Counters after = device->counters();
         Result& whole = result("pipeline");
-        whole.samples_s.push_back(all);
+        whole.add(all);
         whole.hash = hash_of(parsed.scene);
         if (run == 0) {
             whole.counters = after - before;

@@ -3,12 +3,14 @@
 
 #include <cinttypes>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
 #include "topple/error.h"
+#include "topple/version.h"
 
 namespace topple::perf {
 namespace {
@@ -41,11 +43,24 @@ std::string cpu_name() {
     return "unknown";
 }
 
+// A field of a CSV that may hold commas.
+std::string quoted(const std::string& text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        if (c == '"') out += '"';
+        out += c;
+    }
+    return out += '"';
+}
+
 void write_text(const std::string& path, const std::string& text) {
-    std::ofstream out(path, std::ios::binary);
+    const std::string part = path + ".part";
+    std::ofstream out(part, std::ios::binary);
     out << text;
-    out.flush();
-    if (!out) throw Error(ErrorKind::input, path + ": can't be written");
+    out.close();
+    std::error_code error;
+    if (out) std::filesystem::rename(part, path, error);
+    if (!out || error) throw Error(ErrorKind::input, path + ": can't be written");
 }
 
 }  // namespace
@@ -88,13 +103,17 @@ void write_json(const std::string& path, const std::vector<Result>& results) {
     for (const Result& r : results) {
         list.push_back({{"backend", r.backend},
                         {"device", r.device},
+                        {"driver", r.driver},
+                        {"gpu", r.gpu},
                         {"case", r.name},
                         {"unit", r.work.unit},
                         {"items", r.work.items},
                         {"bytes", r.work.bytes},
                         {"operations", r.work.operations},
                         {"samples_s", r.samples_s},
+                        {"samples_cpu_s", r.samples_cpu_s},
                         {"best_s", r.best()},
+                        {"best_cpu_s", r.best_cpu()},
                         {"median_s", r.median()},
                         {"share", r.share},
                         {"bound", r.bound},
@@ -108,7 +127,8 @@ void write_json(const std::string& path, const std::vector<Result>& results) {
                           {"bytes_bound", r.counters.bytes_bound}}}});
     }
     const nlohmann::json root{
-        {"schema", "topple.perf/1"},
+        {"schema", "topple.perf/2"},
+        {"topple_version", version},
         {"machine", {{"cpu", cpu_name()}, {"cores", std::thread::hardware_concurrency()}}},
         {"results", list}};
     write_text(path, root.dump(1) + "\n");
@@ -116,16 +136,18 @@ void write_json(const std::string& path, const std::vector<Result>& results) {
 
 void write_csv(const std::string& path, const std::vector<Result>& results) {
     std::ostringstream out;
-    out << "backend,case,best_ms,median_ms,worst_ms,samples,items,unit,bytes,operations,share,"
-           "bound,dispatches,"
-           "bytes_written,bytes_read,bytes_bound,kernel_builds,hash\n";
+    out << "backend,device,driver,case,best_ms,median_ms,worst_ms,best_cpu_ms,samples,items,unit,"
+           "bytes,operations,share,bound,dispatches,submits,bytes_written,bytes_read,bytes_bound,"
+           "kernel_builds,hash\n";
     for (const Result& r : results) {
-        out << r.backend << ',' << r.name << ',' << 1e3 * r.best() << ',' << 1e3 * r.median() << ','
-            << 1e3 * r.worst() << ',' << r.samples_s.size() << ',' << r.work.items << ','
+        out << r.backend << ',' << quoted(r.device) << ',' << quoted(r.driver) << ',' << r.name
+            << ',' << 1e3 * r.best() << ',' << 1e3 * r.median() << ',' << 1e3 * r.worst() << ','
+            << 1e3 * r.best_cpu() << ',' << r.samples_s.size() << ',' << r.work.items << ','
             << r.work.unit << ',' << r.work.bytes << ',' << r.work.operations << ',' << r.share
-            << ',' << r.bound << ',' << r.counters.dispatches << ',' << r.counters.bytes_written
-            << ',' << r.counters.bytes_read << ',' << r.counters.bytes_bound << ','
-            << r.counters.kernel_builds << ',' << hex(r.hash) << '\n';
+            << ',' << r.bound << ',' << r.counters.dispatches << ',' << r.counters.submits << ','
+            << r.counters.bytes_written << ',' << r.counters.bytes_read << ','
+            << r.counters.bytes_bound << ',' << r.counters.kernel_builds << ',' << hex(r.hash)
+            << '\n';
     }
     write_text(path, out.str());
 }

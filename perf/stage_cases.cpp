@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "perf/stage_cases.h"
 
-#include <chrono>
 #include <functional>
 #include <utility>
 
@@ -36,17 +35,15 @@ std::vector<Result> measure_segmentation(device::Device& device, const StageScen
     for (unsigned n = 0; n < runs; ++n) {
         const device::Counters before = device.counters();
         Timings timings;
+        const Stopwatch watch;
         label = segment(device, scene, timings).primitive_of_point;
+        results[0].add(watch.elapsed());
         if (n == 0) results[0].counters = device.counters() - before;
-        double all = 0;
         for (const auto& [stage, seconds] : timings) {
             for (Result& r : results) {
-                if (r.name != "segmentation/" + stage) continue;
-                r.samples_s.push_back(seconds);
-                all += seconds;
+                if (r.name == "segmentation/" + stage) r.samples_s.push_back(seconds);
             }
         }
-        results[0].samples_s.push_back(all);
     }
     results[0].hash = Hash().add(label).value();
     return results;

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
          {"devices", "List every device of every backend, or why one is missing", add_devices},
          {"generate", "Make a scan of a furnished room, with its ground truth", add_generate},
          {"evaluate", "Parse generated rooms and judge the results against the truth",
-          add_evaluate}},
+          add_evaluate},
+         {"perf", "Measure every kernel, stage and parse on every backend", add_perf}},
         argc, argv, print_error);
 }

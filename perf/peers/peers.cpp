@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "perf/peers.h"
+#include "perf/peers/peers.h"
 
 #include <algorithm>
 #include <cstdio>

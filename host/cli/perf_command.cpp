@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "cli/commands.h"
+#include "perf/report.h"
+#include "perf/suite.h"
+#include "topple/error.h"
+
+namespace topple::cli {
+namespace {
+
+struct PerfArguments {
+    perf::SuiteOptions suite;
+    std::string json, csv;
+    bool list = false;
+};
+
+int run(const PerfArguments& a) {
+    if (a.list) {
+        for (const std::string& name : perf::case_names()) std::printf("%s\n", name.c_str());
+        return 0;
+    }
+    // Told before the measuring, which takes minutes.
+    for (const std::string& path : {a.json, a.csv}) {
+        const auto folder = std::filesystem::path(path).parent_path();
+        if (!folder.empty() && !std::filesystem::is_directory(folder))
+            throw Error(ErrorKind::input, path + ": there is no folder " + folder.string());
+    }
+    const auto results = perf::run_suite(a.suite);
+    if (!a.json.empty()) perf::write_json(a.json, results);
+    if (!a.csv.empty()) perf::write_csv(a.csv, results);
+    return perf::hashes_agree(results) ? 0 : 1;
+}
+
+}  // namespace
+
+Command add_perf(CLI::App& app) {
+    auto a = std::make_shared<PerfArguments>();
+    perf::SuiteOptions& suite = a->suite;
+    app.add_option("--filter", suite.filters,
+                   "Only cases whose name contains this; may be repeated");
+    app.add_option("--backend", suite.backends, "native, opencl, vulkan or all")
+        ->delimiter(',')
+        ->default_str("all");
+    app.add_option("--json", a->json, "Write all samples, counts and hashes to this file");
+    app.add_option("--csv", a->csv, "Write one line per case to this file");
+    app.add_option("--runs", suite.measure.runs,
+                   "Samples of each kernel (default: 7 to 100, for --seconds)")
+        ->check(whole_number);
+    app.add_option("--seconds", suite.measure.seconds, "Time for each kernel")
+        ->check(CLI::Range(0.0, 3600.0))
+        ->capture_default_str();
+    app.add_option("--stage-runs", suite.stage_runs, "Runs of the stages; 0: none")
+        ->check(whole_number)
+        ->capture_default_str();
+    app.add_option("--pipeline-runs", suite.pipeline.runs, "Parses of the whole room; 0: none")
+        ->check(whole_number)
+        ->capture_default_str();
+    app.add_option("--pipeline-frames", suite.pipeline.frames,
+                   "Frames of the walk through the room")
+        ->check(CLI::Range(1u, 10000u))
+        ->capture_default_str();
+    app.add_option("--seed", suite.pipeline.seed, "Seed of the room")
+        ->check(whole_number)
+        ->capture_default_str();
+    app.add_option("--threads", suite.threads, "Threads of the native backend (0: all cores)")
+        ->check(whole_number)
+        ->capture_default_str();
+    app.add_flag("!--no-roofline", suite.roofline,
+                 "Leave out the probes of bandwidth and arithmetic that no --filter names");
+    app.add_flag("--list", a->list, "Print the names of the cases");
+    return [a] { return run(*a); };
+}
+
+}  // namespace topple::cli

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/program.h"
+
+// The command that measures.
+namespace topple::test {
+namespace {
+
+using Perf = Program;
+
+TEST_F(Perf, refuses_what_it_does_not_have) {
+    expect_failure(2, {"perf", "--filter", "nothing_like_it"}, {"nothing_like_it", "--list"});
+    expect_failure(2, {"perf", "--backend", "abacus"}, {"abacus"});
+    expect_failure(2, {"perf", "--runs", "-1"}, {"--runs"});
+    expect_failure(1,
+                   {"perf", "--backend", "native", "--filter", "multiply_add", "--runs", "1",
+                    "--csv", "none/x.csv"},
+                   {"none/x.csv"});
+}
+
+TEST_F(Perf, lists_its_cases) {
+    const Finished list = run({"perf", "--list"});
+    ASSERT_EQ(list.code, 0) << list.err;
+    for (const char* name : {"triad\n", "support_function\n", "landscapes/hulls\n", "pipeline\n"})
+        EXPECT_NE(list.out.find(name), std::string::npos) << name;
+}
+
+TEST_F(Perf, counts_and_results_are_those_of_the_last_time) {
+    nlohmann::json results[2];
+    for (auto& result : results) {
+        const Finished done =
+            run({"perf", "--backend", "native", "--filter", "multiply_add", "--no-roofline",
+                 "--runs", "3", "--json", "run.json", "--csv", "run.csv"});
+        ASSERT_EQ(done.code, 0) << done.err;
+        const auto all = nlohmann::json::parse(bytes_of_file(in("run.json"))).at("results");
+        ASSERT_EQ(all.size(), 1u);
+        result = all[0];
+    }
+    EXPECT_EQ(results[0].at("case"), "multiply_add");
+    EXPECT_FALSE(results[0].at("driver").get<std::string>().empty());
+    EXPECT_EQ(results[0].at("hash"), results[1].at("hash"));
+    EXPECT_EQ(results[0].at("counts"), results[1].at("counts"));
+    EXPECT_GE(results[0].at("counts").at("dispatches"), 1);
+    for (const char* samples : {"samples_s", "samples_cpu_s"}) {
+        ASSERT_EQ(results[0].at(samples).size(), 3u);
+        for (const double s : results[0].at(samples)) EXPECT_GT(s, 0) << samples;
+    }
+    std::istringstream csv(bytes_of_file(in("run.csv")));
+    std::string head, row, more;
+    ASSERT_TRUE(std::getline(csv, head) && std::getline(csv, row));
+    EXPECT_FALSE(std::getline(csv, more)) << more;
+    EXPECT_TRUE(head.starts_with("backend,device,driver,case,best_ms")) << head;
+    EXPECT_NE(row.find(",multiply_add,"), std::string::npos) << row;
+    EXPECT_TRUE(row.ends_with(results[0].at("hash").get<std::string>())) << row;
+}
+
+}  // namespace
+}  // namespace topple::test
