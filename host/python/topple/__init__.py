@@ -9,6 +9,7 @@ Lengths in metres, masses in kilograms, energies in joules, in the input's frame
 unassigned. What goes wrong is raised as topple.Error.
 """
 import os
+import threading
 from typing import NamedTuple
 
 import numpy as np
@@ -76,6 +77,7 @@ class Result:
     def __init__(self, parsed, points):
         self._parsed = parsed
         self._points = points  # the caller's, where they are theirs
+        self._writing = threading.Lock()  # the coordinates are in the result for as long as it takes
 
     def __getattr__(self, name):
         if name.startswith('_'):
@@ -104,7 +106,8 @@ class Result:
 
     def write(self, folder, *, pictures=False, glb=False):
         """Writes the folder of outputs (docs/output.md), which appears whole or not at all."""
-        _topple.write(self._parsed, os.fspath(folder), pictures, glb, self._points or [])
+        with self._writing:
+            _topple.write(self._parsed, os.fspath(folder), pictures, glb, self._points or [])
 
 
 def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=('human', 'wind', 'earthquake'),
