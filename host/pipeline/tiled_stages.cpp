@@ -125,13 +125,19 @@ void parse_some(Crew& crew, device::Device& device, const tiles::SpilledPoints& 
                 const tiles::Layout& layout, const fs::path& folder, const ParseOptions& options,
                 const std::function<void()>& tell) {
     const std::vector<tiles::Bin> bins = bins_of(points);
-    BlockDevices devices(device, layout, options);
+    std::optional<BlockDevices> devices;
+    try {
+        devices.emplace(device, layout, options);
+    } catch (...) {
+        crew.end(std::current_exception(), tell);  // the others wait for everyone's end
+        return;
+    }
     work_off(
-        crew, device, devices.lanes(),
+        crew, device, devices->lanes(),
         [&](std::uint64_t b) {
             const tiles::Block& block = layout.blocks.at(b);
             const tiles::BlockPoints seen = tiles::points_of_block(folder, bins, layout, block);
-            devices.with([&](device::Device& own) {
+            devices->with([&](device::Device& own) {
                 write_block(folder, b, parse_block(own, seen, layout, block, options));
             });
         },
