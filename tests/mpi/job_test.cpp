@@ -52,7 +52,7 @@ class Job : public Program {
     // The first words run beside the second ones, as one job.
     Finished job(const Words& first, const Words& second = {},
                  const std::function<int(const std::string&)>& interrupt = {}) const {
-        Words words{"--allow-run-as-root", "--oversubscribe"};
+        Words words{"--allow-run-as-root", "--oversubscribe", "--bind-to", "none"};
         words.insert(words.end(), first.begin(), first.end());
         if (!second.empty()) words.emplace_back(":");
         words.insert(words.end(), second.begin(), second.end());
