@@ -17,8 +17,9 @@ using namespace std::chrono_literals;
 
 // Between looks for a message: of those who want their next task, and of those who wait for others.
 constexpr std::chrono::microseconds brief = 500us, long_while = 10ms;
-// Between calls of the leader's poll while it waits for the others' last tasks.
-constexpr auto between_polls = 50ms;
+// Between calls of the leader's poll while it waits for the others' last tasks, and between looks
+// for a failure elsewhere.
+constexpr std::chrono::milliseconds between_polls = 50ms;
 
 // A failure as it is sent.
 Error as_error(const std::exception_ptr& failed) {
@@ -209,7 +210,7 @@ std::optional<std::uint64_t> MpiCrew::next(std::optional<std::uint64_t> finished
 void MpiCrew::end(std::exception_ptr failed, const std::function<void()>& poll) {
     if (rank_ > 0) {
         // Who was stopped has failed by that alone.
-        const bool told = stopped();
+        const bool told = look_for_stop();
         const std::lock_guard lock(calls_);
         if (failed && !told) tell_leader(as_error(failed));
         tell_leader(Say::left, -1);
@@ -237,6 +238,15 @@ void MpiCrew::end(std::exception_ptr failed, const std::function<void()>& poll) 
 }
 
 bool MpiCrew::stopped() {
+    // Whoever polls does so often, and each look may give this thread's time to another process.
+    const std::int64_t now = std::chrono::steady_clock::now().time_since_epoch() / 1ns;
+    std::int64_t last = looked_;
+    if (now - last < between_polls / 1ns || !looked_.compare_exchange_strong(last, now))
+        return stopped_;
+    return look_for_stop();
+}
+
+bool MpiCrew::look_for_stop() {
     if (stopped_) return true;
     if (rank_ > 0) {
         // During a stage, and until this rank has left it, no other order can come.

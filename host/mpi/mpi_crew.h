@@ -72,6 +72,7 @@ class MpiCrew final : public Crew {
     std::optional<std::pair<char, std::string>> take_order();
     // The leader: handles a message that has come, if there is one.
     bool serve_one();
+    bool look_for_stop();
     void serve();
     void note_failure(const Error& failed);
     std::string signed_text(const Error& failed) const;
@@ -81,7 +82,8 @@ class MpiCrew final : public Crew {
     std::string machine_;
     std::mutex calls_;  // of MPI
     std::atomic<bool> stopped_{false};
-    bool ended_ = false;  // a member's: that the leader has ended the job
+    std::atomic<std::int64_t> looked_{0};  // when stopped() did so, nanoseconds
+    bool ended_ = false;                   // a member's: that the leader has ended the job
 
     // The leader's.
     TaskList tasks_;
