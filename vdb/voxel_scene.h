@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/space_map.h"
 #include "device/device.h"
 #include "topple/cloud_view.h"
 #include "topple/scene.h"
@@ -93,6 +94,13 @@ class VoxelScene {
     // that don't match the intrinsics or whose pose is not finite.
     void carve(device::Device& device, const Intrinsics& intrinsics,
                std::span<const DepthFrame> frames, const CarveOptions& options = {});
+
+    // Free space that a map tells, instead of frames or, after carve(), beside them: voxels whose
+    // centre it says to be free become empty, those with points stay surface. Where the map's
+    // voxels are the grid's, its free space beyond the scene's bounds is kept, too. Undoes an
+    // earlier fill(). Throws Error(usage) for a map without a voxel size, Error(input) for one of
+    // more than 2^23 blocks of 8x8x8 free voxels.
+    void set_free(const SpaceMap& map);
 
     // Six-direction filling (paper, 2.2.3; kernels six_fill_sweep, six_fill_vote): an invisible
     // voxel takes the primitive that at least `votes` of the rays along its six axes hit first; of

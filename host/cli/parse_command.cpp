@@ -185,9 +185,9 @@ Command add_parse(CLI::App& app, const Team& team) {
     app.add_option(
            "INPUT", a->input,
            "A point cloud (.ply, .pcd, .xyz), a mesh (.obj, .stl, .glb, .gltf, .ply with faces),\n"
-           "a sequence folder (depth/*.png, intrinsics.json, and trajectory.txt, trajectory.log "
-           "or\n"
-           "poses.txt), or the same folder without a trajectory: a single frame")
+           "an OctoMap (.bt, .ot), a LAS file (.las), a volume (.vdb), a sequence folder\n"
+           "(depth/*.png, intrinsics.json, and trajectory.txt, trajectory.log or poses.txt), or\n"
+           "the same folder without a trajectory: a single frame")
         ->required();
     app.add_option(
         "-o,--output", a->out,
@@ -264,6 +264,8 @@ Command add_parse(CLI::App& app, const Team& team) {
     app.add_flag(
         "--glb", a->output.glb,
         "Write the solids as meshes, too, one per object coloured by unsafety: objects.glb");
+    app.add_flag("--octomap", a->output.octomap,
+                 "Write what was seen to be free and occupied as an OctoMap, too: map.bt");
     app.add_flag("--quiet", a->quiet, "Print errors only");
     return [a] { return a->team.leads ? run(*a) : help(*a); };
 }

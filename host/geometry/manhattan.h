@@ -15,9 +15,8 @@ namespace topple::geometry {
 struct SceneFrame {
     std::array<Vec3, 3> axes;  // orthonormal, right-handed, input frame; axes[2] is up
     bool found = false;        // three near-orthogonal directions carry the scene's surfaces
-    std::string
-        up_method;     // "given" | "manhattan" | "dominant-plane" | "upright-surfaces" | "assumed"
-    std::string note;  // what to know before trusting up, in a sentence; empty where it is sure
+    std::string up_method;     // as Scene::up_method
+    std::string note;     // what to know before trusting up, in a sentence; empty where it is sure
     double up_share = 0;  // share of surfels whose normal is within 10 degrees of +-up
 };
 

@@ -88,12 +88,15 @@ PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text,
                        ", where a PLY file starts with \"ply\"; it is another format or damaged");
     }
     if (extension == ".pcd") return parse_pcd(file, text, sink);
+    if (starts_as_las(text) || extension == ".las" || extension == ".laz")
+        return parse_las(file, text, unit_m);
     for (const char* known : {".xyz", ".txt", ".csv", ".asc", ".pts"}) {
         if (extension == known) return parse_xyz(file, text, sink);
     }
-    fail(file, "is no known kind of point cloud or mesh (its extension is " + in_quotes(extension) +
-                   "); give a .ply, .pcd, .xyz, .obj, .stl, .glb or .gltf file, or a folder with "
-                   "depth/*.png");
+    fail(file,
+         "is no known kind of point cloud or mesh (its extension is " + in_quotes(extension) +
+             "); give a .ply, .pcd, .xyz, .las, .obj, .stl, .glb or .gltf file, or a folder with "
+             "depth/*.png");
 }
 
 void scale(PointCloud& cloud, double unit_m) {
@@ -101,6 +104,7 @@ void scale(PointCloud& cloud, double unit_m) {
         for (float& v : *values) v = static_cast<float>(v * unit_m);
     }
     for (double& v : cloud.viewpoint) v *= unit_m;
+    for (double& v : cloud.offset_m) v *= unit_m;
 }
 
 }  // namespace
@@ -131,6 +135,13 @@ PointCloud read_cloud(const std::filesystem::path& file, double unit_m) {
     }
     PointCloud cloud = parse_cloud(file, read_file(file).text(), unit_m);
     if (unit_m != 1) scale(cloud, unit_m);
+    if (cloud.offset_m != Vec3{0, 0, 0}) {
+        cloud.notes.push_back(
+            "The file's coordinates lie far from the origin, and were moved by (" +
+            short_number(-cloud.offset_m[0]) + ", " + short_number(-cloud.offset_m[1]) + ", " +
+            short_number(-cloud.offset_m[2]) +
+            ") m, about; offset_m in scene.json has the exact way back.");
+    }
     note_extent(cloud);
     return cloud;
 }

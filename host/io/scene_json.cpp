@@ -271,6 +271,7 @@ Scene scene_of(const Json& json) {
         scene.timings_s.emplace_back(stage, number_of(seconds));
     }
     for (const auto& value : json.at("swc_energy")) scene.swc_energy.push_back(number_of(value));
+    if (json.contains("offset_m")) scene.offset_m = vector_at(json, "offset_m");
     scene.notes = json.at("notes").get<std::vector<std::string>>();
     return scene;
 }
@@ -289,6 +290,7 @@ std::string scene_json(const Scene& scene) {
     json["up"] = vector(scene.up);
     json["up_method"] = scene.up_method;
     json["manhattan_found"] = scene.manhattan_found;
+    json["offset_m"] = vector(scene.offset_m);
     json["manhattan_from_input"] = matrix(scene.manhattan_from_input);
     json["density_kg_m3"] = number(scene.density_kg_m3);
     json["friction"] = number(scene.friction);

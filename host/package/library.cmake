@@ -12,10 +12,10 @@ add_library(libtopple ${OBJECTS})
 add_library(topple::topple ALIAS libtopple)
 
 # What those objects need when they are linked, by package, target and library; what they need of others are headers.
-set(TOPPLE_LINKED_LIBRARIES png lzf qhull_r openvdb tbb OpenCL vulkan assimp cairo stdc++ m pthread)
-set(TOPPLE_LINKED_PACKAGES Threads PNG liblzf Qhull TBB OpenCL Vulkan assimp)  # and OpenVDB, cairo
+set(TOPPLE_LINKED_LIBRARIES png lzf qhull_r openvdb tbb OpenCL vulkan assimp octomap octomath cairo stdc++ m pthread)
+set(TOPPLE_LINKED_PACKAGES Threads PNG liblzf Qhull TBB OpenCL Vulkan assimp octomap)  # and OpenVDB, cairo
 target_link_libraries(libtopple PRIVATE Threads::Threads PNG::PNG liblzf::liblzf Qhull::qhull_r OpenVDB::openvdb
-                                        TBB::tbb OpenCL::OpenCL Vulkan::Vulkan assimp::assimp cairo)
+                                        TBB::tbb OpenCL::OpenCL Vulkan::Vulkan assimp::assimp octomap cairo)
 
 set(GENERATED_HEADERS ${CMAKE_CURRENT_BINARY_DIR}/include)
 file(GLOB HEADERS CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/include/topple/*.h)

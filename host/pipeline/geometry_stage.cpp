@@ -9,10 +9,6 @@
 namespace topple {
 namespace {
 
-// Surfels are larger than the cells of the cloud: a surface then has no holes at their resolution
-// even where it is sparsely seen, and each averages the noise of several points. Measured: part
-// mIoU on generated rooms is highest at about twice the point spacing.
-constexpr double surfel_cells = 1.85;
 // A solid shows at least this many surfels: a patch of six by six.
 constexpr std::uint64_t least_surfels = 36;
 

@@ -14,9 +14,11 @@
 #include "geometry/surfels.h"
 #include "geometry/virtual_views.h"
 #include "io/frame_sequence.h"
+#include "io/octomap.h"
 #include "io/read_cloud.h"
 #include "pipeline/caller_points.h"
 #include "pipeline/voxel_stage.h"
+#include "vdb/read_volume.h"
 
 namespace topple {
 namespace {
@@ -204,15 +206,18 @@ void for_each_frame(const FrameStream& frames, device::ThreadPool& threads,
 
 namespace {
 
+void check_count(const CloudView& cloud) {
+    if (cloud.size() >= least_voxels) return;
+    throw Error(ErrorKind::input, cloud.source + ": " + std::to_string(cloud.size()) +
+                                      (cloud.size() == 1 ? " point was" : " points were") +
+                                      " found, but the smallest solid takes " +
+                                      std::to_string(least_voxels) + "; give a denser scan");
+}
+
 // All that follows from the points.
 void look_at_cloud(device::Device& device, Ingested& out) {
     const CloudView& cloud = out.cloud;
-    if (cloud.size() < least_voxels) {
-        throw Error(ErrorKind::input, cloud.source + ": " + std::to_string(cloud.size()) +
-                                          (cloud.size() == 1 ? " point was" : " points were") +
-                                          " found, but the smallest solid takes " +
-                                          std::to_string(least_voxels) + "; give a denser scan");
-    }
+    check_count(cloud);
     const double spacing = geometry::point_spacing(cloud);
     check_spacing(cloud, spacing);
     // A little above the spacing, so that a surface has no holes at this resolution.
@@ -270,6 +275,58 @@ Ingested ingest_part(device::Device& device, PointCloud cloud, double cell_m) {
     return out;
 }
 
+namespace {
+
+// The map's own axes, of which up is the third, so that its voxels and the grid's are the same;
+// none where up lies askew to them.
+std::optional<geometry::SceneFrame> frame_of_map(const std::optional<Vec3>& given_up) {
+    const Vec3 up = given_up.value_or(Vec3{0, 0, 1});
+    for (std::size_t a = 0; a < 3; ++a) {
+        if (std::abs(up[a]) < 1 - 1e-6) continue;
+        geometry::SceneFrame frame{};
+        const double sign = up[a] > 0 ? 1 : -1;
+        frame.axes[0][(a + 1) % 3] = 1;
+        frame.axes[1][(a + 2) % 3] = sign;
+        frame.axes[2][a] = sign;
+        frame.up_method = given_up ? "given" : "map";
+        return frame;
+    }
+    return std::nullopt;
+}
+
+// A volume's surface, and its free space beside what virtual views of the surface find.
+Ingested ingest_volume(device::Device& device, ScannedMap map) {
+    Ingested out;
+    out.own = std::move(map.cloud);
+    out.cloud = out.own;
+    look_at_cloud(device, out);
+    if (!map.space.free.empty()) out.space = std::move(map.space);
+    return out;
+}
+
+// An OctoMap: what is free and what nobody saw is known, and its voxels are the grid's.
+Ingested ingest_octomap(ScannedMap map, const ParseOptions& options) {
+    Ingested out;
+    out.own = std::move(map.cloud);
+    out.cloud = out.own;
+    check_count(out.cloud);
+    check_spacing(out.cloud, map.space.voxel_m);
+    out.notes = out.own.notes;
+    out.voxel_m = map.space.voxel_m;
+    // Surfels are the map's voxels: other cells would hold now one layer of them, now two.
+    out.cell_m = out.voxel_m / surfel_cells;
+    out.frame = frame_of_map(options.up);
+    if (!out.frame || (options.voxel_m > 0 && options.voxel_m != out.voxel_m)) {
+        out.notes.push_back(
+            "The voxels are not the map's own, because of --up or --voxel: its free space was "
+            "taken at their centres.");
+    }
+    out.space = std::move(map.space);
+    return out;
+}
+
+}  // namespace
+
 Ingested ingest(device::Device& device, const std::filesystem::path& input,
                 const ParseOptions& options) {
     if (options.progress) options.progress("ingest", 0);
@@ -281,6 +338,10 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
         }
         return ingest_frames(device, io::FrameSequence::open(input), options);
     }
+    if (io::looks_like_octomap(input))
+        return ingest_octomap(io::read_octomap(input, options.unit_m), options);
+    if (vdb::looks_like_volume(input))
+        return ingest_volume(device, vdb::read_volume(input, options.unit_m));
     return ingest_cloud(device, io::read_cloud(input, options.unit_m), options);
 }
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/space_map.h"
 #include "device/device.h"
 #include "device/native/thread_pool.h"
 #include "geometry/manhattan.h"
@@ -32,6 +34,11 @@ class FrameStream {
 void for_each_frame(const FrameStream& frames, device::ThreadPool& threads,
                     const std::function<void(DepthFrame, std::size_t)>& use);
 
+// Surfels are larger than the cells of the cloud: a surface then has no holes at their resolution
+// even where it is sparsely seen, and each averages the noise of several points. Measured: part
+// mIoU on generated rooms is highest at about twice the point spacing.
+constexpr double surfel_cells = 1.85;
+
 // What every later stage starts from, whatever the input was.
 struct Ingested {
     // The points, in the caller's memory or in `own`: what came from a file or from frames, or lost
@@ -43,9 +50,11 @@ struct Ingested {
     std::vector<std::uint32_t> viewpoint_of_point;  // of each point, or empty: viewpoint 0 for all
     std::unique_ptr<FrameStream> frames;            // what carves the free space; null: nothing can
     std::optional<Vec3> camera_up;
-    // Where the cloud is part of a building whose frame was found from all of it.
+    // Where it was found already: from all of a building, or as the axes of a map.
     std::optional<geometry::SceneFrame> frame;
     std::optional<geometry::StoreyHint> storey;
+    std::optional<SpaceMap> space;  // what a map says to be free
+    double voxel_m = 0;             // voxels' edge that the input brings; 0: from cell_m
     double cell_m = 0;  // working resolution, from the point spacing and the sensor's noise
     std::vector<std::string> notes;
 };

@@ -68,9 +68,12 @@ void check_memory(const CloudView& cloud, double voxel_m, const ParseOptions& op
 
 ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOptions& options,
                            Scene scene, StageClock& stage) {
-    const double voxel_m = options.voxel_m > 0 ? options.voxel_m : voxel_for_cell(input.cell_m);
+    const double voxel_m = options.voxel_m > 0 ? options.voxel_m
+                           : input.voxel_m > 0 ? input.voxel_m
+                                               : voxel_for_cell(input.cell_m);
     check_memory(input.cloud, voxel_m, options);
     record_run(device, options, voxel_m, scene);
+    scene.offset_m = input.own.offset_m;
     scene.notes.insert(scene.notes.end(), input.notes.begin(), input.notes.end());
 
     GeometryStage geometry = find_primitives(device, input, options, stage);  // 2.1

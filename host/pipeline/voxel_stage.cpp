@@ -105,6 +105,7 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
     bool around = false;
     stage("carving", [&] {
         if (input.frames) around = carve_all(device, *input.frames, *out.scene, stage);
+        if (input.space) out.scene->set_free(*input.space);
     });
     stage("filling", [&] {
         vdb::VoxelScene::FillOptions options;

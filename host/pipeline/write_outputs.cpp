@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "io/landscapes_json.h"
+#include "io/octomap.h"
 #include "io/output_folder.h"
 #include "io/scene_json.h"
 #include "io/write_ply.h"
@@ -13,6 +14,15 @@
 #include "vdb/voxel_scene.h"
 
 namespace topple {
+namespace {
+
+void write_map(const std::filesystem::path& file, const vdb::VoxelScene& voxels) {
+    const vdb::Tiles tiles = voxels.tiles(true);
+    const std::vector<std::uint8_t> states = voxels.states(tiles);
+    io::write_octomap(file, voxels.frame().voxel_m, {tiles.x, tiles.y, tiles.z, states});
+}
+
+}  // namespace
 
 void write_outputs(const ParseResult& result, const std::filesystem::path& folder,
                    const OutputOptions& options) {
@@ -34,6 +44,7 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
     report::write_report(out.folder() / "report.html", result.scene);
     if (options.pictures) report::write_pictures(out.folder(), result.scene);
     if (options.glb) write_objects_glb(out.folder() / "objects.glb", result.scene, *voxels);
+    if (options.octomap) write_map(out.folder() / "map.bt", *voxels);
     io::write_landscapes_json(out.folder() / "landscapes.json", result.scene);
     io::write_scene_json(out.folder() / "scene.json", result.scene);
     out.commit();

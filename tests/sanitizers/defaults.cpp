@@ -5,12 +5,13 @@
 #if defined(__SANITIZE_ADDRESS__)
 
 // PoCL and its compiler keep their state until the process ends, and so does what cairo chooses
-// fonts with.
+// fonts with. What assimp made of a damaged file is lost.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() {
     return "leak:libpocl\n"
            "leak:libLLVM\n"
-           "leak:libfontconfig\n";
+           "leak:libfontconfig\n"
+           "leak:libassimp\n";
 }
 
 // What is suppressed is not listed on stderr, which tests compare.

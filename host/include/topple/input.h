@@ -31,6 +31,7 @@ struct PointCloud {
     // unorganised cloud, or any organised cloud).
     bool has_viewpoint = false;
     Vec3 viewpoint{0, 0, 0};
+    Vec3 offset_m{0, 0, 0};          // the file's coordinates are these points' plus this
     std::string source;              // path, for messages
     std::vector<std::string> notes;  // what looks odd but is no error (units), in sentences
 

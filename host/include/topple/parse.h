@@ -84,7 +84,8 @@ struct ParseResult {
     std::shared_ptr<const TiledResult> tiled;
 };
 
-// Parses a scan: a point cloud (.ply, .pcd, .xyz), a sequence folder of depth frames with poses, or
+// Parses a scan: a point cloud (.ply, .pcd, .xyz, .las), a mesh (.obj, .stl, .glb, .gltf, .ply with
+// faces), a map (.bt, .ot, .vdb), a sequence folder of depth frames with poses, or
 // a folder with a single frame. The result does not hold the device. Throws Error: input (can't be
 // parsed into a scene), usage (an option is out of range), device (it can't be opened, or failed).
 ParseResult parse(const std::filesystem::path& input, const ParseOptions& options = {});
@@ -100,6 +101,7 @@ void add_coordinates(const CloudView& cloud, ParseResult& result);
 struct OutputOptions {
     bool pictures = false;  // the report's main views, too, as view-*.png
     bool glb = false;       // the solids as a mesh per object, too: objects.glb
+    bool octomap = false;   // what was seen to be free and occupied, too: map.bt
 };
 
 // Writes points.ply, solid.ply, volume.vdb, scene.json, landscapes.json and report.html into the

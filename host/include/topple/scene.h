@@ -188,11 +188,12 @@ struct Walks {
 };
 
 struct Scene {
+    Vec3 offset_m{0, 0, 0};  // the input's own coordinates are the scene's plus this
     std::string source, topple_version, backend, device;
     std::uint64_t seed = 1;
     double voxel_size_m = 0;
     Vec3 up{0, 0, 1};
-    // "given" | "manhattan" | "dominant-plane" | "upright-surfaces" | "assumed"
+    // "given" | "manhattan" | "dominant-plane" | "upright-surfaces" | "assumed" | "map"
     std::string up_method;
     bool manhattan_found = false;
     Mat4 manhattan_from_input{};

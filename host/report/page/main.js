@@ -11,7 +11,7 @@ function fillHeader(scene) {
     `; ${plural(scene.primitives.length, 'part')} in all.`;
   const up = {
     given: 'given by the user', manhattan: 'from the room\u2019s three main directions',
-    'dominant-plane': 'from the largest plane', 'upright-surfaces': 'along the walls', assumed: 'assumed',
+    'dominant-plane': 'from the largest plane', 'upright-surfaces': 'along the walls', assumed: 'assumed', map: 'the map\'s z',
   };
   const facts = [
     ['topple', scene.topple_version],

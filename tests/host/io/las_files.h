@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "files.h"
+
+namespace topple::test {
+
+// A LAS file of points in thousandths.
+struct LasFile {
+    unsigned minor = 2, format = 0;
+    std::array<double, 3> scale{1e-3, 1e-3, 1e-3}, offset{0, 0, 0};
+    std::vector<std::array<std::int32_t, 3>> points;
+    std::vector<std::size_t> withheld;  // which of them
+
+    std::string bytes() const {
+        constexpr std::array<std::uint16_t, 11> record{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
+        const auto header = static_cast<std::uint16_t>(minor == 4 ? 375 : minor == 3 ? 235 : 227);
+        std::string out = "LASF";
+        out.resize(24, '\0');
+        out.push_back('\1');
+        out.push_back(static_cast<char>(minor));
+        out.resize(94, '\0');
+        append<std::uint16_t>(out, header);
+        append<std::uint32_t>(out, header);
+        append<std::uint32_t>(out, 0);
+        out.push_back(static_cast<char>(format));
+        append<std::uint16_t>(out, record[format]);
+        append<std::uint32_t>(out, minor == 4 ? 0 : static_cast<std::uint32_t>(points.size()));
+        out.resize(131, '\0');
+        for (const double v : scale) append(out, v);
+        for (const double v : offset) append(out, v);
+        out.resize(header, '\0');
+        if (minor == 4) {
+            std::string count;
+            append<std::uint64_t>(count, points.size());
+            out.replace(247, 8, count);
+        }
+        for (std::size_t n = 0; n < points.size(); ++n) {
+            std::string point;
+            for (const std::int32_t v : points[n]) append(point, v);
+            point.resize(record[format], '\0');
+            for (const std::size_t w : withheld) {
+                if (w == n) point[15] = static_cast<char>(format >= 6 ? 0x04 : 0x80);
+            }
+            out += point;
+        }
+        return out;
+    }
+};
+
+}  // namespace topple::test

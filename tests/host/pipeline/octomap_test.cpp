@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstdlib>
+
+#include "host/io/octomap_files.h"
+#include "host/pipeline/scan.h"
+#include "vdb/voxel_scene.h"
+
+// A map goes through a parse, and what was seen to be free and occupied comes out as it went in.
+namespace topple::test {
+namespace {
+
+class OctomapRoundTrip : public Files {
+  protected:
+    void expect_unchanged(const std::filesystem::path& map) {
+        const ParseResult result = parse(map, on(device::open_device("native")));
+        EXPECT_EQ(result.scene.up_method, "map");
+        EXPECT_GT(result.scene.objects.size(), 0u);
+        OutputOptions options;
+        options.octomap = true;
+        write_outputs(result, path("out"), options);
+        const OctomapVoxels before = voxels_of(map), after = voxels_of(path("out/map.bt"));
+        std::printf("%zu occupied and %zu free voxels\n", before.occupied.size(),
+                    before.free.size());
+        EXPECT_TRUE(before.occupied == after.occupied) << after.occupied.size();
+        EXPECT_TRUE(before.free == after.free) << after.free.size();
+    }
+};
+
+TEST_F(OctomapRoundTrip, of_a_generated_room) {
+    expect_unchanged(write("room.bt", binary_map(room_map())));
+}
+
+TEST_F(OctomapRoundTrip, of_a_building) {
+    const char* shared = std::getenv("TOPPLE_SHARED");
+    const std::filesystem::path map =
+        std::filesystem::path(shared ? shared : "") / "data/maps/geb079.bt";
+    if (!shared || !std::filesystem::exists(map)) GTEST_SKIP() << "no data/maps/geb079.bt";
+    expect_unchanged(map);
+}
+
+// With another --voxel or --up the grid is not the map's; the free space still counts.
+TEST_F(OctomapRoundTrip, other_voxels_and_axes) {
+    const auto map = write("room.bt", binary_map(room_map()));
+    ParseOptions options = on(device::open_device("native"));
+    options.voxel_m = 0.04;
+    options.disturbances = {"wind"};
+    const ParseResult finer = parse(map, options);
+    EXPECT_EQ(finer.scene.voxel_size_m, 0.04);
+    // Middle of the room, and of the unknown inside of the table.
+    const auto state = [](const ParseResult& r, double x, double y, double z) {
+        const auto& f = r.voxels->frame();
+        std::array<std::int32_t, 3> v{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            const Vec3& row = f.grid_from_input[a];
+            v[a] = static_cast<std::int32_t>(
+                std::floor((row[0] * x + row[1] * y + row[2] * z) / f.voxel_m));
+        }
+        return r.voxels->state_at(v[0], v[1], v[2]);
+    };
+    EXPECT_EQ(state(finer, 0.5, 0.9, 1.2), vdb::State::empty);
+    EXPECT_NE(state(finer, 1.15, 1.45, 0.71), vdb::State::empty);
+    options.voxel_m = 0;
+    options.up = Vec3{0, 0.6, 0.8};
+    const ParseResult askew = parse(map, options);
+    EXPECT_EQ(askew.scene.up_method, "given");
+    EXPECT_EQ(state(askew, 0.5, 0.9, 1.2), vdb::State::empty);
+}
+
+}  // namespace
+}  // namespace topple::test

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#include "vdb/read_volume.h"
+
+#include <openvdb/openvdb.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "host/io/files.h"
+#include "vdb/voxel_scene.h"
+
+namespace topple::vdb {
+namespace {
+
+using test::expect_input_error;
+
+class ReadVolume : public test::Files {
+  protected:
+    std::filesystem::path save(const openvdb::GridBase::Ptr& grid,
+                               const std::string& name = "a.vdb", double voxel = 0.05,
+                               const openvdb::Vec3d& move = {0, 0, 0}) const {
+        auto transform = openvdb::math::Transform::createLinearTransform(voxel);
+        transform->postTranslate(move);
+        grid->setTransform(transform);
+        openvdb::io::File file(path(name).string());
+        file.write({grid});
+        file.close();
+        return path(name);
+    }
+    // Distances of voxels to a sphere of `radius` voxels, known to `band` voxels from it.
+    static openvdb::FloatGrid::Ptr sphere(double radius, double band) {
+        openvdb::initialize();
+        auto grid = openvdb::FloatGrid::create(static_cast<float>(band));
+        const int reach = static_cast<int>(radius + band) + 1;
+        for (int i = -reach; i <= reach; ++i) {
+            for (int j = -reach; j <= reach; ++j) {
+                for (int k = -reach; k <= reach; ++k) {
+                    const double d = std::sqrt(i * i + j * j + k * k) - radius;
+                    if (std::abs(d) < band)
+                        grid->tree().setValueOn({i, j, k}, static_cast<float>(d));
+                }
+            }
+        }
+        return grid;
+    }
+};
+
+TEST_F(ReadVolume, distances_give_surface_normals_and_free_space) {
+    const auto map = read_volume(save(sphere(10, 3), "a.vdb", 0.05, {1, 2, 3}));
+    // Crossings lie along each axis about as often as the sphere's shadow has voxels, twice.
+    EXPECT_NEAR(static_cast<double>(map.cloud.size()), 3 * 2 * M_PI * 100, 60);
+    for (std::size_t n = 0; n < map.cloud.size(); ++n) {
+        const double x = map.cloud.x[n] - 1, y = map.cloud.y[n] - 2, z = map.cloud.z[n] - 3;
+        const double r = std::sqrt(x * x + y * y + z * z);
+        EXPECT_NEAR(r, 0.5, 0.002);
+        EXPECT_GT((x * map.cloud.nx[n] + y * map.cloud.ny[n] + z * map.cloud.nz[n]) / r, 0.99);
+    }
+    EXPECT_DOUBLE_EQ(map.space.voxel_m, 0.05);
+    EXPECT_NEAR(map.space.corner_m[2], 3, 1e-12);
+    ASSERT_FALSE(map.space.free.empty());
+    for (const auto& box : map.space.free) {
+        const double i = box.low[0] + 0.5, j = box.low[1] + 0.5;
+        for (std::int32_t k = box.low[2]; k <= box.high[2]; ++k) {
+            const double d = std::sqrt(i * i + j * j + (k + 0.5) * (k + 0.5)) - 10;
+            EXPECT_GT(d, 0);
+            EXPECT_LT(d, 3);
+        }
+    }
+}
+
+// Where nobody looked the background has the sign of free space; it shows no surface there.
+TEST_F(ReadVolume, what_is_not_active_shows_nothing) {
+    const auto grid = sphere(10, 3);
+    for (int i = -13; i <= 13; ++i) {
+        for (int j = -13; j <= 13; ++j) {
+            for (int k = -13; k < 0; ++k) grid->tree().setValueOff({i, j, k}, 3);
+        }
+    }
+    const auto map = read_volume(save(grid));
+    for (std::size_t n = 0; n < map.cloud.size(); ++n) {
+        EXPECT_GE(map.cloud.z[n], 0);
+        EXPECT_NEAR(std::hypot(map.cloud.x[n], map.cloud.y[n], map.cloud.z[n]), 0.5, 0.002);
+    }
+}
+
+TEST_F(ReadVolume, labels_and_fog) {
+    openvdb::initialize();
+    auto labels = openvdb::Int32Grid::create(-1);
+    auto fog = openvdb::FloatGrid::create(0);
+    labels->denseFill(openvdb::CoordBBox({-9, -9, -9}, {9, 9, 9}), 0, true);
+    labels->denseFill(openvdb::CoordBBox({-2, -2, -2}, {2, 2, 2}), 7, true);
+    fog->denseFill(openvdb::CoordBBox({-2, -2, -2}, {2, 2, 2}), 1, true);
+    const auto solid = read_volume(save(labels, "l.vdb", 0.1));
+    EXPECT_EQ(solid.cloud.size(), 125u - 27u);
+    std::uint64_t free = 0;
+    for (const auto& box : solid.space.free)
+        free += static_cast<std::uint64_t>(box.high[2] - box.low[2] + 1);
+    EXPECT_EQ(free, 18u * 18 * 18 - 6 * 6 * 6);
+
+    const auto cloud = read_volume(save(fog, "f.vdb", 0.1), 10);
+    EXPECT_EQ(cloud.cloud.size(), 6u * 25);
+    EXPECT_TRUE(cloud.space.free.empty());
+    for (std::size_t n = 0; n < cloud.cloud.size(); ++n) {
+        const double most = std::max(
+            {std::abs(cloud.cloud.x[n]), std::abs(cloud.cloud.y[n]), std::abs(cloud.cloud.z[n])});
+        EXPECT_NEAR(most, 2.5, 1e-6);
+    }
+}
+
+TEST_F(ReadVolume, bad_files) {
+    expect_input_error([&] { read_volume(write("a.vdb", "not a volume")); },
+                       {"a.vdb", "no OpenVDB"});
+    auto file = save(sphere(5, 2));
+    const auto bytes = test::bytes_of_file(file);
+    expect_input_error([&] { read_volume(write("b.vdb", bytes.substr(0, bytes.size() / 2))); },
+                       {"b.vdb", "can't be read"});
+    expect_input_error([&] { read_volume(save(openvdb::FloatGrid::create(1))); }, {"no surface"});
+    expect_input_error([&] { read_volume(save(openvdb::BoolGrid::create(true))); }, {"no grid of"});
+}
+
+TEST_F(ReadVolume, a_real_fog_volume) {
+    const char* shared = std::getenv("TOPPLE_SHARED");
+    const std::filesystem::path file =
+        std::filesystem::path(shared ? shared : "") / "data/maps/sphere.vdb";
+    if (!shared || !std::filesystem::exists(file)) GTEST_SKIP() << "no data/maps/sphere.vdb";
+    const auto map = read_volume(file);
+    ASSERT_GT(map.cloud.size(), 1000u);
+    Vec3 middle{};
+    const auto count = static_cast<double>(map.cloud.size());
+    for (std::size_t n = 0; n < map.cloud.size(); ++n) {
+        middle[0] += map.cloud.x[n] / count;
+        middle[1] += map.cloud.y[n] / count;
+        middle[2] += map.cloud.z[n] / count;
+    }
+    double least = 1e9, most = 0;
+    for (std::size_t n = 0; n < map.cloud.size(); ++n) {
+        const double r = std::hypot(map.cloud.x[n] - middle[0], map.cloud.y[n] - middle[1],
+                                    map.cloud.z[n] - middle[2]);
+        least = std::min(least, r);
+        most = std::max(most, r);
+    }
+    std::printf("%zu points, radius %.4f to %.4f\n", map.cloud.size(), least, most);
+    EXPECT_LT(most, 1.1 * least);
+}
+
+TEST_F(ReadVolume, free_space_becomes_empty_voxels) {
+    // A voxel of surface amid free ones, some of them far beyond the scene's bounds.
+    PointCloud cloud;
+    cloud.x = {0.05f};
+    cloud.y = {0.05f};
+    cloud.z = {0.05f};
+    VoxelScene scene({0.1, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}}, cloud,
+                     std::vector<std::int32_t>{0});
+    SpaceMap space;
+    space.voxel_m = 0.1;
+    space.free = {{{-3, -3, -3}, {3, 3, 3}}, {{100, 0, 0}, {140, 15, 15}}};
+    scene.set_free(space);
+    EXPECT_EQ(scene.state_at(0, 0, 0), State::surface);
+    EXPECT_EQ(scene.state_at(-3, 3, 1), State::empty);
+    EXPECT_EQ(scene.state_at(-4, 0, 0), State::invisible);
+    EXPECT_EQ(scene.state_at(140, 15, 15), State::empty);
+    EXPECT_EQ(scene.state_at(141, 0, 0), State::invisible);
+    std::uint64_t empty = 0, surface = 0;
+    for (const std::uint8_t s : scene.states(scene.tiles(true))) {
+        empty += s == 0;
+        surface += s == 1;
+    }
+    EXPECT_EQ(surface, 1u);
+    EXPECT_EQ(empty, 7u * 7 * 7 - 1 + 41 * 16 * 16);
+    // Twice is the same; a map of everything is refused.
+    scene.set_free(space);
+    space.free = {{{-32768, -32768, -32768}, {32767, 32767, 32767}}};
+    expect_input_error([&] { scene.set_free(space); }, {"8x8x8", "limit"});
+    // Shifted by half a voxel, only voxels whose centre is free are.
+    VoxelScene other({0.1, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}}, cloud,
+                     std::vector<std::int32_t>{0});
+    space.corner_m = {0.06, 0, 0};
+    space.free = {{{1, 0, 0}, {1, 0, 0}}};
+    other.set_free(space);
+    EXPECT_EQ(other.state_at(2, 0, 0), State::empty);
+    EXPECT_EQ(other.state_at(1, 0, 0), State::invisible);
+}
+
+}  // namespace
+}  // namespace topple::vdb
