@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "fuzz/readers.h"
+
+#include <cmath>
+#include <fstream>
+#include <new>
+
+#include "io/frame_sequence.h"
+#include "io/octomap.h"
+#include "io/read_cloud.h"
+#include "io/scene_json.h"
+#include "topple/error.h"
+#include "topple/motion.h"
+
+namespace topple::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Thrown where a reader returns what it must not.
+struct Broken {
+    const char* what;
+};
+
+void expect(bool holds, const char* what) {
+    if (!holds) throw Broken{what};
+}
+
+void check(const PointCloud& cloud) {
+    const std::size_t size = cloud.size();
+    expect(size > 0 && cloud.y.size() == size && cloud.z.size() == size, "arrays differ in size");
+    expect(cloud.nx.size() == cloud.ny.size() && cloud.nx.size() == cloud.nz.size() &&
+               (cloud.nx.empty() || cloud.nx.size() == size),
+           "normals are not one a point");
+    for (const auto* values : {&cloud.x, &cloud.y, &cloud.z}) {
+        for (const float v : *values) expect(std::abs(v) <= 1e6f, "a coordinate is out of range");
+    }
+    expect(cloud.height == 0 || cloud.pixel.size() == size, "pixels are not one a point");
+    for (const std::uint32_t p : cloud.pixel)
+        expect(p < std::uint64_t{cloud.width} * cloud.height, "a pixel lies outside of the image");
+}
+
+void read_as_cloud(const fs::path& file) {
+    check(io::read_cloud(file));
+}
+
+void read_as_octomap(const fs::path& file) {
+    const ScannedMap map = io::read_octomap(file);
+    check(map.cloud);
+    for (const SpaceMap::Box& box : map.space.free) {
+        for (std::size_t a = 0; a < 3; ++a)
+            expect(box.low[a] <= box.high[a] && box.low[a] >= -32768 && box.high[a] < 32768,
+                   "a free box lies outside of the keys");
+    }
+}
+
+void read_as_motion(const fs::path& file) {
+    const BodyMotion motion = read_motion(file);
+    for (const auto& track : motion.track)
+        expect(track.empty() || track.size() == motion.frames(), "tracks differ in length");
+}
+
+void read_as_record(const fs::path& file) {
+    const Accelerogram record = read_accelerogram(file);
+    expect(record.m_s2.size() >= 2 && record.step_s > 0, "a record without time");
+    expect(std::isfinite(record.peak_m_s2()), "a record without a finite peak");
+}
+
+constexpr Reader all[] = {
+    {"ply", "in.ply", read_as_cloud},
+    {"pcd", "in.pcd", read_as_cloud},
+    {"xyz", "in.xyz", read_as_cloud},
+    {"las", "in.las", read_as_cloud},
+    {"obj", "in.obj", read_as_cloud},
+    {"stl", "in.stl", read_as_cloud},
+    {"glb", "in.glb", read_as_cloud},
+    {"octomap", "in.bt", read_as_octomap},
+    {"depth", "in.png",
+     [](const fs::path& file) {
+         expect(io::read_depth_png(file, 9, 7).size() == 63, "an image of another size");
+     }},
+    {"intrinsics", "in.json",
+     [](const fs::path& file) { expect(io::read_intrinsics(file).fx > 0, "fx is not positive"); }},
+    {"trajectory", "in.txt",
+     [](const fs::path& file) {
+         for (const Mat4& pose : io::read_trajectory(file)) {
+             for (const double v : pose) expect(std::isfinite(v), "a pose is not finite");
+         }
+     }},
+    {"bvh", "in.bvh", read_as_motion},
+    {"joints", "in.csv", read_as_motion},
+    {"record_json", "in.json", read_as_record},
+    {"record_text", "in.txt", read_as_record},
+    {"scene", "in.json", [](const fs::path& file) { io::read_scene_json(file); }},
+};
+
+}  // namespace
+
+std::span<const Reader> readers() {
+    return all;
+}
+
+std::string try_input(const Reader& reader, const fs::path& folder, std::string_view bytes) {
+    const fs::path file = folder / reader.file;
+    std::ofstream(file, std::ios::binary)
+        .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    try {
+        reader.read(file);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::input)
+            return std::string("no error of input: ") + error.what();
+        for (const char* c = error.what(); *c; ++c) {
+            if (static_cast<unsigned char>(*c) < 0x20)
+                return std::string("more than one line: ") + error.what();
+        }
+    } catch (const Broken& broken) {
+        return broken.what;
+    } catch (const std::exception& error) {
+        return std::string("another exception: ") + error.what();
+    }
+    return "";
+}
+
+}  // namespace topple::fuzz
