@@ -33,7 +33,7 @@ TEST_P(Corpus, is_read_or_refused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Readers, Corpus, ::testing::ValuesIn(readers().begin(), readers().end()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
 }  // namespace topple::fuzz
