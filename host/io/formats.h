@@ -32,6 +32,7 @@ bool starts_as_las(std::string_view bytes);
 // LAS 1.0 to 1.4, points of format 0 to 10, of which the coordinates are read; withheld points are
 // dropped. Where the first point lies beyond 4096 m, of which a unit has `unit_m`, all are moved by
 // whole units so that it lies near the origin: see PointCloud::offset_m. LAZ is refused.
-PointCloud parse_las(const std::filesystem::path& file, std::string_view bytes, double unit_m);
+PointCloud parse_las(const std::filesystem::path& file, std::string_view bytes, double unit_m,
+                     const CloudSink* sink = nullptr);
 
 }  // namespace topple::io

@@ -89,7 +89,7 @@ PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text,
     }
     if (extension == ".pcd") return parse_pcd(file, text, sink);
     if (starts_as_las(text) || extension == ".las" || extension == ".laz")
-        return parse_las(file, text, unit_m);
+        return parse_las(file, text, unit_m, sink);
     for (const char* known : {".xyz", ".txt", ".csv", ".asc", ".pts"}) {
         if (extension == known) return parse_xyz(file, text, sink);
     }
@@ -109,21 +109,33 @@ void scale(PointCloud& cloud, double unit_m) {
 
 }  // namespace
 
+void note_offset(PointCloud& cloud) {
+    if (cloud.offset_m == Vec3{0, 0, 0}) return;
+    cloud.notes.push_back("The file's coordinates lie far from the origin, and were moved by (" +
+                          short_number(-cloud.offset_m[0]) + ", " +
+                          short_number(-cloud.offset_m[1]) + ", " +
+                          short_number(-cloud.offset_m[2]) +
+                          ") m, about; offset_m in scene.json has the exact way back.");
+}
+
 bool can_stream(const std::filesystem::path& file) {
     const auto extension = lower_extension(file);
-    constexpr std::array<std::string_view, 7> clouds{".ply", ".pcd", ".xyz", ".txt",
-                                                     ".csv", ".asc", ".pts"};
+    constexpr std::array<std::string_view, 8> clouds{".ply", ".pcd", ".las", ".xyz",
+                                                     ".txt", ".csv", ".asc", ".pts"};
     return std::ranges::find(clouds, extension) != clouds.end();
 }
 
-void stream_cloud(const std::filesystem::path& file, double unit_m, const CloudSink& sink) {
+PointCloud stream_cloud(const std::filesystem::path& file, double unit_m, const CloudSink& sink) {
     const MappedFile bytes(file);
     const CloudSink scaled = [&](PointCloud portion) {
         if (unit_m != 1) scale(portion, unit_m);
         sink(std::move(portion));
         bytes.release();
     };
-    parse_cloud(file, bytes.text(), 1, &scaled);
+    PointCloud rest = parse_cloud(file, bytes.text(), unit_m, &scaled);
+    if (unit_m != 1) scale(rest, unit_m);
+    note_offset(rest);
+    return rest;
 }
 
 PointCloud read_cloud(const std::filesystem::path& file, double unit_m) {
@@ -135,13 +147,7 @@ PointCloud read_cloud(const std::filesystem::path& file, double unit_m) {
     }
     PointCloud cloud = parse_cloud(file, read_file(file).text(), unit_m);
     if (unit_m != 1) scale(cloud, unit_m);
-    if (cloud.offset_m != Vec3{0, 0, 0}) {
-        cloud.notes.push_back(
-            "The file's coordinates lie far from the origin, and were moved by (" +
-            short_number(-cloud.offset_m[0]) + ", " + short_number(-cloud.offset_m[1]) + ", " +
-            short_number(-cloud.offset_m[2]) +
-            ") m, about; offset_m in scene.json has the exact way back.");
-    }
+    note_offset(cloud);
     note_extent(cloud);
     return cloud;
 }

@@ -21,9 +21,15 @@ namespace topple::io {
 // where the file has them (0, 0, 0 for single points without one).
 PointCloud read_cloud(const std::filesystem::path& file, double unit_m = 1);
 
-// The same file in portions, for clouds larger than memory; its points come in its order. A
-// binary_compressed PCD is unpacked whole.
-bool can_stream(const std::filesystem::path& file);  // a cloud by its extension, no mesh
-void stream_cloud(const std::filesystem::path& file, double unit_m, const CloudSink& sink);
+// Notes how the points were moved, if they were.
+void note_offset(PointCloud& cloud);
+
+// Whether the file is a cloud, no mesh or map, by its extension.
+bool can_stream(const std::filesystem::path& file);
+
+// The same file in portions, for clouds larger than memory; its points come in its order. Returns a
+// cloud without points, with what else there is to say: offset and notes. A binary_compressed PCD
+// is unpacked whole; of a mesh's file the vertices come.
+PointCloud stream_cloud(const std::filesystem::path& file, double unit_m, const CloudSink& sink);
 
 }  // namespace topple::io

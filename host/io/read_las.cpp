@@ -87,7 +87,8 @@ bool starts_as_las(std::string_view bytes) {
     return bytes.starts_with("LASF");
 }
 
-PointCloud parse_las(const std::filesystem::path& file, std::string_view bytes, double unit_m) {
+PointCloud parse_las(const std::filesystem::path& file, std::string_view bytes, double unit_m,
+                     const CloudSink* sink) {
     if (!starts_as_las(bytes)) {
         fail(file, "starts with " + in_quotes(bytes.substr(0, 4)) +
                        ", where a LAS file starts with \"LASF\"");
@@ -108,7 +109,7 @@ PointCloud parse_las(const std::filesystem::path& file, std::string_view bytes, 
     }
     // "Shall not be included in processing", in byte 15 of every format.
     const unsigned withheld = h.format >= 6 ? 0x04 : 0x80;
-    CloudBuilder cloud(file, h.points, false);
+    CloudBuilder cloud(file, h.points, false, sink);
     for (std::uint64_t n = 0; n < h.points; ++n) {
         const std::size_t at = h.first + n * h.record;
         std::array<double, 3> p{};

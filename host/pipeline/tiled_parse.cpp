@@ -65,11 +65,11 @@ void spill(const fs::path& input, const tiles::WorkFolder& work, const ParseOpti
     std::error_code error;
     // A guess, for the progress alone.
     const double expected = static_cast<double>(fs::file_size(input, error)) / 15;
-    io::stream_cloud(input, options.unit_m, [&](const PointCloud& portion) {
+    const PointCloud rest = io::stream_cloud(input, options.unit_m, [&](const PointCloud& portion) {
         out.add(portion, input.string());
         stage.progress("sorting", std::min(0.99, static_cast<double>(out.points()) / expected));
     });
-    out.finish();
+    out.finish(rest.offset_m);
 }
 
 // What comes before the blocks. Where it fails the folder goes: another try would do no better, and
@@ -203,6 +203,10 @@ SolidVoxels solid_voxels(const SolidParts& parts, const ObjectStage& objects) {
 
 void add_notes(const tiles::SpilledPoints& points, const tiles::Layout& layout, Scene& scene) {
     if (!layout.frame.note.empty()) scene.notes.push_back(layout.frame.note);
+    PointCloud moved;
+    moved.offset_m = scene.offset_m = points.offset_m();
+    io::note_offset(moved);
+    scene.notes.insert(scene.notes.end(), moved.notes.begin(), moved.notes.end());
     if (points.dropped() > 0)
         scene.notes.push_back(io::counted(points.dropped(), "point") +
                               " of the input were not finite and are left out.");

@@ -35,6 +35,7 @@ SpilledPoints::SpilledPoints(const fs::path& folder) : file_(folder / "points.bi
     BinaryReader in(folder / "bins.bin");
     points_ = in.value<std::uint64_t>();
     dropped_ = in.value<std::uint64_t>();
+    offset_m_ = in.value<Vec3>();
     const auto count = in.value<std::uint64_t>();
     if (count > most_bins) in.damaged();
     for (std::uint64_t n = 0; n < count; ++n) {
@@ -116,13 +117,14 @@ void PointSpill::add(const PointCloud& portion, const std::string& source) {
     }
 }
 
-void PointSpill::finish() {
+void PointSpill::finish(const Vec3& offset_m) {
     for (Open& bin : bins_) flush(bin);
     writer_->close();
     std::ranges::sort(bins_, {}, [](const Open& bin) { return bin.written.bin; });
     BinaryWriter out(folder_ / "bins.bin");
     out.value(points_);
     out.value(dropped_);
+    out.value(offset_m);
     out.value(static_cast<std::uint64_t>(bins_.size()));
     for (const Open& bin : bins_) {
         out.value(bin.written.bin);

@@ -33,6 +33,7 @@ class SpilledPoints {
     const std::vector<BinPoints>& bins() const { return bins_; }  // ascending
     std::uint64_t points() const { return points_; }
     std::uint64_t dropped() const { return dropped_; }  // points that were not finite
+    const Vec3& offset_m() const { return offset_m_; }  // see PointCloud
 
     // Calls use(points) for the bin's portions in order.
     void read(std::size_t bin, const std::function<void(std::span<const Point>)>& use) const;
@@ -41,6 +42,7 @@ class SpilledPoints {
     std::filesystem::path file_;
     std::vector<BinPoints> bins_;
     std::uint64_t points_ = 0, dropped_ = 0;
+    Vec3 offset_m_{};
 };
 
 // Writes points into `folder` as they come, sorted into bins: points.bin, and bins.bin when all are
@@ -52,7 +54,7 @@ class PointSpill {
 
     // Throws Error(input) naming `source` where the points lie in more bins than a building has.
     void add(const PointCloud& portion, const std::string& source);
-    void finish();
+    void finish(const Vec3& offset_m = {});
     std::uint64_t points() const { return points_; }
 
   private:
