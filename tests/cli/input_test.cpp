@@ -65,8 +65,10 @@ std::string floats(std::size_t count, float value) {
 
 TEST_F(Input, missing_or_of_no_known_kind) {
     refused("missing.ply", {"No such file"});
+    put("scan.doc", "v 0 0 0\n");
+    refused("scan.doc", {".ply"});
     put("scan.obj", "v 0 0 0\n");
-    refused("scan.obj", {".ply"});
+    refused("scan.obj", {"mesh"});
     std::filesystem::create_directory(in("folder"));
     refused("folder", {"depth"});
 }
