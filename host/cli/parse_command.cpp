@@ -258,7 +258,9 @@ Command add_parse(CLI::App& app, const Team& team) {
     app.add_option("--tile", a->tile_m,
                    "Parse a cloud in blocks of this edge in metres, so that it may be larger than\n"
                    "memory (default: 5 for clouds of over 4 million points, else in one piece)");
-    app.add_option("--max-memory", a->max_memory, "Refuse a scan that would need more, such as 4G");
+    app.add_option("--max-memory", a->max_memory,
+                   "Memory to keep to, such as 4G: in blocks fewer are held at a time, and a scan\n"
+                   "that would need more is refused");
     app.add_flag("--png", a->output.pictures,
                  "Write the report's main views as pictures, too: view-*.png");
     app.add_flag(

@@ -9,9 +9,11 @@
 #include <unordered_set>
 
 #include "device/device.h"
+#include "device/native/thread_pool.h"
 #include "geometry/surfels.h"
 #include "io/frame_sequence.h"
 #include "io/read_cloud.h"
+#include "pipeline/tiled_memory.h"
 #include "pipeline/tiled_parse.h"
 
 namespace topple {
@@ -27,7 +29,9 @@ constexpr double surface_cell_m = 0.05, cells_per_area = 1.1;
 constexpr double probe_reference_s = 0.075;
 constexpr double tiled_point_s = 0.45e-6, thinned_point_s = 4.1e-6, tiled_fixed_s = 4;
 constexpr double point_s = 5e-6, pixel_s = 8e-8, fixed_s = 0.5;
-constexpr double point_bytes = 420, thinned_point_bytes = 45, block_bytes = 450e6;
+constexpr double point_bytes = 420;
+// Cells of a block of a furnished building.
+constexpr std::uint64_t block_cells = 450'000;
 constexpr double work_point_bytes = 16, work_thinned_bytes = 40;
 constexpr double output_point_bytes = 35, tiled_output_point_bytes = 23, output_fixed = 15e6;
 // Of a surface whose noise is about a seventh of the cell, cells a patch of a cell's size.
@@ -147,7 +151,10 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
         const double thinned =
             std::min(0.95 * points, layers * out.surface_m2 / (out.cell_m * out.cell_m));
         out.seconds = tiled_fixed_s + tiled_point_s * points + thinned_point_s * thinned;
-        out.memory_bytes = static_cast<std::uint64_t>(block_bytes + thinned_point_bytes * thinned);
+        const double blocks =
+            block_bytes(block_cells) *
+            (device->info().backend == device::Backend::native ? device->threads().threads() : 1);
+        out.memory_bytes = static_cast<std::uint64_t>(std::max(blocks, whole_bytes(thinned)));
         out.work_bytes =
             static_cast<std::uint64_t>(work_point_bytes * points + work_thinned_bytes * thinned);
         out.output_bytes =

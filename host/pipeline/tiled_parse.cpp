@@ -21,6 +21,7 @@
 #include "pipeline/shared_stage.h"
 #include "pipeline/solid_parts.h"
 #include "pipeline/stage_clock.h"
+#include "pipeline/tiled_memory.h"
 #include "pipeline/tiled_result.h"
 #include "pipeline/tiled_stages.h"
 #include "tiles/blocks.h"
@@ -217,14 +218,31 @@ void add_notes(const tiles::SpilledPoints& points, const tiles::Layout& layout, 
                           " mm; its sensor's places were not known, and free space was estimated.");
 }
 
+// Before the blocks, which take most of the time.
+void check_memory(const tiles::Layout& layout, const fs::path& input, const ParseOptions& options) {
+    if (options.max_memory_bytes == 0) return;
+    double all = 0;
+    for (const tiles::Block& b : layout.blocks) all += static_cast<double>(b.cells);
+    const double need = std::max(whole_bytes(all), block_bytes(largest_block(layout)));
+    if (need <= static_cast<double>(options.max_memory_bytes)) return;
+    io::fail(input, "in blocks at voxels of " + io::short_number(layout.voxel_m) +
+                        " m it would need about " + io::short_number(std::ceil(need / 1e6)) +
+                        " MB, more than the " +
+                        io::short_number(static_cast<double>(options.max_memory_bytes) / 1e6) +
+                        " MB of --max-memory; use a larger --voxel");
+}
+
 ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
                             std::unique_ptr<tiles::WorkFolder> work, const SharedWork& shared,
                             StageClock& stage) {
     device::Device& device = shared.device;
     const tiles::SpilledPoints points(work->path());
     const std::vector<tiles::Bin> bins = bins_of(points);
-    const tiles::Layout layout =
-        or_remove(*work, [&] { return find_layout(shared, points, input, options, stage); });
+    const tiles::Layout layout = or_remove(*work, [&] {
+        tiles::Layout found = find_layout(shared, points, input, options, stage);
+        check_memory(found, input, options);
+        return found;
+    });
     stage("blocks", [&] { parse_blocks(shared, points, layout, options, stage); });
     JoinedBlocks joined =
         stage("joining", [&] { return join_blocks(work->path(), layout, stage); });

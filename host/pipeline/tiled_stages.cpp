@@ -17,6 +17,7 @@
 #include "io/text.h"
 #include "pipeline/block_stage.h"
 #include "pipeline/shared_stage.h"
+#include "pipeline/tiled_memory.h"
 #include "tiles/work_folder.h"
 #include "topple/version.h"
 
@@ -102,16 +103,11 @@ class BlockDevices {
     }
 
   private:
-    // Measured: what a block takes besides its points, and a point that it sees; which are more
-    // than those of its core.
     static unsigned most_lanes(const tiles::Layout& layout, const ParseOptions& options) {
-        constexpr double block_bytes = 60e6, point_bytes = 450, seen = 1.75;
         if (options.max_memory_bytes == 0) return UINT_MAX;
-        std::uint64_t cells = 0;
-        for (const tiles::Block& b : layout.blocks) cells = std::max(cells, b.cells);
-        const double each = block_bytes + point_bytes * seen * static_cast<double>(cells);
-        return static_cast<unsigned>(
-            std::clamp(static_cast<double>(options.max_memory_bytes) / each, 1.0, 1024.0));
+        return static_cast<unsigned>(std::clamp(
+            static_cast<double>(options.max_memory_bytes) / block_bytes(largest_block(layout)), 1.0,
+            1024.0));
     }
 
     std::mutex mutex_;

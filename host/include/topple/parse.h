@@ -34,7 +34,8 @@ struct ParseOptions {
     std::optional<Vec3> up;  // up in the input's frame (from an IMU, say); else found
     std::vector<std::string> disturbances{"human", "wind", "earthquake"};
     std::uint64_t seed = 1;
-    std::uint64_t max_memory_bytes = 0;  // refuse inputs that would need more; 0: no limit
+    std::uint64_t max_memory_bytes =
+        0;  // to keep to, about; inputs that would need more are refused. 0: no limit
     double density_kg_m3 = 700;
     double friction = 0.3;
     // People who walk by: walks that are sampled, and how a body moves meanwhile, from
