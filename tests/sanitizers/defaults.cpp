@@ -5,13 +5,14 @@
 #if defined(__SANITIZE_ADDRESS__)
 
 // PoCL and its compiler keep their state until the process ends, and so does what cairo chooses
-// fonts with. What assimp made of a damaged file is lost.
+// fonts with. What assimp and OpenVDB made of a damaged file is lost.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() {
     return "leak:libpocl\n"
            "leak:libLLVM\n"
            "leak:libfontconfig\n"
-           "leak:libassimp\n";
+           "leak:libassimp\n"
+           "leak:libopenvdb\n";
 }
 
 // What is suppressed is not listed on stderr, which tests compare.
