@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace topple::tiles {
 namespace {
@@ -61,13 +60,14 @@ std::vector<Storey> find_storeys(const std::vector<double>& area_m2, double low_
         {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}};
     if (levels.empty()) return storeys;
     storeys.front().floor_m = levels.front().height_m;
-    std::optional<double> ceiling;  // of the storey in hand
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    double ceiling = none;  // of the storey in hand
     for (const Level& level : levels) {
         const double height = level.height_m;
-        const double slab = ceiling ? height - *ceiling : 0;
+        const double slab = height - ceiling;  // NaN is in no range
         if (slab >= thinnest_slab_m && slab <= thickest_slab_m) {
-            storeys.push_back({height, (*ceiling + height) / 2});
-            ceiling.reset();
+            storeys.push_back({height, (ceiling + height) / 2});
+            ceiling = none;
         } else if (height - storeys.back().floor_m >= lowest_room_m) {
             ceiling = height;
         }
