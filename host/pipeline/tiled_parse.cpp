@@ -51,7 +51,7 @@ std::string manifest(const fs::path& input, const ParseOptions& options) {
            " " + std::to_string(changed) + options_text(options);
 }
 
-// Half of what a run may take is for the points in hand; the rest is for the others.
+// An eighth of what a run may take: the device, and the portion in hand, take theirs, too.
 std::uint64_t spill_bytes(const ParseOptions& options) {
     constexpr std::uint64_t most = std::uint64_t{256} << 20, least = std::uint64_t{16} << 20;
     if (options.max_memory_bytes == 0) return most;
