@@ -66,9 +66,12 @@ class Cutter {
     bool cut(std::size_t k) {
         if (region(k).model.degree != 1 || out_.members[k].size() < 2 * options_.piece_min)
             return false;
+        const std::vector<Contradiction> all = contradictions(k);
+        if (all.empty()) return false;
         std::optional<Division> best;
-        for (const Contradiction& c : contradictions(k)) {
-            Division d = divide(out_.members[k], c);
+        Face face(*this, out_.members[k]);
+        for (const Contradiction& c : all) {
+            Division d = divide(face, c);
             if (std::min(d.inside.size(), d.outside.size()) < options_.piece_min) continue;
             const bool block = d.thickness >= options_.thickness_min &&
                                static_cast<double>(c.outside.size()) >=
@@ -184,37 +187,59 @@ class Cutter {
         for (const std::uint32_t m : found) front[m] = true;
     }
 
-    // The shortest cut through the face that parts the one from the other: a minimum cut of the
-    // graph of neighbouring surfels, in cells. Level cuts count a little less: things stand on one
-    // another.
-    Division divide(const Members& members, const Contradiction& c) const {
+    // A face as a graph of neighbouring surfels, whose edges tell how long a cut between them is,
+    // in cells. Level cuts count a little less: things stand on one another.
+    struct Face {
+        const Members& members;
         // Noise may spread a face over two layers of cells: a surfel counts as the share of a
         // cell's area that it covers.
-        std::vector<double> area(members.size());
-        for (std::size_t m = 0; m < members.size(); ++m) area[m] = covered(members[m]);
-        const double pull = (solid_.empty() ? 0 : options_.pull) /
-                            std::sqrt(std::accumulate(area.begin(), area.end(), 0.0));
-        std::vector<CutNode> nodes(members.size());
-        for (std::size_t m = 0; m < members.size(); ++m) nodes[m].from_source = pull * area[m];
-        for (const std::uint32_t m : c.inside) nodes[m].from_source = cut_never;
-        for (const std::uint32_t m : c.outside) nodes[m] = {0, cut_never};
+        std::vector<double> area;
         std::vector<CutEdge> edges;
+        MinimumCut graph;
+
+        Face(const Cutter& of, const Members& face)
+            : members(face),
+              area(of.areas(face)),
+              edges(of.edges(face, area)),
+              graph(face.size(), edges) {}
+    };
+
+    std::vector<double> areas(const Members& members) const {
+        std::vector<double> out;
+        for (const std::uint32_t i : members) out.push_back(covered(i));
+        return out;
+    }
+
+    std::vector<CutEdge> edges(const Members& members, const std::vector<double>& area) const {
+        std::vector<CutEdge> out;
         for (std::uint32_t m = 0; m < members.size(); ++m) {
             const std::uint32_t i = members[m];
             for (auto e = s_.neighbour_first[i]; e < s_.neighbour_first[i + 1]; ++e) {
                 const std::uint32_t j = s_.neighbours[e];
                 if (j > i && label(j) == label(i))
-                    edges.push_back({m, place_[j], area[m] * area[place_[j]] * weight(i, j)});
+                    out.push_back({m, place_[j], area[m] * area[place_[j]] * weight(i, j)});
             }
         }
-        const std::vector<bool> within = minimum_cut(nodes, edges);
+        return out;
+    }
+
+    // The shortest cut through the face that parts the one from the other.
+    Division divide(Face& face, const Contradiction& c) const {
+        const std::vector<double>& area = face.area;
+        const double pull = (solid_.empty() ? 0 : options_.pull) /
+                            std::sqrt(std::accumulate(area.begin(), area.end(), 0.0));
+        std::vector<CutNode> nodes(area.size());
+        for (std::size_t m = 0; m < nodes.size(); ++m) nodes[m].from_source = pull * area[m];
+        for (const std::uint32_t m : c.inside) nodes[m].from_source = cut_never;
+        for (const std::uint32_t m : c.outside) nodes[m] = {0, cut_never};
+        const std::vector<bool> within = face.graph.part(nodes);
         Division out;
         double length = 0, inside = 0, outside = 0;
-        for (std::size_t m = 0; m < members.size(); ++m) {
-            (within[m] ? out.inside : out.outside).push_back(members[m]);
+        for (std::size_t m = 0; m < nodes.size(); ++m) {
+            (within[m] ? out.inside : out.outside).push_back(face.members[m]);
             (within[m] ? inside : outside) += area[m];
         }
-        for (const CutEdge& e : edges)
+        for (const CutEdge& e : face.edges)
             if (within[e.a] != within[e.b]) length += e.weight;
         out.neck = length / std::sqrt(std::max(std::min(inside, outside), 1.0));
         double proven = 0;

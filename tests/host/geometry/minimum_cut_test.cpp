@@ -9,6 +9,10 @@
 namespace topple::geometry {
 namespace {
 
+std::vector<bool> minimum_cut(std::span<const CutNode> nodes, std::span<const CutEdge> edges) {
+    return MinimumCut(nodes.size(), edges).part(nodes);
+}
+
 double cost(std::span<const CutNode> nodes, std::span<const CutEdge> edges,
             const std::vector<bool>& inside) {
     double sum = 0;
