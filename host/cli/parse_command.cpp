@@ -131,7 +131,8 @@ void read_options(Arguments& a) {
 
 // What all processes of a team do before their part of the parse.
 void get_ready(Arguments& a) {
-    a.options.device = device::open_device(a.backend, a.threads > 0 ? a.threads : a.team.threads);
+    a.output.threads = a.threads > 0 ? a.threads : a.team.threads;
+    a.options.device = device::open_device(a.backend, a.output.threads);
     a.options.crew = a.team.crew;
     a.options.cancelled = [&team = a.team] {
         return interrupted() != 0 || (team.stopped && team.stopped());

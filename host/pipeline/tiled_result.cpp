@@ -73,20 +73,22 @@ void TiledResult::write_points(const std::filesystem::path& file) const {
         const std::vector<std::int32_t>& label;
     };
     std::map<tiles::Bin, Open> open;
+    const auto opened = [&](const tiles::Bin& bin) {
+        const auto at = open.find(bin);
+        if (at != open.end()) return at;
+        const auto place = std::ranges::lower_bound(bins_, bin);
+        if (place == bins_.end() || *place != bin) io::fail(input_, "changed while it was parsed");
+        return open
+            .emplace(bin, Open{tiles::CellsOfPoints(work_->path(), bin),
+                               label_[static_cast<std::size_t>(place - bins_.begin())]})
+            .first;
+    };
+    auto last = open.end();  // most points lie where the one before them does
     io::stream_cloud(input_, unit_m_, [&](const PointCloud& portion) {
         for (std::size_t n = 0; n < portion.size(); ++n) {
             const tiles::Bin bin = tiles::bin_of(portion.x[n], portion.y[n], portion.z[n]);
-            auto at = open.find(bin);
-            if (at == open.end()) {
-                const auto place = std::ranges::lower_bound(bins_, bin);
-                if (place == bins_.end() || *place != bin)
-                    io::fail(input_, "changed while it was parsed");
-                at =
-                    open.emplace(bin, Open{tiles::CellsOfPoints(work_->path(), bin),
-                                           label_[static_cast<std::size_t>(place - bins_.begin())]})
-                        .first;
-            }
-            const std::int32_t primitive = at->second.label.at(at->second.cells.next());
+            if (last == open.end() || last->first != bin) last = opened(bin);
+            const std::int32_t primitive = last->second.label.at(last->second.cells.next());
             writer.add({portion.x[n], portion.y[n], portion.z[n]}, primitive, object_of(primitive));
         }
     });

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <future>
 #include <memory>
 
 #include "io/landscapes_json.h"
@@ -22,6 +23,30 @@ void write_map(const std::filesystem::path& file, const vdb::VoxelScene& voxels)
     io::write_octomap(file, voxels.frame().voxel_m, {tiles.x, tiles.y, tiles.z, states});
 }
 
+void write_points(const std::filesystem::path& file, const ParseResult& result) {
+    if (result.tiled) {
+        result.tiled->write_points(file);
+    } else {
+        io::write_points_ply(file, result.scene.points);
+    }
+}
+
+void write_all_else(const std::filesystem::path& folder, const ParseResult& result,
+                    const OutputOptions& options) {
+    const Scene& scene = result.scene;
+    const auto voxels = result.tiled
+                            ? std::make_shared<const vdb::VoxelScene>(result.tiled->load_voxels())
+                            : result.voxels;
+    voxels->write(folder / "volume.vdb");
+    io::write_solid_ply(folder / "solid.ply", scene.solid);
+    report::write_report(folder / "report.html", scene);
+    if (options.pictures) report::write_pictures(folder, scene);
+    if (options.glb) write_objects_glb(folder / "objects.glb", scene, *voxels);
+    if (options.octomap) write_map(folder / "map.bt", *voxels);
+    io::write_landscapes_json(folder / "landscapes.json", scene);
+    io::write_scene_json(folder / "scene.json", scene);
+}
+
 }  // namespace
 
 void write_outputs(const ParseResult& result, const std::filesystem::path& folder,
@@ -31,22 +56,16 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
                     "the result has no coordinates of its points: call add_coordinates() first");
     }
     io::OutputFolder out(folder);
-    if (result.tiled) {
-        result.tiled->write_points(out.folder() / "points.ply");
+    const auto points = [&] { write_points(out.folder() / "points.ply", result); };
+    // Both are long, and neither needs the other.
+    std::future<void> beside;
+    if (options.threads != 1) {
+        beside = std::async(std::launch::async, points);
     } else {
-        io::write_points_ply(out.folder() / "points.ply", result.scene.points);
+        points();
     }
-    const auto voxels = result.tiled
-                            ? std::make_shared<const vdb::VoxelScene>(result.tiled->load_voxels())
-                            : result.voxels;
-    voxels->write(out.folder() / "volume.vdb");
-    io::write_solid_ply(out.folder() / "solid.ply", result.scene.solid);
-    report::write_report(out.folder() / "report.html", result.scene);
-    if (options.pictures) report::write_pictures(out.folder(), result.scene);
-    if (options.glb) write_objects_glb(out.folder() / "objects.glb", result.scene, *voxels);
-    if (options.octomap) write_map(out.folder() / "map.bt", *voxels);
-    io::write_landscapes_json(out.folder() / "landscapes.json", result.scene);
-    io::write_scene_json(out.folder() / "scene.json", result.scene);
+    write_all_else(out.folder(), result, options);
+    if (beside.valid()) beside.get();
     out.commit();
     if (result.tiled) result.tiled->finished();
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/cells.h"
 
-#include <bit>
 #include <cmath>
 
 namespace topple::report {
@@ -32,12 +31,7 @@ bool unit(std::array<float, 3>& v) {
 
 }  // namespace
 
-CellTable::CellTable(std::size_t capacity) {
-    const auto size = std::bit_ceil(2 * capacity + 2);
-    keys_.assign(size, no_key);
-    values_.assign(size, absent);
-    mask_ = size - 1;
-}
+CellTable::CellTable() : keys_(1024, no_key), values_(1024, absent), mask_(1023) {}
 
 std::size_t CellTable::slot_of(std::uint64_t key) const {
     auto slot = (key * 0x9E3779B97F4A7C15u) >> 20 & mask_;
@@ -52,11 +46,25 @@ std::uint32_t CellTable::find(const std::array<std::int32_t, 3>& index) const {
 std::uint32_t CellTable::insert(const std::array<std::int32_t, 3>& index, std::uint32_t value) {
     const auto key = key_of(index);
     const auto slot = slot_of(key);
-    if (keys_[slot] == no_key) {
-        keys_[slot] = key;
-        values_[slot] = value;
+    if (keys_[slot] != no_key) return values_[slot];
+    keys_[slot] = key;
+    values_[slot] = value;
+    if (2 * ++used_ > keys_.size()) grow();
+    return value;
+}
+
+void CellTable::grow() {
+    std::vector<std::uint64_t> keys(2 * keys_.size(), no_key);
+    std::vector<std::uint32_t> values(keys.size(), absent);
+    keys.swap(keys_);
+    values.swap(values_);
+    mask_ = keys_.size() - 1;
+    for (std::size_t old = 0; old < keys.size(); ++old) {
+        if (keys[old] == no_key) continue;
+        const auto slot = slot_of(keys[old]);
+        keys_[slot] = keys[old];
+        values_[slot] = values[old];
     }
-    return values_[slot];
 }
 
 std::size_t mark_exposed(std::vector<Cell>& cells, const CellTable& table) {

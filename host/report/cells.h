@@ -24,7 +24,7 @@ struct Cell {
 // nothing.
 class CellTable {
   public:
-    explicit CellTable(std::size_t capacity);
+    CellTable();
     // The slot's value, `absent` where there is none. Indices must be within +-2^20.
     static constexpr std::uint32_t absent = UINT32_MAX;
     std::uint32_t find(const std::array<std::int32_t, 3>& index) const;
@@ -33,8 +33,10 @@ class CellTable {
 
   private:
     std::size_t slot_of(std::uint64_t key) const;
+    void grow();
     std::vector<std::uint64_t> keys_;
     std::vector<std::uint32_t> values_;
+    std::size_t used_ = 0;
     std::uint64_t mask_;
 };
 

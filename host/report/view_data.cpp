@@ -217,15 +217,24 @@ class Packer {
         return found == voxels_of_object_.end() ? UINT64_MAX : found->second;
     }
 
+    // How many voxels along the edge of the first cubes to try. The voxels of the surface are what
+    // is exposed, and cubes of n voxels' edge show an n^2-th of them: here still a little too many.
+    int first_merge() const {
+        const auto surface = std::ranges::count(scene_.solid.state, 0);
+        const double too_many = static_cast<double>(surface) /
+                                static_cast<double>(std::max<std::size_t>(limits_.voxels, 1));
+        return std::clamp(static_cast<int>(0.8 * std::sqrt(too_many)), 1, 64);
+    }
+
     void pack_voxels() {
         view_.voxels.total = scene_.solid.x.size();
         view_.cube_m = scene_.voxel_size_m > 0 ? scene_.voxel_size_m : 0.02;
         if (solid_box_.empty()) return;
-        for (int merge = 1;; ++merge) {
+        for (int merge = first_merge();; ++merge) {
             const double edge = view_.cube_m * merge;
             // The lowest centre lies half a voxel into its cube.
             lattice_shift_ = 0.5 / merge;
-            CellTable table(scene_.solid.x.size());
+            CellTable table;
             auto cells = cells_of(edge, table);
             // A scene of things far apart is not coarsened without end.
             if (mark_exposed(cells, table) > limits_.voxels && merge < 64) continue;
@@ -308,7 +317,7 @@ class Packer {
         }
         out.arrow = all;
         for (double edge = 2 * view_.cube_m; out.arrow.size() > limits_.arrows; edge *= 1.25) {
-            CellTable table(all.size());
+            CellTable table;
             out.arrow.clear();
             for (const auto& a : all) {
                 std::array<std::int32_t, 3> index{};

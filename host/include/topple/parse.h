@@ -103,6 +103,7 @@ struct OutputOptions {
     bool pictures = false;  // the report's main views, too, as view-*.png
     bool glb = false;       // the solids as a mesh per object, too: objects.glb
     bool octomap = false;   // what was seen to be free and occupied, too: map.bt
+    unsigned threads = 0;   // 1: no thread but the caller's
 };
 
 // Writes points.ply, solid.ply, volume.vdb, scene.json, landscapes.json and report.html into the
