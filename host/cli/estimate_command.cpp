@@ -79,7 +79,7 @@ Command add_estimate(CLI::App& app) {
     app.add_option("--backend", a->backend, "As for parse")->capture_default_str();
     app.add_option("--voxel", a->options.voxel_m, "Edge of a solid voxel in metres, as for parse")
         ->check(CLI::PositiveNumber);
-    app.add_option("--tile", a->options.tile_m, "Edge of the blocks in metres, as for parse")
+    app.add_option("--tile", a->options.tile_m, "Edge of the tiles in metres, as for parse")
         ->check(CLI::PositiveNumber);
     app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
     app.add_flag("--quiet", a->quiet, "Print the estimate and errors only");

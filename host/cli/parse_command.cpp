@@ -256,9 +256,11 @@ Command add_parse(CLI::App& app, const Team& team) {
                    "Seconds for the search for objects, about; where that is too few, the\n"
                    "objects depend on the machine (default: as long as it takes)");
     app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
-    app.add_option("--tile", a->tile_m,
-                   "Parse a cloud in blocks of this edge in metres, so that it may be larger than\n"
-                   "memory (default: 5 for clouds of over 4 million points, else in one piece)");
+    app.add_option(
+        "--tile", a->tile_m,
+        "Parse any cloud in blocks of 5 m, as those of over 4 million points are, so\n"
+        "that it may be larger than memory; the blocks of a tile of this edge in metres\n"
+        "are read and handed out together (default: one by one; the result is the same)");
     app.add_option("--max-memory", a->max_memory,
                    "Memory to keep to, such as 4G: in blocks fewer are held at a time, and a scan\n"
                    "that would need more is refused");

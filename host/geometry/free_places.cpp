@@ -29,6 +29,12 @@ double FreePlaces::longest_m() const {
     return *std::max_element(size_.begin(), size_.end()) * cell_m_;
 }
 
+double FreePlaces::volume_m3() const {
+    double volume = 1;
+    for (const int side : size_) volume *= (side - 2 * margin) * cell_m_;
+    return volume;
+}
+
 bool FreePlaces::inside(const std::array<int, 3>& c) const {
     for (std::size_t a = 0; a < 3; ++a) {
         if (c[a] < 0 || c[a] >= size_[a]) return false;

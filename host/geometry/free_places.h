@@ -20,6 +20,7 @@ class FreePlaces {
 
     double cell_m() const { return cell_m_; }
     double longest_m() const;  // longest side of the grid
+    double volume_m3() const;  // of the scene's box
     // Cells that something may stand in: two steps from anything occupied. For each its middle.
     std::size_t size() const { return middle_.size(); }
     const Vec3& middle(std::size_t place) const { return middle_[place]; }

@@ -7,14 +7,14 @@
 #include <optional>
 #include <utility>
 
+#include "geometry/shell_faces.h"
+
 namespace topple::geometry {
 namespace {
 
-constexpr double horizontal_cos = 0.9;  // within 26 degrees of up: allows for noisy normals
-constexpr double vertical_sin = 0.3;    // within 17 degrees of level
 // A shell plane is no smaller than this share of the largest plane of its kind.
 constexpr double floor_share = 0.1, wall_share = 0.05;
-constexpr double floor_area_m2 = 0.02, wall_area_m2 = 0.3;
+constexpr double floor_area_m2 = 0.02;
 // A scrap is smaller than this share of its shell plane, faces the same way to within 60 degrees
 // (the normals of noise are noisy), and lies with this share of itself within the slack of the
 // plane.
@@ -35,14 +35,8 @@ constexpr double floor_piece_m2 = 0.25, least_thing_m2 = 0.01, noise_cells = 0.6
 // as a step, is another floor: a gallery, a platform. Tables are between them, beds smaller.
 constexpr double other_floor_m2 = 4, storey_m = 1.8, lowest_step_m = 0.12, highest_step_m = 0.45;
 
-double component(const Vec3& a, double x, double y, double z) {
-    return a[0] * x + a[1] * y + a[2] * z;
-}
-
-// Ceilings of a building hang no lower above the floor; walls without a ceiling are no lower and no
-// smaller, and end no lower than this below one.
-constexpr double lowest_ceiling_m = 2.0, high_wall_m = 2.0, high_wall_m2 = 1.5;
-constexpr double below_ceiling_m = 0.2;
+// Walls of a building whose ceiling is not seen are no lower and no smaller.
+constexpr double high_wall_m = 2.0, high_wall_m2 = 1.5;
 // What is no plane, but reaches that close to the ceiling, is built in: both faces of a wall
 // between doors, the lintel above one, a pillar.
 constexpr double touches_ceiling_m = 0.06;
@@ -51,42 +45,6 @@ constexpr double touches_ceiling_m = 0.06;
 constexpr double same_wall_cos = 0.98, same_wall_m = 0.04;
 // A storey's floor strays from its height by no more.
 constexpr double uneven_storey_m = 0.1;
-
-// Of a plane, the least length of the mean normal.
-constexpr double flat = 0.85;
-
-// Area-weighted mean plane of one primitive: point, normal, and how much of it agrees.
-struct Face {
-    double area_m2 = 0;  // of surfels whose normal agrees with the mean
-    double nx = 0, ny = 0, nz = 0, px = 0, py = 0, pz = 0;
-    double flatness = 0;  // length of the mean normal: 1 for a plane, less for a box
-    double lowest_m = INFINITY, highest_m = -INFINITY;  // along up
-};
-
-// label: of each surfel, below `count` or -1.
-std::vector<Face> faces(const Surfels& s, const std::vector<std::int32_t>& label, std::size_t count,
-                        const Vec3& up) {
-    std::vector<Face> out(count);
-    const double cell_area = s.cell_m * s.cell_m;
-    for (std::size_t n = 0; n < s.size(); ++n) {
-        if (label[n] < 0) continue;
-        Face& f = out[static_cast<std::size_t>(label[n])];
-        f.area_m2 += cell_area;
-        f.nx += s.nx[n], f.ny += s.ny[n], f.nz += s.nz[n];
-        f.px += s.x[n], f.py += s.y[n], f.pz += s.z[n];
-        const double height = component(up, s.x[n], s.y[n], s.z[n]);
-        f.lowest_m = std::min(f.lowest_m, height);
-        f.highest_m = std::max(f.highest_m, height);
-    }
-    for (Face& f : out) {
-        const double surfels = std::max(1.0, f.area_m2 / cell_area);
-        const double length = std::sqrt(f.nx * f.nx + f.ny * f.ny + f.nz * f.nz);
-        f.flatness = length / surfels;
-        if (length > 0) f.nx /= length, f.ny /= length, f.nz /= length;
-        f.px /= surfels, f.py /= surfels, f.pz /= surfels;
-    }
-    return out;
-}
 
 // Share of all surfels further behind the face than its own thickness and noise explain.
 double share_behind(const Surfels& s, const Face& f) {
@@ -164,25 +122,9 @@ std::vector<bool> continued_floor(const Surfels& s, const PrimitiveSet& primitiv
     return floor;
 }
 
-// Of the highest large plane that looks down from above a person's head; infinite where there is
-// none.
-template <class Level>
-double ceiling_height(const std::vector<Face>& face, const Level& level, double floor_height,
-                      double top_m) {
-    double height = -INFINITY;
-    for (const Face& f : face) {
-        if (level(f) < -horizontal_cos && f.area_m2 >= wall_area_m2 &&
-            f.lowest_m - floor_height >= lowest_ceiling_m && f.highest_m < top_m)
-            height = std::max(height, f.lowest_m);
-    }
-    return std::isfinite(height) ? height : INFINITY;
-}
-
 // Upright planes that lie in the plane of a wall are walls.
-template <class Level>
 void add_wall_pieces(const Surfels& surfels, const PrimitiveSet& primitives, const Vec3& up,
-                     const std::vector<Face>& face, const Level& level,
-                     std::vector<Structure>& structure) {
+                     const std::vector<Face>& face, std::vector<Structure>& structure) {
     // Of a wall with both of its faces, each.
     const std::vector<Face> regions =
         faces(surfels, primitives.faces.label, primitives.faces.regions.size(), up);
@@ -191,14 +133,15 @@ void add_wall_pieces(const Surfels& surfels, const PrimitiveSet& primitives, con
         if (structure[p] != Structure::wall) continue;
         for (const std::int32_t r : primitives.regions[p]) {
             const Face& f = regions[static_cast<std::size_t>(r)];
-            if (f.area_m2 >= wall_area_m2 && f.flatness > flat && std::abs(level(f)) < vertical_sin)
+            if (f.area_m2 >= wall_area_m2 && f.flatness > flat &&
+                std::abs(f.level(up)) < vertical_sin)
                 walls.push_back(&f);
         }
     }
     for (std::size_t p = 0; p < face.size(); ++p) {
         const Face& f = face[p];
         if (structure[p] != Structure::none || f.flatness < flat || f.area_m2 < wall_area_m2 ||
-            std::abs(level(f)) > vertical_sin)
+            std::abs(f.level(up)) > vertical_sin)
             continue;
         const bool in_wall = std::ranges::any_of(walls, [&](const Face* wall) {
             const double off = (f.px - wall->px) * wall->nx + (f.py - wall->py) * wall->ny +
@@ -210,38 +153,36 @@ void add_wall_pieces(const Surfels& surfels, const PrimitiveSet& primitives, con
     }
 }
 
-}  // namespace
-
-std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet& primitives,
-                                      const Vec3& up, const std::optional<StoreyHint>& storey) {
-    const std::vector<Face> face = faces(surfels, primitives.label, primitives.model.size(), up);
+// face: of each primitive; no area and no flatness where another storey has it.
+std::vector<Structure> structure_of(const Surfels& surfels, const PrimitiveSet& primitives,
+                                    const Vec3& up, const std::vector<Face>& face,
+                                    const StoreyHint* storey) {
     std::vector<Structure> out(face.size(), Structure::none);
-    const auto level = [&](const Face& f) { return component(up, f.nx, f.ny, f.nz); };
     double largest_level = 0, largest_upright = 0;
     for (const Face& f : face) {
         if (f.flatness < flat) continue;
-        if (level(f) > horizontal_cos) largest_level = std::max(largest_level, f.area_m2);
-        if (std::abs(level(f)) < vertical_sin)
+        if (f.level(up) > horizontal_cos) largest_level = std::max(largest_level, f.area_m2);
+        if (std::abs(f.level(up)) < vertical_sin)
             largest_upright = std::max(largest_upright, f.area_m2);
     }
     // The floor: the lowest of the large level planes, and what continues it at the same height.
     const auto may_be_floor = [&](const Face& f) {
-        return f.flatness > flat && level(f) > horizontal_cos &&
+        return f.flatness > flat && f.level(up) > horizontal_cos &&
                f.area_m2 >= std::max(floor_area_m2, floor_share * largest_level);
     };
     double floor_height = INFINITY;
     for (const Face& f : face) {
-        const double height = component(up, f.px, f.py, f.pz);
+        const double height = f.height_m(up);
         // With a storey, whose floor may be out of sight, a table top is not taken for it.
         if (storey && !(std::abs(height - storey->floor_m) < uneven_storey_m)) continue;
         if (may_be_floor(f)) floor_height = std::min(floor_height, height);
     }
     if (storey && std::isinf(floor_height)) floor_height = storey->floor_m;
     const double ceiling =
-        storey ? ceiling_height(face, level, floor_height, storey->top_m) : INFINITY;
+        storey ? ceiling_height(face, up, floor_height, storey->top_m) : INFINITY;
     const auto ends_room = [&](const Face& f) {
         if (!storey) return share_behind(surfels, f) < behind_share;
-        if (level(f) < -horizontal_cos) return f.lowest_m - floor_height >= lowest_ceiling_m;
+        if (f.level(up) < -horizontal_cos) return f.lowest_m - floor_height >= lowest_ceiling_m;
         if (std::isfinite(ceiling)) return f.highest_m >= ceiling - below_ceiling_m;
         return f.highest_m - f.lowest_m >= high_wall_m && f.area_m2 >= high_wall_m2;
     };
@@ -250,8 +191,8 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
     std::vector<bool> small(face.size()), other(face.size());
     for (std::size_t p = 0; p < face.size(); ++p) {
         const Face& f = face[p];
-        const double above = component(up, f.px, f.py, f.pz) - floor_height;
-        if (f.flatness < flat || level(f) < horizontal_cos || above < -uneven) continue;
+        const double above = f.height_m(up) - floor_height;
+        if (f.flatness < flat || f.level(up) < horizontal_cos || above < -uneven) continue;
         if (f.area_m2 >= floor_piece_m2 && above < uneven) large.push_back(p);
         other[p] = f.area_m2 >= other_floor_m2 &&
                    (above >= storey_m || (above >= lowest_step_m && above <= highest_step_m));
@@ -264,15 +205,41 @@ std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet
         if (small[p] || other[p] || continued[p]) {
             out[p] = Structure::floor;
         } else if (f.area_m2 >= wall_area_m2 && f.highest_m >= ceiling - touches_ceiling_m &&
-                   (f.flatness < flat || level(f) > -horizontal_cos)) {
+                   (f.flatness < flat || f.level(up) > -horizontal_cos)) {
             out[p] = Structure::wall;
         } else if (f.flatness > flat && f.area_m2 >= wall_area_m2 &&
                    f.area_m2 >= wall_share * largest_upright && ends_room(f)) {
-            if (std::abs(level(f)) < vertical_sin) out[p] = Structure::wall;
-            if (level(f) < -horizontal_cos) out[p] = Structure::ceiling;
+            if (std::abs(f.level(up)) < vertical_sin) out[p] = Structure::wall;
+            if (f.level(up) < -horizontal_cos) out[p] = Structure::ceiling;
         }
     }
-    if (storey) add_wall_pieces(surfels, primitives, up, face, level, out);
+    if (storey) add_wall_pieces(surfels, primitives, up, face, out);
+    return out;
+}
+
+}  // namespace
+
+std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet& primitives,
+                                      const Vec3& up, std::span<const StoreyHint> storeys) {
+    const std::vector<Face> all = faces(surfels, primitives.label, primitives.model.size(), up);
+    if (storeys.size() < 2)
+        return structure_of(surfels, primitives, up, all,
+                            storeys.empty() ? nullptr : &storeys.front());
+    std::vector<Structure> out(all.size(), Structure::none);
+    for (const StoreyHint& storey : storeys) {
+        const auto within = [&](const Face& f) {
+            const double height = f.height_m(up);
+            return height >= storey.below_m && height < storey.top_m;
+        };
+        std::vector<Face> own = all;
+        for (Face& f : own) {
+            if (!within(f)) f = {};
+        }
+        const std::vector<Structure> found = structure_of(surfels, primitives, up, own, &storey);
+        for (std::size_t p = 0; p < all.size(); ++p) {
+            if (within(all[p])) out[p] = found[p];
+        }
+    }
     return out;
 }
 

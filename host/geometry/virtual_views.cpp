@@ -23,6 +23,8 @@ constexpr double two_sided_cells = 0.25;
 // Places tried as the first, and the share of surfels that must face it.
 constexpr unsigned first_tries = 8;
 constexpr double least_facing = 0.5;
+// A large room, and how many of them are looked at.
+constexpr double room_m3 = 200, most_rooms = 30;
 
 class Looking {
   public:
@@ -44,7 +46,8 @@ class Looking {
     void look_around(const VirtualViewOptions& options) {
         for (const Vec3& eye : options.known_eyes) look(view_surfels(s_, eye, pool_));
         if (options.known_eyes.empty()) look_first(options.sides_known);
-        while (!out_.eyes.empty() && out_.eyes.size() < options.eyes) {
+        const std::size_t wanted = options.eyes * rooms();
+        while (!out_.eyes.empty() && out_.eyes.size() < wanted) {
             const std::size_t place = places_.choose(false);
             if (place == places_.size()) break;
             look(view_surfels(s_, places_.middle(place), pool_));
@@ -64,6 +67,11 @@ class Looking {
     }
 
   private:
+    // As many rooms as the scene has room for.
+    std::size_t rooms() const {
+        const double count = std::round(places_.volume_m3() / room_m3);
+        return static_cast<std::size_t>(std::clamp(count, 1.0, most_rooms));
+    }
     bool has_normal(std::size_t i) const { return s_.nx[i] != 0 || s_.ny[i] != 0 || s_.nz[i] != 0; }
     void know_sides() {
         for (std::size_t i = 0; i < s_.size(); ++i) side_[i] = has_normal(i) ? 1 : 0;

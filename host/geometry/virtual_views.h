@@ -13,7 +13,8 @@ namespace topple::geometry {
 
 struct VirtualViewOptions {
     std::vector<Vec3> known_eyes;  // where a sensor is known to have been
-    unsigned eyes = 12;            // places to look from, the known ones among them
+    unsigned eyes = 12;            // places to look from in each 200 m^3, the known ones
+                                   // among them
     bool sides_known = false;      // the surfels' normals point to the side that was free
 };
 

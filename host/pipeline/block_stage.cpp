@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -79,7 +80,8 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
     StageClock stage(timings, quiet);
     Ingested input = ingest_part(device, points.cloud, layout.cell_m);
     input.frame = layout.frame;
-    input.storey = geometry::StoreyHint{block.floor_m, block.top_m};
+    constexpr double below = -std::numeric_limits<double>::infinity();
+    input.storeys = {{block.floor_m, below, block.top_m}};
     GeometryStage geometry = find_primitives(device, input, quiet, stage);
     const VoxelStage voxels = make_solids(device, input, geometry, layout.voxel_m, stage);
     for (std::size_t p = 0; p < geometry.primitives.model.size(); ++p)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/building.h"
 #include "geometry/fragments.h"
 
 namespace topple {
@@ -36,7 +37,10 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
         geometry::absorb_fragments(g.surfels, least_surfels, primitives);
         return primitives;
     });
-    g.structure = geometry::find_structure(g.surfels, g.primitives, g.frame.axes[2], input.storey);
+    const Vec3& up = g.frame.axes[2];
+    g.storeys = input.storeys.empty() ? geometry::find_building(g.surfels, g.primitives, up)
+                                      : input.storeys;
+    g.structure = geometry::find_structure(g.surfels, g.primitives, up, g.storeys);
     geometry::absorb_into_shell(g.surfels, g.primitives, g.structure);
     g.region_of_point.reserve(input.cloud.size());
     g.primitive_of_point.reserve(input.cloud.size());

@@ -52,10 +52,10 @@ struct Ingested {
     std::optional<Vec3> camera_up;
     // Where it was found already: from all of a building, or as the axes of a map.
     std::optional<geometry::SceneFrame> frame;
-    std::optional<geometry::StoreyHint> storey;
-    std::optional<SpaceMap> space;  // what a map says to be free
-    double voxel_m = 0;             // voxels' edge that the input brings; 0: from cell_m
-    double cell_m = 0;  // working resolution, from the point spacing and the sensor's noise
+    std::vector<geometry::StoreyHint> storeys;  // of a part of a building
+    std::optional<SpaceMap> space;              // what a map says to be free
+    double voxel_m = 0;  // voxels' edge that the input brings; 0: from cell_m
+    double cell_m = 0;   // working resolution, from the point spacing and the sensor's noise
     std::vector<std::string> notes;
 };
 

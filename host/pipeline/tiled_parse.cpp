@@ -169,9 +169,7 @@ tiles::Layout find_layout(const SharedWork& shared, const tiles::SpilledPoints& 
         "frame", [&] { return find_frame(shared.device, shared.folder, points, cell_m, options); });
     return stage("layout", [&] {
         const std::vector<tiles::Bin> bins = bins_of(points);
-        tiles::Layout layout =
-            tiles::cut_into_blocks(shared.folder, bins, frame, cell_m, voxel_m,
-                                   options.tile_m > 0 ? options.tile_m : tiles::default_block_m);
+        tiles::Layout layout = tiles::cut_into_blocks(shared.folder, bins, frame, cell_m, voxel_m);
         if (layout.blocks.empty())
             io::fail(input, io::counted(points.points(), "point") +
                                 " were found, but nowhere enough of them for a surface; give a "

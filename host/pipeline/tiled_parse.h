@@ -16,14 +16,14 @@ inline constexpr std::uint64_t most_points_at_once = 4'000'000;
 // million cells, however dense the scan.
 inline constexpr double building_cell_m = 0.0125;
 
-// Blocks hold at least a table, and their halos.
-inline constexpr double least_tile_m = 2;
+// Tiles hold at least a block, tiles::block_edge_m.
+inline constexpr double least_tile_m = 5;
 
 // Parses a cloud file in blocks, if it is so large or options.tile_m asks for it: its points are
 // sorted into cubes on disk and thinned there to one a cell; each block with its halo goes through
 // section 2 of the paper; the primitives are joined across borders, and sections 3 to 5 see the
-// whole. The result depends on the cloud and the options, not on memory, threads or on who parsed
-// which block. Nothing: the input is no large cloud file, and nothing was done.
+// whole. The result depends on the cloud and the options, not on memory, threads, tiles or on who
+// parsed which block. Nothing: the input is no large cloud file, and nothing was done.
 std::optional<ParseResult> parse_tiled(const std::filesystem::path& input,
                                        const ParseOptions& options);
 

@@ -32,13 +32,13 @@ struct Order {
     std::string stage;
     fs::path folder;
     std::string manifest;
-    double cell_m = 0;
+    double size_m = 0;  // of the thinning's cells, or of the blocks' tiles
 
     std::string text() const {
-        char cell[40];
-        std::snprintf(cell, sizeof(cell), "%a", cell_m);
+        char size[40];
+        std::snprintf(size, sizeof(size), "%a", size_m);
         std::string out = stage;
-        for (const std::string& part : {folder.string(), manifest, std::string(cell)})
+        for (const std::string& part : {folder.string(), manifest, std::string(size)})
             out.append(1, '\0').append(part);
         return out;
     }
@@ -62,7 +62,7 @@ void thin_some(Crew& crew, device::Device& device, const tiles::SpilledPoints& p
                const Order& order, const std::function<void()>& tell) {
     work_off(
         crew, device, device.threads().threads(),
-        [&](std::uint64_t bin) { tiles::thin_bin(points, bin, order.cell_m, order.folder); }, tell);
+        [&](std::uint64_t bin) { tiles::thin_bin(points, bin, order.size_m, order.folder); }, tell);
 }
 
 // Devices for blocks that are parsed at the same time. Much of a block's work is done by one
@@ -116,10 +116,22 @@ class BlockDevices {
     unsigned lanes_ = 0;
 };
 
+// The blocks of a tile that are not there yet.
+std::vector<std::size_t> blocks_left(const std::vector<std::size_t>& tile,
+                                     const std::set<std::string>& there) {
+    std::vector<std::size_t> out;
+    for (const std::size_t b : tile) {
+        if (!there.contains(block_file({}, b).string())) out.push_back(b);
+    }
+    return out;
+}
+
 // A member's part of the blocks.
 void parse_some(Crew& crew, device::Device& device, const tiles::SpilledPoints& points,
-                const tiles::Layout& layout, const fs::path& folder, const ParseOptions& options,
+                const tiles::Layout& layout, const Order& order, const ParseOptions& options,
                 const std::function<void()>& tell) {
+    const fs::path& folder = order.folder;
+    const auto tiles = tiles::tiles_of(layout, order.size_m);
     const std::vector<tiles::Bin> bins = bins_of(points);
     std::optional<BlockDevices> devices;
     try {
@@ -130,11 +142,13 @@ void parse_some(Crew& crew, device::Device& device, const tiles::SpilledPoints& 
     }
     work_off(
         crew, device, devices->lanes(),
-        [&](std::uint64_t b) {
-            const tiles::Block& block = layout.blocks.at(b);
-            const tiles::BlockPoints seen = tiles::points_of_block(folder, bins, layout, block);
+        [&](std::uint64_t tile) {
+            const auto left = blocks_left(tiles.at(tile), tiles::names_in(folder));
+            tiles::TileReader reader(folder, bins, layout, left);
             devices->with([&](device::Device& own) {
-                write_block(folder, b, parse_block(own, seen, layout, block, options));
+                for (const std::size_t b : left)
+                    write_block(folder, b,
+                                parse_block(own, reader.next(), layout, layout.blocks[b], options));
             });
         },
         tell);
@@ -172,7 +186,7 @@ std::function<void()> part_of_stage(Crew& crew, device::Device& device, const st
         return [=, &crew, &device] { thin_some(crew, device, *points, order, nothing); };
     const auto layout = std::make_shared<const tiles::Layout>(tiles::read_layout(order.folder));
     return [=, &crew, &device, &options] {
-        parse_some(crew, device, *points, *layout, order.folder, options, nothing);
+        parse_some(crew, device, *points, *layout, order, options, nothing);
     };
 }
 
@@ -180,9 +194,9 @@ std::function<void()> part_of_stage(Crew& crew, device::Device& device, const st
 
 std::string options_text(const ParseOptions& o) {
     char text[256];
-    std::snprintf(text, sizeof(text), " voxel %a unit %a tile %a up %a %a %a version %s", o.voxel_m,
-                  o.unit_m, o.tile_m, o.up ? (*o.up)[0] : 0, o.up ? (*o.up)[1] : 0,
-                  o.up ? (*o.up)[2] : 0, version);
+    std::snprintf(text, sizeof(text), " voxel %a unit %a up %a %a %a version %s", o.voxel_m,
+                  o.unit_m, o.up ? (*o.up)[0] : 0, o.up ? (*o.up)[1] : 0, o.up ? (*o.up)[2] : 0,
+                  version);
     return text;
 }
 
@@ -217,19 +231,20 @@ void parse_blocks(const SharedWork& shared, const tiles::SpilledPoints& points,
     const std::set<std::string> there = tiles::names_in(shared.folder);
     std::vector<Crew::Task> tasks;
     std::uint64_t before = 0, all = 0;
-    for (std::size_t b = 0; b < layout.blocks.size(); ++b) {
-        const std::uint64_t cells = layout.blocks[b].cells;
-        all += cells;
-        if (there.contains(block_file(shared.folder, b).filename().string())) {
-            before += cells;
-        } else {
-            tasks.push_back({b, cells});
-        }
+    const Order order{"blocks", shared.folder, shared.manifest,
+                      options.tile_m > 0 ? options.tile_m : tiles::block_edge_m};
+    for (const tiles::Block& block : layout.blocks) all += block.cells;
+    before = all;
+    const auto tiles = tiles::tiles_of(layout, order.size_m);
+    for (std::size_t t = 0; t < tiles.size(); ++t) {
+        std::uint64_t cells = 0;
+        for (const std::size_t b : blocks_left(tiles[t], there)) cells += layout.blocks[b].cells;
+        if (cells > 0) tasks.push_back({t, cells});
+        before -= cells;
     }
     large_first(tasks);
-    shared.crew.begin(Order{"blocks", shared.folder, shared.manifest, layout.cell_m}.text(),
-                      std::move(tasks));
-    parse_some(shared.crew, shared.device, points, layout, shared.folder, options,
+    shared.crew.begin(order.text(), std::move(tasks));
+    parse_some(shared.crew, shared.device, points, layout, order, options,
                progress_of("blocks", shared.crew, before, all, stage));
 }
 

@@ -29,14 +29,19 @@ std::vector<bool> solids(const vdb::VoxelScene& scene, std::size_t primitives) {
     return keep;
 }
 
-// The k of the voxels in which most of the floor lies; the lowest number where there is no floor.
-std::int32_t floor_level(const vdb::VoxelScene& scene,
-                         const std::vector<geometry::Structure>& structure) {
+// The k of the voxels in which most of the lowest storey's floor lies; the lowest number where
+// there is no floor.
+std::int32_t floor_level(const vdb::VoxelScene& scene, const GeometryStage& geometry) {
+    const std::vector<geometry::Structure>& structure = geometry.structure;
+    const double top = (geometry.storeys.empty() ? std::numeric_limits<double>::infinity()
+                                                 : geometry.storeys.front().top_m) /
+                       scene.frame().voxel_m;
     const vdb::SolidCellArrays cells = scene.solid_cells();
     std::vector<std::int32_t> k;
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const std::int32_t p = cells.primitive[n];
-        if (p >= 0 && structure[static_cast<std::size_t>(p)] == geometry::Structure::floor)
+        if (p >= 0 && structure[static_cast<std::size_t>(p)] == geometry::Structure::floor &&
+            cells.k[n] < top)
             k.push_back(cells.k[n]);
     }
     if (k.empty()) return std::numeric_limits<std::int32_t>::min();
@@ -110,7 +115,7 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
     stage("filling", [&] {
         vdb::VoxelScene::FillOptions options;
         options.columns = around;
-        options.lowest = floor_level(*out.scene, geometry.structure);
+        options.lowest = floor_level(*out.scene, geometry);
         for (const geometry::Structure s : geometry.structure) {
             options.hollow.push_back(s == geometry::Structure::wall ||
                                      s == geometry::Structure::ceiling);

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "geometry/storeys.h"
 #include "tiles/binary_file.h"
 
 namespace topple::tiles {
@@ -24,8 +25,9 @@ double height_of(const geometry::SceneFrame& frame, float x, float y, float z) {
 }
 
 // Surface by height, over all bins.
-std::vector<Storey> storeys_of(const fs::path& folder, std::span<const Bin> bins,
-                               const geometry::SceneFrame& frame, double cell_m, double step_m) {
+std::vector<geometry::Storey> storeys_of(const fs::path& folder, std::span<const Bin> bins,
+                                         const geometry::SceneFrame& frame, double cell_m,
+                                         double step_m) {
     std::map<std::int64_t, std::uint64_t> cells;  // by step
     for (const Bin& bin : bins) {
         const ThinnedBin points = read_thinned(folder, bin);
@@ -33,7 +35,7 @@ std::vector<Storey> storeys_of(const fs::path& folder, std::span<const Bin> bins
             ++cells[static_cast<std::int64_t>(
                 std::floor(height_of(frame, points.x[n], points.y[n], points.z[n]) / step_m))];
     }
-    if (cells.empty()) return find_storeys({}, 0, step_m);
+    if (cells.empty()) return geometry::find_storeys({}, 0, step_m);
     const std::int64_t first = cells.begin()->first, last = cells.rbegin()->first;
     // Strays may lie far above; no building is higher than a kilometre.
     const auto steps =
@@ -44,7 +46,15 @@ std::vector<Storey> storeys_of(const fs::path& folder, std::span<const Bin> bins
             area[static_cast<std::size_t>(step - first)] =
                 static_cast<double>(count) * cell_m * cell_m;
     }
-    return find_storeys(area, static_cast<double>(first) * step_m, step_m);
+    return geometry::find_storeys(area, static_cast<double>(first) * step_m, step_m);
+}
+
+constexpr std::int32_t leaf = 8;
+
+// In voxels.
+std::int32_t block_edge(double voxel_m) {
+    return leaf *
+           std::max(1, static_cast<std::int32_t>(std::lround(block_edge_m / (leaf * voxel_m))));
 }
 
 std::int32_t floored(std::int32_t value, std::int32_t step) {
@@ -66,17 +76,14 @@ std::array<std::int32_t, 3> voxel_at(const geometry::SceneFrame& frame, double v
 }
 
 Layout cut_into_blocks(const fs::path& folder, std::span<const Bin> bins,
-                       const geometry::SceneFrame& frame, double cell_m, double voxel_m,
-                       double block_m) {
-    constexpr std::int32_t leaf = 8;
+                       const geometry::SceneFrame& frame, double cell_m, double voxel_m) {
     constexpr std::int32_t far = 1 << 26;  // beyond all voxels, with room for a halo
     Layout out{cell_m, voxel_m, 0, frame, {}};
     out.halo = leaf * static_cast<std::int32_t>(std::ceil(halo_m / (leaf * voxel_m) - 1e-9));
-    const auto edge =
-        leaf * std::max(1, static_cast<std::int32_t>(std::lround(block_m / (leaf * voxel_m))));
-    const std::vector<Storey> storeys = storeys_of(folder, bins, frame, cell_m, voxel_m);
+    const std::int32_t edge = block_edge(voxel_m);
+    const std::vector<geometry::Storey> storeys = storeys_of(folder, bins, frame, cell_m, voxel_m);
     std::vector<std::int32_t> begins;  // of each storey, voxels
-    for (const Storey& s : storeys)
+    for (const geometry::Storey& s : storeys)
         begins.push_back(
             std::isinf(s.below_m)
                 ? -far
@@ -136,38 +143,73 @@ Layout read_layout(const fs::path& folder) {
     return out;
 }
 
-BlockPoints points_of_block(const fs::path& folder, std::span<const Bin> bins, const Layout& layout,
-                            const Block& block) {
-    const VoxelBox seen = block.core.grown(layout.halo);
-    BlockPoints out;
-    for (std::size_t b = 0; b < bins.size(); ++b) {
-        // The bin's cube in voxels: its centre, and how far it reaches along each axis.
-        bool meets = true;
-        for (std::size_t a = 0; a < 3; ++a) {
-            const Vec3& axis = layout.frame.axes[a];
-            double middle = 0, reach = 0;
-            for (std::size_t c = 0; c < 3; ++c) {
-                middle += axis[c] * (bins[b][c] + 0.5) * bin_edge_m;
-                reach += std::abs(axis[c]) * 0.5 * bin_edge_m;
-            }
-            meets = meets && (middle - reach) / layout.voxel_m < seen.high[a] &&
-                    (middle + reach) / layout.voxel_m >= seen.low[a];
+TileReader::TileReader(const fs::path& folder, std::span<const Bin> bins, const Layout& layout,
+                       std::span<const std::size_t> blocks)
+    : folder_(folder), bins_(bins), layout_(layout), blocks_(blocks) {}
+
+bool TileReader::sees(std::size_t block, std::size_t bin) const {
+    const VoxelBox seen = layout_.blocks[block].core.grown(layout_.halo);
+    // The bin's cube in voxels: its centre, and how far it reaches along each axis.
+    for (std::size_t a = 0; a < 3; ++a) {
+        const Vec3& axis = layout_.frame.axes[a];
+        double middle = 0, reach = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            middle += axis[c] * (bins_[bin][c] + 0.5) * bin_edge_m;
+            reach += std::abs(axis[c]) * 0.5 * bin_edge_m;
         }
-        if (!meets) continue;
-        const ThinnedBin points = read_thinned(folder, bins[b]);
+        if ((middle - reach) / layout_.voxel_m >= seen.high[a] ||
+            (middle + reach) / layout_.voxel_m < seen.low[a])
+            return false;
+    }
+    return true;
+}
+
+BlockPoints TileReader::next() {
+    const std::size_t number = blocks_[next_++];
+    const Block& block = layout_.blocks[number];
+    const VoxelBox seen = block.core.grown(layout_.halo);
+    BlockPoints out;
+    for (std::size_t b = 0; b < bins_.size(); ++b) {
+        if (!sees(number, b)) continue;
+        auto at = held_.find(b);
+        if (at == held_.end()) at = held_.emplace(b, read_thinned(folder_, bins_[b])).first;
+        const ThinnedBin& points = at->second;
         BlockPoints::Part part{b, {}, {}};
         for (std::size_t n = 0; n < points.size(); ++n) {
-            const auto at =
-                voxel_at(layout.frame, layout.voxel_m, points.x[n], points.y[n], points.z[n]);
-            if (!seen.holds(at[0], at[1], at[2])) continue;
+            const auto cell =
+                voxel_at(layout_.frame, layout_.voxel_m, points.x[n], points.y[n], points.z[n]);
+            if (!seen.holds(cell[0], cell[1], cell[2])) continue;
             out.cloud.x.push_back(points.x[n]);
             out.cloud.y.push_back(points.y[n]);
             out.cloud.z.push_back(points.z[n]);
             part.cells.push_back(static_cast<std::uint32_t>(n));
-            part.in_core.push_back(block.core.holds(at[0], at[1], at[2]));
+            part.in_core.push_back(block.core.holds(cell[0], cell[1], cell[2]));
         }
         if (!part.cells.empty()) out.parts.push_back(std::move(part));
     }
+    const auto left = blocks_.subspan(next_);
+    std::erase_if(held_, [&](const auto& bin) {
+        return std::ranges::none_of(left,
+                                    [&](std::size_t later) { return sees(later, bin.first); });
+    });
+    return out;
+}
+
+std::vector<std::vector<std::size_t>> tiles_of(const Layout& layout, double tile_m) {
+    const std::int32_t block = block_edge(layout.voxel_m);
+    const auto blocks = std::max(1L, std::lround(tile_m / block_edge_m));
+    // By storey, as its blocks begin at one height, and the square's place.
+    std::map<std::array<std::int64_t, 3>, std::vector<std::size_t>> tiles;
+    const auto square = [&](std::int32_t low) {
+        const std::int64_t place = low / block;  // a multiple of it
+        return (place >= 0 ? place : place - blocks + 1) / blocks;
+    };
+    for (std::size_t b = 0; b < layout.blocks.size(); ++b) {
+        const VoxelBox& core = layout.blocks[b].core;
+        tiles[{core.low[2], square(core.low[0]), square(core.low[1])}].push_back(b);
+    }
+    std::vector<std::vector<std::size_t>> out;
+    for (auto& [place, of_tile] : tiles) out.push_back(std::move(of_tile));
     return out;
 }
 

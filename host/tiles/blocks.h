@@ -4,11 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <vector>
 
 #include "geometry/manhattan.h"
-#include "tiles/storeys.h"
 #include "tiles/thinned_bin.h"
 
 namespace topple::tiles {
@@ -45,15 +45,18 @@ struct Layout {
     std::vector<Block> blocks;  // by (storey, i, j)
 };
 
-// Edge of blocks, and what they see beyond it, metres. A halo is wider than what the stages up to
-// filling look around for, and than most parts of furniture.
-inline constexpr double default_block_m = 5, halo_m = 0.8;
+// Edge of blocks, rounded to whole leaves of 8 voxels, and what they see beyond it, metres. A halo
+// is wider than what the stages up to filling look around for, and than most parts of furniture.
+inline constexpr double block_edge_m = 5, halo_m = 0.8;
 
-// Cuts the thinned bins of `folder`. block_m: edge of the blocks, rounded to whole leaves of 8
-// voxels; they lie at multiples of it, whatever the cloud's extent.
+// Cuts the thinned bins of `folder`. Blocks lie at multiples of their edge, whatever the cloud's
+// extent.
 Layout cut_into_blocks(const std::filesystem::path& folder, std::span<const Bin> bins,
-                       const geometry::SceneFrame& frame, double cell_m, double voxel_m,
-                       double block_m);
+                       const geometry::SceneFrame& frame, double cell_m, double voxel_m);
+
+// The blocks of a layout, as many together as lie in a square of a storey with edges of tile_m,
+// rounded to whole blocks: they are handed out, and read, together. Each block is in one tile.
+std::vector<std::vector<std::size_t>> tiles_of(const Layout& layout, double tile_m);
 
 inline constexpr const char* layout_name = "layout.bin";
 void write_layout(const std::filesystem::path& folder, const Layout& layout);
@@ -73,7 +76,26 @@ struct BlockPoints {
     };
     std::vector<Part> parts;
 };
-BlockPoints points_of_block(const std::filesystem::path& folder, std::span<const Bin> bins,
-                            const Layout& layout, const Block& block);
+
+// Gives the points of the blocks of a tile, in the tile's order. Reads each bin once, and holds it
+// until the last block that sees some of it.
+class TileReader {
+  public:
+    // blocks: of the layout, those of the tile. What is referred to must outlive the reader.
+    TileReader(const std::filesystem::path& folder, std::span<const Bin> bins, const Layout& layout,
+               std::span<const std::size_t> blocks);
+    // Of the next block; called once for each.
+    BlockPoints next();
+
+  private:
+    bool sees(std::size_t block, std::size_t bin) const;
+
+    const std::filesystem::path& folder_;
+    std::span<const Bin> bins_;
+    const Layout& layout_;
+    std::span<const std::size_t> blocks_;
+    std::map<std::size_t, ThinnedBin> held_;  // by index of the bin
+    std::size_t next_ = 0;
+};
 
 }  // namespace topple::tiles

@@ -31,7 +31,7 @@ TEST_F(Tiled, says_what_is_wrong_with_a_cloud) {
 TEST_F(Tiled, a_plane_has_nothing_to_fall) {
     put_plane("plane.xyz");
     const Finished finished =
-        run({"parse", "plane.xyz", "--tile", "2", "-o", "out", "--quiet", "--disturbance", "wind"});
+        run({"parse", "plane.xyz", "--tile", "5", "-o", "out", "--quiet", "--disturbance", "wind"});
     EXPECT_EQ(finished.code, 0) << finished.err;
     EXPECT_TRUE(std::filesystem::exists(in("out") / "scene.json"));
     for (const auto& entry : std::filesystem::directory_iterator(in("")))

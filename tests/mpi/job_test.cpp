@@ -45,7 +45,7 @@ class Job : public Program {
         words.insert(words.end(), arguments.begin(), arguments.end());
         return words;
     }
-    static Words parse(const std::string& out, const std::string& tile = "3") {
+    static Words parse(const std::string& out, const std::string& tile = "5") {
         return {"parse", room().string(), "-o", out,         "--tile",
                 tile,    "--walks",       "20", "--backend", "native"};
     }

@@ -57,9 +57,10 @@ struct ParseOptions {
     // Whether the result holds its points' coordinates. Without, it takes 12 bytes a point less,
     // and add_coordinates() is needed before write_outputs().
     bool coordinates = true;
-    // Clouds in files of over 4 million points are parsed in blocks of this edge, metres, so that
-    // they may be larger than memory; 0: 5 m, and smaller clouds in one piece. Where it is given,
-    // every cloud file is.
+    // Clouds in files of over 4 million points are parsed in blocks of 5 m, so that they may be
+    // larger than memory, and smaller ones in one piece; where this is given, every cloud file is
+    // parsed in blocks. As many blocks as lie in a tile of this edge, metres, are read and handed
+    // out together; 0: one by one. The result is the same.
     double tile_m = 0;
     // Where the blocks are kept meanwhile; a run that was killed goes on from what it finds there.
     // Is removed by write_outputs(). Empty: a temporary folder.

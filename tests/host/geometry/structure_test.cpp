@@ -44,8 +44,8 @@ struct Scene {
                 });
         });
     }
-    std::vector<Structure> structure(std::optional<StoreyHint> storey = std::nullopt) const {
-        return find_structure(surfels, primitives, {0, 0, 1}, storey);
+    std::vector<Structure> structure(const std::vector<StoreyHint>& storeys = {}) const {
+        return find_structure(surfels, primitives, {0, 0, 1}, storeys);
     }
 
   private:
@@ -138,7 +138,7 @@ TEST(StructureOfAStorey, WallsBetweenRoomsAreWalls) {
     const auto rest = rooms.upright(3, 3.4, 4, 3.1, 4.9, 1);  // in the wall's plane
     const auto outer = rooms.upright(0, 0, 4, 3.1, 5.8, 1);
     rooms.ceiling(4, 1, 5.5, 2, 6.6);  // under a bench of the next storey
-    const auto found = rooms.structure(StoreyHint{3.1, 6.0});
+    const auto found = rooms.structure({{.floor_m = 3.1, .top_m = 6.0}});
     EXPECT_EQ(found[rooms.floor], Structure::floor);
     EXPECT_EQ(found[rooms.roof], Structure::ceiling);
     for (const std::size_t p : {rooms.wall, lintel, rest, outer})
@@ -152,7 +152,7 @@ TEST(StructureOfAStorey, FurnitureIsNone) {
     const auto table = rooms.level(4, 1, 5.5, 2, 3.85);
     const auto under = rooms.ceiling(4, 1, 5.5, 2, 3.82);
     const auto top = rooms.level(0, 0, 0.6, 2, 5.3);
-    const auto found = rooms.structure(StoreyHint{3.1, 6.0});
+    const auto found = rooms.structure({{.floor_m = 3.1, .top_m = 6.0}});
     for (const std::size_t p : {wardrobe, front, table, under, top})
         EXPECT_EQ(found[p], Structure::none) << p;
 }
@@ -161,7 +161,7 @@ TEST(StructureOfAStorey, FurnitureIsNone) {
 TEST(StructureOfAStorey, TheFloorMayBeOutOfSight) {
     Scene scene;
     const auto table = scene.level(0, 0, 2, 1, 3.85);
-    EXPECT_EQ(scene.structure(StoreyHint{3.1, 6.0})[table], Structure::none);
+    EXPECT_EQ(scene.structure({{.floor_m = 3.1, .top_m = 6.0}})[table], Structure::none);
     EXPECT_EQ(scene.structure()[table], Structure::floor);
 }
 
@@ -170,9 +170,24 @@ TEST(StructureOfAStorey, WithoutACeilingHighPlanesAreWalls) {
     scene.level(0, 0, 6, 4, 0);
     const auto wall = scene.upright(3, 0, 4, 0, 2.3, 1);
     const auto desk = scene.upright(1, 0, 3, 0, 0.75, 1);
-    const auto found = scene.structure(StoreyHint{0, 3.0});
+    const auto found = scene.structure({{.floor_m = 0, .top_m = 3.0}});
     EXPECT_EQ(found[wall], Structure::wall);
     EXPECT_EQ(found[desk], Structure::none);
+}
+
+// Each with its own floor, ceiling and walls.
+TEST(StructureOfAStorey, OneAboveTheOther) {
+    TwoRooms rooms;  // the upper one
+    const auto below = rooms.level(0, 0, 6, 4, 0.1);
+    const auto under = rooms.ceiling(0, 0, 6, 4, 2.8);
+    const auto wall = rooms.upright(2, 0, 2.5, 0.1, 2.8, 1, 0.12);
+    const auto table = rooms.level(4, 1, 5.5, 2, 0.85);
+    const auto found =
+        rooms.structure({{.floor_m = 0.1, .top_m = 2.95}, {.floor_m = 3.1, .below_m = 2.95}});
+    for (const std::size_t p : {rooms.floor, below}) EXPECT_EQ(found[p], Structure::floor) << p;
+    for (const std::size_t p : {rooms.roof, under}) EXPECT_EQ(found[p], Structure::ceiling) << p;
+    for (const std::size_t p : {rooms.wall, wall}) EXPECT_EQ(found[p], Structure::wall) << p;
+    EXPECT_EQ(found[table], Structure::none);
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ class Crews : public ::testing::Test {
     Crews() : folder_("topple_crew"), cloud_(folder_.path() / "room.ply") {
         scenes::write_building(cloud_, {.points = 20'000, .spacing_m = 0.03},
                                [](std::size_t, std::size_t) { return true; });
-        options_.tile_m = 3;
+        options_.tile_m = 5;
         options_.walks = 20;
         options_.work_folder = folder_.path() / "work";
     }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "tiles/storeys.h"
+#include "geometry/storeys.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace topple::tiles {
+namespace topple::geometry {
 namespace {
 
 // A level holds at least this share of the largest one's surface.
@@ -75,4 +75,4 @@ std::vector<Storey> find_storeys(const std::vector<double>& area_m2, double low_
     return storeys;
 }
 
-}  // namespace topple::tiles
+}  // namespace topple::geometry

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tiles/storeys.h"
+#include "geometry/storeys.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace topple::tiles {
+namespace topple::geometry {
 namespace {
 
 constexpr double step_m = 0.025, low_m = -0.5;
@@ -65,4 +65,4 @@ TEST(Storeys, NothingIsOneStoreyWithoutFloor) {
 }
 
 }  // namespace
-}  // namespace topple::tiles
+}  // namespace topple::geometry

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace topple::tiles {
+namespace topple::geometry {
 
 // Where a building may be cut between its storeys: in the slab between a ceiling and the floor
 // above.
@@ -20,4 +20,4 @@ struct Storey {
 // or NaN.
 std::vector<Storey> find_storeys(const std::vector<double>& area_m2, double low_m, double step_m);
 
-}  // namespace topple::tiles
+}  // namespace topple::geometry
