@@ -40,9 +40,9 @@ constexpr double high_wall_m = 2.0, high_wall_m2 = 1.5;
 // What is no plane, but reaches that close to the ceiling, is built in: both faces of a wall
 // between doors, the lintel above one, a pillar.
 constexpr double touches_ceiling_m = 0.06;
-// Pieces of a wall's plane face as it does and lie as near to it, where doors and things before it
-// cut them off from the ceiling.
-constexpr double same_wall_cos = 0.98, same_wall_m = 0.04;
+// Pieces of a wall's plane face as it does and lie as near to it; of a part that is wall at least
+// this share does.
+constexpr double same_wall_cos = 0.98, same_wall_m = 0.04, wall_piece_share = 0.75;
 // A storey's floor strays from its height by no more.
 constexpr double uneven_storey_m = 0.1;
 
@@ -122,35 +122,42 @@ std::vector<bool> continued_floor(const Surfels& s, const PrimitiveSet& primitiv
     return floor;
 }
 
-// Upright planes that lie in the plane of a wall are walls.
+// What lies in the planes of walls is wall: pieces that doors and things cut off from the ceiling,
+// and those with both faces of the wall.
 void add_wall_pieces(const Surfels& surfels, const PrimitiveSet& primitives, const Vec3& up,
                      const std::vector<Face>& face, std::vector<Structure>& structure) {
-    // Of a wall with both of its faces, each.
     const std::vector<Face> regions =
         faces(surfels, primitives.faces.label, primitives.faces.regions.size(), up);
+    const auto upright = [&](const Face& f) {
+        return f.flatness > flat && std::abs(f.level(up)) < vertical_sin;
+    };
     std::vector<const Face*> walls;
     for (std::size_t p = 0; p < face.size(); ++p) {
         if (structure[p] != Structure::wall) continue;
         for (const std::int32_t r : primitives.regions[p]) {
             const Face& f = regions[static_cast<std::size_t>(r)];
-            if (f.area_m2 >= wall_area_m2 && f.flatness > flat &&
-                std::abs(f.level(up)) < vertical_sin)
-                walls.push_back(&f);
+            if (f.area_m2 >= wall_area_m2 && upright(f)) walls.push_back(&f);
         }
     }
+    const auto in_wall = [&](const Face& f) {
+        return upright(f) && std::ranges::any_of(walls, [&](const Face* wall) {
+                   const double off = (f.px - wall->px) * wall->nx + (f.py - wall->py) * wall->ny +
+                                      (f.pz - wall->pz) * wall->nz;
+                   return f.nx * wall->nx + f.ny * wall->ny + f.nz * wall->nz > same_wall_cos &&
+                          std::abs(off) < same_wall_m;
+               });
+    };
+    std::vector<std::size_t> found;
     for (std::size_t p = 0; p < face.size(); ++p) {
-        const Face& f = face[p];
-        if (structure[p] != Structure::none || f.flatness < flat || f.area_m2 < wall_area_m2 ||
-            std::abs(f.level(up)) > vertical_sin)
-            continue;
-        const bool in_wall = std::ranges::any_of(walls, [&](const Face* wall) {
-            const double off = (f.px - wall->px) * wall->nx + (f.py - wall->py) * wall->ny +
-                               (f.pz - wall->pz) * wall->nz;
-            return f.nx * wall->nx + f.ny * wall->ny + f.nz * wall->nz > same_wall_cos &&
-                   std::abs(off) < same_wall_m;
-        });
-        if (in_wall) structure[p] = Structure::wall;
+        if (structure[p] != Structure::none || face[p].area_m2 < wall_area_m2) continue;
+        double area = 0;
+        for (const std::int32_t r : primitives.regions[p]) {
+            const Face& f = regions[static_cast<std::size_t>(r)];
+            if (in_wall(f)) area += f.area_m2;
+        }
+        if (area >= std::max(wall_area_m2, wall_piece_share * face[p].area_m2)) found.push_back(p);
     }
+    for (const std::size_t p : found) structure[p] = Structure::wall;
 }
 
 // face: of each primitive; no area and no flatness where another storey has it.

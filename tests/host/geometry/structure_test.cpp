@@ -141,6 +141,9 @@ TEST(StructureOfAStorey, WallsBetweenRoomsAreWalls) {
     const auto found = rooms.structure({{.floor_m = 3.1, .top_m = 6.0}});
     EXPECT_EQ(found[rooms.floor], Structure::floor);
     EXPECT_EQ(found[rooms.roof], Structure::ceiling);
+    const auto beside = rooms.upright(3, 3.4, 4, 3.1, 5.15, 1, 0.12);  // up to the lintel
+    const auto again = rooms.structure({{.floor_m = 3.1, .top_m = 6.0}});
+    EXPECT_EQ(again[beside], Structure::wall);
     for (const std::size_t p : {rooms.wall, lintel, rest, outer})
         EXPECT_EQ(found[p], Structure::wall) << p;
 }
