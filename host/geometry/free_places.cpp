@@ -105,29 +105,43 @@ void FreePlaces::find_places() {
             }
         }
     }
+    const std::vector<std::uint8_t> hits = directions_hit();
     for_each_cell([&](const std::array<int, 3>& c) {
         if (steps[at(c)] < least_clearance) return;
         middle_.push_back({low_[0] + (c[0] + 0.5) * cell_m_, low_[1] + (c[1] + 0.5) * cell_m_,
                            low_[2] + (c[2] + 0.5) * cell_m_});
         clearance_.push_back(steps[at(c)] * cell_m_);
-        enclosure_.push_back(enclosure(c));
+        enclosure_.push_back(hits[at(c)] / 26.0);
     });
     apart_.assign(middle_.size(), std::numeric_limits<double>::max());
     free_.assign(middle_.size(), false);
 }
 
-double FreePlaces::enclosure(const std::array<int, 3>& from) const {
-    int hits = 0;
+// From each cell a direction hits something where the next cell that way does, or is occupied: one
+// sweep against each direction tells for all cells.
+std::vector<std::uint8_t> FreePlaces::directions_hit() const {
+    std::vector<std::uint8_t> count(occupied_.size(), 0), hit(occupied_.size());
     for (int direction = 0; direction < 27; ++direction) {
         const std::array<int, 3> step{direction / 9 - 1, direction / 3 % 3 - 1, direction % 3 - 1};
         if (step == std::array<int, 3>{}) continue;
-        std::array<int, 3> c = from;
-        while (inside(c) && !occupied_[at(c)]) {
-            for (std::size_t a = 0; a < 3; ++a) c[a] += step[a];
+        // Along each axis from the end that the direction points to.
+        const auto index = [&](int n, std::size_t a) { return step[a] > 0 ? size_[a] - 1 - n : n; };
+        std::array<int, 3> c{};
+        for (int i = 0; i < size_[0]; ++i) {
+            c[0] = index(i, 0);
+            for (int j = 0; j < size_[1]; ++j) {
+                c[1] = index(j, 1);
+                for (int k = 0; k < size_[2]; ++k) {
+                    c[2] = index(k, 2);
+                    const std::array<int, 3> next{c[0] + step[0], c[1] + step[1], c[2] + step[2]};
+                    const std::size_t here = at(c);
+                    hit[here] = occupied_[here] || (inside(next) && hit[at(next)]);
+                    count[here] = static_cast<std::uint8_t>(count[here] + hit[here]);
+                }
+            }
         }
-        hits += inside(c);
     }
-    return hits / 26.0;
+    return count;
 }
 
 std::size_t FreePlaces::choose(bool anywhere) {

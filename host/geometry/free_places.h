@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "geometry/surfels.h"
@@ -39,7 +40,8 @@ class FreePlaces {
   private:
     void occupy(const Surfels& surfels);
     void find_places();
-    double enclosure(const std::array<int, 3>& from) const;
+    // Of each cell, in how many of the 26 directions to its neighbours and on there is something.
+    std::vector<std::uint8_t> directions_hit() const;
     bool inside(const std::array<int, 3>& c) const;
     std::size_t at(const std::array<int, 3>& c) const;
 

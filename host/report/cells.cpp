@@ -31,11 +31,12 @@ bool unit(std::array<float, 3>& v) {
 
 }  // namespace
 
-CellTable::CellTable() : keys_(1024, no_key), values_(1024, absent), mask_(1023) {}
+CellTable::CellTable() : keys_(1024, no_key), values_(1024, absent), shift_(64 - 10) {}
 
 std::size_t CellTable::slot_of(std::uint64_t key) const {
-    auto slot = (key * 0x9E3779B97F4A7C15u) >> 20 & mask_;
-    while (keys_[slot] != no_key && keys_[slot] != key) slot = (slot + 1) & mask_;
+    // The highest bits of the product depend on all of the key's.
+    auto slot = (key * 0x9E3779B97F4A7C15u) >> shift_;
+    while (keys_[slot] != no_key && keys_[slot] != key) slot = (slot + 1) & (keys_.size() - 1);
     return slot;
 }
 
@@ -58,7 +59,7 @@ void CellTable::grow() {
     std::vector<std::uint32_t> values(keys.size(), absent);
     keys.swap(keys_);
     values.swap(values_);
-    mask_ = keys_.size() - 1;
+    --shift_;
     for (std::size_t old = 0; old < keys.size(); ++old) {
         if (keys[old] == no_key) continue;
         const auto slot = slot_of(keys[old]);

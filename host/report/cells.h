@@ -37,7 +37,7 @@ class CellTable {
     std::vector<std::uint64_t> keys_;
     std::vector<std::uint32_t> values_;
     std::size_t used_ = 0;
-    std::uint64_t mask_;
+    int shift_;  // of a hash, to as many bits as the tables have slots
 };
 
 // Marks which faces of each cell are exposed; returns how many cells have one.
