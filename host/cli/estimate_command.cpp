@@ -6,7 +6,8 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "cli/progress.h"
+#include "cli/long_run.h"
+#include "cli/unit_option.h"
 #include "pipeline/estimate.h"
 #include "topple/device.h"
 
@@ -41,10 +42,8 @@ std::string time_text(double seconds) {
 int run(Arguments& a) {
     catch_interrupts();
     a.options.device = device::open_device(a.backend, a.threads);
-    Progress progress(a.quiet);
-    a.options.progress = [&](const std::string& stage, double done) { progress(stage, done); };
     a.options.cancelled = [] { return interrupted() != 0; };
-    try {
+    return run_long(a.quiet, a.options, [&](Progress& progress) {
         const Estimate e = estimate(a.input, a.options);
         progress.finish();
         if (e.frames > 0)
@@ -63,12 +62,7 @@ int run(Arguments& a) {
         if (e.work_bytes > 0)
             std::printf("disk     about %s while it works\n", bytes_text(e.work_bytes).c_str());
         std::printf("results  about %s\n", bytes_text(e.output_bytes).c_str());
-    } catch (...) {
-        progress.finish();
-        if (interrupted() != 0) return interrupted_exit();
-        throw;
-    }
-    return 0;
+    });
 }
 
 }  // namespace
@@ -79,6 +73,7 @@ Command add_estimate(CLI::App& app) {
     app.add_option("--backend", a->backend, "As for parse")->capture_default_str();
     app.add_option("--voxel", a->options.voxel_m, "Edge of a solid voxel in metres, as for parse")
         ->check(CLI::PositiveNumber);
+    add_unit_option(app, a->options.unit_m);
     app.add_option("--tile", a->options.tile_m, "Edge of the tiles in metres, as for parse")
         ->check(CLI::PositiveNumber);
     app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");

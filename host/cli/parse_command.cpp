@@ -10,8 +10,9 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "cli/progress.h"
+#include "cli/long_run.h"
 #include "cli/summary.h"
+#include "cli/unit_option.h"
 #include "io/output_folder.h"
 #include "topple/device.h"
 #include "topple/parse.h"
@@ -19,7 +20,6 @@
 namespace topple::cli {
 namespace {
 
-const std::map<std::string, double> units{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}};
 const std::map<std::string, double> record_units{{"g", 9.80665}, {"m/s2", 1}, {"cm/s2", 0.01}};
 
 struct Arguments {
@@ -162,20 +162,13 @@ int run(Arguments& a) {
     // Beside the output, where there is room for it, and where the next run finds it.
     a.options.work_folder = out.parent_path() / ("." + out.filename().string() + ".topple-work");
     get_ready(a);
-    Progress progress(a.quiet);
-    a.options.progress = [&](const std::string& stage, double done) { progress(stage, done); };
-    try {
+    return run_long(a.quiet, a.options, [&](Progress& progress) {
         const ParseResult result = parse(a.input, a.options);
         progress("output", 0);
         write_outputs(result, out, a.output);
         progress.finish();
         if (!a.quiet) print_summary(result.scene, out);
-    } catch (...) {
-        progress.finish();
-        if (interrupted() != 0) return interrupted_exit();
-        throw;
-    }
-    return 0;
+    });
 }
 
 }  // namespace
@@ -198,11 +191,7 @@ Command add_parse(CLI::App& app, const Team& team) {
         ->capture_default_str();
     app.add_option("--voxel", a->voxel_m,
                    "Edge of a solid voxel in metres (default: from the scan's resolution)");
-    app.add_option_function<std::string>(
-           "--unit", [a](const std::string& unit) { a->options.unit_m = units.at(unit); },
-           "Unit of a cloud's or mesh's coordinates: m, cm, mm or in; the output is in metres")
-        ->check(CLI::IsMember({"m", "cm", "mm", "in"}))
-        ->default_str("m");
+    add_unit_option(app, a->options.unit_m);
     app.add_option("--up", a->up,
                    "Up in the input's frame, X,Y,Z, as from an IMU (default: found from the scan)");
     app.add_option("--disturbance", a->disturbance,

@@ -13,6 +13,7 @@
 #include "geometry/surfels.h"
 #include "io/frame_sequence.h"
 #include "io/read_cloud.h"
+#include "pipeline/ingest.h"
 #include "pipeline/tiled_memory.h"
 #include "pipeline/tiled_parse.h"
 
@@ -29,7 +30,7 @@ constexpr double surface_cell_m = 0.05, cells_per_area = 1.1;
 constexpr double probe_reference_s = 0.075;
 constexpr double tiled_point_s = 0.45e-6, thinned_point_s = 4.1e-6, tiled_fixed_s = 4;
 constexpr double point_s = 5e-6, pixel_s = 8e-8, fixed_s = 0.5;
-constexpr double point_bytes = 420;
+constexpr double point_bytes = 420, fused_point_bytes = 650;
 // Cells of a block of a furnished building.
 constexpr std::uint64_t block_cells = 450'000;
 constexpr double work_point_bytes = 16, work_thinned_bytes = 40;
@@ -103,8 +104,9 @@ void look_at_cloud(const std::filesystem::path& input, const ParseOptions& optio
 }
 
 // Each frame of a sample covers what its neighbours cover, too: their union grows as that of all.
-void look_at_frames(const std::filesystem::path& input, const ParseOptions& options,
-                    Surface& surface, Estimate& out) {
+// Returns how many pixels all frames have.
+std::uint64_t look_at_frames(const std::filesystem::path& input, const ParseOptions& options,
+                             Surface& surface, Estimate& out) {
     const io::FrameSequence frames = io::FrameSequence::open(input);
     const Intrinsics& k = frames.intrinsics();
     constexpr std::size_t most_frames = 100;
@@ -125,6 +127,8 @@ void look_at_frames(const std::filesystem::path& input, const ParseOptions& opti
         tell(options, static_cast<double>(f) / static_cast<double>(frames.size()));
     }
     out.frames = frames.size();
+    out.cell_m = cell_for_frames(k, frames.size(), [&](std::size_t f) { return frames.load(f); });
+    return out.frames * k.width * k.height;
 }
 
 }  // namespace
@@ -135,19 +139,20 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
     tell(options, 0);
     Estimate out;
     Surface surface;
+    std::uint64_t pixels = 0;
     if (io::looks_like_sequence(input)) {
-        look_at_frames(input, options, surface, out);
+        pixels = look_at_frames(input, options, surface, out);
     } else {
         look_at_cloud(input, options, surface, out);
     }
     out.surface_m2 = surface.area_m2();
     const double slower = probe(*device) / probe_reference_s;
     const auto points = static_cast<double>(out.points);
-    const double voxel_cells = options.voxel_m > 0 ? options.voxel_m / 2 : 0;
+    const double asked_cell_m = options.voxel_m / voxel_cells;  // 0: not asked
     out.tiled = out.frames == 0 && io::can_stream(input) &&
                 (options.tile_m > 0 || out.points > most_points_at_once);
     if (out.tiled) {
-        out.cell_m = voxel_cells > 0 ? voxel_cells : building_cell_m;
+        out.cell_m = asked_cell_m > 0 ? asked_cell_m : building_cell_m;
         const double thinned =
             std::min(0.95 * points, layers * out.surface_m2 / (out.cell_m * out.cell_m));
         out.seconds = tiled_fixed_s + tiled_point_s * points + thinned_point_s * thinned;
@@ -161,16 +166,16 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
             static_cast<std::uint64_t>(tiled_output_point_bytes * points + 15 * thinned);
     } else {
         if (out.frames > 0) {
-            const Intrinsics k = io::FrameSequence::open(input).intrinsics();
-            out.cell_m = voxel_cells > 0 ? voxel_cells : 0.01;
             out.points = static_cast<std::uint64_t>(out.surface_m2 / (out.cell_m * out.cell_m));
-            out.seconds = pixel_s * static_cast<double>(out.frames) * k.width * k.height;
+            out.seconds = pixel_s * static_cast<double>(pixels);
         } else if (out.points > 0) {
-            out.cell_m = std::clamp(1.25 * std::sqrt(out.surface_m2 / points), 0.003, 0.05);
+            out.cell_m =
+                std::clamp(1.25 * std::sqrt(out.surface_m2 / points), least_cell_m, largest_cell_m);
         }
         const auto looked_at = static_cast<double>(out.points);
         out.seconds += fixed_s + point_s * looked_at;
-        out.memory_bytes = static_cast<std::uint64_t>(60e6 + point_bytes * looked_at);
+        const double bytes = out.frames > 0 ? fused_point_bytes : point_bytes;
+        out.memory_bytes = static_cast<std::uint64_t>(60e6 + bytes * looked_at);
         out.output_bytes =
             static_cast<std::uint64_t>(output_fixed + output_point_bytes * looked_at);
     }

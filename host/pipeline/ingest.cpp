@@ -23,8 +23,6 @@
 namespace topple {
 namespace {
 
-// Working resolution stays within what indoor sensors deliver and what furniture needs.
-constexpr double least_cell_m = 0.003;
 // What a scan of rooms extends over, for guesses at its unit.
 constexpr double least_room_m = 1.5, largest_room_m = 30;
 // Virtual views are drawn with surfels this wide: coarse enough that noise does not blur which side
@@ -66,33 +64,14 @@ Vec3 position(const DepthFrame& frame) {
     return {m[3], m[7], m[11]};
 }
 
-// The cell that suits a depth camera: about the spacing of its pixels at the scene's typical depth,
-// but not below its noise there, which only smears points over more cells.
-double cell_for_frames(const FrameStream& frames) {
-    std::vector<double> depths;
-    const Intrinsics& k = frames.intrinsics();
-    const std::size_t step = std::max<std::size_t>(1, frames.size() / 8);
-    for (std::size_t f = 0; f < frames.size(); f += step) {
-        const DepthFrame frame = frames.load(f);
-        for (std::size_t i = 0; i < frame.depth.size(); i += 37) {
-            if (frame.depth[i]) depths.push_back(frame.depth[i] / k.depth_scale);
-        }
-    }
-    if (depths.empty()) return 0.01;
-    std::nth_element(depths.begin(),
-                     depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
-    const double z = depths[depths.size() / 2];
-    const double noise = geometry::depth_sigma(z);
-    return std::clamp(std::max(1.5 * z / k.fx, 1.2 * noise), least_cell_m, 0.015);
-}
-
 Ingested ingest_frames(device::Device& device, io::FrameSequence sequence,
                        const ParseOptions& options) {
     Ingested out;
     const bool posed = sequence.posed();
     out.camera_up = sequence.mean_camera_up();
     out.frames = std::make_unique<SequenceStream>(std::move(sequence));
-    out.cell_m = cell_for_frames(*out.frames);
+    out.cell_m = cell_for_frames(out.frames->intrinsics(), out.frames->size(),
+                                 [&](std::size_t f) { return out.frames->load(f); });
     geometry::FrameFusion fusion(out.frames->intrinsics(), out.cell_m);
     const auto count = static_cast<double>(out.frames->size());
     for_each_frame(*out.frames, device.threads(), [&](const DepthFrame& frame, std::size_t f) {
@@ -181,6 +160,24 @@ void check_spacing(const CloudView& cloud, double spacing) {
 }
 
 }  // namespace
+
+double cell_for_frames(const Intrinsics& k, std::size_t count,
+                       const std::function<DepthFrame(std::size_t)>& load) {
+    std::vector<double> depths;
+    const std::size_t step = std::max<std::size_t>(1, count / 8);
+    for (std::size_t f = 0; f < count; f += step) {
+        const DepthFrame frame = load(f);
+        for (std::size_t i = 0; i < frame.depth.size(); i += 37) {
+            if (frame.depth[i]) depths.push_back(frame.depth[i] / k.depth_scale);
+        }
+    }
+    if (depths.empty()) return 0.01;
+    std::nth_element(depths.begin(),
+                     depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+    const double z = depths[depths.size() / 2];
+    const double noise = geometry::depth_sigma(z);
+    return std::clamp(std::max(1.5 * z / k.fx, 1.2 * noise), least_cell_m, 0.015);
+}
 
 void for_each_frame(const FrameStream& frames, device::ThreadPool& threads,
                     const std::function<void(DepthFrame, std::size_t)>& use) {

@@ -18,8 +18,10 @@
 
 namespace topple {
 
-// The coarsest working resolution. Points farther apart than five of its cells show no surface.
-inline constexpr double largest_cell_m = 0.05, sparsest_m = 5 * largest_cell_m;
+// Working resolution stays within what indoor sensors deliver and what furniture needs. Points
+// farther apart than five of the coarsest cells show no surface.
+inline constexpr double least_cell_m = 0.003, largest_cell_m = 0.05;
+inline constexpr double sparsest_m = 5 * largest_cell_m;
 
 // Depth frames that can be walked through more than once without holding them all.
 class FrameStream {
@@ -58,6 +60,11 @@ struct Ingested {
     double cell_m = 0;   // working resolution, from the point spacing and the sensor's noise
     std::vector<std::string> notes;
 };
+
+// The working resolution that suits a depth camera: about the spacing of its pixels at the scene's
+// typical depth, but not below its noise there, which only smears points over more cells.
+double cell_for_frames(const Intrinsics& intrinsics, std::size_t frames,
+                       const std::function<DepthFrame(std::size_t)>& load);
 
 Ingested ingest(device::Device& device, const std::filesystem::path& input,
                 const ParseOptions& options);

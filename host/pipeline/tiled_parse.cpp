@@ -36,9 +36,6 @@ namespace fs = std::filesystem;
 // Files below this size hold no more points than that: ten bytes a point are hardly ever too few.
 constexpr std::uint64_t small_file = 10 * most_points_at_once;
 
-// Voxels are about two cells wide.
-constexpr double voxel_cells = 2;
-
 // Points, and thinned points, that a guess at the whole is made from.
 constexpr std::uint64_t spacing_points = 1'500'000, frame_points = 1'200'000;
 // Points of the scene that a caller gets, and the report shows.

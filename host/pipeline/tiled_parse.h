@@ -16,6 +16,9 @@ inline constexpr std::uint64_t most_points_at_once = 4'000'000;
 // million cells, however dense the scan.
 inline constexpr double building_cell_m = 0.0125;
 
+// Voxels are about so many cells wide.
+inline constexpr double voxel_cells = 2;
+
 // Tiles hold at least a block, tiles::block_edge_m.
 inline constexpr double least_tile_m = 5;
 
