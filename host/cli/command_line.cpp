@@ -32,7 +32,7 @@ int run(const std::vector<CommandEntry>& entries, int argc, char** argv) {
     app.footer(
         "Exit codes: 0 done; 1 the input can't be parsed, or the output can't be written; 2 wrong "
         "usage;\n"
-        "3 the asked-for backend or device can't be used.");
+        "3 the asked-for backend or device can't be used; 130 stopped by Ctrl-C, 143 by SIGTERM.");
     std::map<CLI::App*, Command> commands;
     for (const CommandEntry& entry : entries) {
         CLI::App* sub = app.add_subcommand(entry.name, entry.what);
@@ -51,9 +51,10 @@ int run(const std::vector<CommandEntry>& entries, int argc, char** argv) {
         throw wrong_usage(what);
     } catch (const CLI::ParseError& error) {
         const auto subcommands = app.get_subcommands();
-        const std::string unknown =
-            unknown_option(subcommands.empty() ? app : *subcommands.front(),
-                           std::span<const char* const>(argv, static_cast<std::size_t>(argc)));
+        const std::span<const char* const> words(argv, static_cast<std::size_t>(argc));
+        std::string unknown = subcommands.empty() ? unknown_command(app, words) : "";
+        if (unknown.empty())
+            unknown = unknown_option(subcommands.empty() ? app : *subcommands.front(), words);
         throw wrong_usage(unknown.empty() ? error.what() : unknown);
     }
     return commands.at(app.get_subcommands().front())();

@@ -7,7 +7,9 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/long_run.h"
+#include "cli/max_memory_option.h"
 #include "cli/unit_option.h"
+#include "io/text.h"
 #include "pipeline/estimate.h"
 #include "topple/device.h"
 
@@ -21,15 +23,6 @@ struct Arguments {
     ParseOptions options;
 };
 
-// "650 MB", "4.6 GB".
-std::string bytes_text(std::uint64_t bytes) {
-    char text[32];
-    const double mb = static_cast<double>(bytes) / 1e6;
-    std::snprintf(text, sizeof(text), mb < 1000 ? "%.0f MB" : "%.1f GB",
-                  mb < 1000 ? mb : mb / 1000);
-    return text;
-}
-
 std::string time_text(double seconds) {
     char text[32];
     if (seconds < 90)
@@ -37,6 +30,17 @@ std::string time_text(double seconds) {
     else
         std::snprintf(text, sizeof(text), "%.0f min", std::ceil(seconds / 60));
     return text;
+}
+
+// Whether the parse would be refused, as far as an estimate within a factor of two tells.
+std::string limit_text(const Estimate& e, std::uint64_t max_memory_bytes) {
+    const std::string least = "the least is about " + io::bytes_text(e.least_bytes);
+    const std::string given = io::bytes_text(max_memory_bytes) + " of --max-memory ";
+    if (max_memory_bytes >= 2 * e.least_bytes) return given + "suffice; " + least;
+    const std::string mend =
+        std::string("; use a larger --voxel") + (e.tiled ? "" : ", or --tile 5 for a cloud");
+    if (2 * max_memory_bytes >= e.least_bytes) return given + "may be too few: " + least + mend;
+    return given + "are too few, and the parse would be refused: " + least + mend;
 }
 
 int run(Arguments& a) {
@@ -58,10 +62,12 @@ int run(Arguments& a) {
         else
             std::printf("parsed   in one piece, at about %.2g mm\n", 1000 * e.cell_m);
         std::printf("time     about %s\n", time_text(e.seconds).c_str());
-        std::printf("memory   about %s\n", bytes_text(e.memory_bytes).c_str());
+        std::printf("memory   about %s\n", io::bytes_text(e.memory_bytes).c_str());
+        if (a.options.max_memory_bytes > 0)
+            std::printf("limit    %s\n", limit_text(e, a.options.max_memory_bytes).c_str());
         if (e.work_bytes > 0)
-            std::printf("disk     about %s while it works\n", bytes_text(e.work_bytes).c_str());
-        std::printf("results  about %s\n", bytes_text(e.output_bytes).c_str());
+            std::printf("disk     about %s while it works\n", io::bytes_text(e.work_bytes).c_str());
+        std::printf("results  about %s\n", io::bytes_text(e.output_bytes).c_str());
     });
 }
 
@@ -76,6 +82,8 @@ Command add_estimate(CLI::App& app) {
     add_unit_option(app, a->options.unit_m);
     app.add_option("--tile", a->options.tile_m, "Edge of the tiles in metres, as for parse")
         ->check(CLI::PositiveNumber);
+    add_max_memory_option(app, a->options.max_memory_bytes,
+                          "Memory to keep to, as for parse; whether it suffices is told");
     app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
     app.add_flag("--quiet", a->quiet, "Print the estimate and errors only");
     return [a] { return run(*a); };

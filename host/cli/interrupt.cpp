@@ -32,8 +32,8 @@ int interrupted() {
     return signal_that_came.load();
 }
 
-int interrupted_exit() {
-    std::fprintf(stderr, "topple: interrupted; nothing was written\n");
+int interrupted_exit(const std::string& left) {
+    std::fprintf(stderr, "topple: interrupted; nothing was written%s\n", left.c_str());
     return 128 + interrupted();
 }
 

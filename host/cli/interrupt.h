@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
+
 // SIGINT and SIGTERM end a long run as errors do: with its cleaning-up.
 namespace topple::cli {
 
@@ -11,7 +13,8 @@ void catch_interrupts();
 // The signal that came, or 0. For long runs to poll.
 int interrupted();
 
-// Says that the run was interrupted, and returns the exit code for it.
-int interrupted_exit();
+// Says that the run was interrupted and what it left, if anything, and returns the exit code for
+// it.
+int interrupted_exit(const std::string& left = {});
 
 }  // namespace topple::cli

@@ -11,9 +11,12 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/long_run.h"
+#include "cli/max_memory_option.h"
 #include "cli/summary.h"
 #include "cli/unit_option.h"
 #include "io/output_folder.h"
+#include "io/text.h"
+#include "pipeline/tiled_parse.h"
 #include "topple/device.h"
 #include "topple/parse.h"
 
@@ -25,7 +28,7 @@ const std::map<std::string, double> record_units{{"g", 9.80665}, {"m/s2", 1}, {"
 struct Arguments {
     std::optional<std::string> accelerogram;
     std::optional<double> accelerogram_unit_m_s2;
-    std::string input, backend = "auto", up, disturbance = "human,wind,earthquake", max_memory;
+    std::string input, backend = "auto", up, disturbance = "human,wind,earthquake";
     ParseOptions options;
     std::optional<std::string> out;
     std::optional<double> voxel_m, tile_m;
@@ -67,29 +70,6 @@ Vec3 parse_up(const char* option, const std::string& text) {
     return up;
 }
 
-// "500M", "4G", "1.5G", or a number of bytes.
-std::uint64_t parse_size(const std::string& text) {
-    std::size_t used = 0;
-    double value = 0;
-    try {
-        value = std::stod(text, &used);
-    } catch (const std::exception&) {
-        used = 0;
-    }
-    const std::string unit = text.substr(used);
-    const double factor = unit.empty() || unit == "B"    ? 1
-                          : unit == "K" || unit == "KiB" ? 0x1p10
-                          : unit == "M" || unit == "MiB" ? 0x1p20
-                          : unit == "G" || unit == "GiB" ? 0x1p30
-                          : unit == "T" || unit == "TiB" ? 0x1p40
-                                                         : 0;
-    if (used == 0 || factor == 0 || !(value > 0) || value * factor > 0x1p60) {
-        throw Error(ErrorKind::usage,
-                    "--max-memory " + text + ": expected a size such as 500M or 4G");
-    }
-    return static_cast<std::uint64_t>(value * factor);
-}
-
 // A sibling of nothing the user owns: named after the input, in the current folder.
 std::filesystem::path default_output(const std::filesystem::path& input) {
     std::filesystem::path name = input.has_filename() ? input : input.parent_path();
@@ -115,7 +95,6 @@ void read_options(Arguments& a) {
         a.options.tile_m = *a.tile_m;
     }
     if (!a.up.empty()) a.options.up = parse_up("--up", a.up);
-    if (!a.max_memory.empty()) a.options.max_memory_bytes = parse_size(a.max_memory);
     a.options.disturbances = split_commas(a.disturbance);
     if (!a.motion_up.empty()) a.motion_file.up = parse_up("--motion-up", a.motion_up);
     if (a.accelerogram_unit_m_s2 && !a.accelerogram)
@@ -147,6 +126,20 @@ int help(Arguments& a) {
     return 0;
 }
 
+// "3 of 14 blocks".
+std::string blocks_done(const WorkLeft& left) {
+    if (left.blocks == 0) return "the points sorted on disk";
+    return std::to_string(left.done) + " of " + io::counted(left.blocks, "block");
+}
+
+// What stays of a parse that a signal ended.
+std::string left_behind(const Arguments& a) {
+    const std::optional<WorkLeft> left = work_left(a.input, a.options);
+    if (!left) return "";
+    return " but " + io::path_text(a.options.work_folder) + ", which holds " + blocks_done(*left) +
+           ": the same command goes on from there; if it shall not, delete that folder";
+}
+
 int run(Arguments& a) {
     read_options(a);
     const std::filesystem::path out =
@@ -162,13 +155,18 @@ int run(Arguments& a) {
     // Beside the output, where there is room for it, and where the next run finds it.
     a.options.work_folder = out.parent_path() / ("." + out.filename().string() + ".topple-work");
     get_ready(a);
-    return run_long(a.quiet, a.options, [&](Progress& progress) {
+    const std::optional<WorkLeft> left = work_left(a.input, a.options);
+    if (left && !a.quiet)
+        std::fprintf(stderr, "going on with %s from %s\n", blocks_done(*left).c_str(),
+                     io::path_text(a.options.work_folder).c_str());
+    const auto work = [&](Progress& progress) {
         const ParseResult result = parse(a.input, a.options);
         progress("output", 0);
         write_outputs(result, out, a.output);
         progress.finish();
         if (!a.quiet) print_summary(result.scene, out);
-    });
+    };
+    return run_long(a.quiet, a.options, work, [&] { return left_behind(a); });
 }
 
 }  // namespace
@@ -250,9 +248,9 @@ Command add_parse(CLI::App& app, const Team& team) {
         "Parse any cloud in blocks of 5 m, as those of over 4 million points are, so\n"
         "that it may be larger than memory; the blocks of a tile of this edge in metres\n"
         "are read and handed out together (default: one by one; the result is the same)");
-    app.add_option("--max-memory", a->max_memory,
-                   "Memory to keep to, such as 4G: in blocks fewer are held at a time, and a scan\n"
-                   "that would need more is refused");
+    add_max_memory_option(app, a->options.max_memory_bytes,
+                          "Memory to keep to: in blocks fewer are held at a time, and a scan that\n"
+                          "would need more is refused");
     app.add_flag("--png", a->output.pictures,
                  "Write the report's main views as pictures, too: view-*.png");
     app.add_flag(

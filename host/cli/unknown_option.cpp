@@ -3,27 +3,56 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "io/text.h"
 
 namespace topple::cli {
 namespace {
 
-// Letters to insert, leave out or replace until one word is the other.
+// Letters to insert, leave out, replace or swap with the next one until one word is the other.
 std::size_t edits(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
+    std::vector<std::size_t> before, last, row(b.size() + 1);
     for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0]++;
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i] != b[j]);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        before = std::exchange(last, row);
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            row[j] = std::min({last[j - 1] + (a[i - 1] != b[j - 1]), last[j] + 1, row[j - 1] + 1});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                row[j] = std::min(row[j], before[j - 2] + 1);
         }
     }
     return row.back();
 }
 
+// "; did you mean NAME?" with the nearest of the known ones, where one is near. More than a third
+// of its letters wrong is another word.
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& known) {
+    const auto nearest = std::min_element(
+        known.begin(), known.end(),
+        [&](const auto& a, const auto& b) { return edits(name, a) < edits(name, b); });
+    if (nearest == known.end() ||
+        3 * edits(name, *nearest) > std::max(name.size(), nearest->size()))
+        return {};
+    return "; did you mean " + *nearest + "?";
+}
+
 }  // namespace
+
+std::string unknown_command(const CLI::App& app, std::span<const char* const> words) {
+    if (words.size() < 2) return {};
+    const std::string name = words[1];
+    if (name.starts_with("-")) return {};
+    std::vector<std::string> known;
+    for (const CLI::App* sub : app.get_subcommands({})) known.push_back(sub->get_name());
+    std::string list;
+    for (const std::string& command : known) list += (list.empty() ? "" : ", ") + command;
+    const std::string nearest = did_you_mean(name, known);
+    return "unknown subcommand " + io::in_quotes(name) +
+           (nearest.empty() ? "; there are " + list : nearest);
+}
 
 std::string unknown_option(const CLI::App& app, std::span<const char* const> words) {
     std::vector<std::string> known;
@@ -39,13 +68,7 @@ std::string unknown_option(const CLI::App& app, std::span<const char* const> wor
         if (std::find(known.begin(), known.end(), name) != known.end()) continue;
         std::string text = "unknown option ";
         text.append(name);
-        const auto nearest = std::min_element(known.begin(), known.end(),
-                                              [&](const std::string& a, const std::string& b) {
-                                                  return edits(name, a) < edits(name, b);
-                                              });
-        // More than a third of its letters wrong is another word.
-        if (nearest != known.end() && 3 * edits(name, *nearest) <= name.size())
-            text.append("; did you mean ").append(*nearest).append("?");
+        text.append(did_you_mean(name, known));
         return text;
     }
     return {};

@@ -13,4 +13,8 @@ namespace topple::cli {
 // one or of another.
 std::string unknown_option(const CLI::App& app, std::span<const char* const> words);
 
+// The same of the first of `words` after the program's name, if that is none of `app`'s
+// subcommands: 'unknown subcommand "prase"; did you mean parse?'. Empty where it is an option.
+std::string unknown_command(const CLI::App& app, std::span<const char* const> words);
+
 }  // namespace topple::cli

@@ -8,6 +8,7 @@
 #include <string>
 #include <system_error>
 
+#include "io/json_problem.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -93,7 +94,7 @@ Intrinsics read_intrinsics(const fs::path& file) {
     try {
         json = nlohmann::json::parse(text.begin(), text.end());
     } catch (const nlohmann::json::exception& error) {
-        fail(file, "is no JSON: " + printable(error.what(), 200));
+        fail(file, "is no JSON: " + json_problem(error));
     }
     if (!json.is_object()) {
         fail(file, std::string("must hold a JSON object, not ") + json.type_name());

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/json_problem.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -50,7 +51,7 @@ void check_gltf(const std::filesystem::path& file, std::string_view text,
     try {
         root = json::parse(text.begin(), text.end());
     } catch (const json::exception& error) {
-        fail(file, "holds no JSON of glTF: " + printable(error.what(), 200));
+        fail(file, "holds no JSON of glTF: " + json_problem(error));
     }
     if (!root.is_object()) fail(file, "holds no glTF: its JSON is no object");
     std::vector<std::uint64_t> buffers, views;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/json_problem.h"
 #include "io/text.h"
 #include "topple/input.h"
 
@@ -75,7 +76,7 @@ Raw read_json(const fs::path& file, std::string_view text) {
     try {
         top = nlohmann::json::parse(text.begin(), text.end());
     } catch (const nlohmann::json::exception& error) {
-        fail(file, "is no JSON: " + io::printable(error.what(), 200));
+        fail(file, "is no JSON: " + io::json_problem(error));
     }
     if (!top.is_object())
         fail(file, std::string("must hold a JSON object, not ") + top.type_name());

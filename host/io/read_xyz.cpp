@@ -88,7 +88,10 @@ class XyzParser {
                 first = false;
                 if (count == 1 && parse_count(tokens_[0], promised_.emplace())) continue;
                 promised_.reset();
-                if (parse_names(tokens_, count, columns_)) continue;
+                if (parse_names(tokens_, count, columns_)) {
+                    names_ = {lines_.number(), std::string(tokens_[0])};
+                    continue;
+                }
                 if (count == 6) columns_.normal = {3, 4, 5};
             }
             add_row(count);
@@ -98,6 +101,11 @@ class XyzParser {
             fail(file_, "its first line promises " + counted(*promised_, "point") +
                             ", the file has " + std::to_string(rows_) +
                             "; it is cut short, or that line is wrong");
+        }
+        if (rows_ == 0 && names_.line > 0) {
+            fail(file_, "line " + std::to_string(names_.line) + ": " + in_quotes(names_.first) +
+                            " is not a number, and no line of numbers follows; expected a point's "
+                            "x y z in each line");
         }
         hand_over();
         return cloud_->finish();
@@ -121,7 +129,10 @@ class XyzParser {
                     " are needed");
             }
             if (!parse_number(tokens_[which[axis]], values[axis])) {
-                bad(in_quotes(tokens_[which[axis]]) + " is not a number");
+                bad(in_quotes(tokens_[which[axis]]) + " is not a number; expected " +
+                    (&which == &columns_.normal ? "nx ny nz" : "x y z") + " in columns " +
+                    std::to_string(which[0] + 1) + ", " + std::to_string(which[1] + 1) + " and " +
+                    std::to_string(which[2] + 1));
             }
         }
         return values;
@@ -155,6 +166,11 @@ class XyzParser {
     Lines lines_;
     Columns columns_;
     std::optional<std::uint64_t> promised_;
+    // The line that was taken for the columns' names, and its first word.
+    struct {
+        std::uint64_t line = 0;
+        std::string first;
+    } names_;
     std::array<std::string_view, most_columns> tokens_;
     std::vector<std::array<double, 3>> points_, normals_;
 };

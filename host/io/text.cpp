@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
@@ -89,6 +90,16 @@ std::string counted(std::uint64_t count, const char* noun) {
 std::string short_number(double value) {
     char text[32];
     std::snprintf(text, sizeof(text), "%.6g", value);
+    return text;
+}
+
+std::string bytes_text(std::uint64_t bytes) {
+    static constexpr std::array<const char*, 5> units{"B", "KiB", "MiB", "GiB", "TiB"};
+    auto value = static_cast<double>(bytes);
+    std::size_t unit = 0;
+    for (; unit + 1 < units.size() && value >= 999.5; ++unit) value /= 1024;
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.3g %s", value, units[unit]);
     return text;
 }
 

@@ -30,6 +30,9 @@ std::string counted(std::uint64_t count, const char* noun);
 // A number as short as it reads back the same to 6 digits.
 std::string short_number(double value);
 
+// "512 B", "200 MiB", "1.5 GiB": to three digits.
+std::string bytes_text(std::uint64_t bytes);
+
 // A file's bytes, held once and not initialised before they are read.
 struct FileBytes {
     std::unique_ptr<char[]> data;

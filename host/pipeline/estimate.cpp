@@ -7,15 +7,18 @@
 #include <cmath>
 #include <memory>
 #include <unordered_set>
+#include <vector>
 
+#include "core/scene_bounds.h"
 #include "device/device.h"
 #include "device/native/thread_pool.h"
 #include "geometry/surfels.h"
 #include "io/frame_sequence.h"
 #include "io/read_cloud.h"
 #include "pipeline/ingest.h"
-#include "pipeline/tiled_memory.h"
+#include "pipeline/parse_memory.h"
 #include "pipeline/tiled_parse.h"
+#include "pipeline/voxel_stage.h"
 
 namespace topple {
 namespace {
@@ -49,6 +52,18 @@ class Surface {
         for (const std::int64_t c : at)
             key = key << 21 | (static_cast<std::uint64_t>(c) & 0x1fffff);
         cells_.insert(key);
+    }
+    Bounds<float> bounds() const {
+        std::array<std::vector<float>, 3> at;
+        for (const std::uint64_t key : cells_) {
+            for (std::size_t a = 0; a < 3; ++a) {
+                // Its 21 bits, with their sign.
+                const auto c = static_cast<std::int64_t>(key << (1 + 21 * a)) >> 43;
+                at[a].push_back(static_cast<float>(static_cast<double>(c) * surface_cell_m));
+            }
+        }
+        if (at[0].empty()) return {};
+        return scene_bounds<float>({at[0], at[1], at[2]}, static_cast<float>(surface_cell_m));
     }
     double area_m2() const {
         return static_cast<double>(cells_.size()) * surface_cell_m * surface_cell_m /
@@ -152,13 +167,20 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
     out.tiled = out.frames == 0 && io::can_stream(input) &&
                 (options.tile_m > 0 || out.points > most_points_at_once);
     if (out.tiled) {
-        out.cell_m = asked_cell_m > 0 ? asked_cell_m : building_cell_m;
+        const double finest = points > 0 ? 1.25 * std::sqrt(out.surface_m2 / points) : 0;
+        out.cell_m = std::min(largest_cell_m,
+                              std::max(finest, asked_cell_m > 0 ? asked_cell_m : building_cell_m));
         const double thinned =
             std::min(0.95 * points, layers * out.surface_m2 / (out.cell_m * out.cell_m));
         out.seconds = tiled_fixed_s + tiled_point_s * points + thinned_point_s * thinned;
-        const double blocks =
-            block_bytes(block_cells) *
-            (device->info().backend == device::Backend::native ? device->threads().threads() : 1);
+        const double block = block_bytes(block_cells);
+        double lanes =
+            device->info().backend == device::Backend::native ? device->threads().threads() : 1;
+        if (options.max_memory_bytes > 0)
+            lanes = std::clamp(std::floor(static_cast<double>(options.max_memory_bytes) / block),
+                               1.0, lanes);
+        const double blocks = block * lanes;
+        out.least_bytes = static_cast<std::uint64_t>(std::max(block, whole_bytes(thinned)));
         out.memory_bytes = static_cast<std::uint64_t>(std::max(blocks, whole_bytes(thinned)));
         out.work_bytes =
             static_cast<std::uint64_t>(work_point_bytes * points + work_thinned_bytes * thinned);
@@ -176,6 +198,10 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
         out.seconds += fixed_s + point_s * looked_at;
         const double bytes = out.frames > 0 ? fused_point_bytes : point_bytes;
         out.memory_bytes = static_cast<std::uint64_t>(60e6 + bytes * looked_at);
+        if (looked_at > 0)
+            out.least_bytes =
+                one_piece_bytes(looked_at, surface.bounds(),
+                                options.voxel_m > 0 ? options.voxel_m : voxel_for_cell(out.cell_m));
         out.output_bytes =
             static_cast<std::uint64_t>(output_fixed + output_point_bytes * looked_at);
     }

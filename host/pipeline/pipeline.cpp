@@ -5,10 +5,12 @@
 
 #include "core/scene_bounds.h"
 #include "device/device.h"
+#include "io/text.h"
 #include "pipeline/assemble.h"
 #include "pipeline/geometry_stage.h"
 #include "pipeline/ingest.h"
 #include "pipeline/object_stage.h"
+#include "pipeline/parse_memory.h"
 #include "pipeline/safety_stage.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/tiled_parse.h"
@@ -35,32 +37,17 @@ void check_range(const char* option, double value, double lowest, double highest
                     number_text(highest));
 }
 
-// "3 MiB", "512 B".
-std::string size_text(std::uint64_t bytes) {
-    const char* const units[] = {" B", " KiB", " MiB"};
-    std::size_t unit = 0;
-    for (; unit < 2 && bytes >= 1024; ++unit) bytes >>= 10;
-    return std::to_string(bytes) + units[unit];
-}
-
-// What the stages after ingest will hold at their peak, bytes: measured at about 400 per point
-// (cloud, surfels, regions, output) and 40 per voxel of the scene's box.
-std::uint64_t estimated_bytes(const CloudView& cloud, double voxel_m) {
-    const Bounds<float> bounds =
-        scene_bounds<float, FloatColumn>({cloud.x, cloud.y, cloud.z}, static_cast<float>(voxel_m));
-    double box = 1;
-    for (std::size_t a = 0; a < 3; ++a) box *= (bounds.high[a] - bounds.low[a]) / voxel_m + 16;
-    return static_cast<std::uint64_t>(400.0 * static_cast<double>(cloud.size()) + 40.0 * box);
-}
-
 void check_memory(const CloudView& cloud, double voxel_m, const ParseOptions& options) {
     if (options.max_memory_bytes == 0) return;
-    const std::uint64_t need = estimated_bytes(cloud, voxel_m);
+    const std::uint64_t need = one_piece_bytes(
+        static_cast<double>(cloud.size()),
+        scene_bounds<float, FloatColumn>({cloud.x, cloud.y, cloud.z}, static_cast<float>(voxel_m)),
+        voxel_m);
     if (need > options.max_memory_bytes) {
         throw Error(ErrorKind::input,
                     std::to_string(cloud.size()) + " points at voxels of " +
-                        std::to_string(voxel_m) + " m would need about " + size_text(need) +
-                        ", more than the " + size_text(options.max_memory_bytes) +
+                        io::short_number(voxel_m) + " m would need about " + io::bytes_text(need) +
+                        ", more than the " + io::bytes_text(options.max_memory_bytes) +
                         " of --max-memory; use a larger --voxel, or --tile 5 to have it parsed "
                         "in blocks");
     }

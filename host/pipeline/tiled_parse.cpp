@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,15 +14,16 @@
 #include "io/read_cloud.h"
 #include "io/text.h"
 #include "pipeline/assemble.h"
+#include "pipeline/block_stage.h"
 #include "pipeline/explain.h"
 #include "pipeline/ingest.h"
 #include "pipeline/join_blocks.h"
 #include "pipeline/object_stage.h"
+#include "pipeline/parse_memory.h"
 #include "pipeline/safety_stage.h"
 #include "pipeline/shared_stage.h"
 #include "pipeline/solid_parts.h"
 #include "pipeline/stage_clock.h"
-#include "pipeline/tiled_memory.h"
 #include "pipeline/tiled_result.h"
 #include "pipeline/tiled_stages.h"
 #include "tiles/blocks.h"
@@ -36,6 +38,9 @@ namespace fs = std::filesystem;
 // Files below this size hold no more points than that: ten bytes a point are hardly ever too few.
 constexpr std::uint64_t small_file = 10 * most_points_at_once;
 
+// Is there once all points are sorted.
+constexpr const char* sorted_points = "bins.bin";
+
 // Points, and thinned points, that a guess at the whole is made from.
 constexpr std::uint64_t spacing_points = 1'500'000, frame_points = 1'200'000;
 // Points of the scene that a caller gets, and the report shows.
@@ -48,6 +53,13 @@ std::string manifest(const fs::path& input, const ParseOptions& options) {
            " " + std::to_string(changed) + options_text(options);
 }
 
+// A smaller file is none of a large cloud.
+bool may_be_tiled(const fs::path& input, const ParseOptions& options) {
+    std::error_code error;
+    return fs::is_regular_file(input, error) && io::can_stream(input) &&
+           (options.tile_m > 0 || fs::file_size(input, error) >= small_file);
+}
+
 // An eighth of what a run may take: the device, and the portion in hand, take theirs, too.
 std::uint64_t spill_bytes(const ParseOptions& options) {
     constexpr std::uint64_t most = std::uint64_t{256} << 20, least = std::uint64_t{16} << 20;
@@ -58,7 +70,7 @@ std::uint64_t spill_bytes(const ParseOptions& options) {
 // Sorts the cloud's points into bins on disk.
 void spill(const fs::path& input, const tiles::WorkFolder& work, const ParseOptions& options,
            StageClock& stage) {
-    if (work.has("bins.bin")) return;
+    if (work.has(sorted_points)) return;
     tiles::PointSpill out(work.path(), spill_bytes(options));
     std::error_code error;
     // A guess, for the progress alone.
@@ -221,10 +233,10 @@ void check_memory(const tiles::Layout& layout, const fs::path& input, const Pars
     const double need = std::max(whole_bytes(all), block_bytes(largest_block(layout)));
     if (need <= static_cast<double>(options.max_memory_bytes)) return;
     io::fail(input, "in blocks at voxels of " + io::short_number(layout.voxel_m) +
-                        " m it would need about " + io::short_number(std::ceil(need / 1e6)) +
-                        " MB, more than the " +
-                        io::short_number(static_cast<double>(options.max_memory_bytes) / 1e6) +
-                        " MB of --max-memory; use a larger --voxel");
+                        " m it would need about " +
+                        io::bytes_text(static_cast<std::uint64_t>(need)) + ", more than the " +
+                        io::bytes_text(options.max_memory_bytes) +
+                        " of --max-memory; use a larger --voxel");
 }
 
 ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
@@ -271,10 +283,26 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
 
 }  // namespace
 
+std::optional<WorkLeft> work_left(const fs::path& input, const ParseOptions& options) {
+    const fs::path& folder = options.work_folder;
+    if (folder.empty() || !may_be_tiled(input, options)) return std::nullopt;
+    try {
+        if (!tiles::is_work_folder(folder, manifest(input, options))) return std::nullopt;
+        const std::set<std::string> there = tiles::names_in(folder);
+        if (!there.contains(sorted_points)) return std::nullopt;
+        WorkLeft left;
+        if (!there.contains(tiles::layout_name)) return left;
+        left.blocks = tiles::read_layout(folder).blocks.size();
+        for (std::size_t b = 0; b < left.blocks; ++b)
+            left.done += there.contains(block_file({}, b).string());
+        return left;
+    } catch (const Error&) {  // the parse says what is wrong there
+        return std::nullopt;
+    }
+}
+
 std::optional<ParseResult> parse_tiled(const fs::path& input, const ParseOptions& options) {
-    std::error_code error;
-    if (!fs::is_regular_file(input, error) || !io::can_stream(input)) return std::nullopt;
-    if (options.tile_m == 0 && fs::file_size(input, error) < small_file) return std::nullopt;
+    if (!may_be_tiled(input, options)) return std::nullopt;
     check_options(options);
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options);

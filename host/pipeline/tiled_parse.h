@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -29,5 +30,13 @@ inline constexpr double least_tile_m = 5;
 // parsed which block. Nothing: the input is no large cloud file, and nothing was done.
 std::optional<ParseResult> parse_tiled(const std::filesystem::path& input,
                                        const ParseOptions& options);
+
+// What an unfinished run of the same parse has left in options.work_folder.
+struct WorkLeft {
+    std::size_t done = 0, blocks = 0;  // blocks: 0 where it had not come to them
+};
+
+// Nothing: the next run begins anew.
+std::optional<WorkLeft> work_left(const std::filesystem::path& input, const ParseOptions& options);
 
 }  // namespace topple

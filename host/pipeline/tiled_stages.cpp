@@ -16,8 +16,8 @@
 #include "device/native/thread_pool.h"
 #include "io/text.h"
 #include "pipeline/block_stage.h"
+#include "pipeline/parse_memory.h"
 #include "pipeline/shared_stage.h"
-#include "pipeline/tiled_memory.h"
 #include "tiles/work_folder.h"
 #include "topple/version.h"
 

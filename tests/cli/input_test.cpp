@@ -123,6 +123,13 @@ TEST_F(Input, missing_is_told_before_the_parse_begins) {
     expect_failure(1, {"parse", "folder/", "-o", "out"}, {"folder/", "No such file"});
 }
 
+TEST_F(Input, words_instead_of_numbers) {
+    put("words.xyz", "a b c\na b c\n");
+    refused("words.xyz", {"line 2: \"a\" is not a number", "expected x y z"});
+    put("words.xyz", "# no numbers\na b c\n");
+    refused("words.xyz", {"line 2: \"a\" is not a number", "x y z"});
+}
+
 TEST_F(Input, hardly_any_point) {
     put("one.xyz", "1 2 3\n");
     refused("one.xyz", {"1 point was found", "27"});
@@ -204,6 +211,12 @@ TEST_F(Input, a_sequence_with_a_damaged_frame) {
 
 TEST_F(Input, a_sequence_without_intrinsics) {
     put_sequence("scan", 2);
+    put("scan/intrinsics.json", "{\"width\": 80,\n \"height\" 60}");
+    const Finished damaged = run({"parse", "scan", "-o", "out", "--quiet"});
+    EXPECT_NE(damaged.err.find("intrinsics.json: is no JSON: line 2, column 12: "),
+              std::string::npos)
+        << damaged.err;
+    EXPECT_EQ(damaged.err.find("json.exception"), std::string::npos) << damaged.err;
     std::filesystem::remove(in("scan/intrinsics.json"));
     refused("scan", {"intrinsics.json"});
 }
@@ -217,7 +230,12 @@ TEST_F(Input, a_sequence_without_trajectory) {
 TEST_F(Input, a_scan_that_needs_too_much_memory) {
     put_plane("plane.xyz");
     expect_failure(1, {"parse", "plane.xyz", "-o", "out", "--quiet", "--max-memory", "1K"},
-                   {"need", "1 KiB", "--max-memory"});
+                   {"need", "the 1 KiB of --max-memory"});
+    expect_failure(1, {"parse", "plane.xyz", "-o", "out", "--quiet", "--max-memory", "1MB"},
+                   {"need", "the 977 KiB of --max-memory"});
+    expect_failure(
+        1, {"parse", "plane.xyz", "-o", "out", "--quiet", "--tile", "5", "--max-memory", "1"},
+        {"need", "MiB, more than the 1 B of --max-memory"});
 }
 
 }  // namespace

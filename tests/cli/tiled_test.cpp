@@ -38,12 +38,51 @@ TEST_F(Tiled, a_plane_has_nothing_to_fall) {
         EXPECT_EQ(entry.path().filename().string().find("topple-work"), std::string::npos) << entry;
 }
 
+TEST_F(Tiled, a_stopped_parse_says_what_stays_and_the_next_one_goes_on) {
+    ASSERT_EQ(
+        run({"generate", "b.ply", "--building", "--points", "200000", "--spacing", "0.03"}).code,
+        0);
+    const auto stopped = [&] {
+        return run({"parse", "b.ply", "--tile", "5", "--voxel", "0.06", "-o", "out"},
+                   [](const std::string& err) {
+                       return err.find("blocks: ") == std::string::npos ? 0 : SIGINT;
+                   });
+    };
+    const Finished first = stopped();
+    EXPECT_EQ(first.code, 128 + SIGINT) << first.err;
+    EXPECT_EQ(first.err.find("going on"), std::string::npos) << first.err;
+    const std::string said =
+        "topple: interrupted; nothing was written but .out.topple-work, which holds ";
+    EXPECT_NE(first.err.find(said), std::string::npos) << first.err;
+    EXPECT_NE(first.err.find("the same command goes on from there"), std::string::npos)
+        << first.err;
+    EXPECT_TRUE(std::filesystem::exists(in(".out.topple-work")));
+    const Finished second = stopped();
+    EXPECT_TRUE(second.err.starts_with("going on with ")) << second.err;
+    EXPECT_NE(second.err.find(" blocks from .out.topple-work\n"), std::string::npos) << second.err;
+    // Stopped before there was anything to go on from.
+    std::filesystem::remove_all(in(".out.topple-work"));
+    const Finished early = run({"parse", "b.ply", "--tile", "5", "-o", "out"},
+                               [](const std::string& err) { return err.empty() ? 0 : SIGINT; });
+    EXPECT_TRUE(early.err.ends_with("topple: interrupted; nothing was written\n")) << early.err;
+    EXPECT_FALSE(std::filesystem::exists(in(".out.topple-work")));
+}
+
 TEST_F(Tiled, estimates_without_parsing) {
     put_plane("plane.xyz");
     const Finished finished = run({"estimate", "plane.xyz"});
     EXPECT_EQ(finished.code, 0) << finished.err;
     for (const char* word : {"points", "surface", "time", "memory", "results"})
         EXPECT_NE(finished.out.find(word), std::string::npos) << finished.out;
+    EXPECT_EQ(finished.out.find("limit"), std::string::npos) << finished.out;
+    const auto limit = [&](const char* size) {
+        const Finished limited = run({"estimate", "plane.xyz", "--quiet", "--max-memory", size});
+        EXPECT_EQ(limited.code, 0) << limited.err;
+        return limited.out;
+    };
+    EXPECT_NE(limit("4G").find("4 GiB of --max-memory suffice"), std::string::npos) << limit("4G");
+    EXPECT_NE(limit("1M").find("1 MiB of --max-memory are too few"), std::string::npos)
+        << limit("1M");
     expect_failure(1, {"estimate", "away.ply", "--quiet"}, {"away.ply"});
     expect_failure(2, {"estimate", "plane.xyz", "--voxel", "-1"}, {"--voxel"});
 }

@@ -9,7 +9,9 @@ using Usage = Program;
 
 TEST_F(Usage, says_what_is_missing_or_unknown) {
     expect_failure(2, {}, {"subcommand", "--help"});
-    expect_failure(2, {"prase"}, {"--help"});
+    expect_failure(2, {"prase", "x"},
+                   {"unknown subcommand \"prase\"; did you mean parse?", "--help"});
+    expect_failure(2, {"kaleidoscope"}, {"unknown subcommand", "there are parse, estimate"});
     expect_failure(2, {"parse"}, {"INPUT"});
     put_plane("plane.xyz");
     expect_failure(2, {"parse", "plane.xyz", "--colour"}, {"--colour"});
@@ -66,6 +68,7 @@ TEST_F(Usage, refuses_values_before_it_parses) {
                                                     {"--max-memory", "nan"},
                                                     {"--max-memory", "5 GB"},
                                                     {"--max-memory", "1e30T"},
+                                                    {"--max-memory", "0.5"},
                                                     {"--unit", "yard"},
                                                     {"--unit", "0.001"},
                                                     {"--seed", "-1"},
@@ -113,7 +116,8 @@ TEST_F(Usage, help_names_every_command_and_option) {
             EXPECT_NE(help.out.find(option), std::string::npos) << option << " in\n" << help.out;
         }
         if (arguments.size() > 1) continue;
-        for (const char* name : {"parse", "devices", "generate", "--version", "Exit codes"}) {
+        for (const char* name :
+             {"parse", "devices", "generate", "--version", "Exit codes", "1024^3", "130"}) {
             EXPECT_NE(help.out.find(name), std::string::npos) << name << " in\n" << help.out;
         }
     }

@@ -2,12 +2,22 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
+#include "core/scene_bounds.h"
 #include "tiles/blocks.h"
 
-// What a parse in blocks holds, as measured on generated buildings. Thinned cells are its measure.
+// What parses hold, as measured: in one piece by points and voxels, in blocks by thinned cells.
 namespace topple {
+
+// The stages after ingest, at their peak: per point cloud, surfels, regions and output, and per
+// voxel of the scene's box.
+inline std::uint64_t one_piece_bytes(double points, const Bounds<float>& bounds, double voxel_m) {
+    double box = 1;
+    for (std::size_t a = 0; a < 3; ++a) box *= (bounds.high[a] - bounds.low[a]) / voxel_m + 16;
+    return static_cast<std::uint64_t>(400.0 * points + 40.0 * box);
+}
 
 // While a block with so many cells in its core is parsed: it sees its halo's, too.
 inline double block_bytes(std::uint64_t cells) {
