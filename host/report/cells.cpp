@@ -81,8 +81,7 @@ std::size_t mark_exposed(std::vector<Cell>& cells, const CellTable& table) {
     return count;
 }
 
-void spread_normals(std::vector<Cell>& cells, const CellTable& table,
-                    const std::array<double, 3>& centre) {
+std::vector<std::uint32_t> spread_normals(std::vector<Cell>& cells, const CellTable& table) {
     std::vector<std::uint32_t> missing;
     for (std::uint32_t i = 0; i < cells.size(); ++i) {
         if (unit(cells[i].normal)) continue;
@@ -111,13 +110,7 @@ void spread_normals(std::vector<Cell>& cells, const CellTable& table,
         if (still.size() == missing.size()) break;
         missing = std::move(still);
     }
-    for (const auto i : missing) {
-        std::array<float, 3> inward{};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            inward[axis] = static_cast<float>(centre[axis] - cells[i].index[axis]);
-        }
-        if (unit(inward)) cells[i].normal = inward;
-    }
+    return missing;
 }
 
 }  // namespace topple::report

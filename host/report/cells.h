@@ -44,8 +44,7 @@ class CellTable {
 std::size_t mark_exposed(std::vector<Cell>& cells, const CellTable& table);
 
 // Makes normals unit vectors. Gives background cells without a normal the mean of their
-// neighbours', ring after ring; at last, those that no ring reached point to `centre` (cell units).
-void spread_normals(std::vector<Cell>& cells, const CellTable& table,
-                    const std::array<double, 3>& centre);
+// neighbours', ring after ring. Those that no ring reached are returned, by number, ascending.
+std::vector<std::uint32_t> spread_normals(std::vector<Cell>& cells, const CellTable& table);
 
 }  // namespace topple::report

@@ -58,12 +58,14 @@ bool is_doubtful(const Object& object) {
     return object.advice.kind == "check";
 }
 
-// What can fall and is not among the safest, the largest risk first, as far as it is labelled.
-std::vector<const Object*> riskiest(const Scene& scene) {
+// What can fall, is not among the safest and is seen, the largest risk first, as far as it is
+// labelled: a label of what a wall hides would stand on the wall.
+std::vector<const Object*> riskiest(const Scene& scene, const SceneImage& image) {
     constexpr double least_unsafety = 2;
     std::vector<const Object*> out;
     for (const Object& object : scene.objects) {
-        if (!object.grounded && object.unsafety >= least_unsafety && largest_risk(object) > 0)
+        if (!object.grounded && object.unsafety >= least_unsafety && largest_risk(object) > 0 &&
+            image.sees(object.id))
             out.push_back(&object);
     }
     std::ranges::stable_sort(
@@ -114,7 +116,7 @@ class Pictures {
         Canvas canvas = page("objects", colours(false, 0), Overlay(image_), "Objects",
                              "Each colour is one body that moves as a whole. Grey: the ground and "
                              "what is fixed to it. Numbers: the riskiest objects.");
-        for (const Object* object : riskiest(scene_)) label(canvas, *object, false);
+        for (const Object* object : riskiest(scene_, image_)) label(canvas, *object, false);
         canvas.save();
     }
 
@@ -124,7 +126,7 @@ class Pictures {
                  "Unsafety, by what a walk, a gale or an earthquake is expected to set "
                  "free. Labels: object, unsafety; ?: the scan hardly shows its support.");
         legend(canvas, unsafety_ramp, "1 safest", "10");
-        for (const Object* object : riskiest(scene_)) label(canvas, *object, true);
+        for (const Object* object : riskiest(scene_, image_)) label(canvas, *object, true);
         canvas.save();
     }
 
@@ -249,9 +251,17 @@ class Pictures {
         boxes_.clear();
         Canvas canvas(folder_ / ("view-" + name + ".png"), width, height);
         canvas.image(0, 0, image_.shaded(colour_of_group, overlay));
-        canvas.text(20, 34, title, Align::left, {.size = 22, .bold = true});
-        canvas.text(20, 58, says, Align::left, {.size = 14, .colour = {0.36, 0.4, 0.44}});
+        headline(canvas, 34, title, {.size = 22, .bold = true});
+        headline(canvas, 58, says, {.size = 14, .colour = {0.36, 0.4, 0.44}});
         return canvas;
+    }
+
+    // Strays of the scan may lie behind it.
+    static void headline(Canvas& canvas, double base, const std::string& says, const Font& font) {
+        constexpr Colour behind{0.917, 0.931, 0.947};
+        canvas.rectangle(14, base - font.size, canvas.text_width(says, font) + 12, 1.35 * font.size,
+                         behind);
+        canvas.text(20, base, says, Align::left, font);
     }
 
     void legend(Canvas& canvas, std::span<const Bytes3> stops, const std::string& low,

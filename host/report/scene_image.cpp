@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace topple::report {
 namespace {
@@ -79,6 +80,7 @@ SceneImage::SceneImage(const Scene& scene, const PackedView& view, int width, in
     fine_camera_.x0 *= fine;
     fine_camera_.y0 *= fine;
     draw_solids();
+    find_seen();
     find_crevices();
     open_ = blurred(blurred(open_, width_, height_), width_, height_);
 }
@@ -127,6 +129,17 @@ void SceneImage::add_face(const Vec3& centre, const Vec3& normal, const Vec3& si
     faces_.push_back(face);
     solids_.triangle(fine_camera_, corner[0], corner[1], corner[2], what);
     solids_.triangle(fine_camera_, corner[0], corner[2], corner[3], what);
+}
+
+void SceneImage::find_seen() {
+    constexpr std::size_t few = 8;
+    std::map<std::int32_t, std::size_t> pixels;
+    const auto all =
+        static_cast<std::size_t>(solids_.width()) * static_cast<std::size_t>(solids_.height());
+    for (std::size_t at = 0; at < all; ++at) {
+        const std::int32_t object = object_at(at);
+        if (object >= 0 && ++pixels[object] == few) seen_.insert(object);
+    }
 }
 
 // Corners and what lies under things are darker: a share of the places around each pixel that are

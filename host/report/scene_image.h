@@ -23,6 +23,7 @@ class SceneImage {
 
     const Camera& camera() const { return camera_; }  // in the picture's pixels
     double reach_m() const { return reach_m_; }       // across the scene
+    bool sees(std::int32_t object) const { return seen_.contains(object); }  // a movable one
 
     // What is laid over the solids, in the view's frame; hidden by what of them is in front of it,
     // or shining `through`.
@@ -53,6 +54,7 @@ class SceneImage {
     void add_face(const Vec3& centre, const Vec3& normal, const Vec3& side, const Vec3& other,
                   const Face& face);
     void find_crevices();
+    void find_seen();
     std::int32_t object_at(std::size_t at) const;
     bool is_rim(std::size_t at) const;
 
@@ -63,6 +65,7 @@ class SceneImage {
     std::set<std::int32_t> grounded_;
     DepthImage solids_;
     std::vector<Face> faces_;
+    std::set<std::int32_t> seen_;  // objects that cover more than a few of the finer pixels
     std::vector<float> open_;  // 0 to 1 for each pixel: how little of its surroundings is before it
 };
 

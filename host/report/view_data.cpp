@@ -8,6 +8,7 @@
 
 #include "core/scene_bounds.h"
 #include "report/cells.h"
+#include "report/open_sides.h"
 
 namespace topple::report {
 namespace {
@@ -241,6 +242,8 @@ class Packer {
             add_normals(cells, table, edge);
             write_cells(cells, edge);
             view_.cube_m = edge;
+            cells_ = std::move(cells);
+            table_ = std::move(table);
             return;
         }
     }
@@ -260,7 +263,7 @@ class Packer {
         std::array<double, 3> centre{};
         for (std::size_t axis = 0; axis < 3; ++axis)
             centre[axis] = (solid_box_.high[axis] - solid_box_.low[axis]) / edge / 2;
-        spread_normals(cells, table, centre);
+        face_open_sides(cells, table, spread_normals(cells, table), centre, edge);
     }
 
     void write_cells(const std::vector<Cell>& cells, double edge) {
@@ -296,8 +299,18 @@ class Packer {
             if (!points.nx.empty())
                 n = turned(view_.view_from_input, points.nx[i], points.ny[i], points.nz[i]);
             if (!finite(n)) n = {};
+            if (points.nx.empty() && is_background(points.object[i])) n = background_normal(p);
             out.aux.push_back({signed_byte(n[0]), signed_byte(n[1]), signed_byte(n[2]), 0});
         }
+    }
+
+    // Of the cell that a place lies in; 0 where there is none.
+    Vec3 background_normal(const Vec3& p) const {
+        if (cells_.empty()) return {};
+        const auto found = table_.find(index_of(p, view_.cube_m));
+        if (found == CellTable::absent || !cells_[found].background) return {};
+        const auto& n = cells_[found].normal;
+        return {double{n[0]}, double{n[1]}, double{n[2]}};
     }
 
     // The densest sample, and of these the strongest, of each cube of a grid that is widened until
@@ -347,6 +360,8 @@ class Packer {
     Bounds<float> bounds_;
     Box solid_box_;
     double lattice_shift_ = 0.5;
+    std::vector<Cell> cells_;  // what is drawn, cubes of view_.cube_m
+    CellTable table_;          // finds them
 };
 
 }  // namespace

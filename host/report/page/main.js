@@ -226,6 +226,7 @@ function start() {
     // Milliseconds from the page's start until the first picture stood, which reading it back waits for.
     view.renderer.getContext().readPixels(0, 0, 1, 1, WebGLRenderingContext.RGBA, WebGLRenderingContext.UNSIGNED_BYTE, new Uint8Array(4));
     document.body.dataset.firstPictureMs = Math.round(performance.now());
+    view.hideUnseenLabels();
   } else {
     for (const bar of document.querySelectorAll('.toolbar')) bar.hidden = true;
   }

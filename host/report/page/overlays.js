@@ -206,12 +206,14 @@ class Labels {
     this.scene = scene;
     this.risky = riskiest(scene);
     this.nodes = new Map();
+    this.seen = null;  // how many places of the view each object covers, once that is known
     this.choose(undefined);
   }
 
   choose(object) {
     for (const node of this.nodes.values()) node.remove();
     this.nodes.clear();
+    this.chosen = object;
     for (const shown of object ? [object] : this.risky) {
       if (shown.center_of_mass_m.some(value => value === null)) continue;
       const node = element('span', {className: 'number', text: String(shown.id)});
@@ -223,7 +225,9 @@ class Labels {
   place(camera, fromInput) {
     for (const [object, node] of this.nodes) {
       const at = fromInput(object.center_of_mass_m).project(camera);
-      node.hidden = at.z > 1 || Math.abs(at.x) > 1 || Math.abs(at.y) > 1;
+      // The number of what a wall hides would stand on the wall.
+      const hidden = !this.chosen && this.seen && !(this.seen.get(object.id) >= 4);
+      node.hidden = hidden || at.z > 1 || Math.abs(at.x) > 1 || Math.abs(at.y) > 1;
       node.style.left = (at.x + 1) / 2 * this.container.clientWidth + 'px';
       node.style.top = (1 - at.y) / 2 * this.container.clientHeight + 'px';
     }

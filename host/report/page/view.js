@@ -285,6 +285,8 @@ class View {
     const ahead = this.camera.getWorldDirection(new THREE.Vector3());
     const needle = document.getElementById('needle');
     this.labels.place(this.camera, v => this.fromInput(v));
+    clearTimeout(this.resting);
+    this.resting = setTimeout(() => this.hideUnseenLabels(), 150);
     needle.setAttribute('transform', `rotate(${Math.atan2(-ahead.x, ahead.y) * 180 / Math.PI})`);
   }
 
@@ -317,6 +319,13 @@ class View {
   objectOf(bytes, at) {
     const group = bytes[at] + 256 * bytes[at + 1] + 65536 * bytes[at + 2] - 1;
     return group >= 0 && group < this.scene.view.groups.length ? this.scene.view.groups[group][1] : null;
+  }
+
+  // Once the camera rests: finding what is seen takes a pass over the scene.
+  hideUnseenLabels() {
+    clearTimeout(this.resting);
+    this.labels.seen = this.seen();
+    this.labels.place(this.camera, v => this.fromInput(v));
   }
 
   // How many places of the view each object covers.
