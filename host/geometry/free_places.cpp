@@ -112,9 +112,14 @@ void FreePlaces::find_places() {
                            low_[2] + (c[2] + 0.5) * cell_m_});
         clearance_.push_back(steps[at(c)] * cell_m_);
         enclosure_.push_back(hits[at(c)] / 26.0);
+        bool within = true;
+        for (std::size_t a = 0; a < 3; ++a)
+            within = within && c[a] >= margin && c[a] < size_[a] - margin;
+        within_.push_back(within);
     });
     apart_.assign(middle_.size(), std::numeric_limits<double>::max());
     free_.assign(middle_.size(), false);
+    passed_over_.assign(middle_.size(), false);
 }
 
 // From each cell a direction hits something where the next cell that way does, or is occupied: one
@@ -144,11 +149,26 @@ std::vector<std::uint8_t> FreePlaces::directions_hit() const {
     return count;
 }
 
-std::size_t FreePlaces::choose(bool anywhere) {
+std::size_t FreePlaces::choose_first() const {
+    // Nobody looks up through a floor: outside only where there is nothing within.
+    const std::size_t place = best([&](std::size_t i) { return !passed_over_[i] && within_[i]; });
+    if (place < size()) return place;
+    return best([&](std::size_t i) { return !passed_over_[i]; });
+}
+
+std::size_t FreePlaces::choose_free() const {
+    return best([&](std::size_t i) { return free_[i]; });
+}
+
+std::size_t FreePlaces::choose_outside(const std::function<bool(std::size_t)>& may) const {
+    return best([&](std::size_t i) { return !within_[i] && may(i); });
+}
+
+std::size_t FreePlaces::best(const std::function<bool(std::size_t)>& may) const {
     std::size_t best = size();
     double best_score = 0;
     for (std::size_t i = 0; i < size(); ++i) {
-        if (!anywhere && !free_[i]) continue;
+        if (!may(i)) continue;
         // Squared: a place outside of the room has all the clearance in the world.
         const double score =
             std::min(clearance_[i], 0.5 * apart_[i]) * enclosure_[i] * enclosure_[i];

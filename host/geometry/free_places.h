@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "geometry/surfels.h"
@@ -25,15 +26,23 @@ class FreePlaces {
     // Cells that something may stand in: two steps from anything occupied. For each its middle.
     std::size_t size() const { return middle_.size(); }
     const Vec3& middle(std::size_t place) const { return middle_[place]; }
+    bool is_within(std::size_t place) const { return within_[place]; }  // the scene's box
+    // Along the axes to the nearest occupied cell.
+    double clearance_m(std::size_t place) const { return clearance_[place]; }
 
     // Marks places that are known to be free: only these are chosen from then on.
     void set_free(std::size_t place) { free_[place] = true; }
     bool is_free(std::size_t place) const { return free_[place]; }
 
     // The place with the most room around it that sees the most of the scene around it, far from
-    // those chosen before; size() where there is none left. `anywhere`: also of places that are
-    // not known to be free.
-    std::size_t choose(bool anywhere);
+    // those chosen before; size() where there is none left. As the first one any place that was not
+    // passed over, outside of the scene's box only where there is none in it; then of those that
+    // are known to be free; or of those outside of the box that may be chosen.
+    std::size_t choose_first() const;
+    std::size_t choose_free() const;
+    std::size_t choose_outside(const std::function<bool(std::size_t)>& may) const;
+    // This place is not chosen as the first.
+    void pass_over(std::size_t place) { passed_over_[place] = true; }
     // Places near this one are not chosen again.
     void leave_out(const Vec3& chosen);
 
@@ -42,6 +51,7 @@ class FreePlaces {
     void find_places();
     // Of each cell, in how many of the 26 directions to its neighbours and on there is something.
     std::vector<std::uint8_t> directions_hit() const;
+    std::size_t best(const std::function<bool(std::size_t)>& may) const;
     bool inside(const std::array<int, 3>& c) const;
     std::size_t at(const std::array<int, 3>& c) const;
 
@@ -53,7 +63,8 @@ class FreePlaces {
     std::vector<double> clearance_;  // steps along the axes to the nearest occupied cell, metres
     std::vector<double> enclosure_;  // share of 26 directions in which something is seen
     std::vector<double> apart_;      // from the nearest chosen one
-    std::vector<bool> free_;
+    std::vector<bool> within_;       // the scene's box
+    std::vector<bool> free_, passed_over_;
 };
 
 }  // namespace topple::geometry

@@ -23,6 +23,11 @@ constexpr double least_facing_share = 0.9;
 // nothing. One stray alone may lie there.
 constexpr std::size_t most_at_eye = 3;
 constexpr double at_eye_spacings = 5;
+// A surface that is seen edge-on, as a floor from a place on it, puts all of its points in few
+// directions: this many to a cell of four on average, of this share of all points. Sensors spread
+// theirs over what they look at; those that turn about an axis crowd some at its ends.
+constexpr std::uint32_t crowd = 32;
+constexpr double most_crowded = 0.3;
 // A sensor with a limited view sees all but stray points within this angle of its axis.
 constexpr double view_cos = 0.5, view_share = 0.98;
 // The axis along which it looks is a frame's own axis, give or take this angle.
@@ -58,11 +63,18 @@ Directions directions_of(const CloudView& cloud, const Vec3& eye) {
 class RangeGrid {
   public:
     RangeGrid(const Directions& d, std::int64_t n)
-        : n_(n), nearest_(static_cast<std::size_t>(6 * n * n), infinite) {
+        : n_(n), nearest_(static_cast<std::size_t>(6 * n * n), infinite), count_(nearest_.size()) {
         for (std::size_t i = 0; i < d.size(); ++i) {
-            float& at = nearest_[index(d.face[i], cell(d.u[i]), cell(d.v[i]))];
-            at = std::min(at, d.range[i]);
+            const std::size_t at = index(d.face[i], cell(d.u[i]), cell(d.v[i]));
+            nearest_[at] = std::min(nearest_[at], d.range[i]);
+            ++count_[at];
         }
+    }
+    // How many points lie in cells that hold more than so many.
+    std::uint64_t crowded(std::uint32_t many) const {
+        std::uint64_t out = 0;
+        for (const std::uint32_t count : count_) out += count > many ? count : 0;
+        return out;
     }
     // All nine cells around the direction hold something that is clearly nearer.
     bool hides(const Directions& d, std::size_t i) const {
@@ -109,6 +121,7 @@ class RangeGrid {
     }
     std::int64_t n_;
     std::vector<float> nearest_;
+    std::vector<std::uint32_t> count_;  // of points
 };
 
 bool normals_face(const CloudView& cloud, const Vec3& eye) {
@@ -176,6 +189,7 @@ std::optional<SingleScan> find_single_scan(const CloudView& cloud, const Vec3& e
     const auto fine =
         std::clamp<std::int64_t>(static_cast<std::int64_t>(1 / scan.spacing), 4, 1024);
     const RangeGrid grid(directions, fine);
+    if (static_cast<double>(grid.crowded(crowd)) > most_crowded * count) return {};
     std::size_t hidden = 0;
     for (std::size_t i = 0; i < directions.size(); ++i) hidden += grid.hides(directions, i);
     if (static_cast<double>(hidden) > most_hidden * count) return {};

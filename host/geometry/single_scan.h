@@ -15,8 +15,8 @@ struct SingleScan {
 };
 
 // Whether one sensor at `eye` may have taken the whole cloud, whose points are `spacing_m` apart:
-// hardly a point then lies hidden behind others, none lies where the sensor stood, and normals,
-// where there are any, face it. Up follows custom: of a limited view
+// hardly a point then lies hidden behind others, none lies where the sensor stood, no large surface
+// is seen edge-on, and normals, where there are any, face it. Up follows custom: of a limited view
 // along z it is -y (cameras), along -z it is y (graphics), along x it is z (robots); a view all
 // around tells nothing. Empty where the cloud must be of several views, or is too small to tell.
 std::optional<SingleScan> find_single_scan(const CloudView& cloud, const Vec3& eye,

@@ -22,14 +22,23 @@ constexpr double side_cos = 0.25, behind_cos = 0.1;
 constexpr double two_sided_cells = 0.25;
 // Places tried as the first, and the share of surfels that must face it.
 constexpr unsigned first_tries = 8;
+// Places outside of the scene's box that see into it, at most.
+constexpr unsigned outside = 2;
 constexpr double least_facing = 0.5;
+// The first place sees this share of all surfels, or has as much room around it as only rooms have
+// within them; else it may lie within a box, and is compared with others.
+constexpr double least_seen = 0.5, roomy_m = 0.75;
 // A large room, and how many of them are looked at.
 constexpr double room_m3 = 200, most_rooms = 30;
 
 class Looking {
   public:
     Looking(const Surfels& surfels, const VirtualViewOptions& options, device::ThreadPool& pool)
-        : s_(surfels), pool_(pool), places_(surfels), side_(surfels.size(), 0) {
+        : s_(surfels),
+          pool_(pool),
+          places_(surfels),
+          side_(surfels.size(), 0),
+          in_view_(places_.size(), 0) {
         if (options.sides_known) know_sides();
         out_.eye_of_surfel.assign(surfels.size(), no_eye);
         out_.intrinsics = {CubeView::side,
@@ -48,7 +57,17 @@ class Looking {
         if (options.known_eyes.empty()) look_first(options.sides_known);
         const std::size_t wanted = options.eyes * rooms();
         while (!out_.eyes.empty() && out_.eyes.size() < wanted) {
-            const std::size_t place = places_.choose(false);
+            const std::size_t place = places_.choose_free();
+            if (place == places_.size()) break;
+            look(view_surfels(s_, places_.middle(place), pool_));
+        }
+        // These lie between what they see, where tops may be out of sight. A scene without a
+        // ceiling is looked at from above, too: from places outside of it that most of them have in
+        // view.
+        const std::size_t most = out_.eyes.size() / 2;
+        for (unsigned n = 0; n < outside && options.known_eyes.empty(); ++n) {
+            const std::size_t place =
+                places_.choose_outside([&](std::size_t p) { return in_view_[p] > most; });
             if (place == places_.size()) break;
             look(view_surfels(s_, places_.middle(place), pool_));
         }
@@ -102,19 +121,43 @@ class Looking {
         return all > 0 ? static_cast<double>(front) / static_cast<double>(all) : 0;
     }
 
+    // Share of all surfels that are seen: little from within a box.
+    double share_seen(const CubeView& view) const {
+        std::vector<bool> seen(s_.size());
+        for (const auto& image : view.surfel) {
+            for (const std::uint32_t i : image)
+                if (i != CubeView::nothing) seen[i] = true;
+        }
+        return static_cast<double>(std::ranges::count(seen, true)) / static_cast<double>(s_.size());
+    }
+
+    // What is seen from a place that was tried need not be tried, too.
+    void pass_over_seen(const CubeView& view, std::size_t place) {
+        places_.pass_over(place);
+        for (std::size_t p = 0; p < places_.size(); ++p)
+            if (sees_through(view, places_.middle(p))) places_.pass_over(p);
+    }
+
     void look_first(bool sides_known) {
         std::optional<CubeView> best;
+        double best_share = -1;
         for (unsigned n = 0; n < first_tries; ++n) {
-            const std::size_t place = places_.choose(true);
+            const std::size_t place = places_.choose_first();
             if (place == places_.size()) break;
             CubeView view = view_surfels(s_, places_.middle(place), pool_);
-            const bool fits = !sides_known || share_facing(view) >= least_facing;
-            if (fits || !best) best = std::move(view);
+            const double share = share_seen(view);
+            const bool fits = sides_known
+                                  ? share_facing(view) >= least_facing
+                                  : share >= least_seen || places_.clearance_m(place) >= roomy_m;
+            if (!fits) pass_over_seen(view, place);
+            if (fits || share > best_share) {
+                best = std::move(view);
+                best_share = share;
+            }
             if (fits) return look(*best);
-            places_.leave_out(places_.middle(place));
         }
         if (!best) return;
-        std::fill(side_.begin(), side_.end(), std::int8_t{0});
+        if (sides_known) std::fill(side_.begin(), side_.end(), std::int8_t{0});
         look(*best);
     }
 
@@ -133,6 +176,7 @@ class Looking {
         for (std::size_t image = 0; image < 6; ++image) add_frame(view, image);
         for (std::size_t p = 0; p < places_.size(); ++p) {
             if (!places_.is_free(p) && sees_through(view, places_.middle(p))) places_.set_free(p);
+            if (!places_.is_within(p) && !hides(view, places_.middle(p))) ++in_view_[p];
         }
         places_.leave_out(view.eye);
     }
@@ -151,6 +195,14 @@ class Looking {
             any = true;
         }
         if (any) out_.frames.push_back(std::move(frame));
+    }
+
+    // Whether something lies before the point.
+    bool hides(const CubeView& view, const Vec3& point) const {
+        const std::size_t image = view.image_of(point);
+        const CubeView::Pixel pixel = view.pixel_of(image, point);
+        return !pixel.inside || (view.surfel[image][pixel.index] != CubeView::nothing &&
+                                 view.depth[image][pixel.index] < pixel.depth);
     }
 
     bool sees_through(const CubeView& view, const Vec3& point) const {
@@ -203,6 +255,7 @@ class Looking {
     FreePlaces places_;
     // 1: the normal points to the free side, -1: away from it, 0: not known.
     std::vector<std::int8_t> side_;
+    std::vector<std::uint32_t> in_view_;  // of each place outside: how many eyes have it in view
     VirtualViews out_;
 };
 

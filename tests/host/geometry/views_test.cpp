@@ -66,8 +66,45 @@ TEST(SingleScan, IsNotTakenFromWithinASurface) {
     EXPECT_TRUE(find_single_scan(dust, {0, 0, 0}, 0.008));
 }
 
+// The floor goes through the origin, on which a box stands: seen edge-on the one hides nothing, and
+// from within the other nothing else is seen.
+TEST(SingleScan, IsNotTakenFromAFloorWithinABox) {
+    PointCloud cloud;
+    for (int i = -100; i < 100; ++i) {
+        for (int j = -100; j < 100; ++j)
+            if (std::abs(i) > 20 || std::abs(j) > 20) add(cloud, {i * 0.02, j * 0.02, 0});
+    }
+    for (int i = -20; i <= 20; ++i) {
+        for (int j = 1; j < 40; ++j) {
+            for (const double side : {-0.4, 0.4}) {
+                add(cloud, {i * 0.02, side, j * 0.02});
+                add(cloud, {side, i * 0.02, j * 0.02});
+            }
+        }
+    }
+    EXPECT_FALSE(find_single_scan(cloud, {0, 0, 0}, 0.02));
+}
+
 class Views : public ::testing::Test {
   protected:
+    // A closed box on a bare floor of 4 x 4 m, the floor also beneath it.
+    Surfels box_on_floor() {
+        PointCloud cloud;
+        for (double x = -2; x < 2; x += 0.02)
+            for (double y = -2; y < 2; y += 0.02) add(cloud, {x, y, 0});
+        const auto slab = [&](double t, double u, const Vec3& p) {
+            for (double a = 0; a <= t; a += 0.02)
+                for (double b = 0; b <= u; b += 0.02)
+                    add(cloud, {p[0] == 9 ? bare_low[0] + a : p[0],
+                                p[1] == 9 ? bare_low[1] + (p[0] == 9 ? b : a) : p[1],
+                                p[2] == 9 ? b : p[2]});
+        };
+        slab(1, 0.5, {9, 9, 1});
+        for (const double y : {bare_low[1], bare_low[1] + 0.5}) slab(1, 1, {9, y, 9});
+        for (const double x : {bare_low[0], bare_low[0] + 1}) slab(0.5, 1, {x, 9, 9});
+        return make_surfels(*device, cloud, 0.05, {}, {});
+    }
+    static constexpr Vec3 bare_low{-0.2, -0.05, 0};
     // A closed room of 4 x 3 x 2.5 m; with_box: in it the top and four sides of a box on the floor
     // whose inside nobody can have seen.
     Surfels room(bool with_box) {
@@ -147,6 +184,22 @@ TEST_F(Views, EyesStayInFreeSpaceAndFaceWhatTheySee) {
     }
     ASSERT_EQ(views.eye_of_surfel.size(), s.size());
     EXPECT_TRUE(virtual_views({}, {}, pool).frames.empty());
+}
+
+// Its inside is as much of a room as could be, but shows little of the scene; and it is looked at
+// from above, where no other surface encloses the place.
+TEST_F(Views, ABoxOnABareFloorIsLookedAtFromOutside) {
+    const VirtualViews views = virtual_views(box_on_floor(), {}, pool);
+    ASSERT_GE(views.eyes.size(), 12u);
+    double highest = 0;
+    for (const Vec3& eye : views.eyes) {
+        EXPECT_GT(eye[2], 0);
+        const bool in_box = eye[0] > bare_low[0] && eye[0] < bare_low[0] + 1 &&
+                            eye[1] > bare_low[1] && eye[1] < bare_low[1] + 0.5 && eye[2] < 1;
+        EXPECT_FALSE(in_box) << eye[0] << ' ' << eye[1] << ' ' << eye[2];
+        highest = std::max(highest, eye[2]);
+    }
+    EXPECT_GT(highest, 1.1);
 }
 
 // A plane with normals, looked at from both sides: only what it faces is taken for free.
