@@ -17,6 +17,29 @@ double risk_of(const Object& o, const std::string& disturbance) {
     return at == o.risk_J.end() ? 0 : at->second;
 }
 
+// Why the riskiest are what they are: of those whose barrier is certain, where there are any. The
+// others' risk says more about the scan.
+void print_sentences(const std::vector<const Object*>& riskiest_first) {
+    std::vector<const Object*> certain, doubtful;
+    for (const Object* o : riskiest_first)
+        (barrier_within_error(*o) ? doubtful : certain).push_back(o);
+    const auto& told = certain.empty() ? doubtful : certain;
+    if (told.empty()) return;
+    const std::size_t shown = std::min(sentences_shown, told.size());
+    std::printf("\nThe %zu riskiest of the %zu whose barrier is %s", shown, told.size(),
+                certain.empty() ? "within its error (~0)" : "certain");
+    if (!certain.empty() && !doubtful.empty())
+        std::printf(
+            "; %zu more have ~0: they stand on edge, or the scan hardly shows their support",
+            doubtful.size());
+    std::printf(":\n");
+    for (std::size_t i = 0; i < shown; ++i) {
+        const Object& o = *told[i];
+        std::printf("Object %d: %s%s%s\n", o.id, o.why.sentence.c_str(),
+                    o.advice.sentence.empty() ? "" : " ", o.advice.sentence.c_str());
+    }
+}
+
 void print_objects(const Scene& scene) {
     std::map<std::int32_t, std::string> rests_on;
     for (const Support& s : scene.supports) {
@@ -38,19 +61,12 @@ void print_objects(const Scene& scene) {
         if (!barrier_within_error(o)) std::snprintf(barrier, sizeof(barrier), "%.3g", o.barrier_J);
         std::printf("%6d %8.1f %8.3g %9s %9.3g %6s %10.3g %10.3g %10.3g  %s\n", o.id, o.unsafety,
                     o.mass_kg, barrier, o.release_J, o.mode.c_str(), risk_of(o, "human"),
-                    risk_of(o, "wind"), risk_of(o, "earthquake"), rests_on[o.id].c_str());
+                    risk_of(o, "wind"), risk_of(o, "earthquake"),
+                    rests_on.contains(o.id) ? rests_on[o.id].c_str() : "-");
     }
     if (movable.size() > rows_shown)
         std::printf("   ... and %zu more in scene.json\n", movable.size() - rows_shown);
-    if (!movable.empty()) std::printf("\n");
-    // What is only to be looked at, since the scan hardly shows what holds it, comes last.
-    std::stable_partition(movable.begin(), movable.end(),
-                          [](const Object* o) { return o->advice.kind != "check"; });
-    for (std::size_t i = 0; i < std::min(sentences_shown, movable.size()); ++i) {
-        const Object& o = *movable[i];
-        std::printf("Object %d: %s%s%s\n", o.id, o.why.sentence.c_str(),
-                    o.advice.sentence.empty() ? "" : " ", o.advice.sentence.c_str());
-    }
+    print_sentences(movable);
 }
 
 }  // namespace
@@ -58,12 +74,15 @@ void print_objects(const Scene& scene) {
 void print_summary(const Scene& scene, const std::filesystem::path& out) {
     double seconds = 0;
     for (const auto& [stage, s] : scene.timings_s) seconds += s;
-    std::size_t grounded = 0;
+    std::size_t grounded = 0, counted = 0;
+    for (const Primitive& p : scene.primitives) counted += static_cast<std::size_t>(p.points);
+    // Clouds that are parsed in blocks are known by a sample; their parts count all points.
+    const char* sample = counted > scene.points.x.size() ? " (samples of the scan)" : "";
     for (const Object& o : scene.objects) grounded += o.grounded;
     std::printf(
-        "%zu points, %zu primitives, %zu objects (%zu fixed to the ground), %zu supports; %.1f s "
+        "%zu points%s, %zu primitives, %zu objects (%zu fixed to the ground), %zu supports; %.1f s "
         "on %s (%s)\n",
-        scene.points.x.size(), scene.primitives.size(), scene.objects.size(), grounded,
+        scene.points.x.size(), sample, scene.primitives.size(), scene.objects.size(), grounded,
         scene.supports.size(), seconds, scene.backend.c_str(), scene.device.c_str());
     print_objects(scene);
     for (const std::string& note : scene.notes) std::printf("Note: %s\n", note.c_str());

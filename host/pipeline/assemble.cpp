@@ -160,7 +160,7 @@ void note_unsettled_search(Scene& scene) {
     scene.notes.push_back("Of " + std::to_string(movable) + " objects that can move " +
                           std::to_string(doubted) +
                           " were found by less than half of the searches: their parts may belong "
-                          "together otherwise, as another --seed may show.");
+                          "together otherwise, as another seed may show.");
 }
 
 // An object of this share of all parts, and this many, is hardly one thing.

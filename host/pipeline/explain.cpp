@@ -74,7 +74,13 @@ class Sentence {
     std::string tips() const {
         const bool stands = from_.tipping.margin_m > 0;
         std::string text;
-        if (!why_.edge_m.empty() && !stands) {
+        if (!why_.edge_m.empty() && !stands && why_.W_J > 0) {
+            // It would come to rest no lower there: the first step that releases is another one.
+            text = "Its centre of mass is " + length(-from_.tipping.margin_m) +
+                   " beyond the edge of what is seen to carry it, but falling there it would rest "
+                   "no lower. Tips over its " +
+                   edge() + " at " + barrier();
+        } else if (!why_.edge_m.empty() && !stands) {
             text = "Falls " + to() + "as it stands: its centre of mass is " +
                    length(-from_.tipping.margin_m) + " beyond the edge of what carries it";
         } else if (!why_.edge_m.empty()) {

@@ -315,8 +315,8 @@ Ingested ingest_octomap(ScannedMap map, const ParseOptions& options) {
     out.frame = frame_of_map(options.up);
     if (!out.frame || (options.voxel_m > 0 && options.voxel_m != out.voxel_m)) {
         out.notes.push_back(
-            "The voxels are not the map's own, because of --up or --voxel: its free space was "
-            "taken at their centres.");
+            "The voxels are not the map's own, because another up or voxel size was asked for: "
+            "its free space was taken at their centres.");
     }
     out.space = std::move(map.space);
     return out;

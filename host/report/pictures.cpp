@@ -53,11 +53,6 @@ double largest_risk(const Object& object) {
     return most;
 }
 
-// Whether it is only to be looked at, since the scan hardly shows what holds it.
-bool is_doubtful(const Object& object) {
-    return object.advice.kind == "check";
-}
-
 // What can fall, is not among the safest and is seen, the largest risk first, as far as it is
 // labelled: a label of what a wall hides would stand on the wall.
 std::vector<const Object*> riskiest(const Scene& scene, const SceneImage& image) {
@@ -284,7 +279,8 @@ class Pictures {
         if (!(depth > 0 && x > 0 && x < width && y > 0 && y < height)) return;
         const std::string number = std::to_string(object.id);
         std::string says = number;
-        if (unsafety) says += text(": %.1f", object.unsafety) + (is_doubtful(object) ? " ?" : "");
+        if (unsafety)
+            says += text(": %.1f", object.unsafety) + (barrier_within_error(object) ? " ?" : "");
         const Font font{.size = 14, .bold = true};
         const double wide = canvas.text_width(says, font) + 12, tall = 21;
         std::array<double, 4> box{x - wide / 2, y - tall / 2, wide, tall};

@@ -237,7 +237,7 @@ WalkableMap walkable_map(const Surroundings& surroundings, const HumanOptions& o
         map.notes.push_back(std::string("People walk on only ") + text +
                             " square metres: the lowest level surface was taken for the floor. If "
                             "it is a table top or the like, nobody walks there: ignore the risk by "
-                            "people, or leave human out of --disturbance.");
+                            "people, or leave human out of the disturbances.");
     }
     return map;
 }

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <cctype>
+#include <cstdio>
+#include <set>
+#include <sstream>
+
 #include "cli/program.h"
 
 // The command that draws one object's landscapes.
@@ -20,12 +25,37 @@ TEST_F(DrawLandscape, refuses_what_has_none) {
     expect_failure(2, {"landscape", "out", "--object", "-1"}, {"--object"});
 }
 
+// What stands below the table is of the objects whose barrier the table doesn't give as ~0, and
+// says how many those are; each row says what its object rests on.
+void expect_told_summary(const std::string& out) {
+    std::istringstream lines(out);
+    std::set<std::string> uncertain;
+    std::size_t rows = 0, told = 0;
+    for (std::string line; std::getline(lines, line);) {
+        char id[16], barrier[16], carriers[64];
+        if (std::sscanf(line.c_str(), " %15[0-9] %*f %*f %15s %*f %*s %*f %*f %*f %63s", id,
+                        barrier, carriers) == 3) {
+            ++rows;
+            if (std::string(barrier) == "~0") uncertain.insert(id);
+            EXPECT_TRUE(std::isdigit(carriers[0]) || std::string(carriers) == "-") << line;
+        } else if (std::sscanf(line.c_str(), "Object %15[0-9]: ", id) == 1) {
+            ++told;
+            EXPECT_FALSE(uncertain.contains(id)) << line;
+        }
+    }
+    EXPECT_EQ(rows, 12u) << out;
+    EXPECT_EQ(told, 3u) << out;
+    EXPECT_FALSE(uncertain.empty()) << out;
+    EXPECT_NE(out.find("\nThe 3 riskiest of the "), std::string::npos) << out;
+    EXPECT_NE(out.find(" whose barrier is certain; "), std::string::npos) << out;
+}
+
 TEST_F(DrawLandscape, makes_pictures_of_the_worst_or_the_chosen_object) {
     ASSERT_EQ(run({"generate", "room", "--seed", "2", "--frames", "10"}).code, 0);
-    ASSERT_EQ(run({"parse", "room", "-o", "out", "--voxel", "0.04", "--disturbance", "wind",
-                   "--backend", "native", "--quiet"})
-                  .code,
-              0);
+    const Finished parsed = run({"parse", "room", "-o", "out", "--voxel", "0.04", "--disturbance",
+                                 "wind", "--backend", "native"});
+    ASSERT_EQ(parsed.code, 0) << parsed.err;
+    expect_told_summary(parsed.out);
     const Finished worst = run({"landscape", "out"});
     ASSERT_EQ(worst.code, 0) << worst.err;
     EXPECT_NE(worst.out.find(".png"), std::string::npos) << worst.out;

@@ -125,7 +125,10 @@ function sayThinned(scene) {
     parts.push(`Voxels are drawn merged to cubes of ${number(view.cube_m * 100, 'cm')}.`);
   }
   if (view.points.count < view.points.total) {
-    parts.push(`${view.points.count.toLocaleString('en')} of ${plural(view.points.total, 'scan point')} are drawn.`);
+    // Clouds that are parsed in blocks are known by a sample; their parts count all points.
+    const sampled = scene.primitives.reduce((sum, part) => sum + part.points, 0) > view.points.total;
+    parts.push(`${view.points.count.toLocaleString('en')} of ${plural(view.points.total, sampled ? 'sample' : 'scan point')} are drawn` +
+      (sampled ? ', each of which stands for the scan\u2019s points around it.' : '.'));
   }
   const line = document.getElementById('thinned');
   line.textContent = parts.join(' ');

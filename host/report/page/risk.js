@@ -7,7 +7,7 @@ const listedObjects = 8, listedDoubts = 4, listedOnPhones = 3;
 
 // It stands, and yet its barrier can't be told from 0: its risk says more about the scan than about it.
 function isDoubtful(object) {
-  return !!object.advice && object.advice.kind === 'check';
+  return !object.grounded && object.barrier_J !== null && object.barrier_J <= object.barrier_error_J;
 }
 
 function byRisk(scene, wanted) {
@@ -25,7 +25,7 @@ function missingText(scene) {
   const lines = [], left = disturbanceNames.filter(name => !scene.disturbances.includes(name));
   if (scene.objects.length && left.length) {
     lines.push(`This run left out ${listed(left.map(causeOf))}: risks from there are not known. ` +
-      `Parse with --disturbance ${disturbanceNames.join(',')} to have them.`);
+      `Parse with the disturbances ${listed(disturbanceNames)} to have them.`);
   }
   if (scene.disturbances.includes('human') && !scene.view.walks.shade.some(shade => shade > 0)) {
     lines.push('No floor was found on which people could walk, so their walks put nothing at risk here.');
@@ -70,7 +70,7 @@ function fillRisk(panel, scene, choose) {
   if (!doubtful.length) return;
   panel.append(element('h3', {text: 'To be looked at'}));
   panel.append(element('p', {className: 'hint', text:
-    `${plural(doubtful.length, 'more object')} would fall at the slightest push as scanned, and yet stood there: the scan hardly ` +
+    `As scanned, ${plural(doubtful.length, 'more object')} at risk would fall at the slightest push, and yet stood there: the scan hardly ` +
     `shows what holds them, or they stand on edge.${doubtful.length > listedDoubts ? ` The ${listedDoubts} of the largest risk:` : ''}`}));
   panel.append(element('div', {className: 'items'},
     doubtful.slice(0, listedDoubts).map(object => riskItem(scene, object, choose))));
@@ -83,10 +83,20 @@ function eventsText(scene) {
     (events.tolerable_J === undefined ? '' : ` What has no advice is below ${number(events.tolerable_J, 'J')} per event, which is tolerated.`);
 }
 
+// Of which objects the list is, and where the others are.
+function rankedText(scene, shown, movable) {
+  const doubtful = scene.objects.filter(isDoubtful);
+  const certain = doubtful.length ? `the ${movable - doubtful.length} objects whose barrier is certain` : `${plural(movable, 'object')} that can fall`;
+  const listed = `The ${shown} riskiest of ${certain}: by the chance that one event upsets them, times the energy that they then set free.`;
+  if (!doubtful.length) return listed;
+  const risky = doubtful.some(object => largestRisk(object) > 0);
+  return `${listed} ${doubtful.length} more stand${doubtful.length === 1 ? 's' : ''} on edge, or the scan hardly shows the support: ` +
+    (risky ? 'below, under \u201cTo be looked at\u201d.' : 'nothing puts them at risk.');
+}
+
 function fillRiskiest(panel, scene, worst, movable, choose) {
   panel.append(element('p', {className: 'hint', text:
-    `The ${worst.length} riskiest of ${plural(movable, 'object')} that can fall: the chance that one event upsets it, times the ` +
-    'energy that it then sets free. ' + eventsText(scene) + ' The badge is unsafety: 10 is the worst of this scene, whatever it is. ' +
+    rankedText(scene, worst.length, movable) + ' ' + eventsText(scene) + ' The badge is unsafety: 10 is the worst of this scene, whatever it is. ' +
     'Choose one to see it in the room.'}));
   if (worst.every(object => !(object.advice && object.advice.kind))) {
     panel.append(element('p', {className: 'hint', text: 'All of these risks are tolerated: nothing needs to be done.'}));

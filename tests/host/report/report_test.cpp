@@ -286,6 +286,8 @@ TEST_F(Report, says_so_where_disturbances_are_missing) {
     scene.fields["human"] = {};
     scene.walks = {};
     for (auto& object : scene.objects) object.risk_J.erase("wind");
+    // The monitor's barrier can't be told from 0; the ball's is 0, and nothing puts it at risk.
+    scene.objects[3].barrier_error_J = 2;
     write_report(folder_ / "report.html", scene);
     const auto page = open(folder_ / "report.html", R"(
         document.body.dataset.risk = document.getElementById('risk').textContent;
@@ -297,6 +299,10 @@ TEST_F(Report, says_so_where_disturbances_are_missing) {
         << page.data("risk");
     EXPECT_NE(page.data("risk").find("No floor was found on which people could walk"),
               std::string::npos);
+    for (const char* part :
+         {"The 3 riskiest of the 3 objects whose barrier is certain", "2 more stand on edge",
+          "As scanned, 1 more object at risk would fall at the slightest push"})
+        EXPECT_NE(page.data("risk").find(part), std::string::npos) << part << page.data("risk");
     EXPECT_EQ(page.data("off"), "human wind walks");
     EXPECT_EQ(page.data("missing"),
               "Not shown: People walking by: it reaches nothing here. Wind: this run left it out. "
