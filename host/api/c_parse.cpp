@@ -168,11 +168,12 @@ void topple_result_release(topple_result* result) {
 int topple_result_write(const topple_result* result, const char* folder, uint32_t what,
                         topple_status* status) {
     return guarded(status, [&] {
-        if (what & ~3u)
+        if (what & ~7u)
             throw Error(ErrorKind::usage, "what: " + std::to_string(what) + " has unknown bits");
         OutputOptions options;
         options.pictures = what & TOPPLE_WRITE_PICTURES;
         options.glb = what & TOPPLE_WRITE_GLB;
+        options.octomap = what & TOPPLE_WRITE_OCTOMAP;
         write_outputs(needed(result, "result").result, &needed(folder, "folder"), options);
     });
 }

@@ -30,7 +30,10 @@ stages::Coordinates coordinates(const topple_array* from, const char* name) {
 }
 
 device::Device& opened(topple_device* device) {
-    return *needed(device, "device").device;
+    if (!device)
+        throw Error(ErrorKind::usage,
+                    "device is NULL; topple_device_open(\"auto\", 0, ...) opens the best");
+    return *device->device;
 }
 
 }  // namespace

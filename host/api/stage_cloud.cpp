@@ -5,6 +5,7 @@
 
 #include "api/arrays.h"
 #include "geometry/surfels.h"
+#include "io/text.h"
 #include "pipeline/caller_points.h"
 #include "vdb/voxel_scene.h"
 
@@ -43,6 +44,9 @@ void normals(device::Device& device, const CloudView& cloud, double cell_m, cons
                 std::to_string(out.size()) + " values of output for " +
                     std::to_string(cloud.size()) + " points");
     }
+    require(cell_m > 0 && std::isfinite(cell_m), "normals",
+            "cell_m " + io::short_number(cell_m) +
+                ": expected metres above 0, about twice the points' spacing");
     const Usable usable(cloud);
     const std::span<const Vec3> eyes(eye_m, eye_m ? 1 : 0);
     const geometry::Surfels s = geometry::make_surfels(device, usable.view(), cell_m, eyes, {});

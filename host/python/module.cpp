@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <array>
+#include <utility>
+
 #include "python.h"
 #include "topple/stages.h"
 #include "topple/version.h"
@@ -8,6 +11,39 @@ namespace {
 
 const char* name_of(ErrorKind kind) {
     return kind == ErrorKind::input ? "input" : kind == ErrorKind::usage ? "usage" : "device";
+}
+
+// The library names options as the command line does, "--wind-from": as parse() does,
+// "wind_from_deg".
+std::string with_own_names(std::string text) {
+    static constexpr std::array<std::pair<const char*, const char*>, 15> names{
+        {{"--voxel", "voxel_m"},
+         {"--unit", "unit_m"},
+         {"--up", "up"},
+         {"--disturbance", "disturbances"},
+         {"--seed", "seed"},
+         {"--max-memory", "max_memory_bytes"},
+         {"--density", "density_kg_m3"},
+         {"--friction", "friction"},
+         {"--walks", "walks"},
+         {"--wind", "wind_m_s"},
+         {"--wind-from", "wind_from_deg"},
+         {"--pga", "pga_m_s2"},
+         {"--tolerable", "tolerable_J"},
+         {"--grouping-time", "grouping_time_s"},
+         {"--octomap", "octomap"}}};
+    const auto in_name = [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; };
+    for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at + 1)) {
+        std::size_t end = at;
+        while (end < text.size() && in_name(text[end])) ++end;
+        for (const auto& [option, own] : names) {
+            if (text.compare(at, end - at, option) == 0) {
+                text.replace(at, end - at, own);
+                break;
+            }
+        }
+    }
+    return text;
 }
 
 // topple::Error becomes topple.Error, with its kind.
@@ -22,7 +58,8 @@ void bind_error(py::module_& module) {
             if (thrown) std::rethrow_exception(thrown);
         } catch (const Error& error) {
             const bool cancelled = std::string(error.what()) == "cancelled";
-            py::object made = py::reinterpret_borrow<py::object>(type)(error.what());
+            py::object made =
+                py::reinterpret_borrow<py::object>(type)(with_own_names(error.what()));
             made.attr("kind") = cancelled ? "cancelled" : name_of(error.kind());
             PyErr_SetObject(type, made.ptr());
         }

@@ -162,7 +162,7 @@ void bind_parse(py::module_& module) {
                               [&](const ParseOptions& o) { return parse(view, o); });
                });
     module.def("write", [](Parsed& parsed, const std::string& folder, bool pictures, bool glb,
-                           const std::vector<py::array>& points) {
+                           bool octomap, const std::vector<py::array>& points) {
         std::optional<CloudView> view;
         if (!points.empty()) view = view_of(points, {}, {});
         const py::gil_scoped_release release;
@@ -177,6 +177,7 @@ void bind_parse(py::module_& module) {
         OutputOptions options;
         options.pictures = pictures;
         options.glb = glb;
+        options.octomap = octomap;
         write_outputs(parsed.result, folder, options);
     });
 }

@@ -96,8 +96,12 @@ def test_points_that_are_not_finite_are_left_out(points, result, device):
 
 
 @pytest.mark.parametrize('given, words', [
-    (np.zeros((30, 4), np.float32), 'points: expected floats of shape (N, 3), not float32 of shape (30, 4)'),
-    (np.zeros((30, 3), int), 'not int64'),
+    (np.zeros((30, 4), np.float32), 'points: expected floats of shape (N, 3), not float32 of shape (30, 4); '
+                                    'points[:, :3] takes the first three columns'),
+    (np.zeros((30, 2), np.float32), 'points: expected floats of shape (N, 3), not float32 of shape (30, 2)'),
+    (np.zeros((30, 3), int), "not int64 of shape (30, 3); points.astype('float32') converts"),
+    (np.zeros((30, 4), np.int32), "points[:, :3].astype('float32')"),
+    ((np.zeros(3, np.float32),) * 2 + (np.zeros(3, int),), "points z: expected floats of shape (N,), not int64 of shape (3,); z.as"),
     (np.zeros(5, [('x', 'f4'), ('y', 'f4')]), 'the records have no field z'),
     (np.zeros((4, 3), np.float32), 'points: 4 points were found, but the smallest solid takes 27'),
     (np.full((40, 3), np.nan, np.float32), 'none of its 40 points is finite'),
@@ -106,19 +110,31 @@ def test_points_that_are_not_finite_are_left_out(points, result, device):
 def test_errors_say_what_is_wrong(given, words, device):
     with pytest.raises(topple.Error) as raised:
         quick(given, device)
-    assert words in str(raised.value)
-    assert raised.value.kind == ('usage' if 'expected' in words or 'int64' in words or 'field' in words else 'input')
+    message = str(raised.value)
+    assert words in message
+    assert ('[:, :3]' in message) == (np.ndim(given) == 2 and np.shape(given)[1] > 3)
+    usage = 'expected' in message or 'field' in message
+    assert raised.value.kind == ('usage' if usage else 'input')
 
 
 def test_errors_of_options_and_devices(points):
-    with pytest.raises(topple.Error, match='--friction -1: expected') as raised:
-        topple.parse(points, friction=-1)
-    assert raised.value.kind == 'usage'
+    for option, value, words in (('friction', -1, '^friction -1: expected'), ('wind_from_deg', 400, '^wind_from_deg 400: '),
+                                 ('max_memory_bytes', 1, 'the 1 B of max_memory_bytes; use a larger voxel_m, or --tile'),
+                                 ('disturbances', 'flood', '^disturbances flood: expected human, wind or')):
+        with pytest.raises(topple.Error, match=words) as raised:
+            topple.parse(points, **{option: value})
+        assert raised.value.kind == ('usage' if words[0] == '^' else 'input')
     with pytest.raises(topple.Error) as raised:
         topple.parse(points, device='abacus')
     assert raised.value.kind == 'usage'
     assert 'native' in {d.backend for d in topple.devices() if d.usable}
     assert repr(topple.open_device('native')).startswith('<topple.Device native')
+
+
+def test_one_disturbance_may_be_named_alone(points, result, device):
+    parsed = topple.parse(points, device=device, disturbances='wind')
+    assert set(parsed.fields) == {'wind'}
+    assert [o.risk_J for o in parsed.objects] == [o.risk_J for o in result.objects]
 
 
 def test_progress_and_cancelling(points, device):
@@ -174,7 +190,10 @@ def test_a_device_serves_one_parse_at_a_time(points, device):
 
 
 def test_writes_the_outputs(result, points, tmp_path, device):
+    result.write(tmp_path / 'with', octomap=True)
+    assert (tmp_path / 'with' / 'map.bt').exists()
     result.write(tmp_path / 'out')
+    assert not (tmp_path / 'out' / 'map.bt').exists()
     assert {'scene.json', 'points.ply', 'report.html'} <= {p.name for p in (tmp_path / 'out').iterdir()}
     again = quick(tmp_path / 'out' / 'points.ply', device)
     assert np.array_equal(np.stack(again.xyz, 1), points) and again.source.endswith('points.ply')

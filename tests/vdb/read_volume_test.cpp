@@ -113,7 +113,14 @@ TEST_F(ReadVolume, bad_files) {
     auto file = save(sphere(5, 2));
     const auto bytes = test::bytes_of_file(file);
     expect_input_error([&] { read_volume(write("b.vdb", bytes.substr(0, bytes.size() / 2))); },
-                       {"b.vdb", "can't be read"});
+                       {"b.vdb", "is cut short"});
+    // Cut within a table, or by a little.
+    const auto large = test::bytes_of_file(save(sphere(20, 3)));
+    ASSERT_GT(large.size(), 6000u);
+    for (const std::size_t size : {std::size_t{120}, std::size_t{5000}, large.size() - 1})
+        expect_input_error([&] { read_volume(write("b.vdb", large.substr(0, size))); }, {"b.vdb"});
+    expect_input_error([&] { read_volume(write("b.vdb", large.substr(0, 5000))); },
+                       {"b.vdb", "is cut short", std::to_string(large.size()), "5000"});
     expect_input_error([&] { read_volume(save(openvdb::FloatGrid::create(1))); }, {"no surface"});
     expect_input_error([&] { read_volume(save(openvdb::BoolGrid::create(true))); }, {"no grid of"});
 }

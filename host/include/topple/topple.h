@@ -193,7 +193,8 @@ typedef struct topple_support {
 } topple_support;
 
 int topple_result_scene(const topple_result* result, topple_scene* scene, topple_status* status);
-/* These fill in the item of that index. */
+/* These fill in the item of that index, from 0 to the count that topple_scene says. Of primitives
+ * and objects the index is the id. */
 int topple_result_primitive(const topple_result* result, uint64_t index,
                             topple_primitive* primitive, topple_status* status);
 int topple_result_object(const topple_result* result, uint64_t index, topple_object* object,
@@ -212,15 +213,18 @@ const float* topple_result_point_normals(const topple_result* result, int axis);
  * arrays; else NULL. */
 const uint64_t* topple_result_point_index(const topple_result* result);
 
-enum { TOPPLE_WRITE_PICTURES = 1, TOPPLE_WRITE_GLB = 2 };
-/* The folder of outputs, which appears whole or not at all. A result without coordinates needs
- * topple_result_add_coordinates() first, with the cloud that was parsed. */
+enum { TOPPLE_WRITE_PICTURES = 1, TOPPLE_WRITE_GLB = 2, TOPPLE_WRITE_OCTOMAP = 4 };
+/* The folder of outputs, which appears whole or not at all. `what`: these, added up, or 0. A result
+ * without coordinates needs topple_result_add_coordinates() first, with the cloud that was parsed.
+ */
 int topple_result_write(const topple_result* result, const char* folder, uint32_t what,
                         topple_status* status);
 int topple_result_add_coordinates(topple_result* result, const topple_cloud* cloud,
                                   topple_status* status);
 
 /* --- Single stages: topple/stages.h says more ----------------------------------------------- */
+
+/* `device` must be one that was opened or adopted: here NULL is TOPPLE_ERROR_USAGE. */
 
 /* An array in host memory, or in the caller's buffer on an adopted device: then `data` is the
  * cl_mem or VkBuffer, and buffer_bytes its whole size, not 0. */
@@ -232,7 +236,11 @@ typedef struct topple_array {
 } topple_array;
 
 int topple_point_spacing(const topple_cloud* cloud, double* spacing_m, topple_status* status);
-/* eye: 3 numbers, or NULL. nx, ny, nz: a float for each point. */
+/* Unit normals, 0 where there is none. cell_m: edge of the cells whose points are looked at
+ * together, about 2 * topple_point_spacing(). eye: 3 numbers, where the sensor was: normals point
+ * there. NULL: neighbours agree in sign, and each connected piece as a whole faces the middle of
+ * the cloud, as the inside of a room does; a lone object's normals then point inwards. nx, ny, nz:
+ * a float for each point. */
 int topple_normals(topple_device* device, const topple_cloud* cloud, double cell_m,
                    const double* eye, float* nx, float* ny, float* nz, topple_status* status);
 

@@ -42,18 +42,28 @@ def _usage(message):
     return error
 
 
-def _column(values, name):
+def _wrong_array(values, name, shape, variable, columns=''):
+    """The Error that says what an array is and what it should be, with the mend."""
+    mend = ''
+    if values.dtype.kind in 'iub':
+        mend = f"; {variable}{columns}.astype('float32') converts integers, and they must be metres"
+    elif columns:
+        mend = f'; {variable}{columns} takes the first three columns'
+    return _usage(f'{name}: expected floats of shape {shape}, not {values.dtype} of shape {values.shape}{mend}')
+
+
+def _column(values, name, variable):
     """One coordinate of each point as float32: where it lies, if it is that already."""
     values = np.asarray(values)
     if values.ndim != 1 or values.dtype.kind != 'f':
-        raise _usage(f'{name}: expected floats in a row, not {values.dtype} of shape {values.shape}')
+        raise _wrong_array(values, name, '(N,)', variable)
     return values if values.dtype == np.float32 else values.astype(np.float32)
 
 
 def _columns(source, names, what):
     """The three coordinates of an array, of records with fields of these names, or of three arrays."""
     if isinstance(source, tuple) and len(source) == 3:
-        return [_column(c, f'{what} {name}') for c, name in zip(source, names)]
+        return [_column(c, f'{what} {name}', name) for c, name in zip(source, names)]
     if hasattr(source, '__dlpack__') and not isinstance(source, np.ndarray):
         source = np.from_dlpack(source)
     source = np.asarray(source)
@@ -61,10 +71,10 @@ def _columns(source, names, what):
         missing = [name for name in names if name not in source.dtype.names]
         if missing:
             raise _usage(f'{what}: the records have no field {missing[0]}')
-        return [_column(source[name], f'{what} {name}') for name in names]
+        return [_column(source[name], f'{what} {name}', f"{what}['{name}']") for name in names]
     if source.ndim != 2 or source.shape[1] != 3 or source.dtype.kind != 'f':
-        raise _usage(f'{what}: expected floats of shape (N, 3), not {source.dtype} of shape {source.shape}; '
-                     'points[:, :3] takes the first three columns')
+        raise _wrong_array(source, what, '(N, 3)', what,
+                           '[:, :3]' if source.ndim == 2 and source.shape[1] > 3 else '')
     if source.dtype != np.float32:
         source = source.astype(np.float32)
     return [source[:, axis] for axis in range(3)]
@@ -104,10 +114,11 @@ class Result:
         """Three arrays: unit normals of the points, towards the side that was seen; 0 where there is none."""
         return self._parsed.nx, self._parsed.ny, self._parsed.nz
 
-    def write(self, folder, *, pictures=False, glb=False):
-        """Writes the folder of outputs (docs/output.md), which appears whole or not at all."""
+    def write(self, folder, *, pictures=False, glb=False, octomap=False):
+        """Writes the folder of outputs (docs/output.md), which appears whole or not at all: with view-*.png,
+        objects.glb and map.bt where they are asked for."""
         with self._writing:
-            _topple.write(self._parsed, os.fspath(folder), pictures, glb, self._points or [])
+            _topple.write(self._parsed, os.fspath(folder), pictures, glb, octomap, self._points or [])
 
 
 def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=('human', 'wind', 'earthquake'),
@@ -118,8 +129,11 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
 
     source: a path, as the command line takes it; or points in metres: an array of shape (N, 3), records with
     fields x, y, z, a tuple of three arrays, or whatever has __dlpack__. float32 is read where it lies, with any
-    strides, and must not change meanwhile; float64 is converted, which takes 12 bytes a point. Points that are not
-    finite are left out: Result.point_index then says where the others are.
+    strides, and must not change meanwhile; float64 is converted, which takes 12 bytes a point, and integers are
+    refused: hardly ever are they metres. Points that are not finite are left out: Result.point_index then says
+    where the others are.
+
+    disturbances: a list of "human", "wind", "earthquake", which may be empty; or one of these names.
 
     device: a Device of open_device(), or a backend's name. motion, accelerogram: files. normals, viewpoint: of
     points, as they are given; where the sensor was. progress(stage, done) is called as stages start and go on;
@@ -128,7 +142,8 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     """
     options = _topple.Options()
     options.voxel_m, options.unit_m, options.up = voxel_m, unit_m, up
-    options.disturbances, options.seed = list(disturbances), seed
+    options.disturbances = [disturbances] if isinstance(disturbances, str) else list(disturbances)
+    options.seed = seed
     options.max_memory_bytes, options.density_kg_m3, options.friction = max_memory_bytes, density_kg_m3, friction
     options.walks, options.wind_m_s, options.wind_from_deg = walks, wind_m_s, wind_from_deg
     options.pga_m_s2, options.tolerable_J, options.grouping_time_s = pga_m_s2, tolerable_J, grouping_time_s

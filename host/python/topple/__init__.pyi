@@ -162,7 +162,7 @@ class Result:
     def solid(self) -> dict[str, NDArray[Any]]: ...  # x, y, z, primitive, object, state
     @property
     def fields(self) -> dict[str, dict[str, _Floats]]: ...  # x, y, z, vx, vy, vz, density
-    def write(self, folder: Union[str, os.PathLike[str]], *, pictures: bool = ..., glb: bool = ...) -> None: ...
+    def write(self, folder: Union[str, os.PathLike[str]], *, pictures: bool = ..., glb: bool = ..., octomap: bool = ...) -> None: ...
 
 def devices() -> list[DeviceInfo]: ...
 def open_device(backend: str = ..., threads: int = ...) -> Device: ...
@@ -173,7 +173,7 @@ def parse(
     voxel_m: float = ...,
     unit_m: float = ...,
     up: Optional[_Vec3] = ...,
-    disturbances: Sequence[str] = ...,
+    disturbances: Union[str, Sequence[str]] = ...,
     seed: int = ...,
     max_memory_bytes: int = ...,
     density_kg_m3: float = ...,

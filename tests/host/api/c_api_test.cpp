@@ -110,6 +110,10 @@ TEST_F(CApi, ParsesAsTheLibraryDoes) {
     support.size = sizeof(support);
     EXPECT_EQ(topple_result_support(result, 0, &support, nullptr), TOPPLE_OK);
     EXPECT_EQ(support.area_m2, expected.supports[0].area_m2);
+    EXPECT_EQ(topple_result_write(result, path("map").c_str(), TOPPLE_WRITE_OCTOMAP, &status),
+              TOPPLE_OK);
+    EXPECT_TRUE(std::filesystem::exists(path("map/map.bt")));
+    EXPECT_EQ(topple_result_write(result, path("map").c_str(), 8, &status), TOPPLE_ERROR_USAGE);
     EXPECT_EQ(topple_result_write(result, path("out").c_str(), 0, &status), TOPPLE_OK);
     EXPECT_TRUE(std::filesystem::exists(path("out/scene.json")));
     // A file that the library wrote, parsed by its path.
@@ -279,6 +283,16 @@ TEST_F(CApi, StagesAreThoseOfTheLibrary) {
         TOPPLE_OK);
     const auto own = device::open_device("native");
     stages::normals(*own, room.cloud, 0.04, nullptr, ex, ey, ez);
+    const auto refused = [&](topple_device* with, double cell_m) {
+        EXPECT_EQ(
+            topple_normals(with, &cloud, cell_m, nullptr, nx.data(), ny.data(), nz.data(), &status),
+            TOPPLE_ERROR_USAGE);
+        return std::string(status.message);
+    };
+    const auto given = nx;
+    EXPECT_TRUE(refused(device, 0).starts_with("normals: cell_m 0: expected metres"));
+    EXPECT_TRUE(refused(nullptr, 0.04).starts_with("device is NULL; "));
+    EXPECT_EQ(nx, given);
     EXPECT_EQ(nz, ez);
     EXPECT_EQ(spacing, stages::point_spacing(room.cloud));
 
