@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: MIT
-# room.py SCAN PICTURE.png: what a scan holds, drawn by matplotlib. The cells are those of a notebook.
+# room.py SCAN PICTURE.png: what a scan holds, drawn by matplotlib, which it needs beside topple
+# (apt-get install python3-matplotlib, or pip install matplotlib). The cells are those of a notebook.
 
 # %% Parse
 import sys
 
+import matplotlib
+
+matplotlib.use('Agg')
+import matplotlib.pyplot as plt
 import numpy as np
 
 import topple
@@ -26,11 +31,6 @@ shown = np.random.default_rng(1).permutation(np.flatnonzero((labels >= 0) & ~gro
 floor = np.random.default_rng(2).permutation(np.flatnonzero((labels >= 0) & ground[labels]))[:20000]
 
 # %% Plan, and view from the side
-import matplotlib
-
-matplotlib.use('Agg')
-import matplotlib.pyplot as plt
-
 figure, axes = plt.subplots(1, 2, figsize=(13, 6), constrained_layout=True)
 for axis, (u, v), name in zip(axes, ((x, y), (x, z)), ('plan', 'from the side')):
     axis.scatter(u[floor], v[floor], s=0.3, c='0.85', rasterized=True)

@@ -40,6 +40,9 @@ int run(const PerfArguments& a) {
 Command add_perf(CLI::App& app) {
     auto a = std::make_shared<PerfArguments>();
     perf::SuiteOptions& suite = a->suite;
+    app.footer(
+        "Whether a change made topple slower is told by perf/compare, which runs both in turns\n"
+        "(docs/performance.md); figures of different runs do not compare.");
     app.add_option("--filter", suite.filters,
                    "Only cases whose name contains this; may be repeated");
     app.add_option("--backend", suite.backends, "native, opencl, vulkan or all")

@@ -21,6 +21,7 @@ TEST_F(Perf, refuses_what_it_does_not_have) {
 }
 
 TEST_F(Perf, lists_its_cases) {
+    EXPECT_NE(run({"perf", "--help"}).out.find("perf/compare"), std::string::npos);
     const Finished list = run({"perf", "--list"});
     ASSERT_EQ(list.code, 0) << list.err;
     for (const char* name : {"triad\n", "support_function\n", "landscapes/hulls\n", "pipeline\n"})
