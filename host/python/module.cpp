@@ -34,6 +34,7 @@ std::string with_own_names(std::string text) {
          {"--octomap", "octomap"}}};
     const auto in_name = [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; };
     for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at + 1)) {
+        if (at > 0 && text[at - 1] != ' ') continue;  // within a file's name
         std::size_t end = at;
         while (end < text.size() && in_name(text[end])) ++end;
         for (const auto& [option, own] : names) {

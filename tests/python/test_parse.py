@@ -105,7 +105,7 @@ def test_points_that_are_not_finite_are_left_out(points, result, device):
     (np.zeros(5, [('x', 'f4'), ('y', 'f4')]), 'the records have no field z'),
     (np.zeros((4, 3), np.float32), 'points: 4 points were found, but the smallest solid takes 27'),
     (np.full((40, 3), np.nan, np.float32), 'none of its 40 points is finite'),
-    ('nowhere.ply', 'nowhere.ply'),
+    ('nowhere--up.ply', 'nowhere--up.ply'),
 ])
 def test_errors_say_what_is_wrong(given, words, device):
     with pytest.raises(topple.Error) as raised:
