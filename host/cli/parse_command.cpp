@@ -112,6 +112,7 @@ void read_options(Arguments& a) {
 void get_ready(Arguments& a) {
     a.output.threads = a.threads > 0 ? a.threads : a.team.threads;
     a.options.device = device::open_device(a.backend, a.output.threads);
+    a.output.cancelled = [] { return interrupted() != 0; };
     a.options.crew = a.team.crew;
     a.options.cancelled = [&team = a.team] {
         return interrupted() != 0 || (team.stopped && team.stopped());

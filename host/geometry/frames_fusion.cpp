@@ -175,17 +175,21 @@ void FrameFusion::add(const DepthFrame& frame) {
     });
 }
 
-FusedCloud FrameFusion::finish() {
+FusedCloud FrameFusion::finish(const std::function<void()>& poll) {
     FusedCells fused;
     fused.cell_m = cell_m_;
     fused.cells = cells_->tables.sorted(cells_->pool);
     cells_->tables = {};
     cells_->runs = {};
+    poll();
     drop_weak(fused, cells_->viewpoints.size(), cells_->pool);
+    poll();
     // Twice: a first plane through the outer layers leans towards them, since half of the surface's
     // readings lie beyond its reach. Where the noise stays within a cell there are no such layers.
     flatten_layers(fused, 0, cells_->pool);
+    poll();
     flatten_layers(fused, 0.5 * cell_m_, cells_->pool);
+    poll();
 
     FusedCloud result;
     result.viewpoints = std::move(cells_->viewpoints);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -29,7 +30,8 @@ class FrameFusion {
     ~FrameFusion();
     FrameFusion(FrameFusion&&) noexcept;
     void add(const DepthFrame& frame);
-    FusedCloud finish();
+    // poll: called now and then; what it throws ends the fusion.
+    FusedCloud finish(const std::function<void()>& poll = [] {});
 
   private:
     struct Cells;

@@ -74,12 +74,15 @@ Ingested ingest_frames(device::Device& device, io::FrameSequence sequence,
                                  [&](std::size_t f) { return out.frames->load(f); });
     geometry::FrameFusion fusion(out.frames->intrinsics(), out.cell_m);
     const auto count = static_cast<double>(out.frames->size());
-    for_each_frame(*out.frames, device.threads(), [&](const DepthFrame& frame, std::size_t f) {
+    const auto poll = [&] {
         if (options.cancelled && options.cancelled()) throw Error(ErrorKind::input, "cancelled");
+    };
+    for_each_frame(*out.frames, device.threads(), [&](const DepthFrame& frame, std::size_t f) {
+        poll();
         fusion.add(frame);
         if (options.progress) options.progress("ingest", static_cast<double>(f + 1) / count);
     });
-    geometry::FusedCloud fused = fusion.finish();
+    geometry::FusedCloud fused = fusion.finish(poll);
     out.own = std::move(fused.cloud);
     out.cloud = out.own;
     out.viewpoints = std::move(fused.viewpoints);

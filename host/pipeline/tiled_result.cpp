@@ -65,7 +65,8 @@ ScenePoints TiledResult::sample(std::size_t most) const {
     return out;
 }
 
-void TiledResult::write_points(const std::filesystem::path& file) const {
+void TiledResult::write_points(const std::filesystem::path& file,
+                               const std::function<void()>& poll) const {
     const tiles::SpilledPoints points(work_->path());
     io::PointsPlyWriter writer(file, points.points());
     struct Open {
@@ -85,6 +86,7 @@ void TiledResult::write_points(const std::filesystem::path& file) const {
     };
     auto last = open.end();  // most points lie where the one before them does
     io::stream_cloud(input_, unit_m_, [&](const PointCloud& portion) {
+        poll();
         for (std::size_t n = 0; n < portion.size(); ++n) {
             const tiles::Bin bin = tiles::bin_of(portion.x[n], portion.y[n], portion.z[n]);
             if (last == open.end() || last->first != bin) last = opened(bin);

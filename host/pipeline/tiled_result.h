@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -45,7 +46,8 @@ class TiledResult {
 
     // points.ply: all points of the input, in its order. Throws Error(input) where the input has
     // changed since it was parsed.
-    void write_points(const std::filesystem::path& file) const;
+    // poll: called now and then; what it throws ends the writing.
+    void write_points(const std::filesystem::path& file, const std::function<void()>& poll) const;
     // The voxels of all blocks, with their objects and the exposures.
     vdb::VoxelScene load_voxels() const;
     // All is written: the work folder may go.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <functional>
 #include <future>
 #include <memory>
 
@@ -17,31 +18,39 @@
 namespace topple {
 namespace {
 
+using Poll = std::function<void()>;
+
 void write_map(const std::filesystem::path& file, const vdb::VoxelScene& voxels) {
     const vdb::Tiles tiles = voxels.tiles(true);
     const std::vector<std::uint8_t> states = voxels.states(tiles);
     io::write_octomap(file, voxels.frame().voxel_m, {tiles.x, tiles.y, tiles.z, states});
 }
 
-void write_points(const std::filesystem::path& file, const ParseResult& result) {
+void write_points(const std::filesystem::path& file, const ParseResult& result, const Poll& poll) {
     if (result.tiled) {
-        result.tiled->write_points(file);
+        result.tiled->write_points(file, poll);
     } else {
         io::write_points_ply(file, result.scene.points);
     }
 }
 
 void write_all_else(const std::filesystem::path& folder, const ParseResult& result,
-                    const OutputOptions& options) {
+                    const OutputOptions& options, const Poll& poll) {
     const Scene& scene = result.scene;
     const auto voxels = result.tiled
                             ? std::make_shared<const vdb::VoxelScene>(result.tiled->load_voxels())
                             : result.voxels;
+    poll();
     voxels->write(folder / "volume.vdb");
+    poll();
     io::write_solid_ply(folder / "solid.ply", scene.solid);
+    poll();
     report::write_report(folder / "report.html", scene);
+    poll();
     if (options.pictures) report::write_pictures(folder, scene);
+    poll();
     if (options.glb) write_objects_glb(folder / "objects.glb", scene, *voxels);
+    poll();
     if (options.octomap) write_map(folder / "map.bt", *voxels);
     io::write_landscapes_json(folder / "landscapes.json", scene);
     io::write_scene_json(folder / "scene.json", scene);
@@ -56,7 +65,10 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
                     "the result has no coordinates of its points: call add_coordinates() first");
     }
     io::OutputFolder out(folder);
-    const auto points = [&] { write_points(out.folder() / "points.ply", result); };
+    const Poll poll = [&] {
+        if (options.cancelled && options.cancelled()) throw Error(ErrorKind::input, "cancelled");
+    };
+    const auto points = [&] { write_points(out.folder() / "points.ply", result, poll); };
     // Both are long, and neither needs the other.
     std::future<void> beside;
     if (options.threads != 1) {
@@ -64,8 +76,9 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
     } else {
         points();
     }
-    write_all_else(out.folder(), result, options);
+    write_all_else(out.folder(), result, options, poll);
     if (beside.valid()) beside.get();
+    poll();
     out.commit();
     if (result.tiled) result.tiled->finished();
 }

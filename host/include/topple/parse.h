@@ -105,6 +105,8 @@ struct OutputOptions {
     bool glb = false;       // the solids as a mesh per object, too: objects.glb
     bool octomap = false;   // what was seen to be free and occupied, too: map.bt
     unsigned threads = 0;   // 1: no thread but the caller's
+    // Polled now and then, from any thread; true ends the writing with Error(input) "cancelled".
+    std::function<bool()> cancelled;
 };
 
 // Writes points.ply, solid.ply, volume.vdb, scene.json, landscapes.json and report.html into the
