@@ -160,6 +160,14 @@ std::size_t FreePlaces::choose_free() const {
     return best([&](std::size_t i) { return free_[i]; });
 }
 
+std::size_t FreePlaces::choose_closed(double clearance_m) const {
+    constexpr double closed = 0.95;
+    return best([&](std::size_t i) {
+        return !free_[i] && !passed_over_[i] && within_[i] && clearance_[i] >= clearance_m &&
+               enclosure_[i] >= closed;
+    });
+}
+
 std::size_t FreePlaces::choose_outside(const std::function<bool(std::size_t)>& may) const {
     return best([&](std::size_t i) { return !within_[i] && may(i); });
 }

@@ -37,9 +37,11 @@ class FreePlaces {
     // The place with the most room around it that sees the most of the scene around it, far from
     // those chosen before; size() where there is none left. As the first one any place that was not
     // passed over, outside of the scene's box only where there is none in it; then of those that
-    // are known to be free; or of those outside of the box that may be chosen.
+    // are known to be free; of those that are not, closed in on almost all sides with so much
+    // clearance, and not passed over; or of those outside of the box that may be chosen.
     std::size_t choose_first() const;
     std::size_t choose_free() const;
+    std::size_t choose_closed(double clearance_m) const;
     std::size_t choose_outside(const std::function<bool(std::size_t)>& may) const;
     // This place is not chosen as the first.
     void pass_over(std::size_t place) { passed_over_[place] = true; }

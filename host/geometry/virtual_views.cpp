@@ -22,6 +22,9 @@ constexpr double side_cos = 0.25, behind_cos = 0.1;
 constexpr double two_sided_cells = 0.25;
 // Places tried as the first, and the share of surfels that must face it.
 constexpr unsigned first_tries = 8;
+// Closed rooms that are looked into, and the share of what is seen there that may show its back.
+constexpr unsigned most_closed = 60;
+constexpr double most_behind = 0.3;
 // Places outside of the scene's box that see into it, at most.
 constexpr unsigned outside = 2;
 constexpr double least_facing = 0.5;
@@ -55,11 +58,9 @@ class Looking {
     void look_around(const VirtualViewOptions& options) {
         for (const Vec3& eye : options.known_eyes) look(view_surfels(s_, eye, pool_));
         if (options.known_eyes.empty()) look_first(options.sides_known);
-        const std::size_t wanted = options.eyes * rooms();
-        while (!out_.eyes.empty() && out_.eyes.size() < wanted) {
-            const std::size_t place = places_.choose_free();
-            if (place == places_.size()) break;
-            look(view_surfels(s_, places_.middle(place), pool_));
+        if (!out_.eyes.empty()) {
+            explore(options.eyes * rooms());
+            if (options.known_eyes.empty()) look_into_closed_rooms(options.eyes / 2);
         }
         // These lie between what they see, where tops may be out of sight. A scene without a
         // ceiling is looked at from above, too: from places outside of it that most of them have in
@@ -129,6 +130,43 @@ class Looking {
                 if (i != CubeView::nothing) seen[i] = true;
         }
         return static_cast<double>(std::ranges::count(seen, true)) / static_cast<double>(s_.size());
+    }
+
+    // Looks from places that are known to be free until there are so many.
+    void explore(std::size_t eyes) {
+        while (out_.eyes.size() < eyes) {
+            const std::size_t place = places_.choose_free();
+            if (place == places_.size()) break;
+            look(view_surfels(s_, places_.middle(place), pool_));
+        }
+    }
+
+    // No way that sight takes leads from one storey to the next, nor through a closed door. What
+    // has a room's size and is closed all around was a room, too, unless its walls were seen from
+    // behind: then it is what lies between rooms.
+    void look_into_closed_rooms(unsigned eyes) {
+        for (unsigned n = 0; n < most_closed; ++n) {
+            const std::size_t place = places_.choose_closed(roomy_m);
+            if (place == places_.size()) return;
+            const CubeView view = view_surfels(s_, places_.middle(place), pool_);
+            pass_over_seen(view, place);
+            if (share_behind(view) > most_behind) continue;
+            look(view);
+            explore(out_.eyes.size() + eyes - 1);
+        }
+    }
+
+    // Share of what is seen that shows its back.
+    double share_behind(const CubeView& view) const {
+        std::size_t behind = 0, all = 0;
+        for (const auto& image : view.surfel) {
+            for (const std::uint32_t i : image) {
+                if (i == CubeView::nothing) continue;
+                ++all;
+                behind += side_[i] != 0 && from_behind(i, view.eye);
+            }
+        }
+        return all > 0 ? static_cast<double>(behind) / static_cast<double>(all) : 1;
     }
 
     // What is seen from a place that was tried need not be tried, too.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "device/devices.h"
@@ -109,6 +110,10 @@ class Views : public ::testing::Test {
     // whose inside nobody can have seen.
     Surfels room(bool with_box) {
         PointCloud cloud;
+        add_room(cloud, with_box);
+        return make_surfels(*device, cloud, 0.05, {}, {});
+    }
+    void add_room(PointCloud& cloud, bool with_box) {
         test::Random random(1);
         const auto face = [&](Vec3 low, const Vec3& high, std::size_t axis, double at) {
             const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
@@ -133,7 +138,6 @@ class Views : public ::testing::Test {
                 if (axis == 0) face(box_low, box_high, axis, box_high[axis]);
             }
         }
-        return make_surfels(*device, cloud, 0.05, {}, {});
     }
     static constexpr Vec3 box_low{1.5, 2.1, 0}, box_high{2.5, 3, 0.8};
     std::unique_ptr<device::Device> device = device::open_native();
@@ -200,6 +204,21 @@ TEST_F(Views, ABoxOnABareFloorIsLookedAtFromOutside) {
         highest = std::max(highest, eye[2]);
     }
     EXPECT_GT(highest, 1.1);
+}
+
+// Nothing leads from the one to the other.
+TEST_F(Views, EachOfTwoClosedRoomsIsLookedInto) {
+    PointCloud cloud;
+    add_room(cloud, false);
+    for (const std::size_t n = cloud.size(); cloud.size() < 2 * n;) {
+        const std::size_t i = cloud.size() - n;
+        add(cloud, {cloud.x[i], cloud.y[i], cloud.z[i] + 2.8});
+    }
+    const VirtualViews views = virtual_views(make_surfels(*device, cloud, 0.05, {}, {}), {}, pool);
+    const auto above = std::ranges::count_if(views.eyes, [](const Vec3& e) { return e[2] > 2.8; });
+    EXPECT_GE(above, 3);
+    EXPECT_GE(static_cast<std::ptrdiff_t>(views.eyes.size()) - above, 3);
+    for (const Vec3& eye : views.eyes) EXPECT_FALSE(eye[2] > 2.5 && eye[2] < 2.8);  // the slab
 }
 
 // A plane with normals, looked at from both sides: only what it faces is taken for free.
