@@ -22,12 +22,12 @@ constexpr double side_cos = 0.25, behind_cos = 0.1;
 constexpr double two_sided_cells = 0.25;
 // Places tried as the first, and the share of surfels that must face it.
 constexpr unsigned first_tries = 8;
+constexpr double least_facing = 0.5;
 // Closed rooms that are looked into, and the share of what is seen there that may show its back.
 constexpr unsigned most_closed = 60;
 constexpr double most_behind = 0.3;
 // Places outside of the scene's box that see into it, at most.
 constexpr unsigned outside = 2;
-constexpr double least_facing = 0.5;
 // The first place sees this share of all surfels, or has as much room around it as only rooms have
 // within them; else it may lie within a box, and is compared with others.
 constexpr double least_seen = 0.5, roomy_m = 0.75;
@@ -57,21 +57,12 @@ class Looking {
 
     void look_around(const VirtualViewOptions& options) {
         for (const Vec3& eye : options.known_eyes) look(view_surfels(s_, eye, pool_));
-        if (options.known_eyes.empty()) look_first(options.sides_known);
-        if (!out_.eyes.empty()) {
-            explore(options.eyes * rooms());
-            if (options.known_eyes.empty()) look_into_closed_rooms(options.eyes / 2);
-        }
-        // These lie between what they see, where tops may be out of sight. A scene without a
-        // ceiling is looked at from above, too: from places outside of it that most of them have in
-        // view.
-        const std::size_t most = out_.eyes.size() / 2;
-        for (unsigned n = 0; n < outside && options.known_eyes.empty(); ++n) {
-            const std::size_t place =
-                places_.choose_outside([&](std::size_t p) { return in_view_[p] > most; });
-            if (place == places_.size()) break;
-            look(view_surfels(s_, places_.middle(place), pool_));
-        }
+        if (!options.known_eyes.empty()) return explore(options.eyes);
+        look_first(options.sides_known);
+        if (out_.eyes.empty()) return;
+        explore(options.eyes * rooms());
+        look_into_closed_rooms(options.eyes / 2);
+        look_from_outside();
     }
 
     VirtualViews finish() {
@@ -153,6 +144,19 @@ class Looking {
             if (share_behind(view) > most_behind) continue;
             look(view);
             explore(out_.eyes.size() + eyes - 1);
+        }
+    }
+
+    // The others lie between what they see, where tops may be out of sight. A scene without a
+    // ceiling is looked at from above, too: from places outside of it that most of them have in
+    // view.
+    void look_from_outside() {
+        const std::size_t most = out_.eyes.size() / 2;
+        for (unsigned n = 0; n < outside; ++n) {
+            const std::size_t place =
+                places_.choose_outside([&](std::size_t p) { return in_view_[p] > most; });
+            if (place == places_.size()) return;
+            look(view_surfels(s_, places_.middle(place), pool_));
         }
     }
 

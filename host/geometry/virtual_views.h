@@ -13,9 +13,9 @@ namespace topple::geometry {
 
 struct VirtualViewOptions {
     std::vector<Vec3> known_eyes;  // where a sensor is known to have been
-    unsigned eyes = 12;            // places to look from in each 200 m^3, the known ones
-                                   // among them
-    bool sides_known = false;      // the surfels' normals point to the side that was free
+    // Places to look from: with the known ones, or where there are none in each 200 m^3.
+    unsigned eyes = 12;
+    bool sides_known = false;  // the surfels' normals point to the side that was free
 };
 
 // Depth images as a sensor would have taken them from free places of the scene.
@@ -29,7 +29,8 @@ struct VirtualViews {
 
 // For a cloud without poses. The first place is the one with the most free space around it that
 // sees much of the scene; the others are chosen among what the earlier ones saw to be free, inside
-// of a room or around a single thing. What a place sees for the first time faces it; a surface that
+// of a room or around a single thing; then in closed rooms that none of them sees, and above what
+// has no ceiling. What a place sees for the first time faces it; a surface that
 // is later seen from behind ends no ray, since the way to it leads through what nobody scanned.
 // Where sides are known, the first place must see most surfaces from the front; where none does,
 // the sides are not believed.
