@@ -146,8 +146,9 @@ TEST_F(Job, wrong_usage_is_told_once) {
 }
 
 TEST_F(Job, a_rank_of_other_options_ends_it) {
-    expect_told(job(ranks(1, parse("out")), ranks(1, parse("out", "4"))), 2,
-                {"rank 1: ", "other options"});
+    Words finer = parse("out");
+    finer.insert(finer.end(), {"--voxel", "0.04"});
+    expect_told(job(ranks(1, parse("out")), ranks(1, finer)), 2, {"rank 1: ", "other options"});
     EXPECT_FALSE(fs::exists(in("out")));
 }
 

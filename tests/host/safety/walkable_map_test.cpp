@@ -96,7 +96,7 @@ TEST(WalkableMap, SaysThatTheFloorIsSmall) {
         const WalkableMap map = walkable_map(room.surroundings(), {});
         EXPECT_FALSE(map.walkable.empty());
         return !map.notes.empty() && map.notes.back().find("square metres") != std::string::npos &&
-               map.notes.back().find("--disturbance") != std::string::npos;
+               map.notes.back().find("out of the disturbances") != std::string::npos;
     };
     EXPECT_TRUE(says_so(1.6, 0.8));
     EXPECT_TRUE(says_so(2.4, 1.2));
