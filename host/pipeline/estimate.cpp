@@ -31,7 +31,7 @@ constexpr double surface_cell_m = 0.05, cells_per_area = 1.1;
 // large cloud (sorting, thinning, writing), seconds and bytes a thinned point (blocks, whole); the
 // same of a point of a cloud in one piece, a frame's pixel; and what every run takes.
 constexpr double probe_reference_s = 0.075;
-constexpr double tiled_point_s = 0.45e-6, thinned_point_s = 4.1e-6, tiled_fixed_s = 4;
+constexpr double tiled_point_s = 0.27e-6, thinned_point_s = 2.2e-6, tiled_fixed_s = 4;
 constexpr double point_s = 5e-6, pixel_s = 8e-8, fixed_s = 0.5;
 constexpr double point_bytes = 420, fused_point_bytes = 650;
 // Cells of a block of a furnished building.
