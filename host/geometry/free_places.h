@@ -43,7 +43,7 @@ class FreePlaces {
     std::size_t choose_free() const;
     std::size_t choose_closed(double clearance_m) const;
     std::size_t choose_outside(const std::function<bool(std::size_t)>& may) const;
-    // This place is not chosen as the first.
+    // This place is chosen neither as the first nor as a closed one.
     void pass_over(std::size_t place) { passed_over_[place] = true; }
     // Places near this one are not chosen again.
     void leave_out(const Vec3& chosen);
