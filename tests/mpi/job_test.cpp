@@ -172,9 +172,13 @@ TEST_F(Job, a_killed_rank_ends_it_and_the_next_job_goes_on) {
     EXPECT_NE(broken.code, 0);
     EXPECT_NE(broken.err.find("signal 9"), std::string::npos) << broken.err;
     EXPECT_FALSE(fs::exists(in("out")));
-    const std::vector<fs::path> blocks = files("block-"), cells = files("cells-");
-    ASSERT_FALSE(blocks.empty());
+    std::vector<fs::path> blocks = files("block-");
+    const std::vector<fs::path> cells = files("cells-");
+    ASSERT_GE(blocks.size(), 2);
     ASSERT_FALSE(cells.empty());
+    // By the time of the kill a fast machine may have finished them all.
+    fs::remove(blocks.back());
+    blocks.pop_back();
 
     // What both ranks now read is damaged: told once, by the one that saw it first.
     std::vector<std::string> whole;
