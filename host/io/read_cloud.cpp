@@ -13,7 +13,6 @@
 #include "io/formats.h"
 #include "io/mapped_file.h"
 #include "io/mesh_checks.h"
-#include "io/read_mesh.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -54,12 +53,13 @@ std::optional<MeshFormat> mesh_format(std::string_view bytes, const std::string&
 
 // The faces of a PLY, where it has any that show a surface, else its vertices.
 PointCloud parse_ply_or_mesh(const std::filesystem::path& file, std::string_view text,
-                             double unit_m) {
+                             double unit_m, const MeshSampling& sampling) {
     PointCloud cloud = parse_ply(file, text);
     if (!ply_has_faces(text)) return cloud;
     std::string reason = "they have no area";
     try {
-        if (auto mesh = parse_mesh(file, text, MeshFormat::ply, unit_m)) return *std::move(mesh);
+        if (auto mesh = parse_mesh(file, text, MeshFormat::ply, unit_m, sampling))
+            return *std::move(mesh);
     } catch (const Error& error) {
         reason = error.what();
     }
@@ -69,14 +69,14 @@ PointCloud parse_ply_or_mesh(const std::filesystem::path& file, std::string_view
 }
 
 PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text, double unit_m,
-                       const CloudSink* sink = nullptr) {
+                       const MeshSampling& sampling, const CloudSink* sink = nullptr) {
     if (starts_as_ply(text))
-        return sink ? parse_ply(file, text, sink) : parse_ply_or_mesh(file, text, unit_m);
+        return sink ? parse_ply(file, text, sink) : parse_ply_or_mesh(file, text, unit_m, sampling);
     if (text.starts_with("# .PCD")) return parse_pcd(file, text, sink);
 
     const auto extension = lower_extension(file);
     if (const auto format = mesh_format(text, extension)) {
-        auto mesh = parse_mesh(file, text, *format, unit_m);
+        auto mesh = parse_mesh(file, text, *format, unit_m, sampling);
         if (!mesh) fail(file, "is a mesh without any face that has an area");
         return *std::move(mesh);
     }
@@ -132,20 +132,21 @@ PointCloud stream_cloud(const std::filesystem::path& file, double unit_m, const 
         sink(std::move(portion));
         bytes.release();
     };
-    PointCloud rest = parse_cloud(file, bytes.text(), unit_m, &scaled);
+    PointCloud rest = parse_cloud(file, bytes.text(), unit_m, {}, &scaled);
     if (unit_m != 1) scale(rest, unit_m);
     note_offset(rest);
     return rest;
 }
 
-PointCloud read_cloud(const std::filesystem::path& file, double unit_m) {
+PointCloud read_cloud(const std::filesystem::path& file, double unit_m,
+                      const MeshSampling& sampling) {
     std::error_code error;
     if (std::filesystem::is_directory(file, error)) {
         fail(file,
              "is a folder without depth/ and intrinsics.json; give a .ply, .pcd or .xyz file, "
              "or a folder with both");
     }
-    PointCloud cloud = parse_cloud(file, read_file(file).text(), unit_m);
+    PointCloud cloud = parse_cloud(file, read_file(file).text(), unit_m, sampling);
     if (unit_m != 1) scale(cloud, unit_m);
     note_offset(cloud);
     note_extent(cloud);

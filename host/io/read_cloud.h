@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "io/cloud_builder.h"
+#include "io/read_mesh.h"
 #include "topple/input.h"
 
 // Point clouds from files. Nothing in a file is trusted: sizes are checked against the file's
@@ -19,7 +20,8 @@ namespace topple::io {
 // a coordinate that is not finite are left out and counted in `dropped`; a file without a finite
 // point, or with a coordinate beyond 1e6 units, is refused. Normals are kept, made unit length,
 // where the file has them (0, 0, 0 for single points without one).
-PointCloud read_cloud(const std::filesystem::path& file, double unit_m = 1);
+PointCloud read_cloud(const std::filesystem::path& file, double unit_m = 1,
+                      const MeshSampling& sampling = {});
 
 // Notes how the points were moved, if they were.
 void note_offset(PointCloud& cloud);

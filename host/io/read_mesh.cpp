@@ -19,10 +19,6 @@
 namespace topple::io {
 namespace {
 
-// Samples are this far apart, unless there would be too few or too many of them.
-constexpr double wanted_spacing_m = 0.01;
-constexpr double fewest_samples = 5e4, most_samples = 5e6;
-
 struct Triangle {
     std::array<aiVector3t<double>, 3> corner;
     aiVector3t<double> normal;  // unit
@@ -93,10 +89,12 @@ Triangles triangles_of(const aiScene& scene) {
 
 // Points of a triangle mesh: as many on each triangle as its area has, evenly spread by the
 // additive sequence of the plastic number (Roberts's R2), which is the same on every machine.
-PointCloud sample(const std::filesystem::path& file, const Triangles& triangles, double unit_m) {
+PointCloud sample(const std::filesystem::path& file, const Triangles& triangles, double unit_m,
+                  const MeshSampling& sampling) {
     const double area_m2 = triangles.area * unit_m * unit_m;
     const double wanted =
-        std::clamp(area_m2 / (wanted_spacing_m * wanted_spacing_m), fewest_samples, most_samples);
+        std::clamp(area_m2 / (sampling.spacing_m * sampling.spacing_m),
+                   static_cast<double>(sampling.fewest), static_cast<double>(sampling.most));
     const double per_area = wanted / triangles.area;
     constexpr double step_u = 0.7548776662466927, step_v = 0.5698402909980532;
     CloudBuilder cloud(file, static_cast<std::uint64_t>(wanted) + 1, true);
@@ -142,7 +140,8 @@ const char* hint_of(MeshFormat format) {
 }  // namespace
 
 std::optional<PointCloud> parse_mesh(const std::filesystem::path& file, std::string_view bytes,
-                                     MeshFormat format, double unit_m) {
+                                     MeshFormat format, double unit_m,
+                                     const MeshSampling& sampling) {
     check_mesh(file, bytes, format);
     Assimp::Importer importer;
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
@@ -166,7 +165,7 @@ std::optional<PointCloud> parse_mesh(const std::filesystem::path& file, std::str
     if (!std::isfinite(triangles.area))
         fail(file, "its triangles have no finite area; coordinates must be metres");
     if (!(triangles.area > 0)) return std::nullopt;
-    return sample(file, triangles, unit_m);
+    return sample(file, triangles, unit_m, sampling);
 }
 
 }  // namespace topple::io

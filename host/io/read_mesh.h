@@ -12,13 +12,19 @@ namespace topple::io {
 
 enum class MeshFormat : std::uint8_t { obj, ply, stl, glb, gltf };
 
+// How many points the faces of a mesh get: as many as lie so far apart, within limits.
+struct MeshSampling {
+    double spacing_m = 0.01;
+    std::uint64_t fewest = 50'000, most = 5'000'000;
+};
+
 // Points on the faces of a mesh, with the faces' normals, by the order of their corners: equally
-// many on equal areas, about 1 cm apart, but no fewer than 50,000 of them and no more than
-// 5,000,000. In the file's unit, of which one has `unit_m` metres, and in its frame: nodes are
-// placed, and nothing is turned (glTF's up is y). The same file gives the same points. Empty where
-// no face has an area. `bytes` is the whole file; only a .gltf is read together with the files that
-// it names. Throws Error(input).
+// many on equal areas, as `sampling` says. In the file's unit, of which one has `unit_m` metres,
+// and in its frame: nodes are placed, and nothing is turned (glTF's up is y). The same file gives
+// the same points. Empty where no face has an area. `bytes` is the whole file; only a .gltf is read
+// together with the files that it names. Throws Error(input).
 std::optional<PointCloud> parse_mesh(const std::filesystem::path& file, std::string_view bytes,
-                                     MeshFormat format, double unit_m);
+                                     MeshFormat format, double unit_m,
+                                     const MeshSampling& sampling = {});
 
 }  // namespace topple::io
