@@ -102,6 +102,11 @@ class VoxelScene {
     // more than 2^23 blocks of 8x8x8 free voxels.
     void set_free(const SpaceMap& map);
 
+    // What a map says to be solid within its surfaces, as set_free() has what is free: after the
+    // filling, for these voxels count as seen from here on, and would stop it. They belong to the
+    // primitive that they were completed to, if any.
+    void set_solid(const SpaceMap& map);
+
     // Six-direction filling (paper, 2.2.3; kernels six_fill_sweep, six_fill_vote): an invisible
     // voxel takes the primitive that at least `votes` of the rays along its six axes hit first; of
     // several the one hit most often, then the nearest, then the lowest. Rays end at seen-empty

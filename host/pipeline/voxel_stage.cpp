@@ -124,6 +124,7 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
         out.scene->settle(options.hollow);
         out.scene->extend(options.hollow);
         out.scene->bridge(hidden_gap_voxels, options.hollow);
+        if (input.space) out.scene->set_solid(*input.space);
         out.scene->relabel(
             keep_primitives(geometry, solids(*out.scene, geometry.primitives.model.size())));
     });

@@ -188,5 +188,34 @@ TEST_F(ReadVolume, free_space_becomes_empty_voxels) {
     EXPECT_EQ(other.state_at(1, 0, 0), State::invisible);
 }
 
+TEST_F(ReadVolume, solid_space_becomes_voxels_without_points) {
+    PointCloud cloud;
+    cloud.x = {0.05f};
+    cloud.y = {0.05f};
+    cloud.z = {0.05f};
+    SpaceMap space;
+    space.voxel_m = 0.1;
+    space.free = {{{-3, -3, -3}, {3, 3, 3}}};
+    space.solid = {{{10, 0, 0}, {12, 0, 1}}, {{96, 8, 8}, {111, 23, 23}}};
+    VoxelScene scene({0.1, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}}, cloud,
+                     std::vector<std::int32_t>{0});
+    scene.set_free(space);
+    scene.set_solid(space);
+    const SolidCellArrays cells = scene.solid_cells();
+    EXPECT_EQ(cells.size(), 1u + 6 + 16 * 16 * 16);
+    EXPECT_EQ(std::ranges::count(cells.primitive, 0), 1);
+    EXPECT_EQ(std::ranges::count(cells.state, State::surface), std::ssize(cells.state));
+    EXPECT_EQ(scene.state_at(12, 0, 1), State::surface);
+    EXPECT_EQ(scene.state_at(13, 0, 1), State::invisible);
+    EXPECT_EQ(scene.state_at(1, 0, 0), State::empty);
+    // Twice the voxels: those whose centre lies within.
+    VoxelScene finer({0.05, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}}, cloud,
+                     std::vector<std::int32_t>{0});
+    space.solid = {{{0, 0, 1}, {0, 0, 1}}};
+    finer.set_solid(space);
+    EXPECT_EQ(finer.solid_cells().size(), 1u + 8);
+    EXPECT_EQ(finer.state_at(1, 1, 3), State::surface);
+}
+
 }  // namespace
 }  // namespace topple::vdb

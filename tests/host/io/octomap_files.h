@@ -71,6 +71,19 @@ inline octomap::OcTree room_map(double resolution_m = 0.05) {
     return tree;
 }
 
+// Makes a cube of voxels occupied throughout, `low` being its lowest key.
+inline void add_solid_cube(octomap::OcTree& tree, const octomap::OcTreeKey& low, int side) {
+    for (int n = 0; n < side * side * side; ++n) {
+        tree.setNodeValue(
+            octomap::OcTreeKey(static_cast<octomap::key_type>(low[0] + n / side / side),
+                               static_cast<octomap::key_type>(low[1] + n / side % side),
+                               static_cast<octomap::key_type>(low[2] + n % side)),
+            tree.getClampingThresMaxLog(), true);
+    }
+    tree.updateInnerOccupancy();
+    tree.prune();
+}
+
 inline std::string binary_map(const octomap::OcTree& tree) {
     std::ostringstream out;
     tree.writeBinaryConst(out);

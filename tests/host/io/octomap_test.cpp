@@ -52,6 +52,58 @@ TEST_F(Octomap, leaves_become_points_and_free_space) {
     }
 }
 
+// Of a cube that is occupied throughout only its hull is surface, however its leaves lie: here a
+// leaf of 8 x 8 x 8 voxels, smaller ones around it, and unknown space around the whole.
+TEST_F(Octomap, the_inside_of_what_is_occupied_is_no_surface) {
+    octomap::OcTree tree(0.1);
+    constexpr int side = 13;
+    test::add_solid_cube(tree, {32768 - 2, 32768 - 3, 32768}, side);
+    tree.setNodeValue(octomap::OcTreeKey(32768 - 3, 32768, 32768 + 4),
+                      tree.getClampingThresMinLog());
+    const ScannedMap map = read_octomap(write("a.bt", test::binary_map(tree)));
+    std::set<std::array<int, 3>> surface, solid;
+    for (std::size_t n = 0; n < map.cloud.size(); ++n) {
+        surface.insert({int(std::floor(map.cloud.x[n] / 0.1)),
+                        int(std::floor(map.cloud.y[n] / 0.1)),
+                        int(std::floor(map.cloud.z[n] / 0.1))});
+    }
+    std::size_t count = 0;
+    for (const auto& box : map.space.solid) {
+        for (int i = box.low[0]; i <= box.high[0]; ++i) {
+            for (int j = box.low[1]; j <= box.high[1]; ++j) {
+                for (int k = box.low[2]; k <= box.high[2]; ++k, ++count) solid.insert({i, j, k});
+            }
+        }
+    }
+    EXPECT_EQ(count, solid.size());
+    EXPECT_EQ(map.cloud.size(), surface.size());
+    constexpr int low[] = {-2, -3, 0};
+    for (int n = 0; n < side * side * side; ++n) {
+        const std::array<int, 3> v{n / side / side, n / side % side, n % side};
+        const bool hull = std::ranges::any_of(v, [&](int i) { return i == 0 || i == side - 1; });
+        EXPECT_TRUE(
+            (hull ? surface : solid).contains({v[0] + low[0], v[1] + low[1], v[2] + low[2]}));
+    }
+    EXPECT_EQ(surface.size() + solid.size(), std::size_t{side * side * side});
+}
+
+// Some hundred bytes that promise a cube of two million voxels take what its hull takes.
+TEST_F(Octomap, a_huge_leaf_is_read_for_its_hull) {
+    std::string bytes = "# Octomap OcTree binary file\nid OcTree\nsize 10\nres 0.1\ndata\n";
+    for (int depth = 0; depth < 8; ++depth) bytes.append("\x03").push_back('\0');
+    bytes.append("\x02").push_back('\0');  // an occupied leaf at depth 9, of 128 voxels
+    const ScannedMap map = read_octomap(write("a.bt", bytes));
+    EXPECT_EQ(map.cloud.size(), 128u * 128 * 128 - 126 * 126 * 126);
+    ASSERT_EQ(map.space.solid.size(), 1u);
+    EXPECT_EQ(map.space.solid[0].high[2] - map.space.solid[0].low[2], 125);
+}
+
+TEST_F(Octomap, reading_can_be_cancelled) {
+    const auto file = write("a.bt", test::binary_map(test::room_map()));
+    struct Cancelled {};
+    EXPECT_THROW(read_octomap(file, 1, [] { throw Cancelled{}; }), Cancelled);
+}
+
 TEST_F(Octomap, units_scale_the_map) {
     const ScannedMap map = read_octomap(write("a.bt", test::binary_map(test::room_map())), 0.1);
     EXPECT_DOUBLE_EQ(map.space.voxel_m, 0.005);

@@ -31,6 +31,26 @@ TEST_F(OctomapRoundTrip, of_a_generated_room) {
     expect_unchanged(write("room.bt", binary_map(room_map())));
 }
 
+// What lies within is no surface, but is as occupied as before, and is the pillar's.
+TEST_F(OctomapRoundTrip, of_a_room_with_a_solid_pillar) {
+    octomap::OcTree tree = room_map();
+    add_solid_cube(tree, {32768, 32768 + 40, 32768}, 10);
+    const auto map = write("room.bt", binary_map(tree));
+    expect_unchanged(map);
+    const ParseResult result = parse(map, on(device::open_device("native")));
+    const vdb::SolidCellArrays cells = result.voxels->solid_cells();
+    std::size_t within = 0;
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        if (cells.i[n] < 1 || cells.i[n] > 8 || cells.j[n] < 41 || cells.j[n] > 48 ||
+            cells.k[n] < 1 || cells.k[n] > 8)
+            continue;
+        ++within;
+        EXPECT_EQ(cells.state[n], vdb::State::surface);
+        EXPECT_GE(cells.primitive[n], 0);
+    }
+    EXPECT_EQ(within, 8u * 8 * 8);
+}
+
 TEST_F(OctomapRoundTrip, of_a_building) {
     const char* shared = std::getenv("TOPPLE_SHARED");
     const std::filesystem::path map =
