@@ -172,6 +172,7 @@ class Merger {
                    &of_b = members_[static_cast<std::size_t>(b)];
         const double all = surfels(of_a) * surfels(of_b);
         double sum = 0, left = all;
+        facts_.threads().poll();
         for (const std::int32_t i : of_a)
             for (const std::int32_t j : of_b) {
                 if (sum > most * all) return false;

@@ -71,6 +71,7 @@ class Cutter {
         std::optional<Division> best;
         Face face(*this, out_.members[k]);
         for (const Contradiction& c : all) {
+            facts_.threads().poll();
             Division d = divide(face, c);
             if (std::min(d.inside.size(), d.outside.size()) < options_.piece_min) continue;
             const bool block = d.thickness >= options_.thickness_min &&
@@ -152,6 +153,7 @@ class Cutter {
         std::vector<bool> used(edges.size(), false), front(own.size());
         std::vector<Contradiction> out;
         for (std::size_t e = 0; e < edges.size(); ++e) {
+            facts_.threads().poll();
             const std::size_t neighbour = edges[e].neighbour;
             if (used[e] || stale(neighbour)) continue;
             std::fill(front.begin(), front.end(), false);

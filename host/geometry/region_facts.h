@@ -33,6 +33,8 @@ class RegionFacts {
     const Border& border(std::int32_t a, std::int32_t b) const {
         return borders_.at(std::minmax(a, b));
     }
+    // For what works on many regions to poll.
+    device::ThreadPool& threads() const { return threads_; }
     // Pairs of planes that are pieces of one face (are_face_pieces()).
     const std::set<Pair>& face_pieces() const { return face_pieces_; }
     // For each sample of region k the surfel right behind it that faces the opposite way, or -1.

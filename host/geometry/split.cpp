@@ -135,7 +135,7 @@ Regions split(const Surfels& surfels, device::ThreadPool& threads) {
     const SplitOptions options;
     if (surfels.size() == 0) return {};
     const SplitScale scale = measure_scale(surfels, options, threads);
-    Regions regions = grow_regions(surfels, scale, options);
+    Regions regions = grow_regions(surfels, scale, options, threads);
     refit_regions(surfels, scale, threads, regions);
     clean_regions(surfels, scale, options, threads, regions);
     return regions;

@@ -47,8 +47,9 @@ struct SplitScale {
 SplitScale measure_scale(const Surfels& surfels, const SplitOptions& options,
                          device::ThreadPool& threads);
 
-// Grows regions from seeds by rising roughness (ties by index).
-Regions grow_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options);
+// Grows regions from seeds by rising roughness (ties by index); polls `threads`, but works alone.
+Regions grow_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
+                     device::ThreadPool& threads);
 
 // Gives surfels without a region to the neighbouring region that explains them best, makes regions
 // of connected leftovers, lets neighbours take regions that they explain, smooths the borders.

@@ -17,8 +17,13 @@ using Members = std::vector<std::uint32_t>;
 
 class Grower {
   public:
-    Grower(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options)
-        : s_(surfels), scale_(scale), options_(options), cos_angle_(std::cos(scale.angle_rad)) {
+    Grower(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
+           device::ThreadPool& threads)
+        : s_(surfels),
+          scale_(scale),
+          options_(options),
+          threads_(threads),
+          cos_angle_(std::cos(scale.angle_rad)) {
         out_.label.assign(s_.size(), -1);
         seen_.assign(s_.size(), 0);
     }
@@ -31,6 +36,7 @@ class Grower {
         });
         for (const std::uint32_t seed : seeds) {
             if (out_.label[seed] >= 0 || normal(s_, seed).squaredNorm() < 0.5) continue;
+            threads_.poll();
             grow_from(seed);
         }
         return std::move(out_);
@@ -159,6 +165,7 @@ class Grower {
     const Surfels& s_;
     const SplitScale& scale_;
     const SplitOptions& options_;
+    device::ThreadPool& threads_;
     double cos_angle_;
     Regions out_;
     std::vector<std::uint32_t> seen_;
@@ -168,8 +175,9 @@ class Grower {
 
 }  // namespace
 
-Regions grow_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options) {
-    return Grower(surfels, scale, options).run();
+Regions grow_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
+                     device::ThreadPool& threads) {
+    return Grower(surfels, scale, options, threads).run();
 }
 
 }  // namespace topple::geometry

@@ -89,6 +89,7 @@ PlaneFit flatten_noise(device::Device& device, CellGrid& grid, std::vector<float
     threads.each(n, clean_chunk, [&](std::size_t i) {
         keys[i] = pack(cell(moved[0][i]), cell(moved[1][i]), cell(moved[2][i]));
     });
+    threads.poll();
     const KeyGroups cells = group_keys(keys);
     std::vector<std::uint32_t> now(n);
     CellGrid merged;

@@ -146,10 +146,15 @@ ScannedMap read_octomap(const std::filesystem::path& file, double unit_m,
     const OctomapFile stored = open_octomap(file, bytes.text());
     poll();
     const Tree tree = read_tree(file, stored);
+    std::uint64_t leaves = 0;
+    const auto poll_at_times = [&] {
+        if (leaves++ % leaves_between_polls == 0) poll();
+    };
     ScannedMap map;
     map.space.voxel_m = stored.resolution_m * unit_m;
     std::uint64_t occupied = 0, border = 0;
     for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
+        poll_at_times();
         const std::int32_t side = side_of(leaf);
         if (tree.isNodeOccupied(*leaf)) {
             const auto edge = static_cast<std::uint64_t>(side);
@@ -168,9 +173,8 @@ ScannedMap read_octomap(const std::filesystem::path& file, double unit_m,
     if (occupied == 0) fail(file, "has no occupied leaf: there is nothing to parse");
     CloudBuilder cloud(file, border, true);
     Occupied parts(tree, cloud, map.space);
-    std::uint64_t leaves = 0;
     for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
-        if (leaves++ % leaves_between_polls == 0) poll();
+        poll_at_times();
         const std::int32_t side = side_of(leaf);
         if (tree.isNodeOccupied(*leaf)) parts.add(lowest_voxel(leaf, side), side);
     }

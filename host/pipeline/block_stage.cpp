@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "pipeline/cancelling.h"
 #include "pipeline/geometry_stage.h"
 #include "pipeline/ingest.h"
 #include "pipeline/voxel_stage.h"
@@ -78,6 +79,7 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
     quiet.progress = nullptr;
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, quiet);
+    const Cancelling cancelling(device, quiet);
     Ingested input = ingest_part(device, points.cloud, layout.cell_m);
     input.frame = layout.frame;
     constexpr double below = -std::numeric_limits<double>::infinity();

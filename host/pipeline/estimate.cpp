@@ -15,6 +15,7 @@
 #include "geometry/surfels.h"
 #include "io/frame_sequence.h"
 #include "io/read_cloud.h"
+#include "pipeline/cancelling.h"
 #include "pipeline/ingest.h"
 #include "pipeline/parse_memory.h"
 #include "pipeline/tiled_parse.h"
@@ -99,7 +100,7 @@ double probe(device::Device& device) {
 }
 
 void tell(const ParseOptions& options, double done) {
-    if (options.cancelled && options.cancelled()) throw Error(ErrorKind::input, "cancelled");
+    end_if_cancelled(options);
     if (options.progress) options.progress("estimate", done);
 }
 

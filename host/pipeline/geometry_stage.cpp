@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "device/native/thread_pool.h"
 #include "geometry/building.h"
 #include "geometry/fragments.h"
 
@@ -37,6 +38,7 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
         geometry::absorb_fragments(g.surfels, least_surfels, primitives);
         return primitives;
     });
+    device.threads().poll();
     const Vec3& up = g.frame.axes[2];
     g.storeys = input.storeys.empty() ? geometry::find_building(g.surfels, g.primitives, up)
                                       : input.storeys;

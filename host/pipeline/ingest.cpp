@@ -17,6 +17,7 @@
 #include "io/octomap.h"
 #include "io/read_cloud.h"
 #include "pipeline/caller_points.h"
+#include "pipeline/cancelling.h"
 #include "pipeline/voxel_stage.h"
 #include "vdb/read_volume.h"
 
@@ -74,9 +75,7 @@ Ingested ingest_frames(device::Device& device, io::FrameSequence sequence,
                                  [&](std::size_t f) { return out.frames->load(f); });
     geometry::FrameFusion fusion(out.frames->intrinsics(), out.cell_m);
     const auto count = static_cast<double>(out.frames->size());
-    const auto poll = [&] {
-        if (options.cancelled && options.cancelled()) throw Error(ErrorKind::input, "cancelled");
-    };
+    const auto poll = [&] { end_if_cancelled(options); };
     for_each_frame(*out.frames, device.threads(), [&](const DepthFrame& frame, std::size_t f) {
         poll();
         fusion.add(frame);
@@ -339,7 +338,8 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
         return ingest_frames(device, io::FrameSequence::open(input), options);
     }
     if (io::looks_like_octomap(input))
-        return ingest_octomap(io::read_octomap(input, options.unit_m), options);
+        return ingest_octomap(
+            io::read_octomap(input, options.unit_m, [&] { end_if_cancelled(options); }), options);
     if (vdb::looks_like_volume(input))
         return ingest_volume(device, vdb::read_volume(input, options.unit_m));
     return ingest_cloud(device, io::read_cloud(input, options.unit_m), options);

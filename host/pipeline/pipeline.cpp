@@ -7,6 +7,7 @@
 #include "device/device.h"
 #include "io/text.h"
 #include "pipeline/assemble.h"
+#include "pipeline/cancelling.h"
 #include "pipeline/geometry_stage.h"
 #include "pipeline/ingest.h"
 #include "pipeline/object_stage.h"
@@ -91,6 +92,7 @@ ParseResult run(const std::string& source, const ParseOptions& options, Ingest i
     // The clock writes into a list of its own: the scene moves while stages are still running.
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options);
+    const Cancelling cancelling(*device, options);
     Ingested input = stage("ingest", [&] { return ingest_input(*device); });
     Scene scene;
     scene.source = source;

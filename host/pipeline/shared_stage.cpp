@@ -48,7 +48,7 @@ void work_off(Crew& crew, device::Device& device, unsigned lanes,
     std::mutex mutex;
     std::exception_ptr failed;
     std::atomic<bool> stop{false};
-    device.threads().each(lanes, 1, [&](std::size_t) {
+    const auto lane = [&](std::size_t) {
         try {
             std::optional<std::uint64_t> task;
             while (!stop && (task = crew.next(task))) {
@@ -61,7 +61,12 @@ void work_off(Crew& crew, device::Device& device, unsigned lanes,
             if (!failed) failed = std::current_exception();
             stop = true;
         }
-    });
+    };
+    try {
+        device.threads().each(lanes, 1, lane);
+    } catch (...) {  // cancelled between two lanes
+        if (!failed) failed = std::current_exception();
+    }
     crew.end(failed, tell);
 }
 

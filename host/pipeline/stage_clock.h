@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "topple/error.h"
+#include "pipeline/cancelling.h"
 #include "topple/parse.h"
 
 namespace topple {
@@ -21,7 +21,7 @@ class StageClock {
     // Runs one stage and books its time under `name`; the same name again adds to it.
     template <class F>
     auto operator()(const std::string& name, F stage) {
-        if (options_.cancelled && options_.cancelled()) throw Error(ErrorKind::input, "cancelled");
+        end_if_cancelled(options_);
         if (options_.progress) options_.progress(name, 0);
         const auto start = std::chrono::steady_clock::now();
         struct Book {
@@ -33,7 +33,7 @@ class StageClock {
         return stage();
     }
     void progress(const std::string& name, double done) const {
-        if (options_.cancelled && options_.cancelled()) throw Error(ErrorKind::input, "cancelled");
+        end_if_cancelled(options_);
         if (options_.progress) options_.progress(name, done);
     }
 

@@ -15,6 +15,7 @@
 #include "io/text.h"
 #include "pipeline/assemble.h"
 #include "pipeline/block_stage.h"
+#include "pipeline/cancelling.h"
 #include "pipeline/explain.h"
 #include "pipeline/ingest.h"
 #include "pipeline/join_blocks.h"
@@ -314,6 +315,7 @@ std::optional<ParseResult> parse_tiled(const fs::path& input, const ParseOptions
         return std::nullopt;
     }
     const auto device = options.device ? options.device : device::open_device("auto");
+    const Cancelling cancelling(*device, options);
     const auto crew = options.crew ? options.crew : std::shared_ptr<Crew>(lone_crew());
     const fs::path folder = fs::absolute(work->path());
     const SharedWork shared{*crew, *device, folder, about};

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "device/native/thread_pool.h"
 #include "pipeline/view_coverage.h"
 
 namespace topple {
@@ -121,10 +122,13 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
                                      s == geometry::Structure::ceiling);
         }
         out.scene->fill(device, options);
+        device.threads().poll();
         out.scene->settle(options.hollow);
         out.scene->extend(options.hollow);
+        device.threads().poll();
         out.scene->bridge(hidden_gap_voxels, options.hollow);
         if (input.space) out.scene->set_solid(*input.space);
+        device.threads().poll();
         out.scene->relabel(
             keep_primitives(geometry, solids(*out.scene, geometry.primitives.model.size())));
     });

@@ -2,8 +2,15 @@
 #include "device/native/thread_pool.h"
 
 #include <algorithm>
+#include <exception>
+#include <utility>
 
 namespace topple::device {
+namespace {
+
+constexpr std::chrono::milliseconds between_polls{50};
+
+}  // namespace
 
 ThreadPool::ThreadPool(unsigned threads) {
     if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
@@ -25,7 +32,10 @@ void ThreadPool::run(std::uint64_t count, std::uint64_t chunk,
     if (count == 0) return;
     chunk = std::max<std::uint64_t>(1, chunk);
     if (workers_.empty() || count <= chunk) {
-        body(0, count);
+        for (std::uint64_t first = 0; first < count; first += chunk) {
+            poll();
+            body(first, std::min(count, first + chunk));
+        }
         return;
     }
     {
@@ -38,14 +48,44 @@ void ThreadPool::run(std::uint64_t count, std::uint64_t chunk,
         ++generation_;
     }
     start_.notify_all();
-    take_chunks();
-    std::unique_lock lock(mutex_);
-    open_ = false;  // all is handed out: who wakes up from now on has nothing to do
-    done_.wait(lock, [this] { return inside_ == 0; });
+    std::exception_ptr ended;
+    try {
+        take_chunks();
+    } catch (...) {
+        ended = std::current_exception();
+        next_.store(count, std::memory_order_relaxed);  // hands out no more
+    }
+    {
+        std::unique_lock lock(mutex_);
+        open_ = false;  // all is handed out: who wakes up from now on has nothing to do
+        done_.wait(lock, [this] { return inside_ == 0; });
+    }
+    if (ended) std::rethrow_exception(ended);
+}
+
+void ThreadPool::poll() {
+    if (!poll_ || std::this_thread::get_id() != polling_thread_) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - polled_ < between_polls) return;
+    polled_ = now;
+    poll_();
+}
+
+ThreadPool::Polling::Polling(ThreadPool& pool, std::function<void()> poll)
+    : pool_(pool),
+      outer_(std::exchange(pool.poll_, std::move(poll))),
+      outer_thread_(std::exchange(pool.polling_thread_, std::this_thread::get_id())) {
+    pool.polled_ = {};
+}
+
+ThreadPool::Polling::~Polling() {
+    pool_.poll_ = std::move(outer_);
+    pool_.polling_thread_ = outer_thread_;
 }
 
 void ThreadPool::take_chunks() {
     for (;;) {
+        poll();
         const std::uint64_t first = next_.fetch_add(chunk_, std::memory_order_relaxed);
         if (first >= count_) return;
         (*body_)(first, std::min(count_, first + chunk_));

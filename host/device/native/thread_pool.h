@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -23,7 +24,7 @@ class ThreadPool {
 
     // Calls body(first, last) for consecutive chunks of [0, count) until all are done. Chunks are
     // handed out as threads become free; which thread runs which is not defined. The body must not
-    // throw.
+    // throw. What poll() throws ends the run, once no thread is at a chunk any more.
     void run(std::uint64_t count, std::uint64_t chunk,
              const std::function<void(std::uint64_t, std::uint64_t)>& body);
 
@@ -34,6 +35,24 @@ class ThreadPool {
             for (std::uint64_t i = first; i < last; ++i) body(static_cast<std::size_t>(i));
         });
     }
+
+    // While it lives, poll() calls `poll` on the thread that made it, some twenty times a second at
+    // most. One within another takes its place.
+    class Polling {
+      public:
+        Polling(ThreadPool& pool, std::function<void()> poll);
+        ~Polling();
+        Polling(const Polling&) = delete;
+        Polling& operator=(const Polling&) = delete;
+
+      private:
+        ThreadPool& pool_;
+        std::function<void()> outer_;
+        std::thread::id outer_thread_;
+    };
+
+    // For long work between runs: throws what Polling's function throws. Takes no time.
+    void poll();
 
   private:
     void work();
@@ -49,6 +68,9 @@ class ThreadPool {
     std::uint64_t count_ = 0, chunk_ = 1;
     std::atomic<std::uint64_t> next_{0};
     std::vector<std::thread> workers_;
+    std::function<void()> poll_;
+    std::thread::id polling_thread_;
+    std::chrono::steady_clock::time_point polled_;
 };
 
 }  // namespace topple::device

@@ -71,6 +71,23 @@ inline octomap::OcTree room_map(double resolution_m = 0.05) {
     return tree;
 }
 
+// A file of a cube of 2^depth voxels a side, every other one occupied and the rest free: surface
+// throughout, in a few bytes a voxel.
+inline std::string chequered_map(int depth) {
+    const auto add = [](auto& self, std::string& to, int left) -> void {
+        if (left == 1) {
+            to.append("\x66\x99");
+            return;
+        }
+        to.append("\xff\xff");
+        for (int child = 0; child < 8; ++child) self(self, to, left - 1);
+    };
+    std::string out = "# Octomap OcTree binary file\nid OcTree\nsize 1\nres 0.1\ndata\n";
+    for (int n = depth; n < 16; ++n) out.append("\x03").push_back('\0');
+    add(add, out, depth);
+    return out;
+}
+
 // Makes a cube of voxels occupied throughout, `low` being its lowest key.
 inline void add_solid_cube(octomap::OcTree& tree, const octomap::OcTreeKey& low, int side) {
     for (int n = 0; n < side * side * side; ++n) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 
@@ -85,6 +86,28 @@ TEST_F(OctomapRoundTrip, other_voxels_and_axes) {
     const ParseResult askew = parse(map, options);
     EXPECT_EQ(askew.scene.up_method, "given");
     EXPECT_EQ(state(askew, 0.5, 0.9, 1.2), vdb::State::empty);
+}
+
+// Who cancels is heard within the stages that such a map takes long in.
+TEST_F(OctomapRoundTrip, is_cancelled_within_stages) {
+    const auto map = write("chequered.bt", chequered_map(6));
+    using Clock = std::chrono::steady_clock;
+    ParseOptions options = on(device::open_device("native"));
+    std::string stage;
+    int merging = 0;
+    Clock::time_point last = Clock::now();
+    Clock::duration longest{};
+    options.progress = [&](std::string_view name, double) { stage = name; };
+    options.cancelled = [&] {
+        const auto now = Clock::now();
+        longest = std::max(longest, now - last);
+        last = now;
+        merging += stage == "merging";
+        return merging > 4;
+    };
+    EXPECT_THROW(parse(map, options), Error);
+    EXPECT_EQ(stage, "merging");
+    EXPECT_LT(longest, std::chrono::seconds(5));
 }
 
 }  // namespace
