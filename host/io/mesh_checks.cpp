@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/json_problem.h"
+#include "io/ply_file.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -149,7 +150,8 @@ void check_mesh(const std::filesystem::path& file, std::string_view bytes, MeshF
             return check_gltf(file, bytes, std::nullopt);
         case MeshFormat::stl:
             return check_stl(file, bytes);
-        case MeshFormat::ply:  // as a cloud it was read whole
+        case MeshFormat::ply:
+            return check_ply(file, bytes);
         case MeshFormat::obj:  // has no counts
             return;
     }

@@ -162,6 +162,54 @@ TEST_F(Mesh, a_ply_whose_faces_show_nothing_is_a_cloud) {
     }
 }
 
+// The library that reads faces makes room for as many as a count says.
+TEST_F(Mesh, a_ply_whose_faces_promise_more_than_the_file_holds_is_a_cloud) {
+    const std::string corners =
+        "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
+    const auto text = [&](const std::string& element, const std::string& face) {
+        return "ply\nformat ascii 1.0\n" + corners + element + "end_header\n" + points + face;
+    };
+    const auto binary = [&](const std::string& element, const std::string& face) {
+        std::string out = "ply\nformat binary_little_endian 1.0\n" + corners + element;
+        out.append("end_header\n");
+        for (const float v : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f})
+            test::append<float>(out, v);
+        return out + face;
+    };
+    const std::string faces = "element face 1\nproperty list uint int vertex_indices\n";
+    const std::string many = "element face 4000000000\nproperty list uint int vertex_indices\n";
+    std::string long_list, good;
+    for (const std::uint32_t n : {4000000000u, 0u, 1u, 2u}) test::append(long_list, n);
+    for (const std::uint32_t n : {3u, 0u, 1u, 2u}) test::append(good, n);
+    const struct {
+        std::string bytes, message;
+    } cases[] = {
+        {text(faces, "4000000000 0 1 2\n"), "line 13: a list has fewer values"},
+        {text(faces, "41111111111111111111111 0 1 2\n"), "no length of a list"},
+        {text(faces, "3 0 1\n"), "a list has fewer values"},
+        {text(faces, "3 0 1.5 2\n"), "\"1.5\" is no number of its property's type"},
+        {text(faces, "3 0 1 2 3\n"), "more values than"},
+        {text(faces, "3 0\f1 2\n"), "control character"},
+        {text(faces, "\n3 0 1 2\n"), "no length of a list"},
+        {text(many, "3 0 1 2\n"), "4000000000 element 'face's"},
+        {text(faces + "element what 4000000000\n", "3 0 1 2\n"), "no property"},
+        {binary(faces, long_list), "16000000000 more bytes"},
+        {binary(many, good), "4000000000 element 'face's"},
+        {binary(faces + "element what 4000000000\n", good), "no property"},
+        {binary(faces + "element w 1\nproperty int64 v\n", good + std::string(8, '\0')), "64 bits"},
+    };
+    for (const auto& c : cases) {
+        SCOPED_TRACE(c.message);
+        const auto cloud = read_cloud(write("a.ply", c.bytes));
+        EXPECT_EQ(cloud.size(), 3u);
+        ASSERT_EQ(cloud.notes.size(), 1u);
+        EXPECT_NE(cloud.notes[0].find(c.message), std::string::npos) << cloud.notes[0];
+    }
+    EXPECT_GT(read_cloud(write("a.ply", text(faces, "3 0 1 2\n"))).size(), 1000u);
+    EXPECT_GT(read_cloud(write("a.ply", binary(faces, good))).size(), 1000u);
+}
+
 TEST_F(Mesh, bad_files) {
     const std::string glb = test::box_glb(), stl = test::box_stl();
     const auto patched = [&](std::string bytes, const std::string& from, const std::string& to) {
