@@ -17,11 +17,12 @@ bool looks_like_octomap(const std::filesystem::path& path);
 // not occupied becomes a point at its centre, with a normal towards the free voxels around; the
 // other occupied ones are no surface, but solid; free leaves become free space. An .ot's leaf is
 // occupied from a probability of one half on, as OctoMap's own default has it. One unit of the map
-// has `unit_m` metres. Throws Error(input) where the file is damaged, has no occupied leaf, or more
-// than 2^23 occupied voxels. poll: called now and then; what it throws ends the reading.
+// has `unit_m` metres. poll: called now and then; what it throws ends the reading. Throws
+// Error(input) where the file is damaged, has no occupied leaf, or more than `most_occupied`
+// occupied voxels.
 ScannedMap read_octomap(
-    const std::filesystem::path& file, double unit_m = 1,
-    const std::function<void()>& poll = [] {});
+    const std::filesystem::path& file, double unit_m = 1, const std::function<void()>& poll = [] {},
+    std::uint64_t most_occupied = std::uint64_t{1} << 23);
 
 // Writes what is known of space as an OctoMap (.bt), in voxels: 8x8x8 states for each leaf, as
 // vdb::Tiles and VoxelScene::states() have them. Surface (1) is occupied and empty (0) is free;

@@ -15,7 +15,6 @@
 namespace topple::io {
 namespace {
 
-constexpr std::uint64_t most_occupied = std::uint64_t{1} << 23;
 constexpr std::uint64_t leaves_between_polls = 4096;
 
 using Tree = octomap::OcTree;
@@ -141,7 +140,7 @@ bool looks_like_octomap(const std::filesystem::path& path) {
 }
 
 ScannedMap read_octomap(const std::filesystem::path& file, double unit_m,
-                        const std::function<void()>& poll) {
+                        const std::function<void()>& poll, std::uint64_t most_occupied) {
     const auto bytes = read_file(file);
     const OctomapFile stored = open_octomap(file, bytes.text());
     poll();

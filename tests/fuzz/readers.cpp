@@ -47,8 +47,12 @@ void read_as_cloud(const fs::path& file) {
     check(io::read_cloud(file, 1, few));
 }
 
+// Nor does it how large an occupied leaf may be.
+constexpr std::uint64_t few_voxels = 1 << 15;
+
 void read_as_octomap(const fs::path& file) {
-    const ScannedMap map = io::read_octomap(file);
+    const ScannedMap map = io::read_octomap(
+        file, 1, [] {}, few_voxels);
     check(map.cloud);
     for (const SpaceMap::Box& box : map.space.free) {
         for (std::size_t a = 0; a < 3; ++a)
