@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
+#include <string>
 
 #include "device/buffer.h"
 #include "device/queue.h"
@@ -101,6 +103,25 @@ std::vector<std::uint32_t> cells_of(const VoxelScene::Grids& g,
         }
     }
     return cells;
+}
+
+// Words for each voxel that is swept: its cell and what becomes of it, on host and device, and six
+// hits.
+constexpr std::uint64_t sweep_words = 10;
+
+void check_memory(const device::Device& device, const VoxelScene::Grids& g, std::uint64_t leaves) {
+    const std::uint64_t bytes = leaves * 512 * sizeof(std::uint32_t) * sweep_words;
+    const std::uint64_t memory = device.info().limits.memory_bytes;
+    if (bytes <= memory) return;
+    const auto gigabytes = [](std::uint64_t n) { return std::to_string(n >> 30) + " GiB"; };
+    const double scale = std::cbrt(static_cast<double>(bytes) / static_cast<double>(memory));
+    throw Error(ErrorKind::input,
+                "filling: " + std::to_string(leaves) +
+                    " blocks of 8x8x8 voxels lie between the scene's surfaces, unseen; they take " +
+                    gigabytes(bytes) + ", more than the " + gigabytes(memory) + " of " +
+                    device.info().name + "; use --voxel " +
+                    std::to_string(std::ceil(g.frame.voxel_m * scale * 1100) / 1000) +
+                    " or larger");
 }
 
 // Runs of leaves that follow one another along an axis, and what lies beyond them.
@@ -219,6 +240,7 @@ std::uint64_t VoxelScene::fill(device::Device& device, const FillOptions& option
 
     const auto leaves = leaves_to_sweep(g, fills, options.votes == 1 || options.columns);
     if (leaves.empty()) return 0;
+    check_memory(device, g, leaves.size());
     const auto cells = cells_of(g, leaves, fills, options.lowest);
     const auto filled = sweep_and_vote(device, g, leaves, cells, options);
     std::uint64_t count = 0;

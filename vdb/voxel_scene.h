@@ -114,7 +114,7 @@ class VoxelScene {
     // neither fill nor are filled. With `columns`, for scenes seen from around, the ray upwards
     // alone suffices where neither the ray downwards nor more than two of the four to the sides
     // end in space seen to be empty: the inside of a sofa whose back stands at a wall. Returns
-    // voxels completed.
+    // voxels completed. Throws Error(input) where the device has not the memory for it.
     struct FillOptions {
         unsigned votes = 2;    // directions that must agree
         bool columns = false;  // fill what hides under a top, down to where it stands

@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "boxes.h"
+#include "device/device.h"
 #include "device/devices.h"
+#include "topple/error.h"
 #include "vdb/voxel_scene.h"
 
 // What filling alone gets wrong: things that sink into what they stand on, legs seen in part.
@@ -122,6 +125,29 @@ TEST(Completion, ALegGoesOnToAllThatItEndsBelow) {
     for (std::size_t n = 0; n < cells.size(); ++n)
         if (cells.primitive[n] == 2 && cells.k[n] == 19) columns.insert(cells.i[n]);
     EXPECT_EQ(columns.size(), 4u) << "all of them, below either";
+}
+
+// A closed surface of 150 m, say of a mesh, has more unseen voxels within than memory has room for.
+TEST(Completion, WhatIsTooLargeToFillIsRefused) {
+    const auto device = device::open_device("native", 2);
+    if (device->info().limits.memory_bytes > (std::uint64_t{100} << 30))
+        GTEST_SKIP() << "this machine has the memory";
+    PointCloud cloud;
+    for (int corner = 0; corner < 8; ++corner) {
+        cloud.x.push_back(corner & 1 ? 150.f : 0.f);
+        cloud.y.push_back(corner & 2 ? 150.f : 0.f);
+        cloud.z.push_back(corner & 4 ? 150.f : 0.f);
+    }
+    VoxelScene scene({0.1, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}}, cloud,
+                     std::vector<std::int32_t>(8, 0));
+    try {
+        scene.fill(*device, {});
+        FAIL() << "not refused";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_NE(std::string(error.what()).find("use --voxel 0."), std::string::npos)
+            << error.what();
+    }
 }
 
 }  // namespace
