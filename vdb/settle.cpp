@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
@@ -77,20 +78,39 @@ class Settling {
         return found;
     }
 
-    // Completed voxels below that level go to what is stood on, down to its own underside, or to
-    // what is beside them: a leg under the table top. Others become hidden again.
+    // Those that are known.
+    void add(std::span<const VoxelScene::StandsOn> known, double voxel_m,
+             std::map<std::int32_t, Stand>& stands) {
+        for (const VoxelScene::StandsOn& s : known) {
+            if (!shapes_.contains(s.above) || !shapes_.contains(s.below)) continue;
+            // The highest voxel with its centre below the foot.
+            const auto level = static_cast<std::int32_t>(std::ceil(s.height_m / voxel_m - 0.5)) - 1;
+            stands[s.above] = {s.below, level, median(shapes_[s.below].bottoms)};
+        }
+    }
+
+    // Completed voxels below that level go to what is stood on, down to its own underside or to
+    // what it stands on in turn, or to what is beside them: a leg under the table top. Others
+    // become hidden again.
     std::uint64_t settle(const std::map<std::int32_t, Stand>& stands) {
         std::vector<openvdb::Coord> open;
         std::uint64_t changed = 0;
         for (std::size_t n = 0; n < cells_.size(); ++n) {
-            const auto at = stands.find(cells_.primitive[n]);
-            if (at == stands.end() || cells_.state[n] != State::completed) continue;
-            const Stand& stand = at->second;
-            if (cells_.k[n] > stand.level) continue;
-            const openvdb::Coord voxel(cells_.i[n], cells_.j[n], cells_.k[n]);
+            if (cells_.state[n] != State::completed) continue;
+            const std::int32_t k = cells_.k[n];
+            const Stand* last = nullptr;
+            // No chain is longer than there are stands; one that closes on itself ends, too.
+            std::size_t most = stands.size();
+            for (auto at = stands.find(cells_.primitive[n]);
+                 most > 0 && at != stands.end() && k <= at->second.level; --most) {
+                last = &at->second;
+                at = stands.find(last->on);
+            }
+            if (!last) continue;
+            const openvdb::Coord voxel(cells_.i[n], cells_.j[n], k);
             ++changed;
-            if (cells_.k[n] >= stand.bottom) {
-                primitive_.setValueOn(voxel, stand.on);
+            if (k >= last->bottom) {
+                primitive_.setValueOn(voxel, last->on);
             } else {
                 state_.setValueOff(voxel, static_cast<std::int32_t>(State::invisible));
                 primitive_.setValueOff(voxel, -1);
@@ -177,10 +197,12 @@ class Settling {
 
 }  // namespace
 
-std::uint64_t VoxelScene::settle(const std::vector<bool>& hollow) {
+std::uint64_t VoxelScene::settle(const std::vector<bool>& hollow, std::span<const StandsOn> on) {
     const SolidCellArrays cells = solid_cells();
     Settling settling(cells, *grids_, hollow);
-    return settling.settle(settling.stands());
+    std::map<std::int32_t, Stand> stands = settling.stands();
+    settling.add(on, frame().voxel_m, stands);
+    return settling.settle(stands);
 }
 
 }  // namespace topple::vdb

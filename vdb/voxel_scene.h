@@ -126,9 +126,13 @@ class VoxelScene {
 
     // Ends filled solids at the surface on which they are seen to stand: rays pass from a box into
     // the table top that it hides, and take that for more of the box. What lies below goes to the
-    // primitive stood on, or beside it to a leg; `hollow` as in fill(). Returns voxels that changed
-    // hands.
-    std::uint64_t settle(const std::vector<bool>& hollow);
+    // primitive stood on, or beside it to a leg; `hollow` as in fill(). on: where it is known.
+    // Returns voxels that changed hands.
+    struct StandsOn {
+        std::int32_t above = -1, below = -1;  // primitives
+        double height_m = 0;                  // of the one's foot, grid frame
+    };
+    std::uint64_t settle(const std::vector<bool>& hollow, std::span<const StandsOn> on = {});
 
     // Slender parts (up to 10 cm) whose upper end nobody saw go on, through at most 60 cm of what
     // nobody saw, to the wider thing above them: legs under a seat. `hollow` as in fill(). Returns

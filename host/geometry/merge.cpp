@@ -56,6 +56,7 @@ class Merger {
         });
         PrimitiveSet out;
         out.faces = r_;
+        out.ledges = cuts_.ledges;
         std::vector<std::int32_t> id(size.size(), -1);
         for (const std::int32_t k : order) {
             id[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(out.regions.size());
@@ -216,7 +217,8 @@ PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const 
         Merger merger(surfels, cuts, facts, options);
         merger.merge_all();
         cut_flush_faces(surfels, up, merger.solids(), options, cuts, facts);
-        if (cuts.count == before) return merger.result();
+        if (cuts.count > before) continue;
+        if (cut_at_ledges(surfels, up, merger.solids(), cuts, facts) == 0) return merger.result();
     }
 }
 

@@ -54,17 +54,21 @@ struct MergeOptions {
            proven_min = 0.8, level_bias = 0.15, pull = 2;
 };
 
-// Regions with their flush faces cut. members: the surfels of each region, ascending. sides: for
-// each region the cuts that made it, and which side of each it lies on.
+// Regions with their flush faces cut. members: the surfels of each region, ascending. flush,
+// ledges: for each region the cuts of that kind that it lies beside, and on which side.
 struct CutRegions {
     Regions regions;
     std::vector<std::vector<std::uint32_t>> members;
-    std::vector<std::vector<std::pair<std::uint32_t, bool>>> sides;
-    std::uint32_t count = 0;
+    std::vector<CutSides> flush, ledges;
+    std::uint32_t count = 0;  // of cuts of either kind
     // Nothing is cut yet.
     explicit CutRegions(const Regions& regions);
     // Whether a cut parts two regions.
     bool parted(std::size_t a, std::size_t b) const;
+    // Makes some of a region's surfels, ascending, a region of their own with the same sides; both
+    // are fitted anew. Returns its number.
+    std::size_t take_out(const Surfels& surfels, std::size_t region,
+                         std::vector<std::uint32_t> part);
 };
 
 // What a region looks like from outside: evenly drawn points moved onto the model, with its
@@ -121,6 +125,12 @@ std::vector<std::pair<std::int32_t, std::int32_t>> find_wall_pieces(
 class RegionFacts;
 void cut_flush_faces(const Surfels& surfels, const Vec3& up, const std::vector<std::int32_t>& solid,
                      const MergeOptions& options, CutRegions& cuts, RegionFacts& facts);
+
+// Solids that are stacks of several (find_ledge()) are cut at their ledges: all of their regions.
+// solid: which one each region was merged to. Returns how many ledges there were.
+std::uint32_t cut_at_ledges(const Surfels& surfels, const Vec3& up,
+                            const std::vector<std::int32_t>& solid, CutRegions& cuts,
+                            RegionFacts& facts);
 
 // The surfel in the cell that holds p, or -1.
 std::int64_t surfel_at(const Surfels& surfels, const Eigen::Vector3d& p);

@@ -4,6 +4,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "geometry/algebraic_model.h"
 #include "geometry/merge.h"
@@ -269,32 +270,11 @@ class Cutter {
 
     void apply(std::size_t k, Division d) {
         if (k < solid_.size()) stale_[static_cast<std::size_t>(solid_[k])] = true;
-        const auto fresh = static_cast<std::int32_t>(out_.members.size());
-        for (const std::uint32_t i : d.outside) out_.regions.label[i] = fresh;
-        out_.regions.regions.push_back(region(k));
-        out_.sides.push_back(out_.sides[k]);
-        out_.sides[k].emplace_back(out_.count, false);
-        out_.sides.back().emplace_back(out_.count, true);
+        const std::size_t fresh = out_.take_out(s_, k, std::move(d.outside));
+        out_.flush[k].emplace_back(out_.count, false);
+        out_.flush[fresh].emplace_back(out_.count, true);
         ++out_.count;
-        out_.members[k] = std::move(d.inside);
-        out_.members.push_back(std::move(d.outside));
-        refit(k);
-        refit(static_cast<std::size_t>(fresh));
-        facts_.update({static_cast<std::int32_t>(k), fresh});
-    }
-
-    void refit(std::size_t k) {
-        PlaneMoments moments;
-        for (const std::uint32_t i : out_.members[k]) moments.add(position(s_, i), normal(s_, i));
-        Region& r = out_.regions.regions[k];
-        r.model = fit_plane(moments, s_.cell_m);
-        double sum = 0;
-        for (const std::uint32_t i : out_.members[k]) {
-            const double d = distance(r.model, position(s_, i));
-            sum += d * d;
-        }
-        r.surfels = out_.members[k].size();
-        r.residual_m = std::sqrt(sum / static_cast<double>(r.surfels));
+        facts_.update({static_cast<std::int32_t>(k), static_cast<std::int32_t>(fresh)});
     }
 
     const Surfels& s_;
@@ -310,22 +290,8 @@ class Cutter {
 
 }  // namespace
 
-CutRegions::CutRegions(const Regions& all)
-    : regions(all), members(all.regions.size()), sides(all.regions.size()) {
-    for (std::uint32_t i = 0; i < all.label.size(); ++i)
-        if (all.label[i] >= 0) members[static_cast<std::size_t>(all.label[i])].push_back(i);
-}
-
-bool CutRegions::parted(std::size_t a, std::size_t b) const {
-    for (const auto& [cut, side] : sides[a])
-        for (const auto& [other, other_side] : sides[b])
-            if (cut == other && side != other_side) return true;
-    return false;
-}
-
 void cut_flush_faces(const Surfels& surfels, const Vec3& up, const std::vector<std::int32_t>& solid,
                      const MergeOptions& options, CutRegions& cuts, RegionFacts& facts) {
-    cuts.sides.resize(cuts.regions.regions.size());
     Cutter(surfels, up, solid, options, cuts, facts).run();
 }
 

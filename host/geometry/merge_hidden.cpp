@@ -43,13 +43,23 @@ bool coplanar(const Regions& regions, const std::vector<RegionSamples>& samples,
     return std::min(off(a, b), off(b, a)) <= bound;
 }
 
-bool in_one_surface(const Surfels& surfels, const Regions& regions, std::size_t i, std::size_t j) {
+bool ledge_between(const PrimitiveSet& primitives, std::size_t i, std::size_t j) {
+    const std::int32_t a = primitives.faces.label[i], b = primitives.faces.label[j];
+    return a >= 0 && b >= 0 &&
+           on_two_sides(primitives.ledges[static_cast<std::size_t>(a)],
+                        primitives.ledges[static_cast<std::size_t>(b)]);
+}
+
+bool in_one_surface(const Surfels& surfels, const PrimitiveSet& primitives, std::size_t i,
+                    std::size_t j) {
     constexpr double parallel = 0.97;  // cosine
+    const Regions& regions = primitives.faces;
     const std::int32_t a = regions.label[i], b = regions.label[j];
     if (a < 0 || b < 0) return false;
     const Region &ra = regions.regions[static_cast<std::size_t>(a)],
                  &rb = regions.regions[static_cast<std::size_t>(b)];
     if (a == b) return true;
+    if (ledge_between(primitives, i, j)) return false;
     const Eigen::Vector3d p = position(surfels, i), q = position(surfels, j);
     if (gradient(ra.model, p).normalized().dot(gradient(rb.model, q).normalized()) < parallel)
         return false;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "device/native/thread_pool.h"
@@ -38,22 +39,31 @@ struct Regions {
 Regions split(const Surfels& surfels, device::ThreadPool& threads);
 Regions split(const Surfels& surfels);  // on threads of its own, one per core
 
+// The cuts that a region lies beside, and on which side of each.
+using CutSides = std::vector<std::pair<std::uint32_t, bool>>;
+bool on_two_sides(const CutSides& a, const CutSides& b);  // of one cut
+
 // Convexly connected regions merged into primitives (paper, 2.1.2, Eq. 3). label: primitive of each
 // surfel, -1 for none; ids by falling size. model: "plane" | "quadric" | "merged". Planes that
-// belong to several solids whose faces happen to be flush are cut first: the regions of a primitive
-// are counted after that. up: towards which things stand on one another, unit. free: where the
-// sensor looked through.
+// belong to several solids whose faces happen to be flush are cut first, and stacks of solids at
+// their ledges: the regions of a primitive are counted after that. up: towards which things stand
+// on one another, unit. free: where the sensor looked through.
 struct PrimitiveSet {
     std::vector<std::int32_t> label;
     std::vector<std::string> model;
     std::vector<std::vector<std::int32_t>> regions;  // of each primitive, of those in `faces`
     Regions faces;                                   // the regions after cutting
+    std::vector<CutSides> ledges;                    // of each of `faces`
 };
 PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const Vec3& up,
                           const FreeSpace& free, device::ThreadPool& threads);
 
-// Whether the surface goes on smoothly from one surfel to the other: the models of their regions
-// agree around them.
-bool in_one_surface(const Surfels& surfels, const Regions& regions, std::size_t i, std::size_t j);
+// Whether a ledge parts the faces of two surfels.
+bool ledge_between(const PrimitiveSet& primitives, std::size_t i, std::size_t j);
+
+// Whether the surface goes on smoothly from one surfel to the other: the models of their faces
+// agree around them, and no ledge is between.
+bool in_one_surface(const Surfels& surfels, const PrimitiveSet& primitives, std::size_t i,
+                    std::size_t j);
 
 }  // namespace topple::geometry

@@ -57,20 +57,26 @@ Joinery::Joinery(const ContactGraph& graph, std::span<const physics::Body> bodie
     for (const auto& [pair, seam] : seams.between)
         raise(pair.first, pair.second, seams.flushness(pair.first, pair.second));
     std::vector<bool> held;
+    std::vector<double> off;
     for (std::int32_t p = 0; p < graph.primitives; ++p) {
         const std::span<const Carrying> carriers = graph.carriers_of(p);
-        const double off = off_all(carriers, bodies[static_cast<std::size_t>(p)]);
-        held.push_back(off == 0 && !carriers.empty());
-        if (carriers.size() < 2 || shell(p)) continue;
-        for (const Carrying& c : carriers) {
-            if (!shell(c.supporter)) raise(c.supporter, p, std::min(off / surely_off_m, 1.0));
-        }
+        off.push_back(off_all(carriers, bodies[static_cast<std::size_t>(p)]));
+        held.push_back(off.back() == 0 && !carriers.empty());
     }
     for (const physics::TouchingPair& pair : graph.pairs) {
         if (shell(pair.a) || shell(pair.b)) continue;
         const bool both =
             held[static_cast<std::size_t>(pair.a)] && held[static_cast<std::size_t>(pair.b)];
         raise(pair.a, pair.b, mated(graph, pair, both ? standing : held_by_each_other));
+    }
+    for (const auto& [pair, seam] : seams.between)
+        if (seams.ledged(pair.first, pair.second)) one_[pair] = -1;
+    for (std::int32_t p = 0; p < graph.primitives; ++p) {
+        const std::span<const Carrying> carriers = graph.carriers_of(p);
+        if (carriers.size() < 2 || shell(p)) continue;
+        const double sure = std::min(off[static_cast<std::size_t>(p)] / surely_off_m, 1.0);
+        for (const Carrying& c : carriers)
+            if (!shell(c.supporter)) raise(c.supporter, p, sure);
     }
 }
 

@@ -2,7 +2,9 @@
 #include "graph/scene_prior.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "graph/stamped_set.h"
 
@@ -25,8 +27,44 @@ constexpr double beside_shell = 0.5;
 // What it costs that parts of a group are joined by scraps only: more than any fall that it saves.
 constexpr double not_joined = 5;
 
-// A cube of four voxels; less says little about what it is.
-constexpr std::uint64_t least_voxels = 64;
+// A cube of four voxels; less says little about what it is, unless it keeps two things that far
+// apart.
+constexpr double least_voxels = 64, least_strut_voxels = 4;
+
+// Whether a primitive of so many voxels is a strut where two things touch it that far from each
+// other, in voxels: twice as long as it is thick. What is but noise has both joints at one place.
+bool is_slender(double voxels, double length) {
+    return length >= least_strut_voxels && length * length * length >= 4 * voxels;
+}
+
+// The primitives that two others touch at opposite ends, as a lamp's base and shade touch its pole.
+std::vector<bool> find_struts(const ContactGraph& graph, std::span<const physics::Body> bodies) {
+    struct Ends {
+        std::array<double, 3> low,
+            high;  // by axis: its lowest joint from below, highest from above
+    };
+    constexpr double none = std::numeric_limits<double>::infinity();
+    std::vector<Ends> ends(bodies.size(), {{none, none, none}, {-none, -none, -none}});
+    for (const physics::TouchingPair& pair : graph.pairs) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (std::abs(pair.normal[axis]) < 0.5) continue;
+            const bool a_is_low = pair.normal[axis] > 0;
+            Ends& of_low = ends[static_cast<std::size_t>(a_is_low ? pair.a : pair.b)];
+            Ends& of_high = ends[static_cast<std::size_t>(a_is_low ? pair.b : pair.a)];
+            of_low.high[axis] = std::max(of_low.high[axis], pair.center[axis]);
+            of_high.low[axis] = std::min(of_high.low[axis], pair.center[axis]);
+        }
+    }
+    std::vector<bool> struts;
+    for (std::size_t n = 0; n < bodies.size(); ++n) {
+        bool strut = false;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            strut = strut || is_slender(static_cast<double>(bodies[n].voxels),
+                                        (ends[n].high[axis] - ends[n].low[axis]) / graph.voxel_m);
+        struts.push_back(strut);
+    }
+    return struts;
+}
 
 }  // namespace
 
@@ -66,7 +104,9 @@ ScenePrior::ScenePrior(const ContactGraph& graph, std::span<const physics::Body>
     for (const physics::Body& b : bodies) total += b.volume_m3;
     for (const physics::Body& b : bodies)
         volume_share_.push_back(total > 0 ? b.volume_m3 / total : 0);
-    for (const physics::Body& b : bodies) scrap_.push_back(b.voxels < least_voxels);
+    const std::vector<bool> struts = find_struts(graph, bodies);
+    for (std::size_t n = 0; n < bodies.size(); ++n)
+        scrap_.push_back(static_cast<double>(bodies[n].voxels) < least_voxels && !struts[n]);
     const Ranks ranks = find_joints();
     std::map<std::pair<std::int32_t, std::int32_t>, Seam> between = seams.between;
     for (const auto& [pair, rank] : ranks) between.try_emplace(pair);
@@ -102,7 +142,7 @@ double ScenePrior::lost_by_carrying(const Carrying& c) const {
         ground_[static_cast<std::size_t>(c.supported)])
         return 0;
     return freedom_lost(graph_.section_m2[static_cast<std::size_t>(c.supporter)], c.area_m2) *
-           (1 - joinery_.made_as_one(c.supporter, c.supported));
+           (1 - std::max(joinery_.made_as_one(c.supporter, c.supported), 0.0));
 }
 
 double ScenePrior::lost_by_touching(const physics::TouchingPair& pair) const {
@@ -112,7 +152,7 @@ double ScenePrior::lost_by_touching(const physics::TouchingPair& pair) const {
                              : std::abs(pair.normal[1]) > 0.5 ? 1
                                                               : 2;
     const double of_a = graph_.silhouette_m2[a][axis], of_b = graph_.silhouette_m2[b][axis];
-    const double solid = 1 - joinery_.made_as_one(pair.a, pair.b);
+    const double solid = 1 - std::max(joinery_.made_as_one(pair.a, pair.b), 0.0);
     if (!ground_[a] && !ground_[b])
         return (freedom_lost(of_a, pair.area_m2) + freedom_lost(of_b, pair.area_m2)) * solid;
     const double lost = freedom_lost(ground_[a] ? of_b : of_a, pair.area_m2);

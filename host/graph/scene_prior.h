@@ -29,7 +29,8 @@ namespace topple::graph {
 //       others have nothing left to take. A scrap of a few voxels, mostly noise between two things,
 //       hangs on one of them and holds none together. Joints with the shell all count: furniture
 //       stands in a room without being fixed to it, whatever it touches.
-//   f4  (ours) minus how surely its pairs of primitives were made as one, see Joinery.
+//   f4  (ours) minus how surely its pairs of primitives were made as one, or were not, see
+//       Joinery.
 class ScenePrior {
   public:
     struct Weights {

@@ -22,4 +22,10 @@ double SurfaceSeams::flushness(std::int32_t a, std::int32_t b) const {
     return std::clamp((share - by_chance) / (surely - by_chance), 0.0, 1.0);
 }
 
+bool SurfaceSeams::ledged(std::int32_t a, std::int32_t b) const {
+    const auto at = between.find(std::minmax(a, b));
+    return at != between.end() && at->second.pairs >= least_pairs &&
+           2 * at->second.ledge > at->second.pairs;
+}
+
 }  // namespace topple::graph

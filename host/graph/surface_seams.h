@@ -14,6 +14,7 @@ struct Seam {
     double variation = 0;     // of 1 - n.n'
     std::uint64_t pairs = 0;  // all of them
     std::uint64_t flush = 0;  // those where the surface goes on smoothly
+    std::uint64_t ledge = 0;  // those with a ledge between (geometry/ledges.h)
 };
 struct SurfaceSeams {
     std::vector<Seam> inside;                                       // by primitive
@@ -22,6 +23,8 @@ struct SurfaceSeams {
     // How surely two primitives are made in one piece, 0 to 1: things that merely stand on one
     // another hardly ever do so with their faces in line.
     double flushness(std::int32_t a, std::int32_t b) const;
+    // Whether a ledge runs along their seam: what is made in one piece has none all around.
+    bool ledged(std::int32_t a, std::int32_t b) const;
 };
 
 }  // namespace topple::graph

@@ -61,7 +61,7 @@ void add_states(const vdb::VoxelScene& scene, const tiles::VoxelBox& core, Block
 struct SeamRecord {
     std::int32_t a = -1, b = -1;
     double variation = 0;
-    std::uint64_t pairs = 0, flush = 0;
+    std::uint64_t pairs = 0, flush = 0, ledge = 0;
 };
 
 }  // namespace
@@ -114,10 +114,10 @@ void write_block(const std::filesystem::path& folder, std::size_t block, const B
     for (std::size_t p = 0; p < parts.seams.inside.size(); ++p) {
         const graph::Seam& s = parts.seams.inside[p];
         const auto id = static_cast<std::int32_t>(p);
-        seams.push_back({id, id, s.variation, s.pairs, s.flush});
+        seams.push_back({id, id, s.variation, s.pairs, s.flush, s.ledge});
     }
     for (const auto& [pair, s] : parts.seams.between)
-        seams.push_back({pair.first, pair.second, s.variation, s.pairs, s.flush});
+        seams.push_back({pair.first, pair.second, s.variation, s.pairs, s.flush, s.ledge});
     out.array(seams);
     for (const auto* values : {&parts.empty_leaves, &parts.leaves}) out.array(*values);
     out.array(parts.states);
@@ -146,7 +146,7 @@ BlockParts read_block(const std::filesystem::path& folder, std::size_t block) {
     out.seams.inside.resize(out.primitives.size());
     for (const SeamRecord& s : in.array<SeamRecord>()) {
         if (s.a < 0 || s.b < s.a || s.b >= count) in.damaged();
-        const graph::Seam seam{s.variation, s.pairs, s.flush};
+        const graph::Seam seam{s.variation, s.pairs, s.flush, s.ledge};
         if (s.a == s.b) {
             out.seams.inside[static_cast<std::size_t>(s.a)] = seam;
         } else {

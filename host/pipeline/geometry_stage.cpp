@@ -92,7 +92,9 @@ graph::SurfaceSeams surface_seams(const GeometryStage& g,
             seam.variation += 1 - (double{s.nx[n]} * s.nx[m] + double{s.ny[n]} * s.ny[m] +
                                    double{s.nz[n]} * s.nz[m]);
             ++seam.pairs;
-            if (a != b) seam.flush += geometry::in_one_surface(s, g.primitives.faces, n, m);
+            if (a == b) continue;
+            seam.flush += geometry::in_one_surface(s, g.primitives, n, m);
+            seam.ledge += geometry::ledge_between(g.primitives, n, m);
         }
     }
     return out;

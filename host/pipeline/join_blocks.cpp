@@ -258,6 +258,7 @@ class Joiner {
             seam.variation += more.variation;
             seam.pairs += more.pairs;
             seam.flush += more.flush;
+            seam.ledge += more.ledge;
         };
         const auto number = [&](std::int32_t p) { return numbers[static_cast<std::size_t>(p)]; };
         for (std::size_t p = 0; p < from.inside.size(); ++p) {

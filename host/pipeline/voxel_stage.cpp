@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "device/native/thread_pool.h"
+#include "geometry/ledges.h"
 #include "pipeline/view_coverage.h"
 
 namespace topple {
@@ -49,6 +50,15 @@ std::int32_t floor_level(const vdb::VoxelScene& scene, const GeometryStage& geom
     const auto middle = k.begin() + static_cast<std::ptrdiff_t>(k.size() / 2);
     std::nth_element(k.begin(), middle, k.end());
     return *middle;
+}
+
+std::vector<vdb::VoxelScene::StandsOn> ledges(const GeometryStage& geometry) {
+    const Vec3& up = geometry.frame.axes[2];
+    std::vector<vdb::VoxelScene::StandsOn> out;
+    for (const geometry::Ledge& l :
+         geometry::ledges_between(geometry.surfels, geometry.primitives, {up[0], up[1], up[2]}))
+        out.push_back({l.above, l.below, l.height_m});
+    return out;
 }
 
 // For each cell the unseen voxels right below it, up to what fits. What is below the shell is of no
@@ -123,7 +133,7 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
         }
         out.scene->fill(device, options);
         device.threads().poll();
-        out.scene->settle(options.hollow);
+        out.scene->settle(options.hollow, ledges(geometry));
         out.scene->extend(options.hollow);
         device.threads().poll();
         out.scene->bridge(hidden_gap_voxels, options.hollow);

@@ -72,6 +72,25 @@ TEST(Completion, ABoxDoesNotSinkIntoTheTableThatItHides) {
     EXPECT_GT(completed_below(scene, 2, 0.8), 100u) << "the box itself stays filled";
 }
 
+// Seen from above, what is under the upper book's top is taken for it down to the floor.
+TEST(Completion, ABookEndsAtTheLedgeAboveTheNext) {
+    Boxes boxes;
+    boxes.boxes = {{{-2, -2, -0.2}, {2, 2, 0}},
+                   {{-0.2, -0.16, 0}, {0.2, 0.16, 0.1}},
+                   {{-0.16, -0.12, 0.1}, {0.16, 0.12, 0.2}}};
+    boxes.look({0.05, 0.02, 2}, {0, 0, 0});
+    const auto device = device::open_native();
+    VoxelScene scene({.voxel_m = h}, boxes.cloud, boxes.label);
+    scene.carve(*device, boxes.intrinsics, boxes.frames);
+    scene.fill(*device, {.columns = true, .lowest = 0, .hollow = {true}});
+    const std::size_t before = completed_below(scene, 1, 0.11);
+    ASSERT_GT(completed_below(scene, 2, 0.11), 100u);
+    const VoxelScene::StandsOn on{.above = 2, .below = 1, .height_m = 0.1};
+    EXPECT_GT(scene.settle({true}, {&on, 1}), 100u);
+    EXPECT_EQ(completed_below(scene, 2, 0.11), 0u);
+    EXPECT_GT(completed_below(scene, 1, 0.11), before + 100);
+}
+
 TEST(Completion, ASofasArmIsNoThingOnItsSeat) {
     const Boxes boxes = seen_from_around({{{-2, -2, -0.2}, {2, 2, 0}},
                                           {{-0.4, -0.4, 0}, {0.4, 0.4, 0.4}},

@@ -36,6 +36,7 @@ struct Scene {
         return count++;
     }
     void flush(std::int32_t a, std::int32_t b) { seams.between[{a, b}] = {0, 100, 100}; }
+    void ledge(std::int32_t a, std::int32_t b) { seams.between[{a, b}] = {0, 100, 0, 100}; }
     void voxelise() { cells = test::voxelise(solids, {-1, -1, -0.04}, {1, 1, 1.2}, 0.02); }
 };
 
@@ -90,6 +91,32 @@ TEST_P(Objects, ALampIsOneThing) {
     EXPECT_EQ(group[static_cast<std::size_t>(base)], group[static_cast<std::size_t>(pole)]);
     EXPECT_EQ(group[static_cast<std::size_t>(shade)], group[static_cast<std::size_t>(pole)]);
     EXPECT_NE(group[static_cast<std::size_t>(base)], -1);
+}
+
+// Its pole came in pieces of a few voxels each.
+TEST_P(Objects, ALampWithAPoleOfScrapsIsOneThing) {
+    Scene scene;
+    const auto base = scene.add(cylinder(0, 0, 0.08, 0, 0.04));
+    std::vector<std::int32_t> pole;
+    for (const double z : {0.04, 0.2})
+        pole.push_back(scene.add(box({-0.02, -0.02, z}, {0.02, 0.02, z + 0.16})));
+    const auto shade = scene.add(cylinder(0, 0, 0.08, 0.36, 0.48));
+    const auto beside = scene.add(box({0.3, -0.1, 0}, {0.5, 0.1, 0.2}));
+    const std::vector<std::int32_t> group = groups(scene);
+    for (const std::int32_t part : {pole[0], pole[1], shade})
+        EXPECT_EQ(group[static_cast<std::size_t>(part)], group[static_cast<std::size_t>(base)]);
+    EXPECT_NE(group[static_cast<std::size_t>(base)], -1) << "glued to the floor";
+    EXPECT_NE(group[static_cast<std::size_t>(base)], group[static_cast<std::size_t>(beside)]);
+}
+
+TEST_P(Objects, BooksOfAlmostOneSizeAreTwoWhereALedgeWasSeen) {
+    Scene scene;
+    const auto lower = scene.add(box({0, 0, 0}, {0.26, 0.2, 0.08}));
+    const auto upper = scene.add(box({0.02, 0, 0.08}, {0.26, 0.2, 0.16}));
+    scene.ledge(lower, upper);
+    const std::vector<std::int32_t> group = groups(scene);
+    EXPECT_NE(group[static_cast<std::size_t>(lower)], group[static_cast<std::size_t>(upper)]);
+    EXPECT_NE(group[static_cast<std::size_t>(lower)], -1);
 }
 
 TEST_P(Objects, FlushPartsAreOneAndStackedBoxesAreTwo) {

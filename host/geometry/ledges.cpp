@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+#include "geometry/ledges.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "geometry/split.h"
+
+namespace topple::geometry {
+namespace {
+
+// Of a side: along it, out of it, and up; metres.
+struct SidePoint {
+    double along, out, height;
+};
+using Side = std::vector<SidePoint>;
+
+// Sides are told apart by eighths of the circle; a box has four, with gaps between.
+constexpr std::size_t sectors = 8;
+
+// What lies on either side of a height is looked at from half a cell, where a cell holds points of
+// one of them only, up to three.
+constexpr double from_cells = 0.5, to_cells = 3;
+constexpr std::size_t least_each = 8;  // surfels above, and below
+// A smaller step than this may be a seam, a larger one is a concave edge, at which regions end.
+constexpr double least_cells = 0.2, most_cells = 1.5;
+// What speaks for a step, twice the logarithms of likelihood ratios: against upright sides without
+// one, of all sides and of each that counts; and against sides that lean instead.
+constexpr double least_sure = 30, least_of_side = 6, least_over_lean = 8;
+constexpr double most_of_side = 200;  // so that one side says no more than several
+// Of the surfels at the height, those on sides with a step.
+constexpr double least_share = 0.6;
+constexpr double least_covered = 0.5;
+// How much sides lean that are upright, m/m.
+constexpr double upright_slope = 0.03;
+// Noise of a surfel is no less than this, cells.
+constexpr double least_noise_cells = 0.05;
+
+struct Step {
+    double size_m = 0;                    // rms over the side
+    double over_none = 0, over_lean = 0;  // evidence
+    std::size_t surfels = 0;
+};
+
+// Least squares with a prior of the last column's factor: 0 +- slope.
+double residual(const Eigen::MatrixXd& rows, const Eigen::VectorXd& out, double noise, double slope,
+                Eigen::VectorXd& fit) {
+    Eigen::MatrixXd normal = rows.transpose() * rows;
+    const Eigen::Index last = rows.cols() - 1;
+    const double weight = std::isfinite(slope) ? noise * noise / (slope * slope) : 0;
+    normal(last, last) += weight;
+    fit = normal.ldlt().solve(rows.transpose() * out);
+    return (out - rows * fit).squaredNorm() + weight * fit[last] * fit[last];
+}
+
+// Share of the side's length that has surfels above as well as below: legs under a table's edge
+// have little of it.
+double covered_by_both(const std::array<Side, 2>& parts, double first, double last, double cell_m) {
+    const auto bins = static_cast<std::size_t>((last - first) / cell_m) + 1;
+    std::array<std::vector<bool>, 2> covered{std::vector<bool>(bins), std::vector<bool>(bins)};
+    for (std::size_t above = 0; above < 2; ++above)
+        for (const SidePoint& p : parts[above])
+            covered[above][static_cast<std::size_t>((p.along - first) / cell_m)] = true;
+    std::size_t both = 0;
+    for (std::size_t b = 0; b < bins; ++b) both += covered[0][b] && covered[1][b];
+    return static_cast<double>(both) / static_cast<double>(bins);
+}
+
+// A side at a height as two sides, each with its place and direction, and as one:
+//   out = a [above] + a' [below] + b [above] along + b' [below] along + c height
+//   out = a + b along + c height.
+std::optional<Step> step_at(const Side& side, double height, double cell_m) {
+    std::array<Side, 2> parts;
+    std::array<double, 2> low, high;
+    for (std::size_t above = 0; above < 2; ++above) {
+        low[above] = std::numeric_limits<double>::infinity();
+        high[above] = -low[above];
+        for (const SidePoint& p : side) {
+            const double off = above ? p.height - height : height - p.height;
+            if (off < from_cells * cell_m || off > to_cells * cell_m) continue;
+            parts[above].push_back(p);
+            low[above] = std::min(low[above], p.along);
+            high[above] = std::max(high[above], p.along);
+        }
+    }
+    // Both where the other is, too: what only one of them has may be another face.
+    const double first = std::max(low[0], low[1]) - 0.5 * cell_m,
+                 last = std::min(high[0], high[1]) + 0.5 * cell_m;
+    for (Side& part : parts) {
+        std::erase_if(part, [&](const SidePoint& p) { return p.along < first || p.along > last; });
+        if (part.size() < least_each) return std::nullopt;
+        // The means of cells at an edge lie behind it.
+        const auto [bottom, top] = std::ranges::minmax_element(part, {}, &SidePoint::height);
+        if (top->height - bottom->height < cell_m) return std::nullopt;
+    }
+    if (covered_by_both(parts, first, last, cell_m) < least_covered) return std::nullopt;
+    const auto count = static_cast<Eigen::Index>(parts[0].size() + parts[1].size());
+    Eigen::MatrixXd two(count, 5), one(count, 3);
+    Eigen::VectorXd out(count);
+    const double middle = 0.5 * (first + last);
+    Eigen::Index n = 0;
+    for (std::size_t above = 0; above < 2; ++above) {
+        const double in = above ? 1 : 0;
+        for (const SidePoint& p : parts[above]) {
+            const double along = p.along - middle, up = p.height - height;
+            two.row(n) << in, 1 - in, in * along, (1 - in) * along, up;
+            one.row(n) << 1, along, up;
+            out[n++] = p.out;
+        }
+    }
+    constexpr double any_slope = std::numeric_limits<double>::infinity();
+    Eigen::VectorXd fit, unused;
+    const double free = residual(two, out, 0, any_slope, fit);
+    const double noise =
+        std::max(std::sqrt(free / static_cast<double>(std::max<Eigen::Index>(count - 5, 1))),
+                 least_noise_cells * cell_m);
+    const double stepped = residual(two, out, noise, upright_slope, fit);
+    Step step;
+    step.over_none = (residual(one, out, noise, upright_slope, unused) - stepped) / (noise * noise);
+    step.over_lean = (residual(one, out, noise, any_slope, unused) - stepped) / (noise * noise);
+    double squares = 0;
+    for (Eigen::Index k = 0; k < count; ++k) {
+        const double d = fit[0] - fit[1] + (fit[2] - fit[3]) * one(k, 1);
+        squares += d * d;
+    }
+    step.size_m = std::sqrt(squares / static_cast<double>(count));
+    step.surfels = static_cast<std::size_t>(count);
+    return step;
+}
+
+// How sure a ledge at this height is: 0 for none.
+double evidence(const std::array<Side, sectors>& sides, double height, double cell_m) {
+    double sure = 0, over_lean = 0;
+    std::size_t all = 0, stepped = 0;
+    std::vector<std::size_t> where;
+    for (std::size_t k = 0; k < sectors; ++k) {
+        const std::optional<Step> step = step_at(sides[k], height, cell_m);
+        if (!step) continue;
+        all += step->surfels;
+        over_lean += std::clamp(step->over_lean, -most_of_side, most_of_side);
+        if (step->over_none < least_of_side || step->size_m < least_cells * cell_m ||
+            step->size_m > most_cells * cell_m)
+            continue;
+        stepped += step->surfels;
+        sure += std::min(step->over_none, most_of_side);
+        where.push_back(k);
+    }
+    if (sure < least_sure || over_lean < least_over_lean ||
+        static_cast<double>(stepped) < least_share * static_cast<double>(all))
+        return 0;
+    // Sides that look the same way, or away from each other, may be shifted by a bend.
+    for (const std::size_t a : where)
+        for (const std::size_t b : where)
+            if ((b + sectors - a) % sectors == 2) return sure;
+    return 0;
+}
+
+}  // namespace
+
+std::optional<double> find_ledge(const Surfels& s, std::span<const std::uint32_t> members,
+                                 const Eigen::Vector3d& up) {
+    constexpr double upright = 0.35;  // largest cosine of a side's normal to up
+    const Eigen::Vector3d east = up.unitOrthogonal(), north = up.cross(east);
+    struct Place {
+        std::uint32_t surfel;
+        double azimuth;
+    };
+    std::vector<Place> places;
+    std::complex<double> quarter = 0;
+    for (const std::uint32_t i : members) {
+        const Eigen::Vector3d n = normal(s, i);
+        if (n.squaredNorm() < 0.5 || std::abs(n.dot(up)) > upright) continue;
+        const double azimuth = std::atan2(n.dot(north), n.dot(east));
+        places.push_back({i, azimuth});
+        quarter += std::polar(1.0, 4 * azimuth);
+    }
+    // Box-like: of normals in all directions alike, as a bottle's, nothing is left.
+    constexpr double box_like = 0.5;
+    if (places.size() < 4 * least_each ||
+        std::abs(quarter) < box_like * static_cast<double>(places.size()))
+        return std::nullopt;
+    const double turn = std::arg(quarter) / 4, width = 2 * std::numbers::pi / sectors;
+    std::array<Side, sectors> sides;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Place& p : places) {
+        const auto k = static_cast<std::int64_t>(std::floor((p.azimuth - turn) / width + 0.5));
+        const std::size_t sector =
+            static_cast<std::size_t>(k + 2 * std::int64_t{sectors}) % sectors;
+        const double angle = turn + width * static_cast<double>(sector);
+        const Eigen::Vector3d out = std::cos(angle) * east + std::sin(angle) * north;
+        const Eigen::Vector3d at = position(s, p.surfel);
+        sides[sector].push_back({up.cross(out).dot(at), out.dot(at), up.dot(at)});
+        low = std::min(low, up.dot(at));
+        high = std::max(high, up.dot(at));
+    }
+    std::optional<double> best;
+    double most = 0;
+    for (double h = low + s.cell_m; h <= high - s.cell_m; h += s.cell_m / 4) {
+        const double e = evidence(sides, h, s.cell_m);
+        if (e > most) most = e, best = h;
+    }
+    return best;
+}
+
+std::vector<Ledge> ledges_between(const Surfels& s, const PrimitiveSet& primitives,
+                                  const Eigen::Vector3d& up) {
+    constexpr std::size_t least_pairs = 12;
+    struct Sum {
+        double height = 0;
+        std::size_t pairs = 0;
+    };
+    std::map<std::pair<std::int32_t, std::int32_t>, Sum> sums;  // above, below
+    const std::vector<std::int32_t>& label = primitives.label;
+    for (std::size_t n = 0; n < s.size(); ++n) {
+        for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
+            const std::uint32_t m = s.neighbours[k];
+            if (label[n] < 0 || label[m] < 0 || label[n] == label[m]) continue;
+            const double own = up.dot(position(s, n)), other = up.dot(position(s, m));
+            if (own <= other || !ledge_between(primitives, n, m)) continue;
+            Sum& sum = sums[{label[n], label[m]}];
+            sum.height += 0.5 * (own + other);
+            ++sum.pairs;
+        }
+    }
+    std::vector<Ledge> out;
+    for (const auto& [pair, sum] : sums) {
+        const auto back = sums.find({pair.second, pair.first});
+        if (sum.pairs < least_pairs || (back != sums.end() && back->second.pairs >= sum.pairs))
+            continue;
+        out.push_back({pair.first, pair.second, sum.height / static_cast<double>(sum.pairs)});
+    }
+    return out;
+}
+
+}  // namespace topple::geometry

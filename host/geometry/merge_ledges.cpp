@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "geometry/ledges.h"
+#include "geometry/merge.h"
+#include "geometry/region_facts.h"
+#include "geometry/split.h"
+
+namespace topple::geometry {
+namespace {
+
+// Below this a part of a region is noise at the ledge.
+constexpr std::size_t least_piece = 6;
+
+}  // namespace
+
+std::uint32_t cut_at_ledges(const Surfels& s, const Vec3& upwards,
+                            const std::vector<std::int32_t>& solid, CutRegions& cuts,
+                            RegionFacts& facts) {
+    const Eigen::Vector3d up(upwards[0], upwards[1], upwards[2]);
+    std::map<std::int32_t, std::vector<std::size_t>> regions_of;
+    for (std::size_t k = 0; k < solid.size(); ++k)
+        if (!cuts.members[k].empty()) regions_of[solid[k]].push_back(k);
+    const std::uint32_t before = cuts.count;
+    std::vector<std::int32_t> changed;
+    for (const auto& [root, regions] : regions_of) {
+        std::vector<std::uint32_t> members;
+        for (const std::size_t k : regions)
+            members.insert(members.end(), cuts.members[k].begin(), cuts.members[k].end());
+        const std::optional<double> ledge = find_ledge(s, members, up);
+        if (!ledge) continue;
+        for (const std::size_t k : regions) {
+            changed.push_back(static_cast<std::int32_t>(k));
+            std::vector<std::uint32_t> above;
+            for (const std::uint32_t i : cuts.members[k])
+                if (up.dot(position(s, i)) > *ledge) above.push_back(i);
+            const std::size_t below = cuts.members[k].size() - above.size();
+            if (std::min(above.size(), below) < least_piece) {
+                cuts.ledges[k].emplace_back(cuts.count, above.size() > below);
+                continue;
+            }
+            const std::size_t fresh = cuts.take_out(s, k, std::move(above));
+            cuts.ledges[k].emplace_back(cuts.count, false);
+            cuts.ledges[fresh].emplace_back(cuts.count, true);
+            changed.push_back(static_cast<std::int32_t>(fresh));
+        }
+        ++cuts.count;
+    }
+    if (!changed.empty()) facts.update(changed);
+    return cuts.count - before;
+}
+
+}  // namespace topple::geometry
