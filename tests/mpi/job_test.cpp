@@ -162,13 +162,22 @@ TEST_F(Job, a_rank_without_the_device_ends_it) {
 }
 
 TEST_F(Job, a_killed_rank_ends_it_and_the_next_job_goes_on) {
-    bool killed = false;
-    const Finished broken = job(ranks(2, parse("out")), {}, [&](const std::string&) {
-        const pid_t rank = !killed && files("block-").size() >= 2 ? process_of(1) : 0;
-        if (rank > 0) killed = kill(rank, SIGKILL) == 0;
-        return 0;
-    });
-    ASSERT_TRUE(killed);
+    // Stopped while there are blocks to do, which nobody can finish without it, and killed when the
+    // other has done two. Where the machine is so busy that this comes late, once more.
+    Finished broken;
+    for (int attempt = 0; attempt < 5; ++attempt) {
+        fs::remove_all(in("out"));
+        pid_t rank = 0;
+        bool stopped = false;
+        broken = job(ranks(2, parse("out")), {}, [&](const std::string&) {
+            if (rank == 0) rank = process_of(1);
+            if (rank > 0 && !stopped && !files("layout").empty())
+                stopped = kill(rank, SIGSTOP) == 0;
+            if (stopped && files("block-").size() >= 2) kill(rank, SIGKILL);
+            return 0;
+        });
+        if (!fs::exists(in("out"))) break;
+    }
     EXPECT_NE(broken.code, 0);
     EXPECT_NE(broken.err.find("signal 9"), std::string::npos) << broken.err;
     EXPECT_FALSE(fs::exists(in("out")));
