@@ -15,6 +15,7 @@
 #include "io/text.h"
 #include "pipeline/assemble.h"
 #include "pipeline/block_stage.h"
+#include "pipeline/callers_thread.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/explain.h"
 #include "pipeline/ingest.h"
@@ -302,9 +303,10 @@ std::optional<WorkLeft> work_left(const fs::path& input, const ParseOptions& opt
     }
 }
 
-std::optional<ParseResult> parse_tiled(const fs::path& input, const ParseOptions& options) {
-    if (!may_be_tiled(input, options)) return std::nullopt;
-    check_options(options);
+std::optional<ParseResult> parse_tiled(const fs::path& input, const ParseOptions& callers) {
+    if (!may_be_tiled(input, callers)) return std::nullopt;
+    check_options(callers);
+    const ParseOptions options = called_here(callers);
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options);
     const std::string about = manifest(input, options);

@@ -67,8 +67,8 @@ struct ParseOptions {
     std::filesystem::path work_folder;
     // With whom a parse in blocks is shared (topple/crew.h); null: nobody.
     std::shared_ptr<Crew> crew;
-    // Called when a stage starts and while it goes on: its name, and how much of it is done, 0
-    // to 1.
+    // Called on the thread that called the parse, as `cancelled` is, when a stage starts and while
+    // it goes on: its name, and how much of it is done, 0 to 1.
     std::function<void(const std::string&, double)> progress;
     // Polled now and then; true stops the parse with Error(input) "cancelled".
     std::function<bool()> cancelled;

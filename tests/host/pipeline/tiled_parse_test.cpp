@@ -7,7 +7,9 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <set>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -105,6 +107,24 @@ TEST_F(SlowTiles, MemoryAndThreadsChangeNothing) {
     options.device = device::open_device("native", 1);
     options.max_memory_bytes = std::uint64_t{700} << 20;
     EXPECT_TRUE(output_of(parse(building(), options)) == *output_);
+}
+
+TEST_F(SlowTiles, CallbacksAreCalledOnTheCallersThread) {
+    ParseOptions options = coarse();
+    options.device = device::open_device("native", 3);
+    std::set<std::thread::id> threads;  // of another's calls, it would be a race
+    double last = 0;
+    options.progress = [&](const std::string& name, double done) {
+        threads.insert(std::this_thread::get_id());
+        if (name == "blocks") last = done;
+    };
+    options.cancelled = [&] {
+        threads.insert(std::this_thread::get_id());
+        return false;
+    };
+    parse(building(), options);
+    EXPECT_EQ(threads, std::set{std::this_thread::get_id()});
+    EXPECT_GT(last, 0.3);
 }
 
 TEST_F(SlowTiles, AStoppedRunGoesOnWhereItWas) {
