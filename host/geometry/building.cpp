@@ -20,8 +20,8 @@ constexpr double floor_m2 = 4, floor_off_m = 0.1;
 // may be that parts what is seen of the one from what is seen of the other, and the area of each
 // where they end at a ceiling; without one, where a shelf between two parts of a room may be as
 // high, more.
-constexpr double thinnest_wall_m = 0.03, thickest_wall_m = 0.5, opposite_cos = 0.97;
-constexpr double door_m = 1.5, wall_m2 = 3, open_wall_m2 = 6, open_wall_m = 2.2;
+constexpr double thinnest_wall_m = 0.03, opposite_cos = 0.97;
+constexpr double wall_m2 = 3, open_wall_m2 = 6, open_wall_m = 2.2;
 
 std::vector<Storey> storeys_of(const Surfels& s, const Vec3& up) {
     double low = INFINITY, high = -INFINITY;
@@ -40,7 +40,7 @@ std::vector<Storey> storeys_of(const Surfels& s, const Vec3& up) {
 bool has_floor(const std::vector<Face>& face, const Vec3& up, const Storey& storey) {
     double area = 0;
     for (const Face& f : face) {
-        if (f.flatness > flat && f.level(up) > horizontal_cos &&
+        if (f.is_plane() && f.level(up) > horizontal_cos &&
             std::abs(f.height_m(up) - storey.floor_m) < floor_off_m)
             area += f.area_m2;
     }
@@ -49,49 +49,33 @@ bool has_floor(const std::vector<Face>& face, const Vec3& up, const Storey& stor
 
 // An upright face that may be a wall's, and how far it reaches along the wall.
 struct Side {
-    const Face* face = nullptr;
-    std::size_t region = 0;
-    double ax = 0, ay = 0, az = 0;  // unit, level, along the wall
-    double low = INFINITY, high = -INFINITY;
+    Face face;
+    LevelSpan span;
 };
 
 std::vector<Side> find_sides(const Surfels& s, const std::vector<std::int32_t>& region,
                              const std::vector<Face>& face, const Vec3& up,
                              const StoreyHint& storey) {
     const double ceiling = ceiling_height(face, up, storey.floor_m, storey.top_m);
+    const std::vector<LevelSpan> span = level_spans(s, region, face, up);
     std::vector<Side> out;
-    std::vector<std::int32_t> side_of(face.size(), -1);
     for (std::size_t r = 0; r < face.size(); ++r) {
         const Face& f = face[r];
         const bool high =
             std::isfinite(ceiling)
                 ? f.area_m2 >= wall_m2 && f.highest_m >= ceiling - below_ceiling_m
                 : f.area_m2 >= open_wall_m2 && f.highest_m - f.lowest_m >= open_wall_m;
-        if (!high || f.flatness < flat || std::abs(f.level(up)) > vertical_sin) continue;
-        Side side{&f, r, up[1] * f.nz - up[2] * f.ny, up[2] * f.nx - up[0] * f.nz,
-                  up[0] * f.ny - up[1] * f.nx};
-        const double length = std::sqrt(side.ax * side.ax + side.ay * side.ay + side.az * side.az);
-        side.ax /= length, side.ay /= length, side.az /= length;
-        side_of[r] = static_cast<std::int32_t>(out.size());
-        out.push_back(side);
-    }
-    for (std::size_t n = 0; n < s.size(); ++n) {
-        if (region[n] < 0 || side_of[static_cast<std::size_t>(region[n])] < 0) continue;
-        Side& side = out[static_cast<std::size_t>(side_of[static_cast<std::size_t>(region[n])])];
-        const double along = side.ax * s.x[n] + side.ay * s.y[n] + side.az * s.z[n];
-        side.low = std::min(side.low, along);
-        side.high = std::max(side.high, along);
+        if (high && f.is_plane() && f.is_upright(up)) out.push_back({f, span[r]});
     }
     return out;
 }
 
 bool is_wall(const Side& a, const Side& b) {
-    const Face &f = *a.face, &g = *b.face;
+    const Face &f = a.face, &g = b.face;
     if (f.nx * g.nx + f.ny * g.ny + f.nz * g.nz > -opposite_cos) return false;
     const double thick = -((g.px - f.px) * f.nx + (g.py - f.py) * f.ny + (g.pz - f.pz) * f.nz);
     if (thick < thinnest_wall_m || thick > thickest_wall_m) return false;
-    // The other's axis points the other way.
-    return std::max(a.low, -b.high) - std::min(a.high, -b.low) <= door_m;
+    return gap_m(a.span, b.span, true) <= door_m;
 }
 
 bool has_inner_wall(const Surfels& surfels, const PrimitiveSet& primitives,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geometry/shell_faces.h"
+#include "geometry/walls.h"
 
 namespace topple::geometry {
 namespace {
@@ -23,9 +24,6 @@ constexpr double scrap_share = 0.05, scrap_cos = 0.5, scrap_inside = 0.9, shell_
 // that meet: where a wall meets a wall or the floor, normals and places of points are mixtures of
 // both. No thing is as small as that across, and as close to both.
 constexpr double corner_inside = 0.85, corner_cells = 5, corner_cos = 0.5;
-// Share of the scene's surfels that may lie behind a wall: windows, mirrors, open doors.
-constexpr double behind_share = 0.02;
-
 // A level piece smaller than the first, in square metres, is floor only within the noise of the
 // floor's plane, in cells, and a scrap on the floor is part of it only within that or
 // below the second: the foot of a lamp and a book on the floor are as flat and as low.
@@ -35,26 +33,13 @@ constexpr double floor_piece_m2 = 0.25, least_thing_m2 = 0.01, noise_cells = 0.6
 // as a step, is another floor: a gallery, a platform. Tables are between them, beds smaller.
 constexpr double other_floor_m2 = 4, storey_m = 1.8, lowest_step_m = 0.12, highest_step_m = 0.45;
 
-// Walls of a building whose ceiling is not seen are no lower and no smaller.
-constexpr double high_wall_m = 2.0, high_wall_m2 = 1.5;
+// Walls of a building whose ceiling is not seen are no lower.
+constexpr double high_wall_m = 2.0;
 // What is no plane, but reaches that close to the ceiling, is built in: both faces of a wall
 // between doors, the lintel above one, a pillar.
 constexpr double touches_ceiling_m = 0.06;
-// Pieces of a wall's plane face as it does and lie as near to it; of a part that is wall at least
-// this share does.
-constexpr double same_wall_cos = 0.98, same_wall_m = 0.04, wall_piece_share = 0.75;
 // A storey's floor strays from its height by no more.
 constexpr double uneven_storey_m = 0.1;
-
-// Share of all surfels further behind the face than its own thickness and noise explain.
-double share_behind(const Surfels& s, const Face& f) {
-    const double slack = std::max(0.05, 3 * s.cell_m);
-    std::uint64_t behind = 0;
-    for (std::size_t n = 0; n < s.size(); ++n) {
-        behind += (s.x[n] - f.px) * f.nx + (s.y[n] - f.py) * f.ny + (s.z[n] - f.pz) * f.nz < -slack;
-    }
-    return s.size() ? static_cast<double>(behind) / static_cast<double>(s.size()) : 0;
-}
 
 // How far a level primitive lies above others around its footprint, or nothing where they are
 // hardly to be seen.
@@ -122,44 +107,6 @@ std::vector<bool> continued_floor(const Surfels& s, const PrimitiveSet& primitiv
     return floor;
 }
 
-// What lies in the planes of walls is wall: pieces that doors and things cut off from the ceiling,
-// and those with both faces of the wall.
-void add_wall_pieces(const Surfels& surfels, const PrimitiveSet& primitives, const Vec3& up,
-                     const std::vector<Face>& face, std::vector<Structure>& structure) {
-    const std::vector<Face> regions =
-        faces(surfels, primitives.faces.label, primitives.faces.regions.size(), up);
-    const auto upright = [&](const Face& f) {
-        return f.flatness > flat && std::abs(f.level(up)) < vertical_sin;
-    };
-    std::vector<const Face*> walls;
-    for (std::size_t p = 0; p < face.size(); ++p) {
-        if (structure[p] != Structure::wall) continue;
-        for (const std::int32_t r : primitives.regions[p]) {
-            const Face& f = regions[static_cast<std::size_t>(r)];
-            if (f.area_m2 >= wall_area_m2 && upright(f)) walls.push_back(&f);
-        }
-    }
-    const auto in_wall = [&](const Face& f) {
-        return upright(f) && std::ranges::any_of(walls, [&](const Face* wall) {
-                   const double off = (f.px - wall->px) * wall->nx + (f.py - wall->py) * wall->ny +
-                                      (f.pz - wall->pz) * wall->nz;
-                   return f.nx * wall->nx + f.ny * wall->ny + f.nz * wall->nz > same_wall_cos &&
-                          std::abs(off) < same_wall_m;
-               });
-    };
-    std::vector<std::size_t> found;
-    for (std::size_t p = 0; p < face.size(); ++p) {
-        if (structure[p] != Structure::none || face[p].area_m2 < wall_area_m2) continue;
-        double area = 0;
-        for (const std::int32_t r : primitives.regions[p]) {
-            const Face& f = regions[static_cast<std::size_t>(r)];
-            if (in_wall(f)) area += f.area_m2;
-        }
-        if (area >= std::max(wall_area_m2, wall_piece_share * face[p].area_m2)) found.push_back(p);
-    }
-    for (const std::size_t p : found) structure[p] = Structure::wall;
-}
-
 // face: of each primitive; no area and no flatness where another storey has it.
 std::vector<Structure> structure_of(const Surfels& surfels, const PrimitiveSet& primitives,
                                     const Vec3& up, const std::vector<Face>& face,
@@ -167,14 +114,13 @@ std::vector<Structure> structure_of(const Surfels& surfels, const PrimitiveSet& 
     std::vector<Structure> out(face.size(), Structure::none);
     double largest_level = 0, largest_upright = 0;
     for (const Face& f : face) {
-        if (f.flatness < flat) continue;
+        if (!f.is_plane()) continue;
         if (f.level(up) > horizontal_cos) largest_level = std::max(largest_level, f.area_m2);
-        if (std::abs(f.level(up)) < vertical_sin)
-            largest_upright = std::max(largest_upright, f.area_m2);
+        if (f.is_upright(up)) largest_upright = std::max(largest_upright, f.area_m2);
     }
     // The floor: the lowest of the large level planes, and what continues it at the same height.
     const auto may_be_floor = [&](const Face& f) {
-        return f.flatness > flat && f.level(up) > horizontal_cos &&
+        return f.is_plane() && f.level(up) > horizontal_cos &&
                f.area_m2 >= std::max(floor_area_m2, floor_share * largest_level);
     };
     double floor_height = INFINITY;
@@ -185,13 +131,21 @@ std::vector<Structure> structure_of(const Surfels& surfels, const PrimitiveSet& 
         if (may_be_floor(f)) floor_height = std::min(floor_height, height);
     }
     if (storey && std::isinf(floor_height)) floor_height = storey->floor_m;
+    const double least_shell_m2 = std::max(wall_area_m2, wall_share * largest_upright);
+    const RoomEnds ends =
+        storey ? RoomEnds{} : find_room_ends(surfels, up, face, least_shell_m2, floor_height);
     const double ceiling =
-        storey ? ceiling_height(face, up, floor_height, storey->top_m) : INFINITY;
-    const auto ends_room = [&](const Face& f) {
-        if (!storey) return share_behind(surfels, f) < behind_share;
-        if (f.level(up) < -horizontal_cos) return f.lowest_m - floor_height >= lowest_ceiling_m;
-        if (std::isfinite(ceiling)) return f.highest_m >= ceiling - below_ceiling_m;
-        return f.highest_m - f.lowest_m >= high_wall_m && f.area_m2 >= high_wall_m2;
+        storey ? ceiling_height(face, up, floor_height, storey->top_m) : ends.ceiling_m;
+    const bool covered = std::isfinite(ceiling);
+    const auto is_ceiling = [&](std::size_t p) {
+        return storey ? face[p].lowest_m - floor_height >= lowest_ceiling_m : ends.bounds[p];
+    };
+    const auto is_wall = [&](std::size_t p) {
+        const Face& f = face[p];
+        if (!storey && ends.bounds[p]) return true;
+        if (covered) return f.is_sheet() && f.highest_m >= ceiling - below_ceiling_m;
+        if (!storey) return f.is_plane() && is_stepped_wall(surfels, f, ends, floor_height);
+        return f.is_plane() && f.highest_m - f.lowest_m >= high_wall_m && f.area_m2 >= high_wall_m2;
     };
     const double noise = noise_cells * surfels.cell_m, uneven = std::max(0.03, 2 * surfels.cell_m);
     std::vector<std::size_t> large;
@@ -199,7 +153,7 @@ std::vector<Structure> structure_of(const Surfels& surfels, const PrimitiveSet& 
     for (std::size_t p = 0; p < face.size(); ++p) {
         const Face& f = face[p];
         const double above = f.height_m(up) - floor_height;
-        if (f.flatness < flat || f.level(up) < horizontal_cos || above < -uneven) continue;
+        if (!f.is_plane() || f.level(up) < horizontal_cos || above < -uneven) continue;
         if (f.area_m2 >= floor_piece_m2 && above < uneven) large.push_back(p);
         other[p] = f.area_m2 >= other_floor_m2 &&
                    (above >= storey_m || (above >= lowest_step_m && above <= highest_step_m));
@@ -212,15 +166,16 @@ std::vector<Structure> structure_of(const Surfels& surfels, const PrimitiveSet& 
         if (small[p] || other[p] || continued[p]) {
             out[p] = Structure::floor;
         } else if (f.area_m2 >= wall_area_m2 && f.highest_m >= ceiling - touches_ceiling_m &&
-                   (f.flatness < flat || f.level(up) > -horizontal_cos)) {
+                   (!f.is_plane() || f.level(up) > -horizontal_cos)) {
             out[p] = Structure::wall;
-        } else if (f.flatness > flat && f.area_m2 >= wall_area_m2 &&
-                   f.area_m2 >= wall_share * largest_upright && ends_room(f)) {
-            if (std::abs(f.level(up)) < vertical_sin) out[p] = Structure::wall;
-            if (f.level(up) < -horizontal_cos) out[p] = Structure::ceiling;
+        } else if (f.area_m2 >= least_shell_m2) {
+            if (f.is_upright(up) && is_wall(p)) out[p] = Structure::wall;
+            if (f.is_plane() && f.level(up) < -horizontal_cos && is_ceiling(p))
+                out[p] = Structure::ceiling;
         }
     }
-    if (storey) add_wall_pieces(surfels, primitives, up, face, out);
+    if (covered) add_walls_under_shell(surfels, primitives, up, face, floor_height, out);
+    add_wall_pieces(surfels, primitives, up, face, out);
     return out;
 }
 
@@ -258,7 +213,7 @@ void absorb_into_shell(const Surfels& s, PrimitiveSet& primitives,
     std::vector<std::vector<std::size_t>> beside(face.size());  // shell planes that it is close to
     for (std::size_t shell = 0; shell < face.size(); ++shell) {
         const Face& f = face[shell];
-        if (structure[shell] == Structure::none || f.flatness < flat) continue;
+        if (structure[shell] == Structure::none || !f.is_sheet()) continue;
         std::vector<std::uint64_t> near(face.size(), 0), close(face.size(), 0), all(face.size(), 0);
         std::vector<double> offset(face.size(), 0);
         for (std::size_t n = 0; n < s.size(); ++n) {
@@ -272,7 +227,8 @@ void absorb_into_shell(const Surfels& s, PrimitiveSet& primitives,
             offset[p] += d;
         }
         for (std::size_t p = 0; p < face.size(); ++p) {
-            const double along = face[p].nx * f.nx + face[p].ny * f.ny + face[p].nz * f.nz;
+            const double facing = face[p].nx * f.nx + face[p].ny * f.ny + face[p].nz * f.nz;
+            const double along = f.is_plane() ? facing : std::abs(facing);
             const bool thing = structure[shell] == Structure::floor &&
                                face[p].area_m2 >= least_thing_m2 &&
                                offset[p] > noise_cells * s.cell_m * static_cast<double>(all[p]);

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <optional>
+#include <array>
+#include <cmath>
+#include <map>
 
 namespace topple::geometry {
 namespace {
@@ -44,11 +46,47 @@ struct Scene {
                 });
         });
     }
-    std::vector<Structure> structure(const std::vector<StoreyHint>& storeys = {}) const {
+    // Turns every n-th surfel of a part round.
+    void turn_round(std::size_t part, std::size_t nth) {
+        for (std::size_t n = 0, k = 0; n < surfels.x.size(); ++n) {
+            if (primitives.label[n] != static_cast<std::int32_t>(part) || k++ % nth) continue;
+            for (auto* normal : {&surfels.nx, &surfels.ny, &surfels.nz})
+                (*normal)[n] = -(*normal)[n];
+        }
+    }
+    std::vector<Structure> structure(const std::vector<StoreyHint>& storeys = {}) {
+        find_neighbours();
         return find_structure(surfels, primitives, {0, 0, 1}, storeys);
     }
 
   private:
+    using Cell = std::array<std::int32_t, 3>;
+
+    void find_neighbours() {
+        std::map<Cell, std::vector<std::uint32_t>> cells;
+        const auto cell = [&](std::size_t n) {
+            const auto index = [&](float v) {
+                return static_cast<std::int32_t>(std::floor(v / surfels.cell_m + 1e-3));
+            };
+            return Cell{index(surfels.x[n]), index(surfels.y[n]), index(surfels.z[n])};
+        };
+        for (std::size_t n = 0; n < surfels.x.size(); ++n)
+            cells[cell(n)].push_back(static_cast<std::uint32_t>(n));
+        surfels.neighbours.clear();
+        surfels.neighbour_first = {0};
+        for (std::size_t n = 0; n < surfels.x.size(); ++n) {
+            const Cell at = cell(n);
+            for (int step = 0; step < 27; ++step) {
+                const auto found = cells.find(
+                    {at[0] + step % 3 - 1, at[1] + step / 3 % 3 - 1, at[2] + step / 9 - 1});
+                if (found == cells.end()) continue;
+                for (const std::uint32_t m : found->second)
+                    if (m != n) surfels.neighbours.push_back(m);
+            }
+            surfels.neighbour_first.push_back(
+                static_cast<std::uint32_t>(surfels.neighbours.size()));
+        }
+    }
     template <class Fill>
     std::size_t piece(const Fill& fill) {
         const auto label = static_cast<std::int32_t>(primitives.model.size());
@@ -123,6 +161,83 @@ TEST(Structure, AFloorInTwoPartsThatNothingJoinsIsFloor) {
     const auto found = scene.structure();
     EXPECT_EQ(found[here], Structure::floor);
     EXPECT_EQ(found[there], Structure::floor);
+}
+
+// In a map of cells some of a floor's look down, because the sensor erred and saw the space below
+// them to be free.
+TEST(Structure, AFloorOfWhichSomeCellsLookDownIsFloor) {
+    Scene scene;
+    const auto floor = scene.level(0, 0, 4, 4, 0);
+    const auto table = scene.level(1, 1, 2, 2, 0.75);
+    scene.turn_round(floor, 8);
+    const auto found = scene.structure();
+    EXPECT_EQ(found[floor], Structure::floor);
+    EXPECT_EQ(found[table], Structure::none);
+}
+
+// A room whose walls were seen up to 1.6 m, with one at x = 4; the camera looked past the end of a
+// plane at x = 1, which reaches as high.
+struct OpenRoom : Scene {
+    std::size_t floor = level(0, 0, 4, 4, 0);
+    std::size_t outer = upright(0, 0, 1.2, 0, 1.6, 1);
+    std::size_t other = upright(4, 0, 4, 0, 1.6, -1);
+};
+
+TEST(StructureOfARoom, AWallThatStepsIsWallOverAll) {
+    OpenRoom room;
+    const auto step = room.upright(0.14, 1.3, 4, 0, 1.55, 1);
+    const auto found = room.structure();
+    for (const std::size_t p : {room.outer, room.other, step})
+        EXPECT_EQ(found[p], Structure::wall) << p;
+}
+
+TEST(StructureOfARoom, FrontsAreNoWalls) {
+    OpenRoom room;
+    const auto wardrobe = room.upright(0.4, 1.3, 4, 0, 1.55, 1);    // as deep as cupboards are
+    const auto radiator = room.upright(3.88, 0, 2, 0.1, 0.9, -1);   // low
+    const auto cabinet = room.upright(3.88, 2.2, 4, 0.7, 1.6, -1);  // hangs
+    const auto narrow = room.upright(3.88, 2.2, 2.7, 0, 1.6, -1);   // a narrow one
+    const auto found = room.structure();
+    for (const std::size_t p : {wardrobe, radiator, cabinet, narrow})
+        EXPECT_EQ(found[p], Structure::none) << p;
+}
+
+// Behind the wall at x = 0 much was seen through a door.
+struct RoomWithADoor : Scene {
+    std::size_t floor = level(-4, 0, 4, 4, 0);
+    std::size_t roof = ceiling(0, 0, 4, 4, 2.6);
+    std::size_t wall = upright(0, 0, 3, 0, 2.6, 1);
+    std::size_t beyond = upright(-4, 0, 4, 0, 2.6, 1);
+};
+
+TEST(StructureOfARoom, UnderACeilingWallsEndThere) {
+    RoomWithADoor room;
+    const auto wardrobe = room.upright(0.6, 0, 2, 0, 2.2, 1);
+    const auto jamb = room.upright(0, 3.9, 4.4, 0, 1.9, 1);  // on the other side of the door
+    const auto found = room.structure();
+    for (const std::size_t p : {room.wall, room.beyond, jamb})
+        EXPECT_EQ(found[p], Structure::wall) << p;
+    EXPECT_EQ(found[wardrobe], Structure::none);
+    EXPECT_EQ(found[room.roof], Structure::ceiling);
+}
+
+TEST(StructureOfARoom, WhatLiesFarOffInAWallsPlaneIsNoWall) {
+    RoomWithADoor room;
+    const auto cupboard = room.upright(0.02, 4.8, 6, 0, 1.9, 1);
+    EXPECT_EQ(room.structure()[cupboard], Structure::none);
+}
+
+// Thin walls of a coarse map are sheets of cells that face both sides, here under a duct.
+TEST(StructureOfARoom, WallsUnderADuctAreWalls) {
+    RoomWithADoor room;
+    const auto duct = room.ceiling(2, 0, 2.5, 4, 2.3);
+    const auto side = room.upright(2, 0, 4, 2.3, 2.6, -1);
+    const auto wall = room.upright(2, 0, 4, 0, 2.3, -1);
+    const auto screen = room.upright(3, 0, 4, 0, 2.1, -1);
+    for (const std::size_t p : {wall, screen}) room.turn_round(p, 2);
+    const auto found = room.structure();
+    for (const std::size_t p : {side, wall}) EXPECT_EQ(found[p], Structure::wall) << p;
+    for (const std::size_t p : {duct, screen}) EXPECT_EQ(found[p], Structure::none) << p;
 }
 
 // Two rooms of a storey, x below and above 3, with a wall of both faces between them.
