@@ -16,8 +16,7 @@ constexpr double histogram_step_m = 0.025;
 constexpr double most_height_m = 1000;
 // A storey has a floor of this area at its height.
 constexpr double floor_m2 = 4, floor_off_m = 0.1;
-// A wall's two faces: how close they are, how well they look away from each other, how wide a door
-// may be that parts what is seen of the one from what is seen of the other, and the area of each
+// A wall's two faces: how thin it is, how well they look away from each other, and the area of each
 // where they end at a ceiling; without one, where a shelf between two parts of a room may be as
 // high, more.
 constexpr double thinnest_wall_m = 0.03, opposite_cos = 0.97;

@@ -25,11 +25,12 @@ struct StoreyHint {
 
 // Finds the shell: the lowest large horizontal plane is the floor (on a scan of a table top, the
 // table takes its place), and so are galleries and platforms of four square metres; large planes
-// that have the whole scene on one side are walls or ceiling. A scene without such planes has no
-// shell. Of each storey, where some are given, the floor is what lies at its height; ceilings look
-// down from at least two metres above it; and walls, whatever lies behind them, are the large
-// upright planes that end at the ceiling, or where none was seen, those two metres high; with what
-// else lies in their planes, and with all that reaches up to the ceiling.
+// that have the whole scene on one side are walls or ceiling, and so are walls with something
+// behind them (geometry/walls.h). A scene without such planes has no shell. Of each storey, where
+// some are given, the floor is what lies at its height; ceilings look down from at least two metres
+// above it; and walls, whatever lies behind them, are the large upright planes that end at the
+// ceiling, or where none was seen, those two metres high; with what else lies in their planes, and
+// with all that reaches up to the ceiling.
 std::vector<Structure> find_structure(const Surfels& surfels, const PrimitiveSet& primitives,
                                       const Vec3& up, std::span<const StoreyHint> storeys = {});
 
