@@ -27,16 +27,20 @@ constexpr std::size_t sectors = 8;
 // What lies on either side of a height is looked at from half a cell, where a cell holds points of
 // one of them only, up to three.
 constexpr double from_cells = 0.5, to_cells = 3;
-constexpr std::size_t least_each = 8;  // surfels above, and below
+constexpr std::size_t least_each = 12;  // surfels above, and below
 // A smaller step than this may be a seam, a larger one is a concave edge, at which regions end.
-constexpr double least_cells = 0.2, most_cells = 1.5;
+constexpr double least_cells = 0.25, most_cells = 1.5;
 // What speaks for a step, twice the logarithms of likelihood ratios: against upright sides without
 // one, of all sides and of each that counts; and against sides that lean instead.
 constexpr double least_sure = 30, least_of_side = 6, least_over_lean = 8;
 constexpr double most_of_side = 200;  // so that one side says no more than several
 // Of the surfels at the height, those on sides with a step.
 constexpr double least_share = 0.6;
-constexpr double least_covered = 0.5;
+// Of the length that is looked at; and that, of all of the side's.
+constexpr double least_covered = 0.5, least_length = 0.6;
+// A ledge shows at heights up to half a cell off it.
+constexpr double height_step_cells = 0.25;
+constexpr int least_heights = 2;
 // How much sides lean that are upright, m/m.
 constexpr double upright_slope = 0.03;
 // Noise of a surfel is no less than this, cells.
@@ -99,7 +103,10 @@ std::optional<Step> step_at(const Side& side, double height, double cell_m) {
         const auto [bottom, top] = std::ranges::minmax_element(part, {}, &SidePoint::height);
         if (top->height - bottom->height < cell_m) return std::nullopt;
     }
-    if (covered_by_both(parts, first, last, cell_m) < least_covered) return std::nullopt;
+    const auto [from, to] = std::ranges::minmax_element(side, {}, &SidePoint::along);
+    if (last - first < least_length * (to->along - from->along) ||
+        covered_by_both(parts, first, last, cell_m) < least_covered)
+        return std::nullopt;
     const auto count = static_cast<Eigen::Index>(parts[0].size() + parts[1].size());
     Eigen::MatrixXd two(count, 5), one(count, 3);
     Eigen::VectorXd out(count);
@@ -201,9 +208,18 @@ std::optional<double> find_ledge(const Surfels& s, std::span<const std::uint32_t
     }
     std::optional<double> best;
     double most = 0;
-    for (double h = low + s.cell_m; h <= high - s.cell_m; h += s.cell_m / 4) {
-        const double e = evidence(sides, h, s.cell_m);
-        if (e > most) most = e, best = h;
+    for (double h = low + s.cell_m; h <= high - s.cell_m;) {
+        // A run of heights, and the surest of them.
+        double sure = 0, at = 0;
+        int heights = 0;
+        for (; h <= high - s.cell_m; h += height_step_cells * s.cell_m) {
+            const double e = evidence(sides, h, s.cell_m);
+            if (e == 0) break;
+            ++heights;
+            if (e > sure) sure = e, at = h;
+        }
+        if (heights >= least_heights && sure > most) most = sure, best = at;
+        h += height_step_cells * s.cell_m;
     }
     return best;
 }

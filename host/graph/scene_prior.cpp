@@ -2,7 +2,6 @@
 #include "graph/scene_prior.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -37,32 +36,24 @@ bool is_slender(double voxels, double length) {
     return length >= least_strut_voxels && length * length * length >= 4 * voxels;
 }
 
-// The primitives that two others touch at opposite ends, as a lamp's base and shade touch its pole.
+// The primitives between one below and one above, as a lamp's pole is between its base and its
+// shade. What touches things to its sides says less: clutter does.
 std::vector<bool> find_struts(const ContactGraph& graph, std::span<const physics::Body> bodies) {
-    struct Ends {
-        std::array<double, 3> low,
-            high;  // by axis: its lowest joint from below, highest from above
-    };
     constexpr double none = std::numeric_limits<double>::infinity();
-    std::vector<Ends> ends(bodies.size(), {{none, none, none}, {-none, -none, -none}});
+    // Its lowest joint with something below, and its highest with something above.
+    std::vector<double> foot(bodies.size(), none), head(bodies.size(), -none);
     for (const physics::TouchingPair& pair : graph.pairs) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (std::abs(pair.normal[axis]) < 0.5) continue;
-            const bool a_is_low = pair.normal[axis] > 0;
-            Ends& of_low = ends[static_cast<std::size_t>(a_is_low ? pair.a : pair.b)];
-            Ends& of_high = ends[static_cast<std::size_t>(a_is_low ? pair.b : pair.a)];
-            of_low.high[axis] = std::max(of_low.high[axis], pair.center[axis]);
-            of_high.low[axis] = std::min(of_high.low[axis], pair.center[axis]);
-        }
+        if (std::abs(pair.normal[2]) < 0.5) continue;
+        const bool a_is_below = pair.normal[2] > 0;
+        const auto below = static_cast<std::size_t>(a_is_below ? pair.a : pair.b),
+                   above = static_cast<std::size_t>(a_is_below ? pair.b : pair.a);
+        head[below] = std::max(head[below], pair.center[2]);
+        foot[above] = std::min(foot[above], pair.center[2]);
     }
     std::vector<bool> struts;
-    for (std::size_t n = 0; n < bodies.size(); ++n) {
-        bool strut = false;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            strut = strut || is_slender(static_cast<double>(bodies[n].voxels),
-                                        (ends[n].high[axis] - ends[n].low[axis]) / graph.voxel_m);
-        struts.push_back(strut);
-    }
+    for (std::size_t n = 0; n < bodies.size(); ++n)
+        struts.push_back(
+            is_slender(static_cast<double>(bodies[n].voxels), (head[n] - foot[n]) / graph.voxel_m));
     return struts;
 }
 
