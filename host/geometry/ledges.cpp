@@ -19,42 +19,42 @@ namespace {
 struct SidePoint {
     double along, out, height;
 };
-using Side = std::vector<SidePoint>;
+using LedgeSide = std::vector<SidePoint>;
 
 // Sides are told apart by eighths of the circle; a box has four, with gaps between.
-constexpr std::size_t sectors = 8;
+constexpr std::size_t side_sectors = 8;
 
 // What lies on either side of a height is looked at from half a cell, where a cell holds points of
 // one of them only, up to three.
 constexpr double from_cells = 0.5, to_cells = 3;
-constexpr std::size_t least_each = 12;  // surfels above, and below
+constexpr std::size_t least_surfels_each = 12;  // surfels above, and below
 // A smaller step than this may be a seam, a larger one is a concave edge, at which regions end.
-constexpr double least_cells = 0.25, most_cells = 1.5;
+constexpr double least_step_cells = 0.25, most_step_cells = 1.5;
 // What speaks for a step, twice the logarithms of likelihood ratios: against upright sides without
 // one, of all sides and of each that counts; and against sides that lean instead.
-constexpr double least_sure = 30, least_of_side = 6, least_over_lean = 8;
+constexpr double least_evidence = 30, least_of_side = 6, least_over_lean = 8;
 constexpr double most_of_side = 200;  // so that one side says no more than several
 // Of the surfels at the height, those on sides with a step.
-constexpr double least_share = 0.6;
+constexpr double least_stepped_share = 0.6;
 // Of the length that is looked at; and that, of all of the side's.
-constexpr double least_covered = 0.5, least_length = 0.6;
+constexpr double least_side_covered = 0.5, least_side_length = 0.6;
 // A ledge shows at heights up to half a cell off it.
 constexpr double height_step_cells = 0.25;
-constexpr int least_heights = 2;
+constexpr int least_ledge_heights = 2;
 // How much sides lean that are upright, m/m.
-constexpr double upright_slope = 0.03;
+constexpr double upright_side_slope = 0.03;
 // Noise of a surfel is no less than this, cells.
 constexpr double least_noise_cells = 0.05;
 
-struct Step {
+struct SideStep {
     double size_m = 0;                    // rms over the side
     double over_none = 0, over_lean = 0;  // evidence
     std::size_t surfels = 0;
 };
 
 // Least squares with a prior of the last column's factor: 0 +- slope.
-double residual(const Eigen::MatrixXd& rows, const Eigen::VectorXd& out, double noise, double slope,
-                Eigen::VectorXd& fit) {
+double residual_with_prior(const Eigen::MatrixXd& rows, const Eigen::VectorXd& out, double noise,
+                           double slope, Eigen::VectorXd& fit) {
     Eigen::MatrixXd normal = rows.transpose() * rows;
     const Eigen::Index last = rows.cols() - 1;
     const double weight = std::isfinite(slope) ? noise * noise / (slope * slope) : 0;
@@ -65,7 +65,8 @@ double residual(const Eigen::MatrixXd& rows, const Eigen::VectorXd& out, double 
 
 // Share of the side's length that has surfels above as well as below: legs under a table's edge
 // have little of it.
-double covered_by_both(const std::array<Side, 2>& parts, double first, double last, double cell_m) {
+double covered_by_both(const std::array<LedgeSide, 2>& parts, double first, double last,
+                       double cell_m) {
     const auto bins = static_cast<std::size_t>((last - first) / cell_m) + 1;
     std::array<std::vector<bool>, 2> covered{std::vector<bool>(bins), std::vector<bool>(bins)};
     for (std::size_t above = 0; above < 2; ++above)
@@ -79,8 +80,8 @@ double covered_by_both(const std::array<Side, 2>& parts, double first, double la
 // A side at a height as two sides, each with its place and direction, and as one:
 //   out = a [above] + a' [below] + b [above] along + b' [below] along + c height
 //   out = a + b along + c height.
-std::optional<Step> step_at(const Side& side, double height, double cell_m) {
-    std::array<Side, 2> parts;
+std::optional<SideStep> step_at(const LedgeSide& side, double height, double cell_m) {
+    std::array<LedgeSide, 2> parts;
     std::array<double, 2> low, high;
     for (std::size_t above = 0; above < 2; ++above) {
         low[above] = std::numeric_limits<double>::infinity();
@@ -96,16 +97,16 @@ std::optional<Step> step_at(const Side& side, double height, double cell_m) {
     // Both where the other is, too: what only one of them has may be another face.
     const double first = std::max(low[0], low[1]) - 0.5 * cell_m,
                  last = std::min(high[0], high[1]) + 0.5 * cell_m;
-    for (Side& part : parts) {
+    for (LedgeSide& part : parts) {
         std::erase_if(part, [&](const SidePoint& p) { return p.along < first || p.along > last; });
-        if (part.size() < least_each) return std::nullopt;
+        if (part.size() < least_surfels_each) return std::nullopt;
         // The means of cells at an edge lie behind it.
         const auto [bottom, top] = std::ranges::minmax_element(part, {}, &SidePoint::height);
         if (top->height - bottom->height < cell_m) return std::nullopt;
     }
     const auto [from, to] = std::ranges::minmax_element(side, {}, &SidePoint::along);
-    if (last - first < least_length * (to->along - from->along) ||
-        covered_by_both(parts, first, last, cell_m) < least_covered)
+    if (last - first < least_side_length * (to->along - from->along) ||
+        covered_by_both(parts, first, last, cell_m) < least_side_covered)
         return std::nullopt;
     const auto count = static_cast<Eigen::Index>(parts[0].size() + parts[1].size());
     Eigen::MatrixXd two(count, 5), one(count, 3);
@@ -123,14 +124,16 @@ std::optional<Step> step_at(const Side& side, double height, double cell_m) {
     }
     constexpr double any_slope = std::numeric_limits<double>::infinity();
     Eigen::VectorXd fit, unused;
-    const double free = residual(two, out, 0, any_slope, fit);
+    const double free = residual_with_prior(two, out, 0, any_slope, fit);
     const double noise =
         std::max(std::sqrt(free / static_cast<double>(std::max<Eigen::Index>(count - 5, 1))),
                  least_noise_cells * cell_m);
-    const double stepped = residual(two, out, noise, upright_slope, fit);
-    Step step;
-    step.over_none = (residual(one, out, noise, upright_slope, unused) - stepped) / (noise * noise);
-    step.over_lean = (residual(one, out, noise, any_slope, unused) - stepped) / (noise * noise);
+    const double stepped = residual_with_prior(two, out, noise, upright_side_slope, fit);
+    SideStep step;
+    step.over_none = (residual_with_prior(one, out, noise, upright_side_slope, unused) - stepped) /
+                     (noise * noise);
+    step.over_lean =
+        (residual_with_prior(one, out, noise, any_slope, unused) - stepped) / (noise * noise);
     double squares = 0;
     for (Eigen::Index k = 0; k < count; ++k) {
         const double d = fit[0] - fit[1] + (fit[2] - fit[3]) * one(k, 1);
@@ -142,29 +145,30 @@ std::optional<Step> step_at(const Side& side, double height, double cell_m) {
 }
 
 // How sure a ledge at this height is: 0 for none.
-double evidence(const std::array<Side, sectors>& sides, double height, double cell_m) {
+double ledge_evidence(const std::array<LedgeSide, side_sectors>& sides, double height,
+                      double cell_m) {
     double sure = 0, over_lean = 0;
     std::size_t all = 0, stepped = 0;
     std::vector<std::size_t> where;
-    for (std::size_t k = 0; k < sectors; ++k) {
-        const std::optional<Step> step = step_at(sides[k], height, cell_m);
+    for (std::size_t k = 0; k < side_sectors; ++k) {
+        const std::optional<SideStep> step = step_at(sides[k], height, cell_m);
         if (!step) continue;
         all += step->surfels;
         over_lean += std::clamp(step->over_lean, -most_of_side, most_of_side);
-        if (step->over_none < least_of_side || step->size_m < least_cells * cell_m ||
-            step->size_m > most_cells * cell_m)
+        if (step->over_none < least_of_side || step->size_m < least_step_cells * cell_m ||
+            step->size_m > most_step_cells * cell_m)
             continue;
         stepped += step->surfels;
         sure += std::min(step->over_none, most_of_side);
         where.push_back(k);
     }
-    if (sure < least_sure || over_lean < least_over_lean ||
-        static_cast<double>(stepped) < least_share * static_cast<double>(all))
+    if (sure < least_evidence || over_lean < least_over_lean ||
+        static_cast<double>(stepped) < least_stepped_share * static_cast<double>(all))
         return 0;
     // Sides that look the same way, or away from each other, may be shifted by a bend.
     for (const std::size_t a : where)
         for (const std::size_t b : where)
-            if ((b + sectors - a) % sectors == 2) return sure;
+            if ((b + side_sectors - a) % side_sectors == 2) return sure;
     return 0;
 }
 
@@ -189,16 +193,16 @@ std::optional<double> find_ledge(const Surfels& s, std::span<const std::uint32_t
     }
     // Box-like: of normals in all directions alike, as a bottle's, nothing is left.
     constexpr double box_like = 0.5;
-    if (places.size() < 4 * least_each ||
+    if (places.size() < 4 * least_surfels_each ||
         std::abs(quarter) < box_like * static_cast<double>(places.size()))
         return std::nullopt;
-    const double turn = std::arg(quarter) / 4, width = 2 * std::numbers::pi / sectors;
-    std::array<Side, sectors> sides;
+    const double turn = std::arg(quarter) / 4, width = 2 * std::numbers::pi / side_sectors;
+    std::array<LedgeSide, side_sectors> sides;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Place& p : places) {
         const auto k = static_cast<std::int64_t>(std::floor((p.azimuth - turn) / width + 0.5));
         const std::size_t sector =
-            static_cast<std::size_t>(k + 2 * std::int64_t{sectors}) % sectors;
+            static_cast<std::size_t>(k + 2 * std::int64_t{side_sectors}) % side_sectors;
         const double angle = turn + width * static_cast<double>(sector);
         const Eigen::Vector3d out = std::cos(angle) * east + std::sin(angle) * north;
         const Eigen::Vector3d at = position(s, p.surfel);
@@ -213,12 +217,12 @@ std::optional<double> find_ledge(const Surfels& s, std::span<const std::uint32_t
         double sure = 0, at = 0;
         int heights = 0;
         for (; h <= high - s.cell_m; h += height_step_cells * s.cell_m) {
-            const double e = evidence(sides, h, s.cell_m);
+            const double e = ledge_evidence(sides, h, s.cell_m);
             if (e == 0) break;
             ++heights;
             if (e > sure) sure = e, at = h;
         }
-        if (heights >= least_heights && sure > most) most = sure, best = at;
+        if (heights >= least_ledge_heights && sure > most) most = sure, best = at;
         h += height_step_cells * s.cell_m;
     }
     return best;
