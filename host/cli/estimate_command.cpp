@@ -9,6 +9,7 @@
 #include "cli/long_run.h"
 #include "cli/max_memory_option.h"
 #include "cli/unit_option.h"
+#include "io/read_cloud.h"
 #include "io/text.h"
 #include "pipeline/estimate.h"
 #include "topple/device.h"
@@ -33,12 +34,12 @@ std::string time_text(double seconds) {
 }
 
 // Whether the parse would be refused, as far as an estimate within a factor of two tells.
-std::string limit_text(const Estimate& e, std::uint64_t max_memory_bytes) {
+std::string limit_text(const Estimate& e, bool may_be_tiled, std::uint64_t max_memory_bytes) {
     const std::string least = "the least is about " + io::bytes_text(e.least_bytes);
     const std::string given = io::bytes_text(max_memory_bytes) + " of --max-memory ";
     if (max_memory_bytes >= 2 * e.least_bytes) return given + "suffice; " + least;
     const std::string mend =
-        std::string("; use a larger --voxel") + (e.tiled ? "" : ", or --tile 5 for a cloud");
+        std::string("; use a larger --voxel") + (e.tiled || !may_be_tiled ? "" : ", or --tile 5");
     if (2 * max_memory_bytes >= e.least_bytes) return given + "may be too few: " + least + mend;
     return given + "are too few, and the parse would be refused: " + least + mend;
 }
@@ -64,7 +65,8 @@ int run(Arguments& a) {
         std::printf("time     about %s\n", time_text(e.seconds).c_str());
         std::printf("memory   about %s\n", io::bytes_text(e.memory_bytes).c_str());
         if (a.options.max_memory_bytes > 0)
-            std::printf("limit    %s\n", limit_text(e, a.options.max_memory_bytes).c_str());
+            std::printf("limit    %s\n",
+                        limit_text(e, io::can_stream(a.input), a.options.max_memory_bytes).c_str());
         if (e.work_bytes > 0)
             std::printf("disk     about %s while it works\n", io::bytes_text(e.work_bytes).c_str());
         std::printf("results  about %s\n", io::bytes_text(e.output_bytes).c_str());

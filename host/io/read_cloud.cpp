@@ -93,10 +93,10 @@ PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text,
     for (const char* known : {".xyz", ".txt", ".csv", ".asc", ".pts"}) {
         if (extension == known) return parse_xyz(file, text, sink);
     }
-    fail(file,
-         "is no known kind of point cloud or mesh (its extension is " + in_quotes(extension) +
-             "); give a .ply, .pcd, .xyz, .las, .obj, .stl, .glb or .gltf file, or a folder with "
-             "depth/*.png");
+    fail(file, "is no known kind of point cloud or mesh (its extension is " + in_quotes(extension) +
+                   "); give a .ply, .pcd, .xyz, .las, .obj, .stl, .glb, .gltf, .bt, .ot or .vdb "
+                   "file, or a "
+                   "folder with depth/*.png");
 }
 
 void scale(PointCloud& cloud, double unit_m) {
@@ -143,8 +143,9 @@ PointCloud read_cloud(const std::filesystem::path& file, double unit_m,
     std::error_code error;
     if (std::filesystem::is_directory(file, error)) {
         fail(file,
-             "is a folder without depth/ and intrinsics.json; give a .ply, .pcd or .xyz file, "
-             "or a folder with both");
+             "is a folder without depth/ and intrinsics.json; give the file of a point cloud, mesh "
+             "or "
+             "map, or a folder with both");
     }
     PointCloud cloud = parse_cloud(file, read_file(file).text(), unit_m, sampling);
     if (unit_m != 1) scale(cloud, unit_m);

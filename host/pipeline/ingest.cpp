@@ -331,9 +331,10 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
     if (options.progress) options.progress("ingest", 0);
     if (io::looks_like_sequence(input)) {
         if (options.unit_m != 1) {
-            throw Error(ErrorKind::usage,
-                        "--unit is for point clouds; depth frames have their unit in "
-                        "intrinsics.json, as depth_scale");
+            throw Error(
+                ErrorKind::usage,
+                "--unit is for point clouds, meshes and maps; depth frames have their unit in "
+                "intrinsics.json, as depth_scale");
         }
         return ingest_frames(device, io::FrameSequence::open(input), options);
     }

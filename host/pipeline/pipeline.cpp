@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -38,8 +39,9 @@ void check_range(const char* option, double value, double lowest, double highest
                     number_text(highest));
 }
 
-void check_memory(const CloudView& cloud, double voxel_m, const ParseOptions& options) {
+void check_memory(const Ingested& input, double voxel_m, const ParseOptions& options) {
     if (options.max_memory_bytes == 0) return;
+    const CloudView& cloud = input.cloud;
     const std::uint64_t need = one_piece_bytes(
         static_cast<double>(cloud.size()),
         scene_bounds<float, FloatColumn>({cloud.x, cloud.y, cloud.z}, static_cast<float>(voxel_m)),
@@ -49,9 +51,27 @@ void check_memory(const CloudView& cloud, double voxel_m, const ParseOptions& op
                     std::to_string(cloud.size()) + " points at voxels of " +
                         io::short_number(voxel_m) + " m would need about " + io::bytes_text(need) +
                         ", more than the " + io::bytes_text(options.max_memory_bytes) +
-                        " of --max-memory; use a larger --voxel, or --tile 5 to have it parsed "
-                        "in blocks");
+                        " of --max-memory; use a larger --voxel" +
+                        (input.frames || input.space
+                             ? ""
+                             : ", or --tile 5 to have a cloud's file parsed in blocks"));
     }
+}
+
+// For what is too small to be a scan of things that stand.
+std::string unit_hint(const CloudView& cloud) {
+    constexpr double least_m = 0.2;
+    double extent = 0;
+    for (const FloatColumn* values : {&cloud.x, &cloud.y, &cloud.z}) {
+        float low = INFINITY, high = -INFINITY;
+        for (std::size_t n = 0; n < cloud.size(); ++n) {
+            low = std::min(low, (*values)[n]);
+            high = std::max(high, (*values)[n]);
+        }
+        extent = std::max(extent, double{high} - double{low});
+    }
+    if (extent <= 0 || extent >= least_m) return {};
+    return "; it all extends over " + io::short_number(extent) + " m: check --unit";
 }
 
 ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOptions& options,
@@ -59,7 +79,7 @@ ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOp
     const double voxel_m = options.voxel_m > 0 ? options.voxel_m
                            : input.voxel_m > 0 ? input.voxel_m
                                                : voxel_for_cell(input.cell_m);
-    check_memory(input.cloud, voxel_m, options);
+    check_memory(input, voxel_m, options);
     record_run(device, options, voxel_m, scene);
     scene.offset_m = input.own.offset_m;
     scene.notes.insert(scene.notes.end(), input.notes.begin(), input.notes.end());
@@ -72,7 +92,8 @@ ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOp
                     scene.source + ": " + std::to_string(input.cloud.size()) +
                         " points were found, but no surface of them fills the " +
                         std::to_string(least_voxels) +
-                        " voxels that a solid takes; give a denser scan, or a smaller --voxel");
+                        " voxels that a solid takes; give a denser scan, or a smaller --voxel" +
+                        unit_hint(input.cloud));
     }
     const SolidParts parts = solid_parts(geometry, voxels);
     const ObjectStage objects = find_objects(device, parts, options, stage);           // 3, 4

@@ -84,6 +84,8 @@ TEST_F(Tiled, estimates_without_parsing) {
     EXPECT_NE(limit("1M").find("1 MiB of --max-memory are too few"), std::string::npos)
         << limit("1M");
     expect_failure(1, {"estimate", "away.ply", "--quiet"}, {"away.ply"});
+    expect_failure(1, {"parse", "plane.xyz", "--unit", "mm", "--quiet"},
+                   {"plane.xyz", "check --unit"});
     expect_failure(2, {"estimate", "plane.xyz", "--voxel", "-1"}, {"--voxel"});
 }
 

@@ -5,6 +5,7 @@
 
 #include "host/io/octomap_files.h"
 #include "host/pipeline/scan.h"
+#include "pipeline/estimate.h"
 #include "vdb/voxel_scene.h"
 
 // A map goes through a parse, and what was seen to be free and occupied comes out as it went in.
@@ -30,6 +31,13 @@ class OctomapRoundTrip : public Files {
 
 TEST_F(OctomapRoundTrip, of_a_generated_room) {
     expect_unchanged(write("room.bt", binary_map(room_map())));
+}
+
+TEST_F(OctomapRoundTrip, is_estimated) {
+    const Estimate e = estimate(write("room.bt", binary_map(room_map())), {});
+    EXPECT_GT(e.points, 0u);
+    EXPECT_GT(e.surface_m2, 0);
+    EXPECT_FALSE(e.tiled);
 }
 
 // What lies within is no surface, but is as occupied as before, and is the pillar's.
