@@ -42,4 +42,12 @@ const oneapi::tbb::global_control no_tbb_workers{
 
 }  // namespace
 
+// Nor can it be seen that libtbb's allocator gives what one thread freed to another: OpenVDB keeps
+// the accessors of each grid, which belongs to one thread, in such a table.
+extern "C" const char* __tsan_default_suppressions();
+extern "C" const char* __tsan_default_suppressions() {
+    return "race:tbb::detail::d2::hash_map_base\n"
+           "race:tbb::detail::d2::concurrent_hash_map\n";
+}
+
 #endif
