@@ -1,40 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <cmath>
-#include <iterator>
 #include <utility>
 
-#include "geometry/algebraic_model.h"
 #include "geometry/merge.h"
 #include "geometry/split.h"
 
 namespace topple::geometry {
-namespace {
-
-Region fit(const Surfels& s, const std::vector<std::uint32_t>& members, int degree) {
-    Region region;
-    if (degree == 1) {
-        PlaneMoments moments;
-        for (const std::uint32_t i : members) moments.add(position(s, i), normal(s, i));
-        region.model = fit_plane(moments, s.cell_m);
-    } else {
-        std::vector<Eigen::Vector3d> points, normals;
-        for (const std::uint32_t i : members) {
-            points.push_back(position(s, i));
-            normals.push_back(normal(s, i));
-        }
-        region.model = fit_quadric(points, normals, s.cell_m);
-    }
-    double sum = 0;
-    for (const std::uint32_t i : members) {
-        const double d = distance(region.model, position(s, i));
-        sum += d * d;
-    }
-    region.surfels = members.size();
-    region.residual_m = std::sqrt(sum / static_cast<double>(members.size()));
-    return region;
-}
-
-}  // namespace
 
 bool on_two_sides(const CutSides& a, const CutSides& b) {
     for (const auto& [cut, side] : a)
@@ -67,8 +37,8 @@ std::size_t CutRegions::take_out(const Surfels& surfels, std::size_t region,
     flush.push_back(flush[region]);
     ledges.push_back(ledges[region]);
     const int degree = regions.regions[region].model.degree;
-    regions.regions[region] = fit(surfels, members[region], degree);
-    regions.regions.push_back(fit(surfels, members[fresh], degree));
+    regions.regions[region] = fit_region(surfels, members[region], degree, surfels.cell_m);
+    regions.regions.push_back(fit_region(surfels, members[fresh], degree, surfels.cell_m));
     return fresh;
 }
 

@@ -83,32 +83,30 @@ SplitScale measure_scale(const Surfels& surfels, const SplitOptions& options,
     return scale;
 }
 
-namespace {
-
-void refit(const Surfels& surfels, const SplitScale& scale, const std::vector<std::uint32_t>& list,
-           Region& region) {
-    if (region.model.degree == 1) {
+Region fit_region(const Surfels& surfels, const std::vector<std::uint32_t>& members, int degree,
+                  double layer_m) {
+    Region region;
+    if (degree == 1) {
         PlaneMoments moments;
-        for (const std::uint32_t i : list) moments.add(position(surfels, i), normal(surfels, i));
-        region.model = fit_plane(moments, scale.layer_m);
+        for (const std::uint32_t i : members) moments.add(position(surfels, i), normal(surfels, i));
+        region.model = fit_plane(moments, layer_m);
     } else {
         std::vector<Eigen::Vector3d> points, normals;
-        for (const std::uint32_t i : list) {
+        for (const std::uint32_t i : members) {
             points.push_back(position(surfels, i));
             normals.push_back(normal(surfels, i));
         }
-        region.model = fit_quadric(points, normals, scale.layer_m);
+        region.model = fit_quadric(points, normals, layer_m);
     }
     double sum = 0;
-    for (const std::uint32_t i : list) {
+    for (const std::uint32_t i : members) {
         const double d = distance(region.model, position(surfels, i));
         sum += d * d;
     }
-    region.surfels = list.size();
-    region.residual_m = std::sqrt(sum / static_cast<double>(list.size()));
+    region.surfels = members.size();
+    region.residual_m = std::sqrt(sum / static_cast<double>(members.size()));
+    return region;
 }
-
-}  // namespace
 
 void refit_regions(const Surfels& surfels, const SplitScale& scale, device::ThreadPool& threads,
                    Regions& regions) {
@@ -124,8 +122,8 @@ void refit_regions(const Surfels& surfels, const SplitScale& scale, device::Thre
     std::vector<Region> kept(order.size());
     threads.each(order.size(), 1, [&](std::size_t id) {
         const auto old = static_cast<std::size_t>(order[id]);
-        kept[id] = regions.regions[old];
-        refit(surfels, scale, members[old], kept[id]);
+        kept[id] =
+            fit_region(surfels, members[old], regions.regions[old].model.degree, scale.layer_m);
         for (const std::uint32_t i : members[old]) regions.label[i] = static_cast<std::int32_t>(id);
     });
     regions.regions = std::move(kept);

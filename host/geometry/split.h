@@ -56,6 +56,11 @@ Regions grow_regions(const Surfels& surfels, const SplitScale& scale, const Spli
 void clean_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
                    device::ThreadPool& threads, Regions& regions);
 
+// A region of these surfels (at least one), with a model of degree 1 or 2. layer_m: see
+// fit_plane(), fit_quadric().
+Region fit_region(const Surfels& surfels, const std::vector<std::uint32_t>& members, int degree,
+                  double layer_m);
+
 // Refits every region to its surfels (degree kept, residual and count set); drops empty regions and
 // renumbers by lowest surfel.
 void refit_regions(const Surfels& surfels, const SplitScale& scale, device::ThreadPool& threads,

@@ -27,9 +27,9 @@ std::optional<Scalar> scalar_named(std::string_view name) {
     return std::nullopt;
 }
 
-class HeaderParser {
+class PlyHeaderParser {
   public:
-    HeaderParser(const std::filesystem::path& file, std::string_view bytes)
+    PlyHeaderParser(const std::filesystem::path& file, std::string_view bytes)
         : file_(file), lines_(bytes) {}
 
     PlyHeader parse() {
@@ -129,7 +129,7 @@ class HeaderParser {
 }  // namespace
 
 PlyHeader parse_ply_header(const std::filesystem::path& file, std::string_view bytes) {
-    return HeaderParser(file, bytes).parse();
+    return PlyHeaderParser(file, bytes).parse();
 }
 
 void ply_cut_short(const std::filesystem::path& file, const PlyElement& element,
