@@ -6,6 +6,8 @@
 
 #include "core/scene_bounds.h"
 #include "device/device.h"
+#include "io/frame_sequence.h"
+#include "io/octomap.h"
 #include "io/text.h"
 #include "pipeline/assemble.h"
 #include "pipeline/cancelling.h"
@@ -18,6 +20,7 @@
 #include "pipeline/tiled_parse.h"
 #include "pipeline/voxel_stage.h"
 #include "topple/parse.h"
+#include "vdb/read_volume.h"
 
 namespace topple {
 namespace {
@@ -39,9 +42,9 @@ void check_range(const char* option, double value, double lowest, double highest
                     number_text(highest));
 }
 
-void check_memory(const Ingested& input, double voxel_m, const ParseOptions& options) {
+void check_memory(const CloudView& cloud, const std::string& source, double voxel_m,
+                  const ParseOptions& options) {
     if (options.max_memory_bytes == 0) return;
-    const CloudView& cloud = input.cloud;
     const std::uint64_t need = one_piece_bytes(
         static_cast<double>(cloud.size()),
         scene_bounds<float, FloatColumn>({cloud.x, cloud.y, cloud.z}, static_cast<float>(voxel_m)),
@@ -52,9 +55,10 @@ void check_memory(const Ingested& input, double voxel_m, const ParseOptions& opt
                         io::short_number(voxel_m) + " m would need about " + io::bytes_text(need) +
                         ", more than the " + io::bytes_text(options.max_memory_bytes) +
                         " of --max-memory; use a larger --voxel" +
-                        (input.frames || input.space
+                        (io::looks_like_sequence(source) || io::looks_like_octomap(source) ||
+                                 vdb::looks_like_volume(source)
                              ? ""
-                             : ", or --tile 5 to have a cloud's file parsed in blocks"));
+                             : ", or --tile 5 to have it parsed in blocks"));
     }
 }
 
@@ -79,7 +83,7 @@ ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOp
     const double voxel_m = options.voxel_m > 0 ? options.voxel_m
                            : input.voxel_m > 0 ? input.voxel_m
                                                : voxel_for_cell(input.cell_m);
-    check_memory(input, voxel_m, options);
+    check_memory(input.cloud, scene.source, voxel_m, options);
     record_run(device, options, voxel_m, scene);
     scene.offset_m = input.own.offset_m;
     scene.notes.insert(scene.notes.end(), input.notes.begin(), input.notes.end());
