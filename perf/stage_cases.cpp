@@ -72,7 +72,7 @@ Result measure_carving(device::Device& device, const StageScene& scene, unsigned
 Result measure_filling(device::Device& device, const StageScene& scene, unsigned runs) {
     vdb::VoxelScene carved = carve(device, scene);
     vdb::VoxelScene::FillOptions options;
-    for (const geometry::Structure s : scene.geometry.structure) {
+    for (const geometry::Structure s : scene.geometry.shell.structure) {
         options.hollow.push_back(s == geometry::Structure::wall ||
                                  s == geometry::Structure::ceiling);
     }

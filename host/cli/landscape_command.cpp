@@ -24,7 +24,7 @@ const Object& chosen(const Scene& scene, std::int64_t id) {
     if (id < 0) {
         const Object* worst = nullptr;
         for (const Object& object : scene.objects) {
-            if (!object.grounded && (!worst || object.unsafety > worst->unsafety)) worst = &object;
+            if (!object.grounded && (!worst || rank_of(object) > rank_of(*worst))) worst = &object;
         }
         if (!worst) throw Error(ErrorKind::input, scene.source + ": has no object that can move");
         return *worst;

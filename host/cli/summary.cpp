@@ -22,7 +22,7 @@ double risk_of(const Object& o, const std::string& disturbance) {
 void print_sentences(const std::vector<const Object*>& riskiest_first) {
     std::vector<const Object*> certain, doubtful;
     for (const Object* o : riskiest_first)
-        (barrier_within_error(*o) ? doubtful : certain).push_back(o);
+        (barrier_within_error(*o) || !o->seen_enough ? doubtful : certain).push_back(o);
     const auto& told = certain.empty() ? doubtful : certain;
     if (told.empty()) return;
     const std::size_t shown = std::min(sentences_shown, told.size());
@@ -52,14 +52,15 @@ void print_objects(const Scene& scene) {
         if (!o.grounded) movable.push_back(&o);
     }
     std::stable_sort(movable.begin(), movable.end(),
-                     [](const Object* a, const Object* b) { return a->unsafety > b->unsafety; });
+                     [](const Object* a, const Object* b) { return rank_of(*a) > rank_of(*b); });
     std::printf("\n%6s %8s %8s %9s %9s %6s %10s %10s %10s  %s\n", "object", "unsafety", "mass kg",
                 "barrier J", "release J", "mode", "human J", "wind J", "quake J", "rests on");
     for (std::size_t i = 0; i < std::min(rows_shown, movable.size()); ++i) {
         const Object& o = *movable[i];
-        char barrier[32] = "~0";
+        char barrier[32] = "~0", unsafety[32] = "-";
+        if (o.seen_enough) std::snprintf(unsafety, sizeof(unsafety), "%.1f", o.unsafety);
         if (!barrier_within_error(o)) std::snprintf(barrier, sizeof(barrier), "%.3g", o.barrier_J);
-        std::printf("%6d %8.1f %8.3g %9s %9.3g %6s %10.3g %10.3g %10.3g  %s\n", o.id, o.unsafety,
+        std::printf("%6d %8s %8.3g %9s %9.3g %6s %10.3g %10.3g %10.3g  %s\n", o.id, unsafety,
                     o.mass_kg, barrier, o.release_J, o.mode.c_str(), risk_of(o, "human"),
                     risk_of(o, "wind"), risk_of(o, "earthquake"),
                     rests_on.contains(o.id) ? rests_on[o.id].c_str() : "-");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 
@@ -28,7 +29,8 @@ Adjacency::Adjacency(std::int32_t nodes, std::span<const Edge> edges)
     }
 }
 
-CutChain::CutChain(const CutProblem& problem, EnergyCache& energies, Random random)
+CutChain::CutChain(const CutProblem& problem, EnergyCache& energies, Random random,
+                   std::span<const std::int32_t> start)
     : problem_(problem),
       energies_(energies),
       random_(random),
@@ -42,12 +44,7 @@ CutChain::CutChain(const CutProblem& problem, EnergyCache& energies, Random rand
       own_(problem.key.size()),
       seen_label_(members_.size()),
       log_miss_to_(members_.size()) {
-    for (std::int32_t n = 0; n < static_cast<std::int32_t>(label_.size()); ++n) {
-        const std::int32_t l = is_pinned(n) ? pinned_label : n + 1;
-        label_[static_cast<std::size_t>(n)] = l;
-        members_[static_cast<std::size_t>(l)].push_back(n);
-        key_[static_cast<std::size_t>(l)] ^= problem.key[static_cast<std::size_t>(n)];
-    }
+    begin(start);
     for (std::size_t e = 0; e < problem.edges.size(); ++e) {
         if (label_of(problem.edges[e].a) == label_of(problem.edges[e].b)) joints_.join(e, 0);
     }
@@ -56,6 +53,23 @@ CutChain::CutChain(const CutProblem& problem, EnergyCache& energies, Random rand
     for (std::size_t l = 0; l < members_.size(); ++l) {
         energy_of_label_[l] = *energies_.known(key_[l]);
         energy_ += energy_of_label_[l];
+    }
+}
+
+void CutChain::begin(std::span<const std::int32_t> start) {
+    // What shares a label with a pinned node is in its group; the others' labels are their lowest
+    // nodes' numbers.
+    std::map<std::int32_t, std::int32_t> label_of_start;
+    for (std::size_t n = 0; n < label_.size(); ++n) {
+        if (problem_.pinned[n] && !start.empty()) label_of_start[start[n]] = pinned_label;
+    }
+    for (std::int32_t n = 0; n < static_cast<std::int32_t>(label_.size()); ++n) {
+        const auto at = static_cast<std::size_t>(n);
+        std::int32_t l = is_pinned(n) ? pinned_label : n + 1;
+        if (!start.empty()) l = label_of_start.try_emplace(start[at], n + 1).first->second;
+        label_[at] = l;
+        members_[static_cast<std::size_t>(l)].push_back(n);
+        key_[static_cast<std::size_t>(l)] ^= problem_.key[at];
     }
 }
 

@@ -64,10 +64,12 @@ class JointCounts {
     std::vector<std::uint64_t> count_, since_;
 };
 
-// One Markov chain of Swendsen-Wang cuts, from one group per node (pinned nodes together).
+// One Markov chain of Swendsen-Wang cuts.
 class CutChain {
   public:
-    CutChain(const CutProblem& problem, EnergyCache& energies, Random random);
+    // start: see SwendsenWangOptions.
+    CutChain(const CutProblem& problem, EnergyCache& energies, Random random,
+             std::span<const std::int32_t> start = {});
 
     // Proposes one flip and takes it or leaves it.
     void step(double temperature);
@@ -93,6 +95,7 @@ class CutChain {
     bool stays_connected();
     bool reaches(std::int32_t start, bool shell);
     std::int32_t free_label();
+    void begin(std::span<const std::int32_t> start);
     double change(double from_after, double to_after) const;
     bool ruled_out(double most_change);
     void fetch_energies();

@@ -3,113 +3,61 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <utility>
 
-#include "physics/drop.h"
+#include "graph/stamped_set.h"
 #include "physics/tipping.h"
 
 namespace topple::graph {
-namespace {
 
-// S(O, W) of Eq. 6 at the energy W: the largest release that W sets free.
-double release_at(const physics::Stability& stability, double work_J) {
-    double release = 0;
-    for (const InstabilityStep& step : stability.curve) {
-        if (step.W_J <= work_J) release = std::max(release, step.S_J);
-    }
-    return release;
-}
-
-// Whether a body withstands a tilt of its support: S = 0 without a look at its landscape. The
-// height that tilting by an angle a lifts the centre of mass by is h (1 / cos a - 1), and an edge
-// at the distance m asks for sqrt(h^2 + m^2) - h: the one is less than the other where m > h tan a.
-// slack_m: what the outline of the support, made of whole voxels, is too wide by.
-bool stands(const physics::Candidate& c, double tilt, double slack_m) {
-    if (c.support_polygon.empty()) return false;
-    const physics::Footing foot =
-        physics::footing(c.support_polygon, c.body.center[0], c.body.center[1]);
-    const double height = c.body.center[2] - c.support_height_m;
-    return foot.margin_m > slack_m && foot.margin_m - slack_m >= height * std::tan(tilt);
-}
-
-}  // namespace
-
-GroupEnergy::GroupEnergy(device::Device& device, const physics::SupportTable& table,
-                         const physics::SolidCells& cells, const ContactGraph& graph,
-                         std::span<const physics::Body> bodies, const SurfaceSeams& seams,
-                         const std::vector<bool>& ground, const GroupingOptions& options)
-    : device_(device),
-      table_(table),
-      cells_(cells),
-      graph_(graph),
+GroupEnergy::GroupEnergy(const ContactGraph& contacts, std::span<const physics::Body> bodies,
+                         std::span<const Joint> joints, const ShellOdds& shell,
+                         const GroupingOptions& options)
+    : contacts_(contacts),
       bodies_(bodies),
-      ground_(ground),
+      shell_(shell),
       options_(options),
-      prior_(graph, bodies, seams, ground, options.prior),
-      columns_(cells),
-      tilt_(options.tilt_deg * std::numbers::pi / 180) {}
-
-// The body that a query asks about, if it does not stand.
-std::optional<physics::Candidate> GroupEnergy::unstable_body(const GroupQuery& query) const {
-    if (query.pinned) return std::nullopt;  // the ground does not fall: S = 0
-    physics::Candidate c = candidate_of(graph_, bodies_, ground_, query.nodes);
-    if (c.body.mass_kg <= 0 || stands(c, tilt_, 0.5 * cells_.voxel_m)) return std::nullopt;
-    return c;
+      neighbours_(bodies.size()) {
+    for (const Joint& j : joints)
+        neighbours_[static_cast<std::size_t>(j.a)].push_back({j.b, j.log_odds});
 }
 
-double GroupEnergy::fall_m(const physics::Candidate& body) const {
-    // What hangs in the air at rest is held by something, however short its fall would be.
-    return body.support_polygon.empty()
-               ? std::max(free_fall_m(graph_, body.primitives), options_.scale_m)
-               : physics::drop_when_tipped_m(cells_, columns_, body);
-}
-
-double GroupEnergy::instability(double released_m) const {
-    return std::min(options_.worst_instability, released_m / options_.scale_m);
-}
-
-void GroupEnergy::operator()(std::span<const GroupQuery> queries,
-                             std::span<double> energies) const {
-    std::vector<physics::Candidate> unstable;
-    std::vector<std::size_t> query;  // of each candidate
-    for (std::size_t i = 0; i < queries.size(); ++i) {
-        energies[i] = prior_(queries[i].nodes);
-        std::optional<physics::Candidate> c = unstable_body(queries[i]);
-        if (!c) continue;
-        if (c->support_polygon.empty()) {  // it falls as it is
-            energies[i] += instability(fall_m(*c));
-            continue;
+double GroupEnergy::joined(const GroupQuery& query) const {
+    thread_local StampedSet members(0);
+    members.clear(bodies_.size());
+    for (const std::int32_t n : query.nodes) members.add(n);
+    double sum = 0;
+    for (const std::int32_t n : query.nodes) {
+        const auto at = static_cast<std::size_t>(n);
+        const bool fixed = shell_.pinned[at];
+        if (query.pinned && !fixed) sum -= shell_.log_odds[at];
+        for (const Neighbour& neighbour : neighbours_[at]) {
+            if (!members.has(neighbour.other)) continue;
+            // The room is one body whatever the sampler does.
+            if (fixed && shell_.pinned[static_cast<std::size_t>(neighbour.other)]) continue;
+            sum -= neighbour.log_odds;
         }
-        unstable.push_back(*std::move(c));
-        query.push_back(i);
     }
-    const std::vector<physics::Stability> stability = physics::evaluate(device_, table_, unstable);
-    for (std::size_t n = 0; n < unstable.size(); ++n) {
-        const physics::Candidate& c = unstable[n];
-        const double weight = c.body.mass_kg * physics::gravity;
-        const double height = std::max(c.body.center[2] - c.support_height_m, 0.0);
-        // What does not stand by stands() falls, whatever its barrier.
-        const double release =
-            std::max(release_at(stability[n], weight * height * (1 / std::cos(tilt_) - 1)),
-                     stability[n].release_J);
-        energies[query[n]] += instability(release / weight + fall_m(c));
-    }
+    return sum;
+}
+
+double GroupEnergy::standing(const GroupQuery& query) const {
+    if (query.pinned || query.nodes.empty()) return 0;
+    return options_.standing_weight *
+           standing_cost(candidate_of(contacts_, bodies_, shell_.pinned, query.nodes),
+                         contacts_.voxel_m);
+}
+
+double GroupEnergy::operator()(const GroupQuery& query) const {
+    return joined(query) + standing(query);
 }
 
 GroupEnergies GroupEnergy::callbacks() const {
-    // Instability is never below 0, nor below what the fall alone makes.
-    const auto prior_alone = [this](const GroupQuery& query, double) {
-        return prior_(query.nodes);
-    };
-    const auto prior_and_fall = [this](const GroupQuery& query, double prior_of_it) {
-        const std::optional<physics::Candidate> c = unstable_body(query);
-        return c ? prior_of_it + instability(fall_m(*c)) : prior_of_it;
-    };
     const auto energy = [this](std::span<const GroupQuery> queries, std::span<double> energies) {
-        (*this)(queries, energies);
+        for (std::size_t n = 0; n < queries.size(); ++n) energies[n] = (*this)(queries[n]);
     };
-    return {energy, {prior_alone, prior_and_fall}};
+    // Standing never costs less than nothing.
+    const auto joints_alone = [this](const GroupQuery& query, double) { return joined(query); };
+    return {energy, {joints_alone}};
 }
 
 }  // namespace topple::graph

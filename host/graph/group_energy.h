@@ -1,50 +1,44 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "device/device.h"
 #include "graph/contact_graph.h"
-#include "graph/scene_prior.h"
+#include "graph/joints.h"
 #include "graph/stable_objects.h"
 #include "graph/swendsen_wang.h"
-#include "physics/cell_columns.h"
-#include "physics/landscape.h"
 
 namespace topple::graph {
 
-// The energy of groups of primitives (Eq. 8): how much falls when the group is tilted, and the
-// scene prior. Keeps references to its arguments.
+// The energy of a group of primitives, in nats (Eq. 8 with a fitted prior):
+//   - sum of the log-odds of the joints within it,
+//   + standing_weight * S, S = -ln P(it stands by itself), see standing_cost().
+// Of the ground: less the log-odds that each of its primitives is the room's, but for those that
+// are taken for the room's anyhow; S = 0. Keeps references to its arguments.
 class GroupEnergy {
   public:
-    GroupEnergy(device::Device& device, const physics::SupportTable& table,
-                const physics::SolidCells& cells, const ContactGraph& graph,
-                std::span<const physics::Body> bodies, const SurfaceSeams& seams,
-                const std::vector<bool>& ground, const GroupingOptions& options);
+    GroupEnergy(const ContactGraph& contacts, std::span<const physics::Body> bodies,
+                std::span<const Joint> joints, const ShellOdds& shell,
+                const GroupingOptions& options);
 
-    // One energy for each query, as one batch on the device. Not from two threads at a time.
-    void operator()(std::span<const GroupQuery> queries, std::span<double> energies) const;
-    const ScenePrior& prior() const { return prior_; }
+    double operator()(const GroupQuery& query) const;
     // This energy with its bounds, for the sampler.
     GroupEnergies callbacks() const;
 
   private:
-    std::optional<physics::Candidate> unstable_body(const GroupQuery& query) const;
-    double fall_m(const physics::Candidate& body) const;
-    double instability(double released_m) const;
+    struct Neighbour {
+        std::int32_t other;  // the higher of the two
+        double log_odds;
+    };
+    double joined(const GroupQuery& query) const;
+    double standing(const GroupQuery& query) const;
 
-    device::Device& device_;
-    const physics::SupportTable& table_;
-    const physics::SolidCells& cells_;
-    const ContactGraph& graph_;
+    const ContactGraph& contacts_;
     std::span<const physics::Body> bodies_;
-    const std::vector<bool>& ground_;
+    const ShellOdds& shell_;
     const GroupingOptions& options_;
-    ScenePrior prior_;
-    physics::CellColumns columns_;
-    double tilt_;  // radians
+    std::vector<std::vector<Neighbour>> neighbours_;
 };
 
 }  // namespace topple::graph

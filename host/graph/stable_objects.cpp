@@ -4,23 +4,23 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
-#include "device/native/thread_pool.h"
+#include "fitted/boosted_trees.h"
+#include "graph/greedy_contraction.h"
 #include "graph/group_energy.h"
 #include "physics/tipping.h"
 
 namespace topple::graph {
 namespace {
 
-// Eq. 10, with the freedom that the joint takes as the feature F.
-std::vector<Edge> edges_of(const ContactGraph& graph, const ScenePrior& prior, double temperature) {
+// Eq. 10 as Barbu and Zhu mean it: an edge is on with the probability that its ends are one.
+std::vector<Edge> edges_of(std::span<const Joint> joints) {
     std::vector<Edge> edges;
-    edges.reserve(graph.pairs.size());
-    for (const physics::TouchingPair& pair : graph.pairs) {
-        const double f = prior.lost_between(pair.a, pair.b);
-        edges.push_back({pair.a, pair.b, std::clamp(std::exp(-f / temperature), 0.05, 0.95)});
-    }
+    edges.reserve(joints.size());
+    for (const Joint& j : joints)
+        edges.push_back({j.a, j.b, std::clamp(fitted::probability(j.log_odds), 0.02, 0.98)});
     return edges;
 }
 
@@ -83,27 +83,50 @@ double free_fall_m(const ContactGraph& graph, std::span<const std::int32_t> prim
     return std::isfinite(lowest - floor) ? lowest - floor : 0;
 }
 
-Grouping group_primitives(device::Device& device, const physics::SupportTable& table,
-                          const physics::SolidCells& cells, const ContactGraph& graph,
-                          std::span<const physics::Body> bodies, const SurfaceSeams& seams,
-                          const std::vector<bool>& ground, const GroupingOptions& options) {
-    const GroupEnergy energy(device, table, cells, graph, bodies, seams, ground, options);
+double standing_cost(const physics::Candidate& c, double noise_m) {
+    constexpr double unseen_support = 0.05;  // share of what stands whose support no scan shows
+    const double worst = -std::log(unseen_support);
+    if (c.body.mass_kg <= 0) return 0;
+    if (c.support_polygon.empty()) return worst;
+    const double margin =
+        physics::footing(c.support_polygon, c.body.center[0], c.body.center[1]).margin_m;
+    const double stands = 0.5 * std::erfc(-margin / (noise_m * std::numbers::sqrt2));
+    return std::min(worst, -std::log(std::max(stands, unseen_support)));
+}
+
+Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Body> bodies,
+                          std::span<const Joint> joints, const ShellOdds& shell,
+                          const GroupingOptions& options, unsigned threads) {
+    const GroupEnergy energy(graph, bodies, joints, shell, options);
     SwendsenWangOptions sampler;
     sampler.seed = options.seed;
-    // Enough flips that every node is tried many times over all chains, within seconds.
     sampler.chains = 4;
-    sampler.threads = device.threads().threads();
-    sampler.last_temperature = 0.005;
-    sampler.anneal_steps = static_cast<unsigned>(std::clamp<std::int64_t>(
-        100 * graph.primitives, 2000, std::max<std::int64_t>(12000, 25 * graph.primitives)));
-    sampler.sample_steps = sampler.anneal_steps / 2;
+    sampler.threads = threads;
+    sampler.start = contract_greedily(graph.primitives, joints, shell.pinned, shell.log_odds);
+    // The start is near the best: what is left is to weigh how things stand, and to look whether a
+    // few parts are better elsewhere.
+    sampler.first_temperature = 0.5;
+    sampler.last_temperature = 0.02;
+    sampler.sample_temperature = 1;
+    sampler.anneal_steps =
+        static_cast<unsigned>(std::clamp<std::int64_t>(20 * graph.primitives, 1000, 200'000));
+    sampler.sample_steps = sampler.anneal_steps / 4;
     sampler.time_limit_s = options.time_limit_s;
     sampler.cancelled = options.cancelled;
-    const std::vector<Edge> edges = edges_of(graph, energy.prior(), options.turn_on_temperature);
-    Partition partition =
-        swendsen_wang_cuts(graph.primitives, edges, ground, energy.callbacks(), sampler);
-    return {std::move(partition.label), std::move(partition.joined), std::move(partition.agreement),
-            std::move(partition.best_energy_curve)};
+    Partition partition = swendsen_wang_cuts(graph.primitives, edges_of(joints), shell.pinned,
+                                             energy.callbacks(), sampler);
+    Grouping out;
+    out.group = std::move(partition.label);
+    out.agreement = std::move(partition.agreement);
+    out.energy_curve = std::move(partition.best_energy_curve);
+    for (const physics::TouchingPair& pair : graph.pairs) {
+        const auto at =
+            std::ranges::lower_bound(joints, std::pair(pair.a, pair.b), {},
+                                     [](const Joint& j) { return std::pair(j.a, j.b); });
+        const bool known = at != joints.end() && at->a == pair.a && at->b == pair.b;
+        out.pair_probability.push_back(known ? fitted::probability(at->log_odds) : 0);
+    }
+    return out;
 }
 
 }  // namespace topple::graph

@@ -6,33 +6,30 @@
 #include <span>
 #include <vector>
 
-#include "device/device.h"
 #include "graph/contact_graph.h"
-#include "graph/scene_prior.h"
+#include "graph/joints.h"
 #include "physics/landscape.h"
 
 // Grouping primitives into objects that stand (paper, 4.1).
 namespace topple::graph {
 
+// How surely primitives are the room's.
+struct ShellOdds {
+    std::vector<double> log_odds;  // by primitive
+    std::vector<bool> pinned;      // taken for the room's whatever touches them
+};
+
 struct GroupingOptions {
     std::uint64_t seed = 1;
-    // The disturbance W of Eq. 8, for each object: the work that tilts it by this angle, or its
-    // support, degrees. Standards for the stability of furniture and lamps ask for 6 to 15; what a
-    // smaller tilt knocks over is no object on its own.
-    double tilt_deg = 10;
-    // Unit of instability, metres: an object that would release m g * scale_m counts 1.
-    double scale_m = 0.3;
-    double worst_instability = 3;  // cap, in those units
-    // T of Eq. 10: q_e = exp(-F / T), clipped to [0.05, 0.95].
-    double turn_on_temperature = 0.5;
-    ScenePrior::Weights prior;
+    // Weight of S(O, W) beside the joints' log-odds (tests/fitting/fit.py finds it).
+    double standing_weight = 1;
     double time_limit_s = 0;  // see SwendsenWangOptions
     std::function<bool()> cancelled;
 };
 
 struct Grouping {
     std::vector<std::int32_t> group;       // of each primitive; -1: fixed to the ground
-    std::vector<double> pair_probability;  // by pair of the contact graph: that the joint is fixed
+    std::vector<double> pair_probability;  // by pair of the contact graph: that both are one solid
     // By group: share of the sampler's chains that found it, but for a tenth of its primitives.
     std::vector<double> agreement;
     std::vector<double> energy_curve;  // best energy after each step of the annealing
@@ -49,11 +46,15 @@ physics::Candidate candidate_of(const ContactGraph& graph, std::span<const physi
 // Height that the body falls before it meets something, metres, where nothing holds it up.
 double free_fall_m(const ContactGraph& graph, std::span<const std::int32_t> primitives);
 
-// ground: by primitive, true for the room's shell. Minimises Eq. 8 by Swendsen-Wang cuts; with the
-// sign of its penalty such that joints which take freedom away cost energy.
-Grouping group_primitives(device::Device& device, const physics::SupportTable& table,
-                          const physics::SolidCells& cells, const ContactGraph& graph,
-                          std::span<const physics::Body> bodies, const SurfaceSeams& seams,
-                          const std::vector<bool>& ground, const GroupingOptions& options);
+// S(O, W) as W goes to 0, in nats: -ln P(the body stands by itself), where the border of its
+// support is known to about `noise_m`. What stands, however precariously, costs next to nothing;
+// what lies on nothing that was seen costs most, but no more than scans hide supports.
+double standing_cost(const physics::Candidate& candidate, double noise_m);
+
+// Minimises Eq. 8 by Swendsen-Wang cuts with q = P(joint), from the greedy contraction of the
+// joints on. joints: sorted by (a, b).
+Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Body> bodies,
+                          std::span<const Joint> joints, const ShellOdds& shell,
+                          const GroupingOptions& options, unsigned threads);
 
 }  // namespace topple::graph

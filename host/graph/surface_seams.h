@@ -19,12 +19,6 @@ struct Seam {
 struct SurfaceSeams {
     std::vector<Seam> inside;                                       // by primitive
     std::map<std::pair<std::int32_t, std::int32_t>, Seam> between;  // (a, b), a < b
-
-    // How surely two primitives are made in one piece, 0 to 1: things that merely stand on one
-    // another hardly ever do so with their faces in line.
-    double flushness(std::int32_t a, std::int32_t b) const;
-    // Whether a ledge runs along their seam: what is made in one piece has none all around.
-    bool ledged(std::int32_t a, std::int32_t b) const;
 };
 
 }  // namespace topple::graph

@@ -61,7 +61,7 @@ Outcome run_chain(const CutProblem& problem, EnergyCache& cache, const Random& r
                   const SwendsenWangOptions& options, double time_limit_s,
                   const std::function<bool()>& stopped) {
     const Schedule schedule(options, time_limit_s);
-    CutChain chain(problem, cache, random);
+    CutChain chain(problem, cache, random, options.start);
     Outcome out{chain.labels(), chain.energy(), {}, {}, 0};
     for (unsigned step = 0; step < options.anneal_steps + options.sample_steps; ++step) {
         const double along = schedule.at(step);

@@ -44,6 +44,9 @@ struct SwendsenWangOptions {
     // Seconds for all, about; annealing and sampling are sped up to fit. 0: as long as they take. A
     // limit that is met makes the result depend on the machine.
     double time_limit_s = 0;
+    // The partition to start from: nodes of one group have one label, pinned nodes share theirs.
+    // Empty: each node on its own.
+    std::vector<std::int32_t> start;
     std::function<bool()> cancelled;  // polled between steps by the caller's thread; may be empty
 };
 
@@ -60,10 +63,11 @@ struct Partition {
                                             // a little from run to run
 };
 
-// Starts from one group per node (pinned nodes together) and returns the best partition seen, and
-// the joint probabilities of the states sampled after that. A flip moves one connected
-// component of turned-on edges to the group of one of its neighbours, or to a fresh group; it is
-// accepted with the probability of Barbu and Zhu's Theorem 1 (paper, Eq. 11). Deterministic.
+// Starts from one group per node (pinned nodes together), or from `start`, and returns the best
+// partition seen, and the joint probabilities of the states sampled after that. A flip moves one
+// connected component of turned-on edges to the group of one of its neighbours, or to a fresh
+// group; it is accepted with the probability of Barbu and Zhu's Theorem 1 (paper, Eq. 11).
+// Deterministic.
 Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
                              const std::vector<bool>& pinned, const GroupEnergies& energies,
                              const SwendsenWangOptions& options);

@@ -115,6 +115,9 @@ Json to_json(const Object& o) {
         {"risk_spread_J", numbers_by_name(o.risk_spread_J)},
         {"fall_chance", numbers_by_name(o.fall_chance)},
         {"unsafety", number(o.unsafety)},
+        {"seen_enough", o.seen_enough},
+        {"rests_by", o.rests_by},
+        {"rest_probability", number(o.rest_probability)},
         {"fall", to_json(o.fall)},
         {"advice", to_json(o.advice)}};
 }
@@ -227,6 +230,11 @@ Object object_of(const Json& json) {
         o.advice = advice_of(json.at("advice"));
     }
     o.unsafety = number_at(json, "unsafety");
+    if (json.contains("seen_enough")) {  // nor these
+        o.seen_enough = json.at("seen_enough").get<bool>();
+        o.rests_by = json.at("rests_by").get<std::string>();
+        o.rest_probability = number_at(json, "rest_probability");
+    }
     return o;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -70,7 +71,12 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
             to.risk_spread_J[name] = risk.spread_J;
             to.fall_chance[name] = risk.chance;
         }
-        to.unsafety = from.grounded ? 1 : safety.unsafety[o];
+        to.seen_enough = from.grounded || from.seen_enough();
+        to.rests_by = from.grounded ? "ground" : graph::to_string(from.rest);
+        to.rest_probability = from.rest_probability;
+        to.unsafety = from.grounded    ? 1
+                      : to.seen_enough ? safety.unsafety[o]
+                                       : std::numeric_limits<double>::quiet_NaN();
         scene.objects.push_back(std::move(to));
     }
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
@@ -87,13 +88,22 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
     GeometryStage geometry = find_primitives(device, input, quiet, stage);
     const VoxelStage voxels = make_solids(device, input, geometry, layout.voxel_m, stage);
     for (std::size_t p = 0; p < geometry.primitives.model.size(); ++p)
-        out.primitives.push_back({geometry.primitives.model[p].front(), geometry.structure[p]});
+        out.primitives.push_back({geometry.primitives.model[p].front(), geometry.shell.structure[p],
+                                  static_cast<float>(geometry.shell.log_odds[p])});
     out.cells = {voxels.cells.i,         voxels.cells.j,       voxels.cells.k,
                  voxels.cells.primitive, voxels.cells.surface, voxels.cells.unseen_below};
     const geometry::Surfels& s = geometry.surfels;
     out.seams = surface_seams(geometry, [&](std::size_t n) {
         const auto at = tiles::voxel_at(layout.frame, layout.voxel_m, s.x[n], s.y[n], s.z[n]);
         return block.core.holds(at[0], at[1], at[2]);
+    });
+    out.samples = geometry::samples_where(geometry.samples, [&](std::size_t n) {
+        const geometry::SurfaceSamples& all = geometry.samples;
+        const auto voxel = [&](float v) {
+            return static_cast<std::int32_t>(std::floor(v / layout.voxel_m));
+        };
+        return all.primitive[n] >= 0 &&
+               block.core.holds(voxel(all.x[n]), voxel(all.y[n]), voxel(all.z[n]));
     });
     add_states(*voxels.scene, block.core, out);
     add_labels(points, geometry.primitive_of_point, out);
@@ -119,6 +129,11 @@ void write_block(const std::filesystem::path& folder, std::size_t block, const B
     for (const auto& [pair, s] : parts.seams.between)
         seams.push_back({pair.first, pair.second, s.variation, s.pairs, s.flush, s.ledge});
     out.array(seams);
+    const geometry::SurfaceSamples& samples = parts.samples;
+    out.value(samples.edge_m);
+    out.value(samples.spacing_m);
+    for (const auto* values : geometry::columns_of(samples)) out.array(*values);
+    out.array(samples.primitive);
     for (const auto* values : {&parts.empty_leaves, &parts.leaves}) out.array(*values);
     out.array(parts.states);
     out.value(static_cast<std::uint64_t>(parts.labels.size()));
@@ -153,6 +168,17 @@ BlockParts read_block(const std::filesystem::path& folder, std::size_t block) {
             out.seams.between[{s.a, s.b}] = seam;
         }
     }
+    geometry::SurfaceSamples& samples = out.samples;
+    samples.edge_m = in.value<double>();
+    samples.spacing_m = in.value<double>();
+    for (auto* values : geometry::columns_of(samples)) *values = in.array<float>();
+    samples.primitive = in.array<std::int32_t>();
+    for (const auto* values : geometry::columns_of(samples)) {
+        if (values->size() != samples.primitive.size()) in.damaged();
+    }
+    if (!std::ranges::all_of(samples.primitive,
+                             [&](std::int32_t p) { return p >= 0 && p < count; }))
+        in.damaged();
     for (auto* values : {&out.empty_leaves, &out.leaves}) *values = in.array<std::int32_t>();
     out.states = in.array<std::uint8_t>();
     if (out.empty_leaves.size() % 3 || out.states.size() != out.leaves.size() / 3 * 512)

@@ -8,6 +8,7 @@
 
 #include "device/device.h"
 #include "geometry/structure.h"
+#include "geometry/surface_samples.h"
 #include "graph/surface_seams.h"
 #include "pipeline/stage_clock.h"
 #include "tiles/blocks.h"
@@ -20,6 +21,7 @@ struct BlockParts {
     struct Primitive {
         char model = 'p';  // 'p' plane, 'q' quadric, 'm' merged
         geometry::Structure structure = geometry::Structure::none;
+        float shell_log_odds = 0;
     };
     std::vector<Primitive> primitives;
     // Solid voxels of core and halo, sorted by (i, j, k), grid frame.
@@ -28,7 +30,8 @@ struct BlockParts {
         std::vector<std::uint8_t> surface, unseen_below;
         std::size_t size() const { return i.size(); }
     } cells;
-    graph::SurfaceSeams seams;  // of the surface in the core
+    graph::SurfaceSeams seams;  // of the surface in the core, as the samples
+    geometry::SurfaceSamples samples;
     // The leaves of the core that are not all invisible: lowest voxels, three numbers each, and
     // their voxels' states, 512 each, or none where the leaf is all empty.
     std::vector<std::int32_t> empty_leaves, leaves;

@@ -40,7 +40,7 @@ double azimuth(const Vec3& way) {
 std::string what(const Scene& scene, const SolidParts& parts, std::int32_t primitive) {
     if (primitive < 0) return "what lies below";
     const auto at = static_cast<std::size_t>(primitive);
-    if (parts.structure[at] == geometry::Structure::floor) return "the floor";
+    if (parts.shell.structure[at] == geometry::Structure::floor) return "the floor";
     const Object& object = scene.objects[static_cast<std::size_t>(scene.primitives[at].object)];
     return object.grounded ? "the ground" : "object " + std::to_string(object.id);
 }
@@ -53,9 +53,9 @@ class Sentence {
 
     std::string text() const {
         if (object_.grounded) return "It is the ground, or fixed to it: it can't fall.";
-        if (from_.candidate.support_polygon.empty()) {
-            return "Nothing was found that holds it up: it is held by what the scan does not show, "
-                   "or it falls.";
+        if (!from_.seen_enough()) {
+            return "The scan does not show what holds it up: it is taken to stand where it is "
+                   "lowest, and is not ranked.";
         }
         if (object_.mode == "slide") return slides();
         return tips();

@@ -42,14 +42,17 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
     const Vec3& up = g.frame.axes[2];
     g.storeys = input.storeys.empty() ? geometry::find_building(g.surfels, g.primitives, up)
                                       : input.storeys;
-    g.structure = geometry::find_structure(g.surfels, g.primitives, up, g.storeys);
-    geometry::absorb_into_shell(g.surfels, g.primitives, g.structure);
     g.region_of_point.reserve(input.cloud.size());
     g.primitive_of_point.reserve(input.cloud.size());
     for (const std::uint32_t s : g.surfels.of_point) {
         g.region_of_point.push_back(regions.label[s]);
         g.primitive_of_point.push_back(g.primitives.label[s]);
     }
+    stage("shell", [&] {
+        g.samples = geometry::sample_surface(input.cloud, g.surfels, g.primitive_of_point, g.frame,
+                                             std::max(geometry::finest_sample_m, input.cell_m));
+        g.shell = geometry::find_shell(g.samples, g.primitives.model.size(), g.storeys);
+    });
     return g;
 }
 
@@ -63,12 +66,14 @@ std::vector<std::int32_t> keep_primitives(GeometryStage& g, const std::vector<bo
         if (to == p) continue;
         g.primitives.model[to] = std::move(g.primitives.model[p]);
         g.primitives.regions[to] = std::move(g.primitives.regions[p]);
-        g.structure[to] = g.structure[p];
+        g.shell.structure[to] = g.shell.structure[p];
+        g.shell.log_odds[to] = g.shell.log_odds[p];
     }
     g.primitives.model.resize(static_cast<std::size_t>(next));
     g.primitives.regions.resize(static_cast<std::size_t>(next));
-    g.structure.resize(static_cast<std::size_t>(next));
-    for (auto* labels : {&g.primitives.label, &g.primitive_of_point}) {
+    g.shell.structure.resize(static_cast<std::size_t>(next));
+    g.shell.log_odds.resize(static_cast<std::size_t>(next));
+    for (auto* labels : {&g.primitives.label, &g.primitive_of_point, &g.samples.primitive}) {
         for (std::int32_t& l : *labels) l = l < 0 ? -1 : number[static_cast<std::size_t>(l)];
     }
     return number;

@@ -7,9 +7,10 @@
 #include "device/device.h"
 #include "geometry/manhattan.h"
 #include "geometry/segmentation.h"
-#include "geometry/structure.h"
+#include "geometry/shell.h"
+#include "geometry/surface_samples.h"
 #include "geometry/surfels.h"
-#include "graph/scene_prior.h"
+#include "graph/surface_seams.h"
 #include "pipeline/ingest.h"
 #include "pipeline/stage_clock.h"
 
@@ -20,8 +21,9 @@ struct GeometryStage {
     geometry::Surfels surfels;
     geometry::SceneFrame frame;
     geometry::PrimitiveSet primitives;
-    std::vector<geometry::Structure> structure;  // by primitive
-    std::vector<geometry::StoreyHint> storeys;   // of a building; none of a room
+    geometry::SurfaceSamples samples;
+    geometry::Shell shell;
+    std::vector<geometry::StoreyHint> storeys;  // of a building; none of a room
     std::vector<std::int32_t> region_of_point, primitive_of_point;
 };
 

@@ -155,6 +155,7 @@ class Joiner {
         number();
         JoinedBlocks out = collect(stage);
         sort_cells(out.parts.cells);
+        geometry::sort_by_primitive(out.parts.samples);
         return out;
     }
 
@@ -209,6 +210,7 @@ class Joiner {
                     number_[static_cast<std::size_t>(id(b, static_cast<std::int32_t>(p)))]);
             add_cells(block, layout_.blocks[b].core, numbers, parts.cells);
             add_seams(block.seams, numbers, parts.seams);
+            add_samples(block.samples, numbers, parts.samples);
             out.number.push_back(std::move(numbers));
             stage.progress("joining", 0.5 + 0.5 * static_cast<double>(b + 1) /
                                                 static_cast<double>(layout_.blocks.size()));
@@ -221,11 +223,14 @@ class Joiner {
         const auto count = static_cast<std::size_t>(count_);
         std::vector<std::map<char, std::uint64_t>> model(count);
         std::vector<std::map<geometry::Structure, std::uint64_t>> structure(count);
+        std::vector<double> odds(count), voxels(count);
         for (std::size_t m = 0; m < members_.size(); ++m) {
             if (number_[m] < 0) continue;
             const auto p = static_cast<std::size_t>(number_[m]);
             model[p][about_[m].model] += voxels_[m];
             structure[p][about_[m].structure] += voxels_[m];
+            odds[p] += static_cast<double>(voxels_[m]) * double{about_[m].shell_log_odds};
+            voxels[p] += static_cast<double>(voxels_[m]);
         }
         const auto most = [](const auto& votes) {
             return std::ranges::max_element(votes, {}, [](const auto& v) { return v.second; })
@@ -233,7 +238,8 @@ class Joiner {
         };
         for (std::size_t p = 0; p < count; ++p) {
             parts.model.emplace_back(model_named(most(model[p])));
-            parts.structure.push_back(most(structure[p]));
+            parts.shell.structure.push_back(most(structure[p]));
+            parts.shell.log_odds.push_back(odds[p] / std::max(voxels[p], 1.0));
         }
     }
 
@@ -273,6 +279,25 @@ class Joiner {
             } else {
                 add(to.between[std::minmax(a, b)], seam);
             }
+        }
+    }
+
+    // Of primitives that are kept. The spacing is the mean over all.
+    static void add_samples(const geometry::SurfaceSamples& from,
+                            const std::vector<std::int32_t>& numbers,
+                            geometry::SurfaceSamples& to) {
+        const auto count = static_cast<double>(to.size()), more = static_cast<double>(from.size());
+        if (from.size() == 0) return;
+        to.edge_m = from.edge_m;
+        to.spacing_m = (count * to.spacing_m + more * from.spacing_m) / (count + more);
+        const auto columns = geometry::columns_of(to);
+        const auto sources = geometry::columns_of(from);
+        for (std::size_t n = 0; n < from.size(); ++n) {
+            const std::int32_t p = numbers[static_cast<std::size_t>(from.primitive[n])];
+            if (p < 0) continue;
+            for (std::size_t c = 0; c < columns.size(); ++c)
+                columns[c]->push_back((*sources[c])[n]);
+            to.primitive.push_back(p);
         }
     }
 

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "device/native/thread_pool.h"
+#include "fitted/boosted_trees.h"
+#include "geometry/primitive_shapes.h"
 #include "physics/body_landscape.h"
 #include "physics/drop.h"
 
@@ -16,15 +18,30 @@ namespace {
 // 10 f^2 + 2 = 2562 directions: neighbours are 4 degrees apart.
 constexpr unsigned sphere_frequency = 16;
 
-std::vector<bool> shell(const SolidParts& parts) {
-    std::vector<bool> ground;
-    for (const geometry::Structure s : parts.structure)
-        ground.push_back(s != geometry::Structure::none);
-    return ground;
+// What the border of a support, made of whole voxels, is known to (one standard error), in voxels.
+constexpr double border_noise = 0.5;
+
+graph::ShellOdds shell_odds(const SolidParts& parts) {
+    graph::ShellOdds out;
+    out.log_odds = parts.shell.log_odds;
+    for (const geometry::Structure s : parts.shell.structure)
+        out.pinned.push_back(s != geometry::Structure::none);
+    return out;
+}
+
+std::vector<graph::Joint> find_joints(const SolidParts& parts, const graph::ContactGraph& contacts,
+                                      std::span<const physics::Body> bodies) {
+    std::vector<float> shell;
+    for (const double odds : parts.shell.log_odds)
+        shell.push_back(static_cast<float>(fitted::probability(odds)));
+    return graph::find_joints(parts.samples,
+                              geometry::primitive_shapes(parts.samples, parts.model.size()),
+                              contacts, bodies, parts.seams, shell);
 }
 
 // Objects by group, the ground first.
-void collect_objects(const std::vector<bool>& ground, ObjectStage& out) {
+void collect_objects(const physics::SolidCells& cells, const std::vector<bool>& ground,
+                     ObjectStage& out) {
     const std::vector<std::int32_t>& group = out.grouping.group;
     const bool has_ground = std::find(group.begin(), group.end(), -1) != group.end();
     std::int32_t objects = 0;
@@ -37,12 +54,21 @@ void collect_objects(const std::vector<bool>& ground, ObjectStage& out) {
         members[static_cast<std::size_t>(out.object_of_primitive[p])].push_back(
             static_cast<std::int32_t>(p));
     }
+    const auto columns = graph::undersides(cells, out.object_of_primitive, members.size());
     for (std::size_t o = 0; o < members.size(); ++o) {
         StableObject object;
         object.candidate =
             graph::candidate_of(out.contacts, out.bodies, ground, std::move(members[o]));
         object.grounded = has_ground && o == 0;
         if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
+        if (!object.grounded) {
+            graph::Rest rest = graph::infer_rest(object.candidate, columns[o], out.contacts,
+                                                 border_noise * cells.voxel_m);
+            object.rest = rest.kind;
+            object.rest_probability = rest.probability;
+            object.candidate.support_polygon = std::move(rest.support_polygon);
+            object.candidate.support_height_m = rest.support_height_m;
+        }
         object.lowest_m = std::numeric_limits<double>::infinity();
         object.highest_m = -object.lowest_m;
         for (const std::int32_t p : object.candidate.primitives) {
@@ -69,7 +95,10 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
         return physics::SupportTable(device, parts.cells, count,
                                      physics::geodesic_sphere(sphere_frequency));
     });
-    return {std::move(bodies), std::move(contacts), std::move(table), parts.seams, shell(parts)};
+    std::vector<graph::Joint> joints =
+        stage("joints", [&] { return find_joints(parts, contacts, bodies); });
+    return {std::move(bodies), std::move(contacts), std::move(table), std::move(joints),
+            shell_odds(parts)};
 }
 
 std::vector<Support> supports_between(const graph::ContactGraph& contacts,
@@ -131,8 +160,8 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
         if (how.mode == "tip" && how.drop_m > 0)
             how.onto = physics::met_when_tipped(cells, columns, candidates[o], how.weakest,
                                                 (*how.edge)[0]);
-        objects[o].barrier_error_J =
-            physics::barrier_error_J(candidates[o], tipping[o], how, cells.voxel_m, friction);
+        objects[o].barrier_error_J = physics::barrier_error_J(
+            candidates[o], tipping[o], how, border_noise * cells.voxel_m, friction);
         objects[o].tipping = std::move(tipping[o]);
         objects[o].level_tipping = std::move(level[o]);
         objects[o].sliding = std::move(sliding[o]);
@@ -152,11 +181,11 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
         grouping.seed = options.seed;
         grouping.time_limit_s = options.grouping_time_s.value_or(0);
         grouping.cancelled = options.cancelled;
-        out.grouping = graph::group_primitives(device, table, solid.cells, out.contacts, out.bodies,
-                                               parts.seams, parts.shell, grouping);
+        out.grouping = graph::group_primitives(out.contacts, out.bodies, parts.joints, parts.shell,
+                                               grouping, device.threads().threads());
     });
     stage("barriers", [&] {
-        collect_objects(parts.shell, out);
+        collect_objects(solid.cells, parts.shell.pinned, out);
         find_barriers(device, table, solid.cells, out.object_of_primitive, options.friction,
                       out.objects);
     });

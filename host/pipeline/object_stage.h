@@ -6,6 +6,7 @@
 
 #include "device/device.h"
 #include "graph/contact_graph.h"
+#include "graph/rest.h"
 #include "graph/stable_objects.h"
 #include "physics/bodies.h"
 #include "physics/landscape.h"
@@ -25,6 +26,13 @@ struct StableObject {
     physics::SlideResult sliding;
     physics::Instability instability;  // of tipping and sliding together
     double barrier_error_J = 0;
+    // How it stands (graph/rest.h); its candidate is held up in that way.
+    graph::RestKind rest = graph::RestKind::seen;
+    double rest_probability = 1;
+    // Whether what holds it up was seen well enough to say what a push does.
+    bool seen_enough() const {
+        return rest != graph::RestKind::hidden && rest != graph::RestKind::none;
+    }
     double agreement = 1;  // share of the sampler's chains that found it
     Landscape poses;       // grid frame; its places are those of `sliding`
     double lowest_m = 0, highest_m = 0;
@@ -43,8 +51,8 @@ struct PartStage {
     std::vector<physics::Body> bodies;  // by primitive
     graph::ContactGraph contacts;
     physics::SupportTable table;
-    graph::SurfaceSeams seams;
-    std::vector<bool> shell;  // by primitive: floor, wall or ceiling
+    std::vector<graph::Joint> joints;
+    graph::ShellOdds shell;
 };
 PartStage weigh_parts(device::Device& device, const SolidParts& parts, const ParseOptions& options,
                       StageClock& stage);

@@ -35,7 +35,7 @@ safety::Surroundings surroundings(const SolidParts& parts, const ObjectStage& ob
     for (const std::int32_t p : parts.cells.primitive) {
         s.object.push_back(p < 0 ? -1 : objects.object_of_primitive[static_cast<std::size_t>(p)]);
     }
-    for (const geometry::Structure p : parts.structure) {
+    for (const geometry::Structure p : parts.shell.structure) {
         s.is_floor_primitive.push_back(p == geometry::Structure::floor);
     }
     for (const physics::Body& b : objects.bodies)
@@ -61,8 +61,8 @@ std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objec
         const StableObject& o = objects[i];
         safety::RiskObject r;
         r.id = static_cast<std::int32_t>(i);
-        // What hangs on nothing that was seen hangs on what was not: nobody knows how firmly.
-        r.grounded = o.grounded || o.candidate.support_polygon.empty();
+        // What is held by nothing that was seen is held by what was not: nobody knows how firmly.
+        r.grounded = o.grounded || !o.seen_enough();
         r.mass_kg = o.candidate.body.mass_kg;
         r.barrier_J = o.instability.barrier_J;
         r.height_m = o.highest_m - o.lowest_m;

@@ -9,7 +9,8 @@ SolidParts solid_parts(const GeometryStage& geometry, VoxelStage& voxels) {
     SolidParts out;
     out.frame = geometry.frame;
     out.model = geometry.primitives.model;
-    out.structure = geometry.structure;
+    out.shell = geometry.shell;
+    out.samples = geometry.samples;
     out.points.resize(out.model.size());
     for (const std::int32_t p : geometry.primitive_of_point) {
         if (p >= 0) ++out.points[static_cast<std::size_t>(p)];

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "geometry/manhattan.h"
-#include "geometry/structure.h"
+#include "geometry/shell.h"
+#include "geometry/surface_samples.h"
 #include "graph/surface_seams.h"
 #include "physics/bodies.h"
 #include "pipeline/geometry_stage.h"
@@ -18,9 +19,10 @@ namespace topple {
 // looked at in one piece or in blocks: all that objects, fields and advice are found from.
 struct SolidParts {
     geometry::SceneFrame frame;
-    std::vector<std::string> model;              // by primitive
-    std::vector<geometry::Structure> structure;  // by primitive
-    std::vector<std::uint64_t> points;           // by primitive
+    std::vector<std::string> model;  // by primitive
+    geometry::Shell shell;
+    geometry::SurfaceSamples samples;   // sorted by primitive
+    std::vector<std::uint64_t> points;  // by primitive
     graph::SurfaceSeams seams;
     physics::SolidCells cells;  // grid frame
 };

@@ -34,7 +34,7 @@ std::vector<bool> solids(const vdb::VoxelScene& scene, std::size_t primitives) {
 // The k of the voxels in which most of the lowest storey's floor lies; the lowest number where
 // there is no floor.
 std::int32_t floor_level(const vdb::VoxelScene& scene, const GeometryStage& geometry) {
-    const std::vector<geometry::Structure>& structure = geometry.structure;
+    const std::vector<geometry::Structure>& structure = geometry.shell.structure;
     const double top = (geometry.storeys.empty() ? std::numeric_limits<double>::infinity()
                                                  : geometry.storeys.front().top_m) /
                        scene.frame().voxel_m;
@@ -127,7 +127,7 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
         vdb::VoxelScene::FillOptions options;
         options.columns = around;
         options.lowest = floor_level(*out.scene, geometry);
-        for (const geometry::Structure s : geometry.structure) {
+        for (const geometry::Structure s : geometry.shell.structure) {
             options.hollow.push_back(s == geometry::Structure::wall ||
                                      s == geometry::Structure::ceiling);
         }
@@ -152,7 +152,7 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
         out.cells.primitive.push_back(solid.primitive[n]);
         out.cells.surface.push_back(solid.state[n] == vdb::State::surface);
     }
-    out.cells.unseen_below = unseen_below(*out.scene, out.cells, geometry.structure);
+    out.cells.unseen_below = unseen_below(*out.scene, out.cells, geometry.shell.structure);
     return out;
 }
 

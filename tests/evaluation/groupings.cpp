@@ -113,11 +113,14 @@ RoomParts scan_parts(const RoomOptions& options) {
 
 void add_examples(const RoomParts& room, JointExamples& examples) {
     const std::vector<std::int32_t> body = bodies_of_primitives(room);
-    const auto joints = features_of(room.parts.contacts, room.parts.bodies, room.parts.shell);
+    const auto joints =
+        features_of(room.parts.contacts, room.parts.bodies, room.parts.shell.pinned);
     for (std::size_t j = 0; j < joints.size(); ++j) {
         const auto a = static_cast<std::size_t>(room.parts.contacts.pairs[j].a),
                    b = static_cast<std::size_t>(room.parts.contacts.pairs[j].b);
-        if (body[a] < 0 || body[b] < 0 || (room.parts.shell[a] && room.parts.shell[b])) continue;
+        if (body[a] < 0 || body[b] < 0 ||
+            (room.parts.shell.pinned[a] && room.parts.shell.pinned[b]))
+            continue;
         examples.joints.push_back(joints[j]);
         examples.fixed.push_back(body[a] == body[b]);
     }
@@ -128,23 +131,22 @@ Groupings compare_groupings(device::Device& device, const RoomParts& room,
     const PartStage& p = room.parts;
     Groupings out;
     out.seed = room.world.seed;
-    const auto joints = features_of(p.contacts, p.bodies, p.shell);
-    out.discriminative = judged(room, join_by_probability(p.contacts, joints, weights, p.shell));
+    const auto joints = features_of(p.contacts, p.bodies, p.shell.pinned);
+    out.discriminative =
+        judged(room, join_by_probability(p.contacts, joints, weights, p.shell.pinned));
 
     const graph::GroupingOptions options;
-    const graph::GroupEnergy energy(device, p.table, room.cells, p.contacts, p.bodies, p.seams,
-                                    p.shell, options);
-    const auto energy_of = [&](std::span<const graph::GroupQuery> queries, std::span<double> to) {
-        energy(queries, to);
-    };
+    const graph::GroupEnergy energy(p.contacts, p.bodies, p.joints, p.shell, options);
+    const EnergyOf energy_of = energy.callbacks().of;
     std::vector<graph::Edge> edges;
-    for (const physics::TouchingPair& pair : p.contacts.pairs) edges.push_back({pair.a, pair.b});
-    const GreedyPartition greedy = greedy_merges(p.contacts.primitives, edges, p.shell, energy_of);
+    for (const graph::Joint& joint : p.joints) edges.push_back({joint.a, joint.b});
+    const GreedyPartition greedy =
+        greedy_merges(p.contacts.primitives, edges, p.shell.pinned, energy_of);
     out.greedy = judged(room, greedy.label);
     out.greedy_energy = greedy.energy;
 
-    const graph::Grouping sampled = graph::group_primitives(device, p.table, room.cells, p.contacts,
-                                                            p.bodies, p.seams, p.shell, options);
+    const graph::Grouping sampled = graph::group_primitives(p.contacts, p.bodies, p.joints, p.shell,
+                                                            options, device.threads().threads());
     out.sampled = judged(room, sampled.group);
     out.sampled_energy = energy_of_all(energy_of, sampled.group);
     return out;

@@ -114,7 +114,7 @@ struct Object {
     double mass_kg = 0;
     Vec3 center_of_mass_m{};
     double barrier_J = 0;  // least energy that moves it out of its basin
-    // What a voxel more or less in its support changes in the barrier.
+    // Of the barrier, one standard error: what half a voxel in its support's border changes.
     double barrier_error_J = 0;
     double release_J = 0;       // what it can release then
     std::string mode = "none";  // "tip" | "slide" | "none"
@@ -125,7 +125,14 @@ struct Object {
     // By disturbance: joules per event; their standard error from the sampling of events; and the
     // chance per event that it falls, which is that it absorbs its barrier or more.
     std::map<std::string, double> risk_J, risk_spread_J, fall_chance;
-    double unsafety = 1;  // 1 (safest) to 10, by risk, over the scene's objects
+    // 1 (safest) to 10, by risk, over the scene's objects; NaN: not seen enough to be ranked.
+    double unsafety = 1;
+    // Whether what holds it up was seen; else it is taken to stand where it is lowest, and has no
+    // rank. By what it stands: "seen" contacts, "near" (across gaps that noise leaves), "leaning"
+    // on what is beside it, "hidden", "none", or "ground"; and how probable that is.
+    bool seen_enough = true;
+    std::string rests_by = "seen";
+    double rest_probability = 1;
     Fall fall;
     Advice advice;
 };
@@ -133,6 +140,11 @@ struct Object {
 // Whether the barrier can't be told from 0.
 inline bool barrier_within_error(const Object& o) {
     return !o.grounded && o.barrier_J <= o.barrier_error_J;
+}
+
+// By which the riskiest come first; what was not seen enough comes last.
+inline double rank_of(const Object& o) {
+    return o.seen_enough ? o.unsafety : 0;
 }
 
 // Two primitives that touch.

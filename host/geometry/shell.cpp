@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "geometry/shell.h"
+
+#include <cmath>
+#include <limits>
+
+#include "fitted/boosted_trees.h"
+#include "geometry/primitive_shapes.h"
+#include "geometry/shell_features.h"
+#include "geometry/sight_lines.h"
+
+namespace topple::geometry {
+namespace {
+
+// What is level is no more than 45 degrees from it, and a floor no higher above the lowest than a
+// platform is, or as large as a gallery.
+constexpr double level_cos = 0.7, platform_m = 0.5, gallery_m2 = 4;
+
+Structure structure_of(const PrimitiveShape& p, double floor_m, double top_m) {
+    const double level = p.face()[2];
+    if (std::abs(level) < level_cos) return Structure::wall;
+    const double height = p.center[2] - floor_m;
+    // Of a sheet whose sides are confused, the nearer end of the room tells.
+    if (level < 0 && top_m - p.center[2] < height) return Structure::ceiling;
+    if (height < platform_m || (level > 0 && p.area_m2 >= gallery_m2)) return Structure::floor;
+    return Structure::wall;
+}
+
+void judge(const SurfaceSamples& samples, const StoreyHint& storey, Shell& out) {
+    PrimitiveShapes shapes = primitive_shapes(samples, out.log_odds.size());
+    if (std::isfinite(storey.floor_m)) shapes.low[2] = storey.floor_m;
+    const std::vector<float> rows = shell_features(samples, shapes, SightLines(samples));
+    const std::size_t width = shell_feature_names().size();
+    for (std::size_t p = 0; p < shapes.of.size(); ++p) {
+        const double height = shapes.of[p].center[2];
+        if (shapes.of[p].samples() == 0 || height < storey.below_m || height >= storey.top_m)
+            continue;
+        const auto row = std::span(rows).subspan(p * width, width);
+        out.log_odds[p] =
+            fitted::log_odds(fitted::probability(fitted::shell_model().log_odds(row)));
+        if (out.log_odds[p] > 0)
+            out.structure[p] = structure_of(shapes.of[p], shapes.low[2], shapes.high[2]);
+    }
+}
+
+}  // namespace
+
+Shell find_shell(const SurfaceSamples& samples, std::size_t primitives,
+                 std::span<const StoreyHint> storeys) {
+    Shell out;
+    out.log_odds.assign(primitives, fitted::log_odds(0));
+    out.structure.assign(primitives, Structure::none);
+    constexpr StoreyHint all{.floor_m = std::numeric_limits<double>::quiet_NaN()};
+    if (storeys.empty()) judge(samples, all, out);
+    for (const StoreyHint& storey : storeys) {
+        const bool whole = std::isinf(storey.below_m) && std::isinf(storey.top_m);
+        judge(whole ? samples
+                    : samples_where(samples,
+                                    [&](std::size_t n) {
+                                        return samples.z[n] >= storey.below_m &&
+                                               samples.z[n] < storey.top_m;
+                                    }),
+              storey, out);
+    }
+    return out;
+}
+
+}  // namespace topple::geometry

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "geometry/surface_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace topple::geometry {
+namespace {
+
+struct Key {
+    std::int32_t primitive, i, j, k;
+    std::uint32_t point;
+    auto cell() const { return std::tuple(primitive, i, j, k); }
+    // By place within a cell, so that sums do not depend on the points' order in memory but for
+    // points at one place.
+    bool operator<(const Key& other) const { return cell() < other.cell(); }
+};
+
+// Samples at random on a surface, one in each square of side s on average, have their sixth
+// neighbour at a median distance of sqrt(5.67 / pi) s.
+double find_spacing(const SurfaceSamples& s) {
+    constexpr std::size_t most = 1500, nth = 6;
+    const double lattice = std::sqrt(3.14159265358979 / 5.67);
+    const double cell = 4 * s.edge_m;
+    std::vector<std::pair<std::array<std::int32_t, 3>, std::uint32_t>> cells;
+    const auto at = [&](std::size_t n) {
+        const auto index = [&](float v) { return static_cast<std::int32_t>(std::floor(v / cell)); };
+        return std::array{index(s.x[n]), index(s.y[n]), index(s.z[n])};
+    };
+    for (std::size_t n = 0; n < s.size(); ++n)
+        cells.emplace_back(at(n), static_cast<std::uint32_t>(n));
+    std::ranges::sort(cells);
+    std::vector<double> sixth, distance;
+    const std::size_t step = std::max<std::size_t>(1, s.size() / most);
+    for (std::size_t n = 0; n < s.size(); n += step) {
+        distance.clear();
+        const auto [i, j, k] = at(n);
+        for (std::int32_t di = -1; di <= 1; ++di) {
+            for (std::int32_t dj = -1; dj <= 1; ++dj) {
+                const std::array low{i + di, j + dj, k - 1};
+                auto entry = std::ranges::lower_bound(cells, low, {}, [](const auto& e) { return e.first; });
+                for (; entry != cells.end() && entry->first[0] == i + di &&
+                       entry->first[1] == j + dj && entry->first[2] <= k + 1;
+                     ++entry) {
+                    const std::size_t m = entry->second;
+                    if (m != n)
+                        distance.push_back(
+                            std::hypot(s.x[m] - s.x[n], s.y[m] - s.y[n], s.z[m] - s.z[n]));
+                }
+            }
+        }
+        if (distance.size() < nth) {  // farther than the cells around it
+            sixth.push_back(cell);
+            continue;
+        }
+        std::nth_element(distance.begin(), distance.begin() + (nth - 1), distance.end());
+        sixth.push_back(distance[nth - 1]);
+    }
+    if (sixth.empty()) return s.edge_m;
+    const auto middle = sixth.begin() + static_cast<std::ptrdiff_t>(sixth.size() / 2);
+    std::nth_element(sixth.begin(), middle, sixth.end());
+    return std::max(s.edge_m, lattice * *middle);
+}
+
+SurfaceSamples taken(const SurfaceSamples& from, const std::vector<std::size_t>& which) {
+    SurfaceSamples out;
+    out.edge_m = from.edge_m;
+    out.spacing_m = from.spacing_m;
+    const auto columns = columns_of(out);
+    const auto sources = columns_of(from);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        columns[c]->reserve(which.size());
+        for (const std::size_t n : which) columns[c]->push_back((*sources[c])[n]);
+    }
+    for (const std::size_t n : which) out.primitive.push_back(from.primitive[n]);
+    return out;
+}
+
+}  // namespace
+
+SurfaceSamples sample_surface(const CloudView& cloud, const Surfels& surfels,
+                              std::span<const std::int32_t> primitive_of_point,
+                              const SceneFrame& frame, double edge_m) {
+    SurfaceSamples out;
+    out.edge_m = edge_m;
+    const auto turned = [&](double x, double y, double z) {
+        Vec3 p{};
+        for (std::size_t a = 0; a < 3; ++a)
+            p[a] = frame.axes[a][0] * x + frame.axes[a][1] * y + frame.axes[a][2] * z;
+        return p;
+    };
+    std::vector<Key> keys(cloud.size());
+    for (std::size_t n = 0; n < keys.size(); ++n) {
+        const Vec3 p = turned(cloud.x[n], cloud.y[n], cloud.z[n]);
+        const auto cell = [&](std::size_t a) {
+            return static_cast<std::int32_t>(std::floor(p[a] / edge_m));
+        };
+        keys[n] = {primitive_of_point[n], cell(0), cell(1), cell(2), static_cast<std::uint32_t>(n)};
+    }
+    std::ranges::stable_sort(keys, std::less<>());
+    for (std::size_t first = 0; first < keys.size();) {
+        std::size_t last = first;
+        // Sums of fixed-point numbers: exact, so that the order of points plays no part.
+        std::array<std::int64_t, 6> sum{};
+        const double unit = 1 << 20;
+        for (; last < keys.size() && keys[last].cell() == keys[first].cell(); ++last) {
+            const std::size_t n = keys[last].point, s = surfels.of_point[n];
+            const std::array<double, 6> v{cloud.x[n],     cloud.y[n],     cloud.z[n],
+                                          surfels.nx[s], surfels.ny[s], surfels.nz[s]};
+            for (std::size_t a = 0; a < 6; ++a) sum[a] += std::llround(v[a] * unit);
+        }
+        const double count = static_cast<double>(last - first) * unit;
+        const auto mean = [&](std::size_t a) { return static_cast<double>(sum[a]) / count; };
+        const Vec3 p = turned(mean(0), mean(1), mean(2)), n = turned(mean(3), mean(4), mean(5));
+        const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        out.x.push_back(static_cast<float>(p[0]));
+        out.y.push_back(static_cast<float>(p[1]));
+        out.z.push_back(static_cast<float>(p[2]));
+        const double scale = length > 1e-6 ? 1 / length : 0;
+        out.nx.push_back(static_cast<float>(scale * n[0]));
+        out.ny.push_back(static_cast<float>(scale * n[1]));
+        out.nz.push_back(static_cast<float>(scale * n[2]));
+        out.primitive.push_back(keys[first].primitive);
+        first = last;
+    }
+    out.spacing_m = find_spacing(out);
+    return out;
+}
+
+std::array<std::vector<float>*, 6> columns_of(SurfaceSamples& s) {
+    return {&s.x, &s.y, &s.z, &s.nx, &s.ny, &s.nz};
+}
+
+std::array<const std::vector<float>*, 6> columns_of(const SurfaceSamples& s) {
+    return {&s.x, &s.y, &s.z, &s.nx, &s.ny, &s.nz};
+}
+
+SurfaceSamples samples_where(const SurfaceSamples& samples,
+                             const std::function<bool(std::size_t)>& keep) {
+    std::vector<std::size_t> kept;
+    for (std::size_t n = 0; n < samples.size(); ++n)
+        if (keep(n)) kept.push_back(n);
+    return taken(samples, kept);
+}
+
+void sort_by_primitive(SurfaceSamples& samples) {
+    std::vector<std::size_t> order(samples.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t n) { return samples.primitive[n]; });
+    samples = taken(samples, order);
+}
+
+}  // namespace topple::geometry

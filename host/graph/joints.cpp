@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#include "graph/joints.h"
+
+#include "fitted/boosted_trees.h"
+#include "graph/joint_features.h"
+
+namespace topple::graph {
+
+std::vector<Joint> find_joints(const geometry::SurfaceSamples& samples,
+                               const geometry::PrimitiveShapes& shapes,
+                               const ContactGraph& contacts, std::span<const physics::Body> bodies,
+                               const SurfaceSeams& seams, std::span<const float> shell) {
+    const JointTable table = joint_features(samples, shapes, contacts, bodies, seams, shell);
+    const fitted::BoostedTrees& model = fitted::joint_model();
+    const std::size_t width = joint_feature_names().size();
+    std::vector<Joint> out;
+    out.reserve(table.pairs.size());
+    for (std::size_t n = 0; n < table.pairs.size(); ++n) {
+        const auto row = std::span(table.rows).subspan(n * width, width);
+        // No model knows more than one part in a thousand.
+        const double odds = fitted::log_odds(fitted::probability(model.log_odds(row)));
+        out.push_back({table.pairs[n].first, table.pairs[n].second, odds});
+    }
+    return out;
+}
+
+}  // namespace topple::graph

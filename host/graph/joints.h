@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/primitive_shapes.h"
+#include "geometry/surface_samples.h"
+#include "graph/contact_graph.h"
+#include "graph/surface_seams.h"
+#include "physics/bodies.h"
+
+namespace topple::graph {
+
+// What the fitted model says of two primitives that are near each other.
+struct Joint {
+    std::int32_t a = -1, b = -1;  // primitives, a < b
+    double log_odds = 0;          // that they are one solid object
+};
+
+// Of all pairs of joint_features(), sorted by (a, b). shell: by primitive, the probability that it
+// is the room's.
+std::vector<Joint> find_joints(const geometry::SurfaceSamples& samples,
+                               const geometry::PrimitiveShapes& shapes,
+                               const ContactGraph& contacts, std::span<const physics::Body> bodies,
+                               const SurfaceSeams& seams, std::span<const float> shell);
+
+}  // namespace topple::graph

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "graph/rest.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "physics/tipping.h"
+
+namespace topple::graph {
+namespace {
+
+using Points = std::vector<std::array<double, 2>>;
+
+// How often a scan misses so much of what holds a thing, of all that stand.
+constexpr double often_near = 0.3, often_leaning = 0.1, often_hidden = 0.03;
+// Gaps that noise leaves under a thing, and how uneven its foot may be, voxels.
+constexpr std::int32_t noise_gap = 3, uneven_foot = 2;
+
+void add_corners(const Underside& u, double h, Points& points) {
+    for (const int di : {0, 1}) {
+        for (const int dj : {0, 1}) points.push_back({(u.i + di) * h, (u.j + dj) * h});
+    }
+}
+
+double stands(const physics::Candidate& c, const Points& polygon, double noise_m) {
+    if (polygon.empty()) return 0;
+    const double margin = physics::footing(polygon, c.body.center[0], c.body.center[1]).margin_m;
+    return 0.5 * std::erfc(-margin / (noise_m * std::numbers::sqrt2));
+}
+
+}  // namespace
+
+const char* to_string(RestKind kind) {
+    constexpr std::array names{"seen", "near", "leaning", "hidden", "none"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+std::vector<std::vector<Underside>> undersides(const physics::SolidCells& cells,
+                                               std::span<const std::int32_t> object_of_primitive,
+                                               std::size_t objects) {
+    std::vector<std::vector<Underside>> out(objects);
+    const auto object = [&](std::size_t n) {
+        const std::int32_t p = cells.primitive[n];
+        return p < 0 ? -1 : object_of_primitive[static_cast<std::size_t>(p)];
+    };
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const std::int32_t own = object(n);
+        if (own < 0) continue;
+        // Cells are sorted by (i, j, k): what is below comes right before.
+        const bool below =
+            n > 0 && cells.i[n - 1] == cells.i[n] && cells.j[n - 1] == cells.j[n];
+        if (below && object(n - 1) == own) continue;
+        std::vector<Underside>& columns = out[static_cast<std::size_t>(own)];
+        // Only the lowest of each column.
+        if (!columns.empty() && columns.back().i == cells.i[n] && columns.back().j == cells.j[n])
+            continue;
+        columns.push_back({cells.i[n], cells.j[n], cells.k[n],
+                           below ? cells.k[n] - cells.k[n - 1] - 1 : -1,
+                           below ? cells.primitive[n - 1] : -1});
+    }
+    return out;
+}
+
+Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& columns,
+                const ContactGraph& contacts, double noise_m) {
+    if (columns.empty()) return {RestKind::none, 1, {}, 0};
+    const double h = contacts.voxel_m;
+    std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
+    for (const Underside& u : columns) lowest = std::min(lowest, u.k);
+    const double low_m = lowest * h;
+    const bool held = !c.support_polygon.empty();
+
+    Points near = c.support_polygon, hidden = c.support_polygon;
+    double near_height = held ? c.support_height_m : std::numeric_limits<double>::infinity();
+    for (const Underside& u : columns) {
+        if (u.gap >= 0 && u.gap <= noise_gap) {
+            add_corners(u, h, near);
+            near_height = std::min(near_height, (u.k - u.gap) * h);
+        }
+        if (u.k <= lowest + uneven_foot) add_corners(u, h, hidden);
+    }
+    Points leaning = near;
+    for (const std::int32_t p : c.primitives) {
+        for (const Leaning& l : contacts.leanings_of(p)) {
+            if (!std::binary_search(c.primitives.begin(), c.primitives.end(), l.against))
+                leaning.insert(leaning.end(), l.outline.begin(), l.outline.end());
+        }
+    }
+    const double height = std::isfinite(near_height) ? near_height : low_m;
+    struct Way {
+        RestKind kind;
+        Points points;
+        double height, often;
+    };
+    std::array<Way, 4> ways{Way{RestKind::seen, c.support_polygon, c.support_height_m, 1},
+                            Way{RestKind::near, std::move(near), height, often_near},
+                            Way{RestKind::leaning, std::move(leaning), height, often_leaning},
+                            Way{RestKind::hidden, std::move(hidden), low_m, often_hidden}};
+    Rest best;
+    double most = -1, all = 0;
+    for (Way& way : ways) {
+        if (way.points.empty()) continue;
+        way.points = physics::convex_polygon(std::move(way.points));
+        const double chance = way.often * stands(c, way.points, noise_m);
+        all += chance;
+        if (chance <= most) continue;
+        most = chance;
+        best = {way.kind, 0, std::move(way.points), way.height};
+    }
+    // Even its foot is too small: all that is above may rest on something.
+    Points whole;
+    for (const Underside& u : columns) add_corners(u, h, whole);
+    whole = physics::convex_polygon(std::move(whole));
+    const double chance = 0.3 * often_hidden * stands(c, whole, noise_m);
+    all += chance;
+    if (chance > most) {
+        most = chance;
+        best = {RestKind::hidden, 0, std::move(whole), low_m};
+    }
+    best.probability = all > 0 ? most / all : 1;
+    return best;
+}
+
+}  // namespace topple::graph

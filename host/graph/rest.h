@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "graph/contact_graph.h"
+#include "physics/bodies.h"
+#include "physics/landscape.h"
+
+// Standing is evidence: what was scanned stood. Where an object would fall off what was seen to hold
+// it, it is likelier that the scan missed some of that than that it was just falling.
+namespace topple::graph {
+
+// A column of an object's cells: where it ends below, and what is under it. Voxels.
+struct Underside {
+    std::int32_t i, j, k;    // the lowest cell
+    std::int32_t gap;        // empty cells down to the next solid of another object; -1: none
+    std::int32_t primitive;  // of that solid; -1: of none
+};
+// By object, sorted by (i, j, k).
+std::vector<std::vector<Underside>> undersides(const physics::SolidCells& cells,
+                                               std::span<const std::int32_t> object_of_primitive,
+                                               std::size_t objects);
+
+// How an object is held up.
+enum class RestKind : std::uint8_t {
+    seen,     // by contacts that were seen, or that nobody saw into
+    near,     // by those, and where noise leaves a small gap
+    leaning,  // by those, and by what it touches beside it
+    hidden,   // by what was not seen: taken to be where the object is lowest
+    none,     // by nothing: it has no solid cells
+};
+const char* to_string(RestKind kind);
+
+struct Rest {
+    RestKind kind = RestKind::seen;
+    double probability = 1;  // of this among all ways
+    std::vector<std::array<double, 2>> support_polygon;
+    double support_height_m = 0;
+};
+
+// The likeliest way in which a body stands: of each, how often scans miss so much of a support,
+// times the chance that the body then stands. candidate: with the contacts that were seen.
+// noise_m: what the border of a support is known to.
+Rest infer_rest(const physics::Candidate& candidate, const std::vector<Underside>& columns,
+                const ContactGraph& contacts, double noise_m);
+
+}  // namespace topple::graph

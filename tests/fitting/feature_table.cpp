@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// topple_features SCAN OUT: what the fitted models see of a scan, for fit.py. Writes into the folder
+// OUT: table.json (names, counts, axes), and arrays of little-endian numbers: nodes.f32, pairs.i32,
+// joints.f32, samples.f32 (x y z, grid frame) and primitive.i32.
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "device/device.h"
+#include "fitted/boosted_trees.h"
+#include "geometry/primitive_shapes.h"
+#include "geometry/shell_features.h"
+#include "geometry/sight_lines.h"
+#include "geometry/surface_samples.h"
+#include "graph/joint_features.h"
+#include "pipeline/geometry_stage.h"
+#include "pipeline/ingest.h"
+#include "pipeline/object_stage.h"
+#include "pipeline/solid_parts.h"
+#include "pipeline/stage_clock.h"
+#include "pipeline/voxel_stage.h"
+#include "topple/error.h"
+
+namespace {
+
+using namespace topple;
+
+template <class T>
+void write(const std::filesystem::path& file, const std::vector<T>& values) {
+    std::ofstream out(file, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(values.data()),
+              static_cast<std::streamsize>(values.size() * sizeof(T)));
+    out.close();
+    if (!out) throw Error(ErrorKind::input, file.string() + ": can't be written");
+}
+
+void run(const std::filesystem::path& scan, const std::filesystem::path& folder) {
+    const auto device = device::open_device("native");
+    ParseOptions options;
+    std::vector<std::pair<std::string, double>> timings;
+    StageClock stage(timings, options);
+    Ingested input = ingest(*device, scan, options);
+    const double voxel_m = input.voxel_m > 0 ? input.voxel_m : voxel_for_cell(input.cell_m);
+    GeometryStage geometry = find_primitives(*device, input, options, stage);
+    VoxelStage voxels = make_solids(*device, input, geometry, voxel_m, stage);
+    const SolidParts parts = solid_parts(geometry, voxels);
+    const PartStage weighed = weigh_parts(*device, parts, options, stage);
+    const geometry::SurfaceSamples& samples = parts.samples;
+    const geometry::PrimitiveShapes shapes =
+        geometry::primitive_shapes(samples, parts.model.size());
+    const std::vector<float> nodes =
+        geometry::shell_features(samples, shapes, geometry::SightLines(samples));
+    std::vector<float> shell;
+    for (const double odds : parts.shell.log_odds)
+        shell.push_back(static_cast<float>(fitted::probability(odds)));
+    const graph::JointTable joints = graph::joint_features(
+        samples, shapes, weighed.contacts, weighed.bodies, parts.seams, shell);
+    std::filesystem::create_directories(folder);
+    std::vector<std::int32_t> pairs;
+    for (const auto& [a, b] : joints.pairs) pairs.insert(pairs.end(), {a, b});
+    std::vector<float> places;
+    for (std::size_t n = 0; n < samples.size(); ++n)
+        places.insert(places.end(), {samples.x[n], samples.y[n], samples.z[n]});
+    write(folder / "nodes.f32", nodes);
+    write(folder / "pairs.i32", pairs);
+    write(folder / "joints.f32", joints.rows);
+    write(folder / "samples.f32", places);
+    write(folder / "primitive.i32", samples.primitive);
+    std::vector<int> structure;
+    for (const geometry::Structure s : parts.shell.structure) structure.push_back(static_cast<int>(s));
+    nlohmann::json about;
+    about["node_names"] = geometry::shell_feature_names();
+    about["joint_names"] = graph::joint_feature_names();
+    about["axes"] = geometry.frame.axes;
+    about["offset"] = input.own.offset_m;
+    about["structure"] = structure;
+    about["edge"] = samples.spacing_m;
+    about["voxel"] = voxel_m;
+    about["timings"] = timings;
+    std::ofstream(folder / "table.json") << about.dump(1);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 3) {
+        std::fprintf(stderr, "usage: topple_features SCAN OUT\n");
+        return 2;
+    }
+    try {
+        run(argv[1], argv[2]);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
+}

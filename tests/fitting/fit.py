@@ -1,0 +1,211 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Fits the models of host/fitted on generated scans and writes their files.
+
+usage: fit.py --topple TOPPLE --features TOPPLE_FEATURES --work FOLDER [--seeds FIRST:LAST] [--judge]
+
+Makes scans of every kind and way of scanning (topple generate), keeps them and what the models see
+of them (topple_features) in FOLDER, fits the model of the shell, then that of the joints, each by
+gradient boosting, calibrates both on scans that they were not fitted on (Platt's scaling of
+out-of-fold log-odds), and writes host/fitted/*.model.json. Same seeds, same files. Takes
+python3-sklearn and python3-scipy. With --judge nothing is written: the files that are there are
+judged on the seeds given.
+
+Truth: each sample of a scan belongs to the object of the nearest true surface within 6 cm, and a
+primitive to the object that most of its samples belong to. What is built in counts as the room.
+"""
+import argparse
+import concurrent.futures
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial import cKDTree
+from sklearn.ensemble import HistGradientBoostingClassifier
+from sklearn.linear_model import LogisticRegression
+from sklearn.metrics import roc_auc_score
+from sklearn.model_selection import GroupKFold
+
+FITTED = Path(__file__).resolve().parents[2] / 'host' / 'fitted'
+NEAREST_M = 0.06
+LEAST_SAMPLES = 5  # of a primitive whose truth is believed
+
+
+def read_ply(path):
+    """The columns of a binary PLY's vertices."""
+    types = {'float': '<f4', 'double': '<f8', 'int': '<i4', 'uint': '<u4', 'uchar': 'u1', 'short': '<i2',
+             'ushort': '<u2', 'char': 'i1', 'float32': '<f4', 'int32': '<i4', 'uint8': 'u1'}
+    with open(path, 'rb') as file:
+        fields, count, vertex = [], 0, False
+        while (line := file.readline().strip()) != b'end_header':
+            words = line.split()
+            if words[0] == b'element':
+                vertex = words[1] == b'vertex'
+                count = int(words[2]) if vertex else count
+            elif words[0] == b'property' and vertex:
+                fields.append((words[2].decode(), types[words[1].decode()]))
+        return np.fromfile(file, dtype=fields, count=count)
+
+
+class Table:
+    """What the models see of one scan, with the truth about it."""
+
+    def __init__(self, scan, folder):
+        about = json.loads((folder / 'table.json').read_text())
+        self.node_names, self.joint_names = about['node_names'], about['joint_names']
+        self.nodes = np.fromfile(folder / 'nodes.f32', '<f4').reshape(-1, len(self.node_names))
+        self.joints = np.fromfile(folder / 'joints.f32', '<f4').reshape(-1, len(self.joint_names))
+        self.pairs = np.fromfile(folder / 'pairs.i32', '<i4').reshape(-1, 2)
+        samples = np.fromfile(folder / 'samples.f32', '<f4').reshape(-1, 3) @ np.array(about['axes'])
+        primitive = np.fromfile(folder / 'primitive.i32', '<i4')
+        truth = read_ply(scan / 'truth.ply')
+        objects = json.loads((scan / 'truth.json').read_text())['objects']
+        built_in = [o['id'] for o in objects if o['fixed'] or o['shell']]
+        tree = cKDTree(np.stack([truth['x'], truth['y'], truth['z']], 1))
+        distance, nearest = tree.query(samples, distance_upper_bound=NEAREST_M)
+        owner = np.full(len(samples), -1)
+        owner[np.isfinite(distance)] = truth['object'][nearest[np.isfinite(distance)]]
+        owner[np.isin(owner, built_in)] = 0
+        # Loose things that nobody told apart are no example of anything.
+        piles = [o['id'] for o in objects if o.get('pile')]
+        self.owner = np.full(len(self.nodes), -1)
+        self.known = np.zeros(len(self.nodes), bool)
+        known = (primitive >= 0) & (owner >= 0)
+        votes = np.zeros((len(self.nodes), owner.max(initial=0) + 1), int)
+        np.add.at(votes, (primitive[known], owner[known]), 1)
+        if votes.size:
+            self.owner = votes.argmax(1)
+            self.known = (votes.sum(1) >= LEAST_SAMPLES) & ~np.isin(self.owner, piles)
+        self.is_shell = self.owner == 0
+        a, b = self.pairs.T
+        self.known_pair = self.known[a] & self.known[b]
+        self.is_one = self.owner[a] == self.owner[b]
+
+    def with_shell(self, probability):
+        """The rows of the joints with these probabilities of the shell instead of the table's."""
+        area = self.nodes[:, self.node_names.index('log_area')]
+        a, b = self.pairs.T
+        a_is_small = area[a] <= area[b]
+        rows = self.joints.copy()
+        rows[:, self.joint_names.index('shell_small')] = probability[np.where(a_is_small, a, b)]
+        rows[:, self.joint_names.index('shell_big')] = probability[np.where(a_is_small, b, a)]
+        return rows
+
+
+def booster(leaves):
+    return HistGradientBoostingClassifier(max_iter=300, learning_rate=0.05, max_leaf_nodes=leaves, min_samples_leaf=30,
+                                          l2_regularization=2, random_state=1)
+
+
+def trees_of(model):
+    """The trees in arrays, children after their parents."""
+    trees = []
+    for (predictor,) in model._predictors:
+        tree = {'feature': [], 'threshold': [], 'missing_left': [], 'left': [], 'right': []}
+        for node in predictor.nodes:
+            leaf = bool(node['is_leaf'])
+            tree['feature'].append(-1 if leaf else int(node['feature_idx']))
+            value = node['value'] if leaf else node['num_threshold']
+            tree['threshold'].append(float(f'{value:.6g}'))
+            tree['missing_left'].append(0 if leaf else int(node['missing_go_to_left']))
+            tree['left'].append(0 if leaf else int(node['left']))
+            tree['right'].append(0 if leaf else int(node['right']))
+        trees.append(tree)
+    return trees
+
+
+def calibration_error(probability, truth, bins=10):
+    """Mean distance of predicted from true shares over bins of equal width, by their counts."""
+    at = np.minimum((probability * bins).astype(int), bins - 1)
+    return sum(abs(probability[at == k].mean() - truth[at == k].mean()) * (at == k).mean()
+               for k in range(bins) if (at == k).any())
+
+
+def sigmoid(x):
+    return 1 / (1 + np.exp(-x))
+
+
+def fit(rows, truth, group, names, leaves, about):
+    """A model, and the calibrated probabilities that models fitted on other scans give each row."""
+    raw = np.zeros(len(truth))
+    for train, test in GroupKFold(5).split(rows, truth, group):
+        raw[test] = booster(leaves).fit(rows[train], truth[train]).decision_function(rows[test])
+    platt = LogisticRegression(C=1e6).fit(raw[:, None], truth)
+    scale, offset = float(platt.coef_[0, 0]), float(platt.intercept_[0])
+    out_of_fold = sigmoid(scale * raw + offset)
+    print(f'{about}: {len(truth)} rows, {truth.mean():.3f} true; AUC {roc_auc_score(truth, out_of_fold):.3f}, '
+          f'calibration error {calibration_error(out_of_fold, truth):.3f}; scale {scale:.2f}')
+    model = booster(leaves).fit(rows, truth)
+    return model, {'schema': 'topple.trees/1', 'about': about, 'features': list(names),
+                   'baseline': float(model._baseline_prediction.ravel()[0]), 'scale': scale, 'offset': offset,
+                   'trees': trees_of(model)}, out_of_fold
+
+
+def write(name, model):
+    path = FITTED / name
+    path.with_suffix('.tmp').write_text(json.dumps(model, separators=(',', ':')) + '\n')
+    path.with_suffix('.tmp').rename(path)
+
+
+def fit_all(tables):
+    names = [np.full(len(t.nodes), n) for n, t in enumerate(tables)]
+    known = np.concatenate([t.known for t in tables])
+    rows = np.concatenate([t.nodes for t in tables])[known]
+    shell = np.concatenate([t.is_shell for t in tables])[known]
+    group = np.concatenate(names)[known]
+    _, shell_file, out_of_fold = fit(rows, shell, group, tables[0].node_names, 12, 'shell')
+    probability = np.zeros(len(known))
+    probability[known] = out_of_fold
+    joints, one, of_scan, first = [], [], [], 0
+    for n, t in enumerate(tables):
+        mine = t.with_shell(probability[first:first + len(t.nodes)])
+        first += len(t.nodes)
+        joints.append(mine[t.known_pair])
+        one.append(t.is_one[t.known_pair])
+        of_scan.append(np.full(t.known_pair.sum(), n))
+    _, joint_file, _ = fit(np.concatenate(joints), np.concatenate(one), np.concatenate(of_scan), tables[0].joint_names,
+                           15, 'joints')
+    write('shell.model.json', shell_file)
+    write('joint.model.json', joint_file)
+
+
+def make(arguments, kind, way, seed):
+    """One scan and its table; both are kept."""
+    name = f'{kind}-{way}-{seed}'
+    scan, table = arguments.work / 'scans' / name, arguments.work / 'tables' / name
+    if not (scan / 'truth.json').exists():
+        subprocess.run([arguments.topple, 'generate', scan, '--kind', kind, '--scan', way, '--seed', str(seed)],
+                       check=True, capture_output=True)
+    if not (table / 'table.json').exists():
+        cloud = scan / 'cloud.ply'
+        done = subprocess.run([arguments.features, cloud if cloud.exists() else scan, table], capture_output=True)
+        if done.returncode:
+            print(f'{name}: {done.stderr.decode().strip()}', file=sys.stderr)
+            return None
+    return scan, table
+
+
+KINDS = ['plain', 'varied']
+WAYS = ['walk', 'sparse', 'laser', 'cloud', 'single']
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--topple', type=Path, required=True)
+    parser.add_argument('--features', type=Path, required=True)
+    parser.add_argument('--work', type=Path, required=True)
+    parser.add_argument('--seeds', default='1000:1003', help='first and last seed of each kind and way')
+    parser.add_argument('--kinds', nargs='+', default=KINDS)
+    parser.add_argument('--ways', nargs='+', default=WAYS)
+    arguments = parser.parse_args()
+    first, last = map(int, arguments.seeds.split(':'))
+    wanted = [(kind, way, seed) for seed in range(first, last + 1) for kind in arguments.kinds for way in arguments.ways]
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        made = list(pool.map(lambda w: make(arguments, *w), wanted))
+    fit_all([Table(*m) for m in made if m])
+
+
+if __name__ == '__main__':
+    main()
