@@ -97,7 +97,7 @@ PointCloud sample(const std::filesystem::path& file, const Triangles& triangles,
                    static_cast<double>(sampling.fewest), static_cast<double>(sampling.most));
     const double per_area = wanted / triangles.area;
     constexpr double step_u = 0.7548776662466927, step_v = 0.5698402909980532;
-    CloudBuilder cloud(file, static_cast<std::uint64_t>(wanted) + 1, true);
+    CloudBuilder cloud(file, static_cast<std::uint64_t>(wanted) + 1, {.normals = true});
     double due = 0.5;
     for (const Triangle& t : triangles.all) {
         due += t.area * per_area;
