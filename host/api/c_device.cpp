@@ -47,6 +47,13 @@ CloudView view_of(const topple_cloud* cloud) {
         view.ny = {c.ny, c.count, stride(c.normal_stride_bytes)};
         view.nz = {c.nz, c.count, stride(c.normal_stride_bytes)};
     }
+    if (c.red || c.green || c.blue) {
+        const auto step = static_cast<std::ptrdiff_t>(c.colour_stride_bytes ? c.colour_stride_bytes
+                                                                            : std::int64_t{1});
+        view.red = {c.red, c.count, step};
+        view.green = {c.green, c.count, step};
+        view.blue = {c.blue, c.count, step};
+    }
     view.width = c.width;
     view.height = c.height;
     view.has_viewpoint = c.viewpoint != nullptr;

@@ -52,6 +52,14 @@ void CellSums::add(const CellSums& other) {
         best_weight = other.best_weight;
         best_frame = other.best_frame;
     }
+    if (other.colour_weight > 0) add_colour(other.colour, other.colour_weight);
+}
+
+void CellSums::add_colour(const std::array<std::uint32_t, 3>& sums, std::uint32_t weights) {
+    constexpr std::uint32_t most_weight = UINT32_MAX / 255;
+    if (weights > most_weight - colour_weight) return;
+    for (std::size_t c = 0; c < 3; ++c) colour[c] += sums[c];
+    colour_weight += weights;
 }
 
 std::size_t CellTable::find(std::uint64_t key) {

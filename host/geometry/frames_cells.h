@@ -20,7 +20,12 @@ struct CellSums {
     std::uint32_t count = 0;        // readings
     std::uint32_t best_weight = 0;  // of the best reading,
     std::uint32_t best_frame = 0;   // and its frame, the first of equals
+    // Of the readings whose colour is known: weight * channel, with weights of 8 bits, and those
+    // weights. What would not fit is left out: the mean of 65,000 good readings is known by then.
+    std::array<std::uint32_t, 3> colour{};
+    std::uint32_t colour_weight = 0;
     void add(const CellSums& other);
+    void add_colour(const std::array<std::uint32_t, 3>& sums, std::uint32_t weights);
 };
 
 inline constexpr std::int64_t key_bias = std::int64_t{1} << 20;

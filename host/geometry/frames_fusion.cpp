@@ -37,6 +37,12 @@ void check(const DepthFrame& frame, const Intrinsics& k, std::size_t number) {
                                           " pixels, the intrinsics say " + std::to_string(k.width) +
                                           " x " + std::to_string(k.height));
     }
+    if (!frame.rgb.empty() && frame.rgb.size() != 3 * frame.depth.size()) {
+        throw Error(ErrorKind::input, "depth frame " + std::to_string(number) + ": " +
+                                          std::to_string(frame.rgb.size()) +
+                                          " bytes of colour, where each of its " +
+                                          std::to_string(frame.depth.size()) + " pixels takes 3");
+    }
     for (const double v : frame.camera_to_world) {
         if (!std::isfinite(v)) {
             throw Error(ErrorKind::input, "depth frame " + std::to_string(number) +
@@ -67,8 +73,8 @@ class PatchSums {
     PatchSums(std::array<std::vector<CellSums>, CellTables::shard_count>& runs, std::uint32_t frame)
         : runs_(runs), frame_(frame) {}
 
-    // p: in cells, from the grid's lowest corner; positive.
-    void add(const std::array<double, 3>& p, std::uint32_t weight) {
+    // p: in cells, from the grid's lowest corner; positive. rgb: of the pixel, or null.
+    void add(const std::array<double, 3>& p, std::uint32_t weight, const std::uint8_t* rgb) {
         std::array<std::uint64_t, 3> fixed{};
         for (std::size_t a = 0; a < 3; ++a) fixed[a] = static_cast<std::uint64_t>(p[a] * 65536);
         const std::uint64_t x = fixed[0] >> 16, y = fixed[1] >> 16, z = fixed[2] >> 16;
@@ -87,6 +93,10 @@ class PatchSums {
         sums.weight += weight;
         sums.best_weight = std::max(sums.best_weight, weight);
         ++sums.count;
+        if (rgb && (rgb[0] | rgb[1] | rgb[2]) != 0) {
+            const std::uint32_t w = (weight + 255) >> 8;
+            sums.add_colour({w * rgb[0], w * rgb[1], w * rgb[2]}, w);
+        }
     }
     void flush() {
         for (std::size_t k = 0; k < used_count_; ++k) {
@@ -146,6 +156,8 @@ void FrameFusion::add(const DepthFrame& frame) {
             for (std::uint32_t v = first; v < last; ++v) {
                 const double dy = (v - k.cy) / k.fy;
                 const std::uint16_t* row = frame.depth.data() + std::size_t{v} * k.width;
+                const std::uint8_t* rgb =
+                    frame.rgb.empty() ? nullptr : frame.rgb.data() + std::size_t{3} * v * k.width;
                 for (std::uint32_t u = u0; u < u1; ++u) {
                     const std::uint16_t stored = row[u];
                     if (stored == 0 || flying(row + u, u, v, k, c.sigma_limit[stored])) continue;
@@ -157,7 +169,7 @@ void FrameFusion::add(const DepthFrame& frame) {
                         ((m[8] * dx + m[9] * dy + m[10]) * z + m[11]) * per_cell + bias};
                     if (p[0] >= 1 && p[1] >= 1 && p[2] >= 1 && p[0] < 2 * bias - 1 &&
                         p[1] < 2 * bias - 1 && p[2] < 2 * bias - 1) {
-                        patch.add(p, c.weight[stored]);
+                        patch.add(p, c.weight[stored], rgb ? rgb + std::size_t{3} * u : nullptr);
                     } else {
                         ++c.outside[block];
                     }
@@ -194,7 +206,18 @@ FusedCloud FrameFusion::finish(const std::function<void()>& poll) {
     FusedCloud result;
     result.viewpoints = std::move(cells_->viewpoints);
     for (const std::uint64_t count : cells_->outside) result.cloud.dropped += count;
+    const bool coloured = std::ranges::any_of(
+        fused.cells, [](const CellSums& cell) { return cell.colour_weight > 0; });
     for (const CellSums& cell : fused.cells) {
+        if (coloured) {
+            const auto mean = [&](std::size_t channel) {
+                const std::uint64_t weight = std::max(cell.colour_weight, 1u);
+                return static_cast<std::uint8_t>((cell.colour[channel] + weight / 2) / weight);
+            };
+            result.cloud.red.push_back(mean(0));
+            result.cloud.green.push_back(mean(1));
+            result.cloud.blue.push_back(mean(2));
+        }
         const auto at = [&](unsigned shift, std::size_t axis) {
             const auto index = static_cast<std::int64_t>(cell.key >> shift & 0x1FFFFF) - key_bias;
             // Half a unit: fractions were cut off, not rounded.

@@ -20,9 +20,10 @@ struct FusedCloud {
 
 // Fuses depth frames into one cloud: back-projects, then takes the mean of the readings in each
 // cell of `cell_m`, weighted by the inverse variance of a depth reading (which grows with depth),
-// and drops cells that a single stray reading made where others had the chance to see them. Frames
-// are added one at a time, so a sequence of any length needs memory for the cloud only. The result
-// does not depend on the order of the frames beyond rounding.
+// the mean of their colours in the same way, and drops cells that a single stray reading made where
+// others had the chance to see them. Frames are added one at a time, so a sequence of any length
+// needs memory for the cloud only. The result does not depend on the order of the frames beyond
+// rounding.
 class FrameFusion {
   public:
     // threads: 0 for one per core. The result does not depend on it.

@@ -9,6 +9,7 @@
 #include "geometry/cell_grid.h"
 #include "geometry/plane_fit.h"
 #include "geometry/surfels_clean.h"
+#include "geometry/surfels_colour.h"
 #include "geometry/surfels_orient.h"
 #include "topple/error.h"
 
@@ -242,6 +243,7 @@ Surfels make_surfels(device::Device& device, const CloudView& cloud, double cell
     set_normals(s, sharp, nullptr, cell_m);
     fill_from_coarser(device, grid, s);
     orient(s, towards);
+    set_colours(cloud, s);
     return s;
 }
 

@@ -22,6 +22,10 @@ struct Surfels {
     std::vector<float> nx, ny, nz;   // unit normal towards the sensor's side; 0 where undefined
     std::vector<float> roughness_m;  // rms distance of the neighbourhood from its plane
     std::vector<float> weight;       // points in the cell
+    // CIE L*a*b* under D65 (core/colour_space.h) of the mean of its points' sRGB values: L* from 0
+    // to 100, a* and b* about -110 to 100. NaN where no point of the surfel has a known colour; all
+    // three are empty where the cloud has no colours.
+    std::vector<float> lab_l, lab_a, lab_b;
     std::vector<std::uint32_t> of_point;  // surfel of each point of the cloud
     std::vector<std::uint32_t>
         neighbour_first;                    // CSR over surfels, size()+1: the occupied cells of

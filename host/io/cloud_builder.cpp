@@ -31,8 +31,8 @@ double robust_extent(const std::vector<float>& values) {
 }  // namespace
 
 CloudBuilder::CloudBuilder(const std::filesystem::path& file, std::uint64_t promised,
-                           bool with_normals, const CloudSink* sink)
-    : file_(file), sink_(sink), with_normals_(with_normals) {
+                           CloudFields fields, const CloudSink* sink)
+    : file_(file), sink_(sink), fields_(fields), colours_(fields.colours) {
     if (sink) {
         promised = std::min(promised, portion);
     } else {
@@ -40,8 +40,12 @@ CloudBuilder::CloudBuilder(const std::filesystem::path& file, std::uint64_t prom
     }
     try {
         for (auto* values : {&cloud_.x, &cloud_.y, &cloud_.z}) values->reserve(promised);
-        if (with_normals) {
+        if (fields.normals) {
             for (auto* values : {&cloud_.nx, &cloud_.ny, &cloud_.nz}) values->reserve(promised);
+        }
+        if (fields.colours != ColourValues::none) {
+            for (auto* values : {&cloud_.red, &cloud_.green, &cloud_.blue})
+                values->reserve(promised);
         }
         if (!sink) cloud_.pixel.reserve(promised);
     } catch (const std::exception&) {
@@ -51,6 +55,7 @@ CloudBuilder::CloudBuilder(const std::filesystem::path& file, std::uint64_t prom
 
 void CloudBuilder::pass_on() {
     passed_on_ += cloud_.size();
+    colours_.settle(cloud_);
     PointCloud next;
     for (const auto values : {&PointCloud::x, &PointCloud::y, &PointCloud::z})
         (next.*values).reserve(portion);
@@ -58,7 +63,8 @@ void CloudBuilder::pass_on() {
     (*sink_)(std::move(next));
 }
 
-void CloudBuilder::add(const std::array<double, 3>& point, const std::array<double, 3>& normal) {
+void CloudBuilder::add(const std::array<double, 3>& point, const std::array<double, 3>& normal,
+                       const std::array<double, 3>& colour) {
     if (sink_ && cloud_.size() == portion) pass_on();
     const auto index = seen_++;
     if (!finite(point)) {
@@ -73,7 +79,8 @@ void CloudBuilder::add(const std::array<double, 3>& point, const std::array<doub
     cloud_.z.push_back(static_cast<float>(point[2]));
     // Whether the cloud is organised shows at the end; 2^32 pixels and more are refused before.
     if (!sink_) cloud_.pixel.push_back(static_cast<std::uint32_t>(index));
-    if (!with_normals_) return;
+    colours_.add(colour, cloud_);
+    if (!fields_.normals) return;
     const double length =
         std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     const bool usable = std::isfinite(length) && length > 1e-6;
@@ -100,6 +107,13 @@ PointCloud CloudBuilder::finish(std::uint32_t width, std::uint32_t height) {
         cloud_.pixel = {};
     }
     if (!any_normal_) cloud_.nx = cloud_.ny = cloud_.nz = {};
+    colours_.settle(cloud_);
+    // Formats with room for colours are used for scans without any, too.
+    const auto dark = [](const std::vector<std::uint8_t>& channel) {
+        return std::ranges::all_of(channel, [](std::uint8_t value) { return value == 0; });
+    };
+    if (dark(cloud_.red) && dark(cloud_.green) && dark(cloud_.blue))
+        cloud_.red = cloud_.green = cloud_.blue = {};
     return std::move(cloud_);
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 
+#include "io/colour_values.h"
 #include "topple/input.h"
 
 namespace topple::io {
@@ -15,18 +16,26 @@ namespace topple::io {
 // without `pixel`, size, viewpoint or source. `dropped` is of this portion.
 using CloudSink = std::function<void(PointCloud)>;
 
+// What a file's points have beside coordinates.
+struct CloudFields {
+    bool normals = false;
+    ColourValues colours = ColourValues::none;
+};
+
 // Collects the points of a file into a PointCloud: drops and counts the ones that are not finite,
-// refuses coordinates that can't be metres, and makes normals unit length.
+// refuses coordinates that can't be metres, makes normals unit length, and colours bytes.
 class CloudBuilder {
   public:
     // `promised` points are reserved: check it against the file's size first. With a sink, which
     // must outlive the builder, only a portion of them is held at a time.
-    CloudBuilder(const std::filesystem::path& file, std::uint64_t promised, bool with_normals,
+    CloudBuilder(const std::filesystem::path& file, std::uint64_t promised, CloudFields fields,
                  const CloudSink* sink = nullptr);
 
     // Adds point number seen(). `normal` is read with normals only; one that is not finite or has
-    // no length is stored as 0, 0, 0. Throws Error(input) for a coordinate beyond 1e6 m.
-    void add(const std::array<double, 3>& point, const std::array<double, 3>& normal = {});
+    // no length is stored as 0, 0, 0. `colour` is read with colours only, red, green and blue as
+    // the file has them. Throws Error(input) for a coordinate beyond 1e6 m.
+    void add(const std::array<double, 3>& point, const std::array<double, 3>& normal = {},
+             const std::array<double, 3>& colour = {});
     std::uint64_t seen() const { return seen_; }
 
     // All points are in. `width`, `height` > 0: the points are the pixels of one image, row by row.
@@ -41,7 +50,8 @@ class CloudBuilder {
     const CloudSink* sink_;
     std::uint64_t passed_on_ = 0;  // points that the sink has
     PointCloud cloud_;
-    bool with_normals_;
+    CloudFields fields_;
+    ColourScale colours_;
     bool any_normal_ = false;
     std::uint64_t seen_ = 0;
 };

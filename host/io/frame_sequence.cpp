@@ -4,43 +4,14 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
 
-#include "io/json_problem.h"
 #include "io/text.h"
 
 namespace topple::io {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr std::uint32_t most_pixels_a_side = 32768;
-
-double positive_number(const fs::path& file, const nlohmann::json& json, const char* key,
-                       bool may_be_zero = false) {
-    const auto found = json.find(key);
-    if (found == json.end()) fail(file, std::string("has no \"") + key + "\"");
-    if (!found->is_number()) {
-        fail(file, std::string("\"") + key + "\" must be a number, not " + found->type_name());
-    }
-    const double value = found->get<double>();
-    if (!std::isfinite(value) || value < 0 || (value == 0 && !may_be_zero)) {
-        fail(file, std::string("\"") + key + "\" is " + short_number(value) + ", but must be " +
-                       (may_be_zero ? "0 or more" : "above 0"));
-    }
-    return value;
-}
-
-std::uint32_t side(const fs::path& file, const nlohmann::json& json, const char* key) {
-    const double value = positive_number(file, json, key);
-    if (value != std::floor(value) || value > most_pixels_a_side) {
-        fail(file, std::string("\"") + key + "\" is " + short_number(value) +
-                       ", but must be a whole number from 1 to " +
-                       std::to_string(most_pixels_a_side));
-    }
-    return static_cast<std::uint32_t>(value);
-}
 
 // The one file of poses that the folder has, if any.
 std::optional<fs::path> find_trajectory(const fs::path& folder) {
@@ -87,45 +58,6 @@ std::vector<fs::path> list_images(const fs::path& folder) {
 
 }  // namespace
 
-Intrinsics read_intrinsics(const fs::path& file) {
-    const auto bytes = read_file(file, 1 << 20);
-    const auto text = bytes.text();
-    nlohmann::json json;
-    try {
-        json = nlohmann::json::parse(text.begin(), text.end());
-    } catch (const nlohmann::json::exception& error) {
-        fail(file, "is no JSON: " + json_problem(error));
-    }
-    if (!json.is_object()) {
-        fail(file, std::string("must hold a JSON object, not ") + json.type_name());
-    }
-    Intrinsics intrinsics;
-    intrinsics.width = side(file, json, "width");
-    intrinsics.height = side(file, json, "height");
-    intrinsics.fx = positive_number(file, json, "fx");
-    intrinsics.fy = positive_number(file, json, "fy");
-    intrinsics.cx = positive_number(file, json, "cx", true);
-    intrinsics.cy = positive_number(file, json, "cy", true);
-    if (!json.contains("depth_scale")) {
-        fail(file,
-             "has no \"depth_scale\"; add it: metres = value / depth_scale, so 1000 for "
-             "depth in millimetres");
-    }
-    intrinsics.depth_scale = positive_number(file, json, "depth_scale");
-    if (intrinsics.cx > intrinsics.width || intrinsics.cy > intrinsics.height) {
-        fail(file, "the principal point (" + short_number(intrinsics.cx) + ", " +
-                       short_number(intrinsics.cy) + ") lies outside of the image of " +
-                       std::to_string(intrinsics.width) + " x " +
-                       std::to_string(intrinsics.height) + " pixels");
-    }
-    // At these ends 16 bits reach 65 km and 6.5 cm: beyond them the unit is wrong.
-    if (intrinsics.depth_scale < 1 || intrinsics.depth_scale > 1e6) {
-        fail(file, "\"depth_scale\" is " + short_number(intrinsics.depth_scale) +
-                       ", but must be from 1 (depth in metres) to 1e+06 (micrometres)");
-    }
-    return intrinsics;
-}
-
 FrameSequence FrameSequence::open(const fs::path& folder) {
     FrameSequence sequence;
     sequence.images_ = list_images(folder);
@@ -137,6 +69,7 @@ FrameSequence FrameSequence::open(const fs::path& folder) {
              "depth_scale");
     }
     sequence.intrinsics_ = read_intrinsics(intrinsics);
+    sequence.colours_ = ColourFrames::open(folder, sequence.images_, sequence.intrinsics_);
 
     const auto trajectory = find_trajectory(folder);
     sequence.posed_ = trajectory.has_value();

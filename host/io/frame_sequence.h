@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "io/colour_frames.h"
 #include "topple/input.h"
 
 namespace topple::io {
@@ -13,6 +14,7 @@ namespace topple::io {
 // A folder of depth images:
 //   depth/*.png       16-bit grey, metres = value / depth_scale, 0 = no reading; in order of name
 //   intrinsics.json   {"width", "height", "fx", "fy", "cx", "cy", "depth_scale"}
+//   color/*.png, *.jpg  what the camera saw, where there are any: see ColourFrames
 //   trajectory.txt    a pose per image, camera to world, metres; camera x right, y down, z forward:
 //                     see read_trajectory(). Or trajectory.log, or poses.txt; one of them.
 // Without any it must hold one image; its camera is then the world's origin.
@@ -31,6 +33,8 @@ class FrameSequence {
     // naming the image where it is damaged, no 16-bit grey PNG, or of another size than
     // intrinsics().
     DepthFrame load(std::size_t index) const;
+    // The colour images of the same frames.
+    const ColourFrames& colours() const { return colours_; }
 
     // Unit mean of the cameras' upward axes (-y), world frame: where people hold cameras level, up
     // is near. Empty where the axes cancel out. Without a trajectory it is the one camera's.
@@ -40,6 +44,7 @@ class FrameSequence {
     Intrinsics intrinsics_;
     std::vector<std::filesystem::path> images_;
     std::vector<Mat4> poses_;
+    ColourFrames colours_;
     bool posed_ = false;
 };
 

@@ -20,6 +20,9 @@ constexpr std::uint16_t least_header = 227;
 // Bytes of a point of format 0 to 10.
 constexpr std::array<std::uint16_t, 11> least_record{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 
+// Where red, green and blue begin in one of those, 16 bits each; 0: they have none.
+constexpr std::array<std::uint16_t, 11> colour_at{0, 0, 20, 28, 0, 28, 0, 30, 30, 0, 30};
+
 template <class T>
 T value_at(std::string_view bytes, std::size_t at) {
     return load_as<T>(bytes.data() + at, std::endian::native == std::endian::big);
@@ -109,14 +112,20 @@ PointCloud parse_las(const std::filesystem::path& file, std::string_view bytes, 
     }
     // "Shall not be included in processing", in byte 15 of every format.
     const unsigned withheld = h.format >= 6 ? 0x04 : 0x80;
-    CloudBuilder cloud(file, h.points, false, sink);
+    const std::size_t colour = colour_at[h.format];
+    // Full brightness should be 65535, but many programs leave it at 255.
+    const ColourValues colours = colour > 0 ? ColourValues::whole : ColourValues::none;
+    CloudBuilder cloud(file, h.points, {.colours = colours}, sink);
     for (std::uint64_t n = 0; n < h.points; ++n) {
         const std::size_t at = h.first + n * h.record;
         std::array<double, 3> p{};
         for (std::size_t a = 0; a < 3; ++a)
             p[a] = value_at<std::int32_t>(bytes, at + 4 * a) * h.scale[a] + h.offset[a] - shift[a];
         if (value_at<std::uint8_t>(bytes, at + 15) & withheld) p.fill(NAN);
-        cloud.add(p);
+        std::array<double, 3> rgb{};
+        for (std::size_t c = 0; colour > 0 && c < 3; ++c)
+            rgb[c] = value_at<std::uint16_t>(bytes, at + colour + 2 * c);
+        cloud.add(p, {}, rgb);
     }
     PointCloud out = cloud.finish();
     out.offset_m = shift;

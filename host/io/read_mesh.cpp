@@ -13,6 +13,7 @@
 
 #include "io/cloud_builder.h"
 #include "io/mesh_checks.h"
+#include "io/mesh_colours.h"
 #include "io/text.h"
 #include "io/triangulate.h"
 
@@ -23,6 +24,8 @@ struct Triangle {
     std::array<aiVector3t<double>, 3> corner;
     aiVector3t<double> normal;  // unit
     double area = 0;
+    std::uint32_t mesh = 0;  // of the scene's, and which of its vertices the corners are
+    std::array<std::uint32_t, 3> vertex{};
 };
 
 struct Triangles {
@@ -31,7 +34,8 @@ struct Triangles {
     std::uint64_t broken = 0;  // with a corner that is not finite
 };
 
-void append(const std::array<aiVector3t<double>, 3>& corner, Triangles& out) {
+void append(const std::array<aiVector3t<double>, 3>& corner, std::uint32_t mesh,
+            const std::array<std::uint32_t, 3>& vertex, Triangles& out) {
     auto normal = (corner[1] - corner[0]) ^ (corner[2] - corner[0]);
     const double length = normal.Length();
     if (!std::isfinite(length)) {
@@ -39,11 +43,13 @@ void append(const std::array<aiVector3t<double>, 3>& corner, Triangles& out) {
     } else if (length > 0) {
         normal /= length;
         out.area += length / 2;
-        out.all.push_back({corner, normal, length / 2});
+        out.all.push_back({corner, normal, length / 2, mesh, vertex});
     }
 }
 
-void append(const aiMesh& mesh, const aiMatrix4x4t<double>& to_world, Triangles& out) {
+void append(const aiScene& scene, std::uint32_t number, const aiMatrix4x4t<double>& to_world,
+            Triangles& out) {
+    const aiMesh& mesh = *scene.mMeshes[number];
     std::vector<Vec3> polygon;
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
         const aiFace& face = mesh.mFaces[f];
@@ -60,7 +66,10 @@ void append(const aiMesh& mesh, const aiMatrix4x4t<double>& to_world, Triangles&
         const auto at = [&](std::size_t c) {
             return aiVector3t<double>(polygon[c][0], polygon[c][1], polygon[c][2]);
         };
-        for (const auto& t : triangulate(polygon)) append({at(t[0]), at(t[1]), at(t[2])}, out);
+        for (const auto& t : triangulate(polygon)) {
+            append({at(t[0]), at(t[1]), at(t[2])}, number,
+                   {face.mIndices[t[0]], face.mIndices[t[1]], face.mIndices[t[2]]}, out);
+        }
     }
 }
 
@@ -80,7 +89,7 @@ Triangles triangles_of(const aiScene& scene) {
                                        m.c3, m.c4, m.d1, m.d2, m.d3, m.d4);
         const auto to_world = at.to_world * own;
         for (unsigned n = 0; n < at.node->mNumMeshes; ++n)
-            append(*scene.mMeshes[at.node->mMeshes[n]], to_world, out);
+            append(scene, at.node->mMeshes[n], to_world, out);
         for (unsigned n = at.node->mNumChildren; n > 0; --n)
             left.push_back({at.node->mChildren[n - 1], to_world});
     }
@@ -89,15 +98,17 @@ Triangles triangles_of(const aiScene& scene) {
 
 // Points of a triangle mesh: as many on each triangle as its area has, evenly spread by the
 // additive sequence of the plastic number (Roberts's R2), which is the same on every machine.
-PointCloud sample(const std::filesystem::path& file, const Triangles& triangles, double unit_m,
-                  const MeshSampling& sampling) {
+PointCloud sample(const std::filesystem::path& file, const Triangles& triangles,
+                  const MeshColours& colours, double unit_m, const MeshSampling& sampling) {
     const double area_m2 = triangles.area * unit_m * unit_m;
     const double wanted =
         std::clamp(area_m2 / (sampling.spacing_m * sampling.spacing_m),
                    static_cast<double>(sampling.fewest), static_cast<double>(sampling.most));
     const double per_area = wanted / triangles.area;
     constexpr double step_u = 0.7548776662466927, step_v = 0.5698402909980532;
-    CloudBuilder cloud(file, static_cast<std::uint64_t>(wanted) + 1, true);
+    CloudFields fields{.normals = true};
+    if (colours.any()) fields.colours = ColourValues::bytes;
+    CloudBuilder cloud(file, static_cast<std::uint64_t>(wanted) + 1, fields);
     double due = 0.5;
     for (const Triangle& t : triangles.all) {
         due += t.area * per_area;
@@ -110,10 +121,13 @@ PointCloud sample(const std::filesystem::path& file, const Triangles& triangles,
                 v = 1 - v;
             }
             const auto p = t.corner[0] + side_u * u + side_v * v;
-            cloud.add({p.x, p.y, p.z}, {t.normal.x, t.normal.y, t.normal.z});
+            cloud.add({p.x, p.y, p.z}, {t.normal.x, t.normal.y, t.normal.z},
+                      colours.any() ? colours.at({t.mesh, t.vertex, {1 - u - v, u, v}})
+                                    : std::array<double, 3>{});
         }
     }
     PointCloud out = cloud.finish();
+    out.notes = colours.notes();
     if (triangles.broken > 0) {
         out.notes.push_back(counted(triangles.broken, "triangle") +
                             " without three finite corners left out.");
@@ -165,7 +179,7 @@ std::optional<PointCloud> parse_mesh(const std::filesystem::path& file, std::str
     if (!std::isfinite(triangles.area))
         fail(file, "its triangles have no finite area; coordinates must be metres");
     if (!(triangles.area > 0)) return std::nullopt;
-    return sample(file, triangles, unit_m, sampling);
+    return sample(file, triangles, MeshColours(file, *scene, format), unit_m, sampling);
 }
 
 }  // namespace topple::io

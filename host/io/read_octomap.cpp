@@ -170,7 +170,7 @@ ScannedMap read_octomap(const std::filesystem::path& file, double unit_m,
         }
     }
     if (occupied == 0) fail(file, "has no occupied leaf: there is nothing to parse");
-    CloudBuilder cloud(file, border, true);
+    CloudBuilder cloud(file, border, {.normals = true});
     Occupied parts(tree, cloud, map.space);
     for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
         poll_at_times();

@@ -2,6 +2,7 @@
 #include <liblzf/lzf.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -208,7 +209,11 @@ class HeaderParser {
 // The fields to read, by place in Header::fields.
 struct Wanted {
     std::array<const Field*, 3> point{}, normal{};
+    const Field* colour = nullptr;  // four bytes that hold 0xAARRGGBB
     bool has_normal = false;
+    CloudFields fields() const {
+        return {has_normal, colour ? ColourValues::bytes : ColourValues::none};
+    }
 };
 
 const Field* find_field(const std::filesystem::path& file, const Header& header,
@@ -237,7 +242,28 @@ Wanted find_wanted(const std::filesystem::path& file, const Header& header) {
             wanted.normal[axis] = find_field(file, header, short_normal[axis]);
         wanted.has_normal = wanted.has_normal && wanted.normal[axis];
     }
+    for (const char* name : {"rgb", "rgba"}) {
+        const Field* field = find_field(file, header, name);
+        if (field && field->size == 4 && field->count == 1 && !wanted.colour) wanted.colour = field;
+    }
     return wanted;
+}
+
+std::array<double, 3> unpacked_colour(std::uint32_t packed) {
+    return {static_cast<double>(packed >> 16 & 0xFF), static_cast<double>(packed >> 8 & 0xFF),
+            static_cast<double>(packed & 0xFF)};
+}
+
+// The packed colour that a text stands for: as a whole number, or as the float that has its bits.
+// Of floats, programs have written either: as bits, 1 to 2^24 would be colours whose alpha is next
+// to no program's.
+std::uint32_t packed_colour(const Field& field, double value) {
+    if (!std::isfinite(value)) return 0;
+    if (field.type != 'F' || (value >= 1 && value <= 0xFFFFFF)) {
+        if (value < -0x1p31 || value >= 0x1p32) return 0;
+        return static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
+    }
+    return std::bit_cast<std::uint32_t>(static_cast<float>(value));
 }
 
 [[noreturn]] void cut_short(const std::filesystem::path& file, std::uint64_t points,
@@ -253,11 +279,15 @@ void read_ascii(const std::filesystem::path& file, std::string_view bytes, const
     const auto bad = [&](const std::string& message) {
         fail(file, "line " + std::to_string(lines.number()) + ": " + message);
     };
-    std::vector<int> role(header.columns, -1);  // 0-2 point, 3-5 normal, -1 skip
-    for (int axis = 0; axis < 3; ++axis) {
-        role[wanted.point[std::size_t(axis)]->column] = axis;
-        if (wanted.has_normal) role[wanted.normal[std::size_t(axis)]->column] = 3 + axis;
+    // Where each value goes; null: nowhere.
+    std::array<double, 3> point{}, normal{};
+    double colour = 0;
+    std::vector<double*> place(header.columns, nullptr);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        place[wanted.point[axis]->column] = &point[axis];
+        if (wanted.has_normal) place[wanted.normal[axis]->column] = &normal[axis];
     }
+    if (wanted.colour) place[wanted.colour->column] = &colour;
     std::string_view line;
     while (lines.next(line)) {
         auto rest = line;
@@ -265,20 +295,19 @@ void read_ascii(const std::filesystem::path& file, std::string_view bytes, const
         if (token.empty() || token.front() == '#') continue;
         if (cloud.seen() == *header.points)
             bad("more than the " + counted(*header.points, "point") + " that the header promises");
-        std::array<double, 3> point{}, normal{};
-        for (std::size_t i = 0; i < role.size(); ++i) {
+        for (std::size_t i = 0; i < place.size(); ++i) {
             if (i > 0) token = next_token(rest);
             if (token.empty())
-                bad(std::to_string(i) + " of the " + counted(role.size(), "value") +
+                bad(std::to_string(i) + " of the " + counted(place.size(), "value") +
                     " that each point has");
-            if (role[i] < 0) continue;
-            auto& value =
-                role[i] < 3 ? point[std::size_t(role[i])] : normal[std::size_t(role[i] - 3)];
-            if (!parse_number(token, value)) bad(in_quotes(token) + " is not a number");
+            if (place[i] && !parse_number(token, *place[i]))
+                bad(in_quotes(token) + " is not a number");
         }
         if (!next_token(rest).empty())
-            bad("more than the " + counted(role.size(), "value") + " that each point has");
-        cloud.add(point, normal);
+            bad("more than the " + counted(place.size(), "value") + " that each point has");
+        cloud.add(point, normal,
+                  wanted.colour ? unpacked_colour(packed_colour(*wanted.colour, colour))
+                                : std::array<double, 3>{});
     }
     if (cloud.seen() != *header.points) {
         fail(file, "the header promises " + counted(*header.points, "point") + ", the file has " +
@@ -291,19 +320,24 @@ void read_binary(std::string_view data, const Header& header, const Wanted& want
                  CloudBuilder& cloud) {
     const bool swapped = must_swap(false);
     const auto points = *header.points;
+    const auto bytes_at = [&](const Field& field, std::uint64_t i) {
+        return data.data() + (by_field ? field.offset * points + i * field.size * field.count
+                                       : i * header.stride + field.offset);
+    };
     const auto load = [&](const std::array<const Field*, 3>& fields, std::uint64_t i) {
         std::array<double, 3> values;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const auto& field = *fields[axis];
-            const auto at = by_field ? field.offset * points + i * field.size * field.count
-                                     : i * header.stride + field.offset;
-            values[axis] = load_scalar(field.scalar, data.data() + at, swapped);
-        }
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            values[axis] = load_scalar(fields[axis]->scalar, bytes_at(*fields[axis], i), swapped);
         return values;
+    };
+    // Its bits: as a float many a colour is no number.
+    const auto load_colour = [&](const Field& field, std::uint64_t i) {
+        return unpacked_colour(load_as<std::uint32_t>(bytes_at(field, i), swapped));
     };
     for (std::uint64_t i = 0; i < points; ++i) {
         cloud.add(load(wanted.point, i),
-                  wanted.has_normal ? load(wanted.normal, i) : std::array<double, 3>{});
+                  wanted.has_normal ? load(wanted.normal, i) : std::array<double, 3>{},
+                  wanted.colour ? load_colour(*wanted.colour, i) : std::array<double, 3>{});
     }
 }
 
@@ -378,7 +412,7 @@ PointCloud parse_pcd(const std::filesystem::path& file, std::string_view bytes,
         unpacked = decompress(file, data, needed);
     }
 
-    CloudBuilder cloud(file, points, wanted.has_normal, sink);
+    CloudBuilder cloud(file, points, wanted.fields(), sink);
     if (header.data == Data::ascii) {
         read_ascii(file, bytes, header, wanted, cloud);
     } else {

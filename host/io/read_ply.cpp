@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -13,10 +14,10 @@
 namespace topple::io {
 namespace {
 
-// Where in a vertex the coordinates and the normal are: indices into its properties.
+// Where in a vertex the coordinates, the normal and the colour are: indices into its properties.
 struct Wanted {
-    std::array<std::size_t, 3> point{}, normal{};
-    bool has_normal = false;
+    std::array<std::size_t, 3> point{}, normal{}, colour{};
+    CloudFields fields;
 };
 
 std::optional<std::size_t> find_property(const std::filesystem::path& file,
@@ -30,6 +31,40 @@ std::optional<std::size_t> find_property(const std::filesystem::path& file,
         found = i;
     }
     return found;
+}
+
+ColourValues colour_values(Scalar type) {
+    if (type == Scalar::u8) return ColourValues::bytes;
+    return type == Scalar::f32 || type == Scalar::f64 ? ColourValues::real : ColourValues::whole;
+}
+
+// Whether red, green and blue are those that write_points_ply() gives to objects.
+bool coloured_by_object(const PlyElement& vertex) {
+    const auto has = [&](std::string_view name) {
+        return std::ranges::any_of(vertex.properties,
+                                   [&](const PlyProperty& p) { return p.name == name; });
+    };
+    return has("primitive") && has("object") && !has("object_red");
+}
+
+// The three channels, under the first of their names of which there are all, and of one type.
+void find_colour(const std::filesystem::path& file, const PlyElement& vertex, Wanted& wanted) {
+    if (coloured_by_object(vertex)) return;
+    static constexpr std::array<std::array<const char*, 3>, 3> names{
+        {{"red", "green", "blue"},
+         {"diffuse_red", "diffuse_green", "diffuse_blue"},
+         {"r", "g", "b"}}};
+    for (const auto& name : names) {
+        std::array<std::optional<std::size_t>, 3> at;
+        for (std::size_t c = 0; c < 3; ++c) at[c] = find_property(file, vertex, name[c]);
+        if (!at[0] || !at[1] || !at[2]) continue;
+        const Scalar type = vertex.properties[*at[0]].type;
+        if (vertex.properties[*at[1]].type != type || vertex.properties[*at[2]].type != type)
+            continue;
+        wanted.colour = {*at[0], *at[1], *at[2]};
+        wanted.fields.colours = colour_values(type);
+        return;
+    }
 }
 
 Wanted find_wanted(const std::filesystem::path& file, const PlyElement& vertex) {
@@ -51,7 +86,8 @@ Wanted find_wanted(const std::filesystem::path& file, const PlyElement& vertex) 
             ++normals;
         }
     }
-    wanted.has_normal = normals == 3;
+    wanted.fields.normals = normals == 3;
+    find_colour(file, vertex, wanted);
     return wanted;
 }
 
@@ -74,12 +110,15 @@ PointCloud read_ascii(const std::filesystem::path& file, std::string_view bytes,
             continue;
         }
         const auto wanted = find_wanted(file, element);
-        CloudBuilder cloud(file, element.count, wanted.has_normal, sink);
-        // What to do with each value on the line: 0-2 point, 3-5 normal, -1 skip.
-        std::vector<int> role(element.properties.size(), -1);
-        for (int axis = 0; axis < 3; ++axis) {
-            role[wanted.point[std::size_t(axis)]] = axis;
-            if (wanted.has_normal) role[wanted.normal[std::size_t(axis)]] = 3 + axis;
+        CloudBuilder cloud(file, element.count, wanted.fields, sink);
+        const bool coloured = wanted.fields.colours != ColourValues::none;
+        // Where each value on the line goes; null: nowhere.
+        std::array<double, 3> point{}, normal{}, colour{};
+        std::vector<double*> place(element.properties.size(), nullptr);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            place[wanted.point[axis]] = &point[axis];
+            if (wanted.fields.normals) place[wanted.normal[axis]] = &normal[axis];
+            if (coloured) place[wanted.colour[axis]] = &colour[axis];
         }
         const auto bad = [&](const std::string& message) {
             fail(file, "line " + std::to_string(lines.number()) + ": " + message);
@@ -90,12 +129,11 @@ PointCloud read_ascii(const std::filesystem::path& file, std::string_view bytes,
                                " vertices, the file has " + std::to_string(cloud.seen()) +
                                "; it is cut short, or its header is wrong");
             }
-            std::array<double, 3> point{}, normal{};
             auto rest = line;
-            for (std::size_t i = 0; i < role.size(); ++i) {
+            for (std::size_t i = 0; i < place.size(); ++i) {
                 const auto token = next_token(rest);
                 if (token.empty()) {
-                    bad(std::to_string(i) + " of the " + counted(role.size(), "value") +
+                    bad(std::to_string(i) + " of the " + counted(place.size(), "value") +
                         " that each vertex has");
                 }
                 if (element.properties[i].list_count) {
@@ -106,16 +144,14 @@ PointCloud read_ascii(const std::filesystem::path& file, std::string_view bytes,
                         if (next_token(rest).empty())
                             bad("a list has fewer values than its length says");
                     }
-                } else if (role[i] >= 0) {
-                    auto& value = role[i] < 3 ? point[std::size_t(role[i])]
-                                              : normal[std::size_t(role[i] - 3)];
-                    if (!parse_number(token, value)) bad(in_quotes(token) + " is not a number");
+                } else if (place[i] && !parse_number(token, *place[i])) {
+                    bad(in_quotes(token) + " is not a number");
                 }
             }
             if (!next_token(rest).empty()) {
-                bad("more than the " + counted(role.size(), "value") + " that each vertex has");
+                bad("more than the " + counted(place.size(), "value") + " that each vertex has");
             }
-            cloud.add(point, normal);
+            cloud.add(point, normal, colour);
         }
         return cloud.finish();
     }
@@ -133,7 +169,8 @@ PointCloud read_binary(const std::filesystem::path& file, std::string_view bytes
         }
         items.expect(element);
         const auto wanted = find_wanted(file, element);
-        CloudBuilder cloud(file, element.count, wanted.has_normal, sink);
+        CloudBuilder cloud(file, element.count, wanted.fields, sink);
+        const bool coloured = wanted.fields.colours != ColourValues::none;
         // Where each property of the current vertex starts.
         std::vector<const char*> starts(element.properties.size());
         const auto load = [&](const std::array<std::size_t, 3>& which) {
@@ -153,7 +190,8 @@ PointCloud read_binary(const std::filesystem::path& file, std::string_view bytes
                 for (auto& start : starts) start += stride;
             }
             cloud.add(load(wanted.point),
-                      wanted.has_normal ? load(wanted.normal) : std::array<double, 3>{});
+                      wanted.fields.normals ? load(wanted.normal) : std::array<double, 3>{},
+                      coloured ? load(wanted.colour) : std::array<double, 3>{});
         }
         return cloud.finish();
     }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "io/cloud_builder.h"
@@ -17,9 +19,13 @@ constexpr std::size_t most_columns = 256;
 
 // Which columns hold what.
 struct Columns {
-    std::array<std::size_t, 3> point{0, 1, 2}, normal{none, none, none};
-    bool normals_by_name = false;
-    bool has_normals() const { return normal[0] != none && normal[1] != none && normal[2] != none; }
+    using Three = std::array<std::size_t, 3>;
+    static constexpr Three nowhere{none, none, none};
+    Three point{0, 1, 2}, normal = nowhere, colour = nowhere;
+    bool by_name = false;
+    static bool found(const Three& three) {
+        return three[0] != none && three[1] != none && three[2] != none;
+    }
 };
 
 std::string_view without_comment(std::string_view line) {
@@ -42,8 +48,9 @@ bool parse_names(const std::array<std::string_view, most_columns>& tokens, std::
                  Columns& columns) {
     double number;
     if (count == 0 || parse_number(tokens[0], number)) return false;
-    static constexpr std::array<const char*, 6> names{"x", "y", "z", "nx", "ny", "nz"};
-    std::array<std::size_t, 6> at;
+    static constexpr std::array<const char*, 12> names{"x", "y", "z", "nx",  "ny",    "nz",
+                                                       "r", "g", "b", "red", "green", "blue"};
+    std::array<std::size_t, names.size()> at;
     at.fill(none);
     for (std::size_t i = 0; i < count; ++i) {
         std::string name;
@@ -59,7 +66,9 @@ bool parse_names(const std::array<std::string_view, most_columns>& tokens, std::
     if (at[0] == none || at[1] == none || at[2] == none) return true;  // the first three columns
     columns.point = {at[0], at[1], at[2]};
     columns.normal = {at[3], at[4], at[5]};
-    columns.normals_by_name = true;
+    columns.colour = {at[6], at[7], at[8]};
+    if (!Columns::found(columns.colour)) columns.colour = {at[9], at[10], at[11]};
+    columns.by_name = true;
     return true;
 }
 
@@ -71,6 +80,14 @@ bool are_unit(const std::vector<std::array<double, 3>>& triples) {
         unit += std::abs(length - 1) < 0.02;
     }
     return !triples.empty() && unit >= triples.size() - triples.size() / 100;
+}
+
+// Whether all are whole numbers from 0 to 255.
+bool are_bytes(const std::vector<std::array<double, 3>>& triples) {
+    return !triples.empty() && std::ranges::all_of(triples, [](const auto& t) {
+        return std::ranges::all_of(
+            t, [](double v) { return v >= 0 && v <= 255 && v == std::floor(v); });
+    });
 }
 
 class XyzParser {
@@ -115,10 +132,10 @@ class XyzParser {
     void add_row(std::size_t count) {
         ++rows_;
         points_.push_back(triple(columns_.point, count));
-        // A row that has not six columns like the first: the columns beyond three are no normals.
-        if (columns_.has_normals() && !columns_.normals_by_name && count != 6)
-            columns_.normal.fill(none);
-        if (columns_.has_normals()) normals_.push_back(triple(columns_.normal, count));
+        // A row that has not six columns like the first: nothing is known of those beyond three.
+        if (!columns_.by_name && count != 6) columns_.normal = columns_.colour = Columns::nowhere;
+        if (Columns::found(columns_.normal)) normals_.push_back(triple(columns_.normal, count));
+        if (Columns::found(columns_.colour)) colours_.push_back(triple(columns_.colour, count));
     }
 
     std::array<double, 3> triple(const std::array<std::size_t, 3>& which, std::size_t count) const {
@@ -130,9 +147,9 @@ class XyzParser {
             }
             if (!parse_number(tokens_[which[axis]], values[axis])) {
                 bad(in_quotes(tokens_[which[axis]]) + " is not a number; expected " +
-                    (&which == &columns_.normal ? "nx ny nz" : "x y z") + " in columns " +
-                    std::to_string(which[0] + 1) + ", " + std::to_string(which[1] + 1) + " and " +
-                    std::to_string(which[2] + 1));
+                    (&which == &columns_.point ? "x y z" : "a normal or a colour") +
+                    " in columns " + std::to_string(which[0] + 1) + ", " +
+                    std::to_string(which[1] + 1) + " and " + std::to_string(which[2] + 1));
             }
         }
         return values;
@@ -142,19 +159,27 @@ class XyzParser {
         fail(file_, "line " + std::to_string(lines_.number()) + ": " + message);
     }
 
-    // The first rows, which without a sink are all, tell whether the file has normals.
+    // The first rows, which without a sink are all, tell whether the file has normals or colours.
     void hand_over() {
         if (!cloud_) {
-            const bool normals =
-                columns_.has_normals() && (columns_.normals_by_name || are_unit(normals_));
-            if (!normals) columns_.normal.fill(none);
-            cloud_.emplace(file_, points_.size(), normals, sink_);
+            if (!columns_.by_name && !are_unit(normals_)) {
+                if (are_bytes(normals_)) {
+                    columns_.colour = columns_.normal;
+                    colours_ = std::move(normals_);
+                }
+                columns_.normal = Columns::nowhere;
+            }
+            CloudFields fields{.normals = Columns::found(columns_.normal)};
+            if (Columns::found(columns_.colour))
+                fields.colours = columns_.by_name ? ColourValues::real : ColourValues::bytes;
+            cloud_.emplace(file_, points_.size(), fields, sink_);
         }
-        for (std::size_t i = 0; i < points_.size(); ++i) {
-            cloud_->add(points_[i], columns_.has_normals() ? normals_[i] : std::array<double, 3>{});
-        }
-        points_.clear();
-        normals_.clear();
+        const auto of = [](const std::vector<std::array<double, 3>>& values, std::size_t i) {
+            return i < values.size() ? values[i] : std::array<double, 3>{};
+        };
+        for (std::size_t i = 0; i < points_.size(); ++i)
+            cloud_->add(points_[i], of(normals_, i), of(colours_, i));
+        for (auto* rows : {&points_, &normals_, &colours_}) rows->clear();
     }
 
     static constexpr std::size_t rows_at_once = 1u << 16;  // with a sink
@@ -172,7 +197,7 @@ class XyzParser {
         std::string first;
     } names_;
     std::array<std::string_view, most_columns> tokens_;
-    std::vector<std::array<double, 3>> points_, normals_;
+    std::vector<std::array<double, 3>> points_, normals_, colours_;
 };
 
 }  // namespace

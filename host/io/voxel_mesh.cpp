@@ -33,8 +33,13 @@ struct Run {
     auto order() const { return std::tuple(upper, w, u, low); }
 };
 
+// Whether rectangles must end there.
+bool ends_at(std::int32_t at, std::int32_t longest) {
+    return longest > 0 && at % longest == 0;
+}
+
 // The runs of faces across one axis.
-std::vector<Run> runs_across(std::size_t axis, std::span<const Cell> voxels) {
+std::vector<Run> runs_across(std::size_t axis, std::span<const Cell> voxels, std::int32_t longest) {
     const std::size_t a = axis, b = (axis + 1) % 3, c = (axis + 2) % 3;
     std::vector<Cell> along(voxels.begin(), voxels.end());  // columns along the axis
     std::sort(along.begin(), along.end(), [&](const Cell& p, const Cell& q) {
@@ -56,7 +61,7 @@ std::vector<Run> runs_across(std::size_t axis, std::span<const Cell> voxels) {
     for (const Run& face : faces) {
         const bool goes_on = !runs.empty() && runs.back().upper == face.upper &&
                              runs.back().w == face.w && runs.back().u == face.u &&
-                             runs.back().high == face.low;
+                             runs.back().high == face.low && !ends_at(face.low, longest);
         if (goes_on) {
             runs.back().high = face.high;
         } else {
@@ -67,7 +72,7 @@ std::vector<Run> runs_across(std::size_t axis, std::span<const Cell> voxels) {
 }
 
 // Runs of one length and place side by side become one rectangle.
-void append_rectangles(std::size_t axis, const std::vector<Run>& runs,
+void append_rectangles(std::size_t axis, const std::vector<Run>& runs, std::int32_t longest,
                        std::vector<Rectangle>& out) {
     std::vector<Rectangle> open, next;  // that end at the row before, and at this one, by v
     for (std::size_t first = 0; first < runs.size();) {
@@ -76,7 +81,7 @@ void append_rectangles(std::size_t axis, const std::vector<Run>& runs,
         std::size_t candidate = 0;
         const Run& row = runs[first];
         const bool follows = !open.empty() && open[0].upper == row.upper && open[0].w == row.w &&
-                             open[0].u[1] == row.u;
+                             open[0].u[1] == row.u && !ends_at(row.u, longest);
         if (!follows) {
             out.insert(out.end(), open.begin(), open.end());
             open.clear();
@@ -163,10 +168,10 @@ class Builder {
 
 }  // namespace
 
-TriangleMesh voxel_boundary(std::span<const Cell> voxels) {
+TriangleMesh voxel_boundary(std::span<const Cell> voxels, std::int32_t longest) {
     std::vector<Rectangle> rectangles;
     for (std::size_t axis = 0; axis < 3; ++axis)
-        append_rectangles(axis, runs_across(axis, voxels), rectangles);
+        append_rectangles(axis, runs_across(axis, voxels, longest), longest, rectangles);
     Builder builder(rectangles);
     for (const Rectangle& r : rectangles) builder.add(r);
     return builder.finish();

@@ -20,6 +20,9 @@ struct TriangleMesh {
 // 1] x [k, k + 1]. Faces that lie in one plane are merged to rectangles, greedily, and these meet
 // corner to corner: the surface has no gaps, and encloses exactly the voxels. Each voxel may be
 // given once only.
-TriangleMesh voxel_boundary(std::span<const std::array<std::int32_t, 3>> voxels);
+//
+// longest: rectangles end at multiples of so many voxels, for what varies along them; 0: anywhere.
+TriangleMesh voxel_boundary(std::span<const std::array<std::int32_t, 3>> voxels,
+                            std::int32_t longest = 0);
 
 }  // namespace topple::io

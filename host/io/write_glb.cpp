@@ -5,8 +5,8 @@
 #include <assimp/scene.h>
 
 #include <assimp/Exporter.hpp>
-#include <cmath>
 
+#include "core/colour_space.h"
 #include "io/file_writer.h"
 #include "io/text.h"
 
@@ -16,15 +16,17 @@ namespace topple::io {
 namespace {
 
 // glTF's colours are linear.
-float linear(std::uint8_t srgb) {
-    const double c = srgb / 255.0;
-    return static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+aiColor4D linear(const Rgb8& srgb) {
+    const auto channel = [](std::uint8_t v) {
+        return static_cast<float>(linear_of_srgb(v / 255.0));
+    };
+    return {channel(srgb[0]), channel(srgb[1]), channel(srgb[2]), 1};
 }
 
 aiMaterial* material_of(const GlbNode& node) {
     auto* material = new aiMaterial;
-    const aiColor4D colour(linear(node.colour[0]), linear(node.colour[1]), linear(node.colour[2]),
-                           1);
+    const aiColor4D colour =
+        node.vertex_colour.empty() ? linear(node.colour) : aiColor4D(1, 1, 1, 1);
     const aiString name(node.name);
     const float metallic = 0, roughness = 1;
     material->AddProperty(&name, AI_MATKEY_NAME);
@@ -46,6 +48,11 @@ aiMesh* mesh_of(const GlbNode& node, unsigned material) {
         const Vec3& v = node.mesh.vertex[n];
         mesh->mVertices[n] = {static_cast<float>(v[0]), static_cast<float>(v[1]),
                               static_cast<float>(v[2])};
+    }
+    if (!node.vertex_colour.empty()) {
+        mesh->mColors[0] = new aiColor4D[mesh->mNumVertices];
+        for (unsigned n = 0; n < mesh->mNumVertices; ++n)
+            mesh->mColors[0][n] = linear(node.vertex_colour.at(n));
     }
     mesh->mNumFaces = static_cast<unsigned>(node.mesh.triangle.size());
     mesh->mFaces = new aiFace[mesh->mNumFaces];

@@ -15,6 +15,8 @@ struct GlbNode {
     std::string name;
     std::array<std::uint8_t, 3> colour{};  // sRGB
     TriangleMesh mesh;                     // the input's frame, metres
+    // sRGB, of each vertex, instead of `colour`; or empty.
+    std::vector<std::array<std::uint8_t, 3>> vertex_colour{};
 };
 
 // Writes a binary glTF 2.0: one node per mesh below a root that turns them, by `y_up_from_input`,

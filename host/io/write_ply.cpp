@@ -45,13 +45,17 @@ void check_lengths(const char* what, std::size_t size, const Arrays&... arrays) 
     }
 }
 
-std::string header(std::size_t count, const char* properties) {
+std::string header(std::size_t count, const std::string& properties, bool coloured = false) {
     return "ply\nformat binary_little_endian 1.0\ncomment written by topple; metres, -1 = "
            "unassigned\n"
            "element vertex " +
            std::to_string(count) + "\nproperty float x\nproperty float y\nproperty float z\n" +
            "property int primitive\nproperty int object\n" + properties +
-           "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+           "property uchar red\nproperty uchar green\nproperty uchar blue\n" +
+           (coloured ? "property uchar object_red\nproperty uchar object_green\n"
+                       "property uchar object_blue\n"
+                     : "") +
+           "end_header\n";
 }
 
 }  // namespace
@@ -62,9 +66,13 @@ void write_points_ply(const std::filesystem::path& file, const ScenePoints& poin
     const bool normals = !points.nx.empty();
     if (normals) check_lengths("points.ply", count, points.nx, points.ny, points.nz);
 
+    const bool coloured = !points.red.empty();
+    if (coloured) check_lengths("points.ply", count, points.red, points.green, points.blue);
+
     FileWriter writer(file);
-    writer.write(
-        header(count, normals ? "property float nx\nproperty float ny\nproperty float nz\n" : ""));
+    writer.write(header(count,
+                        normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
+                        coloured));
     Record record;
     for (std::size_t i = 0; i < count; ++i) {
         for (const float value : {points.x[i], points.y[i], points.z[i]}) record.put(value);
@@ -73,19 +81,24 @@ void write_points_ply(const std::filesystem::path& file, const ScenePoints& poin
         if (normals) {
             for (const float value : {points.nx[i], points.ny[i], points.nz[i]}) record.put(value);
         }
+        if (coloured) {
+            for (const auto channel : {points.red[i], points.green[i], points.blue[i]})
+                record.put(channel);
+        }
         record.colour(points.object[i]);
         record.write_to(writer);
     }
     writer.close();
 }
 
-PointsPlyWriter::PointsPlyWriter(const std::filesystem::path& file, std::uint64_t count)
-    : path_(file), writer_(file), left_(count) {
-    writer_.write(header(count, ""));
+PointsPlyWriter::PointsPlyWriter(const std::filesystem::path& file, std::uint64_t count,
+                                 bool coloured)
+    : own_colours_(coloured), path_(file), writer_(file), left_(count) {
+    writer_.write(header(count, "", coloured));
 }
 
 void PointsPlyWriter::add(const std::array<float, 3>& point, std::int32_t primitive,
-                          std::int32_t object) {
+                          std::int32_t object, const Rgb8& own) {
     if (left_ == 0) fail(path_, "more points come than were announced");
     --left_;
     if (object != coloured_) {
@@ -96,6 +109,9 @@ void PointsPlyWriter::add(const std::array<float, 3>& point, std::int32_t primit
     for (const float value : point) record.put(value);
     record.put(primitive);
     record.put(object);
+    if (own_colours_) {
+        for (const std::uint8_t channel : own) record.put(channel);
+    }
     for (const std::uint8_t channel : colour_) record.put(channel);
     record.write_to(writer_);
 }

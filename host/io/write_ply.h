@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "core/colour_space.h"
 #include "io/file_writer.h"
 #include "io/palette.h"
 #include "topple/scene.h"
@@ -15,23 +16,27 @@
 namespace topple::io {
 
 // points.ply: x y z float, primitive object int, nx ny nz float (where there are normals),
-// red green blue uchar by object.
+// red green blue uchar: the scan's own, and object_red object_green object_blue by object; of a
+// scan without colours those by object are red green blue.
 void write_points_ply(const std::filesystem::path& file, const ScenePoints& points);
 
-// points.ply without normals, of `count` points that come one by one. Throws Error(input), too,
-// where more or fewer come.
+// points.ply without normals, of `count` points that come one by one, with colours of their own or
+// not. Throws Error(input), too, where more or fewer come.
 class PointsPlyWriter {
   public:
-    PointsPlyWriter(const std::filesystem::path& file, std::uint64_t count);
-    void add(const std::array<float, 3>& point, std::int32_t primitive, std::int32_t object);
+    PointsPlyWriter(const std::filesystem::path& file, std::uint64_t count, bool coloured = false);
+    // own: the point's colour in the scan, where there are any.
+    void add(const std::array<float, 3>& point, std::int32_t primitive, std::int32_t object,
+             const Rgb8& own = {});
     void close();
 
   private:
+    bool own_colours_;
     std::filesystem::path path_;
     FileWriter writer_;
     std::uint64_t left_;
     std::int32_t coloured_ = -1;  // the object that colour_ is of
-    std::array<std::uint8_t, 3> colour_ = colour_of(-1);
+    Rgb8 colour_ = colour_of(-1);
 };
 
 // solid.ply: x y z float, primitive object int, state uchar (0 seen surface, 1 completed),

@@ -12,9 +12,9 @@ add_library(libtopple ${OBJECTS})
 add_library(topple::topple ALIAS libtopple)
 
 # What those objects need when they are linked, by package, target and library; what they need of others are headers.
-set(TOPPLE_LINKED_LIBRARIES png lzf qhull_r openvdb tbb OpenCL vulkan assimp octomap octomath cairo stdc++ m pthread)
-set(TOPPLE_LINKED_PACKAGES Threads PNG liblzf Qhull TBB OpenCL Vulkan assimp octomap)  # and OpenVDB, cairo
-target_link_libraries(libtopple PRIVATE Threads::Threads PNG::PNG liblzf::liblzf Qhull::qhull_r OpenVDB::openvdb
+set(TOPPLE_LINKED_LIBRARIES png jpeg lzf qhull_r openvdb tbb OpenCL vulkan assimp octomap octomath cairo stdc++ m pthread)
+set(TOPPLE_LINKED_PACKAGES Threads PNG JPEG liblzf Qhull TBB OpenCL Vulkan assimp octomap)  # and OpenVDB, cairo
+target_link_libraries(libtopple PRIVATE Threads::Threads PNG::PNG JPEG::JPEG liblzf::liblzf Qhull::qhull_r OpenVDB::openvdb
                                         TBB::tbb OpenCL::OpenCL Vulkan::Vulkan assimp::assimp octomap cairo)
 
 set(GENERATED_HEADERS ${CMAKE_CURRENT_BINARY_DIR}/include)

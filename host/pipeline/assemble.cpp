@@ -268,11 +268,17 @@ void take_coordinates(Ingested& input, ScenePoints& out) {
         out.x = std::move(input.own.x);
         out.y = std::move(input.own.y);
         out.z = std::move(input.own.z);
+        out.red = std::move(input.own.red);
+        out.green = std::move(input.own.green);
+        out.blue = std::move(input.own.blue);
         return;
     }
     out.x.assign(input.cloud.x.begin(), input.cloud.x.end());
     out.y.assign(input.cloud.y.begin(), input.cloud.y.end());
     out.z.assign(input.cloud.z.begin(), input.cloud.z.end());
+    out.red.assign(input.cloud.red.begin(), input.cloud.red.end());
+    out.green.assign(input.cloud.green.begin(), input.cloud.green.end());
+    out.blue.assign(input.cloud.blue.begin(), input.cloud.blue.end());
 }
 
 }  // namespace topple

@@ -16,6 +16,15 @@ namespace {
     throw Error(ErrorKind::input, view.source + ": " + why);
 }
 
+template <class T>
+void check_column(const CloudView& view, const char* name, const Column<T>& column) {
+    if (column.size() != view.size()) {
+        refuse(view, std::string(name) + " has " + std::to_string(column.size()) +
+                         " values, but x has " + std::to_string(view.size()));
+    }
+    if (!column.data() && view.size() > 0) refuse(view, std::string(name) + " is a null pointer");
+}
+
 void check_arrays(const CloudView& view) {
     const bool normals = !view.nx.empty() || !view.ny.empty() || !view.nz.empty();
     const std::array<std::pair<const char*, const FloatColumn*>, 6> columns{{{"x", &view.x},
@@ -24,14 +33,12 @@ void check_arrays(const CloudView& view) {
                                                                              {"nx", &view.nx},
                                                                              {"ny", &view.ny},
                                                                              {"nz", &view.nz}}};
-    for (std::size_t c = 0; c < (normals ? 6 : 3); ++c) {
-        const auto& [name, column] = columns[c];
-        if (column->size() != view.size()) {
-            refuse(view, std::string(name) + " has " + std::to_string(column->size()) +
-                             " values, but x has " + std::to_string(view.size()));
-        }
-        if (!column->data() && view.size() > 0)
-            refuse(view, std::string(name) + " is a null pointer");
+    for (std::size_t c = 0; c < (normals ? 6 : 3); ++c)
+        check_column(view, columns[c].first, *columns[c].second);
+    if (!view.red.empty() || !view.green.empty() || !view.blue.empty()) {
+        check_column(view, "red", view.red);
+        check_column(view, "green", view.green);
+        check_column(view, "blue", view.blue);
     }
     if (!view.pixel.empty() && view.pixel.size() != view.size()) {
         refuse(view, "pixel has " + std::to_string(view.pixel.size()) + " values, but x has " +
@@ -74,6 +81,11 @@ std::optional<FinitePoints> finite_points(const CloudView& view) {
         to.y.push_back(view.y[i]);
         to.z.push_back(view.z[i]);
         if (view.height > 1) to.pixel.push_back(static_cast<std::uint32_t>(view.pixel_of(i)));
+        if (!view.red.empty()) {
+            to.red.push_back(view.red[i]);
+            to.green.push_back(view.green[i]);
+            to.blue.push_back(view.blue[i]);
+        }
         if (view.nx.empty()) continue;
         const bool usable = finite(view.nx, view.ny, view.nz, i);
         to.nx.push_back(usable ? view.nx[i] : 0);

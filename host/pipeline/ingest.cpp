@@ -36,6 +36,11 @@ class SequenceStream final : public FrameStream {
     const Intrinsics& intrinsics() const override { return sequence_.intrinsics(); }
     std::size_t size() const override { return sequence_.size(); }
     DepthFrame load(std::size_t i) const override { return sequence_.load(i); }
+    DepthFrame load_coloured(std::size_t i) const override {
+        DepthFrame frame = sequence_.load(i);
+        frame.rgb = sequence_.colours().load(i);
+        return frame;
+    }
 
   private:
     io::FrameSequence sequence_;
@@ -70,17 +75,19 @@ Ingested ingest_frames(device::Device& device, io::FrameSequence sequence,
     Ingested out;
     const bool posed = sequence.posed();
     out.camera_up = sequence.mean_camera_up();
+    out.notes = sequence.colours().notes();
     out.frames = std::make_unique<SequenceStream>(std::move(sequence));
     out.cell_m = cell_for_frames(out.frames->intrinsics(), out.frames->size(),
                                  [&](std::size_t f) { return out.frames->load(f); });
     geometry::FrameFusion fusion(out.frames->intrinsics(), out.cell_m);
     const auto count = static_cast<double>(out.frames->size());
     const auto poll = [&] { end_if_cancelled(options); };
-    for_each_frame(*out.frames, device.threads(), [&](const DepthFrame& frame, std::size_t f) {
+    const auto add = [&](const DepthFrame& frame, std::size_t f) {
         poll();
         fusion.add(frame);
         if (options.progress) options.progress("ingest", static_cast<double>(f + 1) / count);
-    });
+    };
+    for_each_frame(*out.frames, device.threads(), add, true);
     geometry::FusedCloud fused = fusion.finish(poll);
     out.own = std::move(fused.cloud);
     out.cloud = out.own;
@@ -182,7 +189,7 @@ double cell_for_frames(const Intrinsics& k, std::size_t count,
 }
 
 void for_each_frame(const FrameStream& frames, device::ThreadPool& threads,
-                    const std::function<void(DepthFrame, std::size_t)>& use) {
+                    const std::function<void(DepthFrame, std::size_t)>& use, bool coloured) {
     struct Decoded {
         DepthFrame frame;
         std::exception_ptr error;
@@ -191,7 +198,8 @@ void for_each_frame(const FrameStream& frames, device::ThreadPool& threads,
         std::vector<Decoded> batch(std::min<std::size_t>(threads.threads(), frames.size() - first));
         threads.each(batch.size(), 1, [&](std::size_t i) {
             try {
-                batch[i].frame = frames.load(first + i);
+                batch[i].frame =
+                    coloured ? frames.load_coloured(first + i) : frames.load(first + i);
             } catch (...) {
                 batch[i].error = std::current_exception();
             }

@@ -30,11 +30,13 @@ class FrameStream {
     virtual const Intrinsics& intrinsics() const = 0;
     virtual std::size_t size() const = 0;
     virtual DepthFrame load(std::size_t i) const = 0;
+    // With its colours, where it has any.
+    virtual DepthFrame load_coloured(std::size_t i) const { return load(i); }
 };
 
 // Calls use(frame, i) for each frame in order. Frames are decoded by all threads, as many at once.
 void for_each_frame(const FrameStream& frames, device::ThreadPool& threads,
-                    const std::function<void(DepthFrame, std::size_t)>& use);
+                    const std::function<void(DepthFrame, std::size_t)>& use, bool coloured = false);
 
 // Surfels are larger than the cells of the cloud: a surface then has no holes at their resolution
 // even where it is sparsely seen, and each averages the noise of several points. Measured: part

@@ -9,7 +9,8 @@
 namespace topple {
 
 // Writes the solid voxels as a binary glTF: a closed surface per object, named "object N" and
-// coloured by its unsafety, grey where it is grounded; solid voxels of no object are "unassigned".
+// coloured as in the scan or, where that has no colours, by its unsafety, grey where it is
+// grounded; solid voxels of no object are "unassigned".
 // Vertices are in the input's frame; the root node turns up to glTF's y. Throws Error(input) where
 // the file can't be written.
 void write_objects_glb(const std::filesystem::path& file, const Scene& scene,

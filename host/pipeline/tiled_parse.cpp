@@ -103,7 +103,7 @@ double spacing_in(const tiles::SpilledPoints& points, std::size_t bin) {
         std::min(1.0, static_cast<double>(spacing_points) / static_cast<double>(of_bin.points));
     const double end = (of_bin.bin[0] + share) * tiles::bin_edge_m;
     PointCloud cloud;
-    points.read(bin, [&](std::span<const tiles::Point> portion) {
+    points.read_points(bin, [&](std::span<const tiles::Point> portion) {
         for (const tiles::Point& p : portion) {
             if (p.x > end) continue;
             cloud.x.push_back(p.x);

@@ -5,6 +5,7 @@
 #include <map>
 #include <span>
 
+#include "core/colour_space.h"
 #include "io/read_cloud.h"
 #include "io/text.h"
 #include "io/write_ply.h"
@@ -58,6 +59,11 @@ ScenePoints TiledResult::sample(std::size_t most) const {
             out.x.push_back(bin.x[n]);
             out.y.push_back(bin.y[n]);
             out.z.push_back(bin.z[n]);
+            if (!bin.red.empty()) {
+                out.red.push_back(bin.red[n]);
+                out.green.push_back(bin.green[n]);
+                out.blue.push_back(bin.blue[n]);
+            }
             out.primitive.push_back(label_[b][n]);
             out.object.push_back(object_of(label_[b][n]));
         }
@@ -68,7 +74,8 @@ ScenePoints TiledResult::sample(std::size_t most) const {
 void TiledResult::write_points(const std::filesystem::path& file,
                                const std::function<void()>& poll) const {
     const tiles::SpilledPoints points(work_->path());
-    io::PointsPlyWriter writer(file, points.points());
+    const bool coloured = points.coloured();
+    io::PointsPlyWriter writer(file, points.points(), coloured);
     struct Open {
         tiles::CellsOfPoints cells;
         const std::vector<std::int32_t>& label;
@@ -91,7 +98,11 @@ void TiledResult::write_points(const std::filesystem::path& file,
             const tiles::Bin bin = tiles::bin_of(portion.x[n], portion.y[n], portion.z[n]);
             if (last == open.end() || last->first != bin) last = opened(bin);
             const std::int32_t primitive = last->second.label.at(last->second.cells.next());
-            writer.add({portion.x[n], portion.y[n], portion.z[n]}, primitive, object_of(primitive));
+            const Rgb8 own = coloured
+                                 ? Rgb8{portion.red.at(n), portion.green.at(n), portion.blue.at(n)}
+                                 : Rgb8{};
+            writer.add({portion.x[n], portion.y[n], portion.z[n]}, primitive, object_of(primitive),
+                       own);
         }
     });
     writer.close();

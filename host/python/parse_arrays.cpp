@@ -93,25 +93,33 @@ std::shared_ptr<Parsed> run(const std::shared_ptr<SharedDevice>& device, ParseOp
     return out;
 }
 
-// A one-dimensional array of float32 where it lies.
-FloatColumn column(const py::array& from, const char* name) {
-    if (from.ndim() != 1 || !py::isinstance<py::array_t<float>>(from))
-        throw Error(ErrorKind::usage, std::string(name) + " is no array of float32 in a row");
-    return {static_cast<const float*>(from.data()), static_cast<std::size_t>(from.shape(0)),
+// A one-dimensional array where it lies.
+template <class T>
+Column<T> column(const py::array& from, const char* name) {
+    if (from.ndim() != 1 || !py::isinstance<py::array_t<T>>(from)) {
+        throw Error(ErrorKind::usage, std::string(name) + " is no array of " +
+                                          (sizeof(T) == 1 ? "uint8" : "float32") + " in a row");
+    }
+    return {static_cast<const T*>(from.data()), static_cast<std::size_t>(from.shape(0)),
             from.strides(0)};
 }
 
 CloudView view_of(const std::vector<py::array>& points, const std::vector<py::array>& normals,
-                  const std::optional<Vec3>& viewpoint) {
+                  const std::vector<py::array>& colours, const std::optional<Vec3>& viewpoint) {
     CloudView view;
     view.source = "points";
-    view.x = column(points.at(0), "x");
-    view.y = column(points.at(1), "y");
-    view.z = column(points.at(2), "z");
+    view.x = column<float>(points.at(0), "x");
+    view.y = column<float>(points.at(1), "y");
+    view.z = column<float>(points.at(2), "z");
     if (!normals.empty()) {
-        view.nx = column(normals.at(0), "nx");
-        view.ny = column(normals.at(1), "ny");
-        view.nz = column(normals.at(2), "nz");
+        view.nx = column<float>(normals.at(0), "nx");
+        view.ny = column<float>(normals.at(1), "ny");
+        view.nz = column<float>(normals.at(2), "nz");
+    }
+    if (!colours.empty()) {
+        view.red = column<std::uint8_t>(colours.at(0), "red");
+        view.green = column<std::uint8_t>(colours.at(1), "green");
+        view.blue = column<std::uint8_t>(colours.at(2), "blue");
     }
     view.has_viewpoint = viewpoint.has_value();
     view.viewpoint = viewpoint.value_or(Vec3{});
@@ -154,32 +162,36 @@ void bind_parse(py::module_& module) {
     // The arrays are read without the interpreter's lock: nobody may write to them meanwhile.
     module.def("parse_arrays",
                [](const std::vector<py::array>& points, const std::vector<py::array>& normals,
-                  const std::optional<Vec3>& viewpoint, const std::shared_ptr<SharedDevice>& device,
-                  ParseOptions options, py::object progress, py::object cancelled) {
-                   const CloudView view = view_of(points, normals, viewpoint);
+                  const std::vector<py::array>& colours, const std::optional<Vec3>& viewpoint,
+                  const std::shared_ptr<SharedDevice>& device, ParseOptions options,
+                  py::object progress, py::object cancelled) {
+                   const CloudView view = view_of(points, normals, colours, viewpoint);
                    options.coordinates = false;
                    return run(device, options, std::move(progress), std::move(cancelled),
                               [&](const ParseOptions& o) { return parse(view, o); });
                });
-    module.def("write", [](Parsed& parsed, const std::string& folder, bool pictures, bool glb,
-                           bool octomap, const std::vector<py::array>& points) {
-        std::optional<CloudView> view;
-        if (!points.empty()) view = view_of(points, {}, {});
-        const py::gil_scoped_release release;
-        ScenePoints& kept = parsed.result.scene.points;
-        if (view) add_coordinates(*view, parsed.result);
-        struct Forget {
-            ScenePoints* points;
-            ~Forget() {
-                if (points) points->x = points->y = points->z = {};
-            }
-        } const forget{view ? &kept : nullptr};
-        OutputOptions options;
-        options.pictures = pictures;
-        options.glb = glb;
-        options.octomap = octomap;
-        write_outputs(parsed.result, folder, options);
-    });
+    module.def("write",
+               [](Parsed& parsed, const std::string& folder, bool pictures, bool glb, bool octomap,
+                  const std::vector<py::array>& points, const std::vector<py::array>& colours) {
+                   std::optional<CloudView> view;
+                   if (!points.empty()) view = view_of(points, {}, colours, {});
+                   const py::gil_scoped_release release;
+                   ScenePoints& kept = parsed.result.scene.points;
+                   if (view) add_coordinates(*view, parsed.result);
+                   struct Forget {
+                       ScenePoints* points;
+                       ~Forget() {
+                           if (!points) return;
+                           points->x = points->y = points->z = {};
+                           points->red = points->green = points->blue = {};
+                       }
+                   } const forget{view ? &kept : nullptr};
+                   OutputOptions options;
+                   options.pictures = pictures;
+                   options.glb = glb;
+                   options.octomap = octomap;
+                   write_outputs(parsed.result, folder, options);
+               });
 }
 
 }  // namespace topple::python

@@ -80,6 +80,7 @@ class Pictures {
           image_(scene, view_, width, height, margin) {}
 
     void write() {
+        if (view_.coloured) write_photo();
         write_objects();
         write_risk();
         write_walks();
@@ -105,6 +106,15 @@ class Pictures {
             }
         }
         return out;
+    }
+
+    void write_photo() {
+        Canvas canvas = page("photo", colours(false, 1), Overlay(image_), "Photo",
+                             "The scan's own colours; what it does not show has those around it. "
+                             "Labels: the riskiest objects and their unsafety.",
+                             true);
+        for (const Object* object : riskiest(scene_, image_)) label(canvas, *object, true);
+        canvas.save();
     }
 
     void write_objects() {
@@ -242,10 +252,11 @@ class Pictures {
     }
 
     Canvas page(const std::string& name, const std::vector<Bytes3>& colour_of_group,
-                const Overlay& overlay, const std::string& title, const std::string& says) {
+                const Overlay& overlay, const std::string& title, const std::string& says,
+                bool photo = false) {
         boxes_.clear();
         Canvas canvas(folder_ / ("view-" + name + ".png"), width, height);
-        canvas.image(0, 0, image_.shaded(colour_of_group, overlay));
+        canvas.image(0, 0, image_.shaded(colour_of_group, overlay, photo));
         headline(canvas, 34, title, {.size = 22, .bold = true});
         headline(canvas, 58, says, {.size = 14, .colour = {0.36, 0.4, 0.44}});
         return canvas;

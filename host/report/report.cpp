@@ -34,10 +34,12 @@ std::string packed(const std::vector<T>& records) {
 }
 
 Json records_json(const Records& records) {
-    return {{"count", records.cell.size()},
-            {"total", records.total},
-            {"cell", packed(records.cell)},
-            {"aux", packed(records.aux)}};
+    Json json{{"count", records.cell.size()},
+              {"total", records.total},
+              {"cell", packed(records.cell)},
+              {"aux", packed(records.aux)}};
+    if (!records.photo.empty()) json["photo"] = packed(records.photo);
+    return json;
 }
 
 // Places to the millimetre.

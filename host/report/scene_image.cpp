@@ -111,7 +111,8 @@ void SceneImage::draw_solids() {
             const Vec3& side = normals[(face + 2) % 6 / 2 * 2 + 1];
             const Vec3& other = normals[(face + 4) % 6 / 2 * 2 + 1];
             add_face(centre, normal, side, other,
-                     {cell[3], static_cast<float>(0.77 + 0.25 * dot(facing, sun))});
+                     {static_cast<std::uint32_t>(n), cell[3],
+                      static_cast<float>(0.77 + 0.25 * dot(facing, sun))});
         }
     }
 }
@@ -222,8 +223,8 @@ bool SceneImage::is_rim(std::size_t at) const {
     return false;
 }
 
-Raster SceneImage::shaded(const std::vector<Bytes3>& colour_of_group,
-                          const Overlay& overlay) const {
+Raster SceneImage::shaded(const std::vector<Bytes3>& colour_of_group, const Overlay& overlay,
+                          bool photo) const {
     constexpr Colour top{0.914, 0.929, 0.945}, bottom{0.973, 0.976, 0.98};
     const DepthImage& front = overlay.front_;
     Raster out(width_, height_, bottom);
@@ -249,6 +250,10 @@ Raster SceneImage::shaded(const std::vector<Bytes3>& colour_of_group,
                     const double light =
                         double{face.light} * (0.45 + 0.55 * open) * (is_rim(at) ? 0.5 : 1.0);
                     c = colour(colour_of_group[face.group]);
+                    if (photo && view_.voxels.photo[face.voxel][3] != 0) {
+                        const auto& own = view_.voxels.photo[face.voxel];
+                        c = colour({own[0], own[1], own[2]});
+                    }
                     c = {c.red * light, c.green * light, c.blue * light};
                 } else if (what != DepthImage::nothing) {
                     c = colour(overlay.colours_[what - faces_.size()]);

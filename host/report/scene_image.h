@@ -42,11 +42,14 @@ class SceneImage {
         std::vector<Bytes3> colours_;
     };
 
-    // The picture, its solids coloured by group: one colour for each of the view's groups.
-    Raster shaded(const std::vector<Bytes3>& colour_of_group, const Overlay& overlay) const;
+    // The picture, its solids coloured by group: one colour for each of the view's groups. With
+    // `photo` they have those of the scan, as far as these are known.
+    Raster shaded(const std::vector<Bytes3>& colour_of_group, const Overlay& overlay,
+                  bool photo = false) const;
 
   private:
     struct Face {
+        std::uint32_t voxel;
         std::uint16_t group;
         float light;
     };

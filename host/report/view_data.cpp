@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/scene_bounds.h"
+#include "report/cell_colours.h"
 #include "report/cells.h"
 #include "report/open_sides.h"
 
@@ -103,6 +104,12 @@ class Packer {
     Packer(const Scene& scene, const ViewLimits& limits)
         : scene_(scene), limits_(limits), groups_(view_.groups) {
         view_.view_from_input = view_frame(scene);
+        view_.coloured = !scene.points.red.empty();
+        // With colours a record takes 16 bytes, without them 12.
+        if (view_.coloured) {
+            limits_.voxels = limits_.voxels / 4 * 3;
+            limits_.points = limits_.points / 4 * 3;
+        }
         for (const auto& object : scene.objects) {
             if (object.grounded) grounded_.insert(object.id);
         }
@@ -240,6 +247,7 @@ class Packer {
             // A scene of things far apart is not coarsened without end.
             if (mark_exposed(cells, table) > limits_.voxels && merge < 64) continue;
             add_normals(cells, table, edge);
+            if (view_.coloured) find_colours(cells, table, edge);
             write_cells(cells, edge);
             view_.cube_m = edge;
             cells_ = std::move(cells);
@@ -266,6 +274,37 @@ class Packer {
         face_open_sides(cells, table, spread_normals(cells, table), centre, edge);
     }
 
+    Rgb8 colour_of_point(std::size_t i) const {
+        const auto& points = scene_.points;
+        return {points.red[i], points.green[i], points.blue[i]};
+    }
+
+    // From the points of a cell's own object: where two touch, neither takes on the other's colour.
+    void find_colours(const std::vector<Cell>& cells, const CellTable& table, double edge) {
+        const auto& points = scene_.points;
+        std::vector<std::array<std::int32_t, 3>> index;
+        std::vector<std::int32_t> object;
+        for (const Cell& cell : cells) {
+            index.push_back(cell.index);
+            object.push_back(view_.groups[cell.group].second);
+        }
+        CellColours colours(cells.size());
+        for (std::size_t i = 0; i < points.x.size(); ++i) {
+            const auto p = place(points, i);
+            if (!finite(p)) continue;
+            const auto found = table.find(index_of(p, edge));
+            if (found == CellTable::absent || object[found] != std::max(points.object[i], -1))
+                continue;
+            colours.add(found, colour_of_point(i));
+        }
+        colours_ = colours.spread(table, index, object);
+    }
+
+    static std::array<std::uint8_t, 4> photo(const CellColours::Known& seen) {
+        const Rgb8& c = seen.colour;
+        return {c[0], c[1], c[2], seen.known ? std::uint8_t{255} : std::uint8_t{0}};
+    }
+
     void write_cells(const std::vector<Cell>& cells, double edge) {
         auto& out = view_.voxels;
         for (const auto& cell : cells) {
@@ -278,6 +317,9 @@ class Packer {
             const auto flags = static_cast<std::int8_t>(cell.exposed | (cell.completed ? 64 : 0));
             out.aux.push_back({signed_byte(cell.normal[0]), signed_byte(cell.normal[1]),
                                signed_byte(cell.normal[2]), flags});
+            if (view_.coloured)
+                out.photo.push_back(
+                    photo(colours_[static_cast<std::size_t>(&cell - cells.data())]));
         }
     }
 
@@ -301,6 +343,10 @@ class Packer {
             if (!finite(n)) n = {};
             if (points.nx.empty() && is_background(points.object[i])) n = background_normal(p);
             out.aux.push_back({signed_byte(n[0]), signed_byte(n[1]), signed_byte(n[2]), 0});
+            if (view_.coloured) {
+                const Rgb8 colour = colour_of_point(i);
+                out.photo.push_back(photo({colour, colour != Rgb8{0, 0, 0}}));
+            }
         }
     }
 
@@ -352,7 +398,7 @@ class Packer {
     }
 
     const Scene& scene_;
-    const ViewLimits& limits_;
+    ViewLimits limits_;
     PackedView view_;
     Groups groups_;
     std::set<std::int32_t> grounded_;
@@ -360,8 +406,9 @@ class Packer {
     Bounds<float> bounds_;
     Box solid_box_;
     double lattice_shift_ = 0.5;
-    std::vector<Cell> cells_;  // what is drawn, cubes of view_.cube_m
-    CellTable table_;          // finds them
+    std::vector<Cell> cells_;                  // what is drawn, cubes of view_.cube_m
+    CellTable table_;                          // finds them
+    std::vector<CellColours::Known> colours_;  // of what is drawn, where the scan has colours
 };
 
 }  // namespace

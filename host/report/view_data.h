@@ -16,7 +16,8 @@
 // that z is up and, where the scene has a Manhattan frame, its walls follow the axes.
 namespace topple::report {
 
-// How much the page may hold; 400,000 voxels and 300,000 points take 11 MB.
+// How much the page may hold; 400,000 voxels and 300,000 points take 11 MB. Of scans with colours
+// it is three quarters of them, which take as much.
 struct ViewLimits {
     std::size_t voxels = 400'000, points = 300'000, arrows = 1'200, walk_cells = 40'000;
 };
@@ -24,9 +25,12 @@ struct ViewLimits {
 // Records of a voxel or point. cell: x, y, z in steps of PackedView::step_m from origin_m, then the
 // group. aux: the mean normal in 1/127 (0 where unknown, which no voxel of the background is), then
 // for voxels the exposed faces (bits -x +x -y +y -z +z) and, in bit 6, whether it was completed.
+// photo: the colour in the scan, sRGB, and 255, or 0 where it is not known; empty where the scan
+// has no colours.
 struct Records {
     std::vector<std::array<std::uint16_t, 4>> cell;
     std::vector<std::array<std::int8_t, 4>> aux;
+    std::vector<std::array<std::uint8_t, 4>> photo;
     std::size_t total = 0;  // how many the scene has
 };
 
@@ -42,7 +46,8 @@ struct PackedView {
     double cube_m =
         0;  // edge of the cubes that are drawn; larger than a voxel where those are merged
     std::vector<std::pair<std::int32_t, std::int32_t>>
-        groups;  // primitive and object of each group
+        groups;             // primitive and object of each group
+    bool coloured = false;  // the scan has colours
     Records voxels, points;
     std::map<std::string, Arrows> fields;
     PackedWalks walks;

@@ -182,6 +182,11 @@ BlockPoints TileReader::next() {
             out.cloud.x.push_back(points.x[n]);
             out.cloud.y.push_back(points.y[n]);
             out.cloud.z.push_back(points.z[n]);
+            if (!points.red.empty()) {
+                out.cloud.red.push_back(points.red[n]);
+                out.cloud.green.push_back(points.green[n]);
+                out.cloud.blue.push_back(points.blue[n]);
+            }
             part.cells.push_back(static_cast<std::uint32_t>(n));
             part.in_core.push_back(block.core.holds(cell[0], cell[1], cell[2]));
         }

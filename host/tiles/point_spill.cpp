@@ -31,11 +31,13 @@ std::uint64_t key_of(const Bin& bin) {
 
 }  // namespace
 
-SpilledPoints::SpilledPoints(const fs::path& folder) : file_(folder / "points.bin") {
+SpilledPoints::SpilledPoints(const fs::path& folder)
+    : file_(folder / "points.bin"), colour_file_(folder / "colours.bin") {
     BinaryReader in(folder / "bins.bin");
     points_ = in.value<std::uint64_t>();
     dropped_ = in.value<std::uint64_t>();
     offset_m_ = in.value<Vec3>();
+    coloured_ = in.value<std::uint8_t>() != 0;
     const auto count = in.value<std::uint64_t>();
     if (count > most_bins) in.damaged();
     for (std::uint64_t n = 0; n < count; ++n) {
@@ -47,20 +49,41 @@ SpilledPoints::SpilledPoints(const fs::path& folder) : file_(folder / "points.bi
     }
     std::error_code error;
     if (fs::file_size(file_, error) != points_ * sizeof(Point) || error) in.damaged();
+    if (coloured_ && (fs::file_size(colour_file_, error) != points_ * sizeof(Rgb8) || error))
+        in.damaged();
 }
 
-void SpilledPoints::read(std::size_t bin,
-                         const std::function<void(std::span<const Point>)>& use) const {
-    std::ifstream in(file_, std::ios::binary);
+void SpilledPoints::read_portions(std::size_t bin, bool with_colours, const Use& use) const {
+    std::ifstream in(file_, std::ios::binary), colours_in;
+    if (with_colours) colours_in.open(colour_file_, std::ios::binary);
     std::vector<Point> points;
+    std::vector<Rgb8> colours;
+    const auto read_some = [](const fs::path& file, std::ifstream& from, std::uint64_t offset,
+                              auto& values) {
+        from.seekg(static_cast<std::streamoff>(offset));
+        from.read(reinterpret_cast<char*>(values.data()),
+                  static_cast<std::streamsize>(values.size() * sizeof(values[0])));
+        if (!from) io::fail(file, "can't be read: it was cut short or removed");
+    };
     for (const auto& [offset, count] : bins_[bin].portions) {
         points.resize(count);
-        in.seekg(static_cast<std::streamoff>(offset));
-        in.read(reinterpret_cast<char*>(points.data()),
-                static_cast<std::streamsize>(count * sizeof(Point)));
-        if (!in) io::fail(file_, "can't be read: it was cut short or removed");
-        use(points);
+        read_some(file_, in, offset, points);
+        if (with_colours) {
+            colours.resize(count);
+            read_some(colour_file_, colours_in, offset / sizeof(Point) * sizeof(Rgb8), colours);
+        }
+        use(points, colours);
     }
+}
+
+void SpilledPoints::read(std::size_t bin, const Use& use) const {
+    read_portions(bin, coloured_, use);
+}
+
+void SpilledPoints::read_points(std::size_t bin,
+                                const std::function<void(std::span<const Point>)>& use) const {
+    read_portions(bin, false,
+                  [&](std::span<const Point> points, std::span<const Rgb8>) { use(points); });
 }
 
 PointSpill::PointSpill(const fs::path& folder, std::uint64_t buffer_bytes)
@@ -76,9 +99,16 @@ void PointSpill::flush(Open& bin) {
     offset_ += bin.buffer.size() * sizeof(Point);
     buffered_ -= bin.buffer.size() * sizeof(Point);
     bin.buffer.clear();
+    if (!colour_writer_) return;
+    colour_writer_->write(bin.colours.data(), bin.colours.size() * sizeof(Rgb8));
+    buffered_ -= bin.colours.size() * sizeof(Rgb8);
+    bin.colours.clear();
 }
 
 void PointSpill::add(const PointCloud& portion, const std::string& source) {
+    // A file's points have colours all of them, or none.
+    if (points_ == 0 && !portion.red.empty())
+        colour_writer_ = std::make_unique<io::FileWriter>(folder_ / "colours.bin");
     dropped_ += portion.dropped;
     points_ += portion.size();
     Bin last{};
@@ -104,15 +134,25 @@ void PointSpill::add(const PointCloud& portion, const std::string& source) {
         }
         open->buffer.push_back(p);
         buffered_ += sizeof(Point);
+        if (colour_writer_) {
+            const Rgb8 colour{portion.red.at(n), portion.green.at(n), portion.blue.at(n)};
+            any_colour_ = any_colour_ || colour != Rgb8{0, 0, 0};
+            open->colours.push_back(colour);
+            buffered_ += sizeof(Rgb8);
+        }
         if (open->buffer.size() == portion_points) flush(*open);
     }
     if (buffered_ > buffer_bytes_) {
         for (Open& bin : bins_) flush(bin);
         // The capacity stays; a bin that grows large often will again.
         std::uint64_t held = 0;
-        for (const Open& bin : bins_) held += bin.buffer.capacity() * sizeof(Point);
+        for (const Open& bin : bins_)
+            held += bin.buffer.capacity() * sizeof(Point) + bin.colours.capacity() * sizeof(Rgb8);
         if (held > 2 * buffer_bytes_) {
-            for (Open& bin : bins_) bin.buffer = {};
+            for (Open& bin : bins_) {
+                bin.buffer = {};
+                bin.colours = {};
+            }
         }
     }
 }
@@ -120,11 +160,13 @@ void PointSpill::add(const PointCloud& portion, const std::string& source) {
 void PointSpill::finish(const Vec3& offset_m) {
     for (Open& bin : bins_) flush(bin);
     writer_->close();
+    if (colour_writer_) colour_writer_->close();
     std::ranges::sort(bins_, {}, [](const Open& bin) { return bin.written.bin; });
     BinaryWriter out(folder_ / "bins.bin");
     out.value(points_);
     out.value(dropped_);
     out.value(offset_m);
+    out.value(static_cast<std::uint8_t>(any_colour_));
     out.value(static_cast<std::uint64_t>(bins_.size()));
     for (const Open& bin : bins_) {
         out.value(bin.written.bin);

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/colour_space.h"
 #include "io/file_writer.h"
 #include "tiles/bins.h"
 #include "topple/input.h"
@@ -35,18 +36,26 @@ class SpilledPoints {
     std::uint64_t dropped() const { return dropped_; }  // points that were not finite
     const Vec3& offset_m() const { return offset_m_; }  // see PointCloud
 
-    // Calls use(points) for the bin's portions in order.
-    void read(std::size_t bin, const std::function<void(std::span<const Point>)>& use) const;
+    bool coloured() const { return coloured_; }  // some point's colour is known
+
+    // Calls use(points, colours) for the bin's portions in order, without colours where the cloud
+    // has none; or use(points).
+    using Use = std::function<void(std::span<const Point>, std::span<const Rgb8>)>;
+    void read(std::size_t bin, const Use& use) const;
+    void read_points(std::size_t bin, const std::function<void(std::span<const Point>)>& use) const;
 
   private:
-    std::filesystem::path file_;
+    void read_portions(std::size_t bin, bool colours, const Use& use) const;
+
+    std::filesystem::path file_, colour_file_;
     std::vector<BinPoints> bins_;
+    bool coloured_ = false;
     std::uint64_t points_ = 0, dropped_ = 0;
     Vec3 offset_m_{};
 };
 
-// Writes points into `folder` as they come, sorted into bins: points.bin, and bins.bin when all are
-// in.
+// Writes points into `folder` as they come, sorted into bins: points.bin, colours.bin with those of
+// the same points where the first have any, and bins.bin when all are in.
 class PointSpill {
   public:
     // Holds at most about `buffer_bytes` of points.
@@ -61,11 +70,13 @@ class PointSpill {
     struct Open {
         SpilledPoints::BinPoints written;
         std::vector<Point> buffer;
+        std::vector<Rgb8> colours;
     };
     void flush(Open& bin);
 
     std::filesystem::path folder_;
-    std::unique_ptr<io::FileWriter> writer_;
+    std::unique_ptr<io::FileWriter> writer_, colour_writer_;
+    bool any_colour_ = false;
     std::vector<Open> bins_;
     std::unordered_map<std::uint64_t, std::size_t> place_;
     std::uint64_t buffer_bytes_, buffered_ = 0, offset_ = 0, points_ = 0, dropped_ = 0;

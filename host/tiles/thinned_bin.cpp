@@ -53,6 +53,21 @@ class CellSums {
         return place;
     }
     const std::vector<std::uint64_t>& keys() const { return keys_; }
+    void add_colour(std::uint32_t place, const Rgb8& colour) {
+        if (colours_.size() <= place) colours_.resize(keys_.size());
+        if (colour == Rgb8{0, 0, 0}) return;
+        for (std::size_t c = 0; c < 3; ++c) colours_[place][c] += colour[c];
+        ++colours_[place][3];
+    }
+    Rgb8 colour(std::uint32_t place) const {
+        if (place >= colours_.size() || colours_[place][3] == 0) return {};
+        Rgb8 out{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            out[c] = static_cast<std::uint8_t>((colours_[place][c] + colours_[place][3] / 2) /
+                                               colours_[place][3]);
+        }
+        return out;
+    }
     std::uint32_t count(std::uint32_t place) const { return count_[place]; }
     double mean(std::uint32_t place, std::size_t axis) const {
         return sum_[axis][place] / count_[place];
@@ -77,6 +92,7 @@ class CellSums {
     std::vector<std::uint64_t> keys_;   // by place
     std::array<std::vector<double>, 3> sum_;
     std::vector<std::uint32_t> count_;
+    std::vector<std::array<std::uint64_t, 4>> colours_;  // sums of channels, and how many
 };
 
 }  // namespace
@@ -95,8 +111,9 @@ void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const
     const std::array<double, 3> low{at[0] * bin_edge_m, at[1] * bin_edge_m, at[2] * bin_edge_m};
     CellSums sums;
     io::FileWriter places(places_file(folder, at));
-    points.read(bin, [&](std::span<const Point> portion) {
-        for (const Point& p : portion) {
+    points.read(bin, [&](std::span<const Point> portion, std::span<const Rgb8> colours) {
+        for (std::size_t n = 0; n < portion.size(); ++n) {
+            const Point& p = portion[n];
             // Relative to the bin, so that the mean keeps the floats' accuracy.
             const std::array<double, 3> in_bin{p.x - low[0], p.y - low[1], p.z - low[2]};
             std::uint64_t key = 0;
@@ -106,6 +123,7 @@ void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const
                 key = key * static_cast<std::uint64_t>(cells) + static_cast<std::uint64_t>(cell);
             }
             const std::uint32_t place = sums.add(key, in_bin);
+            if (!colours.empty()) sums.add_colour(place, colours[n]);
             places.write(&place, sizeof(place));
         }
     });
@@ -121,6 +139,11 @@ void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const
         out.y.push_back(static_cast<float>(low[1] + sums.mean(order[n], 1)));
         out.z.push_back(static_cast<float>(low[2] + sums.mean(order[n], 2)));
         out.points.push_back(sums.count(order[n]));
+        if (!points.coloured()) continue;
+        const Rgb8 colour = sums.colour(order[n]);
+        out.red.push_back(colour[0]);
+        out.green.push_back(colour[1]);
+        out.blue.push_back(colour[2]);
     }
     BinaryWriter order_out(order_file(folder, at));
     order_out.array(rank);
@@ -130,6 +153,7 @@ void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const
     file.array(out.y);
     file.array(out.z);
     file.array(out.points);
+    for (const auto* channel : {&out.red, &out.green, &out.blue}) file.array(*channel);
     file.finish();
 }
 
@@ -159,6 +183,10 @@ ThinnedBin read_thinned(const fs::path& folder, const Bin& bin) {
     BinaryReader in(cells_file(folder, bin));
     ThinnedBin out{in.array<float>(), in.array<float>(), in.array<float>(),
                    in.array<std::uint32_t>()};
+    for (auto* channel : {&out.red, &out.green, &out.blue}) {
+        *channel = in.array<std::uint8_t>();
+        if (!channel->empty() && channel->size() != out.size()) in.damaged();
+    }
     if (out.y.size() != out.size() || out.z.size() != out.size() || out.points.size() != out.size())
         in.damaged();
     return out;

@@ -16,6 +16,8 @@ namespace topple::tiles {
 struct ThinnedBin {
     std::vector<float> x, y, z;
     std::vector<std::uint32_t> points;  // of each cell
+    // Mean of those whose colour is known, 0, 0, 0 where none is; or empty, as of PointCloud.
+    std::vector<std::uint8_t> red{}, green{}, blue{};
     std::size_t size() const { return x.size(); }
 };
 

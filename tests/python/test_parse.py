@@ -201,6 +201,25 @@ def test_writes_the_outputs(result, points, tmp_path, device):
         result.write(tmp_path)
 
 
+def test_colours_come_along(points, device, tmp_path):
+    colours = np.full((len(points), 3), 40, np.uint8)
+    colours[5] = 1, 2, 3
+    records = np.zeros(len(points), [('red', 'u1'), ('green', 'u1'), ('blue', 'u1')])
+    for axis, name in enumerate(records.dtype.names):
+        records[name] = colours[:, axis]
+    for number, given in enumerate((colours, records, tuple(colours.T))):
+        out = tmp_path / str(number)
+        quick(points, device, colours=given).write(out)
+        head, data = (out / 'points.ply').read_bytes().split(b'end_header\n', 1)
+        assert head.index(b'uchar red') < head.index(b'uchar object_red')
+        assert data[5 * 38 + 32:5 * 38 + 35] == b'\1\2\3'
+    for wrong, why in ((colours.astype(float), 'uint8'), (colours[:, :2], r'\(N, 3\)'), (colours[1:], 'red has')):
+        with pytest.raises(topple.Error, match=why):
+            quick(points, device, colours=wrong)
+    with pytest.raises(topple.Error, match='colours'):
+        topple.parse(str(tmp_path), colours=colours)
+
+
 def test_the_stubs_name_what_there_is(result):
     stub = open(os.path.join(os.path.dirname(topple.__file__), '__init__.pyi'), encoding='utf-8').read()
     for kind, item in (('Object', result.objects[0]), ('Primitive', result.primitives[0]), ('Result', result),

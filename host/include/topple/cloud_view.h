@@ -14,25 +14,23 @@
 // A point cloud where the caller keeps it: parsing it makes no copy of the points.
 namespace topple {
 
-// One float of each point, a fixed number of bytes apart: an array of its own, or a member of the
+// One value of each point, a fixed number of bytes apart: an array of its own, or a member of the
 // caller's struct. The bytes need no alignment. They must stay while the column is in use.
-class FloatColumn {
+template <class T>
+class Column {
   public:
-    FloatColumn() = default;
-    FloatColumn(const float* first, std::size_t size,
-                std::ptrdiff_t stride_bytes = sizeof(float)) noexcept
+    Column() = default;
+    Column(const T* first, std::size_t size, std::ptrdiff_t stride_bytes = sizeof(T)) noexcept
         : first_(reinterpret_cast<const std::byte*>(first)), size_(size), stride_(stride_bytes) {}
-    FloatColumn(std::span<const float> values) noexcept
-        : FloatColumn(values.data(), values.size()) {}
-    FloatColumn(const std::vector<float>& values) noexcept
-        : FloatColumn(values.data(), values.size()) {}
+    Column(std::span<const T> values) noexcept : Column(values.data(), values.size()) {}
+    Column(const std::vector<T>& values) noexcept : Column(values.data(), values.size()) {}
 
     std::size_t size() const { return size_; }
     bool empty() const { return size_ == 0; }
-    const std::byte* data() const { return first_; }  // of the first float; null: there is none
+    const std::byte* data() const { return first_; }  // of the first value; null: there is none
     std::ptrdiff_t stride_bytes() const { return stride_; }
-    float operator[](std::size_t i) const {
-        float value;
+    T operator[](std::size_t i) const {
+        T value;
         std::memcpy(&value, first_ + static_cast<std::ptrdiff_t>(i) * stride_, sizeof(value));
         return value;
     }
@@ -40,13 +38,13 @@ class FloatColumn {
     class Iterator {
       public:
         using iterator_category = std::forward_iterator_tag;
-        using value_type = float;
+        using value_type = T;
         using difference_type = std::ptrdiff_t;
-        using pointer = const float*;
-        using reference = float;
+        using pointer = const T*;
+        using reference = T;
         Iterator() = default;
-        Iterator(const FloatColumn& column, std::size_t i) : column_(&column), i_(i) {}
-        float operator*() const { return (*column_)[i_]; }
+        Iterator(const Column& column, std::size_t i) : column_(&column), i_(i) {}
+        T operator*() const { return (*column_)[i_]; }
         Iterator& operator++() {
             ++i_;
             return *this;
@@ -59,7 +57,7 @@ class FloatColumn {
         bool operator==(const Iterator& other) const { return i_ == other.i_; }
 
       private:
-        const FloatColumn* column_ = nullptr;
+        const Column* column_ = nullptr;
         std::size_t i_ = 0;
     };
     Iterator begin() const { return {*this, 0}; }
@@ -68,8 +66,10 @@ class FloatColumn {
   private:
     const std::byte* first_ = nullptr;
     std::size_t size_ = 0;
-    std::ptrdiff_t stride_ = sizeof(float);
+    std::ptrdiff_t stride_ = sizeof(T);
 };
+using FloatColumn = Column<float>;
+using ByteColumn = Column<std::uint8_t>;
 
 // As PointCloud, with the points in the caller's memory: metres, any right-handed frame. It must
 // stay, unchanged, while it is parsed. Points that are not finite may be among them: they are left
@@ -85,6 +85,8 @@ struct CloudView {
     Vec3 viewpoint{0, 0, 0};
     std::string source;  // what messages call it; empty: "cloud"
     std::vector<std::string> notes;
+    // sRGB, 0 to 255, or empty. 0, 0, 0: this point's is not known.
+    ByteColumn red, green, blue;
 
     CloudView() = default;
     CloudView(const PointCloud& cloud)
@@ -101,7 +103,10 @@ struct CloudView {
           has_viewpoint(cloud.has_viewpoint),
           viewpoint(cloud.viewpoint),
           source(cloud.source),
-          notes(cloud.notes) {}
+          notes(cloud.notes),
+          red(cloud.red),
+          green(cloud.green),
+          blue(cloud.blue) {}
     // Of records that begin with x, y, z, `stride_bytes` apart.
     static CloudView of_records(const float* xyz, std::size_t count,
                                 std::ptrdiff_t stride_bytes = 3 * sizeof(float)) {

@@ -22,7 +22,10 @@ using Mat4 = std::array<double, 16>;
 struct PointCloud {
     std::vector<float> x, y, z;
     std::vector<float> nx, ny, nz;  // unit normals as stored in the input, or empty
-    std::uint64_t dropped = 0;      // non-finite points left out
+    // sRGB, 0 to 255, as stored in the input, or empty. 0, 0, 0: this point's is not known, as
+    // scanners write it.
+    std::vector<std::uint8_t> red, green, blue;
+    std::uint64_t dropped = 0;  // non-finite points left out
     // Organised clouds (one depth image stored as points): width > 0, height > 1, and `pixel` holds
     // row * width + column of every kept point. Otherwise width = height = 0 and `pixel` is empty.
     std::uint32_t width = 0, height = 0;
@@ -49,6 +52,8 @@ struct Intrinsics {
 struct DepthFrame {
     std::vector<std::uint16_t> depth;
     Mat4 camera_to_world{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    // sRGB, 3 bytes for each pixel, 0, 0, 0 where it is not known; or empty.
+    std::vector<std::uint8_t> rgb{};
 };
 
 // Horizontal acceleration of the ground in one direction, at equal steps of time and straight

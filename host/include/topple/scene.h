@@ -169,6 +169,9 @@ struct ScenePoints {
     std::vector<float> nx, ny, nz;
     std::vector<std::int32_t> primitive, object;
     std::vector<std::int32_t> region{};  // smooth piece of surface that primitives are merged of
+    // The scan's own colours, sRGB, 0 to 255; empty where it has none, or without
+    // ParseOptions::coordinates. 0, 0, 0: this point's is not known.
+    std::vector<std::uint8_t> red{}, green{}, blue{};
     // Of a cloud in memory with points that are not finite: the place of each of the others in the
     // caller's arrays, ascending. Empty: all are here.
     std::vector<std::uint64_t> index{};

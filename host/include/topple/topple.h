@@ -82,12 +82,14 @@ typedef struct topple_cloud {
     size_t size;
     const float *x, *y, *z; /* of the first point */
     uint64_t count;
-    int64_t stride_bytes;        /* from one point to the next; 0: sizeof(float) */
-    const float *nx, *ny, *nz;   /* unit normals, or NULL */
-    int64_t normal_stride_bytes; /* 0: sizeof(float) */
-    uint32_t width, height;      /* of an organised cloud, with all its pixels; else 0 */
-    const double* viewpoint;     /* 3 numbers: where the sensor was; or NULL */
-    const char* name;            /* for messages; NULL: "cloud" */
+    int64_t stride_bytes;              /* from one point to the next; 0: sizeof(float) */
+    const float *nx, *ny, *nz;         /* unit normals, or NULL */
+    int64_t normal_stride_bytes;       /* 0: sizeof(float) */
+    uint32_t width, height;            /* of an organised cloud, with all its pixels; else 0 */
+    const double* viewpoint;           /* 3 numbers: where the sensor was; or NULL */
+    const char* name;                  /* for messages; NULL: "cloud" */
+    const uint8_t *red, *green, *blue; /* sRGB, 0, 0, 0 where it is not known; or NULL */
+    int64_t colour_stride_bytes;       /* 0: 1 */
 } topple_cloud;
 void topple_cloud_init(topple_cloud* cloud, size_t size);
 

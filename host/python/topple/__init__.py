@@ -80,13 +80,39 @@ def _columns(source, names, what):
     return [source[:, axis] for axis in range(3)]
 
 
+def _channels(source):
+    """Red, green and blue of an array, of records with fields of these names, or of three arrays; no copies."""
+    names = ('red', 'green', 'blue')
+    if hasattr(source, '__dlpack__') and not isinstance(source, np.ndarray):
+        source = np.from_dlpack(source)
+    if isinstance(source, tuple) and len(source) == 3:
+        channels = [np.asarray(c) for c in source]
+    else:
+        source = np.asarray(source)
+        if source.dtype.names:
+            missing = [name for name in names if name not in source.dtype.names]
+            if missing:
+                raise _usage(f'colours: the records have no field {missing[0]}')
+            channels = [source[name] for name in names]
+        elif source.ndim == 2 and source.shape[1] == 3:
+            channels = [source[:, c] for c in range(3)]
+        else:
+            raise _usage(f'colours: an array of shape {source.shape}; expected (N, 3)')
+    for channel in channels:
+        if channel.dtype != np.uint8:
+            raise _usage(f'colours: {channel.dtype}; expected uint8, 0 to 255: '
+                         'of 0 to 1 give (255 * colours).astype(np.uint8)')
+    return channels
+
+
 class Result:
     """What a scan holds. Arrays over its points and voxels are the result's own memory, not copies: they keep
     it alive, and writing to them changes what write() writes."""
 
-    def __init__(self, parsed, points):
+    def __init__(self, parsed, points, colours=()):
         self._parsed = parsed
         self._points = points  # the caller's, where they are theirs
+        self._colours = colours
         self._writing = threading.Lock()  # the coordinates are in the result for as long as it takes
 
     def __getattr__(self, name):
@@ -118,13 +144,14 @@ class Result:
         """Writes the folder of outputs (docs/output.md), which appears whole or not at all: with view-*.png,
         objects.glb and map.bt where they are asked for."""
         with self._writing:
-            _topple.write(self._parsed, os.fspath(folder), pictures, glb, octomap, self._points or [])
+            _topple.write(self._parsed, os.fspath(folder), pictures, glb, octomap, self._points or [],
+                          list(self._colours))
 
 
 def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=('human', 'wind', 'earthquake'),
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, walks=500, motion=None, wind_m_s=12.0,
           wind_from_deg=None, pga_m_s2=None, accelerogram=None, tolerable_J=0.1, grouping_time_s=None, normals=None,
-          viewpoint=None, progress=None, cancelled=None):
+          viewpoint=None, colours=None, progress=None, cancelled=None):
     """Parses a scan into a Result.
 
     source: a path, as the command line takes it; or points in metres: an array of shape (N, 3), records with
@@ -136,7 +163,8 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     disturbances: a list of "human", "wind", "earthquake", which may be empty; or one of these names.
 
     device: a Device of open_device(), or a backend's name. motion, accelerogram: files. normals, viewpoint: of
-    points, as they are given; where the sensor was. progress(stage, done) is called as stages start and go on;
+    points, as they are given; where the sensor was. colours: of points, sRGB as uint8, an array of shape (N, 3),
+    records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. progress(stage, done) is called as stages start and go on;
     cancelled() is polled, and True stops the parse with an Error of kind "cancelled". Ctrl-C stops it, too, with
     KeyboardInterrupt. Other threads of Python run meanwhile. The other options are those of `topple parse --help`.
     """
@@ -154,9 +182,11 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     if isinstance(device, str):
         device = open_device(device)
     if isinstance(source, (str, os.PathLike)):
-        if normals is not None or viewpoint is not None:
-            raise _usage('normals and viewpoint are for points in memory; a file brings its own')
+        if normals is not None or viewpoint is not None or colours is not None:
+            raise _usage('normals, colours and viewpoint are for points in memory; a file brings its own')
         return Result(_topple.parse_path(os.fspath(source), device, options, progress, cancelled), None)
     points = _columns(source, ('x', 'y', 'z'), 'points')
     directions = [] if normals is None else _columns(normals, ('nx', 'ny', 'nz'), 'normals')
-    return Result(_topple.parse_arrays(points, directions, viewpoint, device, options, progress, cancelled), points)
+    channels = [] if colours is None else _channels(colours)
+    return Result(_topple.parse_arrays(points, directions, channels, viewpoint, device, options, progress, cancelled),
+                  points, channels)

@@ -188,6 +188,7 @@ def parse(
     grouping_time_s: Optional[float] = ...,
     normals: Optional[_Points] = ...,
     viewpoint: Optional[_Vec3] = ...,
+    colours: Optional[_Points] = ...,
     progress: Optional[Callable[[str, float], object]] = ...,
     cancelled: Optional[Callable[[], bool]] = ...,
 ) -> Result: ...

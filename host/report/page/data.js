@@ -8,10 +8,12 @@ function loadScene() {
   for (const records of [view.voxels, view.points]) {
     records.cell = new Uint16Array(bytesOf(records.cell));
     records.aux = new Int8Array(bytesOf(records.aux));
+    if (records.photo) records.photo = new Uint8Array(bytesOf(records.photo));
   }
   for (const name of Object.keys(view.fields)) {
     view.fields[name].arrow = new Float32Array(bytesOf(view.fields[name].arrow));
   }
+  scene.coloured = !!(view.voxels.photo || view.points.photo);
   view.walks.shade = new Uint8Array(bytesOf(view.walks.shade));
   view.walks.floor_mm = new Int16Array(bytesOf(view.walks.floor_mm));
   scene.objectById = new Map(scene.objects.map(object => [object.id, object]));

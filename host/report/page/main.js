@@ -190,7 +190,7 @@ function start() {
   sayThinned(scene);
   const view = openView(scene);
   const panel = document.getElementById('detail');
-  const state = {mode: 'object', chosen: null, fieldsOn: []};
+  const state = {mode: scene.coloured ? 'photo' : 'object', chosen: null, fieldsOn: []};
   const repaint = () => {
     if (!view) return;
     view.paint(state.mode, state.chosen);
@@ -212,6 +212,7 @@ function start() {
   });
 
   if (view) {
+    if (!scene.coloured) document.querySelector('#colour-by [data-value=photo]').remove();
     radioGroup('colour-by', state.mode, mode => { state.mode = mode; repaint(); });
     const hasSolids = scene.view.voxels.count > 0;
     radioGroup('show', hasSolids ? 'solids' : 'points', what => view.setShow(what));

@@ -2,14 +2,16 @@
 'use strict';
 
 // What voxels and points share: the place of a record, its group's colour, and the look through walls.
-// The palette's alpha says: 1 a movable thing, about 0.5 a grounded one, 0 hidden.
+// The palette's alpha says: 1 a movable thing, about 0.5 a grounded one, 0 hidden. In place of its colour a record may
+// show its own, that of the scan: then the palette's red says how far it fades.
 const recordShader = `
   attribute vec4 cell;   // x, y, z in steps, group
   attribute vec4 aux;    // normal / 127, flags
+  attribute vec4 photo;  // its own colour, and whether it is known
   uniform vec3 origin, stepSize, eye;
   uniform sampler2D palette;
   uniform vec2 paletteSize;
-  uniform float through, picking;
+  uniform float through, picking, own;
   varying vec3 shade;
 
   vec3 place() { return origin + cell.xyz * stepSize; }
@@ -17,7 +19,9 @@ const recordShader = `
   vec4 groupColour() {
     float row = floor((cell.w + 0.5) / paletteSize.x);
     float column = cell.w - row * paletteSize.x;
-    return texture2D(palette, (vec2(column, row) + 0.5) / paletteSize);
+    vec4 colour = texture2D(palette, (vec2(column, row) + 0.5) / paletteSize);
+    if (own > 0.5) colour.rgb = mix(photo.a > 0.5 ? photo.rgb : vec3(0.62), vec3(0.84, 0.835, 0.815), colour.r);
+    return colour;
   }
 
   // A wall, floor or ceiling that is seen from behind would hide the room.

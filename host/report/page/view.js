@@ -49,6 +49,7 @@ class View {
       paletteSize: {value: new THREE.Vector2(this.paletteWidth, rows)},
       through: {value: 1},
       picking: {value: 0},
+      own: {value: 0},
       // A little over its edge, so that rounding opens no cracks between neighbours.
       cube: {value: 1.005 * view.cube_m + 2 * Math.max(...view.step_m)},
       pointSize: {value: 1},
@@ -56,7 +57,7 @@ class View {
     };
   }
 
-  // Colours every group by `mode`; with `chosen`, all but that object's fade.
+  // Colours every group by `mode`, or all by the scan's colours; with `chosen`, all but that object's fade.
   paint(mode, chosen) {
     this.scene.view.groups.forEach(([primitive, id], i) => {
       const object = this.scene.objectById.get(id);
@@ -65,11 +66,14 @@ class View {
       if (mode === 'risk') colour = !object || grounded ? noColour : riskColour(this.scene, object.unsafety);
       // What can't fall steps back: paler and greyer.
       let fade = grounded ? (mode === 'primitive' ? 0.45 : 0.8) : 0;
+      // Of a photo the ground is what people recognise their room by.
+      if (mode === 'photo') fade = 0;
       if (chosen !== null) fade = id === chosen ? 0 : Math.max(fade, 0.72);
       const pale = [214, 213, 208];
-      for (let c = 0; c < 3; ++c) this.paletteBytes[4 * i + c] = colour[c] + (pale[c] - colour[c]) * fade;
+      for (let c = 0; c < 3; ++c) this.paletteBytes[4 * i + c] = mode === 'photo' ? 255 * fade : colour[c] + (pale[c] - colour[c]) * fade;
       this.paletteBytes[4 * i + 3] = grounded ? 128 : 255;
     });
+    this.uniforms.own.value = mode === 'photo' ? 1 : 0;
     this.palette.needsUpdate = true;
     this.redraw();
   }
@@ -100,6 +104,7 @@ class View {
   makeVoxels() {
     const {voxels} = this.scene.view;
     const fromCell = new Uint32Array(voxels.cell.buffer), fromAux = new Uint32Array(voxels.aux.buffer);
+    const fromPhoto = voxels.photo && new Uint32Array(voxels.photo.buffer);
     this.solids = new THREE.Group();
     this.faces = 0;
     faceNormals.forEach((normal, face) => {
@@ -107,6 +112,7 @@ class View {
       for (let i = 0; i < voxels.count; ++i) count += voxels.aux[4 * i + 3] >> face & 1;
       if (!count) return;
       const cell = new Uint16Array(16 * count), aux = new Int8Array(16 * count), index = new Uint32Array(6 * count);
+      const toPhoto = new Uint32Array(fromPhoto ? 4 * count : 0);
       // By words of 32 bits: two hold a cell, one its normal and flags.
       const toCell = new Uint32Array(cell.buffer), toAux = new Uint32Array(aux.buffer);
       let to = 0, next = 0;
@@ -118,6 +124,7 @@ class View {
           toCell[2 * to] = fromCell[2 * i];
           toCell[2 * to + 1] = fromCell[2 * i + 1];
           toAux[to] = fromAux[i] & 0xffffff | (corner + (flags & 64)) << 24;
+          if (fromPhoto) toPhoto[to] = fromPhoto[i];
         }
       }
       const geometry = new THREE.BufferGeometry();
@@ -125,6 +132,7 @@ class View {
       geometry.setAttribute('position', new THREE.BufferAttribute(cell, 4));
       geometry.setAttribute('cell', new THREE.BufferAttribute(cell, 4));
       geometry.setAttribute('aux', new THREE.BufferAttribute(aux, 4));
+      if (fromPhoto) geometry.setAttribute('photo', new THREE.BufferAttribute(new Uint8Array(toPhoto.buffer), 4, true));
       geometry.setIndex(new THREE.BufferAttribute(index, 1));
       const uniforms = {faceNormal: {value: new THREE.Vector3(...normal)}, corners: {value: faceCorners(normal)}};
       const mesh = new THREE.Mesh(geometry, new THREE.ShaderMaterial({
@@ -155,6 +163,7 @@ class View {
     geometry.setAttribute('position', new THREE.BufferAttribute(points.cell, 4));
     geometry.setAttribute('cell', new THREE.BufferAttribute(points.cell, 4));
     geometry.setAttribute('aux', new THREE.BufferAttribute(points.aux, 4));
+    if (points.photo) geometry.setAttribute('photo', new THREE.BufferAttribute(points.photo, 4, true));
     const material = new THREE.ShaderMaterial({
       uniforms: this.uniforms, vertexShader: pointVertexShader, fragmentShader: recordFragmentShader,
     });

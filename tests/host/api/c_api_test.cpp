@@ -14,6 +14,7 @@
 #include "core/random.h"
 #include "host/io/files.h"
 #include "host/pipeline/small_room.h"
+#include "io/read_cloud.h"
 #include "topple/parse.h"
 #include "topple/stages.h"
 #include "topple/topple.h"
@@ -116,6 +117,23 @@ TEST_F(CApi, ParsesAsTheLibraryDoes) {
     EXPECT_EQ(topple_result_write(result, path("map").c_str(), 8, &status), TOPPLE_ERROR_USAGE);
     EXPECT_EQ(topple_result_write(result, path("out").c_str(), 0, &status), TOPPLE_OK);
     EXPECT_TRUE(std::filesystem::exists(path("out/scene.json")));
+    // The caller's colours, interleaved.
+    std::vector<std::uint8_t> rgb(3 * room.cloud.size(), 50);
+    cloud.red = &rgb[0];
+    cloud.green = &rgb[1];
+    cloud.blue = &rgb[2];
+    cloud.colour_stride_bytes = 3;
+    rgb[3] = 200;
+    topple_result* coloured = nullptr;
+    ASSERT_EQ(topple_parse_cloud(&cloud, &options, &coloured, &status), TOPPLE_OK)
+        << status.message;
+    EXPECT_EQ(topple_result_write(coloured, path("coloured").c_str(), 0, &status), TOPPLE_OK);
+    const PointCloud back = io::read_cloud(path("coloured/points.ply"));
+    ASSERT_EQ(back.red.size(), room.cloud.size());
+    EXPECT_EQ(back.red[0], 50);
+    EXPECT_EQ(back.red[1], 200);
+    EXPECT_EQ(back.blue[1], 50);
+    topple_result_release(coloured);
     // A file that the library wrote, parsed by its path.
     topple_result* again = nullptr;
     EXPECT_EQ(topple_parse(path("out/points.ply").c_str(), &options, &again, &status), TOPPLE_OK)

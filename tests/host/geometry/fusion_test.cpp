@@ -128,5 +128,68 @@ TEST(Organised, GivesItsFrameBack) {
 
 // A closed room of 4 x 3 x 2.5 m: its virtual views are closed too, and every ray ends on a wall.
 
+// Red where it stands at 1.5 m, and a wall of two greys, as each frame has it.
+DepthFrame coloured_view(std::uint64_t seed, double shift, int grey) {
+    DepthFrame frame = view(seed, shift);
+    for (const std::uint16_t stored : frame.depth) {
+        const bool box = stored < 2200;
+        for (const int channel : {box ? 200 : grey, box ? 10 : grey, box ? 20 : grey})
+            frame.rgb.push_back(static_cast<std::uint8_t>(channel));
+    }
+    return frame;
+}
+
+TEST(Fusion, ColoursAreMeansOfWhatIsFused) {
+    FusedCloud one;
+    for (const unsigned threads : {1u, 2u, 5u}) {
+        FrameFusion fusion(camera, 0.01, threads);
+        for (int i = 0; i < 8; ++i) {
+            fusion.add(coloured_view(static_cast<std::uint64_t>(i), 0.01 * i, i % 2 ? 100 : 140));
+            DepthFrame colourless = view(static_cast<std::uint64_t>(20 + i), 0.01 * i);
+            if (i == 0) fusion.add(colourless);
+            if (i == 1) {
+                colourless.rgb.assign(3 * colourless.depth.size(), 0);  // nothing is known
+                fusion.add(colourless);
+            }
+        }
+        FusedCloud fused = fusion.finish();
+        ASSERT_EQ(fused.cloud.red.size(), fused.cloud.size());
+        ASSERT_EQ(fused.cloud.blue.size(), fused.cloud.size());
+        if (threads > 1) {
+            EXPECT_EQ(one.cloud.red, fused.cloud.red);
+            EXPECT_EQ(one.cloud.green, fused.cloud.green);
+            EXPECT_EQ(one.cloud.blue, fused.cloud.blue);
+            continue;
+        }
+        double sum = 0, count = 0;
+        for (std::size_t i = 0; i < fused.cloud.size(); ++i) {
+            const int red = fused.cloud.red[i], green = fused.cloud.green[i];
+            if (red == 0) continue;  // seen only where no colour was known
+            if (fused.cloud.z[i] < 2) {
+                EXPECT_EQ(red, 200);
+                EXPECT_EQ(green, 10);
+            } else {
+                EXPECT_EQ(red, green);
+                EXPECT_GE(red, 100);
+                EXPECT_LE(red, 140);
+                sum += red;
+                ++count;
+            }
+        }
+        ASSERT_GT(count, 15'000);
+        EXPECT_NEAR(sum / count, 120, 2);
+        one = std::move(fused);
+    }
+}
+
+TEST(Fusion, ColoursOfAnotherSizeAreRefused) {
+    FrameFusion fusion(camera, 0.01);
+    DepthFrame frame = view(1, 0);
+    frame.rgb.assign(frame.depth.size(), 7);
+    EXPECT_THROW(fusion.add(frame), Error);
+    fusion.add(view(1, 0));
+    EXPECT_TRUE(fusion.finish().cloud.red.empty());
+}
+
 }  // namespace
 }  // namespace topple::geometry

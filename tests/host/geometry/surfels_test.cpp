@@ -188,5 +188,61 @@ TEST_F(SurfelsTest, OddInputs) {
                  Error);
 }
 
+// The floor of a room red but for some points, its other sides of no known colour.
+TEST_F(SurfelsTest, ColoursAreMeansOfWhatIsKnown) {
+    PointCloud cloud = room(0, 3);
+    EXPECT_TRUE(make_surfels(*device, cloud, 0.05, {}, {}).lab_l.empty());
+    Random random(4);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const bool floor = cloud.z[i] == 0, known = floor && random.uniform() < 0.5;
+        cloud.red.push_back(known ? static_cast<std::uint8_t>(random.uniform() < 0.5 ? 246 : 254)
+                                  : std::uint8_t{0});
+        cloud.green.push_back(0);
+        cloud.blue.push_back(0);
+    }
+    const Surfels s = make_surfels(*device, cloud, 0.05, {}, {});
+    ASSERT_EQ(s.lab_l.size(), s.size());
+    ASSERT_EQ(s.lab_b.size(), s.size());
+    std::size_t red = 0, unknown = 0;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        if (std::isnan(s.lab_l[i])) {
+            EXPECT_TRUE(std::isnan(s.lab_a[i]) && std::isnan(s.lab_b[i]));
+            ++unknown;
+            continue;
+        }
+        ++red;
+        // sRGB (250, 0, 0) under D65, as tables have it.
+        EXPECT_NEAR(s.lab_l[i], 52.3, 1);
+        EXPECT_NEAR(s.lab_a[i], 78.9, 1.3);
+        EXPECT_NEAR(s.lab_b[i], 66.2, 1.5);
+        EXPECT_LT(s.z[i], 0.06);
+    }
+    EXPECT_GT(red, 250u);
+    EXPECT_GT(unknown, 500u);
+}
+
+TEST_F(SurfelsTest, ColoursDoNotDependOnTheOrderOfThePoints) {
+    PointCloud cloud = room(0.002, 5), turned;
+    Random random(6);
+    for (auto* channel : {&cloud.red, &cloud.green, &cloud.blue}) {
+        for (std::size_t i = 0; i < cloud.size(); ++i)
+            channel->push_back(static_cast<std::uint8_t>(random.word()));
+    }
+    const auto reversed = [](const auto& values) {
+        return std::remove_cvref_t<decltype(values)>(values.rbegin(), values.rend());
+    };
+    turned.x = reversed(cloud.x);
+    turned.y = reversed(cloud.y);
+    turned.z = reversed(cloud.z);
+    turned.red = reversed(cloud.red);
+    turned.green = reversed(cloud.green);
+    turned.blue = reversed(cloud.blue);
+    const Surfels a = make_surfels(*device, cloud, 0.02, {}, {}),
+                  b = make_surfels(*device, turned, 0.02, {}, {});
+    EXPECT_EQ(a.lab_l, b.lab_l);
+    EXPECT_EQ(a.lab_a, b.lab_a);
+    EXPECT_EQ(a.lab_b, b.lab_b);
+}
+
 }  // namespace
 }  // namespace topple::geometry

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <map>
@@ -84,6 +85,22 @@ TEST(VoxelMesh, merges_what_is_flat) {
     EXPECT_EQ(mesh.triangle.size(), 12u);
     EXPECT_DOUBLE_EQ(volume_of(mesh), 6000);
     EXPECT_TRUE(voxel_boundary({}).triangle.empty());
+}
+
+TEST(VoxelMesh, ends_faces_where_it_is_told_to) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        const auto voxels = lumpy(seed);
+        const TriangleMesh mesh = voxel_boundary(voxels, 2);
+        expect_closed(mesh);
+        EXPECT_NEAR(volume_of(mesh), static_cast<double>(voxels.size()), 1e-9);
+        for (const auto& t : mesh.triangle) {
+            for (std::size_t a = 0; a < 3; ++a) {
+                const auto [low, high] =
+                    std::minmax({mesh.vertex[t[0]][a], mesh.vertex[t[1]][a], mesh.vertex[t[2]][a]});
+                EXPECT_LE(high - low, 2);
+            }
+        }
+    }
 }
 
 class Glb : public test::Files {};

@@ -15,7 +15,8 @@ struct LasFile {
     unsigned minor = 2, format = 0;
     std::array<double, 3> scale{1e-3, 1e-3, 1e-3}, offset{0, 0, 0};
     std::vector<std::array<std::int32_t, 3>> points;
-    std::vector<std::size_t> withheld;  // which of them
+    std::vector<std::size_t> withheld;                  // which of them
+    std::vector<std::array<std::uint16_t, 3>> colours;  // of formats that have them
 
     std::string bytes() const {
         constexpr std::array<std::uint16_t, 11> record{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
@@ -44,6 +45,13 @@ struct LasFile {
             std::string point;
             for (const std::int32_t v : points[n]) append(point, v);
             point.resize(record[format], '\0');
+            constexpr std::array<std::uint16_t, 11> colour_at{0, 0,  20, 28, 0, 28,
+                                                              0, 30, 30, 0,  30};
+            if (n < colours.size()) {
+                std::string colour;
+                for (const std::uint16_t v : colours[n]) append(colour, v);
+                point.replace(colour_at[format], 6, colour);
+            }
             for (const std::size_t w : withheld) {
                 if (w == n) point[15] = static_cast<char>(format >= 6 ? 0x04 : 0x80);
             }

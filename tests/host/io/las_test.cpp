@@ -97,5 +97,29 @@ TEST_F(Las, bad_files) {
     expect_input_error([&] { read_cloud(write("a.laz", changed(104, 0x81))); }, {"LAZ"});
 }
 
+TEST_F(Las, colours_of_16_bits_or_of_8) {
+    using Bytes = std::vector<std::uint8_t>;
+    for (const unsigned format : {2u, 3u, 5u, 7u, 8u, 10u}) {
+        for (const unsigned step : {1u, 257u}) {
+            SCOPED_TRACE(std::to_string(format) + " " + std::to_string(step));
+            test::LasFile las;
+            las.minor = 4;
+            las.format = format;
+            las.points = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+            las.withheld = {1};
+            for (const unsigned v : {200u, 40u, 0u}) {
+                las.colours.push_back(
+                    {static_cast<std::uint16_t>(v * step), static_cast<std::uint16_t>(step), 0});
+            }
+            const auto cloud = read_cloud(write("a.las", las.bytes()));
+            EXPECT_EQ(cloud.red, (Bytes{200, 0}));
+            EXPECT_EQ(cloud.green, (Bytes{1, 1}));
+            EXPECT_EQ(cloud.blue, (Bytes{0, 0}));
+            las.colours.clear();
+            EXPECT_TRUE(read_cloud(write("a.las", las.bytes())).red.empty()) << "room for them";
+        }
+    }
+}
+
 }  // namespace
 }  // namespace topple::io

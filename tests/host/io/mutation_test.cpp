@@ -3,11 +3,14 @@
 // line. Memory errors show under the sanitizers.
 #include <liblzf/lzf.h>
 
+#include "colour_image.h"
 #include "depth_image.h"
 #include "files.h"
+#include "io/colour_image.h"
 #include "io/frame_sequence.h"
 #include "io/read_cloud.h"
 #include "io/scene_json.h"
+#include "io/text.h"
 #include "motion_files.h"
 #include "topple/input.h"
 #include "topple/motion.h"
@@ -180,6 +183,18 @@ TEST_F(Mutation, depth_image) {
            [](const std::filesystem::path& file) {
                EXPECT_EQ(read_depth_png(file, 9, 7).size(), 63u);
            });
+}
+
+TEST_F(Mutation, colour_image) {
+    const auto decode = [](const std::filesystem::path& file) {
+        const auto image = decode_colour_image(file, read_file(file).text());
+        EXPECT_EQ(image.rgb.size(), std::size_t{3} * image.width * image.height);
+    };
+    std::vector<std::uint8_t> pixels(9 * 7 * 3);
+    for (std::size_t n = 0; n < pixels.size(); ++n) pixels[n] = static_cast<std::uint8_t>(n);
+    mutate("a.png", test::png_bytes(9, 7, 8, PNG_COLOR_TYPE_RGB, pixels), decode);
+    mutate("a.jpg", test::jpeg_bytes(9, 7, pixels), decode);
+    mutate("a.jpg", test::jpeg_bytes(9, 7, pixels, 3, true), decode);
 }
 
 TEST_F(Mutation, intrinsics_trajectory_and_scene) {

@@ -283,5 +283,69 @@ TEST_F(Pcd, real_scans) {
     EXPECT_EQ(table.pixel.size(), table.size());
 }
 
+using Bytes = std::vector<std::uint8_t>;
+
+// 0xFF010203 as a float is no number, 0x00040506 a denormal one.
+TEST_F(Pcd, packed_colours_in_every_encoding) {
+    const std::array<std::uint32_t, 2> packed{0xFF010203u, 0x00040506u};
+    for (const char type : {'F', 'U', 'I'}) {
+        for (const char* name : {"rgb", "rgba"}) {
+            SCOPED_TRACE(std::string(name) + " " + type);
+            Head head;
+            head.fields = std::string("x ") + name + " y z";
+            head.size = "4 4 4 4";
+            head.type = std::string("F ") + type + " F F";
+            head.count = "1 1 1 1";
+            std::string points, by_field;
+            for (const std::uint32_t colour : packed) {
+                append(points, 1.0f);
+                append(points, colour);
+                append(points, 2.0f);
+                append(points, 3.0f);
+            }
+            for (int field = 0; field < 4; ++field) {
+                for (const std::uint32_t colour : packed) {
+                    if (field == 1)
+                        append(by_field, colour);
+                    else
+                        append(by_field, static_cast<float>(field));
+                }
+            }
+            for (const bool compress : {false, true}) {
+                head.data = compress ? "binary_compressed" : "binary";
+                const auto cloud = read_cloud(
+                    write("a.pcd", head.text() + (compress ? compressed(by_field) : points)));
+                EXPECT_EQ(cloud.red, (Bytes{1, 4}));
+                EXPECT_EQ(cloud.green, (Bytes{2, 5}));
+                EXPECT_EQ(cloud.blue, (Bytes{3, 6}));
+            }
+        }
+    }
+}
+
+TEST_F(Pcd, packed_colours_as_text) {
+    const auto colour_of = [&](const std::string& type, const std::string& text) {
+        Head head;
+        head.fields = "x y z rgb";
+        head.size = "4 4 4 4";
+        head.type = "F F F " + type;
+        head.count = "1 1 1 1";
+        head.width = head.points = "1";
+        const auto cloud = read_cloud(write("a.pcd", head.text() + "1 2 3 " + text + "\n"));
+        return cloud.red.empty() ? Bytes{} : Bytes{cloud.red[0], cloud.green[0], cloud.blue[0]};
+    };
+    const Bytes grey{64, 64, 64};
+    EXPECT_EQ(colour_of("U", "4210752"), grey);
+    EXPECT_EQ(colour_of("U", "4282400832"), grey) << "with alpha";
+    EXPECT_EQ(colour_of("I", "-12566464"), grey) << "with alpha";
+    EXPECT_EQ(colour_of("F", "4210752"), grey);
+    EXPECT_EQ(colour_of("F", "5.900520e-39"), grey) << "the float that has its bits";
+    EXPECT_EQ(colour_of("F", "-2.5555e+38"), (Bytes{64, 65, 36})) << "with alpha";
+    for (const char* unknown : {"nan", "0", "1e20"}) {
+        EXPECT_EQ(colour_of("U", unknown), Bytes{}) << unknown;
+    }
+    expect_input_error([&] { colour_of("F", "red"); }, {"line", "\"red\" is not a number"});
+}
+
 }  // namespace
 }  // namespace topple::io

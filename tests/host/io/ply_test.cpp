@@ -276,5 +276,75 @@ TEST_F(Ply, files_that_can_not_be_read) {
     expect_input_error([&] { read_cloud(write("two\nlines.xyz", "a")); }, {"two\\x0alines.xyz"});
 }
 
+using Bytes = std::vector<std::uint8_t>;
+
+std::string coloured_header(const std::string& format, const std::string& type,
+                            const std::string& prefix = "") {
+    std::string rest = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    for (const char* channel : {"red", "green", "blue"})
+        rest += "property " + type + " " + prefix + channel + "\n";
+    return header(format, rest + "property uchar alpha\n");
+}
+
+TEST_F(Ply, colours_of_every_type_and_brightness) {
+    const struct {
+        const char *type, *prefix, *values[3];
+    } cases[] = {
+        {"uchar", "", {"255 0 51", "0 0 0", "1 2 3"}},
+        {"uchar", "diffuse_", {"255 0 51", "0 0 0", "1 2 3"}},
+        {"int", "", {"255 0 51", "0 0 0", "1 2 3"}},
+        {"ushort", "", {"255 0 51", "0 0 0", "1 2 3"}},
+        {"ushort", "", {"65535 0 13107", "0 0 0", "257 514 771"}},
+        {"float", "", {"1 0 0.2", "0 0 0", "0.0039 0.0079 0.0118"}},
+        {"float", "", {"255 0 51", "0 0 0", "1 2 3"}},
+        {"double", "", {"65535 0 13107", "nan 1 1", "257 514 771"}},
+    };
+    for (const auto& c : cases) {
+        SCOPED_TRACE(std::string(c.type) + " " + c.values[0]);
+        std::string text = coloured_header("ascii", c.type, c.prefix);
+        for (const char* values : c.values) text += std::string("1 2 3 ") + values + " 255\n";
+        const auto cloud = read_cloud(write("a.ply", text));
+        EXPECT_EQ(cloud.red, (Bytes{255, 0, 1}));
+        EXPECT_EQ(cloud.green, (Bytes{0, 0, 2}));
+        EXPECT_EQ(cloud.blue, (Bytes{51, 0, 3}));
+    }
+}
+
+TEST_F(Ply, binary_colours_in_both_byte_orders) {
+    for (const bool big : {false, true}) {
+        std::string bytes =
+            coloured_header(big ? "binary_big_endian" : "binary_little_endian", "ushort");
+        for (int i = 0; i < 3; ++i) {
+            for (const float v : {1.0f, 2.0f, i == 1 ? NAN : 3.0f}) append(bytes, v, big);
+            for (const int v : {65535, 257 * i, 0})
+                append(bytes, static_cast<std::uint16_t>(v), big);
+            append<std::uint8_t>(bytes, 255, big);
+        }
+        const auto cloud = read_cloud(write("a.ply", bytes));
+        EXPECT_EQ(cloud.dropped, 1u);
+        EXPECT_EQ(cloud.red, (Bytes{255, 255})) << "one for each point that is kept";
+        EXPECT_EQ(cloud.green, (Bytes{0, 2}));
+        EXPECT_EQ(cloud.blue, (Bytes{0, 0}));
+    }
+}
+
+TEST_F(Ply, colours_that_are_none) {
+    const std::string points =
+        "element vertex 1\nproperty float x\nproperty float y\n"
+        "property float z\n";
+    const std::string rgb = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    const auto red_of = [&](const std::string& properties, const std::string& values) {
+        return read_cloud(write("a.ply", header("ascii", points + properties) + "1 2 3 " + values))
+            .red;
+    };
+    EXPECT_TRUE(red_of(rgb, "0 0 0\n").empty()) << "nothing was written there";
+    EXPECT_TRUE(red_of("property uchar red\nproperty uchar green\n", "7 7\n").empty());
+    const std::string labels = "property int primitive\nproperty int object\n";
+    EXPECT_TRUE(red_of(labels + rgb, "1 1 7 7 7\n").empty()) << "the palette of points.ply";
+    EXPECT_EQ(red_of(rgb, "7 7 7\n"), Bytes{7});
+    expect_input_error([&] { red_of(rgb, "7 x 7\n"); }, {"a.ply", "\"x\" is not a number"});
+    expect_input_error([&] { red_of(rgb + rgb, "7 7 7 7 7 7\n"); }, {"two properties red"});
+}
+
 }  // namespace
 }  // namespace topple::io

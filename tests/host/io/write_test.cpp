@@ -217,6 +217,40 @@ TEST_F(Write, points_ply) {
     EXPECT_NE(bytes_of_file(path("none.ply")).find("element vertex 0\n"), std::string::npos);
 }
 
+// A scan's own colours stand where programs look for them, and come back; those by object beside.
+TEST_F(Write, points_ply_of_a_coloured_scan) {
+    ScenePoints points;
+    points.x = points.y = points.z = {1, 2};
+    points.primitive = {0, -1};
+    points.object = {7, -1};
+    points.red = {10, 0};
+    points.green = {20, 0};
+    points.blue = {30, 0};
+    write_points_ply(path("points.ply"), points);
+    const auto bytes = bytes_of_file(path("points.ply"));
+    const auto data = bytes.substr(bytes.find("end_header\n") + 11);
+    ASSERT_EQ(data.size(), 2 * 26u);
+    std::string expected = "\x0a\x14\x1e";
+    for (const auto channel : colour_of(7)) test::append(expected, channel);
+    EXPECT_EQ(data.substr(20, 6), expected);
+    const auto cloud = read_cloud(path("points.ply"));
+    EXPECT_EQ(cloud.red, points.red);
+    EXPECT_EQ(cloud.green, points.green);
+    EXPECT_EQ(cloud.blue, points.blue);
+
+    PointsPlyWriter one_by_one(path("streamed.ply"), 2, true);
+    one_by_one.add({1, 1, 1}, 0, 7, {10, 20, 30});
+    one_by_one.add({2, 2, 2}, -1, -1, {0, 0, 0});
+    one_by_one.close();
+    EXPECT_EQ(bytes_of_file(path("streamed.ply")), bytes);
+
+    points.red.pop_back();
+    EXPECT_THROW(write_points_ply(path("points.ply"), points), std::invalid_argument);
+    points.red = points.green = points.blue = {};
+    write_points_ply(path("points.ply"), points);
+    EXPECT_TRUE(read_cloud(path("points.ply")).red.empty()) << "colours by object are no scan's";
+}
+
 TEST_F(Write, solid_ply) {
     SolidVoxels voxels;
     voxels.x = {1};

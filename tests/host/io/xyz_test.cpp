@@ -87,5 +87,24 @@ TEST_F(Xyz, reads_many_points) {
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
+TEST_F(Xyz, six_columns_are_colours_only_where_all_are_bytes) {
+    using Bytes = std::vector<std::uint8_t>;
+    const auto cloud = read_cloud(write("a.xyz", "1 2 3 255 0 1\n4 5 6 20 80 0\n"));
+    EXPECT_EQ(cloud.red, (Bytes{255, 20}));
+    EXPECT_EQ(cloud.green, (Bytes{0, 80}));
+    EXPECT_EQ(cloud.blue, (Bytes{1, 0}));
+    for (const char* none :
+         {"1 2 3 255 0 1\n4 5 6 20 80 0.5\n", "1 2 3 0 0 1\n4 5 6 0 1 0\n", "1 2 3 255 0 256\n",
+          "1 2 3 255 0 -1\n", "1 2 3 9 9 9\n4 5 6\n", "1 2 3 9 9 9 9\n"})
+        EXPECT_TRUE(read_cloud(write("a.xyz", none)).red.empty()) << none;
+    // By name they may be as bright as they are.
+    for (const char* named :
+         {"x y z r g b\n1 2 3 1 0.2 0\n", "Red,Green,Blue,X,Y,Z\n255,51,0,1,2,3",
+          "x y z red green blue nx\n1 2 3 65535 13107 0 5\n"}) {
+        EXPECT_EQ(read_cloud(write("a.xyz", named)).red, Bytes{255}) << named;
+        EXPECT_EQ(read_cloud(path("a.xyz")).green, Bytes{51}) << named;
+    }
+}
+
 }  // namespace
 }  // namespace topple::io

@@ -11,6 +11,7 @@
 #include "host/io/files.h"
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_room.h"
+#include "io/read_cloud.h"
 #include "pipeline/ingest.h"
 
 // Clouds in the caller's memory, whatever their layout.
@@ -95,6 +96,36 @@ TEST_F(CloudViewFiles, CoordinatesMayStayWithTheCaller) {
     EXPECT_EQ(result.scene.points.y, room.cloud.y);
     write_outputs(result, path("out"));
     EXPECT_TRUE(std::filesystem::exists(path("out/points.ply")));
+}
+
+// Colours of records, with a point that is left out, in the result and in its files.
+TEST_F(CloudViewFiles, ColoursComeAlong) {
+    const SmallRoom room = SmallRoom::scattered();
+    std::vector<Record> records = records_of(room.cloud);
+    records.insert(records.begin() + 7, {std::numeric_limits<float>::quiet_NaN(), 0, 0, {}});
+    for (std::size_t n = 0; n < records.size(); ++n)
+        records[n].colour[0] = static_cast<std::uint8_t>(1 + n % 200);
+    CloudView view = view_of(records);
+    view.red = {&records[0].colour[0], records.size(), sizeof(Record)};
+    view.green = {&records[0].colour[1], records.size(), sizeof(Record)};
+    view.blue = {&records[0].colour[2], records.size(), sizeof(Record)};
+    ParseOptions options = quick();
+    ParseResult result = parse(view, options);
+    const ScenePoints kept = result.scene.points;
+    ASSERT_EQ(kept.red.size(), room.cloud.size());
+    EXPECT_EQ(kept.red[6], 7);
+    EXPECT_EQ(kept.red[7], 9);
+    EXPECT_EQ(kept.blue[7], 3);
+    options.coordinates = false;
+    result = parse(view, options);
+    EXPECT_TRUE(result.scene.points.red.empty());
+    add_coordinates(view, result);
+    EXPECT_EQ(result.scene.points.red, kept.red);
+    write_outputs(result, path("out"), {.glb = true});
+    EXPECT_EQ(io::read_cloud(path("out/points.ply")).red, kept.red);
+    view.green = {&records[0].colour[1], 7, sizeof(Record)};
+    EXPECT_THROW(add_coordinates(view, result), Error);
+    EXPECT_THROW(parse(view, quick()), Error);
 }
 
 std::string refusal(const CloudView& view, ErrorKind kind = ErrorKind::input) {

@@ -84,5 +84,56 @@ TEST_F(ObjectsGlb, each_object_is_a_closed_mesh_of_its_voxels) {
     }
 }
 
+// A row of voxels whose near end was seen red, its far end blue, and its middle not at all; beside
+// it another object, of no known colour.
+TEST_F(ObjectsGlb, colours_are_the_scans_where_it_has_any) {
+    const vdb::VoxelFrame frame{0.1, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}};
+    PointCloud cloud;
+    std::vector<std::int32_t> label;
+    Scene scene;
+    for (int i = 0; i < 9; ++i) {
+        for (const int j : {0, 1}) {
+            cloud.x.push_back(0.1f * static_cast<float>(i) + 0.05f);
+            cloud.y.push_back(j == 0 ? 0.05f : 0.15f);
+            cloud.z.push_back(0.05f);
+            label.push_back(j);
+            scene.points.object.push_back(j);
+            scene.points.red.push_back(j == 0 && i < 2 ? 200 : 0);
+            scene.points.green.push_back(0);
+            scene.points.blue.push_back(j == 0 && i > 6 ? 200 : 0);
+        }
+    }
+    scene.points.x = cloud.x;
+    scene.points.y = cloud.y;
+    scene.points.z = cloud.z;
+    const vdb::VoxelScene voxels(frame, cloud, label);
+    scene.primitives.resize(2);
+    scene.objects.resize(2);
+    scene.primitives[0].object = 0;
+    scene.primitives[1].object = 1;
+    scene.objects[1].unsafety = 10;
+    write_objects_glb(path("objects.glb"), scene, voxels);
+
+    Assimp::Importer importer;
+    const aiScene* read = importer.ReadFile(path("objects.glb").string(), 0);
+    ASSERT_TRUE(read) << importer.GetErrorString();
+    ASSERT_EQ(read->mRootNode->mNumChildren, 2u);
+    const aiMesh& row = *read->mMeshes[read->mRootNode->mChildren[0]->mMeshes[0]];
+    ASSERT_TRUE(row.HasVertexColors(0));
+    constexpr float linear = 0.5776f;  // of 200
+    for (unsigned v = 0; v < row.mNumVertices; ++v) {
+        const float x = row.mVertices[v].x;
+        if (x < 0.35f) {
+            EXPECT_NEAR(row.mColors[0][v].r, linear, 1e-3) << x;
+        }
+        if (x > 0.55f) {
+            EXPECT_NEAR(row.mColors[0][v].b, linear, 1e-3) << x;
+        }
+    }
+    const aiMesh& other = *read->mMeshes[read->mRootNode->mChildren[1]->mMeshes[0]];
+    ASSERT_TRUE(other.HasVertexColors(0));
+    EXPECT_NEAR(other.mColors[0][0].r, 0.162, 2e-3) << "by unsafety";
+}
+
 }  // namespace
 }  // namespace topple

@@ -184,6 +184,24 @@ TEST_F(PicturesOfAScene, are_only_drawn_of_what_there_is) {
               (std::set<std::string>{"view-objects.png", "view-risk.png"}));
 }
 
+TEST_F(PicturesOfAScene, show_the_scans_own_colours) {
+    Scene scene = test::SyntheticScene(0.1).make();
+    scene.walks = {};
+    scene.fields.clear();
+    auto& p = scene.points;
+    p.red.assign(p.x.size(), 30);
+    p.green.assign(p.x.size(), 160);
+    p.blue.assign(p.x.size(), 40);
+    const fs::path all = drawn("photo", scene);
+    EXPECT_EQ(names(all),
+              (std::set<std::string>{"view-objects.png", "view-photo.png", "view-risk.png"}));
+    const Pixels picture = pixels(all / "view-photo.png");
+    std::size_t green = 0;
+    for (std::size_t at = 0; at + 2 < picture.rgb.size(); at += 3)
+        green += picture.rgb[at + 1] > 2 * picture.rgb[at] + 20;
+    EXPECT_GT(green, 1280u * 800 / 5);
+}
+
 TEST_F(PicturesOfAScene, can_not_be_written) {
     EXPECT_THROW(write_pictures(folder_ / "missing", Scene{}), Error);
 }

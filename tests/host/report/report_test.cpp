@@ -147,6 +147,49 @@ TEST_F(Report, can_not_be_written) {
     EXPECT_THROW(write_report(folder_ / "missing" / "report.html", Scene{}), Error);
 }
 
+TEST_F(Report, shows_the_scans_own_colours_first) {
+    NEEDS_BROWSER();
+    auto scene = test::SyntheticScene(0.1).make();
+    const auto script = R"(
+        const box = document.getElementById('colour-by'), canvas = toppleView.renderer.domElement;
+        const greens = () => {
+            toppleView.render();
+            const gl = toppleView.renderer.getContext(), all = new Uint8Array(4 * canvas.width * canvas.height);
+            gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, all);
+            let count = 0;
+            for (let i = 0; i < all.length; i += 4) count += all[i + 1] > 2 * all[i] + 20;
+            return Math.round(100 * count / (canvas.width * canvas.height));
+        };
+        const out = document.body.dataset;
+        out.pressed = box.querySelector('[aria-pressed=true]').dataset.value;
+        out.buttons = box.querySelectorAll('button').length;
+        out.first = greens();
+        box.querySelector('[data-value=risk]').click();
+        out.risk = greens();
+        if (box.querySelector('[data-value=photo]')) box.querySelector('[data-value=photo]').click();
+        document.querySelector('#show [data-value=points]').click();
+        out.dots = greens();
+        toppleChoose(3);
+        out.faded = greens();
+    )";
+    write_report(folder_ / "report.html", scene);
+    const auto plain = open(folder_ / "report.html", script);
+    EXPECT_EQ(plain.data("pressed"), "object");
+    EXPECT_EQ(plain.data("buttons"), "3");
+    auto& p = scene.points;
+    p.red.assign(p.x.size(), 30);
+    p.green.assign(p.x.size(), 160);
+    p.blue.assign(p.x.size(), 40);
+    write_report(folder_ / "report.html", scene);
+    const auto page = open(folder_ / "report.html", script);
+    EXPECT_EQ(page.data("pressed"), "photo");
+    EXPECT_EQ(page.data("buttons"), "4");
+    EXPECT_GT(std::atoi(page.data("first").c_str()), 20);
+    EXPECT_LT(std::atoi(page.data("risk").c_str()), 5);
+    EXPECT_GT(std::atoi(page.data("dots").c_str()), 10);
+    EXPECT_LT(std::atoi(page.data("faded").c_str()), 5);
+}
+
 TEST_F(Report, shows_the_scene_in_a_browser) {
     NEEDS_BROWSER();
     const auto scene = test::SyntheticScene(0.08).make();

@@ -251,5 +251,48 @@ TEST(ViewData, voxels_know_which_side_was_seen) {
     EXPECT_GT(checked, 1000);
 }
 
+// Red from the left of a block, blue from the right; in the middle nothing was seen. A block beside
+// it has no known colour.
+TEST(ViewData, colours_of_the_scan_spread_over_what_it_did_not_see) {
+    Scene scene = cube_of(9, 0.02);
+    for (std::size_t i = 0; i < scene.solid.x.size(); ++i)
+        if (scene.solid.y[i] > 0.13f) scene.solid.object[i] = 5;
+    EXPECT_TRUE(pack_view(scene).voxels.photo.empty());
+    auto& p = scene.points;
+    for (std::size_t i = 0; i < scene.solid.x.size(); ++i) {
+        const float x = scene.solid.x[i] + 3;
+        if (x > 0.03f && x < 0.15f) continue;
+        p.x.push_back(scene.solid.x[i]);
+        p.y.push_back(scene.solid.y[i]);
+        p.z.push_back(scene.solid.z[i]);
+        p.primitive.push_back(3);
+        p.object.push_back(scene.solid.object[i]);
+        const bool known = p.object.back() == 2;
+        p.red.push_back(known && x < 0.1f ? 200 : 0);
+        p.green.push_back(0);
+        p.blue.push_back(known && x > 0.1f ? 200 : 0);
+    }
+    const auto view = pack_view(scene);
+    EXPECT_TRUE(view.coloured);
+    ASSERT_EQ(view.voxels.photo.size(), view.voxels.cell.size());
+    ASSERT_EQ(view.points.photo.size(), view.points.cell.size());
+    for (std::size_t i = 0; i < view.voxels.cell.size(); ++i) {
+        const auto& photo = view.voxels.photo[i];
+        if (view.groups[view.voxels.cell[i][3]].second == 5) {
+            EXPECT_EQ(photo[3], 0) << "another object's colours are not its own";
+            continue;
+        }
+        ASSERT_EQ(photo[3], 255);
+        const double x = place(view, view.voxels.cell[i])[0] + 3;
+        if (std::abs(x - 0.09) < 0.005) continue;  // half way
+        EXPECT_EQ(photo[x < 0.09 ? 0 : 2], 200) << x;
+        EXPECT_EQ(photo[x < 0.09 ? 2 : 0], 0) << x;
+    }
+    for (std::size_t i = 0; i < view.points.cell.size(); ++i) {
+        const auto& photo = view.points.photo[i];
+        EXPECT_EQ(photo[3], photo[0] + photo[2] > 0 ? 255 : 0);
+    }
+}
+
 }  // namespace
 }  // namespace topple::report

@@ -42,6 +42,10 @@ void spill(const std::filesystem::path& folder, const PointCloud& cloud,
             portion.x.push_back(cloud.x[n]);
             portion.y.push_back(cloud.y[n]);
             portion.z.push_back(cloud.z[n]);
+            if (cloud.red.empty()) continue;
+            portion.red.push_back(cloud.red[n]);
+            portion.green.push_back(cloud.green[n]);
+            portion.blue.push_back(cloud.blue[n]);
         }
         out.add(portion, "cloud");
     }
@@ -63,12 +67,56 @@ TEST(Spill, KeepsThePointsOfEachBinInOrderWhateverItsBuffer) {
         for (std::size_t b = 0; b < points.bins().size(); ++b, ++bin) {
             EXPECT_EQ(points.bins()[b].bin, bin->first);
             std::vector<float> x;
-            points.read(b, [&](std::span<const Point> portion) {
+            points.read_points(b, [&](std::span<const Point> portion) {
                 for (const Point& p : portion) x.push_back(p.x);
             });
             EXPECT_EQ(x, bin->second);
         }
     }
+}
+
+// Colours that say where their points are come back with them, and thinned as their means.
+TEST(Spill, KeepsColours) {
+    PointCloud cloud = scattered(20'000);
+    scenes::TemporaryFolder plain("topple_tiles");
+    spill(plain.path(), cloud, 1 << 12);
+    EXPECT_FALSE(SpilledPoints(plain.path()).coloured());
+    const auto byte = [](float v) {
+        return static_cast<std::uint8_t>(1 + std::abs(static_cast<int>(v * 50)) % 200);
+    };
+    for (std::size_t n = 0; n < cloud.size(); ++n) {
+        const bool known = n % 4 != 0;
+        cloud.red.push_back(known ? byte(cloud.x[n]) : std::uint8_t{0});
+        cloud.green.push_back(known ? byte(cloud.y[n]) : std::uint8_t{0});
+        cloud.blue.push_back(known ? 77 : 0);
+    }
+    for (const std::uint64_t buffer : {std::uint64_t{1}, std::uint64_t{1} << 30}) {
+        scenes::TemporaryFolder folder("topple_tiles");
+        spill(folder.path(), cloud, buffer);
+        const SpilledPoints points(folder.path());
+        ASSERT_TRUE(points.coloured());
+        std::size_t known = 0;
+        for (std::size_t b = 0; b < points.bins().size(); ++b) {
+            points.read(b, [&](std::span<const Point> portion, std::span<const Rgb8> colours) {
+                ASSERT_EQ(colours.size(), portion.size());
+                for (std::size_t n = 0; n < portion.size(); ++n) {
+                    if (colours[n] == Rgb8{0, 0, 0}) continue;
+                    ++known;
+                    EXPECT_EQ(colours[n], (Rgb8{byte(portion[n].x), byte(portion[n].y), 77}));
+                }
+            });
+            thin_bin(points, b, 0.5, folder.path());
+            const ThinnedBin thinned = read_thinned(folder.path(), points.bins()[b].bin);
+            ASSERT_EQ(thinned.red.size(), thinned.size());
+            for (const std::uint8_t blue : thinned.blue) EXPECT_TRUE(blue == 77 || blue == 0);
+        }
+        EXPECT_EQ(known, 15'000u);
+    }
+    cloud.red.assign(cloud.size(), 0);
+    cloud.green = cloud.blue = cloud.red;
+    scenes::TemporaryFolder black("topple_tiles");
+    spill(black.path(), cloud, 1 << 12);
+    EXPECT_FALSE(SpilledPoints(black.path()).coloured()) << "none is known";
 }
 
 TEST(Spill, RefusesPointsThatAreSpreadTooThin) {
@@ -114,7 +162,7 @@ TEST(Thinning, KeepsTheMeanOfEachCellAndTheCellOfEachPoint) {
         CellsOfPoints cells(folder.path(), bin);
         std::vector<std::array<double, 4>> sums(thinned.size());
         std::vector<std::array<std::int64_t, 3>> cell(thinned.size());
-        points.read(b, [&](std::span<const Point> portion) {
+        points.read_points(b, [&](std::span<const Point> portion) {
             for (const Point& p : portion) {
                 const std::uint32_t c = cells.next();
                 ASSERT_LT(c, thinned.size());

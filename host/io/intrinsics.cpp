@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "io/colour_frames.h"
+#include "io/frame_sequence.h"
+#include "io/json_problem.h"
+#include "io/text.h"
+
+namespace topple::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint32_t most_pixels_a_side = 32768;
+
+double positive_number(const fs::path& file, const nlohmann::json& json, const char* key,
+                       bool may_be_zero = false) {
+    const auto found = json.find(key);
+    if (found == json.end()) fail(file, std::string("has no \"") + key + "\"");
+    if (!found->is_number()) {
+        fail(file, std::string("\"") + key + "\" must be a number, not " + found->type_name());
+    }
+    const double value = found->get<double>();
+    if (!std::isfinite(value) || value < 0 || (value == 0 && !may_be_zero)) {
+        fail(file, std::string("\"") + key + "\" is " + short_number(value) + ", but must be " +
+                       (may_be_zero ? "0 or more" : "above 0"));
+    }
+    return value;
+}
+
+std::uint32_t side(const fs::path& file, const nlohmann::json& json, const char* key) {
+    const double value = positive_number(file, json, key);
+    if (value != std::floor(value) || value > most_pixels_a_side) {
+        fail(file, std::string("\"") + key + "\" is " + short_number(value) +
+                       ", but must be a whole number from 1 to " +
+                       std::to_string(most_pixels_a_side));
+    }
+    return static_cast<std::uint32_t>(value);
+}
+
+nlohmann::json read_object(const fs::path& file) {
+    const auto bytes = read_file(file, 1 << 20);
+    const auto text = bytes.text();
+    nlohmann::json json;
+    try {
+        json = nlohmann::json::parse(text.begin(), text.end());
+    } catch (const nlohmann::json::exception& error) {
+        fail(file, "is no JSON: " + json_problem(error));
+    }
+    if (!json.is_object()) {
+        fail(file, std::string("must hold a JSON object, not ") + json.type_name());
+    }
+    return json;
+}
+
+// All but depth_scale.
+Intrinsics pinhole(const fs::path& file, const nlohmann::json& json) {
+    Intrinsics intrinsics;
+    intrinsics.width = side(file, json, "width");
+    intrinsics.height = side(file, json, "height");
+    intrinsics.fx = positive_number(file, json, "fx");
+    intrinsics.fy = positive_number(file, json, "fy");
+    intrinsics.cx = positive_number(file, json, "cx", true);
+    intrinsics.cy = positive_number(file, json, "cy", true);
+    if (intrinsics.cx > intrinsics.width || intrinsics.cy > intrinsics.height) {
+        fail(file, "the principal point (" + short_number(intrinsics.cx) + ", " +
+                       short_number(intrinsics.cy) + ") lies outside of the image of " +
+                       std::to_string(intrinsics.width) + " x " +
+                       std::to_string(intrinsics.height) + " pixels");
+    }
+    return intrinsics;
+}
+
+}  // namespace
+
+Intrinsics read_intrinsics(const fs::path& file) {
+    const nlohmann::json json = read_object(file);
+    Intrinsics intrinsics = pinhole(file, json);
+    if (!json.contains("depth_scale")) {
+        fail(file,
+             "has no \"depth_scale\"; add it: metres = value / depth_scale, so 1000 for "
+             "depth in millimetres");
+    }
+    intrinsics.depth_scale = positive_number(file, json, "depth_scale");
+    // At these ends 16 bits reach 65 km and 6.5 cm: beyond them the unit is wrong.
+    if (intrinsics.depth_scale < 1 || intrinsics.depth_scale > 1e6) {
+        fail(file, "\"depth_scale\" is " + short_number(intrinsics.depth_scale) +
+                       ", but must be from 1 (depth in metres) to 1e+06 (micrometres)");
+    }
+    return intrinsics;
+}
+
+std::optional<Intrinsics> read_colour_intrinsics(const fs::path& folder) {
+    const fs::path file = folder / "intrinsics.json", own = folder / "color" / "intrinsics.json";
+    const nlohmann::json json = read_object(file);
+    const auto inner = json.find("color_intrinsics");
+    std::error_code error;
+    if (fs::exists(own, error)) {
+        if (inner != json.end()) {
+            fail(own,
+                 "is there, and intrinsics.json has \"color_intrinsics\", too; keep the one "
+                 "that is meant");
+        }
+        return pinhole(own, read_object(own));
+    }
+    if (inner == json.end()) return std::nullopt;
+    if (!inner->is_object()) {
+        fail(file, std::string("\"color_intrinsics\" must be an object with width, height, fx, fy, "
+                               "cx and cy, not ") +
+                       inner->type_name());
+    }
+    return pinhole(file, *inner);
+}
+
+}  // namespace topple::io
