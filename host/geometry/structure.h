@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/role.h"
 #include "geometry/manhattan.h"
 #include "geometry/segmentation.h"
 #include "geometry/surfels.h"
@@ -13,7 +14,7 @@
 namespace topple::geometry {
 
 // The part that a primitive plays in the room's shell.
-enum class Structure : std::uint8_t { none, floor, wall, ceiling };
+using Structure = Role;
 
 // Of a building, or a part of one: what lies beyond its edge is not seen, and walls have rooms on
 // both sides.

@@ -36,7 +36,7 @@ bool stands(const physics::Candidate& c, double tilt, double slack_m) {
 }  // namespace
 
 GroupEnergy::GroupEnergy(device::Device& device, const physics::SupportTable& table,
-                         const physics::SolidCells& cells, const ContactGraph& graph,
+                         const SolidCells& cells, const ContactGraph& graph,
                          std::span<const physics::Body> bodies, const SurfaceSeams& seams,
                          const std::vector<bool>& ground, const GroupingOptions& options)
     : device_(device),

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
+#include "core/cell_columns.h"
 #include "device/device.h"
 #include "graph/contact_graph.h"
 #include "graph/scene_prior.h"
 #include "graph/stable_objects.h"
 #include "graph/swendsen_wang.h"
-#include "physics/cell_columns.h"
 #include "physics/landscape.h"
 
 namespace topple::graph {
@@ -19,10 +19,10 @@ namespace topple::graph {
 // scene prior. Keeps references to its arguments.
 class GroupEnergy {
   public:
-    GroupEnergy(device::Device& device, const physics::SupportTable& table,
-                const physics::SolidCells& cells, const ContactGraph& graph,
-                std::span<const physics::Body> bodies, const SurfaceSeams& seams,
-                const std::vector<bool>& ground, const GroupingOptions& options);
+    GroupEnergy(device::Device& device, const physics::SupportTable& table, const SolidCells& cells,
+                const ContactGraph& graph, std::span<const physics::Body> bodies,
+                const SurfaceSeams& seams, const std::vector<bool>& ground,
+                const GroupingOptions& options);
 
     // One energy for each query, as one batch on the device. Not from two threads at a time.
     void operator()(std::span<const GroupQuery> queries, std::span<double> energies) const;
@@ -37,13 +37,13 @@ class GroupEnergy {
 
     device::Device& device_;
     const physics::SupportTable& table_;
-    const physics::SolidCells& cells_;
+    const SolidCells& cells_;
     const ContactGraph& graph_;
     std::span<const physics::Body> bodies_;
     const std::vector<bool>& ground_;
     const GroupingOptions& options_;
     ScenePrior prior_;
-    physics::CellColumns columns_;
+    CellColumns columns_;
     double tilt_;  // radians
 };
 

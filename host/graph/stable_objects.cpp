@@ -84,7 +84,7 @@ double free_fall_m(const ContactGraph& graph, std::span<const std::int32_t> prim
 }
 
 Grouping group_primitives(device::Device& device, const physics::SupportTable& table,
-                          const physics::SolidCells& cells, const ContactGraph& graph,
+                          const SolidCells& cells, const ContactGraph& graph,
                           std::span<const physics::Body> bodies, const SurfaceSeams& seams,
                           const std::vector<bool>& ground, const GroupingOptions& options) {
     const GroupEnergy energy(device, table, cells, graph, bodies, seams, ground, options);

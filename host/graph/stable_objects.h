@@ -52,7 +52,7 @@ double free_fall_m(const ContactGraph& graph, std::span<const std::int32_t> prim
 // ground: by primitive, true for the room's shell. Minimises Eq. 8 by Swendsen-Wang cuts; with the
 // sign of its penalty such that joints which take freedom away cost energy.
 Grouping group_primitives(device::Device& device, const physics::SupportTable& table,
-                          const physics::SolidCells& cells, const ContactGraph& graph,
+                          const SolidCells& cells, const ContactGraph& graph,
                           std::span<const physics::Body> bodies, const SurfaceSeams& seams,
                           const std::vector<bool>& ground, const GroupingOptions& options);
 

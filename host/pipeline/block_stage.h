@@ -6,8 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "core/role.h"
+#include "core/solid_cells.h"
 #include "device/device.h"
-#include "geometry/structure.h"
 #include "graph/surface_seams.h"
 #include "pipeline/stage_clock.h"
 #include "tiles/blocks.h"
@@ -19,15 +20,10 @@ namespace topple {
 struct BlockParts {
     struct Primitive {
         char model = 'p';  // 'p' plane, 'q' quadric, 'm' merged
-        geometry::Structure structure = geometry::Structure::none;
+        Role role = Role::none;
     };
     std::vector<Primitive> primitives;
-    // Solid voxels of core and halo, sorted by (i, j, k), grid frame.
-    struct Cells {
-        std::vector<std::int32_t> i, j, k, primitive;
-        std::vector<std::uint8_t> surface, unseen_below;
-        std::size_t size() const { return i.size(); }
-    } cells;
+    SolidCells cells;           // of core and halo, grid frame
     graph::SurfaceSeams seams;  // of the surface in the core
     // The leaves of the core that are not all invisible: lowest voxels, three numbers each, and
     // their voxels' states, 512 each, or none where the leaf is all empty.

@@ -42,8 +42,8 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
     const Vec3& up = g.frame.axes[2];
     g.storeys = input.storeys.empty() ? geometry::find_building(g.surfels, g.primitives, up)
                                       : input.storeys;
-    g.structure = geometry::find_structure(g.surfels, g.primitives, up, g.storeys);
-    geometry::absorb_into_shell(g.surfels, g.primitives, g.structure);
+    g.role = geometry::find_structure(g.surfels, g.primitives, up, g.storeys);
+    geometry::absorb_into_shell(g.surfels, g.primitives, g.role);
     g.region_of_point.reserve(input.cloud.size());
     g.primitive_of_point.reserve(input.cloud.size());
     for (const std::uint32_t s : g.surfels.of_point) {
@@ -63,11 +63,11 @@ std::vector<std::int32_t> keep_primitives(GeometryStage& g, const std::vector<bo
         if (to == p) continue;
         g.primitives.model[to] = std::move(g.primitives.model[p]);
         g.primitives.regions[to] = std::move(g.primitives.regions[p]);
-        g.structure[to] = g.structure[p];
+        g.role[to] = g.role[p];
     }
     g.primitives.model.resize(static_cast<std::size_t>(next));
     g.primitives.regions.resize(static_cast<std::size_t>(next));
-    g.structure.resize(static_cast<std::size_t>(next));
+    g.role.resize(static_cast<std::size_t>(next));
     for (auto* labels : {&g.primitives.label, &g.primitive_of_point}) {
         for (std::int32_t& l : *labels) l = l < 0 ? -1 : number[static_cast<std::size_t>(l)];
     }

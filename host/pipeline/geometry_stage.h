@@ -20,8 +20,8 @@ struct GeometryStage {
     geometry::Surfels surfels;
     geometry::SceneFrame frame;
     geometry::PrimitiveSet primitives;
-    std::vector<geometry::Structure> structure;  // by primitive
-    std::vector<geometry::StoreyHint> storeys;   // of a building; none of a room
+    std::vector<Role> role;                     // by primitive
+    std::vector<geometry::StoreyHint> storeys;  // of a building; none of a room
     std::vector<std::int32_t> region_of_point, primitive_of_point;
 };
 

@@ -16,15 +16,8 @@ namespace {
 // 10 f^2 + 2 = 2562 directions: neighbours are 4 degrees apart.
 constexpr unsigned sphere_frequency = 16;
 
-std::vector<bool> shell(const SolidParts& parts) {
-    std::vector<bool> ground;
-    for (const geometry::Structure s : parts.structure)
-        ground.push_back(s != geometry::Structure::none);
-    return ground;
-}
-
 // Objects by group, the ground first.
-void collect_objects(const std::vector<bool>& ground, ObjectStage& out) {
+void collect_objects(const std::vector<bool>& shell, ObjectStage& out) {
     const std::vector<std::int32_t>& group = out.grouping.group;
     const bool has_ground = std::find(group.begin(), group.end(), -1) != group.end();
     std::int32_t objects = 0;
@@ -40,7 +33,7 @@ void collect_objects(const std::vector<bool>& ground, ObjectStage& out) {
     for (std::size_t o = 0; o < members.size(); ++o) {
         StableObject object;
         object.candidate =
-            graph::candidate_of(out.contacts, out.bodies, ground, std::move(members[o]));
+            graph::candidate_of(out.contacts, out.bodies, shell, std::move(members[o]));
         object.grounded = has_ground && o == 0;
         if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
         object.lowest_m = std::numeric_limits<double>::infinity();
@@ -61,15 +54,17 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
                       StageClock& stage) {
     const auto count = static_cast<std::int32_t>(parts.model.size());
     const std::vector<double> density(static_cast<std::size_t>(count), options.density_kg_m3);
-    std::vector<physics::Body> bodies = stage(
-        "bodies", [&] { return physics::mass_properties(device, parts.cells, count, density); });
+    const SolidCells& cells = parts.solids->cells();
+    std::vector<physics::Body> bodies =
+        stage("bodies", [&] { return physics::mass_properties(device, cells, count, density); });
     graph::ContactGraph contacts =
-        stage("contacts", [&] { return graph::build_contact_graph(device, parts.cells, count); });
+        stage("contacts", [&] { return graph::build_contact_graph(device, cells, count); });
     physics::SupportTable table = stage("supports", [&] {
-        return physics::SupportTable(device, parts.cells, count,
+        return physics::SupportTable(device, cells, count,
                                      physics::geodesic_sphere(sphere_frequency));
     });
-    return {std::move(bodies), std::move(contacts), std::move(table), parts.seams, shell(parts)};
+    return {std::move(bodies), std::move(contacts), std::move(table), parts.seams,
+            parts.solids->shell()};
 }
 
 std::vector<Support> supports_between(const graph::ContactGraph& contacts,
@@ -92,11 +87,11 @@ std::vector<Support> supports_between(const graph::ContactGraph& contacts,
 }
 
 void find_barriers(device::Device& device, const physics::SupportTable& table,
-                   const physics::SolidCells& cells,
-                   std::span<const std::int32_t> object_of_primitive, double friction,
-                   std::vector<StableObject>& objects) {
+                   const SolidScene& solids, std::span<const std::int32_t> object_of_primitive,
+                   double friction, std::vector<StableObject>& objects) {
+    const SolidCells& cells = solids.cells();
+    const CellColumns& columns = solids.columns();
     std::vector<physics::Candidate> candidates;
-    const physics::CellColumns columns(cells);
     for (StableObject& o : objects) {
         if (!o.grounded && !o.candidate.support_polygon.empty())
             o.candidate.edge_drop_m = physics::drops_when_tipped_m(cells, columns, o.candidate);
@@ -152,12 +147,12 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
         grouping.seed = options.seed;
         grouping.time_limit_s = options.grouping_time_s.value_or(0);
         grouping.cancelled = options.cancelled;
-        out.grouping = graph::group_primitives(device, table, solid.cells, out.contacts, out.bodies,
-                                               parts.seams, parts.shell, grouping);
+        out.grouping = graph::group_primitives(device, table, solid.solids->cells(), out.contacts,
+                                               out.bodies, parts.seams, parts.shell, grouping);
     });
     stage("barriers", [&] {
         collect_objects(parts.shell, out);
-        find_barriers(device, table, solid.cells, out.object_of_primitive, options.friction,
+        find_barriers(device, table, *solid.solids, out.object_of_primitive, options.friction,
                       out.objects);
     });
     return out;

@@ -107,8 +107,8 @@ RoomParts scan_parts(const RoomOptions& options) {
     std::vector<std::int32_t> part = scenes::true_parts(world, points);
     SolidParts solid = solid_parts(geometry, voxels);
     PartStage parts = weigh_parts(device, solid, options.parse, stage);
-    return {std::move(world), std::move(points), std::move(part), std::move(solid.cells),
-            std::move(parts)};
+    return {std::move(world),        std::move(points), std::move(part),
+            std::move(solid.solids), solid.frame.axes,  std::move(parts)};
 }
 
 void add_examples(const RoomParts& room, JointExamples& examples) {
@@ -132,8 +132,8 @@ Groupings compare_groupings(device::Device& device, const RoomParts& room,
     out.discriminative = judged(room, join_by_probability(p.contacts, joints, weights, p.shell));
 
     const graph::GroupingOptions options;
-    const graph::GroupEnergy energy(device, p.table, room.cells, p.contacts, p.bodies, p.seams,
-                                    p.shell, options);
+    const graph::GroupEnergy energy(device, p.table, room.solids->cells(), p.contacts, p.bodies,
+                                    p.seams, p.shell, options);
     const auto energy_of = [&](std::span<const graph::GroupQuery> queries, std::span<double> to) {
         energy(queries, to);
     };
@@ -143,8 +143,8 @@ Groupings compare_groupings(device::Device& device, const RoomParts& room,
     out.greedy = judged(room, greedy.label);
     out.greedy_energy = greedy.energy;
 
-    const graph::Grouping sampled = graph::group_primitives(device, p.table, room.cells, p.contacts,
-                                                            p.bodies, p.seams, p.shell, options);
+    const graph::Grouping sampled = graph::group_primitives(
+        device, p.table, room.solids->cells(), p.contacts, p.bodies, p.seams, p.shell, options);
     out.sampled = judged(room, sampled.group);
     out.sampled_energy = energy_of_all(energy_of, sampled.group);
     return out;
