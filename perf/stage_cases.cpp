@@ -6,6 +6,7 @@
 
 #include "pipeline/stage_clock.h"
 #include "scenes/furnished_room.h"
+#include "vdb/completion.h"
 
 namespace topple::perf {
 namespace {
@@ -71,14 +72,10 @@ Result measure_carving(device::Device& device, const StageScene& scene, unsigned
 
 Result measure_filling(device::Device& device, const StageScene& scene, unsigned runs) {
     vdb::VoxelScene carved = carve(device, scene);
-    vdb::VoxelScene::FillOptions options;
-    for (const geometry::Structure s : scene.geometry.shell.structure) {
-        options.hollow.push_back(s == geometry::Structure::wall ||
-                                 s == geometry::Structure::ceiling);
-    }
+    const vdb::FillOptions options{.roles = scene.geometry.role};
     Result result = named(device, "filling", {0, "voxels filled", 0, 0});
     sample(device, result, runs,
-           [&] { result.work.items = static_cast<double>(carved.fill(device, options)); });
+           [&] { result.work.items = static_cast<double>(vdb::fill(device, carved, options)); });
     result.work.bytes = static_cast<double>(result.counters.bytes_bound);
     result.hash = hash_of(carved);
     return result;

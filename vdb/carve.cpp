@@ -343,7 +343,7 @@ void VoxelScene::carve(device::Device& device, const Intrinsics& intrinsics,
                     "carving: at least one frame must see through a voxel to make it empty");
     }
     Grids& g = *grids_;
-    g.clear_completed();
+    clear_completed();
     const auto size = g.leaves.size();
     if (g.evidence.kind.size() != size) {
         g.evidence.kind.assign(size, Evidence::Kind::invisible);

@@ -4,8 +4,10 @@
 // Internal to vdb/: what stands behind VoxelScene. Only vdb's own sources include this.
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +25,39 @@ inline openvdb::Coord origin_of(const LeafTable::Leaf& leaf) {
 }
 inline LeafTable::Leaf leaf_of(const openvdb::Coord& voxel) {
     return {voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3};
+}
+
+inline openvdb::Coord coord(const Voxel& at) {
+    return {at[0], at[1], at[2]};
+}
+
+// Calls use(leaf, offset, voxel) for all voxels of sorted leaves, in the order of (i, j, k).
+template <class Use>
+void in_voxel_order(const std::vector<LeafTable::Leaf>& leaves, const Use& use) {
+    // Planes of voxels across all leaves of one x, then rows across all of one (x, y).
+    const auto end_of = [&](std::size_t first, int axes) {
+        std::size_t end = first;
+        while (end < leaves.size() &&
+               std::equal(leaves[end].begin(), leaves[end].begin() + axes, leaves[first].begin()))
+            ++end;
+        return end;
+    };
+    for (std::size_t slab = 0, next_slab; slab < leaves.size(); slab = next_slab) {
+        next_slab = end_of(slab, 1);
+        for (std::int32_t x = 0; x < 8; ++x) {
+            for (std::size_t row = slab, next_row; row < next_slab; row = next_row) {
+                next_row = end_of(row, 2);
+                for (std::int32_t y = 0; y < 8; ++y) {
+                    for (std::size_t n = row; n < next_row; ++n) {
+                        for (std::int32_t z = 0; z < 8; ++z)
+                            use(n, static_cast<std::size_t>(x << 6 | y << 3 | z),
+                                Voxel{leaves[n][0] * 8 + x, leaves[n][1] * 8 + y,
+                                      leaves[n][2] * 8 + z});
+                    }
+                }
+            }
+        }
+    }
 }
 
 // What the frames have said so far. Counts of frames; a leaf's own count adds to its voxels'.
@@ -51,8 +86,8 @@ struct VoxelScene::Grids {
     std::uint64_t unplaced = 0;
     Evidence evidence;
 
-    // Makes completed voxels invisible again.
-    void clear_completed();
+    // Takes leaves beyond the scene's bounds into the table.
+    void take_in(std::span<const LeafTable::Leaf> changed);
     // Index to input frame: voxel (i, j, k)'s centre.
     openvdb::math::Transform::Ptr transform() const;
 };

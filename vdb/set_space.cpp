@@ -2,9 +2,12 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "topple/error.h"
+#include "vdb/completion.h"
 #include "vdb/grids.h"
 
 // Free and solid space that comes as a map instead of frames.
@@ -136,32 +139,6 @@ void set_leaf_free(VoxelScene::Grids& g, const LeafTable::Leaf& leaf,
     }
 }
 
-void set_leaf_solid(VoxelScene::Grids& g, const LeafTable::Leaf& leaf,
-                    const std::bitset<512>& solid) {
-    constexpr auto surface = static_cast<std::int32_t>(State::surface);
-    auto* state = g.state->tree().touchLeaf(origin_of(leaf));
-    auto* primitive = g.primitive->tree().touchLeaf(origin_of(leaf));
-    for (openvdb::Index v = 0; v < 512; ++v) {
-        if (!solid[v]) continue;
-        state->setValueOn(v, surface);
-        primitive->setValueOn(v);  // what it was completed to, or none
-    }
-}
-
-// Sets the leaves of the boxes, and takes those beyond the scene's bounds into the table.
-template <class SetLeaf>
-void set_boxes(VoxelScene::Grids& g, const SpaceMap& map, const std::vector<SpaceMap::Box>& boxes,
-               const SetLeaf& set_leaf) {
-    auto& beyond = g.leaves.beyond;
-    Boxes(g, map, boxes).each_leaf([&](const LeafTable::Leaf& leaf, const auto& voxels) {
-        if (!g.leaves.in_box(leaf)) beyond.push_back(leaf);
-        set_leaf(g, leaf, voxels);
-    });
-    std::sort(beyond.begin(), beyond.end());
-    beyond.erase(std::unique(beyond.begin(), beyond.end()), beyond.end());
-    g.evidence = {};  // by the table's leaves
-}
-
 void check(const SpaceMap& map) {
     if (map.voxel_m > 0 && std::isfinite(map.voxel_m)) return;
     throw Error(ErrorKind::usage, "a map of voxels of " + std::to_string(map.voxel_m) +
@@ -172,13 +149,38 @@ void check(const SpaceMap& map) {
 
 void VoxelScene::set_free(const SpaceMap& map) {
     check(map);
-    grids_->clear_completed();
-    set_boxes(*grids_, map, map.free, set_leaf_free);
+    clear_completed();
+    Grids& g = *grids_;
+    std::vector<LeafTable::Leaf> leaves;
+    Boxes(g, map, map.free).each_leaf([&](const LeafTable::Leaf& leaf, const auto& voxels) {
+        leaves.push_back(leaf);
+        set_leaf_free(g, leaf, voxels);
+    });
+    g.take_in(leaves);
 }
 
-void VoxelScene::set_solid(const SpaceMap& map) {
+std::vector<Claim> told(const VoxelScene& volume, const SpaceMap& map) {
     check(map);
-    if (!map.solid.empty()) set_boxes(*grids_, map, map.solid, set_leaf_solid);
+    const VoxelScene::Grids& g = volume.grids();
+    std::map<LeafTable::Leaf, std::bitset<512>> solid;
+    Boxes(g, map, map.solid).each_leaf([&](const LeafTable::Leaf& leaf, const auto& voxels) {
+        solid[leaf] |= voxels;
+    });
+    std::vector<LeafTable::Leaf> leaves;
+    std::vector<std::bitset<512>> within;
+    for (const auto& [leaf, voxels] : solid) {
+        leaves.push_back(leaf);
+        within.push_back(voxels);
+    }
+    const auto state = g.state->getConstAccessor();
+    const auto primitive = g.primitive->getConstAccessor();
+    std::vector<Claim> claims;
+    in_voxel_order(leaves, [&](std::size_t leaf, std::size_t offset, const Voxel& at) {
+        constexpr auto seen = static_cast<std::int32_t>(State::surface);
+        if (!within[leaf][offset] || state.getValue(coord(at)) == seen) return;
+        claims.push_back({at, primitive.getValue(coord(at)), Basis::surface});
+    });
+    return claims;
 }
 
 }  // namespace topple::vdb

@@ -113,74 +113,43 @@ State VoxelScene::state_at(std::int32_t i, std::int32_t j, std::int32_t k) const
     return static_cast<State>(grids_->state->tree().getValue({i, j, k}));
 }
 
-SolidCellArrays VoxelScene::solid_cells() const {
-    SolidCellArrays cells;
-    struct Pair {
-        LeafTable::Leaf at;
-        const StateLeaf* state;
-        const StateLeaf* primitive;
-    };
-    std::vector<Pair> leaves;
-    for (const auto& leaf : solid_leaves(*grids_->state)) {
+SolidCells VoxelScene::solid_cells() const {
+    const std::vector<LeafTable::Leaf> leaves = solid_leaves(*grids_->state);
+    std::vector<std::pair<const StateLeaf*, const StateLeaf*>> grids;  // state, primitive
+    for (const auto& leaf : leaves) {
         const auto origin = origin_of(leaf);
-        leaves.push_back({leaf, grids_->state->tree().probeConstLeaf(origin),
-                          grids_->primitive->tree().probeConstLeaf(origin)});
+        grids.emplace_back(grids_->state->tree().probeConstLeaf(origin),
+                           grids_->primitive->tree().probeConstLeaf(origin));
     }
+    SolidCells cells;
+    cells.voxel_m = grids_->frame.voxel_m;
     const auto count = grids_->state->activeVoxelCount();
-    cells.i.reserve(count);
-    cells.j.reserve(count);
-    cells.k.reserve(count);
-    cells.primitive.reserve(count);
-    cells.state.reserve(count);
-    // Leaves are sorted; planes of voxels across all leaves of one x, then rows across all of one
-    // (x, y), come out sorted by (i, j, k) without a sort.
-    const auto end_of = [&](std::size_t first, int axes) {
-        std::size_t end = first;
-        while (end < leaves.size() &&
-               std::equal(leaves[end].at.begin(), leaves[end].at.begin() + axes,
-                          leaves[first].at.begin())) {
-            ++end;
-        }
-        return end;
-    };
-    for (std::size_t slab = 0, next_slab; slab < leaves.size(); slab = next_slab) {
-        next_slab = end_of(slab, 1);
-        for (std::int32_t x = 0; x < 8; ++x) {
-            for (std::size_t row = slab, next_row; row < next_slab; row = next_row) {
-                next_row = end_of(row, 2);
-                for (std::int32_t y = 0; y < 8; ++y) {
-                    for (std::size_t n = row; n < next_row; ++n) {
-                        for (std::int32_t z = 0; z < 8; ++z) {
-                            const auto offset = static_cast<openvdb::Index>(x << 6 | y << 3 | z);
-                            if (!leaves[n].state->isValueOn(offset)) continue;
-                            cells.i.push_back(leaves[n].at[0] * 8 + x);
-                            cells.j.push_back(leaves[n].at[1] * 8 + y);
-                            cells.k.push_back(leaves[n].at[2] * 8 + z);
-                            cells.primitive.push_back(leaves[n].primitive->getValue(offset));
-                            cells.state.push_back(
-                                static_cast<State>(leaves[n].state->getValue(offset)));
-                        }
-                    }
-                }
-            }
-        }
-    }
+    for (auto* values : {&cells.i, &cells.j, &cells.k, &cells.primitive}) values->reserve(count);
+    cells.basis.reserve(count);
+    in_voxel_order(leaves, [&](std::size_t leaf, std::size_t at, const Voxel& voxel) {
+        const auto& [state, primitive] = grids[leaf];
+        const auto offset = static_cast<openvdb::Index>(at);
+        if (!state->isValueOn(offset)) return;
+        cells.i.push_back(voxel[0]);
+        cells.j.push_back(voxel[1]);
+        cells.k.push_back(voxel[2]);
+        cells.primitive.push_back(primitive->getValue(offset));
+        const bool seen = state->getValue(offset) == static_cast<std::int32_t>(State::surface);
+        cells.basis.push_back(seen ? Basis::surface : Basis::votes);
+    });
     return cells;
 }
 
-SolidVoxels VoxelScene::solid_voxels() const {
-    SolidCellArrays cells = solid_cells();
+SolidVoxels solid_voxels(const VoxelFrame& frame, const SolidCells& cells,
+                         std::span<const std::int32_t> object_of_primitive) {
     SolidVoxels out;
-    const auto& rows = grids_->frame.grid_from_input;
-    const auto& object = grids_->object_of_primitive;
+    const auto& rows = frame.grid_from_input;
     const std::size_t count = cells.size();
-    out.x.resize(count);
-    out.y.resize(count);
-    out.z.resize(count);
+    for (auto* values : {&out.x, &out.y, &out.z}) values->resize(count);
     out.object.resize(count);
     out.state.resize(count);
     for (std::size_t n = 0; n < count; ++n) {
-        const double v = grids_->frame.voxel_m;
+        const double v = frame.voxel_m;
         const double p[3] = {(cells.i[n] + 0.5) * v, (cells.j[n] + 0.5) * v,
                              (cells.k[n] + 0.5) * v};
         const auto coordinate = [&](int a) {
@@ -189,12 +158,12 @@ SolidVoxels VoxelScene::solid_voxels() const {
         out.x[n] = coordinate(0);
         out.y[n] = coordinate(1);
         out.z[n] = coordinate(2);
-        const std::int32_t primitive = cells.primitive[n];
-        const bool known = primitive >= 0 && static_cast<std::size_t>(primitive) < object.size();
-        out.object[n] = known ? object[static_cast<std::size_t>(primitive)] : -1;
-        out.state[n] = cells.state[n] == State::completed;
+        const auto primitive = static_cast<std::size_t>(cells.primitive[n]);
+        const bool known = cells.primitive[n] >= 0 && primitive < object_of_primitive.size();
+        out.object[n] = known ? object_of_primitive[primitive] : -1;
+        out.state[n] = cells.basis[n] != Basis::surface;
     }
-    out.primitive = std::move(cells.primitive);
+    out.primitive = cells.primitive;
     return out;
 }
 

@@ -225,15 +225,25 @@ void VoxelScene::set_objects(std::span<const std::int32_t> object_of_primitive) 
     grids_->object_of_primitive.assign(object_of_primitive.begin(), object_of_primitive.end());
 }
 
-void VoxelScene::Grids::clear_completed() {
+void VoxelScene::clear_completed() {
     constexpr auto completed = static_cast<std::int32_t>(State::completed);
-    for (auto leaf = state->tree().beginLeaf(); leaf; ++leaf) {
+    for (auto leaf = grids_->state->tree().beginLeaf(); leaf; ++leaf) {
         for (auto voxel = leaf->beginValueOn(); voxel; ++voxel) {
             if (*voxel != completed) continue;
-            primitive->tree().setValueOff(voxel.getCoord(), -1);
+            grids_->primitive->tree().setValueOff(voxel.getCoord(), -1);
             leaf->setValueOff(voxel.pos(), static_cast<std::int32_t>(State::invisible));
         }
     }
+}
+
+void VoxelScene::Grids::take_in(std::span<const LeafTable::Leaf> changed) {
+    auto& beyond = leaves.beyond;
+    for (const LeafTable::Leaf& leaf : changed) {
+        if (!leaves.in_box(leaf)) beyond.push_back(leaf);
+    }
+    std::sort(beyond.begin(), beyond.end());
+    beyond.erase(std::unique(beyond.begin(), beyond.end()), beyond.end());
+    evidence = {};  // by the table's leaves
 }
 
 }  // namespace topple::vdb

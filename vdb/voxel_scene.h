@@ -5,13 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <limits>
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/solid_cells.h"
 #include "core/space_map.h"
 #include "device/device.h"
 #include "topple/cloud_view.h"
@@ -50,13 +49,7 @@ struct CarveOptions {
     double noise_sigmas = 2;
 };
 
-// The solid voxels, one array per field, sorted by (i, j, k).
-struct SolidCellArrays {
-    std::vector<std::int32_t> i, j, k;
-    std::vector<std::int32_t> primitive;  // -1: none
-    std::vector<State> state;             // surface or completed
-    std::size_t size() const { return i.size(); }
-};
+using Voxel = std::array<std::int32_t, 3>;
 
 class VoxelScene {
   public:
@@ -90,61 +83,20 @@ class VoxelScene {
     // Visibility carving (paper, 2.2.2; kernels carve_leaves, carve): voxels in front of a depth
     // reading become empty, those that no frame saw stay invisible. May be called for as many
     // batches of frames as there are, with the same options. Leaves that are all empty or all
-    // invisible are stored as one value. Undoes an earlier fill(). Throws Error(input) for frames
-    // that don't match the intrinsics or whose pose is not finite.
+    // invisible are stored as one value. Undoes an earlier completion. Throws Error(input) for
+    // frames that don't match the intrinsics or whose pose is not finite.
     void carve(device::Device& device, const Intrinsics& intrinsics,
                std::span<const DepthFrame> frames, const CarveOptions& options = {});
 
     // Free space that a map tells, instead of frames or, after carve(), beside them: voxels whose
     // centre it says to be free become empty, those with points stay surface. Where the map's
     // voxels are the grid's, its free space beyond the scene's bounds is kept, too. Undoes an
-    // earlier fill(). Throws Error(usage) for a map without a voxel size, Error(input) for one of
-    // more than 2^23 blocks of 8x8x8 free voxels.
+    // earlier completion. Throws Error(usage) for a map without a voxel size, Error(input) for one
+    // of more than 2^23 blocks of 8x8x8 free voxels.
     void set_free(const SpaceMap& map);
 
-    // What a map says to be solid within its surfaces, as set_free() has what is free: after the
-    // filling, for these voxels count as seen from here on, and would stop it. They belong to the
-    // primitive that they were completed to, if any.
-    void set_solid(const SpaceMap& map);
-
-    // Six-direction filling (paper, 2.2.3; kernels six_fill_sweep, six_fill_vote): an invisible
-    // voxel takes the primitive that at least `votes` of the rays along its six axes hit first; of
-    // several the one hit most often, then the nearest, then the lowest. Rays end at seen-empty
-    // voxels and at surfaces. Primitives in `hollow` (walls, floors: large planes) stop rays, but
-    // neither fill nor are filled. With `columns`, for scenes seen from around, the ray upwards
-    // alone suffices where neither the ray downwards nor more than two of the four to the sides
-    // end in space seen to be empty: the inside of a sofa whose back stands at a wall. Returns
-    // voxels completed. Throws Error(input) where the device has not the memory for it.
-    struct FillOptions {
-        unsigned votes = 2;    // directions that must agree
-        bool columns = false;  // fill what hides under a top, down to where it stands
-        // Voxels with k below this one, the floor's, stay as they are and stop rays.
-        std::int32_t lowest = std::numeric_limits<std::int32_t>::min();
-        std::vector<bool> hollow;  // by primitive
-    };
-    std::uint64_t fill(device::Device& device, const FillOptions& options);
-
-    // Ends filled solids at the surface on which they are seen to stand: rays pass from a box into
-    // the table top that it hides, and take that for more of the box. What lies below goes to the
-    // primitive stood on, or beside it to a leg; `hollow` as in fill(). on: where it is known.
-    // Returns voxels that changed hands.
-    struct StandsOn {
-        std::int32_t above = -1, below = -1;  // primitives
-        double height_m = 0;                  // of the one's foot, grid frame
-    };
-    std::uint64_t settle(const std::vector<bool>& hollow, std::span<const StandsOn> on = {});
-
-    // Slender parts (up to 10 cm) whose upper end nobody saw go on, through at most 60 cm of what
-    // nobody saw, to the wider thing above them: legs under a seat. `hollow` as in fill(). Returns
-    // voxels completed.
-    std::uint64_t extend(const std::vector<bool>& hollow);
-
-    // Joins neighbouring primitives through what no frame saw: gaps of up to `longest_gap`
-    // invisible voxels along an axis between two primitives are completed, each voxel by the nearer
-    // of the two. Legs meet their table top where the edge above hides it. A gap with a voxel that
-    // was seen to be empty stays; so does one beside, not below or above, a primitive in `hollow`.
-    // Returns voxels completed.
-    std::uint64_t bridge(unsigned longest_gap, const std::vector<bool>& hollow);
+    // Makes completed voxels invisible again.
+    void clear_completed();
 
     // Primitive p becomes number[p]; -1: its voxels stay solid, but belong to no primitive. Throws
     // Error(usage) for a primitive beyond the span.
@@ -157,13 +109,14 @@ class VoxelScene {
     // Outside of the scene's bounds: invisible.
     State state_at(std::int32_t i, std::int32_t j, std::int32_t k) const;
 
-    SolidCellArrays solid_cells() const;
-    SolidVoxels solid_voxels() const;  // centres in the input's frame, same order
+    // The solid voxels, flattened; of completed ones it says no more than that they were filled.
+    // What follows the completion gets them from there.
+    SolidCells solid_cells() const;
 
     // Bounds of all surface voxels, inclusive; highest < lowest where there are none.
     std::array<std::int32_t, 3> lowest() const, highest() const;
 
-    // Object of each primitive, for solid_voxels() and write(); -1 where the span ends.
+    // Object of each primitive, for write(); -1 where the span ends.
     void set_objects(std::span<const std::int32_t> object_of_primitive);
 
     // Adds a float grid to what write() stores: a value for each of the voxels (i, j, k); zeros are
@@ -179,9 +132,16 @@ class VoxelScene {
     void write(const std::filesystem::path& path) const;
 
     struct Grids;  // internal to vdb/
+    Grids& grids() { return *grids_; }
+    const Grids& grids() const { return *grids_; }
 
   private:
     std::unique_ptr<Grids> grids_;
 };
+
+// Their centres in the input's frame, in the same order. Object of each primitive: -1 where the
+// span ends.
+SolidVoxels solid_voxels(const VoxelFrame& frame, const SolidCells& cells,
+                         std::span<const std::int32_t> object_of_primitive);
 
 }  // namespace topple::vdb

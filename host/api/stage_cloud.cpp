@@ -7,6 +7,7 @@
 #include "geometry/surfels.h"
 #include "io/text.h"
 #include "pipeline/caller_points.h"
+#include "vdb/completion.h"
 #include "vdb/voxel_scene.h"
 
 namespace topple::stages {
@@ -104,16 +105,16 @@ void Volume::carve(device::Device& device, const Intrinsics& intrinsics,
 std::uint64_t Volume::fill(device::Device& device, unsigned votes,
                            std::span<const std::int32_t> hollow) {
     require(votes >= 1 && votes <= 6, "fill", std::to_string(votes) + " votes: from 1 to 6");
-    vdb::VoxelScene::FillOptions options;
+    vdb::FillOptions options;
     options.votes = votes;
-    options.hollow.assign(static_cast<std::size_t>(labels_), false);
+    options.roles.assign(static_cast<std::size_t>(labels_), Role::none);
     for (const std::int32_t label : hollow) {
         require(
             label >= 0 && label < labels_, "fill",
             "hollow label " + std::to_string(label) + " is none of the " + std::to_string(labels_));
-        options.hollow[static_cast<std::size_t>(label)] = true;
+        options.roles[static_cast<std::size_t>(label)] = Role::wall;
     }
-    return scene_->fill(device, options);
+    return vdb::fill(device, *scene_, options);
 }
 
 int Volume::state_at(std::int32_t i, std::int32_t j, std::int32_t k) const {
@@ -121,9 +122,11 @@ int Volume::state_at(std::int32_t i, std::int32_t j, std::int32_t k) const {
 }
 
 Voxels Volume::solid() const {
-    vdb::SolidCellArrays cells = scene_->solid_cells();
+    SolidCells cells = scene_->solid_cells();
     Voxels out;
-    for (const vdb::State s : cells.state) out.state.push_back(static_cast<std::uint8_t>(s));
+    for (const Basis b : cells.basis)
+        out.state.push_back(static_cast<std::uint8_t>(b == Basis::surface ? vdb::State::surface
+                                                                          : vdb::State::completed));
     out.i = std::move(cells.i);
     out.j = std::move(cells.j);
     out.k = std::move(cells.k);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "geometry/segmentation.h"
-#include "geometry/structure.h"
+#include "geometry/storeys.h"
 #include "geometry/surfels.h"
 
 namespace topple::geometry {

@@ -34,6 +34,21 @@ void find_bounds(const SurfaceSamples& s, std::size_t first, std::size_t last,
     }
 }
 
+void find_colour(const SurfaceSamples& s, PrimitiveShape& p) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double squares = 0, known = 0;
+    for (std::size_t n = p.first; n < p.last; ++n) {
+        const Eigen::Vector3d colour(s.lab_l[n], s.lab_a[n], s.lab_b[n]);
+        if (!colour.allFinite()) continue;
+        sum += colour;
+        squares += colour.squaredNorm();
+        known += 1;
+    }
+    if (known == 0) return;
+    p.colour = sum / known;
+    p.colour_spread = std::sqrt(std::max(0.0, squares / known - p.colour.squaredNorm()));
+}
+
 }  // namespace
 
 Eigen::Vector3d PrimitiveShape::face() const {
@@ -83,6 +98,7 @@ PrimitiveShapes primitive_shapes(const SurfaceSamples& s, std::size_t primitives
         p.spread = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
         p.axes = solver.eigenvectors();
         find_bounds(s, p.first, p.last, values, p.low, p.high);
+        if (s.coloured()) find_colour(s, p);
     }
     return out;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -22,6 +23,9 @@ struct PrimitiveShape {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     // Bounds along x, y, z, without the outermost hundredth at either side.
     Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
+    // Mean and spread of its colours in L*a*b*; NaN where none are known.
+    Eigen::Vector3d colour = Eigen::Vector3d::Constant(NAN);
+    double colour_spread = NAN;
     double up_share = 0, down_share = 0, side_share = 0;  // of its normals, within 37 degrees
 
     std::size_t samples() const { return last - first; }

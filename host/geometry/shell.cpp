@@ -16,14 +16,14 @@ namespace {
 // platform is, or as large as a gallery.
 constexpr double level_cos = 0.7, platform_m = 0.5, gallery_m2 = 4;
 
-Structure structure_of(const PrimitiveShape& p, double floor_m, double top_m) {
+Role role_of_shape(const PrimitiveShape& p, double floor_m, double top_m) {
     const double level = p.face()[2];
-    if (std::abs(level) < level_cos) return Structure::wall;
+    if (std::abs(level) < level_cos) return Role::wall;
     const double height = p.center[2] - floor_m;
     // Of a sheet whose sides are confused, the nearer end of the room tells.
-    if (level < 0 && top_m - p.center[2] < height) return Structure::ceiling;
-    if (height < platform_m || (level > 0 && p.area_m2 >= gallery_m2)) return Structure::floor;
-    return Structure::wall;
+    if (level < 0 && top_m - p.center[2] < height) return Role::ceiling;
+    if (height < platform_m || (level > 0 && p.area_m2 >= gallery_m2)) return Role::floor;
+    return Role::wall;
 }
 
 void judge(const SurfaceSamples& samples, const StoreyHint& storey, Shell& out) {
@@ -39,7 +39,7 @@ void judge(const SurfaceSamples& samples, const StoreyHint& storey, Shell& out) 
         out.log_odds[p] =
             fitted::log_odds(fitted::probability(fitted::shell_model().log_odds(row)));
         if (out.log_odds[p] > 0)
-            out.structure[p] = structure_of(shapes.of[p], shapes.low[2], shapes.high[2]);
+            out.role[p] = role_of_shape(shapes.of[p], shapes.low[2], shapes.high[2]);
     }
 }
 
@@ -49,7 +49,7 @@ Shell find_shell(const SurfaceSamples& samples, std::size_t primitives,
                  std::span<const StoreyHint> storeys) {
     Shell out;
     out.log_odds.assign(primitives, fitted::log_odds(0));
-    out.structure.assign(primitives, Structure::none);
+    out.role.assign(primitives, Role::none);
     constexpr StoreyHint all{.floor_m = std::numeric_limits<double>::quiet_NaN()};
     if (storeys.empty()) judge(samples, all, out);
     for (const StoreyHint& storey : storeys) {

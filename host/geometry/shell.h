@@ -4,7 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "geometry/structure.h"
+#include "core/role.h"
+#include "geometry/storeys.h"
 #include "geometry/surface_samples.h"
 
 namespace topple::geometry {
@@ -13,7 +14,7 @@ namespace topple::geometry {
 // is built in.
 struct Shell {
     std::vector<double> log_odds;      // by primitive, that it is the room's (fitted/)
-    std::vector<Structure> structure;  // none where that is below 0, else by how it lies
+    std::vector<Role> role;            // none where that is below 0, else by how it lies
 };
 
 // samples: in the scene's frame, sorted by primitive. storeys: each is looked at by itself.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace topple::geometry {
@@ -11,6 +12,14 @@ namespace topple::geometry {
 struct Storey {
     double floor_m = 0;  // height of its floor along up
     double below_m = 0;  // where it begins: within the slab below its floor
+};
+
+// Of a building, or a part of one: what lies beyond its edge is not seen, and walls have rooms on
+// both sides.
+struct StoreyHint {
+    double floor_m = 0;  // height of the storey's floor along up; NaN: not known
+    double below_m = -std::numeric_limits<double>::infinity();  // where the storey begins
+    double top_m = std::numeric_limits<double>::infinity();     // where the next one begins
 };
 
 // Storeys by rising height; the first begins at minus infinity. area_m2: level histogram of the

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -65,6 +66,27 @@ double find_spacing(const SurfaceSamples& s) {
     return std::max(s.edge_m, lattice * *middle);
 }
 
+// The mean of the colours that are known, in fixed point as above.
+void add_colour(const Surfels& surfels, std::span<const Key> keys, SurfaceSamples& out) {
+    std::array<std::int64_t, 3> sum{};
+    std::int64_t known = 0;
+    constexpr double unit = 1 << 16;
+    for (const Key& key : keys) {
+        const std::size_t s = surfels.of_point[key.point];
+        if (std::isnan(surfels.lab_l[s])) continue;
+        ++known;
+        sum[0] += std::llround(double{surfels.lab_l[s]} * unit);
+        sum[1] += std::llround(double{surfels.lab_a[s]} * unit);
+        sum[2] += std::llround(double{surfels.lab_b[s]} * unit);
+    }
+    std::size_t axis = 0;
+    for (auto* values : {&out.lab_l, &out.lab_a, &out.lab_b}) {
+        const double mean = static_cast<double>(sum[axis++]) / (static_cast<double>(known) * unit);
+        values->push_back(known ? static_cast<float>(mean)
+                                : std::numeric_limits<float>::quiet_NaN());
+    }
+}
+
 SurfaceSamples taken(const SurfaceSamples& from, const std::vector<std::size_t>& which) {
     SurfaceSamples out;
     out.edge_m = from.edge_m;
@@ -72,6 +94,7 @@ SurfaceSamples taken(const SurfaceSamples& from, const std::vector<std::size_t>&
     const auto columns = columns_of(out);
     const auto sources = columns_of(from);
     for (std::size_t c = 0; c < columns.size(); ++c) {
+        if (sources[c]->empty()) continue;
         columns[c]->reserve(which.size());
         for (const std::size_t n : which) columns[c]->push_back((*sources[c])[n]);
     }
@@ -124,18 +147,20 @@ SurfaceSamples sample_surface(const CloudView& cloud, const Surfels& surfels,
         out.ny.push_back(static_cast<float>(scale * n[1]));
         out.nz.push_back(static_cast<float>(scale * n[2]));
         out.primitive.push_back(keys[first].primitive);
+        if (!surfels.lab_l.empty())
+            add_colour(surfels, std::span(keys).subspan(first, last - first), out);
         first = last;
     }
     out.spacing_m = find_spacing(out);
     return out;
 }
 
-std::array<std::vector<float>*, 6> columns_of(SurfaceSamples& s) {
-    return {&s.x, &s.y, &s.z, &s.nx, &s.ny, &s.nz};
+std::array<std::vector<float>*, 9> columns_of(SurfaceSamples& s) {
+    return {&s.x, &s.y, &s.z, &s.nx, &s.ny, &s.nz, &s.lab_l, &s.lab_a, &s.lab_b};
 }
 
-std::array<const std::vector<float>*, 6> columns_of(const SurfaceSamples& s) {
-    return {&s.x, &s.y, &s.z, &s.nx, &s.ny, &s.nz};
+std::array<const std::vector<float>*, 9> columns_of(const SurfaceSamples& s) {
+    return {&s.x, &s.y, &s.z, &s.nx, &s.ny, &s.nz, &s.lab_l, &s.lab_a, &s.lab_b};
 }
 
 SurfaceSamples samples_where(const SurfaceSamples& samples,

@@ -23,12 +23,13 @@ struct SurfaceSamples {
     double spacing_m = 0;  // as if samples lay on a square lattice on the surface; edge_m or more
     std::vector<float> x, y, z;
     std::vector<float> nx, ny, nz;  // unit, towards the sensor's side; 0 where undefined
-    // CIE L*a*b*, means over the points; empty where the scan has no colours.
-    std::vector<float> lightness, green_red, blue_yellow;
+    // CIE L*a*b*, means over the points, NaN where none is known; empty where the scan has no
+    // colours.
+    std::vector<float> lab_l, lab_a, lab_b;
     std::vector<std::int32_t> primitive;  // -1: of none
 
     std::size_t size() const { return x.size(); }
-    bool coloured() const { return !lightness.empty(); }
+    bool coloured() const { return !lab_l.empty(); }
 };
 
 // Those for which `keep` holds, in their order.
@@ -37,9 +38,10 @@ SurfaceSamples samples_where(const SurfaceSamples& samples,
 // By rising primitive, else in their order.
 void sort_by_primitive(SurfaceSamples& samples);
 
-// The arrays of numbers that each sample has one of: place and normal.
-std::array<std::vector<float>*, 6> columns_of(SurfaceSamples& samples);
-std::array<const std::vector<float>*, 6> columns_of(const SurfaceSamples& samples);
+// The arrays of numbers that each sample has one of: place, normal and colour. Those of colour may
+// be empty.
+std::array<std::vector<float>*, 9> columns_of(SurfaceSamples& samples);
+std::array<const std::vector<float>*, 9> columns_of(const SurfaceSamples& samples);
 
 // The finest edge, metres: below the size of what is told apart, above every room sensor's noise.
 inline constexpr double finest_sample_m = 0.02;

@@ -97,6 +97,7 @@ Border border_of(const SurfaceSamples& s, std::span<const Contact> contacts) {
     out.low = INFINITY;
     out.high = -INFINITY;
     std::vector<float> gaps;
+    double coloured = 0;
     Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
     std::vector<Vector3d> middles;
     const auto place = [&](std::uint32_t n) { return Vector3d(s.x[n], s.y[n], s.z[n]); };
@@ -121,16 +122,18 @@ Border border_of(const SurfaceSamples& s, std::span<const Contact> contacts) {
         out.center += middle;
         out.low = std::min(out.low, middle[2]);
         out.high = std::max(out.high, middle[2]);
-        if (s.coloured()) {
-            const Vector3d colour(s.lightness[i] - s.lightness[j], s.green_red[i] - s.green_red[j],
-                                  s.blue_yellow[i] - s.blue_yellow[j]);
-            out.colour += colour.norm();
-        }
+        if (!s.coloured()) continue;
+        const Vector3d colour(s.lab_l[i] - s.lab_l[j], s.lab_a[i] - s.lab_a[j],
+                              s.lab_b[i] - s.lab_b[j]);
+        if (!colour.allFinite()) continue;
+        out.colour += colour.norm();
+        coloured += 1;
     }
     const double count = static_cast<double>(contacts.size());
     for (double* sum : {&out.convexity, &out.convex_share, &out.concave_share, &out.parallel,
-                        &out.flush_share, &out.offset, &out.colour})
+                        &out.flush_share, &out.offset})
         *sum /= count;
+    out.colour /= coloured;
     out.direction /= count;
     out.center /= count;
     for (const Vector3d& middle : middles)

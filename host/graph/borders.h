@@ -24,7 +24,7 @@ struct Border {
     Eigen::Vector3d center = Eigen::Vector3d::Zero();     // of all pairs
     Eigen::Vector3d spread = Eigen::Vector3d::Zero();     // standard deviations, rising
     double low = 0, high = 0;                             // along z
-    double colour = 0;  // mean distance of both in L*a*b*; 0 without colours
+    double colour = 0;  // mean distance of both in L*a*b*; NaN where no colours are known
 };
 
 // Within which distance surfaces are near: what noise and missing edges leave open, but no less

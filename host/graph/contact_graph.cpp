@@ -14,8 +14,6 @@
 namespace topple::graph {
 namespace {
 
-using physics::SolidCells;
-
 // Areas seen along one axis: each line of cells along it counts once for every primitive on it, for
 // the bulk if it holds enough of its cells.
 void add_silhouettes(const SolidCells& cells, std::span<const std::int32_t> u,

@@ -60,7 +60,7 @@ struct ContactGraph {
 };
 
 // Gaps of up to `gap` empty voxels count as contact: sensor noise leaves such gaps.
-ContactGraph build_contact_graph(device::Device& device, const physics::SolidCells& cells,
+ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells,
                                  std::int32_t primitives, unsigned gap = 1);
 
 }  // namespace topple::graph

@@ -153,7 +153,6 @@ struct Inputs {
     double small_on_big = 0, big_on_small = 0;
     double union_stands = 0;
     double seam_flush = 0, seam_ledge = 0, seam_pairs = 0;
-    double colour = 0;
 };
 
 void add_border(const Inputs& in, Row& row) {
@@ -167,6 +166,7 @@ void add_border(const Inputs& in, Row& row) {
     const auto samples = [](const PrimitiveShape& p) {
         return std::max(1.0, static_cast<double>(p.samples()));
     };
+    value("colour_border", [](const Border& x) { return x.colour; });
     value("gap_least", [](const Border& x) { return x.gap_least; });
     value("gap_20", [](const Border& x) { return x.gap_20; });
     value("gap_50", [](const Border& x) { return x.gap_50; });
@@ -215,6 +215,9 @@ void add_shapes(const Inputs& in, Row& row) {
     const PrimitiveShape &s = in.small, &b = in.big;
     const double edge = in.edge;
     row("edge", edge);
+    row("colours_apart", (s.colour - b.colour).norm());
+    row("colour_spread_small", s.colour_spread);
+    row("colour_spread_big", b.colour_spread);
     row("area_small", std::log(s.area_m2 + 1e-4));
     row("area_big", std::log(b.area_m2 + 1e-4));
     row("area_ratio", std::log((b.area_m2 + 1e-4) / (s.area_m2 + 1e-4)));

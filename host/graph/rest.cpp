@@ -38,7 +38,7 @@ const char* to_string(RestKind kind) {
     return names[static_cast<std::size_t>(kind)];
 }
 
-std::vector<std::vector<Underside>> undersides(const physics::SolidCells& cells,
+std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
                                                std::span<const std::int32_t> object_of_primitive,
                                                std::size_t objects) {
     std::vector<std::vector<Underside>> out(objects);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "graph/contact_graph.h"
+#include "core/solid_cells.h"
 #include "physics/bodies.h"
 #include "physics/landscape.h"
 
@@ -20,7 +21,7 @@ struct Underside {
     std::int32_t primitive;  // of that solid; -1: of none
 };
 // By object, sorted by (i, j, k).
-std::vector<std::vector<Underside>> undersides(const physics::SolidCells& cells,
+std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
                                                std::span<const std::int32_t> object_of_primitive,
                                                std::size_t objects);
 

@@ -6,23 +6,12 @@
 #include <span>
 #include <vector>
 
+#include "core/solid_cells.h"
 #include "device/device.h"
 #include "topple/input.h"
 
-// Everything in this folder works in the grid frame of vdb::VoxelFrame: metres, z up, voxel (i, j,
-// k) spans [i, i+1] * voxel_m per axis.
+// Everything in this folder works in the grid frame of SolidCells.
 namespace topple::physics {
-
-// The solid voxels of a scene, one array per field, sorted by (i, j, k).
-struct SolidCells {
-    double voxel_m = 0;
-    std::vector<std::int32_t> i, j, k;
-    std::vector<std::int32_t> primitive;  // -1: belongs to none; such cells block but have no mass
-    std::vector<std::uint8_t> surface;    // 1: seen, 0: completed
-    // Voxels right below each that nobody has seen into, up to 255; empty: none for all.
-    std::vector<std::uint8_t> unseen_below;
-    std::size_t size() const { return i.size(); }
-};
 
 // Mass properties of one primitive or of a group of them.
 struct Body {

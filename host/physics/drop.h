@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "physics/cell_columns.h"
+#include "core/cell_columns.h"
 #include "physics/landscape.h"
 
 namespace topple::physics {

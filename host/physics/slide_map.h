@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "physics/cell_columns.h"
+#include "core/cell_columns.h"
 #include "physics/sliding.h"
 
 // The ground that one object slides on. For this folder.

@@ -24,16 +24,16 @@ struct Place {
 
 class Mover {
   public:
-    Mover(const physics::SolidCells& cells, std::span<const StableObject> objects,
+    Mover(const SolidScene& solids, std::span<const StableObject> objects,
           std::span<const safety::RiskObject> at_risk,
           std::span<const safety::Disturbance> disturbances, double friction, double tolerable_J)
-        : cells_(cells),
+        : cells_(solids.cells()),
           objects_(objects),
           at_risk_(at_risk),
           disturbances_(disturbances),
           friction_(friction),
           tolerable_J_(tolerable_J),
-          columns_(cells) {}
+          columns_(solids.columns()) {}
 
     // The nearest places of the object that are tolerable but for the walkers: the nearest of each
     // of 16 directions and 12 ranges of distance, by distance.
@@ -96,12 +96,12 @@ class Mover {
         return place.risk_J <= tolerable_J_;
     }
 
-    const physics::SolidCells& cells_;
+    const SolidCells& cells_;
     std::span<const StableObject> objects_;
     std::span<const safety::RiskObject> at_risk_;
     std::span<const safety::Disturbance> disturbances_;
     double friction_, tolerable_J_;
-    physics::CellColumns columns_;
+    const CellColumns& columns_;
 };
 
 // Whether there is any place to move to, safe or not: a hand's breadth away or more.
@@ -137,13 +137,14 @@ safety::Push fixing(const safety::RiskObject& object,
 
 }  // namespace
 
-std::vector<Suggestion> advise(const physics::SolidCells& cells,
+std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const std::int32_t> object_of_primitive,
                                std::span<const StableObject> objects,
                                std::span<const safety::RiskObject> at_risk,
                                std::span<const safety::Disturbance> disturbances,
                                std::span<const std::vector<safety::Risk>> risk,
                                safety::HumanField* human, double friction, double tolerable_J) {
+    const SolidCells& cells = solids.cells();
     std::vector<Suggestion> out(at_risk.size());
     std::vector<double> worst(at_risk.size(), 0.0);
     for (const auto& of_disturbance : risk) {
@@ -172,7 +173,7 @@ std::vector<Suggestion> advise(const physics::SolidCells& cells,
 
     const auto around = physics::places_of(cells, object_of_primitive, bodies, chosen, friction,
                                            look_around_m + see_edges_m);
-    const Mover mover(cells, objects, at_risk, disturbances, friction, tolerable_J);
+    const Mover mover(solids, objects, at_risk, disturbances, friction, tolerable_J);
     std::vector<safety::Placement> placements;
     std::vector<Place> places;
     for (std::size_t n = 0; n < chosen.size(); ++n) {

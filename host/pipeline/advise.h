@@ -31,7 +31,7 @@ struct Suggestion {
 // what its own weight holds, over its height, or the push less friction, if that is more.
 // human: null where that disturbance is not reckoned with.
 inline constexpr std::size_t most_moved = 16;
-std::vector<Suggestion> advise(const physics::SolidCells& cells,
+std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const std::int32_t> object_of_primitive,
                                std::span<const StableObject> objects,
                                std::span<const safety::RiskObject> at_risk,

@@ -248,8 +248,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     foretell(objects, safety.advice, to_input, scene);
 }
 
-void add_exposures(const SafetyStage& safety, const physics::SolidCells& cells,
-                   vdb::VoxelScene& voxels) {
+void add_exposures(const SafetyStage& safety, const SolidCells& cells, vdb::VoxelScene& voxels) {
     for (const safety::Disturbance& d : safety.disturbances)
         if (!d.exposure.empty()) voxels.add_field(d.name, cells.i, cells.j, cells.k, d.exposure);
 }
@@ -259,8 +258,9 @@ void assemble_points(Ingested& input, const GeometryStage& geometry, const Solid
                      Scene& scene) {
     add_points(input, geometry, objects, scene);
     voxels.set_objects(objects.object_of_primitive);
-    scene.solid = voxels.solid_voxels();
-    add_exposures(safety, parts.cells, voxels);
+    scene.solid =
+        vdb::solid_voxels(voxels.frame(), parts.solids->with_strays(), objects.object_of_primitive);
+    add_exposures(safety, parts.solids->cells(), voxels);
 }
 
 void take_coordinates(Ingested& input, ScenePoints& out) {

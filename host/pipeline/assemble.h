@@ -21,8 +21,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
                       const SafetyStage& safety, Scene& scene);
 
 // Each field's strength at the solid voxels it acts on, for volume.vdb.
-void add_exposures(const SafetyStage& safety, const physics::SolidCells& cells,
-                   vdb::VoxelScene& voxels);
+void add_exposures(const SafetyStage& safety, const SolidCells& cells, vdb::VoxelScene& voxels);
 
 // Adds the points and the solid voxels, and hands objects and fields to the voxel grids.
 void assemble_points(Ingested& input, const GeometryStage& geometry, const SolidParts& parts,

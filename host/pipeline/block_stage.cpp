@@ -88,10 +88,9 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
     GeometryStage geometry = find_primitives(device, input, quiet, stage);
     const VoxelStage voxels = make_solids(device, input, geometry, layout.voxel_m, stage);
     for (std::size_t p = 0; p < geometry.primitives.model.size(); ++p)
-        out.primitives.push_back({geometry.primitives.model[p].front(), geometry.shell.structure[p],
-                                  static_cast<float>(geometry.shell.log_odds[p])});
-    out.cells = {voxels.cells.i,         voxels.cells.j,       voxels.cells.k,
-                 voxels.cells.primitive, voxels.cells.surface, voxels.cells.unseen_below};
+        out.primitives.push_back({geometry.primitives.model[p].front(), geometry.role[p],
+                                  static_cast<float>(geometry.shell_log_odds[p])});
+    out.cells = voxels.solids->cells();
     const geometry::Surfels& s = geometry.surfels;
     out.seams = surface_seams(geometry, [&](std::size_t n) {
         const auto at = tiles::voxel_at(layout.frame, layout.voxel_m, s.x[n], s.y[n], s.z[n]);
@@ -117,9 +116,10 @@ std::filesystem::path block_file(const std::filesystem::path& folder, std::size_
 void write_block(const std::filesystem::path& folder, std::size_t block, const BlockParts& parts) {
     tiles::BinaryWriter out(block_file(folder, block));
     out.array(parts.primitives);
-    const BlockParts::Cells& c = parts.cells;
+    const SolidCells& c = parts.cells;
     for (const auto* values : {&c.i, &c.j, &c.k, &c.primitive}) out.array(*values);
-    for (const auto* values : {&c.surface, &c.unseen_below}) out.array(*values);
+    out.array(c.basis);
+    out.array(c.unseen_below);
     std::vector<SeamRecord> seams;
     for (std::size_t p = 0; p < parts.seams.inside.size(); ++p) {
         const graph::Seam& s = parts.seams.inside[p];
@@ -149,13 +149,16 @@ BlockParts read_block(const std::filesystem::path& folder, std::size_t block) {
     tiles::BinaryReader in(block_file(folder, block));
     BlockParts out;
     out.primitives = in.array<BlockParts::Primitive>();
-    BlockParts::Cells& c = out.cells;
+    SolidCells& c = out.cells;
     for (auto* values : {&c.i, &c.j, &c.k, &c.primitive}) *values = in.array<std::int32_t>();
-    for (auto* values : {&c.surface, &c.unseen_below}) *values = in.array<std::uint8_t>();
+    c.basis = in.array<Basis>();
+    c.unseen_below = in.array<std::uint8_t>();
     const auto count = static_cast<std::int32_t>(out.primitives.size());
     if (c.j.size() != c.size() || c.k.size() != c.size() || c.primitive.size() != c.size() ||
-        c.surface.size() != c.size() || c.unseen_below.size() != c.size())
+        c.basis.size() != c.size() || c.unseen_below.size() != c.size())
         in.damaged();
+    const auto is_basis = [](Basis b) { return static_cast<std::uint8_t>(b) < basis_count; };
+    if (!std::ranges::all_of(c.basis, is_basis)) in.damaged();
     const auto is_primitive = [&](std::int32_t p) { return p >= -1 && p < count; };
     if (!std::ranges::all_of(c.primitive, is_primitive)) in.damaged();
     out.seams.inside.resize(out.primitives.size());
@@ -174,7 +177,7 @@ BlockParts read_block(const std::filesystem::path& folder, std::size_t block) {
     for (auto* values : geometry::columns_of(samples)) *values = in.array<float>();
     samples.primitive = in.array<std::int32_t>();
     for (const auto* values : geometry::columns_of(samples)) {
-        if (values->size() != samples.primitive.size()) in.damaged();
+        if (!values->empty() && values->size() != samples.primitive.size()) in.damaged();
     }
     if (!std::ranges::all_of(samples.primitive,
                              [&](std::int32_t p) { return p >= 0 && p < count; }))

@@ -6,8 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "core/role.h"
+#include "core/solid_cells.h"
 #include "device/device.h"
-#include "geometry/structure.h"
 #include "geometry/surface_samples.h"
 #include "graph/surface_seams.h"
 #include "pipeline/stage_clock.h"
@@ -20,16 +21,11 @@ namespace topple {
 struct BlockParts {
     struct Primitive {
         char model = 'p';  // 'p' plane, 'q' quadric, 'm' merged
-        geometry::Structure structure = geometry::Structure::none;
+        Role role = Role::none;
         float shell_log_odds = 0;
     };
     std::vector<Primitive> primitives;
-    // Solid voxels of core and halo, sorted by (i, j, k), grid frame.
-    struct Cells {
-        std::vector<std::int32_t> i, j, k, primitive;
-        std::vector<std::uint8_t> surface, unseen_below;
-        std::size_t size() const { return i.size(); }
-    } cells;
+    SolidCells cells;           // of core and halo, grid frame
     graph::SurfaceSeams seams;  // of the surface in the core, as the samples
     geometry::SurfaceSamples samples;
     // The leaves of the core that are not all invisible: lowest voxels, three numbers each, and

@@ -40,7 +40,7 @@ double azimuth(const Vec3& way) {
 std::string what(const Scene& scene, const SolidParts& parts, std::int32_t primitive) {
     if (primitive < 0) return "what lies below";
     const auto at = static_cast<std::size_t>(primitive);
-    if (parts.shell.structure[at] == geometry::Structure::floor) return "the floor";
+    if (parts.solids->role(primitive) == Role::floor) return "the floor";
     const Object& object = scene.objects[static_cast<std::size_t>(scene.primitives[at].object)];
     return object.grounded ? "the ground" : "object " + std::to_string(object.id);
 }

@@ -51,7 +51,10 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
     stage("shell", [&] {
         g.samples = geometry::sample_surface(input.cloud, g.surfels, g.primitive_of_point, g.frame,
                                              std::max(geometry::finest_sample_m, input.cell_m));
-        g.shell = geometry::find_shell(g.samples, g.primitives.model.size(), g.storeys);
+        geometry::Shell shell =
+            geometry::find_shell(g.samples, g.primitives.model.size(), g.storeys);
+        g.role = std::move(shell.role);
+        g.shell_log_odds = std::move(shell.log_odds);
     });
     return g;
 }
@@ -66,13 +69,13 @@ std::vector<std::int32_t> keep_primitives(GeometryStage& g, const std::vector<bo
         if (to == p) continue;
         g.primitives.model[to] = std::move(g.primitives.model[p]);
         g.primitives.regions[to] = std::move(g.primitives.regions[p]);
-        g.shell.structure[to] = g.shell.structure[p];
-        g.shell.log_odds[to] = g.shell.log_odds[p];
+        g.role[to] = g.role[p];
+        g.shell_log_odds[to] = g.shell_log_odds[p];
     }
     g.primitives.model.resize(static_cast<std::size_t>(next));
     g.primitives.regions.resize(static_cast<std::size_t>(next));
-    g.shell.structure.resize(static_cast<std::size_t>(next));
-    g.shell.log_odds.resize(static_cast<std::size_t>(next));
+    g.role.resize(static_cast<std::size_t>(next));
+    g.shell_log_odds.resize(static_cast<std::size_t>(next));
     for (auto* labels : {&g.primitives.label, &g.primitive_of_point, &g.samples.primitive}) {
         for (std::int32_t& l : *labels) l = l < 0 ? -1 : number[static_cast<std::size_t>(l)];
     }

@@ -22,7 +22,8 @@ struct GeometryStage {
     geometry::SceneFrame frame;
     geometry::PrimitiveSet primitives;
     geometry::SurfaceSamples samples;
-    geometry::Shell shell;
+    std::vector<Role> role;                     // by primitive
+    std::vector<double> shell_log_odds;         // by primitive, that it is the room's
     std::vector<geometry::StoreyHint> storeys;  // of a building; none of a room
     std::vector<std::int32_t> region_of_point, primitive_of_point;
 };

@@ -12,7 +12,7 @@
 #include "device/device.h"
 #include "device/native/thread_pool.h"
 #include "geometry/manhattan.h"
-#include "geometry/structure.h"
+#include "geometry/storeys.h"
 #include "topple/cloud_view.h"
 #include "topple/parse.h"
 

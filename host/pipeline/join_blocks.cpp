@@ -5,6 +5,7 @@
 #include <array>
 #include <boost/pending/disjoint_sets.hpp>
 #include <map>
+#include <memory>
 #include <utility>
 
 #include "geometry/cell_grid.h"
@@ -44,7 +45,7 @@ bool meet(const tiles::VoxelBox& a, const tiles::VoxelBox& b) {
 Border border_of(const BlockParts& parts, const tiles::VoxelBox& core, std::int32_t width) {
     const tiles::VoxelBox outer = core.grown(width), inner = core.grown(-width);
     Border out;
-    const BlockParts::Cells& c = parts.cells;
+    const SolidCells& c = parts.cells;
     for (std::size_t n = 0; n < c.size(); ++n) {
         if (c.primitive[n] < 0 || !outer.holds(c.i[n], c.j[n], c.k[n]) ||
             inner.holds(c.i[n], c.j[n], c.k[n]))
@@ -95,7 +96,7 @@ const char* model_named(char initial) {
 }
 
 // Sorts the voxels of all cores, which come block by block, by (i, j, k).
-void sort_cells(physics::SolidCells& cells) {
+void sort_cells(SolidCells& cells) {
     if (cells.size() == 0) return;
     std::array<std::int64_t, 3> low{}, high{};
     const std::array<std::vector<std::int32_t>*, 3> axes{&cells.i, &cells.j, &cells.k};
@@ -117,7 +118,7 @@ void sort_cells(physics::SolidCells& cells) {
     };
     for (auto* values : axes) sort(*values);
     sort(cells.primitive);
-    sort(cells.surface);
+    sort(cells.basis);
     sort(cells.unseen_below);
 }
 
@@ -139,7 +140,7 @@ class Joiner {
             first_.push_back(static_cast<std::int32_t>(members_.size()));
             in_core[b].resize(parts.primitives.size());
             for (std::size_t n = 0; n < parts.cells.size(); ++n) {
-                const BlockParts::Cells& c = parts.cells;
+                const SolidCells& c = parts.cells;
                 if (c.primitive[n] >= 0 && core.holds(c.i[n], c.j[n], c.k[n]))
                     ++in_core[b][static_cast<std::size_t>(c.primitive[n])];
             }
@@ -154,7 +155,6 @@ class Joiner {
         unite(border, width);
         number();
         JoinedBlocks out = collect(stage);
-        sort_cells(out.parts.cells);
         geometry::sort_by_primitive(out.parts.samples);
         return out;
     }
@@ -198,8 +198,9 @@ class Joiner {
         JoinedBlocks out;
         SolidParts& parts = out.parts;
         parts.frame = layout_.frame;
-        parts.cells.voxel_m = layout_.voxel_m;
-        name(parts);
+        SolidCells cells;
+        cells.voxel_m = layout_.voxel_m;
+        std::vector<Role> roles = name(parts);
         parts.points.resize(parts.model.size());
         parts.seams.inside.resize(parts.model.size());
         for (std::size_t b = 0; b < layout_.blocks.size(); ++b) {
@@ -208,27 +209,29 @@ class Joiner {
             for (std::size_t p = 0; p < block.primitives.size(); ++p)
                 numbers.push_back(
                     number_[static_cast<std::size_t>(id(b, static_cast<std::int32_t>(p)))]);
-            add_cells(block, layout_.blocks[b].core, numbers, parts.cells);
+            add_cells(block, layout_.blocks[b].core, numbers, cells);
             add_seams(block.seams, numbers, parts.seams);
             add_samples(block.samples, numbers, parts.samples);
             out.number.push_back(std::move(numbers));
             stage.progress("joining", 0.5 + 0.5 * static_cast<double>(b + 1) /
                                                 static_cast<double>(layout_.blocks.size()));
         }
+        sort_cells(cells);
+        parts.solids = std::make_shared<const SolidScene>(std::move(cells), std::move(roles));
         return out;
     }
 
     // What most of a primitive's voxels lie in decides what it is.
-    void name(SolidParts& parts) const {
+    std::vector<Role> name(SolidParts& parts) const {
         const auto count = static_cast<std::size_t>(count_);
         std::vector<std::map<char, std::uint64_t>> model(count);
-        std::vector<std::map<geometry::Structure, std::uint64_t>> structure(count);
+        std::vector<std::map<Role, std::uint64_t>> role(count);
         std::vector<double> odds(count), voxels(count);
         for (std::size_t m = 0; m < members_.size(); ++m) {
             if (number_[m] < 0) continue;
             const auto p = static_cast<std::size_t>(number_[m]);
             model[p][about_[m].model] += voxels_[m];
-            structure[p][about_[m].structure] += voxels_[m];
+            role[p][about_[m].role] += voxels_[m];
             odds[p] += static_cast<double>(voxels_[m]) * double{about_[m].shell_log_odds};
             voxels[p] += static_cast<double>(voxels_[m]);
         }
@@ -236,16 +239,18 @@ class Joiner {
             return std::ranges::max_element(votes, {}, [](const auto& v) { return v.second; })
                 ->first;
         };
+        std::vector<Role> roles;
         for (std::size_t p = 0; p < count; ++p) {
             parts.model.emplace_back(model_named(most(model[p])));
-            parts.shell.structure.push_back(most(structure[p]));
-            parts.shell.log_odds.push_back(odds[p] / std::max(voxels[p], 1.0));
+            roles.push_back(most(role[p]));
+            parts.shell_log_odds.push_back(odds[p] / std::max(voxels[p], 1.0));
         }
+        return roles;
     }
 
     static void add_cells(const BlockParts& block, const tiles::VoxelBox& core,
-                          const std::vector<std::int32_t>& numbers, physics::SolidCells& to) {
-        const BlockParts::Cells& c = block.cells;
+                          const std::vector<std::int32_t>& numbers, SolidCells& to) {
+        const SolidCells& c = block.cells;
         for (std::size_t n = 0; n < c.size(); ++n) {
             if (!core.holds(c.i[n], c.j[n], c.k[n])) continue;
             const std::int32_t p = c.primitive[n];
@@ -253,7 +258,7 @@ class Joiner {
             to.j.push_back(c.j[n]);
             to.k.push_back(c.k[n]);
             to.primitive.push_back(p < 0 ? -1 : numbers[static_cast<std::size_t>(p)]);
-            to.surface.push_back(c.surface[n]);
+            to.basis.push_back(c.basis[n]);
             to.unseen_below.push_back(c.unseen_below[n]);
         }
     }
@@ -296,7 +301,7 @@ class Joiner {
             const std::int32_t p = numbers[static_cast<std::size_t>(from.primitive[n])];
             if (p < 0) continue;
             for (std::size_t c = 0; c < columns.size(); ++c)
-                columns[c]->push_back((*sources[c])[n]);
+                if (!sources[c]->empty()) columns[c]->push_back((*sources[c])[n]);
             to.primitive.push_back(p);
         }
     }

@@ -21,18 +21,10 @@ constexpr unsigned sphere_frequency = 16;
 // What the border of a support, made of whole voxels, is known to (one standard error), in voxels.
 constexpr double border_noise = 0.5;
 
-graph::ShellOdds shell_odds(const SolidParts& parts) {
-    graph::ShellOdds out;
-    out.log_odds = parts.shell.log_odds;
-    for (const geometry::Structure s : parts.shell.structure)
-        out.pinned.push_back(s != geometry::Structure::none);
-    return out;
-}
-
 std::vector<graph::Joint> find_joints(const SolidParts& parts, const graph::ContactGraph& contacts,
                                       std::span<const physics::Body> bodies) {
     std::vector<float> shell;
-    for (const double odds : parts.shell.log_odds)
+    for (const double odds : parts.shell_log_odds)
         shell.push_back(static_cast<float>(fitted::probability(odds)));
     return graph::find_joints(parts.samples,
                               geometry::primitive_shapes(parts.samples, parts.model.size()),
@@ -40,8 +32,7 @@ std::vector<graph::Joint> find_joints(const SolidParts& parts, const graph::Cont
 }
 
 // Objects by group, the ground first.
-void collect_objects(const physics::SolidCells& cells, const std::vector<bool>& ground,
-                     ObjectStage& out) {
+void collect_objects(const SolidCells& cells, const std::vector<bool>& shell, ObjectStage& out) {
     const std::vector<std::int32_t>& group = out.grouping.group;
     const bool has_ground = std::find(group.begin(), group.end(), -1) != group.end();
     std::int32_t objects = 0;
@@ -58,7 +49,7 @@ void collect_objects(const physics::SolidCells& cells, const std::vector<bool>& 
     for (std::size_t o = 0; o < members.size(); ++o) {
         StableObject object;
         object.candidate =
-            graph::candidate_of(out.contacts, out.bodies, ground, std::move(members[o]));
+            graph::candidate_of(out.contacts, out.bodies, shell, std::move(members[o]));
         object.grounded = has_ground && o == 0;
         if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
         if (!object.grounded) {
@@ -87,18 +78,19 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
                       StageClock& stage) {
     const auto count = static_cast<std::int32_t>(parts.model.size());
     const std::vector<double> density(static_cast<std::size_t>(count), options.density_kg_m3);
-    std::vector<physics::Body> bodies = stage(
-        "bodies", [&] { return physics::mass_properties(device, parts.cells, count, density); });
+    const SolidCells& cells = parts.solids->cells();
+    std::vector<physics::Body> bodies =
+        stage("bodies", [&] { return physics::mass_properties(device, cells, count, density); });
     graph::ContactGraph contacts =
-        stage("contacts", [&] { return graph::build_contact_graph(device, parts.cells, count); });
+        stage("contacts", [&] { return graph::build_contact_graph(device, cells, count); });
     physics::SupportTable table = stage("supports", [&] {
-        return physics::SupportTable(device, parts.cells, count,
+        return physics::SupportTable(device, cells, count,
                                      physics::geodesic_sphere(sphere_frequency));
     });
     std::vector<graph::Joint> joints =
         stage("joints", [&] { return find_joints(parts, contacts, bodies); });
     return {std::move(bodies), std::move(contacts), std::move(table), std::move(joints),
-            shell_odds(parts)};
+            {parts.shell_log_odds, parts.solids->shell()}};
 }
 
 std::vector<Support> supports_between(const graph::ContactGraph& contacts,
@@ -121,11 +113,11 @@ std::vector<Support> supports_between(const graph::ContactGraph& contacts,
 }
 
 void find_barriers(device::Device& device, const physics::SupportTable& table,
-                   const physics::SolidCells& cells,
-                   std::span<const std::int32_t> object_of_primitive, double friction,
-                   std::vector<StableObject>& objects) {
+                   const SolidScene& solids, std::span<const std::int32_t> object_of_primitive,
+                   double friction, std::vector<StableObject>& objects) {
+    const SolidCells& cells = solids.cells();
+    const CellColumns& columns = solids.columns();
     std::vector<physics::Candidate> candidates;
-    const physics::CellColumns columns(cells);
     for (StableObject& o : objects) {
         if (!o.grounded && !o.candidate.support_polygon.empty())
             o.candidate.edge_drop_m = physics::drops_when_tipped_m(cells, columns, o.candidate);
@@ -185,8 +177,8 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
                                                grouping, device.threads().threads());
     });
     stage("barriers", [&] {
-        collect_objects(solid.cells, parts.shell.pinned, out);
-        find_barriers(device, table, solid.cells, out.object_of_primitive, options.friction,
+        collect_objects(solid.solids->cells(), parts.shell.pinned, out);
+        find_barriers(device, table, *solid.solids, out.object_of_primitive, options.friction,
                       out.objects);
     });
     return out;

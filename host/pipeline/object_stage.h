@@ -66,9 +66,8 @@ std::vector<Support> supports_between(const graph::ContactGraph& contacts,
 // What a push does to objects whose candidates are known, all in one batch: fills in the drops over
 // their edges, tipping, sliding, both together and their poses.
 void find_barriers(device::Device& device, const physics::SupportTable& table,
-                   const physics::SolidCells& cells,
-                   std::span<const std::int32_t> object_of_primitive, double friction,
-                   std::vector<StableObject>& objects);
+                   const SolidScene& solids, std::span<const std::int32_t> object_of_primitive,
+                   double friction, std::vector<StableObject>& objects);
 
 ObjectStage find_objects(device::Device& device, const SolidParts& solid,
                          const ParseOptions& options, StageClock& stage);

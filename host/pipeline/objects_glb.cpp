@@ -22,7 +22,7 @@ using Cell = std::array<std::int32_t, 3>;
 std::map<std::int32_t, std::vector<Cell>> cells_of_objects(const Scene& scene,
                                                            const vdb::VoxelScene& voxels) {
     std::map<std::int32_t, std::vector<Cell>> out;
-    const vdb::SolidCellArrays cells = voxels.solid_cells();
+    const SolidCells cells = voxels.solid_cells();
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const std::int32_t p = cells.primitive[n];
         const bool known = p >= 0 && static_cast<std::size_t>(p) < scene.primitives.size();

@@ -31,13 +31,13 @@ double least_width(const std::vector<std::array<double, 2>>& polygon) {
 
 safety::Surroundings surroundings(const SolidParts& parts, const ObjectStage& objects) {
     safety::Surroundings s;
-    s.cells = &parts.cells;
-    for (const std::int32_t p : parts.cells.primitive) {
+    const SolidScene& solids = *parts.solids;
+    s.cells = &solids.cells();
+    for (const std::int32_t p : solids.cells().primitive) {
         s.object.push_back(p < 0 ? -1 : objects.object_of_primitive[static_cast<std::size_t>(p)]);
     }
-    for (const geometry::Structure p : parts.shell.structure) {
-        s.is_floor_primitive.push_back(p == geometry::Structure::floor);
-    }
+    for (std::size_t p = 0; p < solids.primitives(); ++p)
+        s.is_floor_primitive.push_back(solids.role(static_cast<std::int32_t>(p)) == Role::floor);
     for (const physics::Body& b : objects.bodies)
         s.density_kg_m3.push_back(b.volume_m3 > 0 ? b.mass_kg / b.volume_m3 : 0);
     return s;
@@ -116,7 +116,7 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
         out.unsafety.resize(at_risk.size(), 1.0);
     });
     stage("advice", [&] {
-        out.advice = advise(parts.cells, objects.object_of_primitive, objects.objects, at_risk,
+        out.advice = advise(*parts.solids, objects.object_of_primitive, objects.objects, at_risk,
                             out.disturbances, out.risk, walkers.get(), options.friction,
                             options.tolerable_J);
     });

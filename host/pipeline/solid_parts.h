@@ -2,14 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "core/solid_scene.h"
 #include "geometry/manhattan.h"
-#include "geometry/shell.h"
 #include "geometry/surface_samples.h"
 #include "graph/surface_seams.h"
-#include "physics/bodies.h"
 #include "pipeline/geometry_stage.h"
 #include "pipeline/voxel_stage.h"
 
@@ -19,15 +19,15 @@ namespace topple {
 // looked at in one piece or in blocks: all that objects, fields and advice are found from.
 struct SolidParts {
     geometry::SceneFrame frame;
-    std::vector<std::string> model;  // by primitive
-    geometry::Shell shell;
-    geometry::SurfaceSamples samples;   // sorted by primitive
+    std::vector<std::string> model;      // by primitive
+    std::vector<double> shell_log_odds;  // by primitive, that it is the room's
+    geometry::SurfaceSamples samples;    // sorted by primitive
     std::vector<std::uint64_t> points;  // by primitive
     graph::SurfaceSeams seams;
-    physics::SolidCells cells;  // grid frame
+    std::shared_ptr<const SolidScene> solids;
 };
 
-// Of a scene in one piece. Takes the cells from the stage.
-SolidParts solid_parts(const GeometryStage& geometry, VoxelStage& voxels);
+// Of a scene in one piece.
+SolidParts solid_parts(const GeometryStage& geometry, const VoxelStage& voxels);
 
 }  // namespace topple

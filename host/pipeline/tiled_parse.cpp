@@ -190,27 +190,6 @@ tiles::Layout find_layout(const SharedWork& shared, const tiles::SpilledPoints& 
     });
 }
 
-// Centres in the input's frame.
-SolidVoxels solid_voxels(const SolidParts& parts, const ObjectStage& objects) {
-    const ToInput to_input(parts.frame.axes);
-    const physics::SolidCells& cells = parts.cells;
-    SolidVoxels out;
-    for (auto* values : {&out.x, &out.y, &out.z}) values->reserve(cells.size());
-    for (std::size_t n = 0; n < cells.size(); ++n) {
-        const Vec3 at =
-            to_input({(cells.i[n] + 0.5) * cells.voxel_m, (cells.j[n] + 0.5) * cells.voxel_m,
-                      (cells.k[n] + 0.5) * cells.voxel_m});
-        out.x.push_back(static_cast<float>(at[0]));
-        out.y.push_back(static_cast<float>(at[1]));
-        out.z.push_back(static_cast<float>(at[2]));
-        const std::int32_t p = cells.primitive[n];
-        out.object.push_back(p < 0 ? -1 : objects.object_of_primitive[static_cast<std::size_t>(p)]);
-        out.state.push_back(cells.surface[n] ? 0 : 1);
-    }
-    out.primitive = cells.primitive;
-    return out;
-}
-
 void add_notes(const tiles::SpilledPoints& points, const tiles::Layout& layout, Scene& scene) {
     if (!layout.frame.note.empty()) scene.notes.push_back(layout.frame.note);
     PointCloud moved;
@@ -271,13 +250,14 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
     SafetyStage safety = assess_safety(device, parts, objects, options, stage);
     stage("assembly", [&] {
         assemble_objects(parts, objects, safety, scene);
-        scene.solid = solid_voxels(parts, objects);
+        scene.solid = vdb::solid_voxels({layout.voxel_m, layout.frame.axes}, parts.solids->cells(),
+                                        objects.object_of_primitive);
         tiled->set_objects(objects.object_of_primitive);
         scene.points = tiled->sample(sampled_points);
         std::vector<TiledResult::Exposure> exposures;
         for (safety::Disturbance& d : safety.disturbances)
             if (!d.exposure.empty()) exposures.push_back({d.name, std::move(d.exposure)});
-        tiled->set_exposures(std::move(parts.cells), std::move(exposures));
+        tiled->set_exposures(parts.solids, std::move(exposures));
     });
     result.tiled = tiled;
     return result;

@@ -121,11 +121,12 @@ vdb::VoxelScene TiledResult::load_voxels() const {
         for (std::size_t n = 0; n < block.leaves.size() / 3; ++n)
             scene.put_leaf(lowest(block.leaves, n), std::span(block.states).subspan(n * 512, 512));
     }
-    for (std::size_t n = 0; n < cells_.size(); ++n)
-        scene.put_label(cells_.i[n], cells_.j[n], cells_.k[n], cells_.primitive[n]);
+    const SolidCells& cells = solids_->cells();
+    for (std::size_t n = 0; n < cells.size(); ++n)
+        scene.put_label(cells.i[n], cells.j[n], cells.k[n], cells.primitive[n]);
     scene.set_objects(object_of_primitive_);
     for (const Exposure& e : exposures_)
-        scene.add_field(e.name, cells_.i, cells_.j, cells_.k, e.values);
+        scene.add_field(e.name, cells.i, cells.j, cells.k, e.values);
     return scene;
 }
 

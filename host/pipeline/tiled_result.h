@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "physics/bodies.h"
+#include "core/solid_scene.h"
 #include "pipeline/join_blocks.h"
 #include "tiles/blocks.h"
 #include "tiles/work_folder.h"
@@ -39,8 +39,8 @@ class TiledResult {
         std::string name;
         std::vector<float> values;
     };
-    void set_exposures(physics::SolidCells cells, std::vector<Exposure> exposures) {
-        cells_ = std::move(cells);
+    void set_exposures(std::shared_ptr<const SolidScene> solids, std::vector<Exposure> exposures) {
+        solids_ = std::move(solids);
         exposures_ = std::move(exposures);
     }
 
@@ -66,7 +66,7 @@ class TiledResult {
     BlockNumbers number_;
     std::vector<std::vector<std::int32_t>> label_;  // by bin, of its thinned points
     std::vector<std::int32_t> object_of_primitive_;
-    physics::SolidCells cells_;
+    std::shared_ptr<const SolidScene> solids_;
     std::vector<Exposure> exposures_;
 };
 

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "device/native/thread_pool.h"
 #include "geometry/ledges.h"
 #include "pipeline/view_coverage.h"
+#include "vdb/completion.h"
 
 namespace topple {
 namespace {
@@ -16,14 +18,10 @@ namespace {
 // Frames are carved in batches of this many bytes of depth, so that any number of them fits.
 constexpr std::uint64_t batch_bytes = 16u << 20;
 
-// Hidden gaps up to this long are taken for joints: what occlusion and dropped edge pixels leave
-// open.
-constexpr unsigned hidden_gap_voxels = 3;
-
 // Primitives that are solids, by their voxels.
-std::vector<bool> solids(const vdb::VoxelScene& scene, std::size_t primitives) {
+std::vector<bool> solids(const SolidCells& cells, std::size_t primitives) {
     std::vector<std::uint64_t> voxels(primitives, 0);
-    for (const std::int32_t p : scene.solid_cells().primitive) {
+    for (const std::int32_t p : cells.primitive) {
         if (p >= 0) ++voxels[static_cast<std::size_t>(p)];
     }
     std::vector<bool> keep;
@@ -33,17 +31,13 @@ std::vector<bool> solids(const vdb::VoxelScene& scene, std::size_t primitives) {
 
 // The k of the voxels in which most of the lowest storey's floor lies; the lowest number where
 // there is no floor.
-std::int32_t floor_level(const vdb::VoxelScene& scene, const GeometryStage& geometry) {
-    const std::vector<geometry::Structure>& structure = geometry.shell.structure;
+std::int32_t floor_level(const SolidCells& cells, const GeometryStage& geometry) {
     const double top = (geometry.storeys.empty() ? std::numeric_limits<double>::infinity()
                                                  : geometry.storeys.front().top_m) /
-                       scene.frame().voxel_m;
-    const vdb::SolidCellArrays cells = scene.solid_cells();
+                       cells.voxel_m;
     std::vector<std::int32_t> k;
     for (std::size_t n = 0; n < cells.size(); ++n) {
-        const std::int32_t p = cells.primitive[n];
-        if (p >= 0 && structure[static_cast<std::size_t>(p)] == geometry::Structure::floor &&
-            cells.k[n] < top)
+        if (role_of(geometry.role, cells.primitive[n]) == Role::floor && cells.k[n] < top)
             k.push_back(cells.k[n]);
     }
     if (k.empty()) return std::numeric_limits<std::int32_t>::min();
@@ -52,9 +46,9 @@ std::int32_t floor_level(const vdb::VoxelScene& scene, const GeometryStage& geom
     return *middle;
 }
 
-std::vector<vdb::VoxelScene::StandsOn> ledges(const GeometryStage& geometry) {
+std::vector<vdb::StandsOn> ledges(const GeometryStage& geometry) {
     const Vec3& up = geometry.frame.axes[2];
-    std::vector<vdb::VoxelScene::StandsOn> out;
+    std::vector<vdb::StandsOn> out;
     for (const geometry::Ledge& l :
          geometry::ledges_between(geometry.surfels, geometry.primitives, {up[0], up[1], up[2]}))
         out.push_back({l.above, l.below, l.height_m});
@@ -63,21 +57,36 @@ std::vector<vdb::VoxelScene::StandsOn> ledges(const GeometryStage& geometry) {
 
 // For each cell the unseen voxels right below it, up to what fits. What is below the shell is of no
 // interest.
-std::vector<std::uint8_t> unseen_below(const vdb::VoxelScene& scene,
-                                       const physics::SolidCells& cells,
-                                       const std::vector<geometry::Structure>& structure) {
+std::vector<std::uint8_t> unseen_below(const vdb::VolumeView& view, std::span<const Role> roles) {
+    const SolidCells& cells = view.cells();
     std::vector<std::uint8_t> out(cells.size(), 0);
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const std::int32_t p = cells.primitive[n];
-        if (p < 0 || structure[static_cast<std::size_t>(p)] != geometry::Structure::none) continue;
-        const bool covered = n > 0 && cells.i[n - 1] == cells.i[n] &&
-                             cells.j[n - 1] == cells.j[n] && cells.k[n - 1] == cells.k[n] - 1;
-        if (covered) continue;
-        while (out[n] < 255 && scene.state_at(cells.i[n], cells.j[n], cells.k[n] - out[n] - 1) ==
-                                   vdb::State::invisible)
-            ++out[n];
+        if (p < 0 || in_shell(role_of(roles, p))) continue;
+        out[n] = static_cast<std::uint8_t>(
+            view.unseen_run({cells.i[n], cells.j[n], cells.k[n] - 1}, 2, -1, 255));
     }
     return out;
+}
+
+// Strays are no body, and in no way.
+std::shared_ptr<const SolidScene> solid_scene(const vdb::VoxelScene& volume, SolidCells cells,
+                                              std::span<const Role> roles) {
+    cells.unseen_below = unseen_below(vdb::VolumeView(volume, cells, roles), roles);
+    SolidCells near, strays;
+    near.voxel_m = strays.voxel_m = cells.voxel_m;
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const bool in_bounds = volume.in_bounds(cells.i[n], cells.j[n], cells.k[n]);
+        SolidCells& to = in_bounds ? near : strays;
+        to.i.push_back(cells.i[n]);
+        to.j.push_back(cells.j[n]);
+        to.k.push_back(cells.k[n]);
+        to.primitive.push_back(cells.primitive[n]);
+        to.basis.push_back(cells.basis[n]);
+        to.unseen_below.push_back(cells.unseen_below[n]);
+    }
+    return std::make_shared<const SolidScene>(
+        std::move(near), std::vector<Role>(roles.begin(), roles.end()), std::move(strays));
 }
 
 // Returns whether the frames show the scene from around.
@@ -124,35 +133,21 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
         if (input.space) out.scene->set_free(*input.space);
     });
     stage("filling", [&] {
-        vdb::VoxelScene::FillOptions options;
-        options.columns = around;
-        options.lowest = floor_level(*out.scene, geometry);
-        for (const geometry::Structure s : geometry.shell.structure) {
-            options.hollow.push_back(s == geometry::Structure::wall ||
-                                     s == geometry::Structure::ceiling);
-        }
-        out.scene->fill(device, options);
-        device.threads().poll();
-        out.scene->settle(options.hollow, ledges(geometry));
-        out.scene->extend(options.hollow);
-        device.threads().poll();
-        out.scene->bridge(hidden_gap_voxels, options.hollow);
-        if (input.space) out.scene->set_solid(*input.space);
-        device.threads().poll();
-        out.scene->relabel(
-            keep_primitives(geometry, solids(*out.scene, geometry.primitives.model.size())));
+        SolidCells cells = out.scene->solid_cells();
+        vdb::CompletionOptions options;
+        options.fill.columns = around;
+        options.fill.lowest = floor_level(cells, geometry);
+        options.fill.roles = geometry.role;
+        options.ledges = ledges(geometry);
+        options.map = input.space ? &*input.space : nullptr;
+        vdb::complete(device, options, *out.scene, cells);
+        const std::vector<std::int32_t> number =
+            keep_primitives(geometry, solids(cells, geometry.primitives.model.size()));
+        out.scene->relabel(number);
+        for (std::int32_t& p : cells.primitive)
+            p = p < 0 ? -1 : number[static_cast<std::size_t>(p)];
+        out.solids = solid_scene(*out.scene, std::move(cells), geometry.role);
     });
-    const vdb::SolidCellArrays solid = out.scene->solid_cells();
-    out.cells.voxel_m = voxel_m;
-    for (std::size_t n = 0; n < solid.size(); ++n) {
-        if (!out.scene->in_bounds(solid.i[n], solid.j[n], solid.k[n])) continue;
-        out.cells.i.push_back(solid.i[n]);
-        out.cells.j.push_back(solid.j[n]);
-        out.cells.k.push_back(solid.k[n]);
-        out.cells.primitive.push_back(solid.primitive[n]);
-        out.cells.surface.push_back(solid.state[n] == vdb::State::surface);
-    }
-    out.cells.unseen_below = unseen_below(*out.scene, out.cells, geometry.shell.structure);
     return out;
 }
 

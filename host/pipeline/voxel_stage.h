@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/solid_scene.h"
 #include "device/device.h"
-#include "physics/bodies.h"
 #include "pipeline/geometry_stage.h"
 #include "pipeline/ingest.h"
 #include "pipeline/stage_clock.h"
@@ -16,7 +16,7 @@ namespace topple {
 
 struct VoxelStage {
     std::shared_ptr<vdb::VoxelScene> scene;
-    physics::SolidCells cells;  // within the scene's bounds: strays are no body, and in no way
+    std::shared_ptr<const SolidScene> solids;
 };
 
 // A solid has at least the volume of a cube of three voxels; less is a scrap that noise left, and

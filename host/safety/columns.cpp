@@ -9,7 +9,7 @@
 
 namespace topple::safety {
 
-Columns::Columns(const physics::SolidCells& cells) : cells_(cells) {
+Columns::Columns(const SolidCells& cells) : cells_(cells) {
     const std::size_t n = cells.size();
     if (n == 0) return;
     i0 = cells.i.front();

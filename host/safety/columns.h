@@ -13,7 +13,7 @@ class Columns {
   public:
     // Throws Error(usage) where the cells are not sorted by (i, j, k), and Error(input) where their
     // bounds hold more than 2^28 columns.
-    explicit Columns(const physics::SolidCells& cells);
+    explicit Columns(const SolidCells& cells);
 
     // Lowest column and number of columns per axis; 0 columns without cells.
     std::int32_t i0 = 0, j0 = 0;
@@ -25,7 +25,7 @@ class Columns {
     std::uint64_t solid(std::int64_t i, std::int64_t j, std::int64_t k) const;
 
   private:
-    const physics::SolidCells& cells_;
+    const SolidCells& cells_;
     std::vector<std::uint64_t> first_;  // where each column's cells start, by i, then j
     // Bit k - k0_ of each column's words, where they take no more than most_words; else empty, and
     // columns are searched.

@@ -97,7 +97,7 @@ std::vector<float> Convolution::primary(const std::vector<bool>& component) cons
 // obstacle to what moves above it.
 std::vector<std::uint32_t> Convolution::solid_bands(double floor_m) const {
     std::vector<std::uint32_t> out(static_cast<std::size_t>(width_ * height_), 0);
-    const physics::SolidCells& cells = *surroundings_.cells;
+    const SolidCells& cells = *surroundings_.cells;
     const double step = std::max(options_.step_height_m, cells.voxel_m) + 1e-6;
     for (std::size_t v = 0; v < cells.size(); ++v) {
         const double bottom = cells.k[v] * cells.voxel_m - floor_m, top = bottom + cells.voxel_m;
@@ -143,7 +143,7 @@ std::vector<std::uint32_t> Convolution::active_blocks(const std::vector<bool>& c
 bool Convolution::target_of(std::size_t voxel, std::int32_t object, double floor_m, Target& target,
                             std::int32_t di, std::int32_t dj) const {
     if (object < 0) return false;
-    const physics::SolidCells& cells = *surroundings_.cells;
+    const SolidCells& cells = *surroundings_.cells;
     const double band = std::floor(((cells.k[voxel] + 0.5) * cells.voxel_m - floor_m) / band_m_);
     if (band < 0 || band >= band_count) return false;
     const std::int32_t i = cells.i[voxel] + di, j = cells.j[voxel] + dj;

@@ -147,7 +147,7 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
         out.notes.push_back("The earthquake is the accelerogram " + options.record->source + ", " +
                             figures);
     }
-    const physics::SolidCells& solid = *surroundings.cells;
+    const SolidCells& solid = *surroundings.cells;
 
     const Columns columns(solid);
     std::vector<Stance> stances(objects.size());

@@ -38,7 +38,7 @@ struct RiskObject {
 
 // Where things are, for the fields: object of each solid cell, -1 for none.
 struct Surroundings {
-    const physics::SolidCells* cells = nullptr;
+    const SolidCells* cells = nullptr;
     std::vector<std::int32_t> object;      // of each cell
     std::vector<bool> is_floor_primitive;  // by primitive: horizontal, lowest, walkable
     // By primitive, for where the centres of mass are; empty: the same everywhere.
@@ -165,7 +165,7 @@ struct Frontage {
     double area_m2 = 0, center_m = 0;  // centre: height in the grid frame
     std::vector<std::uint32_t> cells;  // exposed, ascending
 };
-Frontage wind_frontage(const physics::SolidCells& solid, const Columns& columns,
+Frontage wind_frontage(const SolidCells& solid, const Columns& columns,
                        std::span<const std::uint32_t> cells, const std::array<double, 2>& way,
                        double shelter_m);
 

@@ -63,7 +63,7 @@ std::vector<std::vector<std::uint32_t>> cells_of_objects(
 }
 
 Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> of_object) {
-    const physics::SolidCells& cells = *surroundings.cells;
+    const SolidCells& cells = *surroundings.cells;
     Stance out;
     if (of_object.empty()) return out;
     const auto weight = [&](std::uint32_t c) {

@@ -37,7 +37,7 @@ std::vector<Offset> disc(double radius) {
 
 // The map's frame: cells no finer than the voxels, and so few that 16 planes of them, with
 // the margins that the convolution adds, stay within 128 MiB.
-WalkableMap empty_map(const physics::SolidCells& cells, const HumanOptions& options) {
+WalkableMap empty_map(const SolidCells& cells, const HumanOptions& options) {
     WalkableMap map;
     map.voxel_m = cells.voxel_m;
     if (cells.size() == 0) return map;

@@ -24,8 +24,8 @@ struct FirstHits {
     std::vector<std::int64_t> cell;  // layers x bins; -1: none
 };
 
-FirstHits first_hits(const physics::SolidCells& solid, std::span<const std::uint32_t> cells,
-                     double dx, double dy) {
+FirstHits first_hits(const SolidCells& solid, std::span<const std::uint32_t> cells, double dx,
+                     double dy) {
     const auto across = [&](std::uint32_t c) {
         return (solid.i[c] + 0.5) * -dy + (solid.j[c] + 0.5) * dx;
     };
@@ -88,8 +88,8 @@ std::uint64_t open_to_wind(const Columns& columns, double x, double y, std::int3
 
 // Which of the first hits the wind reaches. Layers whose first voxels stand in one column share the
 // line there: up to 64 of them are looked at together.
-std::vector<bool> open_hits(const physics::SolidCells& solid, const Columns& columns,
-                            const FirstHits& hits, double dx, double dy, double shelter) {
+std::vector<bool> open_hits(const SolidCells& solid, const Columns& columns, const FirstHits& hits,
+                            double dx, double dy, double shelter) {
     std::vector<bool> open(hits.cell.size());
     for (std::int64_t bin = 0; bin < hits.bins; ++bin) {
         // The line's middle, at the depth of the voxels' centres; layers whose first voxels stand
@@ -125,7 +125,7 @@ std::vector<bool> open_hits(const physics::SolidCells& solid, const Columns& col
     return open;
 }
 
-void offer_arrows(ArrowSample& arrows, const physics::SolidCells& solid,
+void offer_arrows(ArrowSample& arrows, const SolidCells& solid,
                   std::span<const std::uint32_t> cells,
                   const std::vector<std::array<float, 3>>& wind, double speed, float directions) {
     for (std::size_t n = 0; n < cells.size(); ++n) {
@@ -153,7 +153,7 @@ std::vector<std::array<double, 2>> ways(const WindOptions& options) {
 
 }  // namespace
 
-Frontage wind_frontage(const physics::SolidCells& solid, const Columns& columns,
+Frontage wind_frontage(const SolidCells& solid, const Columns& columns,
                        std::span<const std::uint32_t> cells, const std::array<double, 2>& way,
                        double shelter_m) {
     Frontage out;
@@ -223,7 +223,7 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
     const auto object_of_cell = movable_object_of_cells(surroundings, objects);
     const auto cells = cells_of_objects(object_of_cell, objects.size());
     out.exposure.assign(object_of_cell.size(), 0.0f);
-    const physics::SolidCells& solid = *surroundings.cells;
+    const SolidCells& solid = *surroundings.cells;
     const Columns columns(solid);
 
     std::vector<Frontage> fronts(objects.size() * blown.size());  // by object, then by way

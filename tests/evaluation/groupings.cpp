@@ -107,8 +107,8 @@ RoomParts scan_parts(const RoomOptions& options) {
     std::vector<std::int32_t> part = scenes::true_parts(world, points);
     SolidParts solid = solid_parts(geometry, voxels);
     PartStage parts = weigh_parts(device, solid, options.parse, stage);
-    return {std::move(world), std::move(points), std::move(part), std::move(solid.cells),
-            std::move(parts)};
+    return {std::move(world),        std::move(points), std::move(part),
+            std::move(solid.solids), solid.frame.axes,  std::move(parts)};
 }
 
 void add_examples(const RoomParts& room, JointExamples& examples) {

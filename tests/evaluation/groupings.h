@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,7 +18,8 @@ struct RoomParts {
     scenes::World world;
     ScenePoints points;              // with their primitives
     std::vector<std::int32_t> part;  // the true part of each point, -1 for none
-    physics::SolidCells cells;
+    std::shared_ptr<const SolidScene> solids;
+    std::array<Vec3, 3> axes;  // of the grid frame, in the input's
     PartStage parts;
 };
 RoomParts scan_parts(const RoomOptions& options);

@@ -55,7 +55,7 @@ void run(const std::filesystem::path& scan, const std::filesystem::path& folder)
     const std::vector<float> nodes =
         geometry::shell_features(samples, shapes, geometry::SightLines(samples));
     std::vector<float> shell;
-    for (const double odds : parts.shell.log_odds)
+    for (const double odds : parts.shell_log_odds)
         shell.push_back(static_cast<float>(fitted::probability(odds)));
     const graph::JointTable joints = graph::joint_features(
         samples, shapes, weighed.contacts, weighed.bodies, parts.seams, shell);
@@ -71,7 +71,7 @@ void run(const std::filesystem::path& scan, const std::filesystem::path& folder)
     write(folder / "samples.f32", places);
     write(folder / "primitive.i32", samples.primitive);
     std::vector<int> structure;
-    for (const geometry::Structure s : parts.shell.structure) structure.push_back(static_cast<int>(s));
+    for (const Role role : geometry.role) structure.push_back(static_cast<int>(role));
     nlohmann::json about;
     about["node_names"] = geometry::shell_feature_names();
     about["joint_names"] = graph::joint_feature_names();

@@ -97,7 +97,7 @@ std::array<Vec3, 2> AnalyticSolid::bounds() const {
     return box;
 }
 
-void append(physics::SolidCells& cells, const AnalyticSolid& solid, std::int32_t primitive) {
+void append(SolidCells& cells, const AnalyticSolid& solid, std::int32_t primitive) {
     const double h = cells.voxel_m;
     const auto box = solid.bounds();
     std::array<std::int64_t, 3> low{}, high{};
@@ -115,10 +115,10 @@ void append(physics::SolidCells& cells, const AnalyticSolid& solid, std::int32_t
         return solid.inside({(static_cast<double>(i) + 0.5) * h, (static_cast<double>(j) + 0.5) * h,
                              (static_cast<double>(k) + 0.5) * h});
     };
-    using Cell = std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t, std::uint8_t>;
+    using Cell = std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t, Basis>;
     std::vector<Cell> all;
     for (std::size_t n = 0; n < cells.size(); ++n) {
-        all.emplace_back(cells.i[n], cells.j[n], cells.k[n], cells.primitive[n], cells.surface[n]);
+        all.emplace_back(cells.i[n], cells.j[n], cells.k[n], cells.primitive[n], cells.basis[n]);
     }
     for (std::int64_t i = low[0]; i < high[0]; ++i) {
         for (std::int64_t j = low[1]; j < high[1]; ++j) {
@@ -128,7 +128,8 @@ void append(physics::SolidCells& cells, const AnalyticSolid& solid, std::int32_t
                                    solid_at(i, j - 1, k) && solid_at(i, j + 1, k) &&
                                    solid_at(i, j, k - 1) && solid_at(i, j, k + 1);
                 all.emplace_back(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j),
-                                 static_cast<std::int32_t>(k), primitive, inner ? 0 : 1);
+                                 static_cast<std::int32_t>(k), primitive,
+                                 inner ? Basis::votes : Basis::surface);
             }
         }
     }
@@ -144,13 +145,13 @@ void append(physics::SolidCells& cells, const AnalyticSolid& solid, std::int32_t
     cells.j.clear();
     cells.k.clear();
     cells.primitive.clear();
-    cells.surface.clear();
+    cells.basis.clear();
     for (const auto& [i, j, k, p, s] : all) {
         cells.i.push_back(i);
         cells.j.push_back(j);
         cells.k.push_back(k);
         cells.primitive.push_back(p);
-        cells.surface.push_back(s);
+        cells.basis.push_back(s);
     }
 }
 

@@ -37,6 +37,6 @@ struct AnalyticSolid {
 // neighbours' centres lies outside and else as completed. Keeps the cells sorted by (i, j, k); a
 // voxel that is there already is left as it is. `cells.voxel_m` must be set. Throws Error(usage)
 // where the solid would take more than 10^8 voxels' tests.
-void append(physics::SolidCells& cells, const AnalyticSolid& solid, std::int32_t primitive);
+void append(SolidCells& cells, const AnalyticSolid& solid, std::int32_t primitive);
 
 }  // namespace topple::scenes

@@ -98,7 +98,7 @@ struct Layout {
 
 // One object among the others, which stay where they are; what it carries is left out.
 Simulation of_object(const Layout& layout, const safety::Surroundings& around, std::int32_t id) {
-    const physics::SolidCells& cells = *around.cells;
+    const SolidCells& cells = *around.cells;
     std::map<std::int32_t, std::vector<Cell>> parts;
     std::vector<Cell> fixed;
     const auto carried = layout.carries.find(id);

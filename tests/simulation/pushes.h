@@ -36,7 +36,7 @@ class StandingScene {
 
   private:
     device::Device& device_;
-    physics::SolidCells cells_;
+    SolidCells cells_;
     std::vector<std::int32_t> object_of_primitive_;  // 0: what is fixed
     std::optional<physics::SupportTable> table_;
     std::vector<physics::Candidate> candidates_;

@@ -189,7 +189,7 @@ StandingScene::StandingScene(device::Device& device, const std::vector<StandingO
         cells_.j.push_back(c[1]);
         cells_.k.push_back(c[2]);
         cells_.primitive.push_back(primitive);
-        cells_.surface.push_back(1);
+        cells_.basis.push_back(Basis::surface);
     }
     const auto primitives = static_cast<std::int32_t>(object_of_primitive_.size());
     const auto bodies = physics::mass_properties(device, cells_, primitives, density);
@@ -203,7 +203,7 @@ StandingScene::StandingScene(device::Device& device, const std::vector<StandingO
 
 std::vector<physics::Instability> StandingScene::instability() const {
     std::vector<physics::Candidate> candidates = candidates_;
-    const physics::CellColumns columns(cells_);
+    const CellColumns columns(cells_);
     std::vector<physics::Body> bodies{{}};  // what is fixed has no mass, and does not slide
     for (physics::Candidate& candidate : candidates) {
         candidate.edge_drop_m = physics::drops_when_tipped_m(cells_, columns, candidate);

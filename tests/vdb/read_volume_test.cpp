@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "host/io/files.h"
+#include "vdb/completion.h"
 #include "vdb/voxel_scene.h"
 
 namespace topple::vdb {
@@ -200,11 +201,11 @@ TEST_F(ReadVolume, solid_space_becomes_voxels_without_points) {
     VoxelScene scene({0.1, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}}, cloud,
                      std::vector<std::int32_t>{0});
     scene.set_free(space);
-    scene.set_solid(space);
-    const SolidCellArrays cells = scene.solid_cells();
+    SolidCells cells = scene.solid_cells();
+    commit(told(scene, space), scene, cells);
     EXPECT_EQ(cells.size(), 1u + 6 + 16 * 16 * 16);
     EXPECT_EQ(std::ranges::count(cells.primitive, 0), 1);
-    EXPECT_EQ(std::ranges::count(cells.state, State::surface), std::ssize(cells.state));
+    EXPECT_EQ(std::ranges::count(cells.basis, Basis::surface), std::ssize(cells.basis));
     EXPECT_EQ(scene.state_at(12, 0, 1), State::surface);
     EXPECT_EQ(scene.state_at(13, 0, 1), State::invisible);
     EXPECT_EQ(scene.state_at(1, 0, 0), State::empty);
@@ -212,8 +213,9 @@ TEST_F(ReadVolume, solid_space_becomes_voxels_without_points) {
     VoxelScene finer({0.05, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}}, cloud,
                      std::vector<std::int32_t>{0});
     space.solid = {{{0, 0, 1}, {0, 0, 1}}};
-    finer.set_solid(space);
-    EXPECT_EQ(finer.solid_cells().size(), 1u + 8);
+    SolidCells fine = finer.solid_cells();
+    commit(told(finer, space), finer, fine);
+    EXPECT_EQ(fine.size(), 1u + 8);
     EXPECT_EQ(finer.state_at(1, 1, 3), State::surface);
 }
 

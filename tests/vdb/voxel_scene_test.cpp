@@ -11,6 +11,7 @@
 #include "oracle/random_depth.h"
 #include "oracle/six_fill_oracle.h"
 #include "vdb/boxes.h"
+#include "vdb/completion.h"
 
 namespace topple::vdb {
 namespace {
@@ -33,13 +34,13 @@ TEST_P(Scenes, BoxesAreFilledAndDoNotLeak) {
     const Boxes boxes = Boxes::on_a_floor();
     VoxelScene scene({}, boxes.cloud, boxes.label);
     scene.carve(*device, boxes.intrinsics, boxes.frames);
-    const auto completed = scene.fill(*device, {.votes = 2, .hollow = {true}});
+    const auto completed = fill(*device, scene, {.votes = 2, .roles = {Role::wall}});
     EXPECT_GT(completed, 500u);
     const auto cells = scene.solid_cells();
     std::array<std::uint64_t, 3> inside{};
     std::uint64_t seen_completed = 0;
     for (std::size_t n = 0; n < cells.size(); ++n) {
-        if (cells.state[n] != State::completed) continue;
+        if (cells.basis[n] == Basis::surface) continue;
         ++seen_completed;
         const Vec3 centre{(cells.i[n] + 0.5) * 0.02, (cells.j[n] + 0.5) * 0.02,
                           (cells.k[n] + 0.5) * 0.02};
@@ -69,10 +70,11 @@ TEST_P(Scenes, NothingFillsBelowTheFloor) {
     VoxelScene scene({}, boxes.cloud, boxes.label);
     scene.carve(*device, boxes.intrinsics, boxes.frames);
     constexpr std::int32_t lowest = 5;  // as if the floor ran through the boxes
-    EXPECT_GT(scene.fill(*device, {.columns = true, .lowest = lowest, .hollow = {true}}), 500u);
+    EXPECT_GT(fill(*device, scene, {.columns = true, .lowest = lowest, .roles = {Role::wall}}),
+              500u);
     const auto cells = scene.solid_cells();
     for (std::size_t n = 0; n < cells.size(); ++n) {
-        EXPECT_FALSE(cells.state[n] == State::completed && cells.k[n] < lowest);
+        EXPECT_FALSE(cells.basis[n] != Basis::surface && cells.k[n] < lowest);
     }
 }
 
@@ -105,13 +107,13 @@ TEST_P(Scenes, FillEqualsTheWalkOnADenseGrid) {
         std::vector<DepthFrame> frames;
         for (int n = 0; n < 5; ++n) frames.push_back(oracle::random_frame(random, k, 2));
         scene.carve(*device, k, frames);
-        const std::vector<bool> hollow{false, true, false};
+        const std::vector<Role> roles{Role::none, Role::wall, Role::none};
         const auto tiles = scene.tiles(true);
         const auto before = scene.states(tiles);
         const auto labels = scene.primitives(tiles);
         for (const unsigned votes : {1u, 2u, 3u}) {
             const bool columns = votes > 1;
-            scene.fill(*device, {.votes = votes, .columns = columns, .hollow = hollow});
+            fill(*device, scene, {.votes = votes, .columns = columns, .roles = roles});
             const auto after = scene.states(tiles);
             const auto filled = scene.primitives(tiles);
             oracle::DenseCells dense;
@@ -161,7 +163,7 @@ TEST_P(Scenes, BatchesOfFramesAddUp) {
     whole.carve(*device, boxes.intrinsics, boxes.frames, options);
     const std::span<const DepthFrame> frames = boxes.frames;
     parts.carve(*device, boxes.intrinsics, frames.first(3), options);
-    parts.fill(*device, {.votes = 2, .hollow = {}});  // undone by the next frames
+    fill(*device, parts, {.votes = 2, .roles = {}});  // undone by the next frames
     parts.carve(*device, boxes.intrinsics, frames.subspan(3), options);
     const auto tiles = whole.tiles(true);
     EXPECT_EQ(whole.states(tiles), parts.states(tiles));
@@ -173,7 +175,7 @@ TEST_P(Scenes, SameOnEveryBackend) {
     const auto parse = [&](device::Device& on) {
         VoxelScene scene({.voxel_m = 0.03}, boxes.cloud, boxes.label);
         scene.carve(on, boxes.intrinsics, boxes.frames);
-        scene.fill(on, {.votes = 2, .hollow = {true}});
+        fill(on, scene, {.votes = 2, .roles = {Role::wall}});
         const auto tiles = scene.tiles(true);
         return std::pair(scene.states(tiles), scene.primitives(tiles));
     };
@@ -200,15 +202,15 @@ TEST_P(Scenes, EmptyCloudOnePointOnePlane) {
                            {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
     VoxelScene empty({}, {}, {});
     empty.carve(*device, k, {&frame, 1});
-    EXPECT_EQ(empty.fill(*device, {}), 0u);
+    EXPECT_EQ(fill(*device, empty, {}), 0u);
     EXPECT_EQ(empty.tiles().size(), 0u);
     EXPECT_EQ(empty.tiles(true).size(), 0u);
     EXPECT_LT(empty.highest()[0], empty.lowest()[0]);
-    EXPECT_EQ(empty.solid_voxels().x.size(), 0u);
+    EXPECT_EQ(solid_voxels(empty.frame(), empty.solid_cells(), {}).x.size(), 0u);
 
     VoxelScene point({}, cloud_of({{0.01, -0.01, 1.01}}), std::vector<std::int32_t>{4});
     point.carve(*device, k, {&frame, 1});
-    EXPECT_EQ(point.fill(*device, {}), 0u);
+    EXPECT_EQ(fill(*device, point, {}), 0u);
     EXPECT_EQ(point.state_at(0, -1, 50), State::surface);
     EXPECT_EQ(point.lowest(), (std::array<std::int32_t, 3>{0, -1, 50}));
     EXPECT_EQ(point.highest(), point.lowest());
@@ -223,7 +225,7 @@ TEST_P(Scenes, EmptyCloudOnePointOnePlane) {
         for (int y = 0; y < 50; ++y) plane.push_back({(x + 0.5) * 0.02, (y + 0.5) * 0.02, 0.51});
     }
     VoxelScene sheet({}, cloud_of(plane), std::vector<std::int32_t>(plane.size(), 0));
-    EXPECT_EQ(sheet.fill(*device, {}), 0u);  // one plane closes nothing
+    EXPECT_EQ(fill(*device, sheet, {}), 0u);  // one plane closes nothing
     EXPECT_EQ(sheet.solid_cells().size(), 2500u);
 }
 
@@ -265,11 +267,11 @@ TEST_P(Scenes, BadFramesAreRefused) {
     EXPECT_THROW(scene.carve(*device, k, {&frame, 1}), Error);
     EXPECT_THROW(scene.carve(*device, {1, 1, 8, 8, 0, 0, 1000}, {}), Error);
     EXPECT_THROW(scene.carve(*device, {8, 8, 0, 8, 0, 0, 1000}, {}), Error);
-    EXPECT_THROW(scene.fill(*device, {.votes = 0, .hollow = {}}), Error);
+    EXPECT_THROW(fill(*device, scene, {.votes = 0, .roles = {}}), Error);
     scene.carve(*device, k, {});
     EXPECT_EQ(scene.state_at(0, 0, 50), State::surface);
     VoxelScene many({}, cloud_of({{0, 0, 1}}), std::vector<std::int32_t>{65534});
-    EXPECT_THROW(many.fill(*device, {}), Error);
+    EXPECT_THROW(fill(*device, many, {}), Error);
 }
 
 TOPPLE_ON_EACH_BACKEND(Scenes);
@@ -304,7 +306,7 @@ TEST(VoxelScene, StrayPointsNeitherFillMemoryNorVanish) {
     EXPECT_EQ(scene.unplaced_points(), 1u);
     EXPECT_LT(scene.tiles(true).size(), 2000u);
     auto device = device::open_device("native");
-    scene.fill(*device, {});
+    fill(*device, scene, {});
     EXPECT_EQ(scene.highest()[0], 250000);
 }
 
@@ -338,9 +340,8 @@ TEST(VoxelScene, CellsAreSortedAndCentred) {
     }
     VoxelFrame frame{0.05, {Vec3{0.6, 0.8, 0}, Vec3{-0.8, 0.6, 0}, Vec3{0, 0, 1}}};
     VoxelScene scene(frame, cloud_of(points), label);
-    scene.set_objects(std::vector<std::int32_t>{10, 11, 12});
     const auto cells = scene.solid_cells();
-    const auto solid = scene.solid_voxels();
+    const auto solid = solid_voxels(frame, cells, std::vector<std::int32_t>{10, 11, 12});
     std::set<std::array<std::int32_t, 3>> expected;
     for (const Vec3& p : points) {
         const float x = static_cast<float>(p[0]), y = static_cast<float>(p[1]),

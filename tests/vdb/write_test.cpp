@@ -11,6 +11,7 @@
 #include "device/devices.h"
 #include "topple/error.h"
 #include "vdb/boxes.h"
+#include "vdb/completion.h"
 #include "vdb/voxel_scene.h"
 
 namespace topple::vdb {
@@ -34,7 +35,7 @@ TEST_F(WriteVdb, ReadsBackTheSame) {
     VoxelScene scene(frame, boxes.cloud, boxes.label);
     auto device = device::open_device("native");
     scene.carve(*device, boxes.intrinsics, boxes.frames);
-    scene.fill(*device, {.votes = 2, .hollow = {true}});
+    fill(*device, scene, {.votes = 2, .roles = {Role::wall}});
     scene.set_objects(std::vector<std::int32_t>{7, 8});
     const auto solids = scene.solid_cells();
     std::vector<float> wind(solids.size(), 0.0f);
@@ -60,13 +61,13 @@ TEST_F(WriteVdb, ReadsBackTheSame) {
     EXPECT_EQ(primitive->background(), -1);
     EXPECT_EQ(object->background(), -1);
     const auto cells = scene.solid_cells();
-    const auto solid = scene.solid_voxels();
+    const auto solid = solid_voxels(frame, cells, std::vector<std::int32_t>{7, 8});
     EXPECT_EQ(state->activeVoxelCount(), cells.size());
     EXPECT_EQ(primitive->activeVoxelCount(), cells.size());
     EXPECT_EQ(object->activeVoxelCount(), cells.size());
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const openvdb::Coord at(cells.i[n], cells.j[n], cells.k[n]);
-        ASSERT_EQ(state->tree().getValue(at), static_cast<std::int32_t>(cells.state[n]));
+        ASSERT_EQ(state->tree().getValue(at), cells.basis[n] == Basis::surface ? 1 : 3);
         ASSERT_EQ(primitive->tree().getValue(at), cells.primitive[n]);
         ASSERT_EQ(object->tree().getValue(at), solid.object[n]);
         const auto world = state->indexToWorld(at);

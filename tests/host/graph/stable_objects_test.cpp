@@ -27,7 +27,7 @@ Inside cylinder(double x0, double y0, double r, double low, double high) {
 struct Scene {
     std::vector<Solid> solids{{0, box({-1, -1, -0.04}, {1, 1, 0})}};
     SurfaceSeams seams;
-    physics::SolidCells cells;
+    SolidCells cells;
     std::int32_t count = 1;
     std::vector<std::int32_t> shell{0};
 

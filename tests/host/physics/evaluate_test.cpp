@@ -164,7 +164,7 @@ TEST_F(Evaluate, OneVoxelAndNoVoxels) {
     cells.voxel_m = 0.02;
     cells.i = cells.j = cells.k = {3};
     cells.primitive = {1};
-    cells.surface = {1};
+    cells.basis = {Basis::surface};
     const SupportTable table(*device, cells, 3, geodesic_sphere(16));
     Candidate nothing, cube;
     nothing.primitives = {0, 2};

@@ -25,9 +25,9 @@ struct Solid {
 
 // Voxels of a box of the world, [low, high] in metres, whose centres lie in one of the solids; the
 // first of those takes them.
-inline physics::SolidCells voxelise(const std::vector<Solid>& solids, const Vec3& low,
-                                    const Vec3& high, double voxel_m) {
-    physics::SolidCells cells;
+inline SolidCells voxelise(const std::vector<Solid>& solids, const Vec3& low, const Vec3& high,
+                           double voxel_m) {
+    SolidCells cells;
     cells.voxel_m = voxel_m;
     std::array<std::int32_t, 3> from{}, to{};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -45,7 +45,7 @@ inline physics::SolidCells voxelise(const std::vector<Solid>& solids, const Vec3
                     cells.j.push_back(j);
                     cells.k.push_back(k);
                     cells.primitive.push_back(solid.label);
-                    cells.surface.push_back(0);
+                    cells.basis.push_back(Basis::votes);
                     break;
                 }
             }
@@ -62,7 +62,7 @@ inline Inside box(const Vec3& low, const Vec3& high) {
 
 // The convex hull of the corners of the cells in the lowest layer of label 0: what a plane below
 // would touch.
-inline std::vector<std::array<double, 2>> base_polygon(const physics::SolidCells& cells) {
+inline std::vector<std::array<double, 2>> base_polygon(const SolidCells& cells) {
     const std::int32_t lowest = *std::min_element(cells.k.begin(), cells.k.end());
     std::vector<std::array<double, 2>> points;
     for (std::size_t n = 0; n < cells.size(); ++n) {
@@ -78,7 +78,7 @@ inline std::vector<std::array<double, 2>> base_polygon(const physics::SolidCells
 }
 
 // A candidate of all cells of label 0 that stands on a plane.
-inline physics::Candidate standing(device::Device& device, const physics::SolidCells& cells) {
+inline physics::Candidate standing(device::Device& device, const SolidCells& cells) {
     physics::Candidate candidate;
     candidate.primitives = {0};
     const std::vector<double> density{700};

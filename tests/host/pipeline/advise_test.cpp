@@ -28,8 +28,8 @@ class Advice : public ::testing::Test {
             safety::earthquake_field(*device, scene->around, scene->at_risk, advice_friction, {}));
         risk.clear();
         for (const auto& field : fields) risk.push_back(safety::risk(field, scene->at_risk));
-        return advise(*scene->around.cells, room.object_of_primitive, scene->objects,
-                      scene->at_risk, fields, risk, &walkers, advice_friction, advice_tolerable_J);
+        return advise(scene->solids, room.object_of_primitive, scene->objects, scene->at_risk,
+                      fields, risk, &walkers, advice_friction, advice_tolerable_J);
     }
     double worst(std::int32_t id) const {
         double most = 0;

@@ -17,12 +17,14 @@ namespace topple::test {
 // the cells.
 struct AssessedRoom {
     safety::Surroundings around;
+    SolidScene solids;
     std::vector<StableObject> objects;
     std::vector<safety::RiskObject> at_risk;
 
     AssessedRoom(device::Device& device, Room& room, double friction)
-        : around(room.surroundings()) {
-        const physics::SolidCells& cells = *around.cells;
+        : around(room.surroundings()),
+          solids(*around.cells, std::vector<Role>(room.object_of_primitive.size())) {
+        const SolidCells& cells = solids.cells();
         const auto primitives = static_cast<std::int32_t>(room.object_of_primitive.size());
         const auto bodies = physics::mass_properties(device, cells, primitives, room.density_kg_m3);
         const graph::ContactGraph contacts = graph::build_contact_graph(device, cells, primitives);
@@ -48,7 +50,7 @@ struct AssessedRoom {
                 graph::candidate_of(contacts, bodies, around.is_floor_primitive, members);
             objects.push_back(std::move(object));
         }
-        find_barriers(device, table, cells, room.object_of_primitive, friction, objects);
+        find_barriers(device, table, solids, room.object_of_primitive, friction, objects);
         at_risk = risk_objects(objects);
     }
 };

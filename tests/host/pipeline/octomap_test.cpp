@@ -47,14 +47,14 @@ TEST_F(OctomapRoundTrip, of_a_room_with_a_solid_pillar) {
     const auto map = write("room.bt", binary_map(tree));
     expect_unchanged(map);
     const ParseResult result = parse(map, on(device::open_device("native")));
-    const vdb::SolidCellArrays cells = result.voxels->solid_cells();
+    const SolidCells cells = result.voxels->solid_cells();
     std::size_t within = 0;
     for (std::size_t n = 0; n < cells.size(); ++n) {
         if (cells.i[n] < 1 || cells.i[n] > 8 || cells.j[n] < 41 || cells.j[n] > 48 ||
             cells.k[n] < 1 || cells.k[n] > 8)
             continue;
         ++within;
-        EXPECT_EQ(cells.state[n], vdb::State::surface);
+        EXPECT_EQ(cells.basis[n], Basis::surface);
         EXPECT_GE(cells.primitive[n], 0);
     }
     EXPECT_EQ(within, 8u * 8 * 8);

@@ -162,7 +162,7 @@ TEST_P(HumanField, MatchesTheOracle) {
 
     const WalkableMap map = walkable_map(s, options);
     const PrimaryMotion motion = primary_motion(map, options);
-    const physics::SolidCells& cells = *s.cells;
+    const SolidCells& cells = *s.cells;
     oracle::Grid grid{static_cast<int>(map.nx), static_cast<int>(map.ny),
                       std::vector<std::uint32_t>(map.size())};
     const double band_m = options.body_height_m / 32;

@@ -77,7 +77,7 @@ class Room {
             cells_.j.push_back(std::get<1>(place));
             cells_.k.push_back(std::get<2>(place));
             cells_.primitive.push_back(primitive);
-            cells_.surface.push_back(1);
+            cells_.basis.push_back(Basis::surface);
             out.object.push_back(object_of_primitive[static_cast<std::size_t>(primitive)]);
         }
         out.cells = &cells_;
@@ -85,14 +85,14 @@ class Room {
         out.density_kg_m3 = density_kg_m3;
         return out;
     }
-    const physics::SolidCells& cells() const { return cells_; }
+    const SolidCells& cells() const { return cells_; }
 
     std::vector<safety::RiskObject> objects;
     std::vector<std::int32_t> object_of_primitive;
     std::vector<double> density_kg_m3;  // by primitive
 
   private:
-    physics::SolidCells cells_;
+    SolidCells cells_;
     std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, std::int32_t> owner_;
     std::vector<bool> floor_;
 };

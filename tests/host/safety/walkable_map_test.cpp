@@ -70,7 +70,7 @@ TEST(WalkableMap, FewStraySpecksDoNotBlock) {
     const auto speck = room.box(1.0, 1.02, 1.0, 1.02, 1.0, 1.02);
     Surroundings surroundings = room.surroundings();
     EXPECT_FALSE(walkable(walkable_map(surroundings, {}), 1.01, 1.01));
-    physics::SolidCells cells = *surroundings.cells;
+    SolidCells cells = *surroundings.cells;
     for (auto& primitive : cells.primitive) primitive = primitive == speck ? -1 : primitive;
     surroundings.cells = &cells;
     EXPECT_TRUE(walkable(walkable_map(surroundings, {}), 1.01, 1.01));

@@ -22,7 +22,7 @@ TEST(Analytic, VoxelsHaveTheVolumeAndTheCentre) {
             AnalyticSolid solid{
                 body, {0.3, 0.2, 0.5}, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.103, -0.207, 0.051}};
             if (turned) solid.turn = turn;
-            physics::SolidCells cells;
+            SolidCells cells;
             cells.voxel_m = 0.005;
             append(cells, solid, 3);
             const double h3 = std::pow(cells.voxel_m, 3);
@@ -53,7 +53,7 @@ TEST(Analytic, ClosedForms) {
 }
 
 TEST(Analytic, CellsAreSortedUniqueAndSurfacesAreSeen) {
-    physics::SolidCells cells;
+    SolidCells cells;
     cells.voxel_m = 0.01;
     append(cells, {Body::box, {0.1, 0.1, 0.1}, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.05, 0.05, 0}}, 0);
     ASSERT_EQ(cells.size(), 1000u);
@@ -66,14 +66,14 @@ TEST(Analytic, CellsAreSortedUniqueAndSurfacesAreSeen) {
                       std::tuple(cells.i[n], cells.j[n], cells.k[n]));
         }
         second += cells.primitive[n] == 1;
-        surface += cells.surface[n];
+        surface += cells.basis[n] == Basis::surface;
     }
     EXPECT_EQ(second, 500u);
     EXPECT_EQ(surface, 488u + 244u);  // the first's 1000 - 512; half of the other's
 }
 
 TEST(Analytic, RefusesVoxelsThatAreTooSmall) {
-    physics::SolidCells cells;
+    SolidCells cells;
     EXPECT_THROW(append(cells, {}, 0), Error);
     cells.voxel_m = 1e-4;
     EXPECT_THROW(append(cells, {}, 0), Error);

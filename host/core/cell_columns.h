@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "physics/bodies.h"
+#include "core/solid_cells.h"
 
-namespace topple::physics {
+namespace topple {
 
 // Cells by column, for cells sorted by (i, j, k).
 class CellColumns {
@@ -23,4 +23,4 @@ class CellColumns {
     std::vector<std::size_t> column_first_;  // into the cells
 };
 
-}  // namespace topple::physics
+}  // namespace topple

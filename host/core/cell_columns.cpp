@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "physics/cell_columns.h"
+#include "core/cell_columns.h"
 
 #include <algorithm>
 
-namespace topple::physics {
+namespace topple {
 
 CellColumns::CellColumns(const SolidCells& cells) {
     const std::size_t n = cells.size();
@@ -36,4 +36,4 @@ std::pair<std::size_t, std::size_t> CellColumns::at(std::int32_t i, std::int32_t
     return {column_first_[c], column_first_[c + 1]};
 }
 
-}  // namespace topple::physics
+}  // namespace topple

@@ -3,10 +3,9 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <utility>
 
-#include "vdb/grids.h"
+#include "vdb/completion.h"
 
 // Where filled solids end below: at the surface on which they are seen to stand.
 namespace topple::vdb {
@@ -15,8 +14,10 @@ namespace {
 // What one primitive's cells look like from above.
 struct Shape {
     std::array<std::int32_t, 2> low{}, high{};  // of its columns, inclusive
+    std::array<std::int32_t, 2> last{};         // column
     std::vector<std::int32_t> bottoms;          // lowest k of each column
     std::vector<std::int32_t> seen;             // k of the cells that were seen
+    bool empty() const { return bottoms.empty(); }
     // Whether the other lies within, and this one goes on beyond it on three sides at least: so
     // does a table top around a box, but not a sofa's seat around its arm.
     bool surrounds(const Shape& other) const {
@@ -44,14 +45,10 @@ struct Stand {
 
 class Settling {
   public:
-    Settling(const SolidCellArrays& cells, VoxelScene::Grids& grids,
-             const std::vector<bool>& hollow)
-        : cells_(cells),
-          hollow_(hollow),
-          state_(grids.state->getAccessor()),
-          primitive_(grids.primitive->getAccessor()) {
-        for (std::size_t n = 0; n < cells.size(); ++n) add_to_shape(n);
-        for (std::size_t n = 0; n < cells.size(); ++n) add_creases(n);
+    explicit Settling(const VolumeView& view)
+        : view_(view), cells_(view.cells()), shapes_(view.primitives()) {
+        for (std::size_t n = 0; n < cells_.size(); ++n) add_to_shape(n);
+        for (std::size_t n = 0; n < cells_.size(); ++n) add_creases(n);
     }
 
     // Primitives that are seen to stand on another one.
@@ -64,7 +61,7 @@ class Settling {
         std::map<std::int32_t, std::size_t> crease;
         for (auto& [pair, levels] : creases_) {
             const auto& [thing, on] = pair;
-            Shape &own = shapes_[thing], &under = shapes_[on];
+            Shape &own = shape(thing), &under = shape(on);
             if (levels.size() < std::max(least_crease, crease[thing] + 1)) continue;
             if (!under.surrounds(own)) continue;
             const std::int32_t level = median(levels);
@@ -79,24 +76,26 @@ class Settling {
     }
 
     // Those that are known.
-    void add(std::span<const VoxelScene::StandsOn> known, double voxel_m,
-             std::map<std::int32_t, Stand>& stands) {
-        for (const VoxelScene::StandsOn& s : known) {
-            if (!shapes_.contains(s.above) || !shapes_.contains(s.below)) continue;
+    void add(std::span<const StandsOn> known, std::map<std::int32_t, Stand>& stands) {
+        const auto shown = [&](std::int32_t p) {
+            return p >= 0 && static_cast<std::size_t>(p) < shapes_.size() && !shape(p).empty();
+        };
+        for (const StandsOn& s : known) {
+            if (!shown(s.above) || !shown(s.below)) continue;
             // The highest voxel with its centre below the foot.
-            const auto level = static_cast<std::int32_t>(std::ceil(s.height_m / voxel_m - 0.5)) - 1;
-            stands[s.above] = {s.below, level, median(shapes_[s.below].bottoms)};
+            const auto level =
+                static_cast<std::int32_t>(std::ceil(s.height_m / view_.voxel_m() - 0.5)) - 1;
+            stands[s.above] = {s.below, level, median(shape(s.below).bottoms)};
         }
     }
 
     // Completed voxels below that level go to what is stood on, down to its own underside or to
     // what it stands on in turn, or to what is beside them: a leg under the table top. Others
     // become hidden again.
-    std::uint64_t settle(const std::map<std::int32_t, Stand>& stands) {
-        std::vector<openvdb::Coord> open;
-        std::uint64_t changed = 0;
+    std::vector<Claim> settle(const std::map<std::int32_t, Stand>& stands) {
+        std::vector<Voxel> open;
         for (std::size_t n = 0; n < cells_.size(); ++n) {
-            if (cells_.state[n] != State::completed) continue;
+            if (cells_.basis[n] == Basis::surface) continue;
             const std::int32_t k = cells_.k[n];
             const Stand* last = nullptr;
             // No chain is longer than there are stands; one that closes on itself ends, too.
@@ -107,101 +106,92 @@ class Settling {
                 at = stands.find(last->on);
             }
             if (!last) continue;
-            const openvdb::Coord voxel(cells_.i[n], cells_.j[n], k);
-            ++changed;
-            if (k >= last->bottom) {
-                primitive_.setValueOn(voxel, last->on);
-            } else {
-                state_.setValueOff(voxel, static_cast<std::int32_t>(State::invisible));
-                primitive_.setValueOff(voxel, -1);
-                open.push_back(voxel);
-            }
+            const Voxel voxel{cells_.i[n], cells_.j[n], k};
+            owner_[voxel] = k >= last->bottom ? last->on : -1;
+            if (k < last->bottom) open.push_back(voxel);
         }
         while (grow_into(open)) {
         }
-        return changed;
+        std::vector<Claim> claims;
+        for (const auto& [voxel, p] : owner_) claims.push_back({voxel, p, Basis::stand, p >= 0});
+        return claims;
     }
 
   private:
     static constexpr std::array<std::array<std::int32_t, 2>, 4> sides{
         {{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
 
-    bool plain(std::int32_t p) const {
-        return p >= 0 && !(static_cast<std::size_t>(p) < hollow_.size() &&
-                           hollow_[static_cast<std::size_t>(p)]);
-    }
-    bool solid(const openvdb::Coord& voxel) const { return state_.isValueOn(voxel); }
+    Shape& shape(std::int32_t p) { return shapes_[static_cast<std::size_t>(p)]; }
 
     void add_to_shape(std::size_t n) {
-        if (!plain(cells_.primitive[n])) return;
-        Shape& s = shapes_[cells_.primitive[n]];
+        if (!view_.is_body(cells_.primitive[n])) return;
+        Shape& s = shape(cells_.primitive[n]);
         const std::array<std::int32_t, 2> at{cells_.i[n], cells_.j[n]};
-        if (cells_.state[n] == State::surface) s.seen.push_back(cells_.k[n]);
+        if (cells_.basis[n] == Basis::surface) s.seen.push_back(cells_.k[n]);
+        if (!s.empty() && s.last == at) return;
         for (std::size_t a = 0; a < 2; ++a) {
-            s.low[a] = s.bottoms.empty() ? at[a] : std::min(s.low[a], at[a]);
-            s.high[a] = s.bottoms.empty() ? at[a] : std::max(s.high[a], at[a]);
+            s.low[a] = s.empty() ? at[a] : std::min(s.low[a], at[a]);
+            s.high[a] = s.empty() ? at[a] : std::max(s.high[a], at[a]);
         }
-        const std::array<std::int32_t, 3> place{cells_.primitive[n], at[0], at[1]};
-        if (last_column_[cells_.primitive[n]] == place) return;
-        last_column_[cells_.primitive[n]] = place;
+        s.last = at;
         s.bottoms.push_back(cells_.k[n]);
     }
 
     // Where the top of one solid is seen right beside another's side.
     void add_creases(std::size_t n) {
-        if (cells_.state[n] != State::surface || !plain(cells_.primitive[n])) return;
-        const openvdb::Coord above(cells_.i[n], cells_.j[n], cells_.k[n] + 1);
-        if (solid(above) || state_.getValue(above) != static_cast<std::int32_t>(State::empty))
-            return;
+        if (cells_.basis[n] != Basis::surface || !view_.is_body(cells_.primitive[n])) return;
+        const Voxel above{cells_.i[n], cells_.j[n], cells_.k[n] + 1};
+        if (!view_.seen_empty(above)) return;
         for (const auto& side : sides) {
-            const openvdb::Coord beside = above.offsetBy(side[0], side[1], 0);
-            if (!solid(beside)) continue;
-            const std::int32_t thing = primitive_.getValue(beside);
-            if (plain(thing) && thing != cells_.primitive[n])
+            const Voxel beside{above[0] + side[0], above[1] + side[1], above[2]};
+            if (!view_.solid(beside)) continue;
+            const std::int32_t thing = view_.primitive(beside);
+            if (view_.is_body(thing) && thing != cells_.primitive[n])
                 creases_[{thing, cells_.primitive[n]}].push_back(cells_.k[n]);
         }
     }
 
+    // Whose body a voxel is now; -1: none's.
+    std::int32_t body_at(const Voxel& voxel) const {
+        const auto changed = owner_.find(voxel);
+        const std::int32_t p = changed != owner_.end() ? changed->second
+                               : view_.solid(voxel)    ? view_.primitive(voxel)
+                                                       : -1;
+        return view_.is_body(p) ? p : -1;
+    }
+
     // One layer sideways from the solids around; returns whether any voxel was taken.
-    bool grow_into(std::vector<openvdb::Coord>& open) {
-        std::vector<std::pair<openvdb::Coord, std::int32_t>> taken;
-        std::vector<openvdb::Coord> left;
-        for (const openvdb::Coord& voxel : open) {
+    bool grow_into(std::vector<Voxel>& open) {
+        std::vector<std::pair<Voxel, std::int32_t>> taken;
+        std::vector<Voxel> left;
+        for (const Voxel& voxel : open) {
             std::int32_t by = -1;
-            for (const auto& side : sides) {
-                const openvdb::Coord beside = voxel.offsetBy(side[0], side[1], 0);
-                const std::int32_t p = solid(beside) ? primitive_.getValue(beside) : -1;
-                if (plain(p)) by = std::max(by, p);
-            }
+            for (const auto& side : sides)
+                by = std::max(by, body_at({voxel[0] + side[0], voxel[1] + side[1], voxel[2]}));
             if (by >= 0)
                 taken.emplace_back(voxel, by);
             else
                 left.push_back(voxel);
         }
-        for (const auto& [voxel, by] : taken) {
-            state_.setValueOn(voxel, static_cast<std::int32_t>(State::completed));
-            primitive_.setValueOn(voxel, by);
-        }
+        for (const auto& [voxel, by] : taken) owner_[voxel] = by;
         open = std::move(left);
         return !taken.empty();
     }
 
-    const SolidCellArrays& cells_;
-    const std::vector<bool>& hollow_;
-    openvdb::Int32Grid::Accessor state_;
-    openvdb::Int32Grid::Accessor primitive_;
-    std::map<std::int32_t, Shape> shapes_;
-    std::map<std::int32_t, std::array<std::int32_t, 3>> last_column_;
+    const VolumeView& view_;
+    const SolidCells& cells_;
+    std::vector<Shape> shapes_;  // by primitive; none of walls and ceilings
+    // By (thing, what it stands on): k of the creases.
     std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::int32_t>> creases_;
+    std::map<Voxel, std::int32_t> owner_;  // of the voxels that change hands; -1: none
 };
 
 }  // namespace
 
-std::uint64_t VoxelScene::settle(const std::vector<bool>& hollow, std::span<const StandsOn> on) {
-    const SolidCellArrays cells = solid_cells();
-    Settling settling(cells, *grids_, hollow);
+std::vector<Claim> settled(const VolumeView& view, std::span<const StandsOn> on) {
+    Settling settling(view);
     std::map<std::int32_t, Stand> stands = settling.stands();
-    settling.add(on, frame().voxel_m, stands);
+    settling.add(on, stands);
     return settling.settle(stands);
 }
 

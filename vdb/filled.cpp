@@ -10,6 +10,8 @@
 #include "six_fill_sweep.hpp"
 #include "six_fill_vote.hpp"
 #include "topple/error.h"
+#include "vdb/completion.h"
+#include "vdb/fill_leaves.h"
 #include "vdb/grids.h"
 
 // Six-direction filling: which leaves to sweep, their runs along each axis, and the vote.
@@ -17,66 +19,6 @@ namespace topple::vdb {
 namespace {
 
 constexpr std::int32_t max_primitives = 65533;  // cells travel as 16 bits
-
-struct Box {
-    std::array<std::int32_t, 3> low{1, 1, 1}, high{0, 0, 0};
-    bool empty() const { return low[0] > high[0]; }
-    void add(const LeafTable::Leaf& leaf) {
-        const bool first = empty();
-        for (int a = 0; a < 3; ++a) {
-            low[a] = first ? leaf[a] : std::min(low[a], leaf[a]);
-            high[a] = first ? leaf[a] : std::max(high[a], leaf[a]);
-        }
-    }
-};
-
-bool uniformly_empty(const openvdb::Int32Grid::ConstAccessor& state, const LeafTable::Leaf& leaf) {
-    return !state.probeConstLeaf(origin_of(leaf)) &&
-           state.getValue(origin_of(leaf)) == static_cast<std::int32_t>(State::empty);
-}
-
-// The leaves of the boxes around the primitives that fill. That is enough: where two rays of a
-// voxel hit the same primitive, the voxel and both rays lie inside that primitive's bounding box.
-std::vector<LeafTable::Leaf> leaves_to_sweep(const VoxelScene::Grids& g,
-                                             const std::vector<bool>& fills, bool all) {
-    std::vector<Box> boxes(fills.size());
-    for (auto leaf = g.state->tree().cbeginLeaf(); leaf; ++leaf) {
-        if (leaf->isEmpty()) continue;
-        const auto* label = g.primitive->tree().probeConstLeaf(leaf->origin());
-        for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
-            const std::int32_t p = label->getValue(voxel.pos());
-            if (p >= 0 && fills[static_cast<std::size_t>(p)]) {
-                boxes[static_cast<std::size_t>(p)].add(leaf_of(leaf->origin()));
-            }
-        }
-    }
-    std::vector<bool> wanted(g.leaves.size(), all);
-    for (const Box& box : boxes) {
-        if (box.empty() || all) continue;
-        // Clipped to the table's box, so that a stray voxel can't make the loop long.
-        std::array<std::int32_t, 3> low, high;
-        for (int a = 0; a < 3; ++a) {
-            low[a] = std::max(box.low[a], g.leaves.low[a]);
-            high[a] = std::min(box.high[a], g.leaves.low[a] + g.leaves.count[a] - 1);
-        }
-        for (std::int32_t x = low[0]; x <= high[0]; ++x) {
-            for (std::int32_t y = low[1]; y <= high[1]; ++y) {
-                for (std::int32_t z = low[2]; z <= high[2]; ++z) {
-                    wanted[static_cast<std::size_t>(g.leaves.index_of({x, y, z}))] = true;
-                }
-            }
-        }
-    }
-    for (std::uint64_t n = g.leaves.box_size(); n < g.leaves.size(); ++n) wanted[n] = true;
-    const auto accessor = g.state->getConstAccessor();
-    std::vector<LeafTable::Leaf> leaves;
-    for (std::uint64_t n = 0; n < wanted.size(); ++n) {
-        if (!wanted[n]) continue;
-        const auto leaf = g.leaves.leaf_at(n);
-        if (!uniformly_empty(accessor, leaf)) leaves.push_back(leaf);
-    }
-    return leaves;
-}
 
 // What six_fill_sweep calls cells.
 std::vector<std::uint32_t> cells_of(const VoxelScene::Grids& g,
@@ -166,7 +108,7 @@ Runs runs_along(const VoxelScene::Grids& g, const std::vector<LeafTable::Leaf>& 
 std::vector<std::uint32_t> sweep_and_vote(device::Device& device, const VoxelScene::Grids& g,
                                           const std::vector<LeafTable::Leaf>& leaves,
                                           std::span<const std::uint32_t> cells,
-                                          const VoxelScene::FillOptions& options) {
+                                          const FillOptions& options) {
     const device::Buffer<std::uint32_t> cell_words(device, cells, "fill cells");
     std::vector<device::Buffer<std::uint32_t>> hits, keep;
     for (int side = 0; side < 6; ++side) hits.emplace_back(device, cells.size(), "fill hits");
@@ -217,13 +159,13 @@ std::vector<std::uint32_t> sweep_and_vote(device::Device& device, const VoxelSce
 
 }  // namespace
 
-std::uint64_t VoxelScene::fill(device::Device& device, const FillOptions& options) {
+std::vector<Claim> filled(device::Device& device, const VoxelScene& volume,
+                          const FillOptions& options) {
     if (options.votes < 1 || options.votes > 6) {
         throw Error(ErrorKind::usage, "filling: " + std::to_string(options.votes) +
                                           " votes; there are six directions");
     }
-    Grids& g = *grids_;
-    g.clear_completed();
+    const VoxelScene::Grids& g = volume.grids();
     std::int32_t highest = -1;
     for (auto leaf = g.primitive->tree().cbeginLeaf(); leaf; ++leaf) {
         for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)
@@ -234,29 +176,21 @@ std::uint64_t VoxelScene::fill(device::Device& device, const FillOptions& option
                     "filling: primitive " + std::to_string(highest) + " is beyond the limit of " +
                         std::to_string(max_primitives) + " primitives; use a larger --voxel");
     }
-    std::vector<bool> fills(static_cast<std::size_t>(highest + 1), true);
-    for (std::size_t p = 0; p < std::min(fills.size(), options.hollow.size()); ++p)
-        fills[p] = !options.hollow[p];
+    std::vector<bool> fills;
+    for (std::int32_t p = 0; p <= highest; ++p)
+        fills.push_back(!is_sheet(role_of(options.roles, p)));
 
-    const auto leaves = leaves_to_sweep(g, fills, options.votes == 1 || options.columns);
-    if (leaves.empty()) return 0;
+    const auto leaves = leaves_to_fill(g, fills, options.votes, options.columns, options.lowest);
+    if (leaves.empty()) return {};
     check_memory(device, g, leaves.size());
     const auto cells = cells_of(g, leaves, fills, options.lowest);
-    const auto filled = sweep_and_vote(device, g, leaves, cells, options);
-    std::uint64_t count = 0;
-    for (std::size_t n = 0; n < leaves.size(); ++n) {
-        const auto* from = filled.data() + n * 512;
-        if (std::all_of(from, from + 512, [](std::uint32_t v) { return v == 0; })) continue;
-        auto* state = g.state->tree().touchLeaf(origin_of(leaves[n]));
-        auto* label = g.primitive->tree().touchLeaf(origin_of(leaves[n]));
-        for (openvdb::Index v = 0; v < 512; ++v) {
-            if (from[v] == 0) continue;
-            state->setValueOn(v, static_cast<std::int32_t>(State::completed));
-            label->setValueOn(v, static_cast<std::int32_t>(from[v]) - 1);
-            ++count;
-        }
-    }
-    return count;
+    const auto taken = sweep_and_vote(device, g, leaves, cells, options);
+    std::vector<Claim> claims;
+    in_voxel_order(leaves, [&](std::size_t leaf, std::size_t offset, const Voxel& at) {
+        const std::uint32_t by = taken[leaf * 512 + offset];
+        if (by > 0) claims.push_back({at, static_cast<std::int32_t>(by) - 1, Basis::votes});
+    });
+    return claims;
 }
 
 }  // namespace topple::vdb

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/basis.h"
+
+namespace topple {
+
+// The solid voxels of a scene, one array per field, sorted by (i, j, k). Grid frame: z up, voxel
+// (i, j, k) spans [i, i + 1] * voxel_m per axis.
+struct SolidCells {
+    double voxel_m = 0;
+    std::vector<std::int32_t> i, j, k;
+    std::vector<std::int32_t> primitive;  // -1: belongs to none; such cells block but have no mass
+    std::vector<Basis> basis;             // why it is taken to be solid
+    // Voxels right below each that nobody has seen into, up to 255; empty: none for all.
+    std::vector<std::uint8_t> unseen_below;
+    std::size_t size() const { return i.size(); }
+};
+
+}  // namespace topple

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "core/solid_scene.h"
+
+#include <array>
+#include <string>
+
+#include "topple/error.h"
+
+namespace topple {
+namespace {
+
+std::array<std::int32_t, 3> place(const SolidCells& cells, std::size_t n) {
+    return {cells.i[n], cells.j[n], cells.k[n]};
+}
+
+void check(const SolidCells& cells, std::size_t primitives) {
+    const std::size_t count = cells.size();
+    const bool whole = cells.j.size() == count && cells.k.size() == count &&
+                       cells.primitive.size() == count && cells.basis.size() == count &&
+                       (cells.unseen_below.empty() || cells.unseen_below.size() == count);
+    if (!whole) throw Error(ErrorKind::usage, "solid scene: arrays of cells that differ in length");
+    for (std::size_t n = 0; n < count; ++n) {
+        if (n > 0 && place(cells, n) <= place(cells, n - 1))
+            throw Error(
+                ErrorKind::usage,
+                "solid scene: cells are not sorted by (i, j, k) at cell " + std::to_string(n));
+        if (cells.primitive[n] >= static_cast<std::int64_t>(primitives))
+            throw Error(ErrorKind::usage,
+                        "solid scene: cell " + std::to_string(n) + " is of primitive " +
+                            std::to_string(cells.primitive[n]) + ", but there are roles of " +
+                            std::to_string(primitives) + " only");
+    }
+}
+
+void add(const SolidCells& from, std::size_t n, SolidCells& to) {
+    to.i.push_back(from.i[n]);
+    to.j.push_back(from.j[n]);
+    to.k.push_back(from.k[n]);
+    to.primitive.push_back(from.primitive[n]);
+    to.basis.push_back(from.basis[n]);
+}
+
+}  // namespace
+
+SolidScene::SolidScene(SolidCells cells, std::vector<Role> roles, SolidCells strays)
+    : cells_(std::move(cells)),
+      strays_(std::move(strays)),
+      columns_(cells_),
+      roles_(std::move(roles)) {
+    check(cells_, roles_.size());
+    check(strays_, 0);
+}
+
+SolidCells SolidScene::with_strays() const {
+    SolidCells out;
+    if (strays_.size() == 0) {
+        out = cells_;
+        out.unseen_below.clear();
+        return out;
+    }
+    out.voxel_m = cells_.voxel_m;
+    std::size_t stray = 0;
+    for (std::size_t n = 0; n < cells_.size(); ++n) {
+        for (; stray < strays_.size() && place(strays_, stray) < place(cells_, n); ++stray)
+            add(strays_, stray, out);
+        add(cells_, n, out);
+    }
+    for (; stray < strays_.size(); ++stray) add(strays_, stray, out);
+    return out;
+}
+
+}  // namespace topple

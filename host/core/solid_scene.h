@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/cell_columns.h"
+#include "core/role.h"
+#include "core/solid_cells.h"
+
+namespace topple {
+
+// The solids of a scene, made once after completion and never changed: what physics, graph, safety
+// and outputs read. Grid frame.
+class SolidScene {
+  public:
+    // cells: sorted by (i, j, k). roles: by primitive. strays: cells far from all others, sorted;
+    // they are solid, but no primitive's, and in nobody's way. Throws Error(usage) for cells that
+    // are not sorted, whose arrays differ in length, or whose primitive has no role.
+    SolidScene(SolidCells cells, std::vector<Role> roles, SolidCells strays = {});
+
+    double voxel_m() const { return cells_.voxel_m; }
+    const SolidCells& cells() const { return cells_; }
+    const CellColumns& columns() const { return columns_; }
+    std::size_t primitives() const { return roles_.size(); }
+    Role role(std::int32_t primitive) const { return role_of(roles_, primitive); }
+    std::vector<bool> shell() const { return shell_of(roles_); }  // by primitive
+    // Of cell n.
+    double probability(std::size_t n) const { return probability_solid(cells_.basis[n]); }
+    // Cells and strays, sorted: what outputs show.
+    SolidCells with_strays() const;
+
+  private:
+    SolidCells cells_, strays_;
+    CellColumns columns_;
+    std::vector<Role> roles_;
+};
+
+}  // namespace topple

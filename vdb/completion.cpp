@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "vdb/completion.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "device/native/thread_pool.h"
+#include "vdb/grids.h"
+
+namespace topple::vdb {
+namespace {
+
+// The cells with the claims among them. Both are sorted.
+SolidCells merged(const SolidCells& cells, std::span<const Claim> claims) {
+    SolidCells out;
+    out.voxel_m = cells.voxel_m;
+    const std::size_t most = cells.size() + claims.size();
+    for (auto* values : {&out.i, &out.j, &out.k, &out.primitive}) values->reserve(most);
+    out.basis.reserve(most);
+    const auto add = [&](const Voxel& at, std::int32_t primitive, Basis basis) {
+        out.i.push_back(at[0]);
+        out.j.push_back(at[1]);
+        out.k.push_back(at[2]);
+        out.primitive.push_back(primitive);
+        out.basis.push_back(basis);
+    };
+    auto claim = claims.begin();
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const Voxel at{cells.i[n], cells.j[n], cells.k[n]};
+        for (; claim != claims.end() && claim->at < at; ++claim)
+            if (claim->solid) add(claim->at, claim->primitive, claim->basis);
+        if (claim == claims.end() || claim->at != at) add(at, cells.primitive[n], cells.basis[n]);
+    }
+    for (; claim != claims.end(); ++claim)
+        if (claim->solid) add(claim->at, claim->primitive, claim->basis);
+    return out;
+}
+
+}  // namespace
+
+void commit(std::span<const Claim> claims, VoxelScene& volume, SolidCells& cells) {
+    if (claims.empty()) return;
+    VoxelScene::Grids& g = volume.grids();
+    auto state = g.state->getAccessor();
+    auto primitive = g.primitive->getAccessor();
+    std::vector<LeafTable::Leaf> beyond;
+    for (const Claim& c : claims) {
+        const openvdb::Coord at = coord(c.at);
+        const auto leaf = leaf_of(at);
+        if (!g.leaves.in_box(leaf) && (beyond.empty() || beyond.back() != leaf))
+            beyond.push_back(leaf);
+        if (c.solid) {
+            const bool seen = c.basis == Basis::surface;
+            state.setValueOn(at,
+                             static_cast<std::int32_t>(seen ? State::surface : State::completed));
+            primitive.setValueOn(at, c.primitive);
+        } else {
+            state.setValueOff(at, static_cast<std::int32_t>(State::invisible));
+            primitive.setValueOff(at, -1);
+        }
+    }
+    if (!beyond.empty()) g.take_in(beyond);
+    cells = merged(cells, claims);
+}
+
+std::uint64_t fill(device::Device& device, VoxelScene& volume, const FillOptions& options) {
+    volume.clear_completed();
+    const std::vector<Claim> claims = filled(device, volume, options);
+    SolidCells cells;
+    commit(claims, volume, cells);
+    return claims.size();
+}
+
+void complete(device::Device& device, const CompletionOptions& options, VoxelScene& volume,
+              SolidCells& cells) {
+    const auto round = [&](const auto& propose) {
+        device.threads().poll();
+        commit(propose(VolumeView(volume, cells, options.fill.roles)), volume, cells);
+    };
+    commit(filled(device, volume, options.fill), volume, cells);
+    round([&](const VolumeView& view) { return settled(view, options.ledges); });
+    round([&](const VolumeView& view) { return extended(view); });
+    round([&](const VolumeView& view) { return bridged(view, options.longest_gap); });
+    if (options.map) commit(told(volume, *options.map), volume, cells);
+    device.threads().poll();
+}
+
+}  // namespace topple::vdb
