@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -11,6 +12,8 @@
 #include "scenes/depth_camera.h"
 #include "scenes/furnished_room.h"
 #include "scenes/ground_truth.h"
+#include "scenes/kinds/kinds.h"
+#include "scenes/scan/scan.h"
 #include "topple/error.h"
 
 namespace topple::cli {
@@ -22,6 +25,8 @@ struct GenerateArguments {
     scenes::CameraOptions camera;
     bool is_building = false;
     scenes::BuildingOptions building;
+    std::string kind;  // empty: the plain or varied room as it always was
+    scenes::ScanOptions scan;
 };
 
 int run_building(const GenerateArguments& a) {
@@ -40,6 +45,18 @@ int run_building(const GenerateArguments& a) {
     return 0;
 }
 
+int run_kind(const GenerateArguments& a) {
+    const scenes::World world = scenes::make_world(a.kind, a.scan.seed);
+    const scenes::Scan scan = scenes::scan(world, a.scan);
+    scenes::write_scan(a.out, world, scan, a.scan, a.kind);
+    std::printf("%s: %s of a %s room, %s, %s, %s\n", a.out.c_str(), to_string(a.scan.kind),
+                a.kind.c_str(), io::counted(world.objects.size() - 1, "object").c_str(),
+                scan.frames.empty() ? io::counted(scan.cloud.size(), "point").c_str()
+                                    : io::counted(scan.frames.size(), "frame").c_str(),
+                io::counted(scan.truth.size(), "true point").c_str());
+    return 0;
+}
+
 int run(const GenerateArguments& a) {
     if (a.camera.frames < 1 || a.camera.frames > 10000) {
         throw Error(ErrorKind::usage,
@@ -52,6 +69,18 @@ int run(const GenerateArguments& a) {
                 sequence.frames.size(), sequence.cloud.size(), world.parts.size(),
                 world.objects.size());
     return 0;
+}
+
+}  // namespace
+
+namespace {
+
+std::map<std::string, scenes::ScanKind> scan_kinds() {
+    std::map<std::string, scenes::ScanKind> kinds;
+    using enum scenes::ScanKind;
+    for (const auto kind : {walk, sparse, cloud, laser, single})
+        kinds[scenes::to_string(kind)] = kind;
+    return kinds;
 }
 
 }  // namespace
@@ -78,19 +107,40 @@ Command add_generate(CLI::App& app) {
     auto* building = app.add_flag("--building", a->is_building,
                                   "A building of such rooms from a laser scanner, as one cloud");
     for (auto* option : {frames, tilt, single}) building->excludes(option);
+    auto* kind =
+        app.add_option("--kind", a->kind,
+                       "A room of this family instead, scanned as --scan says, with truth.ply")
+            ->check(CLI::IsMember(scenes::kinds()))
+            ->excludes(building)
+            ->excludes(tilt)
+            ->excludes(single);
+    app.add_option("--scan", a->scan.kind,
+                   "walk: depth and colour frames of a hand-held camera; sparse or cloud: points\n"
+                   "fused of such; laser: points from stations; single: one frame without its pose")
+        ->needs(kind)
+        ->transform(CLI::CheckedTransformer(scan_kinds()))
+        ->default_str("walk");
     app.add_option("--points", a->building.points, "Points of the building")
         ->needs(building)
         ->check(whole_number)
         ->capture_default_str();
-    app.add_option("--spacing", a->building.spacing_m,
-                   "Metres between neighbouring points; with --points it gives the number of rooms")
-        ->needs(building)
-        ->capture_default_str();
+    auto* spacing = app.add_option(
+        "--spacing", a->building.spacing_m,
+        "Metres between neighbouring points: of a building, where it gives with --points the\n"
+        "number of rooms, or of a sparse or dense cloud");
     app.add_option("--storeys", a->building.storeys,
                    "Storeys of the building (default: one for every 40 rooms)")
         ->needs(building)
         ->check(whole_number);
-    return [a] {
+    return [a, frames, spacing, kind] {
+        if (*spacing && !a->is_building && !*kind)
+            throw Error(ErrorKind::usage, "--spacing needs --building or --kind");
+        if (*kind) {
+            a->scan.seed = a->room.seed;
+            if (*frames) a->scan.frames = a->camera.frames;
+            if (*spacing) a->scan.spacing_m = a->building.spacing_m;
+            return run_kind(*a);
+        }
         if (a->is_building) {
             a->building.seed = a->room.seed;
             a->building.varied = a->room.varied;

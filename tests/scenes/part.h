@@ -34,6 +34,7 @@ struct Part {
     double lean = 0;            // about its own x: its top goes to -y; not for lying cylinders
     double rounding = 0;        // rounded boxes only: radius of all edges and corners
     solids::Profile profile{};  // revolved ones only: about the center
+    std::array<std::uint8_t, 3> colour{200, 200, 200};  // red, green, blue in white light
 
     double volume() const;                 // closed form
     Vec3 center_of_mass() const;           // closed form, room frame

@@ -16,6 +16,7 @@ namespace topple::scenes {
 struct TrueObject {
     std::string name;
     std::string where;  // "room" | "floor" | "wall" | "table-edge" | "table-middle" | "shelf" | ...
+    bool pile = false;  // loose things that its truth does not tell apart, such as goods in a row
 };
 
 // Parts, the objects they form, what is fixed to what and what carries what. Ids are positions in
