@@ -15,24 +15,25 @@ namespace topple::fitted {
 // Platt's scaling of that.
 class BoostedTrees {
   public:
-    // json: a file of schema topple.trees/1. Throws Error(input), naming `name`, where it is none.
-    BoostedTrees(std::string_view json, const std::string& name);
+    // json: a file of schema topple.trees/1. columns: the names of what rows hold, in their order.
+    // Throws Error(input), naming `name`, where it is none, or a feature of it no column.
+    BoostedTrees(std::string_view json, const std::string& name,
+                 std::span<const std::string_view> columns);
 
-    std::span<const std::string> features() const { return features_; }
-    // The calibrated log-odds of one row of features, NaN where one is not known.
+    // The calibrated log-odds of one row, NaN where a feature is not known.
     double log_odds(std::span<const float> row) const;
 
   private:
-    // Of a split: its feature, or -1 in a leaf, whose value is `threshold`.
+    // Of a split: its column, or -1 in a leaf, whose value is `threshold`.
     struct Node {
-        std::int32_t feature = -1;
+        std::int32_t column = -1;
         float threshold = 0;  // to the left where the value is no greater
         bool missing_left = false;
         std::uint32_t left = 0, right = 0;
     };
-    void add_tree(const struct TreeArrays& tree, const std::string& name);
+    void add_tree(const struct TreeArrays& tree, std::span<const std::int32_t> column,
+                  const std::string& name);
 
-    std::vector<std::string> features_;
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> roots_;
     double baseline_ = 0, scale_ = 1, offset_ = 0;
@@ -44,9 +45,9 @@ double probability(double log_odds);
 double log_odds(double probability);
 
 // Whether a primitive is part of the room: floor, wall, ceiling or built in. Rows are
-// geometry::shell_features().
-const BoostedTrees& shell_model();
-// Whether two primitives are one solid object. Rows are graph::joint_features().
-const BoostedTrees& joint_model();
+// geometry::shell_features(); its names are the columns, always the same ones.
+const BoostedTrees& shell_model(std::span<const std::string_view> columns);
+// Whether two primitives are one solid object. Rows are graph::joint_features(), likewise.
+const BoostedTrees& joint_model(std::span<const std::string_view> columns);
 
 }  // namespace topple::fitted

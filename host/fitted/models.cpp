@@ -4,13 +4,13 @@
 
 namespace topple::fitted {
 
-const BoostedTrees& shell_model() {
-    static const BoostedTrees model(shell_model_json(), "shell.model.json");
+const BoostedTrees& shell_model(std::span<const std::string_view> columns) {
+    static const BoostedTrees model(shell_model_json(), "shell.model.json", columns);
     return model;
 }
 
-const BoostedTrees& joint_model() {
-    static const BoostedTrees model(joint_model_json(), "joint.model.json");
+const BoostedTrees& joint_model(std::span<const std::string_view> columns) {
+    static const BoostedTrees model(joint_model_json(), "joint.model.json", columns);
     return model;
 }
 

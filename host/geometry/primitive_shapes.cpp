@@ -13,7 +13,8 @@ constexpr double along = 0.8;  // cosine of 37 degrees
 std::array<double, 2> ends(std::vector<float>& values) {
     if (values.empty()) return {0, 0};
     const auto at = [&](double share) {
-        const auto nth = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+        const auto nth =
+            static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
         std::nth_element(values.begin(), values.begin() + nth, values.end());
         return static_cast<double>(values[static_cast<std::size_t>(nth)]);
     };
@@ -52,7 +53,8 @@ void find_colour(const SurfaceSamples& s, PrimitiveShape& p) {
 }  // namespace
 
 Eigen::Vector3d PrimitiveShape::face() const {
-    return normal.norm() > 0.5 ? Eigen::Vector3d(normal.normalized()) : Eigen::Vector3d(axes.col(0));
+    return normal.norm() > 0.5 ? Eigen::Vector3d(normal.normalized())
+                               : Eigen::Vector3d(axes.col(0));
 }
 
 PrimitiveShapes primitive_shapes(const SurfaceSamples& s, std::size_t primitives) {

@@ -30,14 +30,14 @@ void judge(const SurfaceSamples& samples, const StoreyHint& storey, Shell& out) 
     PrimitiveShapes shapes = primitive_shapes(samples, out.log_odds.size());
     if (std::isfinite(storey.floor_m)) shapes.low[2] = storey.floor_m;
     const std::vector<float> rows = shell_features(samples, shapes, SightLines(samples));
+    const fitted::BoostedTrees& model = fitted::shell_model(shell_feature_names());
     const std::size_t width = shell_feature_names().size();
     for (std::size_t p = 0; p < shapes.of.size(); ++p) {
         const double height = shapes.of[p].center[2];
         if (shapes.of[p].samples() == 0 || height < storey.below_m || height >= storey.top_m)
             continue;
         const auto row = std::span(rows).subspan(p * width, width);
-        out.log_odds[p] =
-            fitted::log_odds(fitted::probability(fitted::shell_model().log_odds(row)));
+        out.log_odds[p] = fitted::log_odds(fitted::probability(model.log_odds(row)));
         if (out.log_odds[p] > 0)
             out.role[p] = role_of_shape(shapes.of[p], shapes.low[2], shapes.high[2]);
     }

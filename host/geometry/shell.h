@@ -10,11 +10,11 @@
 
 namespace topple::geometry {
 
-// What of a scene is the room and not a thing in it: floor, walls, ceiling, doors, windows, and what
-// is built in.
+// What of a scene is the room and not a thing in it: floor, walls, ceiling, doors, windows, and
+// what is built in.
 struct Shell {
-    std::vector<double> log_odds;      // by primitive, that it is the room's (fitted/)
-    std::vector<Role> role;            // none where that is below 0, else by how it lies
+    std::vector<double> log_odds;  // by primitive, that it is the room's (fitted/)
+    std::vector<Role> role;        // none where that is below 0, else by how it lies
 };
 
 // samples: in the scene's frame, sorted by primitive. storeys: each is looked at by itself.

@@ -10,17 +10,55 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::array<std::string_view, 49> names{
-    "edge",           "log_area",        "area_share",     "area_of_largest", "thickness",
-    "width",          "length",          "thickness_over_edge", "up_share",   "down_share",
-    "side_share",     "normal_length",   "face_z",         "face_aligned",    "low_above_floor",
-    "high_above_floor", "below_top",     "height",         "height_share",    "level_length",
-    "length_share",   "filled",          "behind_share",   "before_share",    "behind_near_share",
-    "depth_behind",   "depth_before",    "rim_distance",   "center_rim",      "back_met_30",
-    "back_met_100",   "back_met_400",    "front_met_30",   "front_met_100",   "front_met_400",
-    "down_met_20",    "down_met_60",     "down_met_300",   "up_met_20",       "up_met_100",
-    "up_met_400",     "level_below",     "level_above",    "scene_height",    "scene_length",
-    "scene_width",    "scene_area",      "upright_share",  "tallest_upright"};
+constexpr std::array<std::string_view, 49> names{"edge",
+                                                 "log_area",
+                                                 "area_share",
+                                                 "area_of_largest",
+                                                 "thickness",
+                                                 "width",
+                                                 "length",
+                                                 "thickness_over_edge",
+                                                 "up_share",
+                                                 "down_share",
+                                                 "side_share",
+                                                 "normal_length",
+                                                 "face_z",
+                                                 "face_aligned",
+                                                 "low_above_floor",
+                                                 "high_above_floor",
+                                                 "below_top",
+                                                 "height",
+                                                 "height_share",
+                                                 "level_length",
+                                                 "length_share",
+                                                 "filled",
+                                                 "behind_share",
+                                                 "before_share",
+                                                 "behind_near_share",
+                                                 "depth_behind",
+                                                 "depth_before",
+                                                 "rim_distance",
+                                                 "center_rim",
+                                                 "back_met_30",
+                                                 "back_met_100",
+                                                 "back_met_400",
+                                                 "front_met_30",
+                                                 "front_met_100",
+                                                 "front_met_400",
+                                                 "down_met_20",
+                                                 "down_met_60",
+                                                 "down_met_300",
+                                                 "up_met_20",
+                                                 "up_met_100",
+                                                 "up_met_400",
+                                                 "level_below",
+                                                 "level_above",
+                                                 "scene_height",
+                                                 "scene_length",
+                                                 "scene_width",
+                                                 "scene_area",
+                                                 "upright_share",
+                                                 "tallest_upright"};
 
 // Rays from a primitive that say what is around it.
 constexpr std::size_t most_rays = 120;
@@ -74,10 +112,9 @@ std::array<double, 5> sides(const SurfaceSamples& s, const PrimitiveShape& p,
     const double count = static_cast<double>(std::max<std::size_t>(1, distance.size()));
     std::ranges::sort(distance);
     const auto at = [&](double share) {
-        return distance.empty()
-                   ? 0.0
-                   : distance[static_cast<std::size_t>(share *
-                                                       static_cast<double>(distance.size() - 1))];
+        return distance.empty() ? 0.0
+                                : distance[static_cast<std::size_t>(
+                                      share * static_cast<double>(distance.size() - 1))];
     };
     return {behind / count, before / count, near / count, -at(0.005), at(0.995)};
 }
@@ -124,9 +161,8 @@ std::vector<float> shell_features(const SurfaceSamples& s, const PrimitiveShapes
         }
         const double length = p.samples() ? high - low : 0;
         const double scene_length = std::abs(along[0]) * size[0] + std::abs(along[1]) * size[1];
-        const double rectangle =
-            upright ? (length + s.spacing_m) * (extent[2] + s.spacing_m)
-                    : (extent[0] + s.spacing_m) * (extent[1] + s.spacing_m);
+        const double rectangle = upright ? (length + s.spacing_m) * (extent[2] + s.spacing_m)
+                                         : (extent[0] + s.spacing_m) * (extent[1] + s.spacing_m);
         const auto [behind, before, near, depth_behind, depth_before] = sides(s, p, face);
         const auto back = met<3>(s, p, lines, -out, {0.3, 1, 4});
         const auto front = met<3>(s, p, lines, out, {0.3, 1, 4});
@@ -140,56 +176,55 @@ std::vector<float> shell_features(const SurfaceSamples& s, const PrimitiveShapes
             center_rim =
                 std::min({center_rim, p.center[a] - shapes.low[a], shapes.high[a] - p.center[a]});
         }
-        const std::array<double, names.size()> row{
-            s.spacing_m,
-            std::log(p.area_m2 + 1e-4),
-            p.area_m2 / shapes.area_m2,
-            p.area_m2 / scene.largest_m2,
-            p.spread[0],
-            p.spread[1],
-            p.spread[2],
-            p.spread[0] / s.spacing_m,
-            p.up_share,
-            p.down_share,
-            p.side_share,
-            p.normal.norm(),
-            face[2],
-            std::max(std::abs(face[0]), std::abs(face[1])),
-            p.low[2] - shapes.low[2],
-            p.high[2] - shapes.low[2],
-            shapes.high[2] - p.high[2],
-            extent[2],
-            extent[2] / size[2],
-            length,
-            length / scene_length,
-            p.area_m2 / rectangle,
-            behind,
-            before,
-            near,
-            depth_behind,
-            depth_before,
-            rim,
-            center_rim,
-            back[0],
-            back[1],
-            back[2],
-            front[0],
-            front[1],
-            front[2],
-            down[0],
-            down[1],
-            down[2],
-            up[0],
-            up[1],
-            up[2],
-            level_below,
-            level_above,
-            size[2],
-            std::max(size[0], size[1]),
-            std::min(size[0], size[1]),
-            shapes.area_m2,
-            scene.upright_m2 / shapes.area_m2,
-            scene.tallest_upright_m};
+        const std::array<double, names.size()> row{s.spacing_m,
+                                                   std::log(p.area_m2 + 1e-4),
+                                                   p.area_m2 / shapes.area_m2,
+                                                   p.area_m2 / scene.largest_m2,
+                                                   p.spread[0],
+                                                   p.spread[1],
+                                                   p.spread[2],
+                                                   p.spread[0] / s.spacing_m,
+                                                   p.up_share,
+                                                   p.down_share,
+                                                   p.side_share,
+                                                   p.normal.norm(),
+                                                   face[2],
+                                                   std::max(std::abs(face[0]), std::abs(face[1])),
+                                                   p.low[2] - shapes.low[2],
+                                                   p.high[2] - shapes.low[2],
+                                                   shapes.high[2] - p.high[2],
+                                                   extent[2],
+                                                   extent[2] / size[2],
+                                                   length,
+                                                   length / scene_length,
+                                                   p.area_m2 / rectangle,
+                                                   behind,
+                                                   before,
+                                                   near,
+                                                   depth_behind,
+                                                   depth_before,
+                                                   rim,
+                                                   center_rim,
+                                                   back[0],
+                                                   back[1],
+                                                   back[2],
+                                                   front[0],
+                                                   front[1],
+                                                   front[2],
+                                                   down[0],
+                                                   down[1],
+                                                   down[2],
+                                                   up[0],
+                                                   up[1],
+                                                   up[2],
+                                                   level_below,
+                                                   level_above,
+                                                   size[2],
+                                                   std::max(size[0], size[1]),
+                                                   std::min(size[0], size[1]),
+                                                   shapes.area_m2,
+                                                   scene.upright_m2 / shapes.area_m2,
+                                                   scene.tallest_upright_m};
         for (const double value : row) rows.push_back(static_cast<float>(value));
     }
     return rows;

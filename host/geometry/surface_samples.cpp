@@ -42,7 +42,8 @@ double find_spacing(const SurfaceSamples& s) {
         for (std::int32_t di = -1; di <= 1; ++di) {
             for (std::int32_t dj = -1; dj <= 1; ++dj) {
                 const std::array low{i + di, j + dj, k - 1};
-                auto entry = std::ranges::lower_bound(cells, low, {}, [](const auto& e) { return e.first; });
+                auto entry =
+                    std::ranges::lower_bound(cells, low, {}, [](const auto& e) { return e.first; });
                 for (; entry != cells.end() && entry->first[0] == i + di &&
                        entry->first[1] == j + dj && entry->first[2] <= k + 1;
                      ++entry) {
@@ -131,7 +132,7 @@ SurfaceSamples sample_surface(const CloudView& cloud, const Surfels& surfels,
         const double unit = 1 << 20;
         for (; last < keys.size() && keys[last].cell() == keys[first].cell(); ++last) {
             const std::size_t n = keys[last].point, s = surfels.of_point[n];
-            const std::array<double, 6> v{cloud.x[n],     cloud.y[n],     cloud.z[n],
+            const std::array<double, 6> v{cloud.x[n],    cloud.y[n],    cloud.z[n],
                                           surfels.nx[s], surfels.ny[s], surfels.nz[s]};
             for (std::size_t a = 0; a < 6; ++a) sum[a] += std::llround(v[a] * unit);
         }

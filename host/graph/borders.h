@@ -12,8 +12,8 @@ namespace topple::graph {
 // Where the seen surfaces of two primitives come near each other: each sample of the one within
 // near_m() of the other counts with the nearest of the other's. Metres, z up.
 struct Border {
-    std::int32_t a = -1, b = -1;              // primitives, a < b
-    std::uint32_t near_a = 0, near_b = 0;     // samples of each that are near the other
+    std::int32_t a = -1, b = -1;                   // primitives, a < b
+    std::uint32_t near_a = 0, near_b = 0;          // samples of each that are near the other
     double gap_least = 0, gap_20 = 0, gap_50 = 0;  // smallest, and the 20th and 50th percentile
     // Over the pairs of samples: how far both bend away from each other, (n - n').d / |d|, its mean
     // and the shares of pairs that are clearly convex or concave; n.n'; the share of pairs that lie

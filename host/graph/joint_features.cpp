@@ -21,9 +21,9 @@ constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
 // What holds for one primitive with all its borders.
 struct Node {
-    double near = 0;        // samples near any other, each counted with each
-    double borders = 0;     // how many
-    double stands = 0;      // see margin()
+    double near = 0;     // samples near any other, each counted with each
+    double borders = 0;  // how many
+    double stands = 0;   // see margin()
     double volume_m3 = 0, fill = 0;
 };
 
@@ -65,12 +65,11 @@ class Rows {
         for (std::size_t p = 0; p < nodes_.size(); ++p) {
             Node& node = nodes_[p];
             node.volume_m3 = bodies[p].volume_m3;
-            const Vector3d box =
-                (shapes.of[p].high - shapes.of[p].low).cwiseMax(samples.spacing_m);
+            const Vector3d box = (shapes.of[p].high - shapes.of[p].low).cwiseMax(samples.spacing_m);
             node.fill = node.volume_m3 / box.prod();
             if (bodies[p].voxels > 0)
-                node.stands = margin(
-                    candidate_of(contacts, bodies, ground_, {static_cast<std::int32_t>(p)}));
+                node.stands =
+                    margin(candidate_of(contacts, bodies, ground_, {static_cast<std::int32_t>(p)}));
         }
     }
 
@@ -83,7 +82,6 @@ class Rows {
         }
         return out;
     }
-
 
   private:
     struct Evidence {
@@ -174,7 +172,8 @@ void add_border(const Inputs& in, Row& row) {
     value("gap_20_over_edge", [&](const Border& x) { return x.gap_20 / in.edge; });
     value("near_share_small", [&](const Border& x) { return near_small(x) / samples(in.small); });
     value("near_share_big", [&](const Border& x) { return near_big(x) / samples(in.big); });
-    value("border_share_small", [&](const Border& x) { return near_small(x) / in.small_node.near; });
+    value("border_share_small",
+          [&](const Border& x) { return near_small(x) / in.small_node.near; });
     value("border_share_big", [&](const Border& x) { return near_big(x) / in.big_node.near; });
     value("near_area", [&](const Border& x) {
         return std::log(in.edge * in.edge * (near_small(x) + near_big(x)));
@@ -274,8 +273,7 @@ void add_solids(const Inputs& in, Row& row) {
     row("stands_small", in.small_node.stands);
     row("stands_big", in.big_node.stands);
     row("stands_both", in.union_stands);
-    row("stands_more",
-        in.union_stands - std::min(in.small_node.stands, in.big_node.stands));
+    row("stands_more", in.union_stands - std::min(in.small_node.stands, in.big_node.stands));
     row("touch_share_small", in.touch_share_small);
     row("touch_share_big", in.touch_share_big);
     row("touch_z", in.touch_z);
@@ -306,8 +304,7 @@ void Rows::add_row(std::int32_t a, std::int32_t b, const Evidence& e,
     in.small_shell = shell_[at(small)];
     in.big_shell = shell_[at(big)];
     const std::array<std::int32_t, 2> both{std::min(a, b), std::max(a, b)};
-    in.union_stands =
-        margin(candidate_of(contacts_, bodies_, ground_, {both.begin(), both.end()}));
+    in.union_stands = margin(candidate_of(contacts_, bodies_, ground_, {both.begin(), both.end()}));
     if (e.touching) {
         const auto axis = static_cast<std::size_t>(
             std::max_element(e.touching->normal.begin(), e.touching->normal.end(),

@@ -11,7 +11,7 @@ std::vector<Joint> find_joints(const geometry::SurfaceSamples& samples,
                                const ContactGraph& contacts, std::span<const physics::Body> bodies,
                                const SurfaceSeams& seams, std::span<const float> shell) {
     const JointTable table = joint_features(samples, shapes, contacts, bodies, seams, shell);
-    const fitted::BoostedTrees& model = fitted::joint_model();
+    const fitted::BoostedTrees& model = fitted::joint_model(joint_feature_names());
     const std::size_t width = joint_feature_names().size();
     std::vector<Joint> out;
     out.reserve(table.pairs.size());

@@ -50,8 +50,7 @@ std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
         const std::int32_t own = object(n);
         if (own < 0) continue;
         // Cells are sorted by (i, j, k): what is below comes right before.
-        const bool below =
-            n > 0 && cells.i[n - 1] == cells.i[n] && cells.j[n - 1] == cells.j[n];
+        const bool below = n > 0 && cells.i[n - 1] == cells.i[n] && cells.j[n - 1] == cells.j[n];
         if (below && object(n - 1) == own) continue;
         std::vector<Underside>& columns = out[static_cast<std::size_t>(own)];
         // Only the lowest of each column.

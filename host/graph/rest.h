@@ -5,13 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "graph/contact_graph.h"
 #include "core/solid_cells.h"
+#include "graph/contact_graph.h"
 #include "physics/bodies.h"
 #include "physics/landscape.h"
 
-// Standing is evidence: what was scanned stood. Where an object would fall off what was seen to hold
-// it, it is likelier that the scan missed some of that than that it was just falling.
+// Standing is evidence: what was scanned stood. Where an object would fall off what was seen to
+// hold it, it is likelier that the scan missed some of that than that it was just falling.
 namespace topple::graph {
 
 // A column of an object's cells: where it ends below, and what is under it. Voxels.

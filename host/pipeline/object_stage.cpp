@@ -89,7 +89,10 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
     });
     std::vector<graph::Joint> joints =
         stage("joints", [&] { return find_joints(parts, contacts, bodies); });
-    return {std::move(bodies), std::move(contacts), std::move(table), std::move(joints),
+    return {std::move(bodies),
+            std::move(contacts),
+            std::move(table),
+            std::move(joints),
             {parts.shell_log_odds, parts.solids->shell()}};
 }
 

@@ -22,7 +22,7 @@ struct SolidParts {
     std::vector<std::string> model;      // by primitive
     std::vector<double> shell_log_odds;  // by primitive, that it is the room's
     geometry::SurfaceSamples samples;    // sorted by primitive
-    std::vector<std::uint64_t> points;  // by primitive
+    std::vector<std::uint64_t> points;   // by primitive
     graph::SurfaceSeams seams;
     std::shared_ptr<const SolidScene> solids;
 };

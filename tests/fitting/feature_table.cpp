@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// topple_features SCAN OUT: what the fitted models see of a scan, for fit.py. Writes into the folder
-// OUT: table.json (names, counts, axes), and arrays of little-endian numbers: nodes.f32, pairs.i32,
-// joints.f32, samples.f32 (x y z, grid frame) and primitive.i32.
+// topple_features SCAN OUT: what the fitted models see of a scan, for fit.py. Writes into the
+// folder OUT: table.json (names, counts, axes), and arrays of little-endian numbers: nodes.f32,
+// pairs.i32, joints.f32, samples.f32 (x y z, grid frame) and primitive.i32.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -57,8 +57,8 @@ void run(const std::filesystem::path& scan, const std::filesystem::path& folder)
     std::vector<float> shell;
     for (const double odds : parts.shell_log_odds)
         shell.push_back(static_cast<float>(fitted::probability(odds)));
-    const graph::JointTable joints = graph::joint_features(
-        samples, shapes, weighed.contacts, weighed.bodies, parts.seams, shell);
+    const graph::JointTable joints = graph::joint_features(samples, shapes, weighed.contacts,
+                                                           weighed.bodies, parts.seams, shell);
     std::filesystem::create_directories(folder);
     std::vector<std::int32_t> pairs;
     for (const auto& [a, b] : joints.pairs) pairs.insert(pairs.end(), {a, b});
