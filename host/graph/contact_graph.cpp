@@ -14,37 +14,19 @@
 namespace topple::graph {
 namespace {
 
-// Areas seen along one axis: each line of cells along it counts once for every primitive on it, for
-// the bulk if it holds enough of its cells.
+// Areas seen along one axis: each line of cells along it counts once for every primitive on it.
 void add_silhouettes(const SolidCells& cells, std::span<const std::int32_t> u,
                      std::span<const std::int32_t> v, std::size_t axis, ContactGraph& graph) {
     std::vector<std::size_t> order(cells.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto key = [&](std::size_t n) { return std::tuple(cells.primitive[n], u[n], v[n]); };
+    const auto line = [&](std::size_t n) { return std::tuple(cells.primitive[n], u[n], v[n]); };
     std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
-    const double face = cells.voxel_m * cells.voxel_m;
-    constexpr double least_thick = 0.15;  // of the thickest
-    std::vector<double> thick;            // cells of each line of one primitive
-    const auto finish = [&](std::int32_t p) {
-        if (p < 0) return;
-        const double most = std::ranges::max(thick);
-        const auto bulk = std::ranges::count_if(
-            thick, [&](double cells_in_line) { return cells_in_line >= least_thick * most; });
-        graph.silhouette_m2[static_cast<std::size_t>(p)][axis] =
-            static_cast<double>(thick.size()) * face;
-        graph.bulk_m2[static_cast<std::size_t>(p)][axis] = static_cast<double>(bulk) * face;
-    };
+              [&](std::size_t a, std::size_t b) { return line(a) < line(b); });
     for (std::size_t n = 0; n < order.size(); ++n) {
-        const bool same_line = n > 0 && key(order[n]) == key(order[n - 1]);
-        if (n > 0 && cells.primitive[order[n]] != cells.primitive[order[n - 1]]) {
-            finish(cells.primitive[order[n - 1]]);
-            thick.clear();
-        }
-        if (!same_line) thick.push_back(0);
-        ++thick.back();
+        const std::int32_t p = cells.primitive[order[n]];
+        if (p < 0 || (n > 0 && line(order[n]) == line(order[n - 1]))) continue;
+        graph.silhouette_m2[static_cast<std::size_t>(p)][axis] += cells.voxel_m * cells.voxel_m;
     }
-    if (!order.empty()) finish(cells.primitive[order.back()]);
 }
 
 struct Columns {
@@ -238,7 +220,6 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     graph.voxel_m = cells.voxel_m;
     const auto count = static_cast<std::size_t>(primitives);
     graph.silhouette_m2.assign(count, {0, 0, 0});
-    graph.bulk_m2.assign(count, {0, 0, 0});
     graph.clearances.resize(count);
     graph.lowest_m.assign(count, std::numeric_limits<double>::infinity());
     graph.highest_m.assign(count, -std::numeric_limits<double>::infinity());

@@ -46,12 +46,9 @@ struct ContactGraph {
     std::vector<Carrying> carryings;                   // sorted by (supported, supporter)
     std::vector<Leaning> leanings;                     // sorted by (primitive, against)
     std::vector<std::array<double, 3>> silhouette_m2;  // by primitive: area seen along x, y, z
-    // The same of its bulk: without what is less than 15 % as thick along that axis as it is where
-    // it is thickest, such as the ragged columns of cells that flush neighbours leave at an edge.
-    std::vector<std::array<double, 3>> bulk_m2;
-    std::vector<std::vector<Clearance>> clearances;  // by primitive, sorted by (below, gap)
-    std::vector<double> lowest_m, highest_m;         // by primitive
-    std::vector<double> section_m2;                  // by primitive: mean level cross-section
+    std::vector<std::vector<Clearance>> clearances;    // by primitive, sorted by (below, gap)
+    std::vector<double> lowest_m, highest_m;           // by primitive
+    std::vector<double> section_m2;                    // by primitive: mean level cross-section
 
     // What carries one primitive: a range of `carryings`.
     std::span<const Carrying> carriers_of(std::int32_t primitive) const;

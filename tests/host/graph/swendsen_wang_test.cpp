@@ -210,6 +210,44 @@ TEST(SwendsenWang, EmptyGraphAndSingleNode) {
               std::vector<std::int32_t>{-1});
 }
 
+// Without a step, the start is the result.
+TEST(SwendsenWang, StartsFromTheGroupsThatAreGiven) {
+    const auto edges = complete_graph(6);
+    SwendsenWangOptions options;
+    options.anneal_steps = options.sample_steps = 0;
+    options.start = {7, 7, -3, 9, 9, -3};  // any numbers
+    const std::vector<std::int32_t> three{0, 0, 1, 2, 2, 1};
+    const std::vector<bool> none(6);
+    const Partition free = swendsen_wang_cuts(6, edges, none, {arbitrary, {}}, options);
+    EXPECT_EQ(free.label, three);
+    EXPECT_NEAR(free.energy, partition_energy(three, none), 1e-12);
+    EXPECT_EQ(free.agreement, std::vector<double>(3, 1.0));
+    // The group of a pinned node is the pinned one.
+    const std::vector<bool> pinned{false, false, false, false, true, false};
+    const Partition held = swendsen_wang_cuts(6, edges, pinned, {arbitrary, {}}, options);
+    EXPECT_EQ(held.label, (std::vector<std::int32_t>{0, 0, 1, -1, -1, 1}));
+    EXPECT_NEAR(held.energy, partition_energy(three, pinned), 1e-12);
+    // Without a start each is on its own.
+    options.start.clear();
+    EXPECT_EQ(swendsen_wang_cuts(6, edges, pinned, {arbitrary, {}}, options).label,
+              (std::vector<std::int32_t>{0, 1, 2, 3, -1, 4}));
+}
+
+// What is sampled does not depend on where the chain began.
+TEST(SwendsenWang, TheStartIsForgotten) {
+    const auto edges = complete_graph(5);
+    SwendsenWangOptions options;
+    options.sample_steps = 50000;
+    options.sample_temperature = 0.5;
+    const std::vector<bool> none(5);
+    const Partition alone = swendsen_wang_cuts(5, edges, none, {arbitrary, {}}, options);
+    options.start = {0, 0, 0, 0, 0};
+    const Partition together = swendsen_wang_cuts(5, edges, none, {arbitrary, {}}, options);
+    EXPECT_NEAR(alone.energy, together.energy, 1e-9);
+    for (std::size_t e = 0; e < edges.size(); ++e)
+        EXPECT_NEAR(alone.joined[e], together.joined[e], 0.03) << e;
+}
+
 TEST(SwendsenWang, SameSeedSameResult) {
     const auto edges = complete_graph(12);
     SwendsenWangOptions options;

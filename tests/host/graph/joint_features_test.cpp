@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "graph/joint_features.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "geometry/primitive_shapes.h"
+#include "host/graph/floor_scene.h"
+#include "host/geometry/sampled_faces.h"
+#include "kernels/device_harness.h"
+
+namespace topple::graph {
+namespace {
+
+using test::SampledFaces;
+
+// The floor, a table's top on a block, and a box on it; or the box beside the table.
+struct BoxAndTable {
+    test::FloorScene solids;
+    SampledFaces faces;
+    SurfaceSeams seams;
+    std::vector<float> shell{0.999f, 0.02f, 0.01f};
+
+    explicit BoxAndTable(double spacing_m, const Vec3& low = {0, 0, 0.4}) : faces(spacing_m) {
+        faces.face(0, {-0.8, -0.8, 0}, {1.6, 0, 0}, {0, 1.6, 0});
+        add({-0.4, -0.4, 0}, {0.4, 0.4, 0.4});
+        add(low, {low[0] + 0.2, low[1] + 0.2, low[2] + 0.2});
+        // What it stands on is not seen.
+        const geometry::SurfaceSamples& s = faces.samples;
+        faces.samples = geometry::samples_where(s, [&](std::size_t n) {
+            return s.primitive[n] == 2 || std::abs(s.z[n] - low[2]) > 1e-6 ||
+                   std::abs(s.x[n] - low[0] - 0.1) > 0.1 || std::abs(s.y[n] - low[1] - 0.1) > 0.1;
+        });
+    }
+    void add(const Vec3& low, const Vec3& high) {
+        faces.box(solids.add(test::box(low, high)), {low[0], low[1], low[2]},
+                  {high[0], high[1], high[2]});
+    }
+    JointTable table(device::Device& device) {
+        const ContactGraph contacts = solids.contacts(device);
+        return joint_features(faces.samples,
+                              geometry::primitive_shapes(faces.samples,
+                                                         static_cast<std::size_t>(solids.count)),
+                              contacts, solids.bodies(device), seams, shell);
+    }
+};
+
+double feature(const JointTable& table, std::int32_t a, std::int32_t b, std::string_view name) {
+    const auto names = joint_feature_names();
+    const auto column = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+    const auto row = static_cast<std::size_t>(std::ranges::find(table.pairs, std::pair(a, b)) -
+                                              table.pairs.begin());
+    EXPECT_LT(column, names.size()) << name;
+    EXPECT_LT(row, table.pairs.size()) << a << "-" << b;
+    if (column >= names.size() || row >= table.pairs.size()) return NAN;
+    return table.rows[row * names.size() + column];
+}
+
+class JointFeatures : public test::EachBackend {};
+TOPPLE_ON_EACH_BACKEND(JointFeatures);
+
+TEST(JointFeatureNames, AreUnique) {
+    const auto names = joint_feature_names();
+    EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
+}
+
+TEST_P(JointFeatures, OfABoxOnATableAreInClosedForm) {
+    BoxAndTable scene(0.02);
+    scene.seams.between[{1, 2}] = {.variation = 0, .pairs = 40, .flush = 10, .ledge = 4};
+    const JointTable table = scene.table(*device);
+    const std::vector<std::pair<std::int32_t, std::int32_t>> pairs{{0, 1}, {1, 2}};
+    EXPECT_EQ(table.pairs, pairs) << "the box is far above the floor";
+    ASSERT_EQ(table.rows.size(), 2 * joint_feature_names().size());
+    const auto is = [&](std::string_view name, double value, double error = 1e-3) {
+        EXPECT_NEAR(feature(table, 1, 2, name), value, error) << name;
+    };
+    is("small_on_big", 1);
+    is("big_on_small", 0);
+    is("touch_area", 0.04);
+    is("touch_share_small", 1);
+    is("touch_share_big", 0.04 / 0.64);
+    is("touch_z", -1);  // from the small one down to the big one
+    is("stands_small", 1);  // 10 cm within its support, 10 cm high
+    is("stands_big", 2);    // 40 cm within, 20 cm high
+    is("stands_both", 2, 0.3);
+    is("fill_small", 1, 0.3);  // its bounds by samples are a spacing less than the solid's
+    is("volume_small", std::log(0.008));
+    is("volume_big", std::log(0.256));
+    is("shell_small", 0.01);
+    is("shell_big", 0.02);
+    is("seam_flush", 0.25);
+    is("seam_ledge", 0.1);
+    is("seam_pairs", std::log1p(40));
+    is("area_small", std::log(5 * 0.04), 0.01);
+    is("area_ratio", std::log((0.6 + 4 * 0.32) / 0.2), 0.01);
+    is("edge", 0.02);
+    is("above_big", 0, 0.025);
+    is("plan_small", 1);
+    is("plan_big", 1 / 16.0, 0.02);
+    is("height_overlap_small", 0, 0.15);
+    is("gap_least", std::hypot(0.01, 0.01), 1e-4);  // its lowest row to the top's next samples
+    is("concave_share", 1);
+    is("rise", -0.5, 0.35);  // down from the small one
+    EXPECT_LT(feature(table, 1, 2, "convexity"), -0.5);
+    EXPECT_LT(feature(table, 1, 2, "flush_share"), 0.01);
+}
+
+// The box beside the table, 2 cm from it: both stand on the floor, and neither on the other.
+TEST_P(JointFeatures, OfBoxesSideBySide) {
+    BoxAndTable scene(0.02, {0.42, 0, 0});
+    const JointTable table = scene.table(*device);
+    EXPECT_EQ(table.pairs.size(), 3u);
+    EXPECT_EQ(feature(table, 1, 2, "small_on_big"), 0);
+    EXPECT_EQ(feature(table, 1, 2, "big_on_small"), 0);
+    EXPECT_NEAR(feature(table, 1, 2, "gap_least"), 0.02, 1e-4);
+    EXPECT_NEAR(feature(table, 1, 2, "plan_small"), 0, 0.02);
+    EXPECT_NEAR(feature(table, 1, 2, "height_overlap_small"), 1, 1e-3);
+    EXPECT_NEAR(feature(table, 1, 2, "touch_z"), 0, 1e-3);
+    EXPECT_NEAR(feature(table, 1, 2, "feet"), 0, 1e-3);
+    EXPECT_EQ(feature(table, 1, 2, "seam_pairs"), 0) << "no neighbours on the surface";
+}
+
+// What no solid is left of is no object's part.
+TEST_P(JointFeatures, LeaveOutWhatHasNoVoxels) {
+    BoxAndTable scene(0.02);
+    scene.solids.solids[2].inside = [](double, double, double) { return false; };
+    const JointTable table = scene.table(*device);
+    EXPECT_EQ(table.pairs, (std::vector<std::pair<std::int32_t, std::int32_t>>{{0, 1}}));
+}
+
+// What touches as solids, but was not seen to come near, has no border: NaN, which trees know.
+TEST_P(JointFeatures, OfAnUnseenBorderAreNotKnown) {
+    BoxAndTable scene(0.02);
+    for (std::size_t n = 0; n < scene.faces.samples.size(); ++n)
+        if (scene.faces.samples.primitive[n] == 2) scene.faces.samples.z[n] += 0.1f;
+    const JointTable table = scene.table(*device);
+    EXPECT_TRUE(std::isnan(feature(table, 1, 2, "gap_least")));
+    EXPECT_TRUE(std::isnan(feature(table, 1, 2, "convexity")));
+    EXPECT_NEAR(feature(table, 1, 2, "small_on_big"), 1, 1e-3);
+}
+
+// The same two boxes, scanned finely and coarsely.
+TEST_P(JointFeatures, HardlyDependOnTheDensityOfTheScan) {
+    for (const Vec3& low : {Vec3{0, 0, 0.4}, Vec3{0.42, 0, 0}}) {
+        const JointTable fine = BoxAndTable(0.02, low).table(*device);
+        const JointTable coarse = BoxAndTable(0.04, low).table(*device);
+        ASSERT_EQ(fine.pairs, coarse.pairs);
+        const auto same = [&](std::string_view name, double error) {
+            EXPECT_NEAR(feature(fine, 1, 2, name), feature(coarse, 1, 2, name), error) << name;
+        };
+        for (const char* name : {"area_small", "area_big", "area_ratio"}) same(name, 0.02);
+        for (const char* name : {"thickness_small", "thickness_big", "width_small", "width_big",
+                                 "length_small", "length_big", "apart", "low_small", "high_small",
+                                 "low_big", "high_big", "tops", "feet", "above_big", "length"})
+            same(name, 0.025);
+        for (const char* name : {"convexity", "concave_share", "convex_share", "border_parallel",
+                                 "rise", "plan_small", "plan_big", "height_overlap_small",
+                                 "slender_small", "place_in_small", "place_in_big"})
+            same(name, 0.2);
+        for (const char* name : {"stands_small", "stands_big", "stands_both", "touch_share_small",
+                                 "touch_z", "small_on_big", "volume_small"})
+            same(name, 1e-6);
+    }
+}
+
+}  // namespace
+}  // namespace topple::graph

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "graph/rest.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "graph/stable_objects.h"
+#include "host/graph/floor_scene.h"
+#include "kernels/device_harness.h"
+
+namespace topple::graph {
+namespace {
+
+using test::box;
+using test::FloorScene;
+
+class RestOf : public test::EachBackend {
+  protected:
+    // Of one primitive, an object by itself as each other is; the floor and `walls` are the room's.
+    Rest rest(FloorScene& scene, std::int32_t of, std::vector<std::int32_t> walls = {}) {
+        const ContactGraph contacts = scene.contacts(*device);
+        std::vector<bool> ground(static_cast<std::size_t>(scene.count));
+        std::vector<std::int32_t> object(static_cast<std::size_t>(scene.count));
+        ground[0] = true;
+        for (const std::int32_t w : walls) ground[static_cast<std::size_t>(w)] = true;
+        for (std::int32_t p = 0; p < scene.count; ++p)
+            object[static_cast<std::size_t>(p)] = ground[static_cast<std::size_t>(p)] ? 0 : p;
+        const auto columns = undersides(scene.cells, object, object.size());
+        return infer_rest(candidate_of(contacts, scene.bodies(*device), ground, {of}),
+                          columns[static_cast<std::size_t>(of)], contacts, 0.01);
+    }
+    static std::array<double, 4> bounds(const Rest& rest) {
+        std::array<double, 4> out{INFINITY, INFINITY, -INFINITY, -INFINITY};
+        for (const auto& [x, y] : rest.support_polygon)
+            out = {std::min(out[0], x), std::min(out[1], y), std::max(out[2], x),
+                   std::max(out[3], y)};
+        return out;
+    }
+    static auto near(const std::array<double, 4>& b) {
+        return testing::Pointwise(testing::DoubleNear(1e-6), b);
+    }
+};
+TOPPLE_ON_EACH_BACKEND(RestOf);
+
+TEST_P(RestOf, ABoxOnTheFloorStandsOnWhatIsSeen) {
+    FloorScene scene;
+    const auto thing = scene.add(box({0, 0, 0}, {0.2, 0.2, 0.2}));
+    const Rest out = rest(scene, thing);
+    EXPECT_EQ(out.kind, RestKind::seen);
+    EXPECT_THAT(bounds(out), near({0, 0, 0.2, 0.2}));
+    EXPECT_NEAR(out.support_height_m, 0, 1e-9);
+    // All ways hold it as well: 1 of 1 + 0.3 + 0.1 + 0.03 + 0.009.
+    EXPECT_NEAR(out.probability, 1 / 1.439, 1e-3);
+}
+
+// Its underside is some centimetres above the floor but at one edge, with a seen gap.
+TEST_P(RestOf, NoiseUnderAThingIsBridged) {
+    FloorScene scene;
+    const auto thing = scene.add([](double x, double y, double z) {
+        return x > 0 && x < 0.2 && y > 0 && y < 0.2 && z < 0.3 && z > (x < 0.04 ? 0.0 : 0.06);
+    });
+    const Rest out = rest(scene, thing);
+    EXPECT_EQ(out.kind, RestKind::near);
+    EXPECT_THAT(bounds(out), near({0, 0, 0.2, 0.2}));
+    EXPECT_NEAR(out.support_height_m, 0, 1e-9);
+    EXPECT_GT(out.probability, 0.5);
+}
+
+// A board whose foot is 40 cm in front of a wardrobe, which is none of the room's.
+TEST_P(RestOf, ABoardLeansOnWhatItTouches) {
+    FloorScene scene;
+    const auto board = scene.add([](double x, double y, double z) {
+        const double at = 0.4 * (1 - z);
+        return std::abs(x) < 0.15 && std::abs(y - at) < 0.02 && z > 0 && z < 1;
+    });
+    scene.add(box({-0.4, -0.3, 0}, {0.4, -0.02, 1.1}));
+    const Rest out = rest(scene, board);
+    EXPECT_EQ(out.kind, RestKind::leaning);
+    EXPECT_LT(bounds(out)[1], 0.06) << "up to where it leans";
+    EXPECT_GT(bounds(out)[3], 0.36) << "from its foot";
+    EXPECT_GT(out.probability, 0.4);
+}
+
+// Where the candidate is held by the room's wall already, that was seen.
+TEST_P(RestOf, ABoardOnAWallLeansOnWhatIsSeen) {
+    FloorScene scene;
+    const auto board = scene.add([](double x, double y, double z) {
+        const double at = 0.4 * (1 - z);
+        return std::abs(x) < 0.15 && std::abs(y - at) < 0.02 && z > 0 && z < 1;
+    });
+    const auto wall = scene.add(box({-0.9, -0.06, 0}, {0.9, -0.02, 1.1}));
+    EXPECT_EQ(rest(scene, board, {wall}).kind, RestKind::seen);
+}
+
+// A thing in the air: what the scan shows below it does not hold it.
+TEST_P(RestOf, WhatNothingHoldsRestsWhereItIsLowest) {
+    FloorScene scene;
+    const auto thing = scene.add(box({0, 0, 0.4}, {0.2, 0.2, 0.6}));
+    const Rest out = rest(scene, thing);
+    EXPECT_EQ(out.kind, RestKind::hidden);
+    EXPECT_THAT(bounds(out), near({0, 0, 0.2, 0.2}));
+    EXPECT_NEAR(out.support_height_m, 0.4, 1e-6) << "at its foot, not on the floor below";
+    EXPECT_NEAR(out.probability, 1 / 1.3, 1e-3) << "its foot, or all of it";
+}
+
+// Only a knob of it is lowest, at a corner: all that is above may rest on something.
+TEST_P(RestOf, AFootThatIsTooSmallIsNotAllOfIt) {
+    FloorScene scene;
+    const auto thing = scene.add([](double x, double y, double z) {
+        return x > 0 && x < 0.4 && y > 0 && y < 0.4 && z < 0.6 &&
+               z > (x < 0.04 && y < 0.04 ? 0.3 : 0.4);
+    });
+    const Rest out = rest(scene, thing);
+    EXPECT_EQ(out.kind, RestKind::hidden);
+    EXPECT_THAT(bounds(out), near({0, 0, 0.4, 0.4}));
+    EXPECT_GT(out.probability, 0.9);
+}
+
+TEST_P(RestOf, WhatHasNoSolidCellsRestsOnNothing) {
+    FloorScene scene;
+    const auto thing = scene.add(box({0, 0, 0}, {0.001, 0.001, 0.001}));
+    const Rest out = rest(scene, thing);
+    EXPECT_EQ(out.kind, RestKind::none);
+    EXPECT_EQ(out.probability, 1);
+    EXPECT_TRUE(out.support_polygon.empty());
+}
+
+TEST(Undersides, AreTheLowestCellsOfEachColumn) {
+    SolidCells cells;
+    cells.voxel_m = 0.1;
+    // Column (0, 0): floor, gap of two, a chair's seat and, above air, its back; column (0, 1): its
+    // leg on the floor; column (1, 0): over nothing; (1, 1): solid of none, and the seat on it.
+    const std::vector<std::array<std::int32_t, 4>> all{{0, 0, 0, 0}, {0, 0, 3, 1}, {0, 0, 4, 1},
+                                                       {0, 0, 7, 2}, {0, 1, 0, 0}, {0, 1, 1, 2},
+                                                       {1, 0, 5, 1}, {1, 1, 2, -1}, {1, 1, 3, 1}};
+    for (const auto& [i, j, k, p] : all) {
+        cells.i.push_back(i);
+        cells.j.push_back(j);
+        cells.k.push_back(k);
+        cells.primitive.push_back(p);
+    }
+    const std::vector<std::int32_t> object{0, 1, 1};
+    const auto out = undersides(cells, object, 2);
+    const auto is = [](const Underside& u, std::array<std::int32_t, 5> of) {
+        return std::array{u.i, u.j, u.k, u.gap, u.primitive} == of;
+    };
+    ASSERT_EQ(out[0].size(), 2u);
+    EXPECT_TRUE(is(out[0][0], {0, 0, 0, -1, -1}));
+    EXPECT_TRUE(is(out[0][1], {0, 1, 0, -1, -1}));
+    ASSERT_EQ(out[1].size(), 4u);
+    EXPECT_TRUE(is(out[1][0], {0, 0, 3, 2, 0}));
+    EXPECT_TRUE(is(out[1][1], {0, 1, 1, 0, 0}));
+    EXPECT_TRUE(is(out[1][2], {1, 0, 5, -1, -1}));
+    EXPECT_TRUE(is(out[1][3], {1, 1, 3, 0, -1}));
+}
+
+TEST(RestKinds, HaveNames) {
+    EXPECT_STREQ(to_string(RestKind::seen), "seen");
+    EXPECT_STREQ(to_string(RestKind::leaning), "leaning");
+    EXPECT_STREQ(to_string(RestKind::none), "none");
+}
+
+}  // namespace
+}  // namespace topple::graph
