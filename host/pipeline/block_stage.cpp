@@ -84,18 +84,19 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
     input.frame = layout.frame;
     constexpr double below = -std::numeric_limits<double>::infinity();
     input.storeys = {{block.floor_m, below, block.top_m}};
-    GeometryStage geometry = find_primitives(device, input, quiet, stage);
+    const GeometryStage geometry = find_primitives(device, input, quiet, stage);
     const VoxelStage voxels = make_solids(device, input, geometry, layout.voxel_m, stage);
-    for (std::size_t p = 0; p < geometry.primitives.model.size(); ++p)
-        out.primitives.push_back({geometry.primitives.model[p].front(), geometry.role[p]});
+    for (std::size_t p = 0; p < voxels.number.size(); ++p)
+        if (voxels.number[p] >= 0)
+            out.primitives.push_back({geometry.primitives.model[p].front(), geometry.role[p]});
     out.cells = voxels.solids->cells();
     const geometry::Surfels& s = geometry.surfels;
-    out.seams = surface_seams(geometry, [&](std::size_t n) {
+    out.seams = surface_seams(geometry, voxels.number, [&](std::size_t n) {
         const auto at = tiles::voxel_at(layout.frame, layout.voxel_m, s.x[n], s.y[n], s.z[n]);
         return block.core.holds(at[0], at[1], at[2]);
     });
     add_states(*voxels.scene, block.core, out);
-    add_labels(points, geometry.primitive_of_point, out);
+    add_labels(points, numbered(geometry.primitive_of_point, voxels.number), out);
     return out;
 }
 
