@@ -15,11 +15,11 @@ namespace {
 // What is flat has normals whose mean is no shorter; what is level is no more than 45 degrees from
 // it; and a floor no higher above the lowest than a
 // platform is, or as large as a gallery.
-constexpr double flat = 0.7, level_cos = 0.7, platform_m = 0.5, gallery_m2 = 4;
+constexpr double flat_face = 0.7, level_cos = 0.7, platform_m = 0.5, gallery_m2 = 4;
 
 Role role_of_shape(const PrimitiveShape& p, double floor_m, double top_m) {
     const double level = p.face()[2];
-    if (p.normal.norm() < flat) return Role::fixture;
+    if (p.normal.norm() < flat_face) return Role::fixture;
     if (std::abs(level) < level_cos) return Role::wall;
     const double height = p.center[2] - floor_m;
     // Of a sheet whose sides are confused, the nearer end of the room tells.
