@@ -10,8 +10,8 @@
 namespace topple::evaluation {
 namespace {
 
-constexpr std::array<const char*, basis_count> names{"surface", "three_votes", "two_votes", "column",
-                                                     "stand",   "leg",         "gap"};
+constexpr std::array<const char*, basis_count> names{
+    "surface", "three_votes", "two_votes", "column", "stand", "leg", "gap"};
 
 }  // namespace
 
@@ -32,10 +32,10 @@ std::string table_of(const BasisCounts& counts) {
     for (std::size_t b = 0; b < basis_count; ++b) {
         const BasisCounts::Count& count = counts.basis[b];
         char line[96];
-        std::snprintf(line, sizeof(line), "%-12s %9llu %12.4f\n", names[b],
-                      static_cast<unsigned long long>(count.of),
-                      count.of > 0 ? static_cast<double>(count.right) / static_cast<double>(count.of)
-                                   : 0.0);
+        std::snprintf(
+            line, sizeof(line), "%-12s %9llu %12.4f\n", names[b],
+            static_cast<unsigned long long>(count.of),
+            count.of > 0 ? static_cast<double>(count.right) / static_cast<double>(count.of) : 0.0);
         out += line;
     }
     return out;
