@@ -56,13 +56,13 @@ struct Habit {
 };
 using enum Material;
 constexpr std::array part_habits{
-    Habit{"leaf", {leaf, leaf, leaf}},         Habit{"crown", {leaf, leaf, leaf}},
-    Habit{"trunk", {earth, wood, earth}},      Habit{"soil", {earth, dark, earth}},
-    Habit{"screen", {dark, dark, dark}},       Habit{"caster", {dark, dark, metal}},
-    Habit{"handle", {metal, metal, dark}},     Habit{"knob", {metal, dark, white}},
-    Habit{"mattress", {white, cloth, white}},  Habit{"shade", {white, cloth, any}},
-    Habit{"hob", {dark, dark, metal}},         Habit{"tap", {metal, metal, metal}},
-    Habit{"worktop", {wood, metal, dark}},     Habit{"column", {metal, dark, metal}},
+    Habit{"leaf", {leaf, leaf, leaf}},        Habit{"crown", {leaf, leaf, leaf}},
+    Habit{"trunk", {earth, wood, earth}},     Habit{"soil", {earth, dark, earth}},
+    Habit{"screen", {dark, dark, dark}},      Habit{"caster", {dark, dark, metal}},
+    Habit{"handle", {metal, metal, dark}},    Habit{"knob", {metal, dark, white}},
+    Habit{"mattress", {white, cloth, white}}, Habit{"shade", {white, cloth, any}},
+    Habit{"hob", {dark, dark, metal}},        Habit{"tap", {metal, metal, metal}},
+    Habit{"worktop", {wood, metal, dark}},    Habit{"column", {metal, dark, metal}},
 };
 constexpr std::array object_habits{
     Habit{"carton", {carton, carton, carton}}, Habit{"box", {carton, any, white}},
@@ -132,11 +132,11 @@ void paint(World& world, Random random) {
         const auto key = std::pair{part.object, part.name};
         if (!of_part.contains(key)) {
             const Habit* h = habit(part_habits, part.name);
-            of_part[key] = h != nullptr && random.chance(0.85) ? shade_of(pick(h, random), random)
-                           : uniform[n] || random.chance(0.4)
-                               ? main[n]
-                               : shade_of(pick(habit(object_habits, world.objects[n].name), random),
-                                          random);
+            of_part[key] =
+                h != nullptr && random.chance(0.85) ? shade_of(pick(h, random), random)
+                : uniform[n] || random.chance(0.4)
+                    ? main[n]
+                    : shade_of(pick(habit(object_habits, world.objects[n].name), random), random);
         }
         Rgb rgb = of_part[key];
         const double differs = random.uniform(0.96, 1.04);

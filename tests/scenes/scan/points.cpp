@@ -78,10 +78,9 @@ void smooth_among(std::vector<ColouredPoint>& points, const std::vector<Coloured
         const std::uint64_t middle = cube(p.at, radius);
         for (const std::int64_t dx : {-1, 0, 1}) {
             for (const std::int64_t dy : {-1, 0, 1}) {
-                const auto row =
-                    middle + static_cast<std::uint64_t>(
-                                 (dx * static_cast<std::int64_t>(axis_cells) + dy) *
-                                 static_cast<std::int64_t>(axis_cells));
+                const auto row = middle + static_cast<std::uint64_t>(
+                                              (dx * static_cast<std::int64_t>(axis_cells) + dy) *
+                                              static_cast<std::int64_t>(axis_cells));
                 auto k = std::lower_bound(order.begin(), order.end(), Keyed{row - 1, 0});
                 for (; k != order.end() && k->key <= row + 1; ++k) {
                     const Vec3& q = among[k->at].at;
@@ -99,8 +98,8 @@ void smooth_among(std::vector<ColouredPoint>& points, const std::vector<Coloured
 void tear_holes(std::vector<ColouredPoint>& points, unsigned count, double least_radius,
                 double most_radius, Random& random) {
     for (unsigned n = 0; n < count && !points.empty(); ++n) {
-        const auto middle = static_cast<std::size_t>(random.uniform() *
-                                                     static_cast<double>(points.size()));
+        const auto middle =
+            static_cast<std::size_t>(random.uniform() * static_cast<double>(points.size()));
         const Vec3 at = points[middle].at;
         const double radius = random.uniform(least_radius, most_radius);
         std::erase_if(points, [&](const ColouredPoint& p) {

@@ -37,8 +37,8 @@ std::uint32_t RayCaster::build(std::size_t first, std::size_t last) {
         }
     }
     const auto node = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.push_back({box, static_cast<std::uint32_t>(first),
-                      static_cast<std::uint32_t>(last - first)});
+    nodes_.push_back(
+        {box, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last - first)});
     if (last - first <= leaf_size) return node;
     std::size_t axis = 0;
     for (std::size_t a = 1; a < 3; ++a) {

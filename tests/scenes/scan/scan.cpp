@@ -129,8 +129,8 @@ class Scanner {
                     light.exposure *= Random(options_.seed, 9000 + n).uniform(0.93, 1.07);
                     shot.view =
                         look(caster_, k, poses[n], light, Random(options_.seed, 10000 + 2 * n));
-                    shot.depth = rough_depth(shot.view, k, sensor,
-                                             Random(options_.seed, 10001 + 2 * n));
+                    shot.depth =
+                        rough_depth(shot.view, k, sensor, Random(options_.seed, 10001 + 2 * n));
                 }
             };
             {
@@ -221,8 +221,9 @@ class Scanner {
     void single() {
         const bool large = random_.chance(0.5);
         const double focal = random_.uniform(0.82, 0.95);
-        scan_.intrinsics = large ? Intrinsics{640, 480, 640 * focal, 640 * focal, 319.5, 239.5, 1000}
-                                 : Intrinsics{320, 240, 320 * focal, 320 * focal, 159.5, 119.5, 1000};
+        scan_.intrinsics = large
+                               ? Intrinsics{640, 480, 640 * focal, 640 * focal, 319.5, 239.5, 1000}
+                               : Intrinsics{320, 240, 320 * focal, 320 * focal, 159.5, 119.5, 1000};
         const Mat4 pose = best_view(world_, caster_, random_);
         scan_.world_to_scan = inverse(pose);
         shoot({pose}, scan_.intrinsics, any_sensor(random_), [&](std::size_t, Shot& shot) {
@@ -307,8 +308,8 @@ class Scanner {
                 double t = hit.distance + noise * random_.normal();
                 if (last > 0.4 && std::abs(last - hit.distance) > 0.05 && random_.chance(mixed))
                     t += random_.uniform() * (last - hit.distance);
-                scan_.cloud.push_back({moved(scan_.world_to_scan, at(t)),
-                                       light_.shade(part, normal, p, random_)});
+                scan_.cloud.push_back(
+                    {moved(scan_.world_to_scan, at(t)), light_.shade(part, normal, p, random_)});
             }
         }
         note(points);
@@ -331,8 +332,8 @@ Scan scan(const World& world, const ScanOptions& options) {
         throw Error(ErrorKind::usage,
                     "--frames " + std::to_string(options.frames) + ": expected 1 to 10000");
     if (options.spacing_m != 0 && !(options.spacing_m >= 0.002 && options.spacing_m <= 0.5))
-        throw Error(ErrorKind::usage, "--spacing " + std::to_string(options.spacing_m) +
-                                          ": expected 0.002 to 0.5 m");
+        throw Error(ErrorKind::usage,
+                    "--spacing " + std::to_string(options.spacing_m) + ": expected 0.002 to 0.5 m");
     return Scanner(world, options).take();
 }
 

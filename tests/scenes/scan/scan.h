@@ -30,10 +30,10 @@ struct ScanOptions {
 
 struct Scan {
     Intrinsics intrinsics;
-    std::vector<DepthFrame> frames;           // in the scan's frame
-    std::vector<std::vector<Colour>> colour;  // of each frame's pixels
-    std::vector<ColouredPoint> cloud;         // in the scan's frame; of clouds only
-    std::vector<LabelledPoint> truth;         // surfaces in view, in the scan's frame
+    std::vector<DepthFrame> frames;                  // in the scan's frame
+    std::vector<std::vector<Colour>> colour;         // of each frame's pixels
+    std::vector<ColouredPoint> cloud;                // in the scan's frame; of clouds only
+    std::vector<LabelledPoint> truth;                // surfaces in view, in the scan's frame
     double truth_m = 0.01, building_truth_m = 0.03;  // edges of the cubes that hold one truth point
     Mat4 world_to_scan{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 };

@@ -17,7 +17,8 @@ double dot(const Vec3& a, const Vec3& b) {
 double mottle(const Vec3& p) {
     std::uint64_t h = 0;
     for (const double a : p)
-        h = scatter(h + static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(a / 0.04))));
+        h = scatter(h +
+                    static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(a / 0.04))));
     return static_cast<double>(h >> 11) * 0x1p-52 - 1;
 }
 
@@ -25,8 +26,7 @@ double mottle(const Vec3& p) {
 
 Colour Light::shade(const Part& part, const Vec3& normal, const Vec3& at, Random& random) const {
     const double facing = std::max(0.0, dot(normal, direction));
-    const double factor =
-        exposure * (ambient + (1 - ambient) * facing) * (1 + 0.05 * mottle(at));
+    const double factor = exposure * (ambient + (1 - ambient) * facing) * (1 + 0.05 * mottle(at));
     Colour out{};
     for (std::size_t a = 0; a < 3; ++a) {
         const double value = factor * part.colour[a] + grain * random.normal();
@@ -109,8 +109,8 @@ std::vector<float> rough_depth(const ExactView& view, const Intrinsics& k, const
                               above = at - (v > 0 ? w : 0), below = at + (v + 1 < h ? w : 0);
             if (far_apart(left, right) || far_apart(above, below)) {
                 if (drawn_edge < sensor.lost_edges) continue;
-                const double other = std::max({view.depth[left], view.depth[right],
-                                               view.depth[above], view.depth[below]});
+                const double other = std::max(
+                    {view.depth[left], view.depth[right], view.depth[above], view.depth[below]});
                 if (drawn_fly < sensor.flying && other < sensor.most_m) z += share * (other - z);
             }
             const double beyond = std::max(0.0, z - 0.4);

@@ -149,8 +149,8 @@ void order(const FreePlaces& free, std::vector<int>& places) {
         const Vec3 here = free.place(places[n - 1]);
         const auto from = places.begin() + static_cast<std::ptrdiff_t>(n);
         std::iter_swap(from, std::min_element(from, places.end(), [&](int a, int b) {
-            return distance(free.place(a), here) < distance(free.place(b), here);
-        }));
+                           return distance(free.place(a), here) < distance(free.place(b), here);
+                       }));
     }
 }
 
@@ -229,9 +229,8 @@ std::vector<Mat4> hand_held_walk(const World& world, const RayCaster& caster, un
         const auto path = n == 0 ? std::vector<int>{passed[0]} : free.way(passed[n - 1], passed[n]);
         for (std::size_t k = n == 0 ? 0 : 1; k < path.size(); ++k) {
             way.push_back(free.place(path[k]));
-            const double share = n == 0 ? 1
-                                        : static_cast<double>(k) /
-                                              static_cast<double>(path.size() - 1);
+            const double share =
+                n == 0 ? 1 : static_cast<double>(k) / static_cast<double>(path.size() - 1);
             const Vec3 before = n == 0 ? at : gaze[gaze.size() - (k > 0 ? k : 1)];
             Vec3 toward{};
             for (std::size_t a = 0; a < 3; ++a)
