@@ -31,9 +31,9 @@ std::vector<Result> measure_fields(device::Device& device, const StageScene& sce
     std::vector<std::pair<std::string, double>> timings;
     ParseOptions options;
     StageClock clock(timings, options);
-    GeometryStage geometry = scene.geometry;
-    VoxelStage voxels = make_solids(device, scene.ingested, geometry, stage_voxel_m, clock);
-    const SolidParts parts = solid_parts(geometry, voxels);
+    const VoxelStage voxels =
+        make_solids(device, scene.ingested, scene.geometry, stage_voxel_m, clock);
+    const SolidParts parts = solid_parts(scene.geometry, voxels);
     const ObjectStage objects = find_objects(device, parts, options, clock);
     std::vector<Result> out;
     for (const Field& field : fields) {

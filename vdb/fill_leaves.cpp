@@ -4,12 +4,49 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <unordered_map>
 #include <utility>
 
 namespace topple::vdb {
 namespace {
 
 using Leaf = LeafTable::Leaf;
+
+using Bits = std::array<std::uint64_t, 8>;
+constexpr std::uint64_t whole = ~std::uint64_t{0};
+constexpr Bits all{whole, whole, whole, whole, whole, whole, whole, whole};
+
+// Of the 64 lines of voxels of a leaf along an axis: those all of whose voxels can be filled, and
+// those whose first or last one can.
+struct Lines {
+    std::uint64_t through = 0, first = 0, last = 0;
+};
+Lines lines_of(const Bits& bits, int axis) {
+    Lines out;
+    if (axis == 0) {
+        out = {whole, bits[0], bits[7]};
+        for (const std::uint64_t word : bits) out.through &= word;
+        return out;
+    }
+    for (std::uint32_t x = 0; x < 8; ++x) {
+        std::uint64_t through = 0xff, first = bits[x] & 0xff, last = bits[x] >> 56;
+        if (axis == 2) through = first = last = 0;
+        for (std::uint32_t y = 0; y < 8; ++y) {
+            const std::uint64_t row = bits[x] >> (8 * y) & 0xff;  // by z
+            if (axis == 1) {
+                through &= row;
+            } else {
+                through |= std::uint64_t{row == 0xff} << y;
+                first |= (row & 1) << y;
+                last |= (row >> 7) << y;
+            }
+        }
+        out.through |= through << (8 * x);
+        out.first |= first << (8 * x);
+        out.last |= last << (8 * x);
+    }
+    return out;
+}
 
 class FillLeaves {
   public:
@@ -23,10 +60,11 @@ class FillLeaves {
           wanted_(table_.box_size(), false) {
         for (std::uint64_t n = 0; n < kind_.size(); ++n) {
             const Leaf leaf = table_.leaf_at(n);
-            if (uniformly_empty(state_, leaf))
-                kind_[n] = Kind::empty;
-            else if (state_.probeConstLeaf(origin_of(leaf)))
-                kind_[n] = Kind::mixed;
+            const auto* states = state_.probeConstLeaf(origin_of(leaf));
+            kind_[n] = states                          ? Kind::mixed
+                       : uniformly_empty(state_, leaf) ? Kind::empty
+                                                       : Kind::unknown;
+            if (states) mixed_.emplace(n, fillable(leaf, states));
         }
     }
 
@@ -80,11 +118,27 @@ class FillLeaves {
         return index({table_.low[0] + n[0], table_.low[1] + n[1], table_.low[2] + n[2]});
     }
 
-    // Whether all of it lies below what is filled.
-    bool sunk(const Leaf& leaf) const { return leaf[2] * 8 + 7 < lowest_; }
+    // The voxels of a leaf that can be filled: bit y * 8 + z of word x. states: null where nobody
+    // saw any of it.
+    Bits fillable(const Leaf& leaf, const StateLeaf* states) const {
+        Bits bits{};
+        for (std::uint32_t v = 0; v < 512; ++v) {
+            const bool unseen =
+                !states || states->getValue(v) == static_cast<std::int32_t>(State::invisible);
+            if (unseen && leaf[2] * 8 + static_cast<std::int32_t>(v & 7) >= lowest_)
+                bits[v >> 6] |= std::uint64_t{1} << (v & 63);
+        }
+        return bits;
+    }
+    Bits fillable(std::size_t n) const {
+        if (kind_[n] == Kind::mixed) return mixed_.at(n);
+        const Leaf leaf = table_.leaf_at(n);
+        if (leaf[2] * 8 >= lowest_) return all;
+        return fillable(leaf, nullptr);
+    }
 
     void add(std::size_t n) {
-        if (kind_[n] == Kind::empty || sunk(table_.leaf_at(n))) return;
+        if (kind_[n] == Kind::empty || fillable(n) == Bits{}) return;
         candidate_[n] = wanted_[n] = true;
     }
 
@@ -158,25 +212,6 @@ class FillLeaves {
         }
     }
 
-    // Whether no ray passes the leaf along the axis.
-    bool blocks(const Leaf& leaf, int axis) const {
-        const auto* values = state_.probeConstLeaf(origin_of(leaf));
-        if (!values) return false;
-        constexpr std::array<std::uint32_t, 3> stride{64, 8, 1};
-        const std::uint32_t along = stride[static_cast<std::size_t>(axis)];
-        for (std::uint32_t v = 0; v < 512; ++v) {
-            if (v / along % 8 != 0) continue;
-            bool open = true;
-            for (std::uint32_t step = 0; open && step < 8; ++step) {
-                const std::uint32_t at = v + step * along;
-                open = values->getValue(at) == static_cast<std::int32_t>(State::invisible) &&
-                       leaf[2] * 8 + static_cast<std::int32_t>(at & 7) >= lowest_;
-            }
-            if (open) return false;
-        }
-        return true;
-    }
-
     // What the rays of candidates cross along an axis.
     void add_lines(int axis) {
         const auto a = static_cast<std::size_t>(axis);
@@ -197,44 +232,37 @@ class FillLeaves {
     // Of one line of leaves, one way. Leaves that nobody saw count only if something follows.
     void add_line(Leaf leaf, int axis, std::int32_t way) {
         const auto a = static_cast<std::size_t>(axis);
-        std::vector<std::size_t>& passed = passed_;
-        passed.clear();
+        passed_.clear();
         const auto take_passed = [&] {
-            for (const std::size_t n : passed) wanted_[n] = true;
-            passed.clear();
+            for (const std::size_t n : passed_) wanted_[n] = true;
+            passed_.clear();
         };
-        bool ray = false;
+        std::uint64_t rays = 0;  // by line of voxels
         for (; table_.in_box(leaf); leaf[a] += way) {
             const std::size_t n = index(leaf);
             if (kind_[n] == Kind::empty) {
                 take_passed();
-                ray = false;
+                rays = 0;
                 continue;
             }
-            if (kind_[n] == Kind::unknown && sunk(leaf)) {  // rays end in it, and saw nothing
-                passed.clear();
-                ray = false;
-                continue;
-            }
-            if (ray) passed.push_back(n);
-            if (kind_[n] == Kind::mixed && ray) {
-                take_passed();
-                ray = !blocks(leaf, axis);
-            }
-            if (candidate_[n]) {
-                take_passed();
-                ray = true;
-            }
-        }
-        if (!passed.empty() && (uniformly_empty(state_, leaf) || table_.index_of(leaf) >= 0))
+            if (rays == 0 && !candidate_[n]) continue;
+            if (rays != 0) passed_.push_back(n);
+            const Lines lines = lines_of(fillable(n), axis);
+            if ((rays & ~lines.through) != 0) take_passed();
+            rays &= lines.through;
+            if (!candidate_[n]) continue;
             take_passed();
+            rays |= way > 0 ? lines.last : lines.first;
+        }
+        if (uniformly_empty(state_, leaf) || table_.index_of(leaf) >= 0) take_passed();
     }
 
     const VoxelScene::Grids& g_;
     const LeafTable& table_;
     openvdb::Int32Grid::ConstAccessor state_;
     std::int32_t lowest_;
-    std::vector<Kind> kind_;  // of the leaves in the table's box
+    std::vector<Kind> kind_;                       // of the leaves in the table's box
+    std::unordered_map<std::size_t, Bits> mixed_;  // what can be filled of leaves of that kind
     std::vector<bool> candidate_, wanted_;
     std::vector<std::size_t> passed_;
 };

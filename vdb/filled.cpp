@@ -47,9 +47,9 @@ std::vector<std::uint32_t> cells_of(const VoxelScene::Grids& g,
     return cells;
 }
 
-// Words for each voxel that is swept: its cell and what becomes of it, on host and device, and six
-// hits.
-constexpr std::uint64_t sweep_words = 10;
+// Words for each voxel that is swept: its cell, six hits and what becomes of it on the device; that
+// and why on the host.
+constexpr std::uint64_t sweep_words = 9;
 
 void check_memory(const device::Device& device, const VoxelScene::Grids& g, std::uint64_t leaves) {
     const std::uint64_t bytes = leaves * 512 * sizeof(std::uint32_t) * sweep_words;
@@ -105,14 +105,21 @@ Runs runs_along(const VoxelScene::Grids& g, const std::vector<LeafTable::Leaf>& 
     return runs;
 }
 
-std::vector<std::uint32_t> sweep_and_vote(device::Device& device, const VoxelScene::Grids& g,
-                                          const std::vector<LeafTable::Leaf>& leaves,
-                                          std::span<const std::uint32_t> cells,
-                                          const FillOptions& options) {
-    const device::Buffer<std::uint32_t> cell_words(device, cells, "fill cells");
+// By voxel of the leaves.
+struct Votes {
+    std::vector<std::uint16_t> taken;  // as six_fill_vote says it
+    std::vector<Basis> basis;          // of those
+};
+Votes sweep_and_vote(device::Device& device, const VoxelScene::Grids& g,
+                     const std::vector<LeafTable::Leaf>& leaves, std::vector<std::uint32_t> cells,
+                     const FillOptions& options) {
+    const std::size_t count = cells.size();
+    const device::Buffer<std::uint32_t> cell_words(device, std::span<const std::uint32_t>(cells),
+                                                   "fill cells");
+    cells = {};
     std::vector<device::Buffer<std::uint32_t>> hits, keep;
-    for (int side = 0; side < 6; ++side) hits.emplace_back(device, cells.size(), "fill hits");
-    const device::Buffer<std::uint32_t> filled(device, cells.size(), "filled voxels");
+    for (int side = 0; side < 6; ++side) hits.emplace_back(device, count, "fill hits");
+    const device::Buffer<std::uint32_t> filled(device, count, "filled voxels");
     device::Queue queue(device);
     for (int axis = 0; axis < 3; ++axis) {
         const Runs runs = runs_along(g, leaves, axis);
@@ -141,20 +148,41 @@ std::vector<std::uint32_t> sweep_and_vote(device::Device& device, const VoxelSce
              .stride_high = high[axis],
              .stride_low = low[axis]});
     }
-    queue.add<kernels::SixFillVote>(cells.size(),
-                                    {.cells = cell_words,
-                                     .hit_0 = hits[0],
-                                     .hit_1 = hits[1],
-                                     .hit_2 = hits[2],
-                                     .hit_3 = hits[3],
-                                     .hit_4 = hits[4],
-                                     .hit_5 = hits[5],
-                                     .filled = filled},
-                                    {.count = static_cast<std::uint32_t>(cells.size()),
-                                     .votes = options.votes,
-                                     .columns = options.columns ? 1u : 0u});
-    queue.run();
-    return filled.download();
+    // Calls use(voxel, what becomes of it), in portions that take little memory.
+    const auto vote = [&](unsigned votes, bool columns, const auto& use) {
+        queue.add<kernels::SixFillVote>(count,
+                                        {.cells = cell_words,
+                                         .hit_0 = hits[0],
+                                         .hit_1 = hits[1],
+                                         .hit_2 = hits[2],
+                                         .hit_3 = hits[3],
+                                         .hit_4 = hits[4],
+                                         .hit_5 = hits[5],
+                                         .filled = filled},
+                                        {.count = static_cast<std::uint32_t>(count),
+                                         .votes = votes,
+                                         .columns = columns ? 1u : 0u});
+        queue.run();
+        std::vector<std::uint32_t> portion;
+        for (std::size_t first = 0; first < count; first += portion.size()) {
+            portion.resize(std::min(count - first, std::size_t{1} << 20));
+            filled.download(portion, first);
+            for (std::size_t n = 0; n < portion.size(); ++n) use(first + n, portion[n]);
+        }
+    };
+    Votes out{std::vector<std::uint16_t>(count), std::vector<Basis>(count, Basis::column)};
+    vote(options.votes, options.columns, [&](std::size_t n, std::uint32_t taken) {
+        out.taken[n] = static_cast<std::uint16_t>(taken);
+    });
+    // The same with more to ask for tells what each was filled by.
+    const auto mark = [&](unsigned votes, Basis basis) {
+        vote(votes, false, [&](std::size_t n, std::uint32_t taken) {
+            if (taken > 0) out.basis[n] = basis;
+        });
+    };
+    mark(options.votes, Basis::two_votes);
+    mark(std::max(options.votes, 3u), Basis::three_votes);
+    return out;
 }
 
 }  // namespace
@@ -183,12 +211,13 @@ std::vector<Claim> filled(device::Device& device, const VoxelScene& volume,
     const auto leaves = leaves_to_fill(g, fills, options.votes, options.columns, options.lowest);
     if (leaves.empty()) return {};
     check_memory(device, g, leaves.size());
-    const auto cells = cells_of(g, leaves, fills, options.lowest);
-    const auto taken = sweep_and_vote(device, g, leaves, cells, options);
+    const Votes votes =
+        sweep_and_vote(device, g, leaves, cells_of(g, leaves, fills, options.lowest), options);
     std::vector<Claim> claims;
     in_voxel_order(leaves, [&](std::size_t leaf, std::size_t offset, const Voxel& at) {
-        const std::uint32_t by = taken[leaf * 512 + offset];
-        if (by > 0) claims.push_back({at, static_cast<std::int32_t>(by) - 1, Basis::votes});
+        const std::size_t n = leaf * 512 + offset;
+        if (votes.taken[n] == 0) return;
+        claims.push_back({at, static_cast<std::int32_t>(votes.taken[n]) - 1, votes.basis[n]});
     });
     return claims;
 }

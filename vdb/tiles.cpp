@@ -135,7 +135,7 @@ SolidCells VoxelScene::solid_cells() const {
         cells.k.push_back(voxel[2]);
         cells.primitive.push_back(primitive->getValue(offset));
         const bool seen = state->getValue(offset) == static_cast<std::int32_t>(State::surface);
-        cells.basis.push_back(seen ? Basis::surface : Basis::votes);
+        cells.basis.push_back(seen ? Basis::surface : Basis::two_votes);
     });
     return cells;
 }

@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "evaluation/bases.h"
 #include "evaluation/groupings.h"
 #include "evaluation/joint_weights.h"
 #include "evaluation/pictures.h"
@@ -25,7 +26,7 @@ struct EvaluateArguments {
     std::string backend = "auto", out = "evaluation";
     evaluation::RoomOptions options;
     unsigned seeds = 8, first = 1;
-    bool groupings = false, fit_joints = false;
+    bool groupings = false, fit_joints = false, bases = false;
 };
 
 void check(const EvaluateArguments& a) {
@@ -37,9 +38,9 @@ void check(const EvaluateArguments& a) {
     in_range("--seeds", a.seeds, 1000);
     in_range("--frames", a.options.camera.frames, 1000);
     check_options(a.options.parse);
-    if ((a.groupings || a.fit_joints) && a.options.camera.single) {
+    if ((a.groupings || a.fit_joints || a.bases) && a.options.camera.single) {
         throw Error(ErrorKind::usage,
-                    "--single: --groupings and --fit-joints take rooms of several frames");
+                    "--single: --groupings, --fit-joints and --bases take rooms of several frames");
     }
 }
 
@@ -87,6 +88,17 @@ void compare_groupings(EvaluateArguments& a) {
     write(std::filesystem::path(a.out) / "groupings.txt", table);
 }
 
+void judge_bases(EvaluateArguments& a) {
+    evaluation::BasisCounts counts;
+    for_each_room(a, [&] {
+        const evaluation::RoomParts room = evaluation::scan_parts(a.options);
+        evaluation::add_voxels(room.world, *room.solids, room.axes, counts);
+    });
+    const std::string table = evaluation::table_of(counts);
+    std::fputs(table.c_str(), stdout);
+    write(std::filesystem::path(a.out) / "bases.txt", table);
+}
+
 void judge_parses(EvaluateArguments& a) {
     const std::filesystem::path out = a.out;
     std::vector<evaluation::RoomScore> scores;
@@ -118,6 +130,8 @@ int run(EvaluateArguments& a) {
             print_weights(a);
         } else if (a.groupings) {
             compare_groupings(a);
+        } else if (a.bases) {
+            judge_bases(a);
         } else {
             judge_parses(a);
         }
@@ -148,6 +162,9 @@ Command add_evaluate(CLI::App& app) {
         "Table 3 instead: the same primitives grouped by each joint's looks, greedily, and by SWC");
     app.add_flag("--fit-joints", a->fit_joints,
                  "Fit the weights of the first of these to the rooms, and print them")
+        ->excludes(groupings);
+    app.add_flag("--bases", a->bases,
+                 "How often what each rule of completion takes to be solid is solid, instead")
         ->excludes(groupings);
     app.add_flag("--single", a->options.camera.single,
                  "One frame of each room, without its pose, as in the paper's 6.1 and 6.2");

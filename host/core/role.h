@@ -8,7 +8,8 @@
 namespace topple {
 
 // What a primitive is to the room: a part of its shell, which stays where it is, or none.
-enum class Role : std::uint8_t { none, floor, wall, ceiling };
+// A fixture is built in: a counter, a wall cabinet, a radiator.
+enum class Role : std::uint8_t { none, floor, wall, ceiling, fixture };
 
 constexpr bool in_shell(Role role) {
     return role != Role::none;

@@ -2,11 +2,15 @@
 #include "geometry/fragments.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
+
+#include "geometry/algebraic_model.h"
+#include "geometry/split.h"
 
 namespace topple::geometry {
 namespace {
@@ -104,6 +108,50 @@ void join_protrusions(const Surfels& s, std::vector<bool>& solid, PrimitiveSet& 
     }
 }
 
+// Whether the surface of one of these faces explains a surfel: it lies as near as noise and the
+// rounding of an edge over a cell bring the points of a crease.
+bool explained(const Surfels& s, std::uint32_t n, const Regions& faces,
+               const std::set<std::int32_t>& among) {
+    constexpr double noise_sigmas = 2, rounding_cells = 0.25;
+    return std::ranges::any_of(among, [&](std::int32_t f) {
+        const Region& face = faces.regions[static_cast<std::size_t>(f)];
+        return std::abs(distance(face.model, position(s, n))) <=
+               noise_sigmas * face.residual_m + rounding_cells * s.cell_m;
+    });
+}
+
+// A fragment is a small thing rather than a scrap where the faces of solids around it leave more
+// than a part of it unexplained: a book on a table stands out of it by its thickness, however few
+// surfels it shows. It must have as many surfels as a region.
+void keep_small_things(const Surfels& s, std::vector<bool>& solid, const PrimitiveSet& primitives) {
+    constexpr std::size_t least = 8;
+    constexpr double unexplained_share = 0.3;
+    const std::vector<std::int32_t>& label = primitives.label;
+    const Regions& faces = primitives.faces;
+    std::vector<std::vector<std::uint32_t>> members(solid.size());
+    for (std::uint32_t n = 0; n < s.size(); ++n)
+        if (label[n] >= 0 && !solid[static_cast<std::size_t>(label[n])])
+            members[static_cast<std::size_t>(label[n])].push_back(n);
+    std::vector<std::size_t> things;
+    for (std::size_t p = 0; p < members.size(); ++p) {
+        if (members[p].size() < least) continue;
+        std::set<std::int32_t> around;
+        for (const std::uint32_t n : members[p])
+            for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
+                const std::uint32_t m = s.neighbours[k];
+                if (label[m] >= 0 && solid[static_cast<std::size_t>(label[m])] &&
+                    faces.label[m] >= 0)
+                    around.insert(faces.label[m]);
+            }
+        const auto unexplained = std::ranges::count_if(
+            members[p], [&](std::uint32_t n) { return !explained(s, n, faces, around); });
+        if (static_cast<double>(unexplained) >
+            unexplained_share * static_cast<double>(members[p].size()))
+            things.push_back(p);
+    }
+    for (const std::size_t p : things) solid[p] = true;
+}
+
 // One ring of unlabelled surfels takes the label that most of its labelled neighbours have, the
 // lowest of equals. Returns whether any did.
 bool grow_labels(const Surfels& s, std::vector<std::int32_t>& label) {
@@ -137,6 +185,7 @@ void absorb_fragments(const Surfels& surfels, std::uint64_t least_surfels,
     std::vector<bool> solid;
     for (const std::uint64_t s : size) solid.push_back(s >= least_surfels);
     join_protrusions(surfels, solid, primitives);
+    keep_small_things(surfels, solid, primitives);
     // Each round takes in the fragments that touch a solid; what they touched in turn is next.
     for (;;) {
         std::map<std::int32_t, std::pair<std::uint64_t, std::int32_t>>

@@ -12,18 +12,20 @@
 namespace topple::geometry {
 namespace {
 
-// What is level is no more than 45 degrees from it, and a floor no higher above the lowest than a
+// What is flat has normals whose mean is no shorter; what is level is no more than 45 degrees from
+// it; and a floor no higher above the lowest than a
 // platform is, or as large as a gallery.
-constexpr double level_cos = 0.7, platform_m = 0.5, gallery_m2 = 4;
+constexpr double flat_face = 0.7, level_cos = 0.7, platform_m = 0.5, gallery_m2 = 4;
 
 Role role_of_shape(const PrimitiveShape& p, double floor_m, double top_m) {
     const double level = p.face()[2];
+    if (p.normal.norm() < flat_face) return Role::fixture;
     if (std::abs(level) < level_cos) return Role::wall;
     const double height = p.center[2] - floor_m;
     // Of a sheet whose sides are confused, the nearer end of the room tells.
     if (level < 0 && top_m - p.center[2] < height) return Role::ceiling;
     if (height < platform_m || (level > 0 && p.area_m2 >= gallery_m2)) return Role::floor;
-    return Role::wall;
+    return Role::fixture;
 }
 
 void judge(const SurfaceSamples& samples, const StoreyHint& storey, Shell& out) {

@@ -14,19 +14,39 @@
 namespace topple::graph {
 namespace {
 
+// Sorts places in `key` by their key, of equal ones in the order in which they come. Linear in the
+// places and the range of keys.
+void sort_by(std::span<const std::int32_t> key, std::vector<std::size_t>& places) {
+    if (key.empty()) return;
+    const auto [low, high] = std::ranges::minmax(key);
+    std::vector<std::size_t> first(static_cast<std::size_t>(std::int64_t{high} - low) + 2, 0);
+    const auto slot = [&](std::size_t n) {
+        return static_cast<std::size_t>(std::int64_t{key[n]} - low);
+    };
+    for (const std::size_t n : places) ++first[slot(n) + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<std::size_t> sorted(places.size());
+    for (const std::size_t n : places) sorted[first[slot(n)]++] = n;
+    places = std::move(sorted);
+}
+
 // Areas seen along one axis: each line of cells along it counts once for every primitive on it.
 void add_silhouettes(const SolidCells& cells, std::span<const std::int32_t> u,
                      std::span<const std::int32_t> v, std::size_t axis, ContactGraph& graph) {
     std::vector<std::size_t> order(cells.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
+    for (const auto values : {v, u, std::span<const std::int32_t>(cells.primitive)})
+        sort_by(values, order);
     const auto line = [&](std::size_t n) { return std::tuple(cells.primitive[n], u[n], v[n]); };
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return line(a) < line(b); });
+    std::vector<std::uint64_t> lines(graph.silhouette_m2.size());
     for (std::size_t n = 0; n < order.size(); ++n) {
         const std::int32_t p = cells.primitive[order[n]];
-        if (p < 0 || (n > 0 && line(order[n]) == line(order[n - 1]))) continue;
-        graph.silhouette_m2[static_cast<std::size_t>(p)][axis] += cells.voxel_m * cells.voxel_m;
+        if (p >= 0 && (n == 0 || line(order[n]) != line(order[n - 1])))
+            ++lines[static_cast<std::size_t>(p)];
     }
+    for (std::size_t p = 0; p < lines.size(); ++p)
+        graph.silhouette_m2[p][axis] =
+            static_cast<double>(lines[p]) * (cells.voxel_m * cells.voxel_m);
 }
 
 struct Columns {

@@ -124,7 +124,13 @@ Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Bo
             std::ranges::lower_bound(joints, std::pair(pair.a, pair.b), {},
                                      [](const Joint& j) { return std::pair(j.a, j.b); });
         const bool known = at != joints.end() && at->a == pair.a && at->b == pair.b;
-        out.pair_probability.push_back(known ? fitted::probability(at->log_odds) : 0);
+        // All of the room is one.
+        const auto room = [&](std::int32_t p) {
+            return fitted::probability(shell.log_odds[static_cast<std::size_t>(p)]);
+        };
+        const double both = room(pair.a) * room(pair.b);
+        const double joint = known ? fitted::probability(at->log_odds) : 0;
+        out.pair_probability.push_back(both + (1 - both) * joint);
     }
     return out;
 }

@@ -109,11 +109,11 @@ void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& sc
     }
 }
 
-void add_points(Ingested& input, const GeometryStage& geometry, const ObjectStage& objects,
-                Scene& scene) {
+void add_points(Ingested& input, const GeometryStage& geometry, const VoxelStage& voxels,
+                const ObjectStage& objects, Scene& scene) {
     ScenePoints& out = scene.points;
     out.index = std::move(input.index);
-    out.primitive = geometry.primitive_of_point;
+    out.primitive = numbered(geometry.primitive_of_point, voxels.number);
     out.region = geometry.region_of_point;
     const geometry::Surfels& s = geometry.surfels;
     const std::size_t count = input.cloud.size();
@@ -253,14 +253,14 @@ void add_exposures(const SafetyStage& safety, const SolidCells& cells, vdb::Voxe
         if (!d.exposure.empty()) voxels.add_field(d.name, cells.i, cells.j, cells.k, d.exposure);
 }
 
-void assemble_points(Ingested& input, const GeometryStage& geometry, const SolidParts& parts,
-                     const ObjectStage& objects, const SafetyStage& safety, vdb::VoxelScene& voxels,
+void assemble_points(Ingested& input, const GeometryStage& geometry, const VoxelStage& voxels,
+                     const SolidParts& parts, const ObjectStage& objects, const SafetyStage& safety,
                      Scene& scene) {
-    add_points(input, geometry, objects, scene);
-    voxels.set_objects(objects.object_of_primitive);
-    scene.solid =
-        vdb::solid_voxels(voxels.frame(), parts.solids->with_strays(), objects.object_of_primitive);
-    add_exposures(safety, parts.solids->cells(), voxels);
+    add_points(input, geometry, voxels, objects, scene);
+    voxels.scene->set_objects(objects.object_of_primitive);
+    scene.solid = vdb::solid_voxels(voxels.scene->frame(), parts.solids->with_strays(),
+                                    objects.object_of_primitive);
+    add_exposures(safety, parts.solids->cells(), *voxels.scene);
 }
 
 void take_coordinates(Ingested& input, ScenePoints& out) {

@@ -24,8 +24,8 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
 void add_exposures(const SafetyStage& safety, const SolidCells& cells, vdb::VoxelScene& voxels);
 
 // Adds the points and the solid voxels, and hands objects and fields to the voxel grids.
-void assemble_points(Ingested& input, const GeometryStage& geometry, const SolidParts& parts,
-                     const ObjectStage& objects, const SafetyStage& safety, vdb::VoxelScene& voxels,
+void assemble_points(Ingested& input, const GeometryStage& geometry, const VoxelStage& voxels,
+                     const SolidParts& parts, const ObjectStage& objects, const SafetyStage& safety,
                      Scene& scene);
 
 // The coordinates of the points: moved, where they are the input's own.

@@ -85,19 +85,21 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
     input.frame = layout.frame;
     constexpr double below = -std::numeric_limits<double>::infinity();
     input.storeys = {{block.floor_m, below, block.top_m}};
-    GeometryStage geometry = find_primitives(device, input, quiet, stage);
+    const GeometryStage geometry = find_primitives(device, input, quiet, stage);
     const VoxelStage voxels = make_solids(device, input, geometry, layout.voxel_m, stage);
-    for (std::size_t p = 0; p < geometry.primitives.model.size(); ++p)
+    for (std::size_t p = 0; p < voxels.number.size(); ++p) {
+        if (voxels.number[p] < 0) continue;
         out.primitives.push_back({geometry.primitives.model[p].front(), geometry.role[p],
                                   static_cast<float>(geometry.shell_log_odds[p])});
+    }
     out.cells = voxels.solids->cells();
     const geometry::Surfels& s = geometry.surfels;
-    out.seams = surface_seams(geometry, [&](std::size_t n) {
+    out.seams = surface_seams(geometry, voxels.number, [&](std::size_t n) {
         const auto at = tiles::voxel_at(layout.frame, layout.voxel_m, s.x[n], s.y[n], s.z[n]);
         return block.core.holds(at[0], at[1], at[2]);
     });
-    out.samples = geometry::samples_where(geometry.samples, [&](std::size_t n) {
-        const geometry::SurfaceSamples& all = geometry.samples;
+    const geometry::SurfaceSamples all = numbered(geometry.samples, voxels.number);
+    out.samples = geometry::samples_where(all, [&](std::size_t n) {
         const auto voxel = [&](float v) {
             return static_cast<std::int32_t>(std::floor(v / layout.voxel_m));
         };
@@ -105,7 +107,7 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
                block.core.holds(voxel(all.x[n]), voxel(all.y[n]), voxel(all.z[n]));
     });
     add_states(*voxels.scene, block.core, out);
-    add_labels(points, geometry.primitive_of_point, out);
+    add_labels(points, numbered(geometry.primitive_of_point, voxels.number), out);
     return out;
 }
 

@@ -59,41 +59,22 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
     return g;
 }
 
-std::vector<std::int32_t> keep_primitives(GeometryStage& g, const std::vector<bool>& keep) {
-    std::vector<std::int32_t> number(keep.size(), -1);
-    std::int32_t next = 0;
-    for (std::size_t p = 0; p < keep.size(); ++p) {
-        if (!keep[p]) continue;
-        number[p] = next;
-        const auto to = static_cast<std::size_t>(next++);
-        if (to == p) continue;
-        g.primitives.model[to] = std::move(g.primitives.model[p]);
-        g.primitives.regions[to] = std::move(g.primitives.regions[p]);
-        g.role[to] = g.role[p];
-        g.shell_log_odds[to] = g.shell_log_odds[p];
-    }
-    g.primitives.model.resize(static_cast<std::size_t>(next));
-    g.primitives.regions.resize(static_cast<std::size_t>(next));
-    g.role.resize(static_cast<std::size_t>(next));
-    g.shell_log_odds.resize(static_cast<std::size_t>(next));
-    for (auto* labels : {&g.primitives.label, &g.primitive_of_point, &g.samples.primitive}) {
-        for (std::int32_t& l : *labels) l = l < 0 ? -1 : number[static_cast<std::size_t>(l)];
-    }
-    return number;
-}
-
-graph::SurfaceSeams surface_seams(const GeometryStage& g,
+graph::SurfaceSeams surface_seams(const GeometryStage& g, std::span<const std::int32_t> number,
                                   const std::function<bool(std::size_t)>& counts) {
     const geometry::Surfels& s = g.surfels;
-    const std::vector<std::int32_t>& label = g.primitives.label;
+    const auto solid = [&](std::size_t surfel) {
+        const std::int32_t p = g.primitives.label[surfel];
+        return p < 0 ? -1 : number[static_cast<std::size_t>(p)];
+    };
     graph::SurfaceSeams out;
-    out.inside.resize(g.primitives.model.size());
+    out.inside.resize(static_cast<std::size_t>(
+        std::ranges::count_if(number, [](std::int32_t to) { return to >= 0; })));
     for (std::size_t n = 0; n < s.size(); ++n) {
-        const std::int32_t a = label[n];
+        const std::int32_t a = solid(n);
         if (a < 0 || (counts && !counts(n))) continue;
         for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
             const std::uint32_t m = s.neighbours[k];
-            const std::int32_t b = label[m];
+            const std::int32_t b = solid(m);
             if (m <= n || b < 0) continue;
             graph::Seam& seam = a == b ? out.inside[static_cast<std::size_t>(a)]
                                        : out.between[{std::min(a, b), std::max(a, b)}];

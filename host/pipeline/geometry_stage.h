@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "device/device.h"
@@ -31,13 +33,10 @@ struct GeometryStage {
 GeometryStage find_primitives(device::Device& device, const Ingested& input,
                               const ParseOptions& options, StageClock& stage);
 
-// Drops the primitives for which `keep` is false and renumbers the others in their order. Returns
-// the new number of each, -1 for the dropped.
-std::vector<std::int32_t> keep_primitives(GeometryStage& geometry, const std::vector<bool>& keep);
-
-// The seen surface inside primitives and at their seams; of all surfels, or of those that count. A
-// pair of neighbours counts with the first of the two.
+// The seen surface inside solids and at their seams; of all surfels, or of those that count. A pair
+// of neighbours counts with the first of the two. number: the solid of each primitive, -1: none.
 graph::SurfaceSeams surface_seams(const GeometryStage& geometry,
+                                  std::span<const std::int32_t> number,
                                   const std::function<bool(std::size_t)>& counts = nullptr);
 
 }  // namespace topple

@@ -88,10 +88,10 @@ ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOp
     scene.offset_m = input.own.offset_m;
     scene.notes.insert(scene.notes.end(), input.notes.begin(), input.notes.end());
 
-    GeometryStage geometry = find_primitives(device, input, options, stage);  // 2.1
+    const GeometryStage geometry = find_primitives(device, input, options, stage);  // 2.1
     if (!geometry.frame.note.empty()) scene.notes.push_back(geometry.frame.note);
     VoxelStage voxels = make_solids(device, input, geometry, voxel_m, stage);  // 2.2
-    if (geometry.primitives.model.empty()) {
+    if (voxels.solids->primitives() == 0) {
         throw Error(ErrorKind::input,
                     scene.source + ": " + std::to_string(input.cloud.size()) +
                         " points were found, but no surface of them fills the " +
@@ -104,7 +104,7 @@ ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOp
     const SafetyStage safety = assess_safety(device, parts, objects, options, stage);  // 5
     stage("assembly", [&] {
         assemble_objects(parts, objects, safety, scene);
-        assemble_points(input, geometry, parts, objects, safety, *voxels.scene, scene);
+        assemble_points(input, geometry, voxels, parts, objects, safety, scene);
         if (options.coordinates) take_coordinates(input, scene.points);
     });
     return {std::move(scene), std::move(voxels.scene), nullptr};

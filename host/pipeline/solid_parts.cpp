@@ -6,14 +6,17 @@ namespace topple {
 SolidParts solid_parts(const GeometryStage& geometry, const VoxelStage& voxels) {
     SolidParts out;
     out.frame = geometry.frame;
-    out.model = geometry.primitives.model;
-    out.shell_log_odds = geometry.shell_log_odds;
-    out.samples = geometry.samples;
+    for (std::size_t p = 0; p < voxels.number.size(); ++p) {
+        if (voxels.number[p] < 0) continue;
+        out.model.push_back(geometry.primitives.model[p]);
+        out.shell_log_odds.push_back(geometry.shell_log_odds[p]);
+    }
+    out.samples = numbered(geometry.samples, voxels.number);
     out.points.resize(out.model.size());
-    for (const std::int32_t p : geometry.primitive_of_point) {
+    for (const std::int32_t p : numbered(geometry.primitive_of_point, voxels.number)) {
         if (p >= 0) ++out.points[static_cast<std::size_t>(p)];
     }
-    out.seams = surface_seams(geometry);
+    out.seams = surface_seams(geometry, voxels.number);
     out.solids = voxels.solids;
     return out;
 }

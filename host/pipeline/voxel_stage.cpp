@@ -18,15 +18,16 @@ namespace {
 // Frames are carved in batches of this many bytes of depth, so that any number of them fits.
 constexpr std::uint64_t batch_bytes = 16u << 20;
 
-// Primitives that are solids, by their voxels.
-std::vector<bool> solids(const SolidCells& cells, std::size_t primitives) {
+// The solids among so many primitives, by their voxels, numbered in their order.
+std::vector<std::int32_t> solid_numbers(const SolidCells& cells, std::size_t primitives) {
     std::vector<std::uint64_t> voxels(primitives, 0);
     for (const std::int32_t p : cells.primitive) {
         if (p >= 0) ++voxels[static_cast<std::size_t>(p)];
     }
-    std::vector<bool> keep;
-    for (const std::uint64_t count : voxels) keep.push_back(count >= least_voxels);
-    return keep;
+    std::vector<std::int32_t> number;
+    std::int32_t next = 0;
+    for (const std::uint64_t count : voxels) number.push_back(count >= least_voxels ? next++ : -1);
+    return number;
 }
 
 // The k of the voxels in which most of the lowest storey's floor lies; the lowest number where
@@ -71,7 +72,7 @@ std::vector<std::uint8_t> unseen_below(const vdb::VolumeView& view, std::span<co
 
 // Strays are no body, and in no way.
 std::shared_ptr<const SolidScene> solid_scene(const vdb::VoxelScene& volume, SolidCells cells,
-                                              std::span<const Role> roles) {
+                                              std::vector<Role> roles) {
     cells.unseen_below = unseen_below(vdb::VolumeView(volume, cells, roles), roles);
     SolidCells near, strays;
     near.voxel_m = strays.voxel_m = cells.voxel_m;
@@ -85,8 +86,7 @@ std::shared_ptr<const SolidScene> solid_scene(const vdb::VoxelScene& volume, Sol
         to.basis.push_back(cells.basis[n]);
         to.unseen_below.push_back(cells.unseen_below[n]);
     }
-    return std::make_shared<const SolidScene>(
-        std::move(near), std::vector<Role>(roles.begin(), roles.end()), std::move(strays));
+    return std::make_shared<const SolidScene>(std::move(near), std::move(roles), std::move(strays));
 }
 
 // Returns whether the frames show the scene from around.
@@ -119,7 +119,23 @@ double voxel_for_cell(double cell_m) {
     return 2 * cell_m;
 }
 
-VoxelStage make_solids(device::Device& device, const Ingested& input, GeometryStage& geometry,
+std::vector<std::int32_t> numbered(std::span<const std::int32_t> primitive,
+                                   std::span<const std::int32_t> number) {
+    std::vector<std::int32_t> out;
+    out.reserve(primitive.size());
+    for (const std::int32_t p : primitive)
+        out.push_back(p < 0 ? -1 : number[static_cast<std::size_t>(p)]);
+    return out;
+}
+
+geometry::SurfaceSamples numbered(geometry::SurfaceSamples samples,
+                                  std::span<const std::int32_t> number) {
+    samples.primitive = numbered(samples.primitive, number);
+    geometry::sort_by_primitive(samples);
+    return samples;
+}
+
+VoxelStage make_solids(device::Device& device, const Ingested& input, const GeometryStage& geometry,
                        double voxel_m, StageClock& stage) {
     VoxelStage out;
     const vdb::VoxelFrame frame{voxel_m, geometry.frame.axes};
@@ -141,12 +157,13 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, GeometrySt
         options.ledges = ledges(geometry);
         options.map = input.space ? &*input.space : nullptr;
         vdb::complete(device, options, *out.scene, cells);
-        const std::vector<std::int32_t> number =
-            keep_primitives(geometry, solids(cells, geometry.primitives.model.size()));
-        out.scene->relabel(number);
-        for (std::int32_t& p : cells.primitive)
-            p = p < 0 ? -1 : number[static_cast<std::size_t>(p)];
-        out.solids = solid_scene(*out.scene, std::move(cells), geometry.role);
+        out.number = solid_numbers(cells, geometry.role.size());
+        out.scene->relabel(out.number);
+        cells.primitive = numbered(cells.primitive, out.number);
+        std::vector<Role> roles;
+        for (std::size_t p = 0; p < geometry.role.size(); ++p)
+            if (out.number[p] >= 0) roles.push_back(geometry.role[p]);
+        out.solids = solid_scene(*out.scene, std::move(cells), std::move(roles));
     });
     return out;
 }

@@ -3,9 +3,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "core/solid_scene.h"
 #include "device/device.h"
+#include "geometry/surface_samples.h"
 #include "pipeline/geometry_stage.h"
 #include "pipeline/ingest.h"
 #include "pipeline/stage_clock.h"
@@ -17,18 +20,26 @@ namespace topple {
 struct VoxelStage {
     std::shared_ptr<vdb::VoxelScene> scene;
     std::shared_ptr<const SolidScene> solids;
+    // Solid of each of the geometry's primitives; -1: it is a fragment, whose voxels are solid, but
+    // no primitive's. Solids keep the order of the primitives.
+    std::vector<std::int32_t> number;
 };
 
-// A solid has at least the volume of a cube of three voxels; less is a scrap that noise left, and
-// too little to tell how it stands.
+// A solid has at least the volume of a cube of three voxels; less is a fragment that noise left,
+// and too little to tell how it stands.
 constexpr std::uint64_t least_voxels = 27;
 
 // Edge of a solid voxel for a scan of this resolution: about two cells, rounded to a handy value.
 double voxel_for_cell(double cell_m);
 
-// Voxels, carving, filling and joining. Primitives too small to be solids are dropped from
-// `geometry`; their points and voxels stay, unassigned.
-VoxelStage make_solids(device::Device& device, const Ingested& input, GeometryStage& geometry,
+// Voxels, carving and completion.
+VoxelStage make_solids(device::Device& device, const Ingested& input, const GeometryStage& geometry,
                        double voxel_m, StageClock& stage);
+
+// Labels by primitive as labels by solid.
+std::vector<std::int32_t> numbered(std::span<const std::int32_t> primitive,
+                                   std::span<const std::int32_t> number);
+geometry::SurfaceSamples numbered(geometry::SurfaceSamples samples,
+                                  std::span<const std::int32_t> number);
 
 }  // namespace topple

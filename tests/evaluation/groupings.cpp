@@ -97,13 +97,13 @@ RoomParts scan_parts(const RoomOptions& options) {
     StageClock stage(timings, options.parse);
     device::Device& device = *options.parse.device;
     const Ingested input = ingest(device, folder.path(), options.parse);
-    GeometryStage geometry = find_primitives(device, input, options.parse, stage);
-    VoxelStage voxels = make_solids(device, input, geometry, options.parse.voxel_m, stage);
+    const GeometryStage geometry = find_primitives(device, input, options.parse, stage);
+    const VoxelStage voxels = make_solids(device, input, geometry, options.parse.voxel_m, stage);
     ScenePoints points;
     points.x.assign(input.cloud.x.begin(), input.cloud.x.end());
     points.y.assign(input.cloud.y.begin(), input.cloud.y.end());
     points.z.assign(input.cloud.z.begin(), input.cloud.z.end());
-    points.primitive = geometry.primitive_of_point;
+    points.primitive = numbered(geometry.primitive_of_point, voxels.number);
     std::vector<std::int32_t> part = scenes::true_parts(world, points);
     SolidParts solid = solid_parts(geometry, voxels);
     PartStage parts = weigh_parts(device, solid, options.parse, stage);

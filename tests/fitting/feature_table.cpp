@@ -71,7 +71,8 @@ void run(const std::filesystem::path& scan, const std::filesystem::path& folder)
     write(folder / "samples.f32", places);
     write(folder / "primitive.i32", samples.primitive);
     std::vector<int> structure;
-    for (const Role role : geometry.role) structure.push_back(static_cast<int>(role));
+    for (std::size_t p = 0; p < parts.model.size(); ++p)
+        structure.push_back(static_cast<int>(parts.solids->role(static_cast<std::int32_t>(p))));
     nlohmann::json about;
     about["node_names"] = geometry::shell_feature_names();
     about["joint_names"] = graph::joint_feature_names();

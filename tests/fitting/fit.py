@@ -165,8 +165,12 @@ def fit_all(tables):
         joints.append(mine[t.known_pair])
         one.append(t.is_one[t.known_pair])
         of_scan.append(np.full(t.known_pair.sum(), n))
-    _, joint_file, _ = fit(np.concatenate(joints), np.concatenate(one), np.concatenate(of_scan), tables[0].joint_names,
-                           15, 'joints')
+    rows, one, of_scan = np.concatenate(joints), np.concatenate(one), np.concatenate(of_scan)
+    # Most scans have no colours: each row counts without them, too.
+    plain = rows.copy()
+    plain[:, [k for k, name in enumerate(tables[0].joint_names) if 'colour' in name]] = np.nan
+    rows, one, of_scan = np.concatenate([rows, plain]), np.tile(one, 2), np.tile(of_scan, 2)
+    _, joint_file, _ = fit(rows, one, of_scan, tables[0].joint_names, 15, 'joints')
     write('shell.model.json', shell_file)
     write('joint.model.json', joint_file)
 
@@ -187,7 +191,8 @@ def make(arguments, kind, way, seed):
     return scan, table
 
 
-KINDS = ['plain', 'varied']
+KINDS = ['plain', 'varied', 'kitchen', 'bathroom', 'bedroom', 'living', 'office', 'shop', 'storage', 'corridor',
+         'precarious', 'tabletop']
 WAYS = ['walk', 'sparse', 'laser', 'cloud', 'single']
 
 
@@ -198,13 +203,15 @@ def main():
     parser.add_argument('--work', type=Path, required=True)
     parser.add_argument('--seeds', default='1000:1003', help='first and last seed of each kind and way')
     parser.add_argument('--kinds', nargs='+', default=KINDS)
+    parser.add_argument('--only-make', action='store_true', help='make the scans and tables, fit nothing')
     parser.add_argument('--ways', nargs='+', default=WAYS)
     arguments = parser.parse_args()
     first, last = map(int, arguments.seeds.split(':'))
     wanted = [(kind, way, seed) for seed in range(first, last + 1) for kind in arguments.kinds for way in arguments.ways]
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         made = list(pool.map(lambda w: make(arguments, *w), wanted))
-    fit_all([Table(*m) for m in made if m])
+    if not arguments.only_make:
+        fit_all([Table(*m) for m in made if m])
 
 
 if __name__ == '__main__':

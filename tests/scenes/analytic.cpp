@@ -129,7 +129,7 @@ void append(SolidCells& cells, const AnalyticSolid& solid, std::int32_t primitiv
                                    solid_at(i, j, k - 1) && solid_at(i, j, k + 1);
                 all.emplace_back(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j),
                                  static_cast<std::int32_t>(k), primitive,
-                                 inner ? Basis::votes : Basis::surface);
+                                 inner ? Basis::two_votes : Basis::surface);
             }
         }
     }

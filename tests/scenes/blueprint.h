@@ -30,6 +30,7 @@ struct Blueprint {
     std::vector<int> wall_parts;              // what is fixed to the wall behind (at y = back())
     std::vector<int> leans;                   // what touches that wall without being fixed
     bool underfoot = false;                   // may lie where people walk
+    bool pile = false;                        // see TrueObject
     std::vector<Surface> surfaces;
 
     // Each adds a part whose lowest point is at `bottom` and returns its index.

@@ -21,31 +21,11 @@ Vec3 center_of(const World& truth, const SolidVoxels& solid, std::size_t n) {
     return truth.to_room({solid.x[n], solid.y[n], solid.z[n]});
 }
 
-Share precision(const World& truth, const SolidVoxels& solid, double h, const Domain& domain) {
-    const auto all = measures(truth);
-    std::vector<std::uint8_t> verdict(solid.x.size());  // bit 0: counts, bit 1: right
-    in_parallel(verdict.size(), [&](std::size_t first, std::size_t last) {
-        for (std::size_t n = first; n < last; ++n) {
-            const Vec3 p = center_of(truth, solid, n);
-            if (domain && !domain(p)) continue;
-            bool in_room = false;
-            double near = infinity;
-            for (const Measure& m : all) {
-                if (!m.near(p, 2 * h)) continue;
-                const double d = m.at(p);
-                if (m.part().object == 0) {
-                    in_room = in_room || d < 1.5 * h;
-                } else {
-                    near = std::min(near, d);
-                }
-            }
-            if (!in_room || near < 0) verdict[n] = near <= 0.87 * h ? 3 : 1;
-        }
-    });
+Share precision(const std::vector<Verdict>& verdict) {
     std::uint64_t right = 0, used = 0;
-    for (const std::uint8_t v : verdict) {
-        used += v & 1;
-        right += v >> 1;
+    for (const Verdict v : verdict) {
+        used += v != Verdict::not_judged;
+        right += v == Verdict::right;
     }
     return share(right, used);
 }
@@ -128,9 +108,36 @@ Share recall(const World& truth, const SolidVoxels& solid, double h, const Domai
 
 }  // namespace
 
+std::vector<Verdict> verdicts(const World& truth, const SolidVoxels& solid, double h,
+                              const Domain& domain) {
+    const auto all = measures(truth);
+    std::vector<Verdict> verdict(solid.x.size(), Verdict::not_judged);
+    in_parallel(verdict.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n < last; ++n) {
+            const Vec3 p = center_of(truth, solid, n);
+            if (domain && !domain(p)) continue;
+            bool in_room = false;
+            double near = infinity;
+            for (const Measure& m : all) {
+                if (!m.near(p, 2 * h)) continue;
+                const double d = m.at(p);
+                if (m.part().object == 0) {
+                    in_room = in_room || d < 1.5 * h;
+                } else {
+                    near = std::min(near, d);
+                }
+            }
+            if (!in_room || near < 0)
+                verdict[n] = near <= 0.87 * h ? Verdict::right : Verdict::wrong;
+        }
+    });
+    return verdict;
+}
+
 VolumeScore volume_score(const World& truth, const SolidVoxels& solid, double voxel_m,
                          const Domain& domain) {
-    return {precision(truth, solid, voxel_m, domain), recall(truth, solid, voxel_m, domain)};
+    return {precision(verdicts(truth, solid, voxel_m, domain)),
+            recall(truth, solid, voxel_m, domain)};
 }
 
 }  // namespace topple::scenes

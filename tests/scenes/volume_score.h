@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "scenes/scene.h"
 #include "scenes/share.h"
@@ -18,6 +20,11 @@ struct VolumeScore {
 
 // Whether a place in the room's frame is judged at all.
 using Domain = std::function<bool(const Vec3&)>;
+
+// Of each voxel.
+enum class Verdict : std::uint8_t { not_judged, wrong, right };
+std::vector<Verdict> verdicts(const World& truth, const SolidVoxels& solid, double voxel_m,
+                              const Domain& domain = {});
 
 // Voxel centres are in the input's frame; an empty domain judges everywhere. Uses all cores; the
 // result does not depend on how many there are.

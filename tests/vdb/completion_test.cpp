@@ -163,11 +163,11 @@ TEST(Completion, ALegGoesOnToAllThatItEndsBelow) {
 }
 
 // A closed surface of a hundred metres, say of a mesh, has more unseen voxels within than memory
-// has room for: 40 bytes for each. A point for each block of its faces is enough to tell.
+// has room for: 36 bytes for each. A point for each block of its faces is enough to tell.
 TEST(Completion, WhatIsTooLargeToFillIsRefused) {
     const auto device = device::open_device("native", 2);
     const auto memory = static_cast<double>(device->info().limits.memory_bytes);
-    const auto blocks = static_cast<int>(std::cbrt(1.5 * memory / 40) / 8);
+    const auto blocks = static_cast<int>(std::cbrt(1.5 * memory / 36) / 8);
     PointCloud cloud;
     for (int axis = 0; axis < 3; ++axis) {
         for (int n = 0; n < 2 * blocks * blocks; ++n) {

@@ -41,6 +41,12 @@ struct FragmentedScene {
         for (const auto& [c, l] : label) p.label.push_back(l);
         p.model.assign(static_cast<std::size_t>(labels), "plane");
         for (std::int32_t l = 0; l < labels; ++l) p.regions.push_back({l});
+        // All faces are the floor's plane, within a centimetre.
+        Region floor;
+        floor.model.coefficients[3] = 1;
+        floor.residual_m = 0.01;
+        p.faces.label = p.label;
+        p.faces.regions.assign(static_cast<std::size_t>(labels), floor);
         return p;
     }
 };
@@ -68,7 +74,7 @@ TEST(Fragments, PiecesOfAThinLegAreOnePrimitive) {
 
 TEST(Fragments, ScrapsAlongACreaseJoinWhatTheyLieOn) {
     FragmentedScene scene = floor_of_20();
-    for (std::int32_t x = 0; x < 20; ++x) scene.label[{x, 5, 1}] = scene.label[{x, 5, 2}] = 1;
+    for (std::int32_t x = 0; x < 20; ++x) scene.label[{x, 5, 1}] = 1;
     scene.labels = 2;
     PrimitiveSet primitives = scene.primitives();
     absorb_fragments(scene.surfels(), 50, primitives);
@@ -76,9 +82,20 @@ TEST(Fragments, ScrapsAlongACreaseJoinWhatTheyLieOn) {
     for (const std::int32_t l : primitives.label) EXPECT_EQ(l, 0);
 }
 
-TEST(Fragments, WhatTouchesNothingLargerIsUnassigned) {
+TEST(Fragments, AFlatThingThatStandsOutOfTheNoiseStays) {
     FragmentedScene scene = floor_of_20();
-    for (std::int32_t z = 10; z < 30; ++z) scene.label[{3, 3, z}] = 1;
+    for (std::int32_t x = 4; x < 8; ++x)
+        for (std::int32_t y = 4; y < 8; ++y) scene.label[{x, y, 2}] = 1;
+    for (std::int32_t x = 4; x < 8; ++x) scene.label[{x, 4, 1}] = 1;
+    scene.labels = 2;
+    PrimitiveSet primitives = scene.primitives();
+    absorb_fragments(scene.surfels(), 36, primitives);
+    EXPECT_EQ(primitives.model.size(), 2u);
+}
+
+TEST(Fragments, AFewSurfelsThatTouchNothingAreUnassigned) {
+    FragmentedScene scene = floor_of_20();
+    for (std::int32_t z = 10; z < 17; ++z) scene.label[{3, 3, z}] = 1;
     scene.labels = 2;
     PrimitiveSet primitives = scene.primitives();
     absorb_fragments(scene.surfels(), 36, primitives);

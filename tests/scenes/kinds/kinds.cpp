@@ -6,6 +6,7 @@
 
 #include "scenes/furnished_room.h"
 #include "scenes/kinds/paint.h"
+#include "scenes/kinds/plans.h"
 #include "topple/error.h"
 
 namespace topple::scenes {
@@ -24,6 +25,16 @@ const std::vector<std::pair<std::string, Make>>& families() {
     static const std::vector<std::pair<std::string, Make>> list{
         {"plain", [](std::uint64_t seed) { return furnished(seed, false); }},
         {"varied", [](std::uint64_t seed) { return furnished(seed, true); }},
+        {"kitchen", make_kitchen},
+        {"bathroom", make_bathroom},
+        {"bedroom", make_bedroom},
+        {"living", make_living_room},
+        {"office", make_office},
+        {"shop", make_shop},
+        {"storage", make_storage},
+        {"corridor", make_corridor},
+        {"precarious", make_precarious},
+        {"tabletop", make_tabletop},
     };
     return list;
 }
