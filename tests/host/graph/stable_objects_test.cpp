@@ -117,22 +117,25 @@ TEST_P(Objects, WhatLeansOnTheWallStands) {
     }
 }
 
-// The pairs' probabilities are the model's, whatever the groups.
+// Whatever the groups: the model's probability that both are one, or both are the room's.
 TEST_P(Objects, PairsHaveTheProbabilitiesOfTheirJoints) {
     LaidTable table;
     const ContactGraph contacts = table.contacts(*device);
     const std::vector<Joint> joints = table.joints(3, -3);
-    const Grouping out = grouped(table, joints);
+    const Grouping out = grouped(table, joints), unknown = grouped(table, {});
+    const auto probability = [](double odds) { return 1 / (1 + std::exp(-odds)); };
     ASSERT_EQ(out.pair_probability.size(), contacts.pairs.size());
     for (std::size_t n = 0; n < contacts.pairs.size(); ++n) {
         const auto joint = std::ranges::find_if(joints, [&](const Joint& j) {
             return j.a == contacts.pairs[n].a && j.b == contacts.pairs[n].b;
         });
         ASSERT_NE(joint, joints.end());
-        EXPECT_DOUBLE_EQ(out.pair_probability[n], 1 / (1 + std::exp(-joint->log_odds)));
+        const double room = probability(joint->a == 0 ? 6 : -6) * probability(-6);
+        EXPECT_NEAR(out.pair_probability[n], room + (1 - room) * probability(joint->log_odds),
+                    1e-12);
+        // A pair that the model was not asked about is taken for two.
+        EXPECT_NEAR(unknown.pair_probability[n], room, 1e-12);
     }
-    // A pair that the model was not asked about is taken for two.
-    EXPECT_THAT(grouped(table, {}).pair_probability, testing::Each(0.0));
 }
 
 TEST_P(Objects, ThreadsAndRepetitionsChangeNothing) {
