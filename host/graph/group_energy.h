@@ -12,7 +12,7 @@
 namespace topple::graph {
 
 // The energy of a group of primitives, in nats (Eq. 8 with a fitted prior):
-//   - sum of the log-odds of the joints within it,
+//   - sum of the log-odds of the joints within it, each with joint_bias,
 //   + standing_weight * S, S = -ln P(it stands by itself), see standing_cost().
 // Of the ground: less the log-odds that each of its primitives is the room's, but for those that
 // are taken for the room's anyhow; S = 0. Keeps references to its arguments.

@@ -97,12 +97,14 @@ double standing_cost(const physics::Candidate& c, double noise_m) {
 Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Body> bodies,
                           std::span<const Joint> joints, const ShellOdds& shell,
                           const GroupingOptions& options, unsigned threads) {
+    std::vector<Joint> biased(joints.begin(), joints.end());
+    for (Joint& joint : biased) joint.log_odds += options.joint_bias;
     const GroupEnergy energy(graph, bodies, joints, shell, options);
     SwendsenWangOptions sampler;
     sampler.seed = options.seed;
     sampler.chains = 4;
     sampler.threads = threads;
-    sampler.start = contract_greedily(graph.primitives, joints, shell.pinned, shell.log_odds);
+    sampler.start = contract_greedily(graph.primitives, biased, shell.pinned, shell.log_odds);
     // The start is near the best: what is left is to weigh how things stand, and to look whether a
     // few parts are better elsewhere.
     sampler.first_temperature = 0.5;
@@ -113,7 +115,7 @@ Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Bo
     sampler.sample_steps = sampler.anneal_steps / 4;
     sampler.time_limit_s = options.time_limit_s;
     sampler.cancelled = options.cancelled;
-    Partition partition = swendsen_wang_cuts(graph.primitives, edges_of(joints), shell.pinned,
+    Partition partition = swendsen_wang_cuts(graph.primitives, edges_of(biased), shell.pinned,
                                              energy.callbacks(), sampler);
     Grouping out;
     out.group = std::move(partition.label);

@@ -21,6 +21,20 @@ constexpr unsigned sphere_frequency = 16;
 // What the border of a support, made of whole voxels, is known to (one standard error), in voxels.
 constexpr double border_noise = 0.5;
 
+// What is less sure to be the room's than this is left to its joints.
+constexpr double surely_shell = 0.9;
+
+graph::ShellOdds shell_odds(const std::vector<double>& log_odds) {
+    graph::ShellOdds out{log_odds, {}};
+    for (const double odds : log_odds)
+        out.pinned.push_back(odds > fitted::log_odds(surely_shell));
+    // Something is the ground that all else stands on: a table in a close view.
+    if (!log_odds.empty() && std::ranges::find(out.pinned, true) == out.pinned.end())
+        out.pinned[static_cast<std::size_t>(std::ranges::max_element(log_odds) -
+                                            log_odds.begin())] = true;
+    return out;
+}
+
 std::vector<graph::Joint> find_joints(const SolidParts& parts, const graph::ContactGraph& contacts,
                                       std::span<const physics::Body> bodies) {
     std::vector<float> shell;
@@ -93,7 +107,7 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
             std::move(contacts),
             std::move(table),
             std::move(joints),
-            {parts.shell_log_odds, parts.solids->shell()}};
+            shell_odds(parts.shell_log_odds)};
 }
 
 std::vector<Support> supports_between(const graph::ContactGraph& contacts,
