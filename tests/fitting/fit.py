@@ -99,6 +99,15 @@ def booster(leaves):
                                           l2_regularization=2, random_state=1)
 
 
+def threshold(value):
+    """The largest single-precision number not above it, in as many digits as tell it from others: thresholds may be
+    values of the rows themselves."""
+    single = np.float32(value)
+    if single > value:
+        single = np.nextafter(single, np.float32(-np.inf))
+    return float(f'{single:.9g}')
+
+
 def trees_of(model):
     """The trees in arrays, children after their parents."""
     trees = []
@@ -107,8 +116,7 @@ def trees_of(model):
         for node in predictor.nodes:
             leaf = bool(node['is_leaf'])
             tree['feature'].append(-1 if leaf else int(node['feature_idx']))
-            value = node['value'] if leaf else node['num_threshold']
-            tree['threshold'].append(float(f'{value:.6g}'))
+            tree['threshold'].append(float(f"{node['value']:.6g}") if leaf else threshold(node['num_threshold']))
             tree['missing_left'].append(0 if leaf else int(node['missing_go_to_left']))
             tree['left'].append(0 if leaf else int(node['left']))
             tree['right'].append(0 if leaf else int(node['right']))

@@ -38,7 +38,8 @@ SurfaceSamples room(const std::set<std::int32_t>& without = {}, double spacing_m
     if (seen(east)) faces.face(east, up + x, z, y);
     if (seen(north)) faces.face(north, up + y, x, z);
     if (seen(ceiling)) faces.face(ceiling, up + z, y, x);
-    if (seen(cupboard)) faces.box(cupboard, up + Vector3d(0.02, 1, 0), up + Vector3d(0.5, 1.9, 1.6));
+    if (seen(cupboard))
+        faces.box(cupboard, up + Vector3d(0.02, 1, 0), up + Vector3d(0.5, 1.9, 1.6));
     if (seen(table)) faces.box(table, up + Vector3d(2.4, 2, 0.7), up + Vector3d(3.6, 2.8, 0.75));
     if (seen(box)) faces.box(box, up + Vector3d(2.9, 2.3, 0.75), up + Vector3d(3.2, 2.5, 0.95));
     if (seen(crate)) faces.box(crate, up + Vector3d(1.8, 1, 0), up + Vector3d(2.3, 1.4, 0.45));
@@ -60,7 +61,8 @@ TEST(Shell, IsTheRoomAndNotWhatStandsInIt) {
         expect_shell(shell, {floor, west, south, east, north, ceiling}, {table, box, crate});
         EXPECT_EQ(shell.role[at(floor)], Role::floor);
         EXPECT_EQ(shell.role[at(ceiling)], Role::ceiling);
-        for (const Part wall : {west, south, east, north}) EXPECT_EQ(shell.role[at(wall)], Role::wall);
+        for (const Part wall : {west, south, east, north})
+            EXPECT_EQ(shell.role[at(wall)], Role::wall);
     }
 }
 

@@ -74,10 +74,10 @@ TEST(Borders, AreWithinTheReachOfNoise) {
 // A box's top and side bend away from each other, a floor and a wall towards each other.
 TEST(Borders, TellOuterFromInnerEdges) {
     SampledFaces box(0.02), corner(0.02);
-    box.face(0, {-0.4, 0, 0}, {0.4, 0, 0}, {0, 0.4, 0});      // top, up to x = 0
-    box.face(1, {0, 0, -0.4}, {0, 0.4, 0}, {0, 0, 0.4});      // side, towards +x
-    corner.face(0, {0, 0, 0}, {0.4, 0, 0}, {0, 0.4, 0});      // floor
-    corner.face(1, {0, 0, 0}, {0, 0.4, 0}, {0, 0, 0.4});      // wall at x = 0
+    box.face(0, {-0.4, 0, 0}, {0.4, 0, 0}, {0, 0.4, 0});  // top, up to x = 0
+    box.face(1, {0, 0, -0.4}, {0, 0.4, 0}, {0, 0, 0.4});  // side, towards +x
+    corner.face(0, {0, 0, 0}, {0.4, 0, 0}, {0, 0.4, 0});  // floor
+    corner.face(1, {0, 0, 0}, {0, 0.4, 0}, {0, 0, 0.4});  // wall at x = 0
     const Border outer = find_borders(box.samples).at(0);
     EXPECT_EQ(outer.convex_share, 1);
     EXPECT_EQ(outer.concave_share, 0);
@@ -106,8 +106,7 @@ TEST(Borders, ColoursAreComparedWhereBothAreKnown) {
 // Three plates in a row: each has a border with the next, in order.
 TEST(Borders, AreSortedByTheirPrimitives) {
     SampledFaces faces(0.02);
-    for (const std::int32_t p : {2, 0, 1})
-        faces.face(p, {0.4 * p, 0, 0}, {0.4, 0, 0}, {0, 0.4, 0});
+    for (const std::int32_t p : {2, 0, 1}) faces.face(p, {0.4 * p, 0, 0}, {0.4, 0, 0}, {0, 0.4, 0});
     const auto borders = find_borders(faces.samples);
     ASSERT_EQ(borders.size(), 2u);
     EXPECT_EQ(std::pair(borders[0].a, borders[0].b), std::pair(0, 1));

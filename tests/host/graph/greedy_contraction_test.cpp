@@ -77,9 +77,10 @@ TEST(GreedyContraction, PinnedNodesAreOneAndTakeWhatIsTheRooms) {
     const std::vector<bool> pinned{false, true, false, true, false};
     // 1 and 3 are the room's although they are said to be two; 0 is built in by its own odds, 2 by
     // its joints with both; 4 is not, though its joint says so.
-    EXPECT_THAT(contract_greedily(5, std::vector<Joint>{{1, 2, 1}, {1, 3, -9}, {2, 3, 1}, {3, 4, 2}},
-                                  pinned, std::vector<double>{0.5, 7, -1.5, 7, -2.5}),
-                ElementsAre(0, 0, 0, 0, 4));
+    EXPECT_THAT(
+        contract_greedily(5, std::vector<Joint>{{1, 2, 1}, {1, 3, -9}, {2, 3, 1}, {3, 4, 2}},
+                          pinned, std::vector<double>{0.5, 7, -1.5, 7, -2.5}),
+        ElementsAre(0, 0, 0, 0, 4));
     // Without a pinned node the odds for the room count for nothing.
     EXPECT_THAT(contract_greedily(2, std::vector<Joint>{{0, 1, -1}}, {false, false},
                                   std::vector<double>{9, 9}),

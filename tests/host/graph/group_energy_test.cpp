@@ -32,6 +32,7 @@ struct Tower {
                   test::body(0.008, {0.1, 0.1, 0.3}), test::body(0.008, {-0.08, 0.1, 0.5}),
                   test::body(0.008, {0.28, 0.1, 0.5})};
         options.standing_weight = 2;
+        options.joint_bias = 0;
     }
     double energy(const Group& nodes, bool pinned = false) const {
         return GroupEnergy(contacts, bodies, joints, shell, options)({nodes, pinned});
@@ -48,6 +49,14 @@ TEST(GroupEnergy, SumsTheOddsOfTheJointsWithin) {
     EXPECT_NEAR(tower.energy({1, 2}), 0.5, 1e-3);
     // The three together have their centre at x = 0.04 above the lowest's support.
     EXPECT_NEAR(tower.energy({1, 2, 3}), 0.5 - 0.75, 0.1);
+}
+
+TEST(GroupEnergy, AddsTheBiasToEachJoint) {
+    Tower tower;
+    const double plain = tower.energy({1, 2, 3, 4}), one = tower.energy({3, 4});
+    tower.options.joint_bias = -0.25;
+    EXPECT_NEAR(tower.energy({1, 2, 3, 4}), plain + 4 * 0.25, 1e-12);
+    EXPECT_NEAR(tower.energy({3, 4}), one + 0.25, 1e-12);
 }
 
 TEST(GroupEnergy, WhatFallsCostsItsWeightAtMost) {

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "geometry/primitive_shapes.h"
-#include "host/graph/floor_scene.h"
 #include "host/geometry/sampled_faces.h"
+#include "host/graph/floor_scene.h"
 #include "kernels/device_harness.h"
 
 namespace topple::graph {
@@ -42,10 +42,10 @@ struct BoxAndTable {
     }
     JointTable table(device::Device& device) {
         const ContactGraph contacts = solids.contacts(device);
-        return joint_features(faces.samples,
-                              geometry::primitive_shapes(faces.samples,
-                                                         static_cast<std::size_t>(solids.count)),
-                              contacts, solids.bodies(device), seams, shell);
+        return joint_features(
+            faces.samples,
+            geometry::primitive_shapes(faces.samples, static_cast<std::size_t>(solids.count)),
+            contacts, solids.bodies(device), seams, shell);
     }
 };
 
@@ -83,7 +83,7 @@ TEST_P(JointFeatures, OfABoxOnATableAreInClosedForm) {
     is("touch_area", 0.04);
     is("touch_share_small", 1);
     is("touch_share_big", 0.04 / 0.64);
-    is("touch_z", -1);  // from the small one down to the big one
+    is("touch_z", -1);      // from the small one down to the big one
     is("stands_small", 1);  // 10 cm within its support, 10 cm high
     is("stands_big", 2);    // 40 cm within, 20 cm high
     is("stands_both", 2, 0.3);

@@ -133,8 +133,8 @@ TEST(Undersides, AreTheLowestCellsOfEachColumn) {
     cells.voxel_m = 0.1;
     // Column (0, 0): floor, gap of two, a chair's seat and, above air, its back; column (0, 1): its
     // leg on the floor; column (1, 0): over nothing; (1, 1): solid of none, and the seat on it.
-    const std::vector<std::array<std::int32_t, 4>> all{{0, 0, 0, 0}, {0, 0, 3, 1}, {0, 0, 4, 1},
-                                                       {0, 0, 7, 2}, {0, 1, 0, 0}, {0, 1, 1, 2},
+    const std::vector<std::array<std::int32_t, 4>> all{{0, 0, 0, 0}, {0, 0, 3, 1},  {0, 0, 4, 1},
+                                                       {0, 0, 7, 2}, {0, 1, 0, 0},  {0, 1, 1, 2},
                                                        {1, 0, 5, 1}, {1, 1, 2, -1}, {1, 1, 3, 1}};
     for (const auto& [i, j, k, p] : all) {
         cells.i.push_back(i);
