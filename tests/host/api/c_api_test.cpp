@@ -45,7 +45,7 @@ class CApi : public Files {
         topple_device_release(device);
     }
     const SmallRoom room = SmallRoom::scattered();
-    const topple_cloud cloud = c_cloud(room.cloud);
+    topple_cloud cloud = c_cloud(room.cloud);
     topple_status status{};
     topple_device* device = nullptr;
     topple_options options{};

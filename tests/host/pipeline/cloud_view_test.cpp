@@ -121,7 +121,9 @@ TEST_F(CloudViewFiles, ColoursComeAlong) {
     EXPECT_TRUE(result.scene.points.red.empty());
     add_coordinates(view, result);
     EXPECT_EQ(result.scene.points.red, kept.red);
-    write_outputs(result, path("out"), {.glb = true});
+    OutputOptions with_meshes;
+    with_meshes.glb = true;
+    write_outputs(result, path("out"), with_meshes);
     EXPECT_EQ(io::read_cloud(path("out/points.ply")).red, kept.red);
     view.green = {&records[0].colour[1], 7, sizeof(Record)};
     EXPECT_THROW(add_coordinates(view, result), Error);
