@@ -18,7 +18,7 @@ struct ScannedPoints {
     PointCloud cloud;
     Surfels surfels;
     std::vector<std::int32_t> primitive;
-    SceneFrame frame{.axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, .found = true};
+    SceneFrame frame{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, true, "", "", 0};
 
     void add(const Vec3& p, const Vec3& normal, std::int32_t of = 0) {
         cloud.x.push_back(static_cast<float>(p[0]));
