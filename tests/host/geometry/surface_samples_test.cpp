@@ -13,19 +13,12 @@
 namespace topple::geometry {
 namespace {
 
-SceneFrame level_frame() {
-    SceneFrame frame;
-    frame.axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    frame.found = true;
-    return frame;
-}
-
 // Points with a surfel each.
 struct ScannedPoints {
     PointCloud cloud;
     Surfels surfels;
     std::vector<std::int32_t> primitive;
-    SceneFrame frame = level_frame();
+    SceneFrame frame{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, true, "", "", 0};
 
     void add(const Vec3& p, const Vec3& normal, std::int32_t of = 0) {
         cloud.x.push_back(static_cast<float>(p[0]));

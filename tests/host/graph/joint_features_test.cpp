@@ -157,9 +157,10 @@ TEST_P(JointFeatures, HardlyDependOnTheDensityOfTheScan) {
                                  "length_small", "length_big", "apart", "low_small", "high_small",
                                  "low_big", "high_big", "tops", "feet", "above_big", "length"})
             same(name, 0.025);
-        for (const char* name : {"convexity", "concave_share", "convex_share", "border_parallel",
-                                 "rise", "plan_small", "plan_big", "height_overlap_small",
-                                 "slender_small", "place_in_small", "place_in_big"})
+        same("convexity", 0.3);  // from -2 to 2; at 4 cm what is near reaches 3 cm farther
+        for (const char* name :
+             {"concave_share", "convex_share", "border_parallel", "rise", "plan_small", "plan_big",
+              "height_overlap_small", "slender_small", "place_in_small", "place_in_big"})
             same(name, 0.2);
         for (const char* name : {"stands_small", "stands_big", "stands_both", "touch_share_small",
                                  "touch_z", "small_on_big", "volume_small"})
