@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/scene_bounds.h"
+
 namespace topple::geometry {
 namespace {
 
@@ -15,13 +17,10 @@ constexpr std::int64_t most_cells = std::int64_t{1} << 31;
 
 SightLines::SightLines(const SurfaceSamples& s) : cell_m_(std::max(finest_m, 1.5 * s.spacing_m)) {
     if (s.size() == 0) return;
-    Eigen::Vector3d high(s.x[0], s.y[0], s.z[0]);
-    low_ = high;
-    for (std::size_t n = 0; n < s.size(); ++n) {
-        const Eigen::Vector3d p(s.x[n], s.y[n], s.z[n]);
-        low_ = low_.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
+    // Strays far away would make the cells large.
+    const Bounds<float> bounds = scene_bounds<float>({s.x, s.y, s.z}, static_cast<float>(cell_m_));
+    low_ = Eigen::Vector3d(bounds.low[0], bounds.low[1], bounds.low[2]);
+    const Eigen::Vector3d high(bounds.high[0], bounds.high[1], bounds.high[2]);
     const auto cells = [&] {
         double all = 1;
         for (std::size_t a = 0; a < 3; ++a) {
@@ -34,6 +33,7 @@ SightLines::SightLines(const SurfaceSamples& s) : cell_m_(std::max(finest_m, 1.5
     while (cells() > static_cast<double>(most_cells)) cell_m_ *= 2;
     cell_.resize(static_cast<std::size_t>(size_[0] * size_[1] * size_[2]));
     for (std::size_t n = 0; n < s.size(); ++n) {
+        if (!bounds.contains(s.x[n], s.y[n], s.z[n])) continue;
         const Eigen::Vector3d c = (Eigen::Vector3d(s.x[n], s.y[n], s.z[n]) - low_) / cell_m_;
         const auto at = [&](std::size_t a) {
             return std::min(static_cast<std::int64_t>(c[static_cast<Eigen::Index>(a)]),

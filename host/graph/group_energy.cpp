@@ -18,7 +18,8 @@ GroupEnergy::GroupEnergy(const ContactGraph& contacts, std::span<const physics::
       options_(options),
       neighbours_(bodies.size()) {
     for (const Joint& j : joints)
-        neighbours_[static_cast<std::size_t>(j.a)].push_back({j.b, j.log_odds + options.joint_bias});
+        neighbours_[static_cast<std::size_t>(j.a)].push_back(
+            {j.b, j.log_odds + options.joint_bias});
 }
 
 double GroupEnergy::joined(const GroupQuery& query) const {

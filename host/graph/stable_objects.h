@@ -22,8 +22,8 @@ struct ShellOdds {
 struct GroupingOptions {
     std::uint64_t seed = 1;
     // Found on generated rooms that no model was fitted on (docs/testing.md): the weight of S(O, W)
-    // beside the joints' log-odds, and what is added to the log-odds of each, nats. The joints of two
-    // groups are no independent witnesses, and their sum says too much.
+    // beside the joints' log-odds, and what is added to the log-odds of each, nats. The joints of
+    // two groups are no independent witnesses, and their sum says too much.
     double standing_weight = 0.3;
     double joint_bias = -0.75;
     double time_limit_s = 0;  // see SwendsenWangOptions

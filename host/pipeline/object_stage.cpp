@@ -26,8 +26,7 @@ constexpr double surely_shell = 0.9;
 
 graph::ShellOdds shell_odds(const std::vector<double>& log_odds) {
     graph::ShellOdds out{log_odds, {}};
-    for (const double odds : log_odds)
-        out.pinned.push_back(odds > fitted::log_odds(surely_shell));
+    for (const double odds : log_odds) out.pinned.push_back(odds > fitted::log_odds(surely_shell));
     // Something is the ground that all else stands on: a table in a close view.
     if (!log_odds.empty() && std::ranges::find(out.pinned, true) == out.pinned.end())
         out.pinned[static_cast<std::size_t>(std::ranges::max_element(log_odds) -
@@ -103,10 +102,7 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
     });
     std::vector<graph::Joint> joints =
         stage("joints", [&] { return find_joints(parts, contacts, bodies); });
-    return {std::move(bodies),
-            std::move(contacts),
-            std::move(table),
-            std::move(joints),
+    return {std::move(bodies), std::move(contacts), std::move(table), std::move(joints),
             shell_odds(parts.shell_log_odds)};
 }
 
@@ -164,6 +160,13 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
                            {.places = true, .threads = &device.threads()});
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (objects[o].grounded) return;
+        // The search of ways knows the contacts that were seen. Where more than those hold an
+        // object, that it would slide off them where it is says nothing.
+        if (objects[o].rest != graph::RestKind::seen && sliding[o].found &&
+            sliding[o].distance_m <= 0) {
+            sliding[o].found = false;
+            sliding[o].absorbed_J = sliding[o].released_J = sliding[o].drop_m = 0;
+        }
         physics::Instability& how = objects[o].instability;
         how = physics::combine_curves(tipping[o], sliding[o]);
         if (how.mode == "tip" && how.drop_m > 0)

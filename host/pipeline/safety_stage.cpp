@@ -62,7 +62,7 @@ std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objec
         safety::RiskObject r;
         r.id = static_cast<std::int32_t>(i);
         // What is held by nothing that was seen is held by what was not: nobody knows how firmly.
-        r.grounded = o.grounded || !o.seen_enough();
+        r.grounded = o.grounded || !o.seen_enough() || o.candidate.support_polygon.empty();
         r.mass_kg = o.candidate.body.mass_kg;
         r.barrier_J = o.instability.barrier_J;
         r.height_m = o.highest_m - o.lowest_m;

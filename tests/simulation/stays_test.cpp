@@ -110,7 +110,8 @@ TEST_P(SlowRooms, what_has_a_barrier_stays_and_falls_without_support) {
                 ++free;
                 free_fall += moved(let_go(scene, solids, object, true), enough) >= enough;
             }
-            if (barrier_within_error(object)) continue;
+            // What holds the others up is inferred, and not there for the simulator.
+            if (barrier_within_error(object) || object.rests_by != "seen") continue;
             ++stable;
             const bool stays = moved(let_go(scene, solids, object, true), enough) < enough;
             stay += stays;

@@ -133,7 +133,7 @@ TEST(ShellFeatures, SayWhatIsBehindAndBefore) {
         EXPECT_NEAR(shell_feature(rows, wall, "height_share"), 1, 0.05);
         EXPECT_LT(shell_feature(rows, wall, "rim_distance"), 0.1);
         EXPECT_LT(shell_feature(rows, wall, "back_met_400"), 0.05);
-        EXPECT_GT(shell_feature(rows, wall, "front_met_400"), 0.5);
+        EXPECT_GT(shell_feature(rows, wall, "front_met_400"), 0.2);
     }
     EXPECT_NEAR(shell_feature(rows, west, "level_length"), 3.4, 0.1);
     EXPECT_NEAR(shell_feature(rows, west, "filled"), 1, 0.05);

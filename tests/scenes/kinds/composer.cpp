@@ -93,7 +93,8 @@ bool Composer::along_wall(const Blueprint& blueprint, bool built_in, int attempt
         const int wall = any_wall();
         const double length = wall_length(wall);
         const bool mirrored = wall == 1 || wall == 2;  // where its x runs against the wall's
-        const double low = mirrored ? -box[1][0] : box[0][0], high = mirrored ? -box[0][0] : box[1][0];
+        const double low = mirrored ? -box[1][0] : box[0][0],
+                     high = mirrored ? -box[0][0] : box[1][0];
         if (high - low > length) continue;
         double along = random_.uniform(-low, length - high);
         if (random_.chance(0.15)) along = random_.chance(0.5) ? -low : length - high;
@@ -124,13 +125,14 @@ bool Composer::on_wall(const Blueprint& blueprint, double height, bool built_in)
         if (wall_part_[static_cast<std::size_t>(wall)] < 0) continue;
         const double half = std::max(box[1][0], -box[0][0]), length = wall_length(wall);
         if (2 * half > length || height + box[1][2] > world_.room[2]) continue;
-        const Pose pose = at_wall(wall, random_.uniform(half, length - half), -blueprint.back(),
-                                  height, 0);
+        const Pose pose =
+            at_wall(wall, random_.uniform(half, length - half), -blueprint.back(), height, 0);
         // Only where there is wall behind: a nail's hole into it must end in a solid.
-        const Vec3 nail = moved(pose, Vec3{0, blueprint.back() - 0.02, (box[0][2] + box[1][2]) / 2});
-        const bool backed = std::any_of(world_.parts.begin(), world_.parts.end(), [&](const Part& p) {
-            return p.object == 0 && p.inside(nail);
-        });
+        const Vec3 nail =
+            moved(pose, Vec3{0, blueprint.back() - 0.02, (box[0][2] + box[1][2]) / 2});
+        const bool backed =
+            std::any_of(world_.parts.begin(), world_.parts.end(),
+                        [&](const Part& p) { return p.object == 0 && p.inside(nail); });
         if (!backed || !built_in) continue;
         if (fix(blueprint, pose)) return true;
     }
@@ -142,8 +144,8 @@ bool Composer::anywhere(const Blueprint& blueprint, int attempts) {
     const double reach = std::max({box[1][0], -box[0][0], box[1][1], -box[0][1]});
     for (int attempt = 0; attempt < attempts; ++attempt) {
         const double r = std::min({reach, world_.room[0] / 2, world_.room[1] / 2});
-        const double yaw = random_.chance(0.4) ? random_.integer(0, 3) * pi / 2
-                                               : random_.uniform(-pi, pi);
+        const double yaw =
+            random_.chance(0.4) ? random_.integer(0, 3) * pi / 2 : random_.uniform(-pi, pi);
         const Pose pose{random_.uniform(r, world_.room[0] - r),
                         random_.uniform(r, world_.room[1] - r), 0, yaw};
         if (stand(blueprint, pose, {0}, "floor")) return true;
@@ -186,8 +188,8 @@ bool Composer::on_surface(std::size_t index, const Surface& surface,
                                                  : random_.uniform(-pi, pi);
         Vec3 low{1e9, 1e9, 0}, high_corner{-1e9, -1e9, 0};
         for (const int foot : stack.front().feet) {
-            const auto box = moved({0, 0, 0, yaw},
-                                   stack.front().parts[static_cast<std::size_t>(foot)]).bounds();
+            const auto box =
+                moved({0, 0, 0, yaw}, stack.front().parts[static_cast<std::size_t>(foot)]).bounds();
             for (std::size_t a = 0; a < 2; ++a) {
                 low[a] = std::min(low[a], box[0][a]);
                 high_corner[a] = std::max(high_corner[a], box[1][a]);
@@ -212,7 +214,8 @@ bool Composer::on_surface(std::size_t index, const Surface& surface,
                 const Vec3 beside = moved(last.pose, Vec3{off + side * slack, 0, 0});
                 const Pose back{-base.pose.x, -base.pose.y, 0, 0};
                 const Vec3 local = moved({0, 0, 0, -base.pose.yaw}, moved(back, beside));
-                if (std::abs(local[0] - surface.x) + (high_corner[0] - low[0]) / 2 < surface.half_x &&
+                if (std::abs(local[0] - surface.x) + (high_corner[0] - low[0]) / 2 <
+                        surface.half_x &&
                     std::abs(local[1] - surface.y) + (high_corner[1] - low[1]) / 2 < surface.half_y)
                     pose = {beside[0], beside[1], top, last.pose.yaw};
             }
@@ -234,7 +237,8 @@ void Composer::fill(std::size_t index, double per_m2, const Make& make) {
     for (const Surface& surface : surfaces) {
         if (surface.half_x <= 0 || surface.half_y <= 0) continue;
         const double expected = per_m2 * 4 * surface.half_x * surface.half_y;
-        const int count = static_cast<int>(expected * random_.uniform(0.3, 1.5) + random_.uniform());
+        const int count =
+            static_cast<int>(expected * random_.uniform(0.3, 1.5) + random_.uniform());
         for (int k = 0; k < std::min(count, 40); ++k)
             on_surface(index, surface, make(surface.clearance));
     }
