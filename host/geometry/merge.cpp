@@ -15,9 +15,10 @@ namespace {
 // Regions joined so far. The root of a set is its lowest region.
 class Merger {
   public:
-    Merger(const Surfels& surfels, const CutRegions& cuts, RegionFacts& facts,
+    Merger(const Surfels& surfels, const Vec3& up, const CutRegions& cuts, RegionFacts& facts,
            const MergeOptions& options)
         : s_(surfels),
+          up_(up),
           cuts_(cuts),
           facts_(facts),
           r_(cuts.regions),
@@ -30,7 +31,7 @@ class Merger {
     }
 
     void merge_all() {
-        merge_wall_pieces();
+        merge_level_pieces();
         merge_convex_borders();
         merge_face_pieces();
         merge_sides();
@@ -129,8 +130,8 @@ class Merger {
         }
     }
 
-    void merge_wall_pieces() {
-        for (const auto& [i, j] : find_wall_pieces(s_, r_, facts_.samples(), options_)) {
+    void merge_level_pieces() {
+        for (const auto& [i, j] : find_level_pieces(s_, up_, r_, facts_.samples(), options_)) {
             const std::int32_t a = root(i), b = root(j);
             if (a != b) join(a, b);
         }
@@ -195,6 +196,7 @@ class Merger {
     }
 
     const Surfels& s_;
+    Vec3 up_;
     const CutRegions& cuts_;
     RegionFacts& facts_;
     const Regions& r_;
@@ -214,7 +216,7 @@ PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const 
     // What the faces of a merged solid tell of one another may part some more.
     for (;;) {
         const std::uint32_t before = cuts.count;
-        Merger merger(surfels, cuts, facts, options);
+        Merger merger(surfels, up, cuts, facts, options);
         merger.merge_all();
         cut_flush_faces(surfels, up, merger.solids(), options, cuts, facts);
         if (cuts.count > before) continue;

@@ -32,11 +32,11 @@ struct MergeOptions {
     double board_share = 0.4;
     // Largest concavity of a set that becomes one by being two sides of a board.
     double board_concavity_max = 0.2;
-    // Pieces of a plane that bounds the scene (a wall behind furniture) are one where at most this
-    // share of the surfels around them lies behind it; each holds at least this share of all
-    // surfels.
+    // Pieces of a level plane that bounds the scene (a floor or table among things) are one where
+    // at most this share of the surfels around them lies below it; each holds at least this share
+    // of all surfels.
     double behind_max = 0.01;
-    double wall_piece_min = 0.002;
+    double level_piece_min = 0.002;
     // Pieces of one face with something standing against the gap between them: the widest gap,
     // metres; how far before the face that thing begins and how far behind it nothing may be,
     // cells.
@@ -110,12 +110,13 @@ bool are_face_pieces(const Surfels& surfels, const CutRegions& cuts,
                      const std::vector<RegionSamples>& samples, std::size_t a, std::size_t b,
                      const MergeOptions& options);
 
-// Pairs of planes that are pieces of one plane that bounds the scene, such as a wall seen between
-// the boards of a shelf: they lie in each other's plane, face the same way, and nothing around them
-// is behind. Two boxes of equal height are no such pair: their sides are below their tops.
-std::vector<std::pair<std::int32_t, std::int32_t>> find_wall_pieces(
-    const Surfels& surfels, const Regions& regions, const std::vector<RegionSamples>& samples,
-    const MergeOptions& options);
+// Pairs of planes that are pieces of one level plane that bounds the scene, such as a table seen
+// between the things on it: they lie in each other's plane, face up, and nothing around them is
+// below. Two boxes of equal height are no such pair: their sides are below their tops. Upright
+// pieces stay apart: shelves in a row have their backs in one plane just as a wall has.
+std::vector<std::pair<std::int32_t, std::int32_t>> find_level_pieces(
+    const Surfels& surfels, const Vec3& up, const Regions& regions,
+    const std::vector<RegionSamples>& samples, const MergeOptions& options);
 
 // The side of a chair's back, the edge of its seat and its legs often lie in one plane, as one
 // region: not convex, so it can't be a face of one solid. Where a plane meets a solid in a convex

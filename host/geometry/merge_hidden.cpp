@@ -88,14 +88,17 @@ std::vector<std::int64_t> surfels_behind(const Surfels& s, const Regions& region
     return out;
 }
 
-std::vector<std::pair<std::int32_t, std::int32_t>> find_wall_pieces(
-    const Surfels& surfels, const Regions& regions, const std::vector<RegionSamples>& samples,
-    const MergeOptions& options) {
+std::vector<std::pair<std::int32_t, std::int32_t>> find_level_pieces(
+    const Surfels& surfels, const Vec3& up, const Regions& regions,
+    const std::vector<RegionSamples>& samples, const MergeOptions& options) {
+    constexpr double level = 0.97;  // cosine
+    const Eigen::Vector3d upwards(up[0], up[1], up[2]);
     std::vector<std::size_t> large;
     for (std::size_t k = 0; k < regions.regions.size(); ++k)
-        if (regions.regions[k].model.degree == 1 &&
+        if (regions.regions[k].model.degree == 1 && !samples[k].normals.empty() &&
+            samples[k].normals.front().dot(upwards) > level &&
             static_cast<double>(regions.regions[k].surfels) >=
-                options.wall_piece_min * static_cast<double>(surfels.size()))
+                options.level_piece_min * static_cast<double>(surfels.size()))
             large.push_back(k);
     const std::size_t step = surfels.size() / 20000 + 1;
 

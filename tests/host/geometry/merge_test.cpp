@@ -103,14 +103,23 @@ TEST(Merge, FacesThatLookAtEachOtherStayApart) {
     EXPECT_NE(parsed.of(scene, 0).label, parsed.of(scene, 1).label);
 }
 
-TEST(Merge, AWallSeenInPiecesIsOne) {
+TEST(Merge, ATableSeenInPiecesIsOne) {
     Builder scene;
-    scene.face({0, 0, 0}, {0, 1, 0}, {0, 0, 2}, 0);
-    scene.face({0, 1.3, 0}, {0, 1, 0}, {0, 0, 2}, 0);
-    scene.face({0, 0, 0}, {2, 0, 0}, {0, 2.3, 0}, 1);
-    scene.box({0.02, 0.95, 0}, {0.4, 0.4, 2.0}, 2);
+    scene.face({0, 0, 0.7}, {1, 0, 0}, {0, 1, 0}, 0);
+    scene.face({0, 1.3, 0.7}, {1, 0, 0}, {0, 1, 0}, 0);
+    scene.box({0, 0.95, 0.72}, {1, 0.4, 0.5}, 1);
     const Parsed parsed(scene);
     EXPECT_GT(parsed.of(scene, 0).share, 0.95);
+    EXPECT_NE(parsed.of(scene, 0).label, parsed.of(scene, 1).label);
+}
+
+// The backs of two shelves are one plane just as a wall's pieces are.
+TEST(Merge, UprightPiecesOfOnePlaneStayApart) {
+    Builder scene;
+    scene.face({0, 0, 0}, {0, 1, 0}, {0, 0, 2}, 0);
+    scene.face({0, 1.3, 0}, {0, 1, 0}, {0, 0, 2}, 1);
+    scene.box({0.02, 0.95, 0}, {0.4, 0.4, 2.0}, 2);
+    const Parsed parsed(scene);
     EXPECT_NE(parsed.of(scene, 0).label, parsed.of(scene, 1).label);
     EXPECT_NE(parsed.of(scene, 0).label, parsed.of(scene, 2).label);
 }
