@@ -23,8 +23,7 @@ Blueprint block(const char* name, const Vec3& size) {
 // Builds things that just about stand, each from a place on a level carrier on.
 class Balancer {
   public:
-    Balancer(Composer& room, double scale)
-        : room_(room), random_(room.random()), scale_(scale) {}
+    Balancer(Composer& room, double scale) : room_(room), random_(room.random()), scale_(scale) {}
 
     void build_at(const Pose& pose, std::int32_t carrier) {
         switch (random_.integer(0, 6)) {
@@ -55,7 +54,8 @@ class Balancer {
     void overhang(const Pose& middle, double edge, std::int32_t carrier) {
         const Vec3 size = any_size(1, 0.8);
         const double out = random_.uniform(0.1, 0.42) * size[1];
-        const Vec3 p = moved(middle, Vec3{random_.uniform(-0.3, 0.3) * edge, edge + out - size[1] / 2, 0});
+        const Vec3 p =
+            moved(middle, Vec3{random_.uniform(-0.3, 0.3) * edge, edge + out - size[1] / 2, 0});
         put(block("box", size), {p[0], p[1], middle.z, middle.yaw}, {carrier});
     }
 
@@ -79,12 +79,13 @@ class Balancer {
         const std::int32_t foot = put(block("carton", low), base, {carrier});
         if (foot < 0) return;
         const Vec3 size = any_size(1.1, 0.8);
-        const double x = random_.uniform(-0.4, 0.4) * low[0], y = random_.uniform(-0.4, 0.4) * low[1];
+        const double x = random_.uniform(-0.4, 0.4) * low[0],
+                     y = random_.uniform(-0.4, 0.4) * low[1];
         const std::int32_t top = put(block("box", size), at(base, x, y, low[2]), {foot});
         if (top < 0 || !random_.chance(0.5)) return;
-        const Vec3 third = any_size(0.7, 0.7);  // over the lowest, not to tip the second
-        put(block("box", third), at(base, 0.2 * x, 0.2 * y, low[2] + size[2], random_.uniform(-0.5, 0.5)),
-            {top});
+        const Vec3 third = any_size(0.7, 0.7);  // over the lowest's middle
+        put(block("box", third),
+            at(base, 0.6 * x, 0.6 * y, low[2] + size[2], random_.uniform(-0.5, 0.5)), {top});
     }
 
     // A book or board that leans against a box's upper edge.
@@ -96,7 +97,8 @@ class Balancer {
         const double length = h / std::cos(lean) * random_.uniform(1.04, 1.6);
         Blueprint b(length > 0.35 ? "board" : "book");
         b.feet = {b.leaning("board", 0, size[1] / 2 + h * std::tan(lean), 0,
-                            {random_.uniform(0.4, 0.95) * size[0], any(0.015, 0.04), length}, lean)};
+                            {random_.uniform(0.4, 0.95) * size[0], any(0.015, 0.04), length},
+                            lean)};
         b.leans = b.feet;
         put(b, base, {carrier, box});
     }
@@ -115,8 +117,9 @@ class Balancer {
         if (board < 0) return;
         const Stack stack = make_turned_item(random_, 0.4);
         if (!stack.empty())
-            put(stack.front(), at(base, random_.uniform(-0.3, 0.3) * apart, 0, size[2] + t,
-                                  random_.uniform(-pi, pi)),
+            put(stack.front(),
+                at(base, random_.uniform(-0.3, 0.3) * apart, 0, size[2] + t,
+                   random_.uniform(-pi, pi)),
                 {board});
     }
 
@@ -126,7 +129,8 @@ class Balancer {
         double x = 0, y = 0, z = 0, yaw = 0;
         const Vec3 first = size;
         for (int k = random_.integer(3, 6); k > 0 && carrier >= 0; --k) {
-            carrier = put(block(random_.chance(0.5) ? "box" : "carton", size), at(base, x, y, z, yaw), {carrier});
+            carrier = put(block(random_.chance(0.5) ? "box" : "carton", size),
+                          at(base, x, y, z, yaw), {carrier});
             z += size[2];
             size = {size[0] * random_.uniform(0.75, 1.08), size[1] * random_.uniform(0.75, 1.08),
                     any(0.04, 0.22)};
@@ -145,7 +149,8 @@ class Balancer {
             const bool equal = random_.chance(0.4);
             const Vec3 size = equal ? like : any_size(0.8, 1.2);
             put(block(equal ? "carton" : "box", size),
-                at(base, x + size[0] / 2, random_.chance(0.5) ? 0 : any(-0.05, 0.05), 0), {carrier});
+                at(base, x + size[0] / 2, random_.chance(0.5) ? 0 : any(-0.05, 0.05), 0),
+                {carrier});
             x += size[0] + (random_.chance(0.7) ? 0.0002 : random_.uniform(0.001, 0.008));
         }
     }
@@ -176,7 +181,8 @@ class Balancer {
             put(block("tray", {side, side, any(0.02, 0.15)}), at(base, 0, 0, h), on);
         if (tray >= 0 && random_.chance(0.6)) {
             const double high = room_.placed().back().blueprint.height();
-            put(block("box", any_size(0.6, 0.8)), at(base, 0, 0, h + high, random_.uniform(-1, 1)), {tray});
+            put(block("box", any_size(0.6, 0.8)), at(base, 0, 0, h + high, random_.uniform(-1, 1)),
+                {tray});
         }
     }
 
@@ -195,7 +201,8 @@ World make_precarious(std::uint64_t seed) {
     shell.missing = 0.4;
     room.build(shell);
     for (int k = random.integer(1, 3); k > 0; --k) {
-        const Blueprint table = random.chance(0.7) ? make_work_table(random) : make_drawer_unit(random);
+        const Blueprint table =
+            random.chance(0.7) ? make_work_table(random) : make_drawer_unit(random);
         if (!(random.chance(0.5) ? room.along_wall(table) : room.anywhere(table))) continue;
         const Composer::Placed at = room.placed().back();
         const Surface surface = at.blueprint.surfaces.back();
@@ -203,8 +210,9 @@ World make_precarious(std::uint64_t seed) {
         const double top = table.height();
         Balancer small(room, random.uniform(0.45, 0.8));
         for (int n = random.integer(2, 6); n > 0; --n) {
-            const Vec3 p = moved(at.pose, Vec3{surface.x + random.uniform(-0.75, 0.75) * surface.half_x,
-                                               surface.y + random.uniform(-0.6, 0.6) * surface.half_y, 0});
+            const Vec3 p =
+                moved(at.pose, Vec3{surface.x + random.uniform(-0.75, 0.75) * surface.half_x,
+                                    surface.y + random.uniform(-0.6, 0.6) * surface.half_y, 0});
             const double yaw = random.chance(0.5) ? 0 : random.uniform(-pi, pi);
             small.build_at({p[0], p[1], top, at.pose.yaw + yaw}, carrier);
         }
@@ -217,7 +225,8 @@ World make_precarious(std::uint64_t seed) {
     const Vec3& size = room.world().room;
     for (int n = random.integer(4, 12); n > 0; --n) {
         const double yaw = random.chance(0.4) ? 0 : random.uniform(-pi, pi);
-        large.build_at({random.uniform(0.4, size[0] - 0.4), random.uniform(0.4, size[1] - 0.4), 0, yaw}, 0);
+        large.build_at(
+            {random.uniform(0.4, size[0] - 0.4), random.uniform(0.4, size[1] - 0.4), 0, yaw}, 0);
     }
     for (int k = random.integer(0, 2); k > 0; --k) room.leaning(make_leaning_thing(random));
     return std::move(room.world());
@@ -232,23 +241,25 @@ World make_tabletop(std::uint64_t seed) {
     shell.fittings = random.chance(0.4);
     room.build(shell);
     const bool at_wall = random.chance(0.4);
-    for (int attempt = 0; attempt < 20 && room.placed().empty(); ++attempt) {
-        const Blueprint table = random.chance(0.7) ? make_work_table(random) : make_splayed_table(random);
-        if (table.height() > 0.5) {
-            if (at_wall) room.along_wall(table);
-            else room.anywhere(table);
-        }
+    bool stands = false;
+    for (int attempt = 0; attempt < 40 && !stands; ++attempt) {
+        const Blueprint one =
+            random.chance(0.7) ? make_work_table(random) : make_splayed_table(random);
+        if (one.height() < 0.5) continue;
+        stands = at_wall ? room.along_wall(one) : room.anywhere(one);
     }
-    if (room.placed().empty()) return std::move(room.world());
+    if (!stands) return std::move(room.world());
     const std::size_t table = room.placed().size() - 1;
-    for (int k = random.integer(0, 2); k > 0; --k) room.before(table, random.integer(0, 3), make_rail_chair(random));
+    for (int k = random.integer(0, 2); k > 0; --k)
+        room.before(table, random.integer(0, 3), make_rail_chair(random));
     const Composer::Placed at = room.placed()[table];
     const Surface surface = at.blueprint.surfaces.back();
     if (random.chance(0.5)) {
         Balancer small(room, random.uniform(0.35, 0.7));
         for (int n = random.integer(1, 4); n > 0; --n) {
-            const Vec3 p = moved(at.pose, Vec3{surface.x + random.uniform(-0.7, 0.7) * surface.half_x,
-                                               surface.y + random.uniform(-0.6, 0.6) * surface.half_y, 0});
+            const Vec3 p =
+                moved(at.pose, Vec3{surface.x + random.uniform(-0.7, 0.7) * surface.half_x,
+                                    surface.y + random.uniform(-0.6, 0.6) * surface.half_y, 0});
             small.build_at({p[0], p[1], at.blueprint.height(), at.pose.yaw + random.uniform(-1, 1)},
                            at.first_part + surface.part);
         }
@@ -256,12 +267,14 @@ World make_tabletop(std::uint64_t seed) {
     room.fill(table, random.uniform(6, 26), [&](double clearance) -> Stack {
         if (random.chance(0.35)) {
             Stack stack;
-            const Vec3 size{random.uniform(0.06, 0.3), random.uniform(0.05, 0.24), random.uniform(0.03, 0.26)};
+            const Vec3 size{random.uniform(0.06, 0.3), random.uniform(0.05, 0.24),
+                            random.uniform(0.03, 0.26)};
             for (int k = random.chance(0.3) ? random.integer(2, 3) : 1; k > 0; --k)
                 stack.push_back(block("box", size));
             return stack;
         }
-        return random.chance(0.5) ? make_kitchen_item(random, clearance) : make_desk_item(random, clearance);
+        return random.chance(0.5) ? make_kitchen_item(random, clearance)
+                                  : make_desk_item(random, clearance);
     });
     return std::move(room.world());
 }

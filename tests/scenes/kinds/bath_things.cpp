@@ -34,8 +34,7 @@ Blueprint make_toilet(Random& random) {
     b.cylinder("seat", 0, 0.42, h, 2.1 * r, 0.035);
     if (random.chance(0.7)) {
         b.rounded("tank", 0, 0.09, h - 0.02, {random.uniform(0.34, 0.42), 0.17, 0.36}, 0.03);
-        if (random.chance(0.4))
-            b.leaning("lid", 0, 0.24, h + 0.03, {1.9 * r, 0.02, 0.38}, 0.15);
+        if (random.chance(0.4)) b.leaning("lid", 0, 0.24, h + 0.03, {1.9 * r, 0.02, 0.38}, 0.15);
     }
     b.box("mount", 0, 0.05, 0.1, {0.2, 0.1, 0.2});
     return b;

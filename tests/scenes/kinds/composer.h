@@ -38,9 +38,7 @@ class Composer {
     };
     const std::vector<Placed>& placed() const { return placed_; }
     // Part of the world that is part `k` of a placed blueprint.
-    std::int32_t part_of(std::size_t placed, int k) const {
-        return placed_[placed].first_part + k;
-    }
+    std::int32_t part_of(std::size_t placed, int k) const { return placed_[placed].first_part + k; }
 
     // Whether it keeps out of all solids there, and out of ways to doors.
     bool fits(const Blueprint& blueprint, const Pose& pose, double margin = -sunk) const;

@@ -47,7 +47,8 @@ Blueprint pen_holder(Random& random) {
     for (int k = random.integer(2, 6); k > 0; --k) {
         const double a = random.uniform(0, 2 * pi), lean = random.uniform(0.05, 0.25);
         b.bar("pen", {0.01 * std::cos(a), 0.01 * std::sin(a), 0.006},
-              {0.16 * std::sin(lean) * std::cos(a), 0.16 * std::sin(lean) * std::sin(a), 0.165}, 0.008);
+              {0.16 * std::sin(lean) * std::cos(a), 0.16 * std::sin(lean) * std::sin(a), 0.165},
+              0.008);
     }
     return b;
 }
@@ -80,9 +81,11 @@ Blueprint desk_lamp(Random& random) {
 Blueprint table_lamp(Random& random) {
     Blueprint b("table lamp");
     const double r = random.uniform(0.05, 0.09), h = random.uniform(0.14, 0.3);
-    b.feet = {b.revolved("foot", 0, 0, 0, solid_within(smooth_side({r, 1.2 * r, 0.4 * r, 0.2 * r}, h)))};
+    b.feet = {
+        b.revolved("foot", 0, 0, 0, solid_within(smooth_side({r, 1.2 * r, 0.4 * r, 0.2 * r}, h)))};
     b.cylinder("column", 0, 0, h - 0.01, 0.014, 0.08);
-    b.cone("shade", 0, 0, h + 0.04, 2 * random.uniform(0.1, 0.17), random.uniform(0.13, 0.22), 0.65);
+    b.cone("shade", 0, 0, h + 0.04, 2 * random.uniform(0.1, 0.17), random.uniform(0.13, 0.22),
+           0.65);
     return b;
 }
 
@@ -114,7 +117,8 @@ Blueprint make_television(Random& random) {
 Blueprint make_bush(Random& random, double scale) {
     Blueprint b("plant");
     const double r = scale * random.uniform(0.1, 0.2), h = scale * random.uniform(0.15, 0.35);
-    b.feet = {b.revolved("pot", 0, 0, 0, vessel_within({{0.75 * r, 0}, {r, h}}, 0.08 * r + 0.004, 0.8 * h))};
+    b.feet = {b.revolved("pot", 0, 0, 0,
+                         vessel_within({{0.75 * r, 0}, {r, h}}, 0.08 * r + 0.004, 0.8 * h))};
     b.cylinder("soil", 0, 0, 0.78 * h, 1.7 * r, 0.05 * h);
     const int stems = random.integer(2, 6);
     for (int k = 0; k < stems; ++k) {
@@ -125,10 +129,14 @@ Blueprint make_bush(Random& random, double scale) {
         b.bar("stem", {0, 0, 0.75 * h}, to, 0.008 + 0.008 * scale);
         for (int leaf = random.integer(2, 5); leaf > 0; --leaf) {
             const double f = random.uniform(0.4, 1.0);
-            Part part{Shape::box,
-                      {f * to[0], f * to[1], 0.75 * h + f * (to[2] - 0.75 * h)},
-                      {scale * random.uniform(0.05, 0.12), scale * random.uniform(0.12, 0.3), 0.004},
-                      random.uniform(-pi, pi), 0, -1, "leaf"};
+            Part part{
+                Shape::box,
+                {f * to[0], f * to[1], 0.75 * h + f * (to[2] - 0.75 * h)},
+                {scale * random.uniform(0.05, 0.12), scale * random.uniform(0.12, 0.3), 0.004},
+                random.uniform(-pi, pi),
+                0,
+                -1,
+                "leaf"};
             part.lean = random.uniform(-0.9, 0.9);
             b.parts.push_back(part);
         }
@@ -142,8 +150,7 @@ Blueprint make_basket(Random& random) {
                  h = random.uniform(0.18, 0.5), t = 0.012;
     if (random.chance(0.4)) {
         const double r = w / 2;
-        b.feet = {b.revolved("body", 0, 0, 0,
-                             vessel_within({{0.85 * r, 0}, {r, h}}, 0.008, 0.01))};
+        b.feet = {b.revolved("body", 0, 0, 0, vessel_within({{0.85 * r, 0}, {r, h}}, 0.008, 0.01))};
         return b;
     }
     b.feet = {b.box("floor", 0, 0, 0, {w, d, t})};
@@ -159,9 +166,9 @@ Blueprint make_built_in_wardrobe(Random& random, double length) {
     const double d = random.uniform(0.5, 0.65), h = random.uniform(1.9, 2.3);
     const int cells = std::max(1, static_cast<int>(length / random.uniform(0.5, 1.0)));
     for (int k = 0; k < cells; ++k)
-        add_cabinet(b, {(k + 0.5 - cells / 2.0) * length / cells, 0, 0.06,
-                        {length / cells, d, h - 0.06}},
-                    random, 0.12);
+        add_cabinet(
+            b, {(k + 0.5 - cells / 2.0) * length / cells, 0, 0.06, {length / cells, d, h - 0.06}},
+            random, 0.12);
     b.box("plinth", 0, d / 2 - 0.02, 0, {length, d - 0.04, 0.06});
     return b;
 }
@@ -175,11 +182,13 @@ Blueprint make_lamp_on_pole(Random& random) {
     } else {
         for (int k = 0; k < 3; ++k) {
             const double a = 2 * pi * k / 3;
-            b.feet.push_back(b.leg("leg", 0.02 * std::cos(a), 0.02 * std::sin(a), 0, h, 0.025, 0.2, a));
+            b.feet.push_back(
+                b.leg("leg", 0.02 * std::cos(a), 0.02 * std::sin(a), 0, h, 0.025, 0.2, a));
         }
         b.cylinder("column", 0, 0, h - 0.05, 0.06, 0.08);
     }
-    b.cone("shade", 0, 0, h, random.uniform(0.3, 0.5), random.uniform(0.2, 0.32), random.uniform(0.5, 0.95));
+    b.cone("shade", 0, 0, h, random.uniform(0.3, 0.5), random.uniform(0.2, 0.32),
+           random.uniform(0.5, 0.95));
     return b;
 }
 
@@ -259,14 +268,15 @@ Stack make_soft_item(Random& random, double clearance) {
     if (random.chance(0.6)) {
         Blueprint b("pillow");
         const double t = random.uniform(0.09, 0.16);
-        b.feet = {b.rounded("pillow", 0, 0, 0, {random.uniform(0.35, 0.7), random.uniform(0.3, 0.42), t},
-                            0.46 * t)};
+        b.feet = {b.rounded("pillow", 0, 0, 0,
+                            {random.uniform(0.35, 0.7), random.uniform(0.3, 0.42), t}, 0.46 * t)};
         stack.push_back(b);
     } else {
         for (int k = random.integer(1, 4); k > 0; --k) {
             Blueprint b("clothes");
             const double t = random.uniform(0.03, 0.07);
-            b.feet = {b.rounded("cloth", 0, 0, 0, {random.uniform(0.22, 0.36), random.uniform(0.2, 0.3), t},
+            b.feet = {b.rounded("cloth", 0, 0, 0,
+                                {random.uniform(0.22, 0.36), random.uniform(0.2, 0.3), t},
                                 0.4 * t)};
             stack.push_back(b);
         }
@@ -295,13 +305,15 @@ Blueprint make_row(Random& random, double length, double height, double depth) {
 Stack make_shelf_item(Random& random, double clearance) {
     if (random.chance(0.6)) {
         const double h = std::min(clearance - 0.01, random.uniform(0.15, 0.33));
-        if (h > 0.08) return {make_row(random, random.uniform(0.12, 0.9), h, random.uniform(0.12, 0.2))};
+        if (h > 0.08)
+            return {make_row(random, random.uniform(0.12, 0.9), h, random.uniform(0.12, 0.2))};
     }
     if (random.chance(0.4)) {
         Blueprint b = make_carton(random, std::min(0.3, clearance));
         if (b.height() < clearance) return {b};
     }
-    return random.chance(0.5) ? make_home_item(random, clearance) : make_desk_item(random, clearance);
+    return random.chance(0.5) ? make_home_item(random, clearance)
+                              : make_desk_item(random, clearance);
 }
 
 }  // namespace topple::scenes

@@ -13,7 +13,7 @@ namespace {
 
 // Things per m^2 of surface: from tidy to crowded.
 double any_clutter(Random& random) {
-    return random.uniform(0.5, 1) * random.uniform(1, 9);
+    return random.uniform(1, 4) * random.uniform(1, 4);
 }
 
 Composer::Make items(Random& random, Stack (*make)(Random&, double)) {
@@ -50,21 +50,25 @@ double fitted_run(Composer& room, int wall, double from, double to) {
     double at = from;
     while (at < to - 0.7) {
         if (random.chance(0.3)) {
-            const Blueprint free = random.chance(0.4) ? make_fridge(random) : make_appliance(random);
+            const Blueprint free =
+                random.chance(0.4) ? make_fridge(random) : make_appliance(random);
             const auto box = free.bounds();
             const double w = box[1][0] - box[0][0];
             if (at + w > to) break;
             const double slack = random.uniform(0.001, 0.02);
-            const Pose pose = room.at_wall(wall, at + slack + w / 2,
-                                           room.skirting() + random.uniform(0, 0.04) - free.back(), 0, 0);
-            if (room.stand(free, pose, {0}, "floor")) at += w + 2 * slack;
-            else at += 0.3;
+            const Pose pose =
+                room.at_wall(wall, at + slack + w / 2,
+                             room.skirting() + random.uniform(0, 0.04) - free.back(), 0, 0);
+            if (room.stand(free, pose, {0}, "floor"))
+                at += w + 2 * slack;
+            else
+                at += 0.3;
             continue;
         }
         const double length = std::min(to - at, random.uniform(0.6, 2.6));
         const Blueprint counter = make_counter(random, length);
-        const bool done = room.fix(counter, room.at_wall(wall, at + length / 2,
-                                                          room.skirting() - counter.back(), 0, 0));
+        const bool done = room.fix(
+            counter, room.at_wall(wall, at + length / 2, room.skirting() - counter.back(), 0, 0));
         if (done && random.chance(0.6)) {
             const double above = random.uniform(1.32, 1.55);
             if (random.chance(0.25) && length > 1) {
@@ -91,11 +95,12 @@ World make_kitchen(std::uint64_t seed) {
     room.build(shell);
     const int wall = room.any_wall();
     const double length = room.wall_length(wall);
-    fitted_run(room, wall, random.chance(0.6) ? 0 : random.uniform(0, 0.8),
+    fitted_run(room, wall, room.skirting() + (random.chance(0.6) ? 0.001 : random.uniform(0, 0.8)),
                length * random.uniform(0.55, 1.0));
     if (random.chance(0.5)) {
         const int next = room.any_wall();
-        if (next != wall) fitted_run(room, next, 0.68, room.wall_length(next) * random.uniform(0.4, 1));
+        if (next != wall)
+            fitted_run(room, next, 0.68, room.wall_length(next) * random.uniform(0.4, 1));
     }
     if (random.chance(0.3)) {  // an island
         const Blueprint island = make_counter(random, random.uniform(0.9, 1.8));
@@ -106,7 +111,8 @@ World make_kitchen(std::uint64_t seed) {
     for (int k = random.integer(0, 2); k > 0; --k) room.along_wall(make_free_cupboard(random));
     if (random.chance(0.5)) room.along_wall(make_fridge(random));
     if (random.chance(0.75)) {
-        const Blueprint table = random.chance(0.8) ? make_work_table(random) : make_pedestal_table(random);
+        const Blueprint table =
+            random.chance(0.8) ? make_work_table(random) : make_pedestal_table(random);
         if (random.chance(0.5) ? room.anywhere(table) : room.along_wall(table))
             seat(room, room.placed().size() - 1, random.integer(1, 5));
     }
@@ -129,7 +135,8 @@ World make_bathroom(std::uint64_t seed) {
     room.along_wall(make_toilet(random), true);
     for (int k = random.integer(1, 2); k > 0; --k) room.along_wall(make_basin(random), true);
     if (random.chance(0.6)) room.on_wall(make_towel_rail(random), random.uniform(1.0, 1.5));
-    if (random.chance(0.6)) room.on_wall(make_wall_cupboards(random, random.uniform(0.4, 0.9)), 1.35);
+    if (random.chance(0.6))
+        room.on_wall(make_wall_cupboards(random, random.uniform(0.4, 0.9)), 1.35);
     if (random.chance(0.7)) room.along_wall(make_bookcase(random, 1.8));
     if (random.chance(0.5)) room.along_wall(make_drawer_unit(random));
     if (random.chance(0.5)) room.along_wall(make_appliance(random));
@@ -187,12 +194,15 @@ World make_living_room(std::uint64_t seed) {
     if (random.chance(0.5)) {  // a carpet is the floor's, a thick one a thing
         const Vec3& size = room.world().room;
         const double t = random.uniform(0.004, 0.014);
-        room.add_building_box("carpet", size[0] / 2, size[1] / 2, -0.0001,
-                              {random.uniform(0.3, 0.6) * size[0], random.uniform(0.3, 0.6) * size[1], t});
+        room.add_building_box(
+            "carpet", size[0] / 2, size[1] / 2, -0.0001,
+            {random.uniform(0.3, 0.6) * size[0], random.uniform(0.3, 0.6) * size[1], t});
     }
     for (int k = random.integer(1, 3); k > 0; --k) {
-        if (random.chance(0.75)) room.along_wall(make_couch(random));
-        else room.anywhere(random.chance(0.5) ? make_bolster_armchair(random) : make_couch(random));
+        if (random.chance(0.75))
+            room.along_wall(make_couch(random));
+        else
+            room.anywhere(random.chance(0.5) ? make_bolster_armchair(random) : make_couch(random));
     }
     for (int k = random.integer(0, 2); k > 0; --k) {
         switch (random.integer(0, 2)) {
@@ -208,7 +218,8 @@ World make_living_room(std::uint64_t seed) {
     }
     if (room.along_wall(make_tv_board(random)) && random.chance(0.8)) {
         const std::size_t board = room.placed().size() - 1;
-        room.on_surface(board, room.placed()[board].blueprint.surfaces.back(), {make_television(random)});
+        room.on_surface(board, room.placed()[board].blueprint.surfaces.back(),
+                        {make_television(random)});
     }
     for (int k = random.integer(0, 3); k > 0; --k) room.along_wall(make_bookcase(random, 2.3));
     if (random.chance(0.5)) room.along_wall(make_free_cupboard(random));
@@ -216,15 +227,20 @@ World make_living_room(std::uint64_t seed) {
         if (room.anywhere(make_work_table(random)))
             seat(room, room.placed().size() - 1, random.integer(1, 6));
     }
-    for (int k = random.integer(0, 3); k > 0; --k) room.along_wall(make_bush(random, random.uniform(0.7, 1.6)));
+    for (int k = random.integer(0, 3); k > 0; --k)
+        room.along_wall(make_bush(random, random.uniform(0.7, 1.6)));
     for (int k = random.integer(0, 2); k > 0; --k) room.along_wall(make_lamp_on_pole(random));
     if (random.chance(0.3)) room.along_wall(make_arc_lamp(random));
-    for (int k = random.integer(0, 2); k > 0; --k) room.on_wall(make_wall_shelf(random), random.uniform(1.1, 1.6));
+    for (int k = random.integer(0, 2); k > 0; --k)
+        room.on_wall(make_wall_shelf(random), random.uniform(1.1, 1.6));
     const double clutter = any_clutter(random);
     const std::size_t count = room.placed().size();
     for (std::size_t k = 0; k < count; ++k) {
         const std::string& name = room.placed()[k].blueprint.name;
-        room.fill(k, name == "sofa" ? 2.5 : name == "bookcase" ? clutter + 4 : clutter,
+        room.fill(k,
+                  name == "sofa"       ? 2.5
+                  : name == "bookcase" ? clutter + 4
+                                       : clutter,
                   items(random, name == "sofa"       ? make_soft_item
                                 : name == "bookcase" ? make_shelf_item
                                                      : make_home_item));

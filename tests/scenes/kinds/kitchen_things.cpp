@@ -82,16 +82,18 @@ int add_cabinet(Blueprint& b, const CabinetPlace& p, Random& random, double open
             if (out > 0)
                 b.box("drawer", p.x, y + out / 2, p.bottom + k * h / drawers + 0.03,
                       {w - 0.05, out, 0.7 * h / drawers - 0.02});
-            add_front(b, {p.x, y + out, p.bottom + k * h / drawers + gap / 2, w - gap,
-                          h / drawers - gap, style, true},
+            add_front(b,
+                      {p.x, y + out, p.bottom + k * h / drawers + gap / 2, w - gap,
+                       h / drawers - gap, style, true},
                       "drawer", true, random);
         }
         return body;
     }
     const int doors = w > 0.55 ? 2 : 1;
     for (int k = 0; k < doors; ++k)
-        add_front(b, {p.x + (k - (doors - 1) / 2.0) * w / doors, y, p.bottom + gap / 2,
-                      w / doors - gap, h - gap, style, k == 0},
+        add_front(b,
+                  {p.x + (k - (doors - 1) / 2.0) * w / doors, y, p.bottom + gap / 2,
+                   w / doors - gap, h - gap, style, k == 0},
                   "door", false, random);
     return body;
 }
@@ -113,10 +115,10 @@ Blueprint make_counter(Random& random, double length) {
     const double sink = std::min(0.5, 0.3 * length), middle = random.uniform(-0.3, 0.3) * length;
     if (length > 1.3 && random.chance(0.7)) {  // the worktop goes around a sink
         const double low = middle - sink / 2, high = middle + sink / 2, rim = 0.08;
-        const int left = b.box("worktop", (low - length / 2) / 2, over, top,
-                               {low + length / 2, deep, t});
-        const int right = b.box("worktop", (high + length / 2) / 2, over, top,
-                                {length / 2 - high, deep, t});
+        const int left =
+            b.box("worktop", (low - length / 2) / 2, over, top, {low + length / 2, deep, t});
+        const int right =
+            b.box("worktop", (high + length / 2) / 2, over, top, {length / 2 - high, deep, t});
         b.box("worktop", middle, back + rim / 2, top, {sink, rim, t});
         b.box("worktop", middle, back + deep - rim / 2, top, {sink, rim, t});
         b.box("sink", middle, over, top - 0.12, {sink, deep, 0.12});
@@ -133,8 +135,8 @@ Blueprint make_counter(Random& random, double length) {
                     b.cylinder("ring", at + sx, over + sy, h, random.uniform(0.14, 0.2), 0.02);
             }
             const double half = (length / 2 + at - 0.3) / 2;
-            b.surfaces.push_back({one, -length / 2 + half, over, half - 0.02, deep / 2 - 0.03, 0.45,
-                                  "counter"});
+            b.surfaces.push_back(
+                {one, -length / 2 + half, over, half - 0.02, deep / 2 - 0.03, 0.45, "counter"});
         } else {
             b.stand_on(one, 0.45, "counter", 0.03);
         }
@@ -202,8 +204,8 @@ Blueprint make_appliance(Random& random) {
     for (const double s : {-1.0, 1.0})
         b.feet.push_back(b.box("foot", s * (w / 2 - 0.04), 0, 0, {0.05, d - 0.06, foot}));
     if (which == 1) {
-        const int ring = b.lying("door", 0, d / 2 + 0.02, 0.25 * h, 0.05, 0.34,
-                                 std::numbers::pi / 2);
+        const int ring =
+            b.lying("door", 0, d / 2 + 0.02, 0.25 * h, 0.05, 0.34, std::numbers::pi / 2);
         (void)ring;
     } else {
         b.box("door", 0, d / 2 + 0.012, foot + 0.08, {w - 0.01, 0.024, h - 0.26});
@@ -224,8 +226,8 @@ Blueprint make_free_cupboard(Random& random) {
                  h = random.uniform(0.75, 1.9), leg = random.uniform(0.03, 0.15);
     for (const double sx : {-1.0, 1.0}) {
         for (const double sy : {-1.0, 1.0})
-            b.feet.push_back(b.box("foot", sx * (w / 2 - 0.03), sy * (d / 2 - 0.03), 0,
-                                   {0.05, 0.05, leg}));
+            b.feet.push_back(
+                b.box("foot", sx * (w / 2 - 0.03), sy * (d / 2 - 0.03), 0, {0.05, 0.05, leg}));
     }
     const int top = add_cabinet(b, {0, -d / 2, leg, {w, d, h - leg}}, random, 0.45);
     b.stand_on(top, 0.5, "cupboard", 0.03);
@@ -258,7 +260,8 @@ Blueprint pan(Random& random) {
     if (random.chance(0.5)) {
         b.box("handle", r + 0.09, 0, h - 0.03, {0.2, 0.025, 0.015});
     } else {
-        for (const double s : {-1.0, 1.0}) b.box("handle", s * (r + 0.02), 0, h - 0.03, {0.05, 0.08, 0.012});
+        for (const double s : {-1.0, 1.0})
+            b.box("handle", s * (r + 0.02), 0, h - 0.03, {0.05, 0.08, 0.012});
     }
     return b;
 }
@@ -281,8 +284,9 @@ Blueprint jar(Random& random) {
 
 Blueprint food_box(Random& random) {
     Blueprint b("food box");
-    b.feet = {b.box("box", 0, 0, 0, {random.uniform(0.08, 0.22), random.uniform(0.04, 0.12),
-                                     random.uniform(0.1, 0.32)})};
+    b.feet = {
+        b.box("box", 0, 0, 0,
+              {random.uniform(0.08, 0.22), random.uniform(0.04, 0.12), random.uniform(0.1, 0.32)})};
     return b;
 }
 
@@ -291,7 +295,8 @@ Stack plates(Random& random) {
     const double r = random.uniform(0.08, 0.14);
     for (int k = random.integer(1, 3); k > 0; --k) {
         Blueprint b("plate");
-        b.feet = {b.revolved("plate", 0, 0, 0, solid_within({{0.6 * r, 0}, {r, 0.02}, {r, 0.024}}))};
+        b.feet = {
+            b.revolved("plate", 0, 0, 0, solid_within({{0.6 * r, 0}, {r, 0.02}, {r, 0.024}}))};
         stack.push_back(std::move(b));
     }
     return stack;
@@ -299,8 +304,9 @@ Stack plates(Random& random) {
 
 Blueprint board_flat(Random& random) {
     Blueprint b("chopping board");
-    b.feet = {b.box("board", 0, 0, 0, {random.uniform(0.25, 0.45), random.uniform(0.16, 0.3),
-                                       random.uniform(0.01, 0.03)})};
+    b.feet = {
+        b.box("board", 0, 0, 0,
+              {random.uniform(0.25, 0.45), random.uniform(0.16, 0.3), random.uniform(0.01, 0.03)})};
     return b;
 }
 

@@ -46,7 +46,8 @@ Blueprint make_rail_chair(Random& random) {
     const double back = -(d - leg) / 2, lean = random.uniform(0, 0.2);
     const auto shift = [&](double z) { return back - std::tan(lean) * (z - h); };
     for (const double s : {-1.0, 1.0})
-        b.bar("post", {s * (w - leg) / 2, back, h - 0.02}, {s * (w - leg) / 2, shift(top), top}, leg);
+        b.bar("post", {s * (w - leg) / 2, back, h - 0.02}, {s * (w - leg) / 2, shift(top), top},
+              leg);
     switch (random.integer(0, 2)) {
         case 0:  // slats across
             for (double z = h + random.uniform(0.1, 0.2); z < top - 0.05; z += 0.13)
@@ -64,8 +65,8 @@ Blueprint make_rail_chair(Random& random) {
             for (int k = 0; k < 5; ++k) {
                 const double x = (k - 2.0) * w / 5;
                 const double bow = 0.03 * (1 - std::abs(k - 2.0) / 2);
-                b.box("panel", x, shift((low + top) / 2) - bow, low, {w / 5 + 0.004, 0.018, top - low},
-                      -0.13 * (k - 2.0) / 2);
+                b.box("panel", x, shift((low + top) / 2) - bow, low,
+                      {w / 5 + 0.004, 0.018, top - low}, -0.13 * (k - 2.0) / 2);
             }
         }
     }
@@ -97,7 +98,10 @@ Blueprint make_office_chair(Random& random) {
     Part back{Shape::rounded_box,
               {0, -d / 2 - 0.02 - std::sin(lean) * high / 2, h + 0.12 + high / 2},
               {0.92 * w, 0.06, high},
-              0, 0, -1, "back"};
+              0,
+              0,
+              -1,
+              "back"};
     back.lean = lean;
     back.rounding = 0.025;
     b.parts.push_back(back);
@@ -144,9 +148,10 @@ Blueprint make_work_table(Random& random) {
     }
     if (random.chance(0.25)) {  // a fixed pedestal under one end
         const double side = random.chance(0.5) ? 1 : -1;
-        add_cabinet(b, {side * (w / 2 - over - leg - 0.2), -d / 2 + 0.04, 0.1,
-                        {0.36, d - 0.12, h - t - 0.1}},
-                    random, 0);
+        add_cabinet(
+            b,
+            {side * (w / 2 - over - leg - 0.2), -d / 2 + 0.04, 0.1, {0.36, d - 0.12, h - t - 0.1}},
+            random, 0);
     }
     b.stand_on(top, 0.7, "table", 0.005);
     return b;
@@ -158,8 +163,8 @@ Blueprint make_drawer_unit(Random& random) {
                  h = random.uniform(0.4, 1.1);
     for (const double sx : {-1.0, 1.0}) {
         for (const double sy : {-1.0, 1.0})
-            b.feet.push_back(b.cylinder("caster", sx * (w / 2 - 0.04), sy * (d / 2 - 0.04), 0, 0.04,
-                                        0.04));
+            b.feet.push_back(
+                b.cylinder("caster", sx * (w / 2 - 0.04), sy * (d / 2 - 0.04), 0, 0.04, 0.04));
     }
     const int top = add_cabinet(b, {0, -d / 2, 0.04, {w, d - 0.02, h - 0.04}}, random, 0.15);
     b.stand_on(top, 0.5, "drawers", 0.02);
@@ -169,7 +174,8 @@ Blueprint make_drawer_unit(Random& random) {
 Blueprint make_bookcase(Random& random, double most_height) {
     Blueprint b("bookcase");
     const double w = random.uniform(0.4, 1.4), d = random.uniform(0.22, 0.4);
-    const double h = std::min(most_height, random.uniform(0.7, 2.3)), t = random.uniform(0.016, 0.03);
+    const double h = std::min(most_height, random.uniform(0.7, 2.3)),
+                 t = random.uniform(0.016, 0.03);
     const double plinth = random.chance(0.5) ? 0.06 : 0;
     const int shelves = std::max(2, static_cast<int>((h - plinth) / random.uniform(0.24, 0.42)));
     const bool back = random.chance(0.75);
@@ -181,8 +187,8 @@ Blueprint make_bookcase(Random& random, double most_height) {
     for (int k = 0; k <= shelves; ++k) {
         const int board = b.box("board", 0, 0, plinth + k * pitch, {w - 2 * t, d, t});
         if (k < shelves)
-            b.surfaces.push_back({board, 0, 0.01, w / 2 - t - 0.004, d / 2 - 0.015,
-                                  pitch - t - 0.004, "shelf"});
+            b.surfaces.push_back(
+                {board, 0, 0.01, w / 2 - t - 0.004, d / 2 - 0.015, pitch - t - 0.004, "shelf"});
         else
             b.stand_on(board, 0.4, "shelf top", 0.01);
     }
@@ -198,25 +204,29 @@ Blueprint make_couch(Random& random) {
     const double back = random.uniform(0.12, 0.25), high = random.uniform(0.68, 0.95);
     for (const double sx : {-1.0, 1.0}) {
         for (const double sy : {-1.0, 1.0})
-            b.feet.push_back(b.cylinder("foot", sx * (w / 2 - 0.06), sy * (d / 2 - 0.06), 0, 0.045,
-                                        foot));
+            b.feet.push_back(
+                b.cylinder("foot", sx * (w / 2 - 0.06), sy * (d / 2 - 0.06), 0, 0.045, foot));
     }
     b.box("base", 0, 0, foot, {w, d, base});
     const double top = foot + base, soft = random.uniform(0.1, 0.18);
     b.rounded("backrest", 0, -d / 2 + back / 2, top, {w, back, high - top}, 0.3 * back);
     for (const double s : {-1.0, 1.0})
-        b.rounded("armrest", s * (w - arm) / 2, back / 2, top, {arm, d - back, random.uniform(0.2, 0.34)},
-                  0.3 * arm);
+        b.rounded("armrest", s * (w - arm) / 2, back / 2, top,
+                  {arm, d - back, random.uniform(0.2, 0.34)}, 0.3 * arm);
     for (int k = 0; k < seats; ++k) {
         const double x = (k - (seats - 1) / 2.0) * seat;
-        const int cushion = b.rounded("seat", x, back / 2, top, {seat - 0.006, d - back, soft}, 0.04);
-        b.surfaces.push_back({cushion, x, back / 2, seat / 2 - 0.02, (d - back) / 2 - 0.05, 0.5,
-                              "sofa"});
+        const int cushion =
+            b.rounded("seat", x, back / 2, top, {seat - 0.006, d - back, soft}, 0.04);
+        b.surfaces.push_back(
+            {cushion, x, back / 2, seat / 2 - 0.02, (d - back) / 2 - 0.05, 0.5, "sofa"});
         if (random.chance(0.6)) {
             Part loose{Shape::rounded_box,
                        {x, -d / 2 + back + 0.06, top + soft + 0.2},
                        {seat - 0.03, 0.12, 0.36},
-                       0, 0, -1, "back cushion"};
+                       0,
+                       0,
+                       -1,
+                       "back cushion"};
             loose.lean = random.uniform(0.05, 0.25);
             loose.rounding = 0.05;
             b.parts.push_back(loose);
@@ -233,13 +243,16 @@ Blueprint make_tv_board(Random& random) {
                  h = random.uniform(0.3, 0.7), leg = random.uniform(0.04, 0.18);
     for (const double sx : {-1.0, 1.0}) {
         for (const double sy : {-1.0, 1.0})
-            b.feet.push_back(b.box("leg", sx * (w / 2 - 0.06), sy * (d / 2 - 0.05), 0,
-                                   {0.04, 0.04, leg}));
+            b.feet.push_back(
+                b.box("leg", sx * (w / 2 - 0.06), sy * (d / 2 - 0.05), 0, {0.04, 0.04, leg}));
     }
     const int cells = random.integer(2, 4);
     for (int k = 0; k < cells; ++k)
-        add_cabinet(b, {(k + 0.5 - cells / 2.0) * w / cells, -d / 2, leg,
-                        {w / cells, d - 0.02, h - leg - 0.02}},
+        add_cabinet(b,
+                    {(k + 0.5 - cells / 2.0) * w / cells,
+                     -d / 2,
+                     leg,
+                     {w / cells, d - 0.02, h - leg - 0.02}},
                     random, 0.4);
     const int top = b.box("top", 0, 0, h - 0.02, {w, d, 0.02});
     b.stand_on(top, 1.0, "board", 0.02);
@@ -253,20 +266,22 @@ Blueprint make_double_bed(Random& random) {
     add_legs(b, w, d, leg, 0.06, random.chance(0.5));
     b.box("frame", 0, 0, leg, {w, d, frame});
     const double soft = random.uniform(0.14, 0.28), top = leg + frame;
-    const int mattress = b.rounded("mattress", 0, 0.01, top - 0.03, {w - 0.04, d - 0.06, soft},
-                                   0.25 * soft);
+    const int mattress =
+        b.rounded("mattress", 0, 0.01, top - 0.03, {w - 0.04, d - 0.06, soft}, 0.25 * soft);
     if (random.chance(0.8))
         b.feet.push_back(
             b.box("headboard", 0, -d / 2 - 0.02, 0, {w, 0.04, top + random.uniform(0.2, 0.7)}));
     if (random.chance(0.3)) b.box("footboard", 0, d / 2 + 0.015, leg, {w, 0.03, frame + soft});
     if (random.chance(0.6)) {  // a cover that hangs over the sides
-        const double over = random.uniform(0.15, soft + 0.1), from = -d / 2 + random.uniform(0.4, 0.8);
+        const double over = random.uniform(0.15, soft + 0.1),
+                     from = -d / 2 + random.uniform(0.4, 0.8);
         const double length = d / 2 - from, z = top - 0.03 + soft;
         b.rounded("cover", 0, from + length / 2, z - 0.01, {w + 0.04, length, 0.05}, 0.02);
         for (const double s : {-1.0, 1.0})
-            b.box("cover", s * (w / 2 + 0.01), from + length / 2, z - over, {0.03, length - 0.04, over});
-        b.surfaces.push_back({static_cast<int>(b.parts.size()) - 3, 0, from + length / 2, w / 2 - 0.2,
-                              length / 2 - 0.1, 0.6, "bed"});
+            b.box("cover", s * (w / 2 + 0.01), from + length / 2, z - over,
+                  {0.03, length - 0.04, over});
+        b.surfaces.push_back({static_cast<int>(b.parts.size()) - 3, 0, from + length / 2,
+                              w / 2 - 0.2, length / 2 - 0.1, 0.6, "bed"});
         b.surfaces.push_back({mattress, 0, (-d / 2 + from) / 2, w / 2 - 0.06,
                               (from + d / 2) / 2 - 0.05, 0.5, "pillows"});
     } else {

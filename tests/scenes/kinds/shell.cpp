@@ -8,7 +8,6 @@
 // The building's part of a Composer's room.
 namespace topple::scenes {
 
-
 std::int32_t Composer::add_building(Part part) {
     part.object = 0;
     boxes_.push_back(part.bounds());
@@ -102,8 +101,10 @@ void Composer::fill_opening(int wall, const Opening& o) {
                          Vec3{std::max(a.x, b.x), std::max(a.y, b.y), 1.9}});
         if (random_.chance(0.3)) return;  // open
         if (random_.chance(0.5)) {        // closed
-            wall_piece(wall, "door", o.from + 0.003, o.to - 0.003, 0.005, o.top - 0.004, inset, 0.04);
-            wall_piece(wall, "handle", o.from + 0.06, o.from + 0.18, 1.02, 1.04, inset - 0.05, 0.05);
+            wall_piece(wall, "door", o.from + 0.003, o.to - 0.003, 0.005, o.top - 0.004, inset,
+                       0.04);
+            wall_piece(wall, "handle", o.from + 0.06, o.from + 0.18, 1.02, 1.04, inset - 0.05,
+                       0.05);
             return;
         }
         // Ajar into the room, its hinge at the opening's far edge.
@@ -115,14 +116,14 @@ void Composer::fill_opening(int wall, const Opening& o) {
         const double nx = inwards.x - hinge.x, ny = inwards.y - hinge.y;
         const double ux = std::cos(angle) * dx + std::sin(angle) * nx,
                      uy = std::cos(angle) * dy + std::sin(angle) * ny;
-        add_building({Shape::box,
-                      {hinge.x + ux * wide / 2 + nx * 0.02, hinge.y + uy * wide / 2 + ny * 0.02,
-                       o.top / 2},
-                      {wide - 0.01, 0.04, o.top - 0.02},
-                      std::atan2(uy, ux),
-                      0,
-                      0,
-                      "door"});
+        add_building(
+            {Shape::box,
+             {hinge.x + ux * wide / 2 + nx * 0.02, hinge.y + uy * wide / 2 + ny * 0.02, o.top / 2},
+             {wide - 0.01, 0.04, o.top - 0.02},
+             std::atan2(uy, ux),
+             0,
+             0,
+             "door"});
         return;
     }
     const double frame = random_.uniform(0.03, 0.07);
@@ -206,7 +207,9 @@ void Composer::add_fittings() {
         const int wall = any_wall();
         const Pose p = at_wall(wall, random_.uniform(0.1, wall_length(wall) - 0.1), 0.035, 0, 0);
         const double r = random_.uniform(0.02, 0.06);
-        add_building({Shape::cylinder, {p.x, p.y, h / 2}, {r, r, h}, 0, 0, 0, "pipe"});
+        Blueprint pipe("pipe");
+        pipe.cylinder("pipe", 0, 0, 0, r, h);
+        if (fits(pipe, {p.x, p.y, 0, 0})) add_building(moved({p.x, p.y, 0, 0}, pipe.parts.front()));
     }
 }
 

@@ -53,7 +53,8 @@ Blueprint make_carton(Random& random, double most) {
     const bool open = random.chance(0.15) && size[2] > 0.15;
     if (!open) {
         b.feet = {b.box("box", 0, 0, 0, size)};
-        if (random.chance(0.5)) b.box("tape", 0, 0, size[2] - 0.001, {0.05, size[1] + 0.002, 0.002});
+        if (random.chance(0.5))
+            b.box("tape", 0, 0, size[2] - 0.001, {0.05, size[1] + 0.002, 0.002});
         return b;
     }
     constexpr double t = 0.006;
@@ -71,7 +72,8 @@ Blueprint make_rack(Random& random, double most_height) {
     Blueprint b("rack");
     const int bays = random.integer(1, 3);
     const double bay = random.uniform(0.8, 2.4), d = random.uniform(0.4, 1.0);
-    const double h = std::min(most_height, random.uniform(1.6, 3.2)), post = random.uniform(0.03, 0.09);
+    const double h = std::min(most_height, random.uniform(1.6, 3.2)),
+                 post = random.uniform(0.03, 0.09);
     const double w = bays * bay + post;
     for (int k = 0; k <= bays; ++k) {
         const double x = -w / 2 + post / 2 + k * bay;
@@ -83,7 +85,8 @@ Blueprint make_rack(Random& random, double most_height) {
     const int levels = std::max(2, static_cast<int>(h / random.uniform(0.45, 1.1)));
     const bool solid = random.chance(0.7);
     for (int level = 0; level < levels; ++level) {
-        const double z = 0.08 + level * (h - 0.3) / std::max(1, levels - 1), t = random.uniform(0.02, 0.05);
+        const double z = 0.08 + level * (h - 0.3) / std::max(1, levels - 1),
+                     t = random.uniform(0.02, 0.05);
         const double clear = level + 1 < levels ? (h - 0.3) / (levels - 1) - t - 0.1 : 0.6;
         for (const double s : {-1.0, 1.0})
             b.box("beam", 0, s * (d - 0.7 * post) / 2, z - 0.06, {w - post, 0.6 * post, 0.06});
@@ -91,15 +94,16 @@ Blueprint make_rack(Random& random, double most_height) {
             const double x = -w / 2 + post / 2 + (k + 0.5) * bay;
             if (solid) {
                 const int deck = b.box("deck", x, 0, z, {bay - post - 0.004, d, t});
-                b.surfaces.push_back({deck, x, 0, bay / 2 - post - 0.01, d / 2 - 0.01, clear, "rack"});
+                b.surfaces.push_back(
+                    {deck, x, 0, bay / 2 - post - 0.01, d / 2 - 0.01, clear, "rack"});
             } else {
                 const int planks = std::max(2, static_cast<int>(d / 0.16));
                 for (int p = 0; p < planks; ++p) {
                     const int plank = b.box("deck", x, (p + 0.5 - planks / 2.0) * d / planks, z,
                                             {bay - post, 0.7 * d / planks, t});
                     if (p == planks / 2)
-                        b.surfaces.push_back({plank, x, 0, bay / 2 - post - 0.01, d / 2 - 0.01, clear,
-                                              "rack"});
+                        b.surfaces.push_back(
+                            {plank, x, 0, bay / 2 - post - 0.01, d / 2 - 0.01, clear, "rack"});
                 }
             }
         }
@@ -129,12 +133,14 @@ Blueprint make_trolley(Random& random) {
     const double w = random.uniform(0.6, 1.1), d = random.uniform(0.45, 0.65), z = 0.14;
     for (const double sx : {-1.0, 1.0}) {
         for (const double sy : {-1.0, 1.0})
-            b.feet.push_back(b.lying("wheel", sx * (w / 2 - 0.1), sy * (d / 2 - 0.08), 0, 0.03, z, pi / 2));
+            b.feet.push_back(
+                b.lying("wheel", sx * (w / 2 - 0.1), sy * (d / 2 - 0.08), 0, 0.03, z, pi / 2));
     }
     const int deck = b.box("deck", 0, 0, z - 0.005, {w, d, 0.03});
     const double h = random.uniform(0.8, 1.0);
     for (const double s : {-1.0, 1.0})
-        b.bar("rail", {-w / 2 + 0.02, s * (d / 2 - 0.03), z}, {-w / 2 - 0.04, s * (d / 2 - 0.03), h}, 0.03);
+        b.bar("rail", {-w / 2 + 0.02, s * (d / 2 - 0.03), z},
+              {-w / 2 - 0.04, s * (d / 2 - 0.03), h}, 0.03);
     b.lying("rail", -w / 2 - 0.04, 0, h - 0.015, d, 0.03, pi / 2);
     b.surfaces.push_back({deck, 0.03, 0, w / 2 - 0.08, d / 2 - 0.03, 1.2, "trolley"});
     if (random.chance(0.4)) {
@@ -176,7 +182,8 @@ Blueprint make_step_ladder(Random& random) {
     std::vector<int> sides;
     for (const double s : {-1.0, 1.0}) {
         const double foot = 0.02 + h * std::tan(lean);
-        sides.push_back(b.leaning("stringer", s * w / 2, foot, 0, {0.03, 0.06, h / std::cos(lean)}, lean));
+        sides.push_back(
+            b.leaning("stringer", s * w / 2, foot, 0, {0.03, 0.06, h / std::cos(lean)}, lean));
         b.feet.push_back(sides.back());
         b.feet.push_back(b.leaning("strut", s * w / 2, -0.02 - h * std::tan(lean), 0,
                                    {0.025, 0.025, h / std::cos(lean)}, -lean));
@@ -192,10 +199,12 @@ Blueprint make_step_ladder(Random& random) {
 
 Blueprint make_gondola(Random& random) {
     Blueprint b("shelf");
-    const double w = random.uniform(0.9, 2.2), d = random.uniform(0.5, 0.9), h = random.uniform(1.1, 1.7);
+    const double w = random.uniform(0.9, 2.2), d = random.uniform(0.5, 0.9),
+                 h = random.uniform(1.1, 1.7);
     b.feet = {b.box("base", 0, 0, 0, {w, d, 0.12})};
     b.box("wall", 0, 0, 0.12, {w, 0.03, h - 0.12});
-    for (const double s : {-1.0, 1.0}) b.box("end", s * (w / 2 - 0.01), 0, 0.12, {0.02, 0.5 * d, h - 0.12});
+    for (const double s : {-1.0, 1.0})
+        b.box("end", s * (w / 2 - 0.01), 0, 0.12, {0.02, 0.5 * d, h - 0.12});
     const int levels = random.integer(2, 4);
     for (const double side : {-1.0, 1.0}) {
         for (int k = 0; k < levels; ++k) {
@@ -203,8 +212,8 @@ Blueprint make_gondola(Random& random) {
             const double z = k == 0 ? 0.12 : 0.12 + k * (h - 0.12) / levels;
             const double y = side * (0.015 + deep / 2);
             const int board = k == 0 ? 0 : b.box("board", 0, y, z - 0.02, {w - 0.04, deep, 0.02});
-            b.surfaces.push_back({board, 0, y, w / 2 - 0.04, deep / 2 - 0.01,
-                                  (h - 0.12) / levels - 0.03, "shelf"});
+            b.surfaces.push_back(
+                {board, 0, y, w / 2 - 0.04, deep / 2 - 0.01, (h - 0.12) / levels - 0.03, "shelf"});
         }
     }
     return b;
@@ -242,7 +251,8 @@ Stack make_store_item(Random& random, double clearance) {
 Stack make_shop_item(Random& random, double clearance) {
     if (random.chance(0.55)) {
         const double h = std::min(clearance - 0.01, random.uniform(0.12, 0.35));
-        if (h > 0.06) return {make_row(random, random.uniform(0.2, 1.2), h, random.uniform(0.1, 0.24))};
+        if (h > 0.06)
+            return {make_row(random, random.uniform(0.2, 1.2), h, random.uniform(0.1, 0.24))};
     }
     if (random.chance(0.3)) return make_desk_item(random, clearance);
     if (random.chance(0.5)) {

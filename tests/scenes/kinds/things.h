@@ -36,9 +36,9 @@ Blueprint make_towel_rail(Random& random);
 Stack make_bath_item(Random& random, double clearance);
 
 // Rooms to live and work in.
-Blueprint make_rail_chair(Random& random);     // legs, rails, a back of slats, perhaps arms
-Blueprint make_office_chair(Random& random);   // a star of five on casters
-Blueprint make_work_table(Random& random);     // on legs or cheeks, with a rail, perhaps a pedestal
+Blueprint make_rail_chair(Random& random);    // legs, rails, a back of slats, perhaps arms
+Blueprint make_office_chair(Random& random);  // a star of five on casters
+Blueprint make_work_table(Random& random);    // on legs or cheeks, with a rail, perhaps a pedestal
 Blueprint make_drawer_unit(Random& random);
 Blueprint make_bookcase(Random& random, double most_height);
 Blueprint make_couch(Random& random);

@@ -176,7 +176,8 @@ World make_corridor(std::uint64_t seed) {
         const auto box = thing.bounds();
         if (box[1][1] - box[0][1] > width - 0.55) continue;
         if (room.along_wall(thing))
-            room.fill(room.placed().size() - 1, random.uniform(1, 6), things_of(random, make_shelf_item));
+            room.fill(room.placed().size() - 1, random.uniform(1, 6),
+                      things_of(random, make_shelf_item));
     }
     for (int k = random.integer(0, 2); k > 0; --k) {
         const WallThing thing = make_wall_thing(random);
@@ -209,8 +210,9 @@ World make_shop(std::uint64_t seed) {
     if (random.chance(0.6)) {
         const Blueprint counter = make_counter(random, random.uniform(1.2, 2.5));
         const Vec3& size = room.world().room;
-        if (room.fix(counter, {random.uniform(1.5, size[0] - 1.5), random.uniform(1.5, size[1] - 1.5), 0,
-                               random.integer(0, 3) * pi / 2}))
+        if (room.fix(counter,
+                     {random.uniform(1.5, size[0] - 1.5), random.uniform(1.5, size[1] - 1.5), 0,
+                      random.integer(0, 3) * pi / 2}))
             room.fill(room.placed().size() - 1, goods, things_of(random, make_desk_item));
     }
     for (int k = random.integer(0, 4); k > 0; --k) room.anywhere(make_splayed_stool(random));
@@ -233,7 +235,8 @@ World make_storage(std::uint64_t seed) {
         if (room.along_wall(make_rack(random, shell.size[2] - 0.3)))
             room.fill(room.placed().size() - 1, goods, things_of(random, make_store_item));
     }
-    if (hall && random.chance(0.5)) aisles(room, random.uniform(1.2, 2), any_rack, goods, make_store_item);
+    if (hall && random.chance(0.5))
+        aisles(room, random.uniform(1.2, 2), any_rack, goods, make_store_item);
     for (int k = random.integer(0, hall ? 7 : 2); k > 0; --k) {
         if (room.anywhere(make_pallet(random)) && random.chance(0.8))
             load_pallet(room, room.placed().size() - 1);
