@@ -4,9 +4,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 
+#include "scenes/scan/scan.h"
 #include "topple/crew.h"
 
 // Each command adds its options to the parser and returns what runs it. A command's result is the
@@ -31,6 +33,21 @@ inline void add_furniture(CLI::App& app, bool& varied) {
            "and piled things, levels, a ceiling)")
         ->check(CLI::IsMember({"plain", "varied"}))
         ->default_str("plain");
+}
+
+// Adds --scan, which sets how a generated room is scanned.
+inline CLI::Option* add_scan(CLI::App& app, scenes::ScanKind& kind) {
+    std::map<std::string, scenes::ScanKind> names;
+    using enum scenes::ScanKind;
+    for (const auto each : {walk, sparse, cloud, laser, single})
+        names[scenes::to_string(each)] = each;
+    return app
+        .add_option(
+            "--scan", kind,
+            "walk: depth and colour frames of a hand-held camera; sparse or cloud: points\n"
+            "fused of such; laser: points from stations; single: one frame without its pose")
+        ->transform(CLI::CheckedTransformer(names))
+        ->default_str(scenes::to_string(kind));
 }
 
 // How a parse is one process' part of a job of several. Alone: nothing of it.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -13,9 +14,11 @@
 #include "evaluation/bases.h"
 #include "evaluation/groupings.h"
 #include "evaluation/joint_weights.h"
+#include "evaluation/kind_score.h"
 #include "evaluation/pictures.h"
 #include "evaluation/room.h"
 #include "evaluation/tables.h"
+#include "scenes/kinds/kinds.h"
 #include "topple/device.h"
 #include "topple/error.h"
 
@@ -27,6 +30,8 @@ struct EvaluateArguments {
     evaluation::RoomOptions options;
     unsigned seeds = 8, first = 1;
     bool groupings = false, fit_joints = false, bases = false;
+    std::vector<std::string> kinds;  // of rooms; none: those of --furniture
+    scenes::ScanOptions scan{.kind = scenes::ScanKind::sparse};
 };
 
 void check(const EvaluateArguments& a) {
@@ -119,6 +124,21 @@ void judge_parses(EvaluateArguments& a) {
     std::printf("\nPictures of the first room, charts and all figures: %s\n", a.out.c_str());
 }
 
+void judge_kinds(EvaluateArguments& a) {
+    std::vector<evaluation::KindScore> scores;
+    for (const std::string& kind : a.kinds) {
+        for (unsigned n = 0; n < a.seeds; ++n) {
+            a.scan.seed = a.first + n;
+            std::fprintf(stderr, "%s %u of %u\n", kind.c_str(), n + 1, a.seeds);
+            scores.push_back(evaluation::scan_and_judge({kind, a.scan, a.options.parse}));
+        }
+    }
+    const std::string table = evaluation::kinds_table(scores);
+    std::fputs(table.c_str(), stdout);
+    write(std::filesystem::path(a.out) / "kinds.txt", table);
+    write(std::filesystem::path(a.out) / "kinds.csv", evaluation::kinds_csv(scores));
+}
+
 int run(EvaluateArguments& a) {
     check(a);
     if (!a.fit_joints) make_folder(a.out);
@@ -128,6 +148,8 @@ int run(EvaluateArguments& a) {
     try {
         if (a.fit_joints) {
             print_weights(a);
+        } else if (!a.kinds.empty()) {
+            judge_kinds(a);
         } else if (a.groupings) {
             compare_groupings(a);
         } else if (a.bases) {
@@ -169,6 +191,17 @@ Command add_evaluate(CLI::App& app) {
     app.add_flag("--single", a->options.camera.single,
                  "One frame of each room, without its pose, as in the paper's 6.1 and 6.2");
     add_furniture(app, a->options.room.varied);
+    std::vector<std::string> names = scenes::kinds();
+    names.emplace_back("all");
+    CLI::Option* const kinds =
+        app.add_option("--kinds", a->kinds,
+                       "Rooms of these families instead, a row of the table for each; or all")
+            ->delimiter(',')
+            ->check(CLI::IsMember(names))
+            ->excludes(groupings)
+            ->excludes("--fit-joints")
+            ->excludes("--single");
+    add_scan(app, a->scan.kind)->needs(kinds);
     app.add_option("--tilt", a->options.room.tilt_deg,
                    "Tilt of the input's frame against the room, degrees")
         ->capture_default_str();
@@ -177,7 +210,18 @@ Command add_evaluate(CLI::App& app) {
     app.add_option("--backend", a->backend,
                    "auto (a real GPU if there is one, else native), native, opencl, vulkan")
         ->capture_default_str();
-    return [a] { return run(*a); };
+    CLI::Option* const frames = app.get_option("--frames");
+    CLI::Option* const voxel = app.get_option("--voxel");
+    return [a, frames, voxel] {
+        if (!a->kinds.empty()) {
+            if (std::find(a->kinds.begin(), a->kinds.end(), "all") != a->kinds.end())
+                a->kinds = scenes::kinds();
+            if (*frames) a->scan.frames = a->options.camera.frames;
+            // The edge that fits the scan, as a parse chooses it.
+            if (!*voxel) a->options.parse.voxel_m = ParseOptions{}.voxel_m;
+        }
+        return run(*a);
+    };
 }
 
 }  // namespace topple::cli

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
 
@@ -73,18 +72,6 @@ int run(const GenerateArguments& a) {
 
 }  // namespace
 
-namespace {
-
-std::map<std::string, scenes::ScanKind> scan_kinds() {
-    std::map<std::string, scenes::ScanKind> kinds;
-    using enum scenes::ScanKind;
-    for (const auto kind : {walk, sparse, cloud, laser, single})
-        kinds[scenes::to_string(kind)] = kind;
-    return kinds;
-}
-
-}  // namespace
-
 Command add_generate(CLI::App& app) {
     auto a = std::make_shared<GenerateArguments>();
     app.add_option(
@@ -114,12 +101,7 @@ Command add_generate(CLI::App& app) {
             ->excludes(building)
             ->excludes(tilt)
             ->excludes(single);
-    app.add_option("--scan", a->scan.kind,
-                   "walk: depth and colour frames of a hand-held camera; sparse or cloud: points\n"
-                   "fused of such; laser: points from stations; single: one frame without its pose")
-        ->needs(kind)
-        ->transform(CLI::CheckedTransformer(scan_kinds()))
-        ->default_str("walk");
+    add_scan(app, a->scan.kind)->needs(kind);
     app.add_option("--points", a->building.points, "Points of the building")
         ->needs(building)
         ->check(whole_number)

@@ -83,9 +83,9 @@ class Balancer {
                      y = random_.uniform(-0.4, 0.4) * low[1];
         const std::int32_t top = put(block("box", size), at(base, x, y, low[2]), {foot});
         if (top < 0 || !random_.chance(0.5)) return;
-        const Vec3 third = any_size(0.7, 0.7);  // over the lowest, not to tip the second
+        const Vec3 third = any_size(0.7, 0.7);  // over the lowest's middle
         put(block("box", third),
-            at(base, 0.2 * x, 0.2 * y, low[2] + size[2], random_.uniform(-0.5, 0.5)), {top});
+            at(base, 0.6 * x, 0.6 * y, low[2] + size[2], random_.uniform(-0.5, 0.5)), {top});
     }
 
     // A book or board that leans against a box's upper edge.
@@ -241,17 +241,14 @@ World make_tabletop(std::uint64_t seed) {
     shell.fittings = random.chance(0.4);
     room.build(shell);
     const bool at_wall = random.chance(0.4);
-    for (int attempt = 0; attempt < 20 && room.placed().empty(); ++attempt) {
-        const Blueprint table =
+    bool stands = false;
+    for (int attempt = 0; attempt < 40 && !stands; ++attempt) {
+        const Blueprint one =
             random.chance(0.7) ? make_work_table(random) : make_splayed_table(random);
-        if (table.height() > 0.5) {
-            if (at_wall)
-                room.along_wall(table);
-            else
-                room.anywhere(table);
-        }
+        if (one.height() < 0.5) continue;
+        stands = at_wall ? room.along_wall(one) : room.anywhere(one);
     }
-    if (room.placed().empty()) return std::move(room.world());
+    if (!stands) return std::move(room.world());
     const std::size_t table = room.placed().size() - 1;
     for (int k = random.integer(0, 2); k > 0; --k)
         room.before(table, random.integer(0, 3), make_rail_chair(random));

@@ -18,6 +18,42 @@ bool boxes_overlap(const std::array<Vec3, 2>& p, const std::array<Vec3, 2>& q, d
     return true;
 }
 
+using Contact = std::pair<const Part*, Part>;  // what carries, and a foot on it
+
+// Whether the middle of the mass lies over what the feet touch: in each of 16 directions some
+// contact is further out, by 3 mm.
+bool balanced(const Blueprint& blueprint, const Pose& pose, const std::vector<Contact>& contacts) {
+    std::vector<std::array<double, 2>> touched;
+    for (const auto& [below, foot] : contacts) {
+        const auto box = foot.bounds();
+        constexpr int steps = 10;
+        for (int i = 0; i <= steps * steps + 2 * steps; ++i) {
+            const double u = static_cast<double>(i % (steps + 1)) / steps,
+                         v = static_cast<double>(i / (steps + 1)) / steps;
+            const Vec3 p{box[0][0] + u * (box[1][0] - box[0][0]),
+                         box[0][1] + v * (box[1][1] - box[0][1]), box[0][2]};
+            if (foot.distance(p) < 0.003 && below->distance(p) < 0.003)
+                touched.push_back({p[0], p[1]});
+        }
+    }
+    double mass = 0, x = 0, y = 0;
+    for (const Part& local : blueprint.parts) {
+        const Part part = moved(pose, local);
+        const Vec3 c = part.center_of_mass();
+        mass += part.volume();
+        x += part.volume() * c[0];
+        y += part.volume() * c[1];
+    }
+    for (int k = 0; k < 16; ++k) {
+        const double c = std::cos(pi * k / 8), s = std::sin(pi * k / 8);
+        const bool held = std::any_of(touched.begin(), touched.end(), [&](const auto& p) {
+            return c * (p[0] - x / mass) + s * (p[1] - y / mass) > 0.003;
+        });
+        if (!held) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 bool Composer::fits(const Blueprint& blueprint, const Pose& pose, double margin) const {
@@ -54,16 +90,26 @@ std::int32_t Composer::add(const Blueprint& blueprint, const Pose& pose, const s
 
 bool Composer::stand(const Blueprint& blueprint, const Pose& pose,
                      const std::vector<std::int32_t>& supporters, const std::string& where) {
-    if (!fits(blueprint, pose)) return false;
-    const std::int32_t first = add(blueprint, pose, where);
+    std::vector<std::pair<std::int32_t, int>> carried;  // by what, which foot
+    std::vector<Contact> contacts;
     for (const int foot : blueprint.feet) {
+        const Part part = moved(pose, blueprint.parts[static_cast<std::size_t>(foot)]);
+        const auto box = part.bounds();
         for (const std::int32_t below : supporters) {
-            const auto& its = boxes_[static_cast<std::size_t>(below)];
-            const auto& ours = boxes_[static_cast<std::size_t>(first + foot)];
-            if (supporters.size() == 1 || boxes_overlap(its, ours, 0.002))
-                world_.support.emplace_back(below, first + foot);
+            if (!boxes_overlap(boxes_[static_cast<std::size_t>(below)], box, 0.002)) continue;
+            carried.emplace_back(below, foot);
+            contacts.emplace_back(&world_.parts[static_cast<std::size_t>(below)], part);
+        }
+        // Nothing stands on the floor's outer edge.
+        for (std::size_t a = 0; a < 2 && where == "floor"; ++a) {
+            if (box[0][a] < 0 || box[1][a] > world_.room[a]) return false;
         }
     }
+    if (carried.empty() || !fits(blueprint, pose)) return false;
+    if (blueprint.leans.empty() && where != "floor" && !balanced(blueprint, pose, contacts))
+        return false;
+    const std::int32_t first = add(blueprint, pose, where);
+    for (const auto& [below, foot] : carried) world_.support.emplace_back(below, first + foot);
     return true;
 }
 
@@ -180,8 +226,15 @@ bool Composer::on_surface(std::size_t index, const Surface& surface,
     for (const Blueprint& b : stack) high += b.height();
     if (high > surface.clearance) return false;
     const Placed base = placed_[index];
-    const std::int32_t supporter = base.first_part + surface.part;
-    const double top = world_.parts[static_cast<std::size_t>(supporter)].top();
+    const Part carrier = world_.parts[static_cast<std::size_t>(base.first_part + surface.part)];
+    const double top = carrier.top();
+    std::vector<std::int32_t> supporters;  // all planks of a deck
+    for (std::size_t k = 0; k < base.blueprint.parts.size(); ++k) {
+        const auto id = base.first_part + static_cast<std::int32_t>(k);
+        const Part& part = world_.parts[static_cast<std::size_t>(id)];
+        if (part.name == carrier.name && std::abs(part.top() - top) < 1e-6)
+            supporters.push_back(id);
+    }
     for (int attempt = 0; attempt < 12; ++attempt) {
         const double yaw = random_.chance(0.45)  ? 0
                            : random_.chance(0.5) ? random_.uniform(-0.25, 0.25)
@@ -220,7 +273,7 @@ bool Composer::on_surface(std::size_t index, const Surface& surface,
                     pose = {beside[0], beside[1], top, last.pose.yaw};
             }
         }
-        if (!stand(stack.front(), pose, {supporter}, surface.where)) continue;
+        if (!stand(stack.front(), pose, supporters, surface.where)) continue;
         for (std::size_t k = 1; k < stack.size(); ++k) {
             const std::int32_t below = placed_.back().first_part;
             pose.z += stack[k - 1].height();

@@ -13,7 +13,7 @@ namespace {
 
 // Things per m^2 of surface: from tidy to crowded.
 double any_clutter(Random& random) {
-    return random.uniform(0.5, 1) * random.uniform(1, 9);
+    return random.uniform(1, 4) * random.uniform(1, 4);
 }
 
 Composer::Make items(Random& random, Stack (*make)(Random&, double)) {
@@ -95,7 +95,7 @@ World make_kitchen(std::uint64_t seed) {
     room.build(shell);
     const int wall = room.any_wall();
     const double length = room.wall_length(wall);
-    fitted_run(room, wall, random.chance(0.6) ? 0 : random.uniform(0, 0.8),
+    fitted_run(room, wall, room.skirting() + (random.chance(0.6) ? 0.001 : random.uniform(0, 0.8)),
                length * random.uniform(0.55, 1.0));
     if (random.chance(0.5)) {
         const int next = room.any_wall();

@@ -207,7 +207,9 @@ void Composer::add_fittings() {
         const int wall = any_wall();
         const Pose p = at_wall(wall, random_.uniform(0.1, wall_length(wall) - 0.1), 0.035, 0, 0);
         const double r = random_.uniform(0.02, 0.06);
-        add_building({Shape::cylinder, {p.x, p.y, h / 2}, {r, r, h}, 0, 0, 0, "pipe"});
+        Blueprint pipe("pipe");
+        pipe.cylinder("pipe", 0, 0, 0, r, h);
+        if (fits(pipe, {p.x, p.y, 0, 0})) add_building(moved({p.x, p.y, 0, 0}, pipe.parts.front()));
     }
 }
 

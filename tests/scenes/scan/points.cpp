@@ -25,12 +25,33 @@ struct Keyed {
     bool operator<(const Keyed& o) const { return key != o.key ? key < o.key : at < o.at; }
 };
 
-std::vector<Keyed> by_cube(const std::vector<ColouredPoint>& points, double edge) {
+template <class Point>
+std::vector<Keyed> by_cube(const std::vector<Point>& points, double edge) {
     std::vector<Keyed> order(points.size());
     for (std::size_t n = 0; n < points.size(); ++n)
         order[n] = {cube(points[n].at, edge), static_cast<std::uint32_t>(n)};
     std::sort(order.begin(), order.end());
     return order;
+}
+
+// use(index, squared distance) for each point within `radius`, by its cubes of that edge.
+template <class Point, class Use>
+void for_each_near(const std::vector<Point>& points, const std::vector<Keyed>& order,
+                   const Vec3& place, double radius, const Use& use) {
+    const std::uint64_t middle = cube(place, radius);
+    for (const std::int64_t dx : {-1, 0, 1}) {
+        for (const std::int64_t dy : {-1, 0, 1}) {
+            constexpr auto cells = static_cast<std::int64_t>(axis_cells);
+            const auto row = middle + static_cast<std::uint64_t>((dx * cells + dy) * cells);
+            auto k = std::lower_bound(order.begin(), order.end(), Keyed{row - 1, 0});
+            for (; k != order.end() && k->key <= row + 1; ++k) {
+                const Vec3& q = points[k->at].at;
+                const double x = q[0] - place[0], y = q[1] - place[1], z = q[2] - place[2];
+                const double squared = x * x + y * y + z * z;
+                if (squared <= radius * radius) use(k->at, squared);
+            }
+        }
+    }
 }
 
 // Sums of points, for means.
@@ -75,20 +96,8 @@ void smooth_among(std::vector<ColouredPoint>& points, const std::vector<Coloured
     const auto order = by_cube(among, radius);
     for (ColouredPoint& p : points) {
         Sum sum;
-        const std::uint64_t middle = cube(p.at, radius);
-        for (const std::int64_t dx : {-1, 0, 1}) {
-            for (const std::int64_t dy : {-1, 0, 1}) {
-                const auto row = middle + static_cast<std::uint64_t>(
-                                              (dx * static_cast<std::int64_t>(axis_cells) + dy) *
-                                              static_cast<std::int64_t>(axis_cells));
-                auto k = std::lower_bound(order.begin(), order.end(), Keyed{row - 1, 0});
-                for (; k != order.end() && k->key <= row + 1; ++k) {
-                    const Vec3& q = among[k->at].at;
-                    const double x = q[0] - p.at[0], y = q[1] - p.at[1], z = q[2] - p.at[2];
-                    if (x * x + y * y + z * z <= radius * radius) sum.add(among[k->at]);
-                }
-            }
-        }
+        for_each_near(among, order, p.at, radius,
+                      [&](std::uint32_t at, double) { sum.add(among[at]); });
         if (sum.count == 0) continue;
         const Vec3 mean = sum.mean().at;
         for (std::size_t a = 0; a < 3; ++a) p.at[a] += share * (mean[a] - p.at[a]);
@@ -129,6 +138,23 @@ std::vector<LabelledPoint> thinned(const std::vector<LabelledPoint>& points, dou
         if (n > 0 && order[n].object == order[n - 1].object && order[n].cube == order[n - 1].cube)
             continue;
         out.push_back(points[order[n].at]);
+    }
+    return out;
+}
+
+std::vector<std::int32_t> nearest_objects(const std::vector<Vec3>& places,
+                                          const std::vector<LabelledPoint>& truth, double radius) {
+    const auto order = by_cube(truth, radius);
+    std::vector<std::int32_t> out(places.size(), -1);
+    for (std::size_t n = 0; n < places.size(); ++n) {
+        double best = 2 * radius * radius;
+        std::uint32_t first = 0;
+        for_each_near(truth, order, places[n], radius, [&](std::uint32_t at, double squared) {
+            if (squared > best || (squared == best && at > first)) return;
+            best = squared;
+            first = at;
+            out[n] = truth[at].object;
+        });
     }
     return out;
 }

@@ -35,4 +35,9 @@ struct LabelledPoint {
 std::vector<LabelledPoint> thinned(const std::vector<LabelledPoint>& points, double things,
                                    double building);
 
+// The object of the truth's point that is nearest to each place within `radius`, the first of
+// equals; -1 where there is none.
+std::vector<std::int32_t> nearest_objects(const std::vector<Vec3>& places,
+                                          const std::vector<LabelledPoint>& truth, double radius);
+
 }  // namespace topple::scenes

@@ -50,6 +50,9 @@ void write_scan(const std::filesystem::path& folder, const World& world, const S
 
 const char* to_string(ScanKind kind);
 
+// What carries each object, by the world's supports between parts; ascending.
+std::vector<std::vector<std::int32_t>> supporters(const World& world);
+
 // The things of a world that are fixed to the building, itself among them; one flag per object.
 std::vector<bool> fixed_objects(const World& world);
 

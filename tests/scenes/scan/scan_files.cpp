@@ -53,21 +53,6 @@ double rounded(double value) {
     return std::round(value * 1e6) / 1e6;
 }
 
-// What carries each object, itself left out.
-std::vector<std::vector<std::int32_t>> supporters(const World& world) {
-    std::vector<std::vector<std::int32_t>> out(world.objects.size());
-    for (const auto& [below, above] : world.support) {
-        const std::int32_t a = world.parts[static_cast<std::size_t>(below)].object,
-                           b = world.parts[static_cast<std::size_t>(above)].object;
-        if (a != b) out[static_cast<std::size_t>(b)].push_back(a);
-    }
-    for (auto& list : out) {
-        std::sort(list.begin(), list.end());
-        list.erase(std::unique(list.begin(), list.end()), list.end());
-    }
-    return out;
-}
-
 nlohmann::json box_of(const World& world, std::int32_t object) {
     Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
     for (const Part& part : world.parts) {
@@ -88,9 +73,9 @@ nlohmann::json objects_json(const World& world, const Scan& scan) {
     const auto below = supporters(world);
     std::vector<bool> kept(world.objects.size());
     kept[0] = true;
-    for (std::size_t n = 1; n < kept.size(); ++n) {
-        if (points[n] == 0) continue;
-        kept[n] = true;
+    for (std::size_t n = kept.size(); n-- > 1;) {  // carriers come before what they carry
+        kept[n] = kept[n] || points[n] > 0;
+        if (!kept[n]) continue;
         for (const std::int32_t s : below[n]) kept[static_cast<std::size_t>(s)] = true;
     }
     nlohmann::json list = nlohmann::json::array();
@@ -132,6 +117,20 @@ void write_frames(const std::filesystem::path& folder, const Scan& scan) {
 }
 
 }  // namespace
+
+std::vector<std::vector<std::int32_t>> supporters(const World& world) {
+    std::vector<std::vector<std::int32_t>> out(world.objects.size());
+    for (const auto& [below, above] : world.support) {
+        const std::int32_t a = world.parts[static_cast<std::size_t>(below)].object,
+                           b = world.parts[static_cast<std::size_t>(above)].object;
+        if (a != b) out[static_cast<std::size_t>(b)].push_back(a);
+    }
+    for (auto& list : out) {
+        std::sort(list.begin(), list.end());
+        list.erase(std::unique(list.begin(), list.end()), list.end());
+    }
+    return out;
+}
 
 std::vector<bool> fixed_objects(const World& world) {
     std::vector<bool> fixed(world.objects.size());
