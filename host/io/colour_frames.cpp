@@ -36,7 +36,8 @@ std::map<fs::path, fs::path> images_in(const fs::path& folder) {
             continue;
         const auto [at, fresh] = out.try_emplace(file.stem(), file);
         if (!fresh) {
-            const auto both = std::minmax(at->second.filename(), file.filename());
+            // Of a list: by reference, it would return the names of two files that are gone.
+            const auto both = std::minmax({at->second.filename(), file.filename()});
             fail(folder, "has both " + both.first.string() + " and " + both.second.string() +
                              "; keep the one that is meant");
         }
