@@ -56,7 +56,8 @@ double barrier_error_J(const Candidate& body, const Stability& tip, const Instab
         std::max(0.0, ((a[0] + b[0]) / 2 - body.body.center[0]) * how.weakest[0] +
                           ((a[1] + b[1]) / 2 - body.body.center[1]) * how.weakest[1]);
     const double height = std::max(body.body.center[2] - body.support_height_m, voxel_m);
-    return weight * (std::hypot(height, beside + voxel_m) - std::hypot(height, beside));
+    return weight * std::max(beside * voxel_m / std::hypot(height, beside),
+                             std::hypot(height, voxel_m) - height);
 }
 
 }  // namespace topple::physics
