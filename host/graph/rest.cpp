@@ -59,23 +59,32 @@ Points widened(const Points& polygon, double by) {
     return physics::convex_polygon(std::move(out));
 }
 
-// Of a normal distribution cut off at 0: how far its mean lies above the mode's z, and its standard
-// deviation; both in standard deviations of the whole.
-struct Truncated {
+// A margin measured at z that must be above 0, and little stands within the noise of an edge, so
+// that before it is measured its density is m / (m + 2): how far its mean then lies above z, and
+// its standard deviation. All in standard errors of the measure.
+struct Stood {
     double rise = 0, deviation = 1;
 };
-Truncated above_zero(double z) {
-    z = std::max(z, -8.0);
-    const double rise = density(z) / below(z);
-    return {rise, std::sqrt(std::max(1 - rise * (rise + z), 0.0))};
+Stood given_it_stood(double z) {
+    constexpr double step = 0.02, far = 8;
+    z = std::max(z, -far);
+    double all = 0, first = 0, second = 0;
+    for (double m = std::max(z - far, 0.0) + step / 2; m < std::max(z, 0.0) + far; m += step) {
+        const double weight = m / (m + 2) * density(m - z);
+        all += weight;
+        first += weight * m;
+        second += weight * m * m;
+    }
+    const double mean = first / all;
+    return {mean - z, std::sqrt(second / all - mean * mean)};
 }
 
 // It stood: no measure of its border may say otherwise.
 void take_for_standing(const physics::Candidate& c, double noise_m, Rest& rest) {
-    constexpr double exact = 1e-3;  // of the noise
-    const Truncated stood = above_zero(margin_of(c, rest.support_polygon) / noise_m);
+    constexpr double least = 0.02;  // what is less of the noise is nothing
+    const Stood stood = given_it_stood(margin_of(c, rest.support_polygon) / noise_m);
     rest.margin_error_m = noise_m * stood.deviation;
-    if (stood.rise > exact)
+    if (stood.rise > least)
         rest.support_polygon = widened(rest.support_polygon, noise_m * stood.rise);
 }
 

@@ -41,9 +41,10 @@ const char* to_string(RestKind kind);
 struct Rest {
     RestKind kind = RestKind::seen;
     double probability = 1;  // of this among all ways
-    // Its border is where it is to be expected of what stands: a centre of mass measured m inside
-    // of it, known to s (one standard error), is inside of it indeed, so that it is
-    // m + s f(m/s) / F(m/s), f and F a normal distribution's density and probability.
+    // Its border is where it is to be expected of what stands: a centre of mass measured to be m
+    // inside of it, with a standard error of s, is inside of it indeed, and hardly within s of it.
+    // The mean of the margin x over N(x; m, s) x / (x + 2 s), x > 0, takes the place of m; far from
+    // the border it is m.
     std::vector<std::array<double, 2>> support_polygon;
     double support_height_m = 0;
     double margin_error_m = 0;  // standard error of that

@@ -9,7 +9,7 @@
 namespace topple::graph {
 namespace {
 
-constexpr double intercept = -2.68, by_mass = 0.41, by_columns = 0.55, by_joint = 0.10;
+constexpr double intercept = -2.85, by_mass = 0.42, by_columns = 0.59, by_joint = 0.12;
 // What stands on nothing likelier than not stands on the likeliest above this.
 constexpr double least_alone = 0.2;
 
@@ -63,8 +63,8 @@ std::map<Pair, Evidence> gather(const ContactGraph& contacts,
 
 double probability(const Evidence& e, double supporter_kg, double supported_kg) {
     constexpr double least_kg = 1e-3, most = 5;
-    const double ratio = std::clamp(
-        std::log((supporter_kg + least_kg) / (supported_kg + least_kg)), -most, most);
+    const double ratio =
+        std::clamp(std::log((supporter_kg + least_kg) / (supported_kg + least_kg)), -most, most);
     const double odds = intercept + by_mass * ratio +
                         by_columns * std::log1p((e.contact + e.near) / 2) -
                         by_joint * log_odds(e.joint);

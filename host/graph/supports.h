@@ -28,7 +28,8 @@ struct Carried {
 // pieces of one thing lie on each other, too, but do not carry. Fitted on generated rooms.
 //
 // Returned are those likelier than not, and of what stands on nothing such its likeliest supporter,
-// if that is likely enough: sorted by (supporter, supported). The ground carries and is not carried.
+// if that is likely enough: sorted by (supporter, supported). The ground carries and is not
+// carried.
 //   pair_probability  of each of the contacts' pairs, that both are one
 //   columns           undersides of each object
 std::vector<Support> find_supports(const ContactGraph& contacts,

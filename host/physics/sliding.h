@@ -95,12 +95,13 @@ struct Instability {
 // something to release, tipping where equal; without any, the barrier is that of tipping.
 Instability combine_curves(const Stability& tip, const SlideResult& slide);
 
-// What a voxel more or less in the body's support changes in that barrier:
+// What a support whose border is known to border_m (one standard error) leaves open in that
+// barrier:
 //     tipping over an edge at m > 0 from the centre of mass, h above it, to first order:
-//         M g voxel m / sqrt(h^2 + m^2), but what it would be at the centre of mass at least;
-//         without an edge, M g voxel;
-//     sliding: friction M g voxel.
+//         M g border m / sqrt(h^2 + m^2), but what it would be at the centre of mass at least;
+//         without an edge, M g border;
+//     sliding: friction M g border.
 double barrier_error_J(const Candidate& body, const Stability& tip, const Instability& how,
-                       double voxel_m, double friction);
+                       double border_m, double friction);
 
 }  // namespace topple::physics
