@@ -166,6 +166,46 @@ TEST(PointSpacing, IsThatOfTheSurface) {
     EXPECT_NEAR(point_spacing(strays).nearest_m, 0.01, 1e-5);
 }
 
+// A grid of points 4 cm apart in cells of 2 cm: no two cells touch, and all of the plane is one
+// piece. Ten centimetres beside it, beyond reach, another plane stays apart.
+TEST_F(SurfelsTest, NeighboursReachAcrossEmptyCells) {
+    PointCloud cloud;
+    constexpr int side = 20;
+    for (int plane = 0; plane < 2; ++plane)
+        for (int i = 0; i < side; ++i)
+            for (int j = 0; j < side; ++j)
+                add(cloud, 0.04 * i + 0.01, 0.04 * j + 0.01, 0.101 * plane + 0.01);
+    const Surfels apart = make_surfels(*device, cloud, 0.02, {}, {});
+    EXPECT_TRUE(apart.neighbours.empty());
+    const Surfels s = make_surfels(*device, cloud, {0.02, 0.04, 0.09}, {}, {});
+    ASSERT_EQ(s.size(), cloud.size());
+    EXPECT_NEAR(s.area_m2, 0.04 * 0.04, 1e-9);
+    for (std::uint32_t i = 0; i < s.size(); ++i) {
+        const auto begin = s.neighbours.begin() + s.neighbour_first[i],
+                   end = s.neighbours.begin() + s.neighbour_first[i + 1];
+        EXPECT_GE(end - begin, 7);  // at a corner
+        EXPECT_LE(end - begin, 26);
+        EXPECT_TRUE(std::is_sorted(begin, end));
+        for (auto at = begin; at != end; ++at) {
+            EXPECT_EQ(s.z[i], s.z[*at]);
+            EXPECT_NE(i, *at);
+            const auto back = s.neighbours.begin() + s.neighbour_first[*at],
+                       back_end = s.neighbours.begin() + s.neighbour_first[*at + 1];
+            EXPECT_TRUE(std::binary_search(back, back_end, i));
+        }
+    }
+}
+
+// Fine surfels stay as they are, coarse ones become as fine as things are thick, or as the points.
+TEST(SurfelScale, FollowsThePoints) {
+    const auto cell = [](double spacing_m, double coarse_m) {
+        return surfels_for({spacing_m, spacing_m, spacing_m}, coarse_m).cell_m;
+    };
+    EXPECT_EQ(cell(0.005, 0.011), 0.011);
+    EXPECT_EQ(cell(0.012, 0.027), 0.02);
+    EXPECT_NEAR(cell(0.05, 0.09), 0.0325, 1e-9);
+}
+
 TEST_F(SurfelsTest, OddInputs) {
     EXPECT_EQ(make_surfels(*device, {}, 0.02, {}, {}).size(), 0u);
     PointCloud one;
