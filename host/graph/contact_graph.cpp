@@ -113,14 +113,28 @@ void add_corners(std::int32_t i, std::int32_t j, double h,
     }
 }
 
-// The columns that may rest on a surface at this height: unseen from their underside down to it,
-// or, where they end at it, for some way on: else it is air that they end in.
-void add_hidden_corners(const std::vector<Underside>& undersides, double height_m, double h,
+// The convex hull of a primitive's columns, seen from above: it may go on where it is hidden, but
+// not beyond that.
+std::vector<std::array<double, 2>> outline_of(const std::vector<Underside>& columns, double h) {
+    std::vector<std::array<double, 2>> corners;
+    for (const Underside& u : columns) add_corners(u.i, u.j, h, corners);
+    return physics::convex_polygon(std::move(corners));
+}
+
+// The columns that may rest on a surface at this height, within its outline if that is known:
+// unseen from their underside down to it, or, where they end at it, for some way on: else it is air
+// that they end in.
+void add_hidden_corners(const std::vector<Underside>& undersides, double height_m,
+                        const std::vector<std::array<double, 2>>& outline, double h,
                         std::vector<std::array<double, 2>>& corners) {
+    const auto within = [&](const Underside& u) {
+        return outline.empty() ||
+               physics::footing(outline, (u.i + 0.5) * h, (u.j + 0.5) * h).margin_m > 0;
+    };
     const double surface = height_m / h;
     for (const Underside& u : undersides) {
         const double above = u.lowest - surface;
-        if (above >= -1.5 && u.unseen >= std::max(above - 0.5, 2.0))
+        if (above >= -1.5 && u.unseen >= std::max(above - 0.5, 2.0) && within(u))
             add_corners(u.i, u.j, h, corners);
     }
 }
@@ -152,7 +166,7 @@ void add_hidden_carryings(const std::vector<std::vector<Underside>>& undersides,
         }
         if (best.supporter < 0) continue;
         std::vector<std::array<double, 2>> corners;
-        add_hidden_corners(own, best.height_m, h, corners);
+        add_hidden_corners(own, best.height_m, {}, h, corners);
         const double columns = static_cast<double>(corners.size()) / 4;
         if (columns < least_hidden * static_cast<double>(own.size())) continue;
         best.supported = p;
@@ -297,7 +311,8 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         const double height = columns.height_sum / met;
         // A surface at least half as wide may go on where it is hidden; a leg does not.
         if (!scraps && 2 * extents[static_cast<std::size_t>(supporter)].columns >= load.columns)
-            add_hidden_corners(undersides[static_cast<std::size_t>(supported)], height, h,
+            add_hidden_corners(undersides[static_cast<std::size_t>(supported)], height,
+                               outline_of(undersides[static_cast<std::size_t>(supporter)], h), h,
                                columns.corners);
         graph.carryings.push_back(
             {supporter, supported, area * h * h, height, physics::convex_polygon(columns.corners)});

@@ -21,7 +21,7 @@ struct Carrying {
     double height_m = 0;  // of the contact, the mean over its columns
     // Convex hull of the contact, counter-clockwise, with what may be in contact: where nobody has
     // seen between the supported primitive and the height of the contact. Of a box seen from the
-    // front, the rear stands on the table, too.
+    // front, the rear stands on the table, too, but not beyond the table's edge.
     std::vector<std::array<double, 2>> outline;
 };
 

@@ -54,6 +54,20 @@ TEST_P(Contacts, WhatNobodySawMayStand) {
     EXPECT_NEAR(depth(), 0.2, 1e-9);
 }
 
+// A box half over the edge of a post: below the half in the air nobody has seen, but the post has
+// ended there.
+TEST_P(Contacts, WhatNobodySawCarriesNotBeyondTheSupport) {
+    test::FloorScene scene;
+    const auto post = scene.add(box({0, 0, 0}, {0.2, 0.2, 0.4}));
+    const auto thing = scene.add(box({0.1, 0, 0.4}, {0.3, 0.2, 0.6}));
+    scene.voxelise();
+    scene.cells.unseen_below.assign(scene.cells.size(), 20);
+    const ContactGraph graph = scene.contacts(*device);
+    ASSERT_EQ(graph.carriers_of(thing).size(), 1u);
+    EXPECT_EQ(graph.carriers_of(thing)[0].supporter, post);
+    for (const auto& point : graph.carriers_of(thing)[0].outline) EXPECT_LE(point[0], 0.2 + 1e-9);
+}
+
 // Hidden behind another, a thing's foot is unseen: it stands on the floor. Where the floor under it
 // is seen, it hangs, and what is near may hold it.
 TEST_P(Contacts, AHiddenFootStandsAndASeenGapHangs) {
