@@ -35,7 +35,7 @@ constexpr std::uint64_t batch_bytes = 16u << 20;
 }  // namespace
 
 double point_spacing(const CloudView& cloud) {
-    return geometry::point_spacing(Usable(cloud).view());
+    return geometry::point_spacing(Usable(cloud).view()).nearest_m;
 }
 
 void normals(device::Device& device, const CloudView& cloud, double cell_m, const Vec3* eye_m,

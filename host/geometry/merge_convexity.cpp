@@ -113,7 +113,9 @@ double inside_share(const Surfels& surfels, const Regions& regions, const Border
 }
 
 double concavity(const RegionSamples& a, const RegionSamples& b, const FreeSpace& free) {
-    const double tolerance = std::max(a.tolerance_m, b.tolerance_m);
+    // Samples lie on the models, whose places are surer than those of single points: half of what
+    // noise moves a point by tells a plate from the table under it.
+    const double tolerance = 0.5 * std::max(a.tolerance_m, b.tolerance_m);
     constexpr std::size_t lines = 12;  // points of each region that lines are drawn between
     const std::size_t step_a = a.points.size() / lines + 1, step_b = b.points.size() / lines + 1;
     std::uint64_t in_front = 0, tried = 0, apart = 0;

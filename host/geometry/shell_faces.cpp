@@ -12,12 +12,11 @@ std::vector<Face> faces(const Surfels& s, const std::vector<std::int32_t>& label
     std::vector<Face> out(count);
     std::vector<Eigen::Matrix3d> moment(count, Eigen::Matrix3d::Zero());
     const auto normal = [&](std::size_t n) { return Vector3d(s.nx[n], s.ny[n], s.nz[n]); };
-    const double cell_area = s.cell_m * s.cell_m;
     for (std::size_t n = 0; n < s.size(); ++n) {
         if (label[n] < 0) continue;
         const auto k = static_cast<std::size_t>(label[n]);
         Face& f = out[k];
-        f.area_m2 += cell_area;
+        f.area_m2 += s.area_m2;
         f.nx += s.nx[n], f.ny += s.ny[n], f.nz += s.nz[n];
         f.px += s.x[n], f.py += s.y[n], f.pz += s.z[n];
         moment[k] += normal(n) * normal(n).transpose();
@@ -39,7 +38,7 @@ std::vector<Face> faces(const Surfels& s, const std::vector<std::int32_t>& label
     }
     for (std::size_t k = 0; k < count; ++k) {
         Face& f = out[k];
-        const double surfels = std::max(1.0, f.area_m2 / cell_area);
+        const double surfels = std::max(1.0, f.area_m2 / s.area_m2);
         const Vector3d sum(f.nx, f.ny, f.nz);
         f.flatness = sum.norm() / surfels;
         f.sheetness = folded[k].norm() / surfels;

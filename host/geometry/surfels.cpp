@@ -8,6 +8,7 @@
 
 #include "geometry/cell_grid.h"
 #include "geometry/plane_fit.h"
+#include "geometry/surfel_graph.h"
 #include "geometry/surfels_clean.h"
 #include "geometry/surfels_colour.h"
 #include "geometry/surfels_orient.h"
@@ -201,9 +202,10 @@ Surfels from_grid(const CellGrid& grid) {
 
 }  // namespace
 
-Surfels make_surfels(device::Device& device, const CloudView& cloud, double cell_m,
+Surfels make_surfels(device::Device& device, const CloudView& cloud, const SurfelScale& scale,
                      std::span<const Vec3> viewpoints,
                      std::span<const std::uint32_t> viewpoint_of_point) {
+    const double cell_m = scale.cell_m;
     check(cloud, cell_m, viewpoints, viewpoint_of_point);
     std::vector<std::uint32_t> of_point;
     std::vector<float> count;
@@ -218,7 +220,8 @@ Surfels make_surfels(device::Device& device, const CloudView& cloud, double cell
     Surfels s = from_grid(grid);
     s.weight = std::move(count);
     s.of_point = std::move(of_point);
-    cell_neighbours(s.cx, s.cy, s.cz, device.threads(), s.neighbour_first, s.neighbours);
+    s.area_m2 = std::pow(std::max(cell_m, scale.pitch_m), 2);
+    connect_surfels(s, scale.reach_m, device.threads());
 
     set_normals(s, rough, nullptr, cell_m);
     const Orientation towards =

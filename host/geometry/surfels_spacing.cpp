@@ -79,9 +79,12 @@ std::vector<std::size_t> sample_area(const CloudView& cloud, std::size_t samples
     return out;
 }
 
-// How far it is from a point to the n-th of the other places around it, n <= `around`, squared;
-// infinite where there are fewer. A place counts once, however often it is stored.
-float distance_around(const CloudView& cloud, std::size_t point, std::size_t n) {
+// How far it is from a point to the first and to the last of the `around` other places around it,
+// squared; infinite where there are fewer. A place counts once, however often it is stored.
+struct Around {
+    float first = 0, last = 0;
+};
+Around distances_around(const CloudView& cloud, std::size_t point) {
     struct Place {
         float distance = std::numeric_limits<float>::infinity();
         std::size_t point = 0;
@@ -91,31 +94,27 @@ float distance_around(const CloudView& cloud, std::size_t point, std::size_t n) 
         return cloud.x[a] == cloud.x[b] && cloud.y[a] == cloud.y[b] && cloud.z[a] == cloud.z[b];
     };
     const float x = cloud.x[point], y = cloud.y[point], z = cloud.z[point];
-    Place& last = nearest[n - 1];
+    Place& last = nearest.back();
     for (std::size_t j = 0; j < cloud.size(); ++j) {
         const float dx = cloud.x[j] - x, dy = cloud.y[j] - y, dz = cloud.z[j] - z;
         const float d = dx * dx + dy * dy + dz * dz;
         if (!(d < last.distance && d > 0)) continue;
-        const auto end = nearest.begin() + static_cast<std::ptrdiff_t>(n);
-        if (std::any_of(nearest.begin(), end,
+        if (std::any_of(nearest.begin(), nearest.end(),
                         [&](const Place& p) { return p.distance == d && same(p.point, j); }))
             continue;
         last = {d, j};
-        for (auto at = end - 1; at != nearest.begin() && at->distance < (at - 1)->distance; --at)
+        for (auto at = nearest.end() - 1;
+             at != nearest.begin() && at->distance < (at - 1)->distance; --at)
             std::swap(*at, *(at - 1));
     }
-    return last.distance;
+    return {nearest.front().distance, last.distance};
 }
 
-// The distance to the n-th place around that this share of the points has at most; 0 where none has
-// so many.
-double spacing_of(const CloudView& cloud, const std::vector<std::size_t>& points, std::size_t n,
-                  double share) {
+// The distance that this share of those found has at most; 0 where none was.
+double share_of(const std::vector<Around>& all, float Around::*which, double share) {
     std::vector<float> distances;
-    for (const std::size_t i : points) {
-        const float d = distance_around(cloud, i, n);
-        if (std::isfinite(d)) distances.push_back(d);
-    }
+    for (const Around& a : all)
+        if (std::isfinite(a.*which)) distances.push_back(a.*which);
     if (distances.empty()) return 0;
     const auto at = distances.begin() +
                     static_cast<std::ptrdiff_t>(share * static_cast<double>(distances.size() - 1));
@@ -123,18 +122,39 @@ double spacing_of(const CloudView& cloud, const std::vector<std::size_t>& points
     return std::sqrt(static_cast<double>(*at));
 }
 
+std::vector<Around> look_around(const CloudView& cloud, const std::vector<std::size_t>& points) {
+    std::vector<Around> out;
+    for (const std::size_t i : points) out.push_back(distances_around(cloud, i));
+    return out;
+}
+
 }  // namespace
 
-double point_spacing(const CloudView& cloud) {
+PointSpacing point_spacing(const CloudView& cloud) {
+    PointSpacing out;
     const std::size_t n = cloud.size();
-    if (n < 2) return 0;
+    if (n < 2) return out;
     // Brute force over a sample: the clouds that come here have at most some 10^7 points.
     const std::size_t samples = std::clamp<std::size_t>(100'000'000 / n, 64, 256);
-    const double of_points = spacing_of(cloud, sample_places(cloud, samples), 1, 0.5);
-    if (of_points <= 0) return 0;
-    const double of_area = spacing_of(cloud, sample_area(cloud, samples, area_spacings * of_points),
-                                      around, surface_part);
-    return std::max(of_points, around_share * of_area);
+    const std::vector<Around> of_points = look_around(cloud, sample_places(cloud, samples));
+    out.nearest_m = share_of(of_points, &Around::first, 0.5);
+    if (out.nearest_m <= 0) return out;
+    out.around_m = share_of(of_points, &Around::last, 0.5);
+    const std::vector<Around> of_area =
+        look_around(cloud, sample_area(cloud, samples, area_spacings * out.nearest_m));
+    out.surface_m = std::max(out.around_m, share_of(of_area, &Around::last, surface_part));
+    out.nearest_m =
+        std::max(out.nearest_m, around_share * share_of(of_area, &Around::last, surface_part));
+    return out;
+}
+
+SurfelScale surfels_for(const PointSpacing& spacing, double coarse_m) {
+    // Surfels this wide tell what lies on a surface from the surface; cells narrower than this
+    // share of the points' distance are empty but for one of them each; and what is this many
+    // distances apart does not touch.
+    constexpr double fine_m = 0.02, pitch_share = 0.65, reach_pitches = 2;
+    const double cell_m = std::min(coarse_m, std::max(fine_m, pitch_share * spacing.around_m));
+    return {cell_m, spacing.around_m, reach_pitches * spacing.surface_m};
 }
 
 }  // namespace topple::geometry

@@ -16,8 +16,9 @@ using Points = std::vector<std::array<double, 2>>;
 
 // How often a scan misses so much of what holds a thing, of all that stand.
 constexpr double often_near = 0.3, often_leaning = 0.1, often_hidden = 0.03;
-// Gaps that noise leaves under a thing, and how uneven its foot may be, voxels.
-constexpr std::int32_t noise_gap = 3, uneven_foot = 2;
+// How often what is seen to hold a thing holds it above its foot only.
+constexpr double often_hung = 0.05;
+constexpr std::int32_t uneven_foot = 2;  // voxels
 
 void add_corners(const Underside& u, double h, Points& points) {
     for (const int di : {0, 1}) {
@@ -25,10 +26,66 @@ void add_corners(const Underside& u, double h, Points& points) {
     }
 }
 
-double stands(const physics::Candidate& c, const Points& polygon, double noise_m) {
+double margin_of(const physics::Candidate& c, const Points& polygon) {
+    return physics::footing(polygon, c.body.center[0], c.body.center[1]).margin_m;
+}
+
+double density(double z) {
+    return std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
+}
+double below(double z) {
+    return 0.5 * std::erfc(-z / std::numbers::sqrt2);
+}
+
+// How likely a thing is to stand so: little stands near the edge of what holds it, so that a margin
+// is as probable as it is wide, up to `widest`; that is what is to be expected of it beyond 0.
+double stands(const physics::Candidate& c, const Points& polygon, double noise_m, double widest_m) {
     if (polygon.empty()) return 0;
-    const double margin = physics::footing(polygon, c.body.center[0], c.body.center[1]).margin_m;
-    return 0.5 * std::erfc(-margin / (noise_m * std::numbers::sqrt2));
+    const double z = margin_of(c, polygon) / noise_m;
+    return std::min(1.0, noise_m * (density(z) + z * below(z)) / widest_m);
+}
+
+// A polygon whose border is so much farther out.
+Points widened(const Points& polygon, double by) {
+    constexpr int corners = 16;
+    const double radius = by / std::cos(std::numbers::pi / corners);
+    Points out;
+    for (const auto& [x, y] : polygon) {
+        for (int n = 0; n < corners; ++n) {
+            const double angle = 2 * std::numbers::pi * n / corners;
+            out.push_back({x + radius * std::cos(angle), y + radius * std::sin(angle)});
+        }
+    }
+    return physics::convex_polygon(std::move(out));
+}
+
+// A margin measured at z that must be above 0, and little stands within the noise of an edge, so
+// that before it is measured its density is m / (m + 2): how far its mean then lies above z, and
+// its standard deviation. All in standard errors of the measure.
+struct Stood {
+    double rise = 0, deviation = 1;
+};
+Stood given_it_stood(double z) {
+    constexpr double step = 0.02, far = 8;
+    z = std::max(z, -far);
+    double all = 0, first = 0, second = 0;
+    for (double m = std::max(z - far, 0.0) + step / 2; m < std::max(z, 0.0) + far; m += step) {
+        const double weight = m / (m + 2) * density(m - z);
+        all += weight;
+        first += weight * m;
+        second += weight * m * m;
+    }
+    const double mean = first / all;
+    return {mean - z, std::sqrt(second / all - mean * mean)};
+}
+
+// It stood: no measure of its border may say otherwise.
+void take_for_standing(const physics::Candidate& c, double noise_m, Rest& rest) {
+    constexpr double least = 0.02;  // what is less of the noise is nothing
+    const Stood stood = given_it_stood(margin_of(c, rest.support_polygon) / noise_m);
+    rest.margin_error_m = noise_m * stood.deviation;
+    if (stood.rise > least)
+        rest.support_polygon = widened(rest.support_polygon, noise_m * stood.rise);
 }
 
 }  // namespace
@@ -65,7 +122,7 @@ std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
 
 Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& columns,
                 const ContactGraph& contacts, double noise_m) {
-    if (columns.empty()) return {RestKind::none, 1, {}, 0};
+    if (columns.empty()) return {RestKind::none, 1, {}, 0, 0};
     const double h = contacts.voxel_m;
     std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
     for (const Underside& u : columns) lowest = std::min(lowest, u.k);
@@ -89,37 +146,41 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
         }
     }
     const double height = std::isfinite(near_height) ? near_height : low_m;
+    Points whole;
+    for (const Underside& u : columns) add_corners(u, h, whole);
+    whole = physics::convex_polygon(std::move(whole));
+    const double widest = std::max(margin_of(c, whole), noise_m);
     struct Way {
         RestKind kind;
         Points points;
         double height, often;
     };
-    std::array<Way, 4> ways{Way{RestKind::seen, c.support_polygon, c.support_height_m, 1},
-                            Way{RestKind::near, std::move(near), height, often_near},
-                            Way{RestKind::leaning, std::move(leaning), height, often_leaning},
-                            Way{RestKind::hidden, std::move(hidden), low_m, often_hidden}};
+    const bool hung = held && c.support_height_m > low_m + noise_gap * h;
+    std::array<Way, 4> ways{
+        Way{RestKind::seen, c.support_polygon, c.support_height_m, hung ? often_hung : 1},
+        Way{RestKind::near, std::move(near), height, often_near},
+        Way{RestKind::leaning, std::move(leaning), height, often_leaning},
+        Way{RestKind::hidden, std::move(hidden), low_m, often_hidden}};
     Rest best;
     double most = -1, all = 0;
     for (Way& way : ways) {
         if (way.points.empty()) continue;
         way.points = physics::convex_polygon(std::move(way.points));
-        const double chance = way.often * stands(c, way.points, noise_m);
+        const double chance = way.often * stands(c, way.points, noise_m, widest);
         all += chance;
         if (chance <= most) continue;
         most = chance;
-        best = {way.kind, 0, std::move(way.points), way.height};
+        best = {way.kind, 0, std::move(way.points), way.height, 0};
     }
     // Even its foot is too small: all that is above may rest on something.
-    Points whole;
-    for (const Underside& u : columns) add_corners(u, h, whole);
-    whole = physics::convex_polygon(std::move(whole));
-    const double chance = 0.3 * often_hidden * stands(c, whole, noise_m);
+    const double chance = 0.3 * often_hidden * stands(c, whole, noise_m, widest);
     all += chance;
     if (chance > most) {
         most = chance;
-        best = {RestKind::hidden, 0, std::move(whole), low_m};
+        best = {RestKind::hidden, 0, std::move(whole), low_m, 0};
     }
     best.probability = all > 0 ? most / all : 1;
+    take_for_standing(c, noise_m, best);
     return best;
 }
 

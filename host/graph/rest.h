@@ -14,6 +14,9 @@
 // hold it, it is likelier that the scan missed some of that than that it was just falling.
 namespace topple::graph {
 
+// Empty voxels that noise leaves under a thing.
+inline constexpr std::int32_t noise_gap = 3;
+
 // A column of an object's cells: where it ends below, and what is under it. Voxels.
 struct Underside {
     std::int32_t i, j, k;    // the lowest cell
@@ -38,13 +41,19 @@ const char* to_string(RestKind kind);
 struct Rest {
     RestKind kind = RestKind::seen;
     double probability = 1;  // of this among all ways
+    // Its border is where it is to be expected of what stands: a centre of mass measured to be m
+    // inside of it, with a standard error of s, is inside of it indeed, and hardly within s of it.
+    // The mean of the margin x over N(x; m, s) x / (x + 2 s), x > 0, takes the place of m; far from
+    // the border it is m.
     std::vector<std::array<double, 2>> support_polygon;
     double support_height_m = 0;
+    double margin_error_m = 0;  // standard error of that
 };
 
 // The likeliest way in which a body stands: of each, how often scans miss so much of a support,
-// times the chance that the body then stands. candidate: with the contacts that were seen.
-// noise_m: what the border of a support is known to.
+// times the likelihood that a body stands so far from its border: of a margin as a share of what it
+// would be if all of the body were held. candidate: with the contacts that were seen.
+// noise_m: what the border of a support is known to, one standard error.
 Rest infer_rest(const physics::Candidate& candidate, const std::vector<Underside>& columns,
                 const ContactGraph& contacts, double noise_m);
 

@@ -132,7 +132,10 @@ Json to_json(const Contact& c) {
 }
 
 Json to_json(const Support& s) {
-    return {{"supporter", s.supporter}, {"supported", s.supported}, {"area_m2", number(s.area_m2)}};
+    return {{"supporter", s.supporter},
+            {"supported", s.supported},
+            {"area_m2", number(s.area_m2)},
+            {"probability", number(s.probability)}};
 }
 
 double number_of(const Json& json) {
@@ -271,9 +274,11 @@ Scene scene_of(const Json& json) {
     for (const auto& item : json.at("objects")) scene.objects.push_back(object_of(item));
     for (const auto& item : json.at("contacts")) scene.contacts.push_back(contact_of(item));
     for (const auto& item : json.at("supports")) {
-        scene.supports.push_back({item.at("supporter").get<std::int32_t>(),
-                                  item.at("supported").get<std::int32_t>(),
-                                  number_at(item, "area_m2")});
+        scene.supports.push_back(
+            {item.at("supporter").get<std::int32_t>(), item.at("supported").get<std::int32_t>(),
+             number_at(item, "area_m2"),
+             // Scenes of before 0.2 have none.
+             item.contains("probability") ? number_at(item, "probability") : 1});
     }
     for (const auto& [stage, seconds] : json.at("timings_s").items()) {
         scene.timings_s.emplace_back(stage, number_of(seconds));

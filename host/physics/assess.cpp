@@ -155,23 +155,44 @@ std::shared_ptr<HullWays> hull_ways(std::span<const Vec3> vertices) {
     }
 }
 
+// Of what stood: any small thing is round to within a voxel, so that more than that must tell that
+// it rolls.
+constexpr double least_round = 0.125;  // of the height of its centre of mass
+
+bool is_held(const Candidate& candidate) {
+    const Vec3& c = candidate.body.center;
+    return !candidate.support_polygon.empty() &&
+           footing(candidate.support_polygon, c[0], c[1]).margin_m > 0;
+}
+
+// The ways of a hull that may rock by what is not known of its contacts.
+std::shared_ptr<HullWays> rocking_ways(const SupportTable::Rows& rows, const Candidate& candidate,
+                                       std::span<const Vec3> vertices) {
+    std::shared_ptr<HullWays> ways = hull_ways(vertices);
+    const std::optional<double> angle = dent_angle(rows, candidate);
+    if (!ways || !angle) return ways;
+    const double depth = ways->start_height() - ways->rest_height();
+    if (is_dent(rows, *angle, ways->rest(), depth)) {
+        ways->settle();
+        return ways;
+    }
+    // The hull would fall from a footing that holds the candidate.
+    return hull_ways(held_vertices(candidate, vertices));
+}
+
 std::optional<Surroundings> exact_surroundings(const SupportTable::Rows& rows,
                                                const Candidate& candidate,
                                                std::span<const Vec3> vertices, double noise) {
-    std::shared_ptr<HullWays> ways = hull_ways(vertices);
+    const bool stood = candidate.stood && is_held(candidate);
+    const double height = candidate.body.center[2] - candidate.support_height_m;
+    // What hangs from above its centre of mass has no hull to turn on.
+    if (stood && height <= 0)
+        return Surroundings{height, {}, [](const Vec3&) { return std::nullopt; }, false};
+    const std::shared_ptr<HullWays> ways = stood ? hull_ways(held_vertices(candidate, vertices))
+                                                 : rocking_ways(rows, candidate, vertices);
     if (!ways) return std::nullopt;
-    bool rolls = ways->rolls(noise);
-    if (const std::optional<double> angle = dent_angle(rows, candidate)) {
-        const double depth = ways->start_height() - ways->rest_height();
-        if (is_dent(rows, *angle, ways->rest(), depth)) {
-            ways->settle();
-            rolls = ways->rolls(noise);
-        } else {
-            // The hull would fall from a footing that holds the candidate.
-            ways = hull_ways(held_vertices(candidate, vertices));
-            if (!ways) return std::nullopt;
-        }
-    }
+    const bool rolls =
+        ways->rolls(stood ? std::min(noise, least_round * ways->start_height()) : noise);
     return Surroundings{
         ways->start_height(),
         openings(passes_that_matter(ways->passes(noise)), [](const PosePass& p) { return p; }),

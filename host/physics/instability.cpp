@@ -47,16 +47,17 @@ Instability combine_curves(const Stability& tip, const SlideResult& slide) {
 }
 
 double barrier_error_J(const Candidate& body, const Stability& tip, const Instability& how,
-                       double voxel_m, double friction) {
+                       double border_m, double friction) {
     const double weight = body.body.mass_kg * gravity;
-    if (how.mode == "slide") return friction * weight * voxel_m;
-    if (!how.edge || !(tip.margin_m > 0)) return weight * voxel_m;
+    if (how.mode == "slide") return friction * weight * border_m;
+    if (!how.edge || !(tip.margin_m > 0)) return weight * border_m;
     const auto& [a, b] = *how.edge;
     const double beside =
         std::max(0.0, ((a[0] + b[0]) / 2 - body.body.center[0]) * how.weakest[0] +
                           ((a[1] + b[1]) / 2 - body.body.center[1]) * how.weakest[1]);
-    const double height = std::max(body.body.center[2] - body.support_height_m, voxel_m);
-    return weight * (std::hypot(height, beside + voxel_m) - std::hypot(height, beside));
+    const double height = std::max(body.body.center[2] - body.support_height_m, border_m);
+    return weight * std::max(beside * border_m / std::hypot(height, beside),
+                             std::hypot(height, border_m) - height);
 }
 
 }  // namespace topple::physics

@@ -90,6 +90,9 @@ struct Candidate {
     // How far it falls below that height where it tips over each of the polygon's edges
     // (drops_when_tipped_m); empty: nowhere.
     std::vector<double> edge_drop_m = {};
+    // Whether it was seen to stand as it is: then its hull is flat underneath, at the height of its
+    // support and as wide as its polygon, whatever noise left there. Otherwise it may rock.
+    bool stood = false;
 };
 
 // Where the passes of the hull's landscape come from.
@@ -97,9 +100,9 @@ enum class Passes {
     sampled,  // the mesh, made exact by a search of the hull's edges nearby: for many candidates
     // The convex hull of the members' vertices (hull_landscape.h): no descent is too small for the
     // mesh, so that only the voxel limits what counts. Half a millisecond for each candidate.
-    // Where that hull would fall though the footing holds the candidate, it is cut at the height of
-    // the support, and made as wide there as the footing. Those stay sampled whose vertices span no
-    // volume about the centre of mass.
+    // Where a candidate stood, or that hull would fall though the footing holds the candidate, it
+    // is cut at the height of the support, and made as wide there as the footing. Those stay
+    // sampled whose vertices span no volume about the centre of mass.
     exact,
 };
 

@@ -48,6 +48,34 @@ SlideMap::SlideMap(const SolidCells& cells, const CellColumns& columns,
     }
 }
 
+void SlideMap::stand(const Stance& stance) {
+    if (stance.polygon.empty() || !(stance.unseen || falls(start_i_, start_j_))) return;
+    const double h = cells_.voxel_m;
+    std::array<std::int32_t, 2> low{start_i_ + margin_, start_j_ + margin_},
+        high{start_i_ - margin_, start_j_ - margin_};
+    const std::array start{start_i_, start_j_};
+    for (const auto& point : stance.polygon) {
+        for (std::size_t a = 0; a < 2; ++a) {
+            const auto at = static_cast<std::int32_t>(std::floor(
+                std::clamp<double>(point[a] / h, start[a] - margin_, start[a] + margin_)));
+            low[a] = std::min(low[a], at);
+            high[a] = std::max(high[a], at);
+        }
+    }
+    for (std::int32_t i = low[0]; i <= high[0]; ++i) {
+        for (std::int32_t j = low[1]; j <= high[1]; ++j) {
+            // A column is ground where it is within the polygon, to half a voxel.
+            if (footing(stance.polygon, (i + 0.5) * h, (j + 0.5) * h).margin_m < -0.5 * h) continue;
+            ground(i, j);
+            ground_[static_cast<std::size_t>(i - start_i_ + margin_) *
+                        static_cast<std::size_t>(side_) +
+                    static_cast<std::size_t>(j - start_j_ + margin_)]
+                .holds = true;
+        }
+    }
+    std::ranges::fill(falls_, std::uint8_t{0});
+}
+
 const SlideMap::Ground& SlideMap::ground(std::int32_t i, std::int32_t j) {
     const std::int32_t di = i - start_i_ + margin_, dj = j - start_j_ + margin_;
     if (di < 0 || dj < 0 || di >= side_ || dj >= side_) return outside_;

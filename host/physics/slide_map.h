@@ -29,6 +29,9 @@ class SlideMap {
              std::span<const std::int32_t> object, std::int32_t self, const Footprint& foot,
              const Vec3& center, double reach_m);
 
+    // Before anything is asked of the map.
+    void stand(const Stance& stance);
+
     std::int32_t start_i() const { return start_i_; }
     std::int32_t start_j() const { return start_j_; }
     std::int32_t radius() const { return radius_; }  // of the window of positions, voxels

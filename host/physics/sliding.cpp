@@ -327,6 +327,7 @@ SlideResult slide_one(const SolidCells& cells, const CellColumns& columns,
                       const Footprint& foot, const Body& body, double friction,
                       const SlideOptions& options) {
     SlideMap map(cells, columns, object, self, foot, body.center, options.reach_m);
+    if (!options.stances.empty()) map.stand(options.stances[static_cast<std::size_t>(self)]);
     const double x = body.center[0] / cells.voxel_m, y = body.center[1] / cells.voxel_m;
     const Search::Way way = Search(map, x, y).run();
     SlideResult result;
@@ -386,6 +387,11 @@ std::vector<SlideResult> slide_all(const SolidCells& cells,
                                           " friction coefficients for " +
                                           std::to_string(objects.size()) + " objects");
     }
+    if (!options.stances.empty() && options.stances.size() != objects.size()) {
+        throw Error(ErrorKind::usage, "slide_all: " + std::to_string(options.stances.size()) +
+                                          " stances for " + std::to_string(objects.size()) +
+                                          " objects");
+    }
     const std::vector<std::int32_t> object =
         object_of_cells(cells, object_of_primitive, objects.size());
     const CellColumns columns(cells);
@@ -394,6 +400,12 @@ std::vector<SlideResult> slide_all(const SolidCells& cells,
     const auto slide = [&](std::size_t o) {
         const auto self = static_cast<std::int32_t>(o);
         find_support(cells, columns, object, self, options.gap, feet[o]);
+        if (!feet[o].stands && !options.stances.empty() && !options.stances[o].polygon.empty()) {
+            feet[o].support = static_cast<std::int32_t>(
+                                  std::lround(options.stances[o].height_m / cells.voxel_m)) -
+                              1;
+            feet[o].stands = true;
+        }
         if (!feet[o].stands || !(objects[o].mass_kg > 0)) return;
         results[o] =
             slide_one(cells, columns, object, self, feet[o], objects[o], friction[o], options);

@@ -26,10 +26,21 @@ struct SlideResult {
     Landscape::Places places;  // the position landscape around it, if asked for
 };
 
+using Polygon = std::vector<std::array<double, 2>>;  // convex, counter-clockwise, metres
+
+// What is known of how an object stood: its polygon is ground, too, where the columns would have it
+// fall where it is, or, if part of what holds it was not seen, anyway. An empty polygon: nothing.
+struct Stance {
+    Polygon polygon;
+    double height_m = 0;  // of the support, where the object's columns rest on nothing
+    bool unseen = false;
+};
+
 struct SlideOptions {
     unsigned gap = 1;                       // empty voxels that still count as contact
     double reach_m = 3;                     // ways longer than this are no longer one push
     bool places = false;                    // whether to look at all places around the object
+    std::span<const Stance> stances = {};   // by object; empty: none of any
     device::ThreadPool* threads = nullptr;  // to share the objects out among; none: one by one
 };
 
@@ -84,11 +95,13 @@ struct Instability {
 // something to release, tipping where equal; without any, the barrier is that of tipping.
 Instability combine_curves(const Stability& tip, const SlideResult& slide);
 
-// What a voxel more or less in the body's support changes in that barrier:
-//     tipping over an edge at m > 0 from the centre of mass, h above it:
-//         M g (sqrt(h^2 + (m + voxel)^2) - sqrt(h^2 + m^2)); without an edge, M g voxel;
-//     sliding: friction M g voxel.
+// What a support whose border is known to border_m (one standard error) leaves open in that
+// barrier:
+//     tipping over an edge at m > 0 from the centre of mass, h above it, to first order:
+//         M g border m / sqrt(h^2 + m^2), but what it would be at the centre of mass at least;
+//         without an edge, M g border;
+//     sliding: friction M g border.
 double barrier_error_J(const Candidate& body, const Stability& tip, const Instability& how,
-                       double voxel_m, double friction);
+                       double border_m, double friction);
 
 }  // namespace topple::physics

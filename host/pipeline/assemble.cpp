@@ -89,9 +89,7 @@ void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& sc
     for (const graph::Carrying& c : objects.contacts.carryings) {
         if (c.supporter >= 0) carries.insert(std::minmax(c.supporter, c.supported));
     }
-    std::vector<bool> grounded;
-    for (const StableObject& o : objects.objects) grounded.push_back(o.grounded);
-    scene.supports = supports_between(objects.contacts, objects.object_of_primitive, grounded);
+    scene.supports = objects.supports;
     // Their order makes the carriers of each ascend.
     for (const Support& s : scene.supports)
         scene.objects[static_cast<std::size_t>(s.supported)].why.stands_on.push_back(s.supporter);

@@ -20,7 +20,8 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
                               const ParseOptions& options, StageClock& stage) {
     GeometryStage g;
     g.surfels = stage("normals", [&] {
-        return geometry::make_surfels(device, input.cloud, surfel_cells * input.cell_m,
+        return geometry::make_surfels(device, input.cloud,
+                                      input.surfels.value_or(surfel_cells * input.cell_m),
                                       input.viewpoints, input.viewpoint_of_point);
     });
     g.frame = stage("frame", [&] {

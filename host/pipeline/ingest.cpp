@@ -225,10 +225,11 @@ void check_count(const CloudView& cloud) {
 void look_at_cloud(device::Device& device, Ingested& out) {
     const CloudView& cloud = out.cloud;
     check_count(cloud);
-    const double spacing = geometry::point_spacing(cloud);
-    check_spacing(cloud, spacing);
+    const geometry::PointSpacing spacing = geometry::point_spacing(cloud);
+    check_spacing(cloud, spacing.nearest_m);
     // A little above the spacing, so that a surface has no holes at this resolution.
-    out.cell_m = std::clamp(1.25 * spacing, least_cell_m, largest_cell_m);
+    out.cell_m = std::clamp(1.25 * spacing.nearest_m, least_cell_m, largest_cell_m);
+    out.surfels = geometry::surfels_for(spacing, surfel_cells * out.cell_m);
     out.notes = cloud.notes;
     Intrinsics intrinsics;
     DepthFrame frame;
@@ -242,7 +243,7 @@ void look_at_cloud(device::Device& device, Ingested& out) {
         return;
     }
     const auto scan = geometry::find_single_scan(
-        cloud, cloud.has_viewpoint ? cloud.viewpoint : Vec3{0, 0, 0}, spacing);
+        cloud, cloud.has_viewpoint ? cloud.viewpoint : Vec3{0, 0, 0}, spacing.nearest_m);
     look_from_free_places(device, scan, out);
 }
 

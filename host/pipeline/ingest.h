@@ -60,6 +60,7 @@ struct Ingested {
     std::optional<SpaceMap> space;              // what a map says to be free
     double voxel_m = 0;  // voxels' edge that the input brings; 0: from cell_m
     double cell_m = 0;   // working resolution, from the point spacing and the sensor's noise
+    std::optional<geometry::SurfelScale> surfels;  // none: cells of surfel_cells * cell_m
     std::vector<std::string> notes;
 };
 

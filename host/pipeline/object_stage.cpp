@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "device/native/thread_pool.h"
@@ -70,6 +69,8 @@ void collect_objects(const SolidCells& cells, const std::vector<bool>& shell, Ob
                                                  border_noise * cells.voxel_m);
             object.rest = rest.kind;
             object.rest_probability = rest.probability;
+            object.margin_error_m = rest.margin_error_m;
+            object.candidate.stood = rest.kind != graph::RestKind::none;
             object.candidate.support_polygon = std::move(rest.support_polygon);
             object.candidate.support_height_m = rest.support_height_m;
         }
@@ -83,6 +84,11 @@ void collect_objects(const SolidCells& cells, const std::vector<bool>& shell, Ob
         }
         out.objects.push_back(std::move(object));
     }
+    std::vector<graph::Carried> carried;
+    for (const StableObject& o : out.objects)
+        carried.push_back({o.grounded, o.candidate.body.mass_kg});
+    out.supports = graph::find_supports(out.contacts, out.grouping.pair_probability,
+                                        out.object_of_primitive, carried, columns);
 }
 
 }  // namespace
@@ -104,25 +110,6 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
         stage("joints", [&] { return find_joints(parts, contacts, bodies); });
     return {std::move(bodies), std::move(contacts), std::move(table), std::move(joints),
             shell_odds(parts.shell_log_odds)};
-}
-
-std::vector<Support> supports_between(const graph::ContactGraph& contacts,
-                                      std::span<const std::int32_t> object_of_primitive,
-                                      const std::vector<bool>& grounded) {
-    const auto object = [&](std::int32_t p) {
-        return object_of_primitive[static_cast<std::size_t>(p)];
-    };
-    std::map<std::pair<std::int32_t, std::int32_t>, double> carried;  // (supporter, supported)
-    for (const graph::Carrying& c : contacts.carryings) {
-        if (c.supporter < 0) continue;
-        const auto pair = std::pair(object(c.supporter), object(c.supported));
-        // The ground carries, and nothing carries it, though scraps of it may lie on things.
-        if (pair.first != pair.second && !grounded[static_cast<std::size_t>(pair.second)])
-            carried[pair] += c.area_m2;
-    }
-    std::vector<Support> supports;
-    for (const auto& [pair, area] : carried) supports.push_back({pair.first, pair.second, area});
-    return supports;
 }
 
 void find_barriers(device::Device& device, const physics::SupportTable& table,
@@ -154,26 +141,24 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
     // What is fixed to the ground does not slide: no mass, nothing to search.
     for (const StableObject& o : objects)
         bodies.push_back(o.grounded ? physics::Body{} : o.candidate.body);
+    std::vector<physics::Stance> stances;
+    for (const StableObject& o : objects) {
+        stances.push_back({o.candidate.stood ? o.candidate.support_polygon : physics::Polygon{},
+                           o.candidate.support_height_m, o.rest != graph::RestKind::seen});
+    }
     const std::vector<double> all_friction(candidates.size(), friction);
     std::vector<physics::SlideResult> sliding =
         physics::slide_all(cells, object_of_primitive, bodies, all_friction,
-                           {.places = true, .threads = &device.threads()});
+                           {.places = true, .stances = stances, .threads = &device.threads()});
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (objects[o].grounded) return;
-        // The search of ways knows the contacts that were seen. Where more than those hold an
-        // object, that it would slide off them where it is says nothing.
-        if (objects[o].rest != graph::RestKind::seen && sliding[o].found &&
-            sliding[o].distance_m <= 0) {
-            sliding[o].found = false;
-            sliding[o].absorbed_J = sliding[o].released_J = sliding[o].drop_m = 0;
-        }
         physics::Instability& how = objects[o].instability;
         how = physics::combine_curves(tipping[o], sliding[o]);
         if (how.mode == "tip" && how.drop_m > 0)
             how.onto = physics::met_when_tipped(cells, columns, candidates[o], how.weakest,
                                                 (*how.edge)[0]);
-        objects[o].barrier_error_J = physics::barrier_error_J(
-            candidates[o], tipping[o], how, border_noise * cells.voxel_m, friction);
+        objects[o].barrier_error_J = physics::barrier_error_J(candidates[o], tipping[o], how,
+                                                              objects[o].margin_error_m, friction);
         objects[o].tipping = std::move(tipping[o]);
         objects[o].level_tipping = std::move(level[o]);
         objects[o].sliding = std::move(sliding[o]);

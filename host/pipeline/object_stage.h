@@ -8,6 +8,7 @@
 #include "graph/contact_graph.h"
 #include "graph/rest.h"
 #include "graph/stable_objects.h"
+#include "graph/supports.h"
 #include "physics/bodies.h"
 #include "physics/landscape.h"
 #include "physics/sliding.h"
@@ -29,6 +30,7 @@ struct StableObject {
     // How it stands (graph/rest.h); its candidate is held up in that way.
     graph::RestKind rest = graph::RestKind::seen;
     double rest_probability = 1;
+    double margin_error_m = 0;  // to which the border of its support is known
     // Whether what holds it up was seen well enough to say what a push does.
     bool seen_enough() const {
         return rest != graph::RestKind::hidden && rest != graph::RestKind::none;
@@ -44,6 +46,7 @@ struct ObjectStage {
     graph::Grouping grouping;
     std::vector<std::int32_t> object_of_primitive;  // the ground, where there is one, is object 0
     std::vector<StableObject> objects;
+    std::vector<Support> supports;  // sorted by (supporter, supported)
 };
 
 // What grouping starts from.
@@ -56,12 +59,6 @@ struct PartStage {
 };
 PartStage weigh_parts(device::Device& device, const SolidParts& parts, const ParseOptions& options,
                       StageClock& stage);
-
-// Which object carries which, by the contacts of their primitives; what is `grounded` carries and
-// is not carried. Sorted by (supporter, supported).
-std::vector<Support> supports_between(const graph::ContactGraph& contacts,
-                                      std::span<const std::int32_t> object_of_primitive,
-                                      const std::vector<bool>& grounded);
 
 // What a push does to objects whose candidates are known, all in one batch: fills in the drops over
 // their edges, tipping, sliding, both together and their poses.

@@ -111,7 +111,7 @@ double spacing_in(const tiles::SpilledPoints& points, std::size_t bin) {
             cloud.z.push_back(p.z);
         }
     });
-    return geometry::point_spacing(cloud);
+    return geometry::point_spacing(cloud).nearest_m;
 }
 
 // The median over bins with many points.

@@ -25,9 +25,9 @@ struct VoxelStage {
     std::vector<std::int32_t> number;
 };
 
-// A solid has at least the volume of a cube of three voxels; less is a fragment that noise left,
+// A solid has at least the volume of a cube of two voxels; less is a fragment that noise left,
 // and too little to tell how it stands.
-constexpr std::uint64_t least_voxels = 27;
+constexpr std::uint64_t least_voxels = 8;
 
 // Edge of a solid voxel for a scan of this resolution: about two cells, rounded to a handy value.
 double voxel_for_cell(double cell_m);

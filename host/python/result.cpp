@@ -76,7 +76,8 @@ void bind_items(py::module_& module) {
     py::class_<Support>(module, "Support")
         .def_readonly("supporter", &Support::supporter)
         .def_readonly("supported", &Support::supported)
-        .def_readonly("area_m2", &Support::area_m2);
+        .def_readonly("area_m2", &Support::area_m2)
+        .def_readonly("probability", &Support::probability);
 }
 
 template <class Member>

@@ -36,6 +36,26 @@ std::vector<std::int32_t> bodies_of_primitives(const RoomParts& room) {
     return out;
 }
 
+// Which object carries which, by the contacts of their primitives alone.
+std::vector<Support> supports_between(const graph::ContactGraph& contacts,
+                                      std::span<const std::int32_t> object_of_primitive,
+                                      const std::vector<bool>& grounded) {
+    const auto object = [&](std::int32_t p) {
+        return object_of_primitive[static_cast<std::size_t>(p)];
+    };
+    std::map<std::pair<std::int32_t, std::int32_t>, double> carried;  // (supporter, supported)
+    for (const graph::Carrying& c : contacts.carryings) {
+        if (c.supporter < 0) continue;
+        const auto pair = std::pair(object(c.supporter), object(c.supported));
+        // The ground carries, and nothing carries it, though scraps of it may lie on things.
+        if (pair.first != pair.second && !grounded[static_cast<std::size_t>(pair.second)])
+            carried[pair] += c.area_m2;
+    }
+    std::vector<Support> supports;
+    for (const auto& [pair, area] : carried) supports.push_back({pair.first, pair.second, area});
+    return supports;
+}
+
 // What a parse with these groups would say. group: of each primitive, -1 for the ground's.
 scenes::RelationScore judged(const RoomParts& room, const std::vector<std::int32_t>& group) {
     // The ground is object 0.

@@ -4,9 +4,9 @@
 
 usage: fit.py --topple TOPPLE --features TOPPLE_FEATURES --work FOLDER [--seeds FIRST:LAST] [--judge]
 
-Makes scans of every kind and way of scanning (topple generate), keeps them and what the models see
+Makes rooms of every kind, scanned in one way or another (topple generate), keeps them and what the models see
 of them (topple_features) in FOLDER, fits the model of the shell, then that of the joints, each by
-gradient boosting, calibrates both on scans that they were not fitted on (Platt's scaling of
+gradient boosting, calibrates both on rooms that they were not fitted on (Platt's scaling of
 out-of-fold log-odds), and writes host/fitted/*.model.json. Same seeds, same files. Takes
 python3-sklearn and python3-scipy. With --judge nothing is written: the files that are there are
 judged on the seeds given.
@@ -52,7 +52,8 @@ def read_ply(path):
 class Table:
     """What the models see of one scan, with the truth about it."""
 
-    def __init__(self, scan, folder):
+    def __init__(self, scan, folder, room):
+        self.room = room  # scans of one room share its number
         about = json.loads((folder / 'table.json').read_text())
         self.node_names, self.joint_names = about['node_names'], about['joint_names']
         self.nodes = np.fromfile(folder / 'nodes.f32', '<f4').reshape(-1, len(self.node_names))
@@ -136,7 +137,7 @@ def sigmoid(x):
 
 
 def fit(rows, truth, group, names, leaves, about):
-    """A model, and the calibrated probabilities that models fitted on other scans give each row."""
+    """A model, and the calibrated probabilities that models fitted on other rooms give each row."""
     raw = np.zeros(len(truth))
     for train, test in GroupKFold(5).split(rows, truth, group):
         raw[test] = booster(leaves).fit(rows[train], truth[train]).decision_function(rows[test])
@@ -158,27 +159,27 @@ def write(name, model):
 
 
 def fit_all(tables):
-    names = [np.full(len(t.nodes), n) for n, t in enumerate(tables)]
+    rooms = [np.full(len(t.nodes), t.room) for t in tables]
     known = np.concatenate([t.known for t in tables])
     rows = np.concatenate([t.nodes for t in tables])[known]
     shell = np.concatenate([t.is_shell for t in tables])[known]
-    group = np.concatenate(names)[known]
+    group = np.concatenate(rooms)[known]
     _, shell_file, out_of_fold = fit(rows, shell, group, tables[0].node_names, 12, 'shell')
     probability = np.zeros(len(known))
     probability[known] = out_of_fold
-    joints, one, of_scan, first = [], [], [], 0
-    for n, t in enumerate(tables):
+    joints, one, of_room, first = [], [], [], 0
+    for t in tables:
         mine = t.with_shell(probability[first:first + len(t.nodes)])
         first += len(t.nodes)
         joints.append(mine[t.known_pair])
         one.append(t.is_one[t.known_pair])
-        of_scan.append(np.full(t.known_pair.sum(), n))
-    rows, one, of_scan = np.concatenate(joints), np.concatenate(one), np.concatenate(of_scan)
+        of_room.append(np.full(t.known_pair.sum(), t.room))
+    rows, one, of_room = np.concatenate(joints), np.concatenate(one), np.concatenate(of_room)
     # Most scans have no colours: each row counts without them, too.
     plain = rows.copy()
     plain[:, [k for k, name in enumerate(tables[0].joint_names) if 'colour' in name]] = np.nan
-    rows, one, of_scan = np.concatenate([rows, plain]), np.tile(one, 2), np.tile(of_scan, 2)
-    _, joint_file, _ = fit(rows, one, of_scan, tables[0].joint_names, 15, 'joints')
+    rows, one, of_room = np.concatenate([rows, plain]), np.tile(one, 2), np.tile(of_room, 2)
+    _, joint_file, _ = fit(rows, one, of_room, tables[0].joint_names, 15, 'joints')
     write('shell.model.json', shell_file)
     write('joint.model.json', joint_file)
 
@@ -201,7 +202,8 @@ def make(arguments, kind, way, seed):
 
 KINDS = ['plain', 'varied', 'kitchen', 'bathroom', 'bedroom', 'living', 'office', 'shop', 'storage', 'corridor',
          'precarious', 'tabletop']
-WAYS = ['walk', 'sparse', 'laser', 'cloud', 'single']
+# Bare clouds leave most open: they come twice.
+WAYS = ['walk', 'sparse', 'laser', 'sparse', 'cloud', 'single']
 
 
 def main():
@@ -212,14 +214,21 @@ def main():
     parser.add_argument('--seeds', default='1000:1003', help='first and last seed of each kind and way')
     parser.add_argument('--kinds', nargs='+', default=KINDS)
     parser.add_argument('--only-make', action='store_true', help='make the scans and tables, fit nothing')
-    parser.add_argument('--ways', nargs='+', default=WAYS)
+    parser.add_argument('--ways', nargs='+', default=WAYS, help='of scanning; rooms take them in turn')
+    parser.add_argument('--all-ways', action='store_true', help='scan each room in all of them')
     arguments = parser.parse_args()
     first, last = map(int, arguments.seeds.split(':'))
-    wanted = [(kind, way, seed) for seed in range(first, last + 1) for kind in arguments.kinds for way in arguments.ways]
+    wanted = []
+    for seed in range(first, last + 1):
+        for n, kind in enumerate(arguments.kinds):
+            # Other rooms teach more than other scans of the same.
+            turn = [arguments.ways[(seed + n) % len(arguments.ways)]]
+            wanted += [(kind, way, seed) for way in (arguments.ways if arguments.all_ways else turn)]
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         made = list(pool.map(lambda w: make(arguments, *w), wanted))
     if not arguments.only_make:
-        fit_all([Table(*m) for m in made if m])
+        rooms = {(kind, seed): n for n, (kind, _, seed) in enumerate(wanted)}
+        fit_all([Table(*m, rooms[kind, seed]) for m, (kind, _, seed) in zip(made, wanted) if m])
 
 
 if __name__ == '__main__':

@@ -103,7 +103,7 @@ def test_points_that_are_not_finite_are_left_out(points, result, device):
     (np.zeros((30, 4), np.int32), "points[:, :3].astype('float32')"),
     ((np.zeros(3, np.float32),) * 2 + (np.zeros(3, int),), "points z: expected floats of shape (N,), not int64 of shape (3,); z.as"),
     (np.zeros(5, [('x', 'f4'), ('y', 'f4')]), 'the records have no field z'),
-    (np.zeros((4, 3), np.float32), 'points: 4 points were found, but the smallest solid takes 27'),
+    (np.zeros((4, 3), np.float32), 'points: 4 points were found, but the smallest solid takes 8'),
     (np.full((40, 3), np.nan, np.float32), 'none of its 40 points is finite'),
     ('nowhere--up.ply', 'nowhere--up.ply'),
 ])

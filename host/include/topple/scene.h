@@ -161,6 +161,7 @@ struct Contact {
 struct Support {
     std::int32_t supporter = -1, supported = -1;
     double area_m2 = 0;
+    double probability = 1;  // that it does
 };
 
 // Point of the parsed cloud, one array per field, input order (for frames: the fused cloud).

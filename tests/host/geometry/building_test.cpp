@@ -9,7 +9,10 @@ namespace {
 // Sheets of surfels, a region each.
 class Sheets {
   public:
-    Sheets() { surfels_.cell_m = 0.05; }
+    Sheets() {
+        surfels_.cell_m = 0.05;
+        surfels_.area_m2 = 0.05 * 0.05;
+    }
 
     // A rectangle from `corner` along two edges, seen from the side of `normal`.
     void sheet(const Vec3& corner, const Vec3& along, const Vec3& across, const Vec3& normal) {

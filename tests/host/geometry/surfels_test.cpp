@@ -124,7 +124,7 @@ TEST_F(SurfelsTest, FieldsAreConsistentAndOrderFree) {
     EXPECT_EQ(a.x, b.x);
     EXPECT_EQ(a.nx, b.nx);
     EXPECT_EQ(a.roughness_m, b.roughness_m);
-    EXPECT_EQ(point_spacing(cloud), point_spacing(reversed));
+    EXPECT_EQ(point_spacing(cloud).nearest_m, point_spacing(reversed).nearest_m);
     double points = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
         points += a.weight[i];
@@ -151,19 +151,59 @@ TEST(PointSpacing, IsThatOfTheSurface) {
     PointCloud plane;
     for (int i = 0; i < 150; ++i)
         for (int j = 0; j < 150; ++j) add(plane, 0.01 * i, 0.01 * j, 1);
-    EXPECT_NEAR(point_spacing(plane), 0.01, 1e-5);
+    EXPECT_NEAR(point_spacing(plane).nearest_m, 0.01, 1e-5);
     PointCloud repeated = plane, dense = plane, strays = plane;
     for (int n = 0; n < 10'000; ++n) add(repeated, 0.5, 0.5, 1);
-    EXPECT_NEAR(point_spacing(repeated), 0.01, 1e-5);
+    EXPECT_NEAR(point_spacing(repeated).nearest_m, 0.01, 1e-5);
     for (int i = 0; i < 250; ++i)
         for (int j = 0; j < 250; ++j) add(dense, -0.5 + 0.002 * i, 0.002 * j, 1);
-    EXPECT_GT(point_spacing(dense),
+    EXPECT_GT(point_spacing(dense).nearest_m,
               0.0035);  // most of a centimetre's cells then still hold a point
-    EXPECT_LT(point_spacing(dense), 0.011);
+    EXPECT_LT(point_spacing(dense).nearest_m, 0.011);
     Random random(6);
     for (int n = 0; n < 200; ++n)
         add(strays, 20 * random.uniform(), 20 * random.uniform(), 20 * random.uniform());
-    EXPECT_NEAR(point_spacing(strays), 0.01, 1e-5);
+    EXPECT_NEAR(point_spacing(strays).nearest_m, 0.01, 1e-5);
+}
+
+// A grid of points 4 cm apart in cells of 2 cm: no two cells touch, and all of the plane is one
+// piece. Ten centimetres beside it, beyond reach, another plane stays apart.
+TEST_F(SurfelsTest, NeighboursReachAcrossEmptyCells) {
+    PointCloud cloud;
+    constexpr int side = 20;
+    for (int plane = 0; plane < 2; ++plane)
+        for (int i = 0; i < side; ++i)
+            for (int j = 0; j < side; ++j)
+                add(cloud, 0.04 * i + 0.01, 0.04 * j + 0.01, 0.101 * plane + 0.01);
+    const Surfels apart = make_surfels(*device, cloud, 0.02, {}, {});
+    EXPECT_TRUE(apart.neighbours.empty());
+    const Surfels s = make_surfels(*device, cloud, {0.02, 0.04, 0.09}, {}, {});
+    ASSERT_EQ(s.size(), cloud.size());
+    EXPECT_NEAR(s.area_m2, 0.04 * 0.04, 1e-9);
+    for (std::uint32_t i = 0; i < s.size(); ++i) {
+        const auto begin = s.neighbours.begin() + s.neighbour_first[i],
+                   end = s.neighbours.begin() + s.neighbour_first[i + 1];
+        EXPECT_GE(end - begin, 7);  // at a corner
+        EXPECT_LE(end - begin, 26);
+        EXPECT_TRUE(std::is_sorted(begin, end));
+        for (auto at = begin; at != end; ++at) {
+            EXPECT_EQ(s.z[i], s.z[*at]);
+            EXPECT_NE(i, *at);
+            const auto back = s.neighbours.begin() + s.neighbour_first[*at],
+                       back_end = s.neighbours.begin() + s.neighbour_first[*at + 1];
+            EXPECT_TRUE(std::binary_search(back, back_end, i));
+        }
+    }
+}
+
+// Fine surfels stay as they are, coarse ones become as fine as things are thick, or as the points.
+TEST(SurfelScale, FollowsThePoints) {
+    const auto cell = [](double spacing_m, double coarse_m) {
+        return surfels_for({spacing_m, spacing_m, spacing_m}, coarse_m).cell_m;
+    };
+    EXPECT_EQ(cell(0.005, 0.011), 0.011);
+    EXPECT_EQ(cell(0.012, 0.027), 0.02);
+    EXPECT_NEAR(cell(0.05, 0.09), 0.0325, 1e-9);
 }
 
 TEST_F(SurfelsTest, OddInputs) {
@@ -175,11 +215,11 @@ TEST_F(SurfelsTest, OddInputs) {
     EXPECT_EQ(s.nx[0], 0);
     for (int i = 0; i < 100; ++i) add(one, 1, 2, 3);  // duplicates
     EXPECT_EQ(make_surfels(*device, one, 0.02, {}, {}).weight[0], 101);
-    EXPECT_EQ(point_spacing(one), 0);
+    EXPECT_EQ(point_spacing(one).nearest_m, 0);
     PointCloud line;
     for (int i = 0; i < 1000; ++i) add(line, 0.001 * i, 0, 0);
     for (const float n : make_surfels(*device, line, 0.02, {}, {}).nx) EXPECT_EQ(n, 0);
-    EXPECT_NEAR(point_spacing(line), 0.001, 1e-5);
+    EXPECT_NEAR(point_spacing(line).nearest_m, 0.001, 1e-5);
     PointCloud far = line;
     add(far, 1e9, 0, 0);
     EXPECT_THROW(make_surfels(*device, far, 0.02, {}, {}), Error);

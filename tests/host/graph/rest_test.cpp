@@ -10,6 +10,7 @@
 #include "graph/stable_objects.h"
 #include "host/graph/floor_scene.h"
 #include "kernels/device_harness.h"
+#include "physics/tipping.h"
 
 namespace topple::graph {
 namespace {
@@ -93,6 +94,33 @@ TEST_P(RestOf, ABoardOnAWallLeansOnWhatIsSeen) {
     });
     const auto wall = scene.add(box({-0.9, -0.06, 0}, {0.9, -0.02, 1.1}));
     EXPECT_EQ(rest(scene, board, {wall}).kind, RestKind::seen);
+}
+
+// A box whose centre lies over the edge of what carries it stood there all the same: it does so
+// with a margin that is small, but not 0.
+TEST_P(RestOf, WhatStandsOverAnEdgeStandsALittleInside) {
+    FloorScene scene;
+    scene.add(box({0, 0, 0}, {0.2, 0.2, 0.2}));
+    const auto thing = scene.add(box({0.1, 0, 0.2}, {0.3, 0.2, 0.4}));
+    const Rest out = rest(scene, thing);
+    EXPECT_EQ(out.kind, RestKind::seen);
+    const double margin = physics::footing(out.support_polygon, 0.2, 0.1).margin_m;
+    EXPECT_GT(margin, 0.5 * 0.01) << "of a noise of a centimetre";
+    EXPECT_LT(margin, 2 * 0.01);
+    EXPECT_GT(out.margin_error_m, 0.3 * 0.01);
+    EXPECT_LT(out.margin_error_m, margin);
+}
+
+// Carried by its top alone, with its foot two voxels above the floor: it stands.
+TEST_P(RestOf, WhatEndsNearTheFloorDoesNotHang) {
+    FloorScene scene;
+    scene.add(box({0.3, 0, 0}, {0.4, 0.2, 0.4}));
+    const auto thing = scene.add([](double x, double y, double z) {
+        return x > 0 && x < 0.4 && y > 0 && y < 0.2 && z > (x < 0.3 ? 0.04 : 0.4) && z < 0.5;
+    });
+    const Rest out = rest(scene, thing);
+    EXPECT_EQ(out.kind, RestKind::near);
+    EXPECT_NEAR(out.support_height_m, 0, 1e-9);
 }
 
 // A thing in the air: what the scan shows below it does not hold it.

@@ -50,7 +50,7 @@ Scene some_scene() {
     object.unsafety = 10;
     scene.objects = {object};
     scene.contacts = {{0, 1, 0.25, {0, 0, 1}, "fixed", 0.97}};
-    scene.supports = {{0, 1, 0.125}};
+    scene.supports = {{0, 1, 0.125, 0.875}};
     scene.timings_s = {{"ingest", 0.5}, {"normals", 0.25}};
     scene.swc_energy = {3, 2, 1.5};
     scene.notes = {"One.", "Zwei: \xc3\xa4."};
@@ -73,6 +73,7 @@ TEST_F(Write, scene_json_reads_back_the_same) {
     EXPECT_EQ(back.objects[0].why.stands_on, scene.objects[0].why.stands_on);
     EXPECT_EQ(back.objects[0].why.sentence, scene.objects[0].why.sentence);
     EXPECT_EQ(back.contacts[0].relation, "fixed");
+    EXPECT_EQ(back.supports[0].probability, 0.875);
     EXPECT_EQ(back.timings_s, scene.timings_s);
     EXPECT_EQ(back.manhattan_from_input, scene.manhattan_from_input);
 }

@@ -143,6 +143,41 @@ TEST_F(Evaluate, UnevenFeetDoNotRock) {
     EXPECT_NEAR(s.barrier_J, over_an_edge, 0.25 * over_an_edge);
 }
 
+// A dent under a box lets its hull rock; it stood, so that it tips over its edges, as the closed
+// form has it.
+TEST_F(Evaluate, WhatStoodTipsOverItsSupport) {
+    const double voxel = 0.02;
+    const SolidCells cells =
+        test::voxelise({{0, test::box({-0.1, -0.1, 0}, {0.1, 0.1, 0.4})},
+                        {0, test::box({-0.02, -0.02, -0.08}, {0.02, 0.02, 0})}},
+                       {-0.1, -0.1, -0.08}, {0.1, 0.1, 0.4}, voxel);
+    const SupportTable table(*device, cells, 1, geodesic_sphere(16));
+    Candidate box = test::standing(*device, cells);
+    box.support_polygon = {{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}};
+    box.support_height_m = 0;
+    box.stood = true;
+    const Stability s = evaluate(*device, table, std::span(&box, 1), Passes::exact)[0];
+    const double h = box.body.center[2], weight = box.body.mass_kg * gravity;
+    EXPECT_NEAR(s.barrier_J, weight * (std::sqrt(h * h + 0.1 * 0.1) - h), 1e-5 * weight);
+    // Outside of its support it falls, whatever was seen.
+    box.support_polygon = {{0.05, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {0.05, 0.1}};
+    EXPECT_EQ(evaluate(*device, table, std::span(&box, 1), Passes::exact)[0].barrier_J, 0);
+}
+
+// A sign on a hook: its centre hangs below what holds it.
+TEST_F(Evaluate, WhatHangsFromAboveItsCentreStays) {
+    const SolidCells cells = test::voxelise({{0, test::box({-0.2, -0.02, 0}, {0.2, 0.02, 0.3})}},
+                                            {-0.2, -0.02, 0}, {0.2, 0.02, 0.3}, 0.02);
+    const SupportTable table(*device, cells, 1, geodesic_sphere(16));
+    Candidate sign = test::standing(*device, cells);
+    sign.support_polygon = {{-0.1, -0.02}, {0.1, -0.02}, {0.1, 0.02}, {-0.1, 0.02}};
+    sign.support_height_m = 0.3;
+    sign.stood = true;
+    const Stability s = evaluate(*device, table, std::span(&sign, 1), Passes::exact)[0];
+    const double weight = sign.body.mass_kg * gravity;
+    EXPECT_NEAR(s.barrier_J, weight * (std::hypot(0.15, 0.02) + 0.15), 1e-5 * weight);
+}
+
 TEST_F(Evaluate, FarFromTheOriginNothingChanges) {
     const SolidCells near = test::voxelise({{0, test::box({0, 0, 0}, {0.3, 0.2, 0.5})}}, {0, 0, 0},
                                            {0.3, 0.2, 0.5}, 0.02);

@@ -88,6 +88,29 @@ TEST_F(Sliding, CubeOnATable) {
     }
 }
 
+// A hole under its centre, wider than its foot: by the columns it falls where it is. What is known
+// of how it stood holds it there.
+TEST_F(Sliding, WhatStoodDoesNotFallWhereItIs) {
+    const double voxel = 0.025;
+    const std::vector<test::Solid> bridge{{0, box({-2, -2, -0.1}, {3, 3, 0})},
+                                          {1, box({0, 0, 0}, {0.1, 0.4, 0.5})},
+                                          {2, box({0, 0.1, 0.5}, {0.4, 0.3, 0.6})}};
+    const SolidCells cells = test::voxelise(bridge, {-2, -2, -0.1}, {3, 3, 1}, voxel);
+    const std::vector<double> density(3, 700), friction(3, 0.3);
+    const std::vector<std::int32_t> own{0, 1, 2};
+    const auto bodies = mass_properties(*device, cells, 3, density);
+    const SlideResult fell = slide_all(cells, own, bodies, friction)[2];
+    ASSERT_TRUE(fell.found);
+    EXPECT_EQ(fell.distance_m, 0);
+    std::vector<Stance> stances(3);
+    stances[2] = {{{0, 0.1}, {0.3, 0.1}, {0.3, 0.3}, {0, 0.3}}, 0.5, true};
+    const SlideResult stood = slide_all(cells, own, bodies, friction, {.stances = stances})[2];
+    ASSERT_TRUE(stood.found);
+    EXPECT_NEAR(stood.distance_m, 0.1, 1e-9) << "from its centre to the border of its support";
+    stances.pop_back();
+    EXPECT_THROW(slide_all(cells, own, bodies, friction, {.stances = stances}), Error);
+}
+
 TEST_F(Sliding, PlacesAroundAreWorkOrFalls) {
     const double voxel = 0.025, weight = 0.7 * gravity;
     // A post in the way, 5 cm wide, beside the cube.

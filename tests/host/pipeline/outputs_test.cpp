@@ -209,6 +209,8 @@ void check_relations(const Json& scene) {
         EXPECT_NE(from, to) << s;
         EXPECT_TRUE(seen.insert({from, to}).second) << s << " twice";
         expect_number(s, "area_m2", 1e-9);
+        expect_number(s, "probability", 0);
+        EXPECT_LE(s.at("probability").get<double>(), 1) << s;
     }
 }
 

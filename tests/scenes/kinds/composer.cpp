@@ -164,6 +164,27 @@ bool Composer::along_wall(const Blueprint& blueprint, bool built_in, int attempt
     return false;
 }
 
+std::vector<std::size_t> Composer::row(int wall, double from, double to, double loose,
+                                       const std::function<Blueprint()>& make) {
+    std::vector<std::size_t> found;
+    const bool mirrored = wall == 1 || wall == 2;
+    const double off = skirting_ + (random_.chance(0.6) ? 0 : random_.uniform(0, 0.05));
+    for (double at = from; at < to;) {
+        const Blueprint one = make();
+        const auto box = one.bounds();
+        const double wide = box[1][0] - box[0][0];
+        if (at + wide > to) break;
+        const double low = mirrored ? -box[1][0] : box[0][0];
+        if (stand(one, at_wall(wall, at - low, off - one.back(), 0, 0), {0}, "floor")) {
+            found.push_back(placed_.size() - 1);
+            at += wide + (random_.chance(loose) ? random_.uniform(0.003, 0.06) : 0.0002);
+        } else {
+            at += 0.25;
+        }
+    }
+    return found;
+}
+
 bool Composer::on_wall(const Blueprint& blueprint, double height, bool built_in) {
     const auto box = blueprint.bounds();
     for (int attempt = 0; attempt < 25; ++attempt) {
@@ -205,7 +226,8 @@ bool Composer::before(std::size_t table, int side, const Blueprint& chair) {
     for (int attempt = 0; attempt < 25; ++attempt) {
         // The chair's back is at its low y: it faces the table, pushed in from the side.
         const double in = random_.uniform(-0.35, 0.75) * (its[1][1] - its[0][1]);
-        const double turn = random_.chance(0.5) ? 0 : random_.uniform(-0.4, 0.4);
+        const double most = random_.chance(0.3) ? 1.4 : 0.4;
+        const double turn = random_.chance(0.4) ? 0 : random_.uniform(-most, most);
         const bool ends = side >= 2, low = side % 2 == 1;
         const std::size_t a = ends ? 1 : 0;
         const double s = random_.uniform(0.75 * box[0][a], 0.75 * box[1][a]);

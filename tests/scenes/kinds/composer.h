@@ -50,6 +50,10 @@ class Composer {
     bool fix(const Blueprint& blueprint, const Pose& pose);
     // Its back along a wall, now and then flush with what stands there already.
     bool along_wall(const Blueprint& blueprint, bool built_in = false, int attempts = 40);
+    // A row of what `make` gives, side by side with their backs along a wall, from..to in metres;
+    // so many of the joints are loose. Returns where they are in placed().
+    std::vector<std::size_t> row(int wall, double from, double to, double loose,
+                                 const std::function<Blueprint()>& make);
     // Its back in the wall's plane, its origin at a height.
     bool on_wall(const Blueprint& blueprint, double height, bool built_in = true);
     // On the floor, anywhere.

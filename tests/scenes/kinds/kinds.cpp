@@ -35,6 +35,11 @@ const std::vector<std::pair<std::string, Make>>& families() {
         {"corridor", make_corridor},
         {"precarious", make_precarious},
         {"tabletop", make_tabletop},
+        {"library", make_library},
+        {"meeting", make_meeting},
+        {"lounge", make_lounge},
+        {"laundry", make_laundry},
+        {"depot", make_depot},
     };
     return list;
 }

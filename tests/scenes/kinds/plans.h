@@ -18,5 +18,10 @@ World make_shop(std::uint64_t seed);
 World make_storage(std::uint64_t seed);
 World make_precarious(std::uint64_t seed);
 World make_tabletop(std::uint64_t seed);
+World make_library(std::uint64_t seed);
+World make_meeting(std::uint64_t seed);
+World make_lounge(std::uint64_t seed);
+World make_laundry(std::uint64_t seed);
+World make_depot(std::uint64_t seed);
 
 }  // namespace topple::scenes

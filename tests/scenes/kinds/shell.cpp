@@ -39,9 +39,12 @@ void Composer::build(const Shell& shell) {
     if (random_.chance(0.4)) skirting_ = random_.uniform(0.008, 0.02);
     std::array<double, 4> height{};
     int stands = 0;
+    // Many who scan see half of the walls, and not up to the ceiling.
+    const double missing = random_.chance(0.4) ? random_.uniform(0.3, 0.8) : shell.missing;
+    const double low = random_.chance(0.15) ? 0.6 : shell.low;
     for (double& each : height) {
-        if (random_.chance(shell.missing)) continue;
-        each = random_.chance(shell.low) ? random_.uniform(0.9, 1.5) : h;
+        if (random_.chance(missing)) continue;
+        each = random_.chance(low) ? random_.uniform(0.9, h) : h;
         ++stands;
     }
     if (stands == 0) height[static_cast<std::size_t>(random_.integer(0, 3))] = h;

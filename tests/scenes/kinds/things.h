@@ -69,6 +69,43 @@ Blueprint make_gondola(Random& random);  // a bookcase open to both sides
 Stack make_store_item(Random& random, double clearance);
 Stack make_shop_item(Random& random, double clearance);
 
+// Libraries: bookcases of one make, metres. Their books are their own parts where `one`, for
+// nobody tells them apart from their case; otherwise shelve_books() of library.cpp adds them.
+struct BookcaseMake {
+    double width, depth, height;  // of one side
+    int shelves;
+    bool two_sided, back, one;
+    double full;  // share of the shelves' length that books take
+    bool flush;   // with the boards' front edges
+};
+BookcaseMake any_bookcase_make(Random& random, double most_height);
+Blueprint make_case_of_books(Random& random, const BookcaseMake& make);
+// Books on a shelf along x, their backs to +y in one plane where `flush`: many heights, some lie.
+Blueprint make_books(Random& random, double length, double height, double depth, bool flush);
+Blueprint make_service_desk(Random& random);
+
+// Where many meet.
+Blueprint make_stacking_chair(Random& random);  // a seat and a back on bent tubes
+Blueprint make_lectern(Random& random);
+Blueprint make_wall_board(Random& random, double length);  // to be fixed: with rim and tray
+Blueprint make_projection_screen(Random& random, double length);
+Blueprint make_board_on_wheels(Random& random);
+
+// What is soft.
+Blueprint make_corner_sofa(Random& random);
+Blueprint make_ottoman(Random& random);
+Blueprint make_wall_curtain(Random& random, double length, double height);  // to be fixed
+Blueprint make_backpack(Random& random);
+Blueprint make_cloth_pile(Random& random);                 // a heap
+Blueprint make_soft_bed(Random& random);                   // an uneven duvet, pillows
+Stack make_floor_thing(Random& random, double clearance);  // bags, boxes, bins, heaps
+
+// Laundries and depots.
+Blueprint make_washer(Random& random, const Vec3& size);
+Blueprint make_ironing_board(Random& random);
+Blueprint make_drying_rack(Random& random);
+Blueprint make_pallet_jack(Random& random);
+
 // Single things among those of make_varied_item() and make_item(); empty where chance offers none.
 Stack make_turned_item(Random& random, double clearance);
 

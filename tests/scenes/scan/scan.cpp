@@ -170,10 +170,14 @@ class Scanner {
         kept_ = seen_.size();
     }
 
-    // What SLAM gets wrong: millimetres and tenths of a degree, slowly changing.
+    // What SLAM gets wrong: millimetres and tenths of a degree, slowly changing; in clouds that
+    // others fused sometimes centimetres.
     std::vector<Mat4> drifted(const std::vector<Mat4>& poses) {
         const std::size_t n = poses.size();
-        const double off = random_.uniform(0.001, 0.005), turn = random_.uniform(0.0005, 0.0025);
+        const bool fused = options_.kind == ScanKind::sparse || options_.kind == ScanKind::cloud;
+        const double worse = fused && random_.chance(0.3) ? 3 : 1;
+        const double off = worse * random_.uniform(0.001, 0.005),
+                     turn = worse * random_.uniform(0.0005, 0.0025);
         std::vector<std::vector<double>> noise;
         for (int a = 0; a < 6; ++a)
             noise.push_back(smooth_noise(n, 4, a < 3 ? off : turn, random_));
@@ -258,7 +262,15 @@ class Scanner {
         });
         thin();
         const auto base = fused(all, sparse ? fine : 0.6 * spacing, sparse ? 2 : 1);
-        scan_.cloud = fused(all, spacing, 2);
+        // Spaced evenly, or drawn by lot from what lay closer, as by those who thin a mesh to so
+        // many of its corners.
+        if (sparse && random_.chance(0.5)) {
+            constexpr double kept = 0.3;
+            scan_.cloud = fused(all, spacing * std::sqrt(kept), 1);
+            std::erase_if(scan_.cloud, [&](const auto&) { return !random_.chance(kept); });
+        } else {
+            scan_.cloud = fused(all, spacing, 2);
+        }
         if (sparse || random_.chance(0.5)) {
             const double radius = sparse ? random_.uniform(0.012, 0.035) : 1.2 * spacing;
             smooth_among(scan_.cloud, base, radius, random_.uniform(0.3, 0.8));

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "graph/supports.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace topple::graph {
+namespace {
+
+constexpr double intercept = -2.85, by_mass = 0.42, by_columns = 0.59, by_joint = 0.12;
+// What stands on nothing likelier than not stands on the likeliest above this.
+constexpr double least_alone = 0.2;
+
+double log_odds(double p) {
+    constexpr double sure = 0.995;
+    const double within = std::clamp(p, 1 - sure, sure);
+    return std::log(within / (1 - within));
+}
+
+using Pair = std::pair<std::int32_t, std::int32_t>;
+
+struct Evidence {
+    double contact = 0, near = 0;  // columns
+    double joint = 0;              // probability of the likeliest
+};
+
+// By (supporter, supported).
+std::map<Pair, Evidence> gather(const ContactGraph& contacts,
+                                std::span<const double> pair_probability,
+                                std::span<const std::int32_t> object_of_primitive,
+                                std::span<const Carried> objects,
+                                const std::vector<std::vector<Underside>>& columns) {
+    const auto object = [&](std::int32_t p) {
+        return object_of_primitive[static_cast<std::size_t>(p)];
+    };
+    std::map<Pair, Evidence> found;
+    for (const Carrying& c : contacts.carryings) {
+        if (c.supporter < 0) continue;
+        const Pair pair{object(c.supporter), object(c.supported)};
+        // The ground carries, and nothing carries it, though scraps of it may lie on things.
+        if (pair.first != pair.second && !objects[static_cast<std::size_t>(pair.second)].grounded)
+            found[pair].contact += c.area_m2 / (contacts.voxel_m * contacts.voxel_m);
+    }
+    for (std::size_t o = 0; o < columns.size(); ++o) {
+        if (objects[o].grounded) continue;
+        for (const Underside& u : columns[o]) {
+            if (u.gap >= 0 && u.gap <= noise_gap && u.primitive >= 0)
+                ++found[{object(u.primitive), static_cast<std::int32_t>(o)}].near;
+        }
+    }
+    for (std::size_t n = 0; n < contacts.pairs.size(); ++n) {
+        const std::int32_t a = object(contacts.pairs[n].a), b = object(contacts.pairs[n].b);
+        for (const Pair& pair : {Pair{a, b}, Pair{b, a}}) {
+            const auto at = found.find(pair);
+            if (at != found.end())
+                at->second.joint = std::max(at->second.joint, pair_probability[n]);
+        }
+    }
+    return found;
+}
+
+double probability(const Evidence& e, double supporter_kg, double supported_kg) {
+    constexpr double least_kg = 1e-3, most = 5;
+    const double ratio =
+        std::clamp(std::log((supporter_kg + least_kg) / (supported_kg + least_kg)), -most, most);
+    const double odds = intercept + by_mass * ratio +
+                        by_columns * std::log1p((e.contact + e.near) / 2) -
+                        by_joint * log_odds(e.joint);
+    return 1 / (1 + std::exp(-odds));
+}
+
+}  // namespace
+
+std::vector<Support> find_supports(const ContactGraph& contacts,
+                                   std::span<const double> pair_probability,
+                                   std::span<const std::int32_t> object_of_primitive,
+                                   std::span<const Carried> objects,
+                                   const std::vector<std::vector<Underside>>& columns) {
+    std::vector<Support> all;
+    std::vector<double> likeliest(objects.size(), 0);
+    for (const auto& [pair, e] :
+         gather(contacts, pair_probability, object_of_primitive, objects, columns)) {
+        const auto supported = static_cast<std::size_t>(pair.second);
+        const double p = probability(e, objects[static_cast<std::size_t>(pair.first)].mass_kg,
+                                     objects[supported].mass_kg);
+        const double area = (e.contact > 0 ? e.contact : e.near) * contacts.voxel_m;
+        all.push_back({pair.first, pair.second, area * contacts.voxel_m, p});
+        likeliest[supported] = std::max(likeliest[supported], p);
+    }
+    std::erase_if(all, [&](const Support& s) {
+        const double best = likeliest[static_cast<std::size_t>(s.supported)];
+        return s.probability <= 0.5 && (s.probability < best || best <= least_alone);
+    });
+    return all;
+}
+
+}  // namespace topple::graph

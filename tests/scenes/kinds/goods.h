@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+
+#include "scenes/kinds/composer.h"
+#include "scenes/kinds/things.h"
+
+// Goods where many are kept.
+namespace topple::scenes {
+
+// Layers of equal cartons on a placed pallet: flush, as one load, or loose.
+void load_pallet(Composer& room, std::size_t index);
+
+// Rows of furniture back to back with aisles of that width (metres) between them, so many goods
+// per m^2 of shelf.
+void aisles(Composer& room, double aisle, Blueprint (*make)(Random&), double clutter,
+            Stack (*goods)(Random&, double));
+
+}  // namespace topple::scenes
