@@ -2,6 +2,7 @@
 #include "geometry/manhattan_profile.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -21,6 +22,11 @@ constexpr double lone_share = 0.1;
 // Less surface than this share of all tells nothing of which end is up.
 constexpr double telling_share = 0.005;
 
+// Runs along the axis: across its normal, by this much.
+constexpr double along_degrees = 6;
+// Follows the fourfold direction that most of that surface follows, within this much.
+constexpr int followed_degrees = 14;
+
 struct Balance {
     double sum = 0, weight = 0;
     void add(double value, double w) {
@@ -29,6 +35,33 @@ struct Balance {
     }
     double mean(double least_weight) const { return weight > least_weight ? sum / weight : 0; }
 };
+
+Vec3 across(const Vec3& axis) {
+    return unit(cross(axis, std::abs(axis[0]) < 0.8 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+}
+
+double turned_share(const WeightedNormals& normals, const Vec3& axis) {
+    const Vec3 e1 = across(axis), e2 = cross(axis, e1);
+    const double most_sine = std::sin(along_degrees * std::numbers::pi / 180);
+    constexpr int bins = 90;  // of one degree, modulo 90
+    std::array<double, bins> histogram{};
+    double all = 0;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        const Vec3 n{normals.x[i], normals.y[i], normals.z[i]};
+        if (std::abs(dot(n, axis)) >= most_sine) continue;
+        const double degrees = std::atan2(dot(n, e2), dot(n, e1)) * 180 / std::numbers::pi + 360;
+        histogram[static_cast<std::size_t>(degrees) % bins] += normals.weight[i];
+        all += normals.weight[i];
+    }
+    double most = 0;
+    for (int b = 0; b < bins; ++b) {
+        double sum = 0;
+        for (int d = -followed_degrees; d <= followed_degrees; ++d)
+            sum += histogram[static_cast<std::size_t>((b + d + bins) % bins)];
+        most = std::max(most, sum);
+    }
+    return (all - most) / normals.total;
+}
 
 }  // namespace
 
@@ -83,6 +116,7 @@ Profile profile_along(const Surfels& s, const WeightedNormals& normals, const Ve
     const bool one = std::min(floor, ceiling) < lone_share * std::max(floor, ceiling);
     if (one && floor + ceiling > least) result.lone_end = floor > ceiling ? 1 : -1;
     result.clutter_low = clutter.mean(least);
+    result.turned = turned_share(normals, axis);
     return result;
 }
 

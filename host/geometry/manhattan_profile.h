@@ -18,6 +18,9 @@ struct Profile {
     double level_facing = 0;  // of level surface between the outermost tenths: tables face up
     double clutter_low = 0;   // how far below half height slanted surface lies: things lie low
     double lone_end = 0;      // 1: of floor and ceiling only a floor is there, -1: only a ceiling
+    // Share of all surface that runs along the axis, as walls and things that stand do, but follows
+    // no two directions at right angles: what stands may be turned or round, what lies may not.
+    double turned = 0;
 };
 Profile profile_along(const Surfels& surfels, const WeightedNormals& normals, const Vec3& axis);
 

@@ -26,10 +26,15 @@ constexpr double facing_down = 0.25;
 constexpr double camera_facing = 0.6, camera_axis_cos = 0.9;
 // Upright surfaces decide on up where they hold this share of all surface.
 constexpr double least_upright_share = 0.3;
-// How the scene's evidence for which end of an axis is up adds up.
-constexpr double clutter_weight = 2, lone_end_weight = 0.5;
-// The input's z is up more often than not, give or take a tilt.
-constexpr double convention_degrees = 25, convention = 2;
+// Log-odds of a direction against the others by how the scene lies along it: weights of a
+// conditional logit (McFadden 1974) over the candidates of generated rooms, whatever way they are
+// turned. Below turned_floor, what is turned is noise.
+constexpr double extent_weight = -1.75, level_weight = 1.9, clutter_weight = 1.4,
+                 lone_end_weight = 1.1, turned_weight = 2.3, turned_floor = 0.02;
+// Odds of the input's z, give or take a tilt, and of its y, either way, against any direction.
+constexpr double tilt_degrees = 10, odds_of_z = 50, odds_of_y = 5;
+// Farther from z than this, up is told to the user.
+constexpr double customary_degrees = 25;
 
 constexpr auto seen_from_above =
     "Up was taken to be across a plane that the camera looks straight at, as from above; if it is "
@@ -92,24 +97,34 @@ Candidate with_camera(const Surfels& surfels, const WeightedNormals& normals,
     return best;
 }
 
-// Without a camera: rooms are wider than high, tables wider than what stands on them; which way
-// along the axis is up is told by what faces up and lies low.
+// What is known of a direction before looking: most inputs have z up, some have y or -y up.
+double prior_odds(const Vec3& up) {
+    const auto near = [&](const Vec3& axis) {
+        const double off = degrees_between(up, axis) / tilt_degrees;
+        return std::exp(-off * off / 2);
+    };
+    return 1 + odds_of_z * near({0, 0, 1}) + odds_of_y * (near({0, 1, 0}) + near({0, -1, 0}));
+}
+
+// Without a camera: rooms are wider than high, what stands is turned about up alone, level surface
+// within faces up, and things lie low.
 Candidate without_camera(const Surfels& surfels, const WeightedNormals& normals,
                          const std::vector<Candidate>& candidates) {
-    const Vec3 z{0, 0, 1};
     Candidate best;
-    for (Candidate c : candidates) {
-        if (c.up[2] < 0) c.up = times(c.up, -1);
+    for (const Candidate& c : candidates) {
         const Profile p = profile_along(surfels, normals, c.up);
         if (p.along + p.against < least_plane_share) continue;
-        const bool customary = degrees_between(c.up, z) < convention_degrees;
-        c.score *= (p.along + p.against) / std::max(p.extent_m, 10 * surfels.cell_m) *
-                   (customary ? convention : 1);
-        const double side = p.level_facing + clutter_weight * p.clutter_low +
-                            lone_end_weight * p.lone_end + (customary ? convention : 0);
-        if (side < 0) c.up = times(c.up, -1);
-        if (!customary) c.doubt = by_looks;
-        keep_better(best, c);
+        const double axis = extent_weight * std::log(std::max(p.extent_m, 10 * surfels.cell_m)) +
+                            turned_weight * std::log(p.turned + turned_floor);
+        const double side = level_weight * p.level_facing + clutter_weight * p.clutter_low +
+                            lone_end_weight * p.lone_end;
+        for (const double sign : {1.0, -1.0}) {
+            Candidate option = c;
+            option.up = times(c.up, sign);
+            option.score *= std::exp(axis + sign * side) * prior_odds(option.up);
+            if (degrees_between(option.up, {0, 0, 1}) >= customary_degrees) option.doubt = by_looks;
+            keep_better(best, option);
+        }
     }
     return best;
 }

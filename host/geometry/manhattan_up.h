@@ -23,10 +23,10 @@ struct UpChoice {
 // down a little, from passing for floors. Where there is no such plane, upright surfaces (Gupta,
 // Arbelaez, Malik 2013) turn the camera's up.
 //
-// Without a camera, the evidence is weighed by how flat the scene lies across the direction (rooms
-// are wider than high, tables wider than what stands on them), and by convention: clouds without
-// poses have z up more often than not. Where all surface faces -z, the input's axes are taken for
-// those of a camera.
+// Without a camera, a direction's odds are those of how the scene lies along it (rooms are wider
+// than high, what stands is turned about up alone, tables face up, things lie low), fitted on
+// generated rooms, times those of convention: clouds without poses have z up more often than not.
+// Where all surface faces -z, the input's axes are taken for those of a camera.
 UpChoice choose_up(const Surfels& surfels, const WeightedNormals& normals,
                    const std::vector<Vec3>& directions, const std::vector<Vec3>& manhattan,
                    const FrameHints& hints);

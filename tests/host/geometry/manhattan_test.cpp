@@ -202,6 +202,29 @@ TEST_F(Manhattan, NormalsTellACamerasAxes) {
     EXPECT_LT(degrees_off(find_scene_frame(*device, s, {}).axes[2], turn * Vector3d(0, 0, 1)), 0.5);
 }
 
+TEST_F(Manhattan, ANarrowRoomIsNotLaidOnItsSide) {
+    // A bare cloud of a corridor, 1.2 m wide and 2.5 m high, with things that stand turned in it.
+    PointCloud corridor;
+    add_rectangle(corridor, {0, 0, 0}, {5, 0, 0}, {0, 1.2, 0});
+    for (const double y : {0.0, 1.2}) add_rectangle(corridor, {0, y, 0}, {5, 0, 0}, {0, 0, 2.5});
+    for (const double x : {1.0, 2.2, 3.9}) {
+        const Eigen::Matrix3d yaw = tilt(25 * x, {0, 0, 1});
+        const Vector3d at(x, 0.6, 0), a = yaw * Vector3d(0.4, 0, 0), b = yaw * Vector3d(0, 0.3, 0),
+                                      h(0, 0, 0.6);
+        add_rectangle(corridor, at + h, a, b);
+        for (const Vector3d& from : {at, Vector3d(at + b)}) add_rectangle(corridor, from, a, h);
+        for (const Vector3d& from : {at, Vector3d(at + a)}) add_rectangle(corridor, from, b, h);
+    }
+    for (const double angle : {0.0, 8.0, 120.0}) {
+        const Eigen::Matrix3d turn = tilt(angle, {0.3, -0.8, 0.4});
+        const Vector3d eye = turn * Vector3d(0.4, 0.5, 1.4);
+        const Vec3 viewpoint{eye[0], eye[1], eye[2]};
+        const Surfels s = make_surfels(*device, turned(corridor, turn), 0.03, {&viewpoint, 1}, {});
+        const SceneFrame frame = find_scene_frame(*device, s, {});
+        EXPECT_LT(degrees_off(frame.axes[2], turn * Vector3d(0, 0, 1)), 0.5) << angle;
+    }
+}
+
 TEST_F(Manhattan, ClustersFoldAntipodes) {
     const Surfels s = surfels(Eigen::Matrix3d::Identity(), true);
     const NormalClusters clusters = cluster_normals(*device, s, 3);
