@@ -25,7 +25,7 @@ struct GroupingOptions {
     // beside the joints' log-odds, and what is added to the log-odds of each, nats. The joints of
     // two groups are no independent witnesses, and their sum says too much.
     double standing_weight = 0.3;
-    double joint_bias = -1.5;
+    double joint_bias = -1;
     double time_limit_s = 0;  // see SwendsenWangOptions
     std::function<bool()> cancelled;
 };

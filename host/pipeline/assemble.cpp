@@ -194,7 +194,7 @@ void note_uncertain_barriers(Scene& scene) {
                                        [](const Object& o) { return !o.grounded; });
     scene.notes.push_back(
         "The barrier of " + std::to_string(uncertain) + " of " + std::to_string(movable) +
-        " objects that can move is 0 or within its error (a voxel of its support): "
+        " objects that can move is 0 or within its error (the border of its support): "
         "they stand on edge, or the scan does not show what holds them.");
 }
 

@@ -201,7 +201,7 @@ def make(arguments, kind, way, seed):
 
 
 KINDS = ['plain', 'varied', 'kitchen', 'bathroom', 'bedroom', 'living', 'office', 'shop', 'storage', 'corridor',
-         'precarious', 'tabletop']
+         'precarious', 'tabletop', 'library', 'meeting', 'lounge', 'laundry', 'depot']
 # Bare clouds leave most open: they come twice.
 WAYS = ['walk', 'sparse', 'laser', 'sparse', 'cloud', 'single']
 
