@@ -118,7 +118,7 @@ class Fitting(unittest.TestCase):
             np.zeros((4, 2), '<f4').tofile(folder / 'joints.f32')
             (folder / 'table.json').write_text(json.dumps(
                 {'node_names': ['log_area'], 'joint_names': ['shell_small', 'shell_big'], 'axes': axes.tolist()}))
-            table = fit.Table(folder, folder)
+            table = fit.Table(folder, folder, 0)
         self.assertEqual(table.owner[:3].tolist(), [0, 0, 2])
         self.assertEqual(table.is_shell[:3].tolist(), [True, True, False])
         # Two samples are too few to tell, and so are three.
