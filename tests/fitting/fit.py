@@ -69,7 +69,7 @@ class Table:
         owner = np.full(len(samples), -1)
         owner[np.isfinite(distance)] = truth['object'][nearest[np.isfinite(distance)]]
         owner[np.isin(owner, built_in)] = 0
-        # Loose things that nobody told apart are no example of anything.
+        # Loose things that nobody told apart are no example of joints; the room's they are not.
         piles = [o['id'] for o in objects if o.get('pile')]
         self.owner = np.full(len(self.nodes), -1)
         self.known = np.zeros(len(self.nodes), bool)
@@ -78,10 +78,11 @@ class Table:
         np.add.at(votes, (primitive[known], owner[known]), 1)
         if votes.size:
             self.owner = votes.argmax(1)
-            self.known = (votes.sum(1) >= LEAST_SAMPLES) & ~np.isin(self.owner, piles)
+            self.known = votes.sum(1) >= LEAST_SAMPLES
         self.is_shell = self.owner == 0
         a, b = self.pairs.T
-        self.known_pair = self.known[a] & self.known[b]
+        single = self.known & ~np.isin(self.owner, piles)
+        self.known_pair = single[a] & single[b]
         self.is_one = self.owner[a] == self.owner[b]
 
     def with_shell(self, probability):
