@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/fourfold.h"
 #include "geometry/manhattan_normals.h"
 #include "geometry/manhattan_up.h"
 
@@ -80,33 +81,20 @@ Vec3 horizontal_axis(const WeightedNormals& normals, const Vec3& up, const Vec3&
     const Vec3 e1 = unit({guess[0] - dot(guess, up) * up[0], guess[1] - dot(guess, up) * up[1],
                           guess[2] - dot(guess, up) * up[2]});
     const Vec3 e2 = cross(up, e1);
-    constexpr int bins = 90;  // of one degree
-    std::array<double, bins> histogram{};
+    FourfoldHistogram histogram;
     std::vector<std::array<double, 2>> azimuth;  // angle modulo 90 degrees, weight
-    double total = 0;
     for (std::size_t i = 0; i < normals.size(); ++i) {
         const Vec3 n{normals.x[i], normals.y[i], normals.z[i]};
         if (std::abs(dot(n, up)) > std::sin(near_degrees * std::numbers::pi / 180)) continue;
         double angle = std::atan2(dot(n, e2), dot(n, e1)) * 180 / std::numbers::pi;
         angle -= 90 * std::floor(angle / 90);
         azimuth.push_back({angle, normals.weight[i]});
-        histogram[static_cast<std::size_t>(angle) % bins] += normals.weight[i];
-        total += normals.weight[i];
+        histogram.add(angle, normals.weight[i]);
     }
     share = 0;
+    const double total = histogram.total();
     if (!(total > 0)) return e1;
-    int peak = 0;
-    double most = -1;
-    for (int b = 0; b < bins; ++b) {
-        double sum = 0;
-        for (int d = -3; d <= 3; ++d)
-            sum += histogram[static_cast<std::size_t>((b + d + bins) % bins)];
-        if (sum > most) {
-            most = sum;
-            peak = b;
-        }
-    }
-    double centre = peak + 0.5;
+    double centre = histogram.peak(3).bin + 0.5;
     for (const double window : {10.0, 6.0, 4.0, 4.0}) {
         double sum = 0, offset = 0;
         for (const auto& [angle, weight] : azimuth) {

@@ -2,9 +2,10 @@
 #include "geometry/manhattan_profile.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+
+#include "geometry/fourfold.h"
 
 namespace topple::geometry {
 namespace {
@@ -43,24 +44,14 @@ Vec3 across(const Vec3& axis) {
 double turned_share(const WeightedNormals& normals, const Vec3& axis) {
     const Vec3 e1 = across(axis), e2 = cross(axis, e1);
     const double most_sine = std::sin(along_degrees * std::numbers::pi / 180);
-    constexpr int bins = 90;  // of one degree, modulo 90
-    std::array<double, bins> histogram{};
-    double all = 0;
+    FourfoldHistogram histogram;
     for (std::size_t i = 0; i < normals.size(); ++i) {
         const Vec3 n{normals.x[i], normals.y[i], normals.z[i]};
         if (std::abs(dot(n, axis)) >= most_sine) continue;
         const double degrees = std::atan2(dot(n, e2), dot(n, e1)) * 180 / std::numbers::pi + 360;
-        histogram[static_cast<std::size_t>(degrees) % bins] += normals.weight[i];
-        all += normals.weight[i];
+        histogram.add(degrees, normals.weight[i]);
     }
-    double most = 0;
-    for (int b = 0; b < bins; ++b) {
-        double sum = 0;
-        for (int d = -followed_degrees; d <= followed_degrees; ++d)
-            sum += histogram[static_cast<std::size_t>((b + d + bins) % bins)];
-        most = std::max(most, sum);
-    }
-    return (all - most) / normals.total;
+    return (histogram.total() - histogram.peak(followed_degrees).weight) / normals.total;
 }
 
 }  // namespace

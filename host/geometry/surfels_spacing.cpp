@@ -142,9 +142,9 @@ PointSpacing point_spacing(const CloudView& cloud) {
     out.around_m = share_of(of_points, &Around::last, 0.5);
     const std::vector<Around> of_area =
         look_around(cloud, sample_area(cloud, samples, area_spacings * out.nearest_m));
-    out.surface_m = std::max(out.around_m, share_of(of_area, &Around::last, surface_part));
-    out.nearest_m =
-        std::max(out.nearest_m, around_share * share_of(of_area, &Around::last, surface_part));
+    const double of_surface = share_of(of_area, &Around::last, surface_part);
+    out.surface_m = std::max(out.around_m, of_surface);
+    out.nearest_m = std::max(out.nearest_m, around_share * of_surface);
     return out;
 }
 

@@ -298,6 +298,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         columns.height_sum += (cells.k[n - 1] + 1) * h;
         add_corners(cells.i[n], cells.j[n], h, columns.corners);
     }
+    std::vector<std::vector<std::array<double, 2>>> outlines(count);  // of those asked for
     for (std::size_t p = 0; p < count; ++p)
         if (graph.section_m2[p] > 0) graph.section_m2[p] /= graph.highest_m[p] - graph.lowest_m[p];
     for (auto& [key, columns] : carried) {
@@ -310,10 +311,12 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         if (area <= 0) continue;
         const double height = columns.height_sum / met;
         // A surface at least half as wide may go on where it is hidden; a leg does not.
-        if (!scraps && 2 * extents[static_cast<std::size_t>(supporter)].columns >= load.columns)
+        if (!scraps && 2 * extents[static_cast<std::size_t>(supporter)].columns >= load.columns) {
+            const auto below = static_cast<std::size_t>(supporter);
+            if (outlines[below].empty()) outlines[below] = outline_of(undersides[below], h);
             add_hidden_corners(undersides[static_cast<std::size_t>(supported)], height,
-                               outline_of(undersides[static_cast<std::size_t>(supporter)], h), h,
-                               columns.corners);
+                               outlines[below], h, columns.corners);
+        }
         graph.carryings.push_back(
             {supporter, supported, area * h * h, height, physics::convex_polygon(columns.corners)});
     }

@@ -6,18 +6,14 @@
 #include <map>
 #include <utility>
 
+#include "fitted/boosted_trees.h"
+
 namespace topple::graph {
 namespace {
 
 constexpr double intercept = -2.85, by_mass = 0.42, by_columns = 0.59, by_joint = 0.12;
 // What stands on nothing likelier than not stands on the likeliest above this.
 constexpr double least_alone = 0.2;
-
-double log_odds(double p) {
-    constexpr double sure = 0.995;
-    const double within = std::clamp(p, 1 - sure, sure);
-    return std::log(within / (1 - within));
-}
 
 using Pair = std::pair<std::int32_t, std::int32_t>;
 
@@ -62,12 +58,12 @@ std::map<Pair, Evidence> gather(const ContactGraph& contacts,
 }
 
 double probability(const Evidence& e, double supporter_kg, double supported_kg) {
-    constexpr double least_kg = 1e-3, most = 5;
+    constexpr double least_kg = 1e-3, most = 5, sure = 0.995;
     const double ratio =
         std::clamp(std::log((supporter_kg + least_kg) / (supported_kg + least_kg)), -most, most);
     const double odds = intercept + by_mass * ratio +
                         by_columns * std::log1p((e.contact + e.near) / 2) -
-                        by_joint * log_odds(e.joint);
+                        by_joint * fitted::log_odds(std::clamp(e.joint, 1 - sure, sure));
     return 1 / (1 + std::exp(-odds));
 }
 

@@ -37,24 +37,18 @@ struct Overlaps {
         }
         for (const Id f : of_found) ++found[f];
     }
-    // The label of the other side that has most of each.
-    std::map<Id, Id> owners() const {
+    // The true label that has most of each found one, and the other way round.
+    std::map<Id, Id> owners() const { return largest(&Pair::second, &Pair::first); }
+    std::map<Id, Id> matches() const { return largest(&Pair::first, &Pair::second); }
+
+  private:
+    std::map<Id, Id> largest(Id Pair::*of, Id Pair::*other) const {
         std::map<Id, Id> out;
         std::map<Id, std::uint32_t> most;
         for (const auto& [pair, count] : common) {
-            if (count <= most[pair.second]) continue;
-            most[pair.second] = count;
-            out[pair.second] = pair.first;
-        }
-        return out;
-    }
-    std::map<Id, Id> matches() const {
-        std::map<Id, Id> out;
-        std::map<Id, std::uint32_t> most;
-        for (const auto& [pair, count] : common) {
-            if (count <= most[pair.first]) continue;
-            most[pair.first] = count;
-            out[pair.first] = pair.second;
+            if (count <= most[pair.*of]) continue;
+            most[pair.*of] = count;
+            out[pair.*of] = pair.*other;
         }
         return out;
     }

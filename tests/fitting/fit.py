@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: MIT
 """Fits the models of host/fitted on generated scans and writes their files.
 
-usage: fit.py --topple TOPPLE --features TOPPLE_FEATURES --work FOLDER [--seeds FIRST:LAST] [--judge]
+usage: fit.py --topple TOPPLE --features TOPPLE_FEATURES --work FOLDER [--seeds FIRST:LAST]
 
 Makes rooms of every kind, scanned in one way or another (topple generate), keeps them and what the models see
 of them (topple_features) in FOLDER, fits the model of the shell, then that of the joints, each by
 gradient boosting, calibrates both on rooms that they were not fitted on (Platt's scaling of
 out-of-fold log-odds), and writes host/fitted/*.model.json. Same seeds, same files. Takes
-python3-sklearn and python3-scipy. With --judge nothing is written: the files that are there are
-judged on the seeds given.
+python3-sklearn and python3-scipy.
 
 Truth: each sample of a scan belongs to the object of the nearest true surface within 6 cm, and a
 primitive to the object that most of its samples belong to. What is built in counts as the room.

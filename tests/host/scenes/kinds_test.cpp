@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "physics/tipping.h"
 #include "scenes/kinds/composer.h"
 #include "scenes/scan/scan.h"
 #include "scenes/temporary_folder.h"
@@ -36,27 +37,8 @@ bool apart(const std::array<Vec3, 2>& p, const std::array<Vec3, 2>& q, double by
     return false;
 }
 
-double cross(const Point& o, const Point& a, const Point& b) {
-    return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
-}
-
-// Counter-clockwise (Andrew's monotone chain).
-std::vector<Point> hull_of(std::vector<Point> p) {
-    std::sort(p.begin(), p.end());
-    p.erase(std::unique(p.begin(), p.end()), p.end());
-    if (p.size() < 3) return p;
-    std::vector<Point> hull;
-    for (int side = 0; side < 2; ++side) {
-        const std::size_t base = hull.size();
-        for (const Point& q : p) {
-            while (hull.size() >= base + 2 && cross(hull[hull.size() - 2], hull.back(), q) <= 0)
-                hull.pop_back();
-            hull.push_back(q);
-        }
-        hull.pop_back();
-        std::reverse(p.begin(), p.end());
-    }
-    return hull;
+double cross(const Point& a, const Point& b) {
+    return a[0] * b[1] - a[1] * b[0];
 }
 
 // Places where a part's lowest rim meets another solid, within 3 mm.
@@ -158,12 +140,13 @@ TEST_P(EachKind, what_stands_has_its_middle_over_what_carries_it) {
             auto corners = contacts;
             for (const Mass& m : {mass_of(world, object), load[n]})
                 corners.push_back({m.at[0], m.at[1]});
-            const auto around = hull_of(contacts), with = hull_of(corners);
+            const auto around = physics::convex_polygon(contacts),
+                       with = physics::convex_polygon(corners);
             double area = 0, more = 0;
             for (std::size_t k = 0; k < around.size(); ++k)
-                area += cross({0, 0}, around[k], around[(k + 1) % around.size()]) / 2;
+                area += cross(around[k], around[(k + 1) % around.size()]) / 2;
             for (std::size_t k = 0; k < with.size(); ++k)
-                more += cross({0, 0}, with[k], with[(k + 1) % with.size()]) / 2;
+                more += cross(with[k], with[(k + 1) % with.size()]) / 2;
             EXPECT_LE(more, 1.1 * area + 2e-4)
                 << seed << ": " << world.objects[n].name << " on " << world.objects[n].where;
         }

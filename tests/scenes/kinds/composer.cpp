@@ -241,6 +241,19 @@ bool Composer::before(std::size_t table, int side, const Blueprint& chair) {
     return false;
 }
 
+std::vector<std::int32_t> Composer::deck(std::size_t index, const Surface& surface) const {
+    const Placed& base = placed_[index];
+    const Part& carrier = world_.parts[static_cast<std::size_t>(base.first_part + surface.part)];
+    std::vector<std::int32_t> deck;
+    for (std::size_t k = 0; k < base.blueprint.parts.size(); ++k) {
+        const auto id = base.first_part + static_cast<std::int32_t>(k);
+        const Part& part = world_.parts[static_cast<std::size_t>(id)];
+        if (part.name == carrier.name && std::abs(part.top() - carrier.top()) < 1e-6)
+            deck.push_back(id);
+    }
+    return deck;
+}
+
 bool Composer::on_surface(std::size_t index, const Surface& surface,
                           const std::vector<Blueprint>& stack) {
     if (stack.empty()) return false;
@@ -248,15 +261,8 @@ bool Composer::on_surface(std::size_t index, const Surface& surface,
     for (const Blueprint& b : stack) high += b.height();
     if (high > surface.clearance) return false;
     const Placed base = placed_[index];
-    const Part carrier = world_.parts[static_cast<std::size_t>(base.first_part + surface.part)];
-    const double top = carrier.top();
-    std::vector<std::int32_t> supporters;  // all planks of a deck
-    for (std::size_t k = 0; k < base.blueprint.parts.size(); ++k) {
-        const auto id = base.first_part + static_cast<std::int32_t>(k);
-        const Part& part = world_.parts[static_cast<std::size_t>(id)];
-        if (part.name == carrier.name && std::abs(part.top() - top) < 1e-6)
-            supporters.push_back(id);
-    }
+    const std::vector<std::int32_t> supporters = deck(index, surface);
+    const double top = world_.parts[static_cast<std::size_t>(base.first_part + surface.part)].top();
     for (int attempt = 0; attempt < 12; ++attempt) {
         const double yaw = random_.chance(0.45)  ? 0
                            : random_.chance(0.5) ? random_.uniform(-0.25, 0.25)

@@ -60,6 +60,8 @@ class Composer {
     bool anywhere(const Blueprint& blueprint, int attempts = 40);
     // Facing a placed table's front or back (side 0, 1) or ends (2, 3), pushed in by chance.
     bool before(std::size_t table, int side, const Blueprint& chair);
+    // The placed parts that make one level surface with the surface's own: all planks of a pallet.
+    std::vector<std::int32_t> deck(std::size_t index, const Surface& surface) const;
     // On a surface of what was placed; by chance side by side with what stands there. Several:
     // stacked, lowest first.
     bool on_surface(std::size_t index, const Surface& surface, const std::vector<Blueprint>& stack);

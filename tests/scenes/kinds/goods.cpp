@@ -10,16 +10,6 @@ namespace {
 
 using std::numbers::pi;
 
-// What a pallet's load stands on.
-std::vector<std::int32_t> planks_of(const Composer::Placed& pallet) {
-    std::vector<std::int32_t> planks;
-    for (std::size_t part = 0; part < pallet.blueprint.parts.size(); ++part) {
-        if (pallet.blueprint.parts[part].name == "plank")
-            planks.push_back(pallet.first_part + static_cast<std::int32_t>(part));
-    }
-    return planks;
-}
-
 }  // namespace
 
 void load_pallet(Composer& room, std::size_t index) {
@@ -28,6 +18,7 @@ void load_pallet(Composer& room, std::size_t index) {
     const Surface surface = at.blueprint.surfaces.front();
     const int nx = random.integer(1, 3), ny = random.integer(1, 2), layers = random.integer(1, 4);
     const double w = 2 * surface.half_x / nx, d = 2 * surface.half_y / ny;
+    const std::vector<std::int32_t> planks = room.deck(index, surface);
     const double h = random.uniform(0.18, 0.4), top = at.blueprint.height();
     const bool flush = random.chance(0.5);
     const Vec3 size{w - random.uniform(0.001, 0.03), d - random.uniform(0.001, 0.03), h};
@@ -50,12 +41,12 @@ void load_pallet(Composer& room, std::size_t index) {
             Blueprint carton("carton");
             carton.feet = {carton.box("box", 0, 0, 0, size)};
             const Vec3 p = moved(at.pose, Vec3{x, y, 0});
-            const auto on = layer == 0 ? planks_of(at) : std::vector<std::int32_t>{carrier};
+            const auto on = layer == 0 ? planks : std::vector<std::int32_t>{carrier};
             const Pose pose{p[0], p[1], top + layer * h, at.pose.yaw};
             carrier = room.stand(carton, pose, on, "pallet") ? room.placed().back().first_part : -1;
         }
     }
-    if (flush) room.stand(load, {at.pose.x, at.pose.y, top, at.pose.yaw}, planks_of(at), "pallet");
+    if (flush) room.stand(load, {at.pose.x, at.pose.y, top, at.pose.yaw}, planks, "pallet");
 }
 
 void aisles(Composer& room, double aisle, Blueprint (*make)(Random&), double clutter,
@@ -73,6 +64,13 @@ void aisles(Composer& room, double aisle, Blueprint (*make)(Random&), double clu
                           [&](double clearance) { return goods(random, clearance); });
             x += box[1][0] - box[0][0] + (random.chance(0.6) ? 0.001 : random.uniform(0.3, 1.2));
         }
+    }
+}
+
+void leave_on_floor(Composer& room, int count) {
+    for (; count > 0; --count) {
+        const Stack stack = make_floor_thing(room.random(), 1);
+        if (!stack.empty()) room.anywhere(stack.front());
     }
 }
 

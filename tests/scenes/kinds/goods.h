@@ -6,7 +6,7 @@
 #include "scenes/kinds/composer.h"
 #include "scenes/kinds/things.h"
 
-// Goods where many are kept.
+// Goods where many are kept, and what lies about.
 namespace topple::scenes {
 
 // Layers of equal cartons on a placed pallet: flush, as one load, or loose.
@@ -16,5 +16,8 @@ void load_pallet(Composer& room, std::size_t index);
 // per m^2 of shelf.
 void aisles(Composer& room, double aisle, Blueprint (*make)(Random&), double clutter,
             Stack (*goods)(Random&, double));
+
+// So many bags, boxes, bins and heaps anywhere on the floor.
+void leave_on_floor(Composer& room, int count);
 
 }  // namespace topple::scenes

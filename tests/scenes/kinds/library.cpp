@@ -5,6 +5,7 @@
 
 #include "scenes/catalogue/varied.h"
 #include "scenes/kinds/composer.h"
+#include "scenes/kinds/goods.h"
 #include "scenes/kinds/plans.h"
 #include "scenes/kinds/things.h"
 
@@ -110,10 +111,7 @@ World make_library(std::uint64_t seed) {
     place_tables(room);
     for (int k = random.integer(0, 2); k > 0; --k)
         room.anywhere(random.chance(0.5) ? make_bolster_armchair(random) : make_ottoman(random));
-    for (int k = random.integer(0, 4); k > 0; --k) {
-        const Stack stack = make_floor_thing(random, 1);
-        if (!stack.empty()) room.anywhere(stack.front());
-    }
+    leave_on_floor(room, random.integer(0, 4));
     if (random.chance(0.4)) room.along_wall(make_bush(random, random.uniform(0.7, 1.4)));
     if (random.chance(0.3)) room.anywhere(make_step_ladder(random));
     return std::move(room.world());

@@ -4,6 +4,7 @@
 
 #include "scenes/catalogue/varied.h"
 #include "scenes/kinds/composer.h"
+#include "scenes/kinds/goods.h"
 #include "scenes/kinds/plans.h"
 #include "scenes/kinds/things.h"
 
@@ -76,10 +77,7 @@ World make_lounge(std::uint64_t seed) {
             return soft ? make_soft_item(random, c) : make_home_item(random, c);
         });
     }
-    for (int k = random.integer(0, 5); k > 0; --k) {
-        const Stack stack = make_floor_thing(random, 1);
-        if (!stack.empty()) room.anywhere(stack.front());
-    }
+    leave_on_floor(room, random.integer(0, 5));
     return std::move(room.world());
 }
 

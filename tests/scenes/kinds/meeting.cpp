@@ -5,6 +5,7 @@
 
 #include "scenes/catalogue/varied.h"
 #include "scenes/kinds/composer.h"
+#include "scenes/kinds/goods.h"
 #include "scenes/kinds/plans.h"
 #include "scenes/kinds/things.h"
 
@@ -74,10 +75,7 @@ World make_meeting(std::uint64_t seed) {
             room.fill(room.placed().size() - 1, 4,
                       [&](double c) { return make_shelf_item(random, c); });
     }
-    for (int k = random.integer(0, 5); k > 0; --k) {
-        const Stack stack = make_floor_thing(random, 1);
-        if (!stack.empty()) room.anywhere(stack.front());
-    }
+    leave_on_floor(room, random.integer(0, 5));
     for (int k = random.integer(0, 6); k > 0; --k) room.anywhere(chair);
     return std::move(room.world());
 }

@@ -11,11 +11,9 @@ namespace {
 
 using std::numbers::pi;
 
-// Rounded slabs that overlap at different heights: one soft, uneven body over a rectangle. Returns
-// them.
-std::vector<int> add_folds(Blueprint& b, const char* part, double x, double y, double bottom,
-                           const Vec3& size, int nx, int ny, Random& random) {
-    std::vector<int> slabs;
+// Rounded slabs that overlap at different heights: one soft, uneven body over a rectangle.
+void add_folds(Blueprint& b, const char* part, double x, double y, double bottom, const Vec3& size,
+               int nx, int ny, Random& random) {
     for (int k = 0; k < nx * ny; ++k) {
         const double w = size[0] / nx, d = size[1] / ny;
         const double t = size[2] * random.uniform(0.6, 1);
@@ -24,9 +22,8 @@ std::vector<int> add_folds(Blueprint& b, const char* part, double x, double y, d
         const double most_x = (size[0] - wide) / 2, most_y = (size[1] - deep) / 2;
         const double px = std::clamp((k % nx + 0.5) * w - size[0] / 2, -most_x, most_x),
                      py = std::clamp((k / nx + 0.5) * d - size[1] / 2, -most_y, most_y);
-        slabs.push_back(b.rounded(part, x + px, y + py, bottom, {wide, deep, t}, 0.45 * t));
+        b.rounded(part, x + px, y + py, bottom, {wide, deep, t}, 0.45 * t);
     }
-    return slabs;
 }
 
 void add_seat(Blueprint& b, double x, double y, double w, double d, double foot, double top,
