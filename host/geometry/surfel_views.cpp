@@ -8,8 +8,9 @@
 namespace topple::geometry {
 namespace {
 
-// Half the diagonal of a cell's face, and a little more: surfels lie anywhere in their cells.
-constexpr double radius_cells = 0.9;
+// Half the diagonal of the square that a surfel stands for, and a little more: surfels lie anywhere
+// in their cells.
+constexpr double radius_sides = 0.9;
 // Nearer than this a surfel fills the view and tells nothing.
 constexpr double nearest_cells = 1.5;
 
@@ -17,7 +18,11 @@ constexpr double nearest_cells = 1.5;
 class Image {
   public:
     Image(const Surfels& surfels, const Vec3& eye, std::size_t image)
-        : s_(surfels), eye_(eye), f_(image / 2), sign_(image % 2 == 0 ? 1 : -1) {
+        : s_(surfels),
+          eye_(eye),
+          f_(image / 2),
+          sign_(image % 2 == 0 ? 1 : -1),
+          radius_(radius_sides * std::sqrt(surfels.area_m2)) {
         depth.assign(std::size_t{CubeView::side} * CubeView::side,
                      std::numeric_limits<float>::infinity());
         surfel.assign(depth.size(), CubeView::nothing);
@@ -26,7 +31,7 @@ class Image {
     void draw(std::size_t i) {
         // In the image's axes: right, down, forward.
         const Vec3 p = turned({s_.x[i] - eye_[0], s_.y[i] - eye_[1], s_.z[i] - eye_[2]});
-        const double radius = radius_cells * s_.cell_m, near = nearest_cells * s_.cell_m;
+        const double radius = radius_, near = nearest_cells * s_.cell_m;
         if (!(p[2] > near) || std::abs(p[0]) > p[2] + 2 * radius ||
             std::abs(p[1]) > p[2] + 2 * radius) {
             return;
@@ -76,7 +81,7 @@ class Image {
     const Surfels& s_;
     Vec3 eye_;
     std::size_t f_;
-    double sign_;
+    double sign_, radius_;
 };
 
 }  // namespace

@@ -18,6 +18,11 @@ constexpr std::uint32_t no_eye = 0xffffffff;
 // A surfel's side shows where it is seen no more obliquely than this (cosine), and is known to be
 // seen from behind from here on.
 constexpr double side_cos = 0.25, behind_cos = 0.1;
+// Neighbours whose normals' cosine is more lie in one surface.
+constexpr float one_surface_cos = 0.8f;
+// Of the surface around a surfel, what must be seen with it.
+constexpr float least_share = 0.3f;
+constexpr std::uint64_t witness_chunk = 1 << 14;  // surfels handed to a thread at once
 // Rougher than this share of its cell, a surfel may be both faces of a thin board, or an edge.
 constexpr double two_sided_cells = 0.25;
 // Places tried as the first, and the share of surfels that must face it.
@@ -41,6 +46,7 @@ class Looking {
           pool_(pool),
           places_(surfels),
           side_(surfels.size(), 0),
+          witness_(surfels.size(), 0),
           in_view_(places_.size(), 0) {
         if (options.sides_known) know_sides();
         out_.eye_of_surfel.assign(surfels.size(), no_eye);
@@ -70,6 +76,7 @@ class Looking {
             out_.eye_of_surfel.clear();
             return std::move(out_);
         }
+        if (!sides_known_) agree_on_sides();
         spread_sides();
         for (std::size_t i = 0; i < s_.size(); ++i) {
             if (out_.eye_of_surfel[i] == no_eye) out_.eye_of_surfel[i] = nearest_eye(i);
@@ -86,6 +93,10 @@ class Looking {
     bool has_normal(std::size_t i) const { return s_.nx[i] != 0 || s_.ny[i] != 0 || s_.nz[i] != 0; }
     void know_sides() {
         for (std::size_t i = 0; i < s_.size(); ++i) side_[i] = has_normal(i) ? 1 : 0;
+        sides_known_ = true;
+    }
+    float cosine(std::size_t i, std::size_t j) const {
+        return s_.nx[i] * s_.nx[j] + s_.ny[i] * s_.ny[j] + s_.nz[i] * s_.nz[j];
     }
     // Cosine between the surfel's normal and the direction to the eye.
     double facing(std::size_t i, const Vec3& eye) const {
@@ -196,14 +207,16 @@ class Looking {
                 best = std::move(view);
                 best_share = share;
             }
-            if (fits) return look(*best);
+            if (fits) return look(*std::move(best));
         }
         if (!best) return;
         if (sides_known) std::fill(side_.begin(), side_.end(), std::int8_t{0});
-        look(*best);
+        sides_known_ = false;
+        look(*std::move(best));
     }
 
-    void look(const CubeView& view) {
+    void look(CubeView view) {
+        if (!sides_known_) stop_leaks(view);
         const auto eye = static_cast<std::uint32_t>(out_.eyes.size());
         out_.eyes.push_back(view.eye);
         for (const auto& image : view.surfel) {
@@ -256,6 +269,56 @@ class Looking {
                pixel.depth + places_.cell_m() < view.depth[image][pixel.index];
     }
 
+    // Sight leaks through gaps between surfels and meets the insides of faces, here and there one
+    // surfel: of which little of the surface around is seen, that is not seen at all. The word of
+    // an eye on a surfel's side counts by the square of the share that it sees of that surface.
+    void stop_leaks(CubeView& view) {
+        std::vector<std::int8_t> seen(s_.size(), 0);  // from its normal's side 1, from the other -1
+        for (const auto& image : view.surfel) {
+            for (const std::uint32_t i : image) {
+                if (i == CubeView::nothing) continue;
+                const double f = facing(i, view.eye);
+                if (!has_normal(i) || std::abs(f) >= side_cos) seen[i] = f > 0 ? 1 : -1;
+            }
+        }
+        std::vector<float> share(s_.size(), 1);
+        pool_.each(s_.size(), witness_chunk, [&](std::size_t i) {
+            if (seen[i] == 0) return;
+            std::uint32_t around = 1, agree = 1;
+            for (std::uint32_t k = s_.neighbour_first[i]; k < s_.neighbour_first[i + 1]; ++k) {
+                const std::uint32_t j = s_.neighbours[k];
+                const float along = cosine(i, j);
+                if (std::abs(along) < one_surface_cos) continue;
+                ++around;
+                agree += seen[j] == (along > 0 ? seen[i] : -seen[i]);
+            }
+            share[i] = static_cast<float>(agree) / static_cast<float>(around);
+            witness_[i] += static_cast<float>(seen[i]) * share[i] * share[i];
+        });
+        for (auto& image : view.surfel) {
+            for (std::uint32_t& i : image)
+                if (i != CubeView::nothing && share[i] < least_share) i = CubeView::nothing;
+        }
+    }
+
+    // The side of a surfel is that for which it and its neighbours in one surface have more words.
+    void agree_on_sides() {
+        for (std::size_t i = 0; i < s_.size(); ++i) {
+            if (!has_normal(i)) continue;
+            float sum = witness_[i];
+            for (std::uint32_t k = s_.neighbour_first[i]; k < s_.neighbour_first[i + 1]; ++k) {
+                const std::uint32_t j = s_.neighbours[k];
+                const float along = cosine(i, j);
+                if (std::abs(along) > one_surface_cos)
+                    sum += along > 0 ? witness_[j] : -witness_[j];
+            }
+            if (sum == 0) continue;
+            side_[i] = sum > 0 ? 1 : -1;
+            std::uint32_t& eye = out_.eye_of_surfel[i];
+            if (eye != no_eye && side_[i] * facing(i, out_.eyes[eye]) < 0) eye = no_eye;
+        }
+    }
+
     // From the surfels whose side is known to their neighbours, nearest first.
     void spread_sides() {
         std::vector<std::uint32_t> queue;
@@ -267,8 +330,7 @@ class Looking {
             for (std::uint32_t k = s_.neighbour_first[i]; k < s_.neighbour_first[i + 1]; ++k) {
                 const std::uint32_t j = s_.neighbours[k];
                 if (side_[j] != 0 || !has_normal(j)) continue;
-                const float along = s_.nx[i] * s_.nx[j] + s_.ny[i] * s_.ny[j] + s_.nz[i] * s_.nz[j];
-                side_[j] = static_cast<std::int8_t>(along < 0 ? -side_[i] : side_[i]);
+                side_[j] = static_cast<std::int8_t>(cosine(i, j) < 0 ? -side_[i] : side_[i]);
                 queue.push_back(j);
             }
         }
@@ -297,6 +359,8 @@ class Looking {
     FreePlaces places_;
     // 1: the normal points to the free side, -1: away from it, 0: not known.
     std::vector<std::int8_t> side_;
+    std::vector<float> witness_;  // of the eyes for the normal's side, less those for the other
+    bool sides_known_ = false;
     std::vector<std::uint32_t> in_view_;  // of each place outside: how many eyes have it in view
     VirtualViews out_;
 };

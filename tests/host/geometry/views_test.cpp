@@ -206,6 +206,50 @@ TEST_F(Views, ABoxOnABareFloorIsLookedAtFromOutside) {
     EXPECT_GT(highest, 1.1);
 }
 
+// Points that lie as they fall leave gaps in a box's faces, through which sight meets the insides
+// of others: those are still seen more from without.
+TEST_F(Views, GapsDoNotTurnTheFacesOfABox) {
+    test::Random random(3);
+    PointCloud cloud;
+    const Vec3 low{-0.15, -0.15, 0}, high{0.15, 0.15, 0.5};
+    const auto face = [&](std::size_t axis, double at, const Vec3& from, const Vec3& to) {
+        const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
+        const double area = (to[a] - from[a]) * (to[b] - from[b]);
+        for (int n = 0; n < static_cast<int>(area / (0.02 * 0.02)); ++n) {
+            Vec3 p{};
+            p[a] = from[a] + random.uniform() * (to[a] - from[a]);
+            p[b] = from[b] + random.uniform() * (to[b] - from[b]);
+            p[axis] = at;
+            add(cloud, p);
+        }
+    };
+    face(2, 0, {-1.5, -1.5, 0}, {1.5, 1.5, 0});
+    face(2, high[2], low, high);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        face(axis, -1.5, {-1.5, -1.5, 0}, {1.5, 1.5, 2});
+        for (const Vec3& side : {low, high}) face(axis, side[axis], low, high);
+    }
+    const Surfels s = make_surfels(*device, cloud, surfels_for(point_spacing(cloud), 0.04), {}, {});
+    const VirtualViews views = virtual_views(s, {}, pool);
+    std::size_t sides = 0, turned = 0;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        const Vec3 p{s.x[i], s.y[i], s.z[i]};
+        if (p[2] < 0.1 || p[2] > 0.4) continue;
+        for (std::size_t a = 0; a < 2; ++a) {
+            for (const double side : {low[a], high[a]}) {
+                if (std::abs(p[a] - side) > 0.005 || std::abs(p[1 - a]) > 0.1) continue;
+                ++sides;
+                const Vec3& eye = views.eyes[views.eye_of_surfel[i]];
+                const double front = s.nx[i] * (eye[0] - p[0]) + s.ny[i] * (eye[1] - p[1]) +
+                                     s.nz[i] * (eye[2] - p[2]);
+                turned += front * (a == 0 ? s.nx[i] : s.ny[i]) * side < 0;
+            }
+        }
+    }
+    EXPECT_GT(sides, 300u);
+    EXPECT_LT(turned, sides / 50);
+}
+
 // Nothing leads from the one to the other.
 TEST_F(Views, EachOfTwoClosedRoomsIsLookedInto) {
     PointCloud cloud;
