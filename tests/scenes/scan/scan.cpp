@@ -99,6 +99,7 @@ class Scanner {
             default:
                 fuse();
         }
+        if (!scan_.cloud.empty()) crop();
         for (LabelledPoint& p : seen_) p.at = moved(scan_.world_to_scan, p.at);
         scan_.truth = std::move(seen_);
         return std::move(scan_);
@@ -293,6 +294,17 @@ class Scanner {
         for (const Vec3& eye : scanner_stations(world_, caster_, count, height, random_))
             sweep(eye, step, random_.uniform(0.001, 0.005));
         thin();
+    }
+
+    // Many cut the ceiling off their clouds to look in, and with it the tops of walls and cabinets.
+    void crop() {
+        Random random(options_.seed, 78 + static_cast<std::uint64_t>(options_.kind));
+        if (!random.chance(0.35)) return;
+        const double height = random.uniform(1.5, 2.4);
+        const Mat4 to_room = inverse(scan_.world_to_scan);
+        std::erase_if(scan_.cloud,
+                      [&](const ColouredPoint& p) { return moved(to_room, p.at)[2] > height; });
+        std::erase_if(seen_, [&](const LabelledPoint& p) { return p.at[2] > height; });
     }
 
     // One station: column by column from below upwards.
