@@ -5,14 +5,12 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/face_surroundings.h"
-
 namespace topple::geometry {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::array<std::string_view, 54> names{"edge",
+constexpr std::array<std::string_view, 49> names{"edge",
                                                  "log_area",
                                                  "area_share",
                                                  "area_of_largest",
@@ -60,12 +58,7 @@ constexpr std::array<std::string_view, 54> names{"edge",
                                                  "scene_width",
                                                  "scene_area",
                                                  "upright_share",
-                                                 "tallest_upright",
-                                                 "floor_behind",
-                                                 "floor_before",
-                                                 "top_behind",
-                                                 "ends_behind",
-                                                 "wall_over"};
+                                                 "tallest_upright"};
 
 // Rays from a primitive that say what is around it.
 constexpr std::size_t most_rays = 120;
@@ -176,9 +169,6 @@ std::vector<float> shell_features(const SurfaceSamples& s, const PrimitiveShapes
         const auto down = met<3>(s, p, lines, {0, 0, -1}, {0.25, 0.6, 3});
         const auto up = met<3>(s, p, lines, {0, 0, 1}, {0.25, 1, 4});
         const auto [level_below, level_above] = levels(shapes, p);
-        FaceSurroundings about{NAN, NAN, NAN, NAN, NAN};
-        if (upright && p.samples() > 0)
-            about = face_surroundings(s, p, shapes.low[2], out, low, high);
         // How far its nearest and its middle are from the sides of the scene's bounds.
         double rim = INFINITY, center_rim = INFINITY;
         for (Eigen::Index a = 0; a < 2; ++a) {
@@ -234,12 +224,7 @@ std::vector<float> shell_features(const SurfaceSamples& s, const PrimitiveShapes
                                                    std::min(size[0], size[1]),
                                                    shapes.area_m2,
                                                    scene.upright_m2 / shapes.area_m2,
-                                                   scene.tallest_upright_m,
-                                                   about.floor_behind,
-                                                   about.floor_before,
-                                                   about.top_behind,
-                                                   about.ends_behind,
-                                                   about.wall_over};
+                                                   scene.tallest_upright_m};
         for (const double value : row) rows.push_back(static_cast<float>(value));
     }
     return rows;
