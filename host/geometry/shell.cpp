@@ -12,10 +12,10 @@
 namespace topple::geometry {
 namespace {
 
-// What is flat has normals whose mean is no shorter; what is level is no more than 45 degrees from
-// it; and a floor no higher above the lowest than a
-// platform is, or as large as a gallery.
-constexpr double flat_face = 0.7, level_cos = 0.7, platform_m = 0.5, gallery_m2 = 4;
+// What is flat has normals whose mean is no shorter: a cupboard's front and one of its sides are
+// not, and are filled. What is level is no more than 45 degrees from it; and a floor no higher
+// above the lowest than a platform is, or as large as a gallery.
+constexpr double flat_face = 0.9, level_cos = 0.7, platform_m = 0.5, gallery_m2 = 4;
 
 Role role_of_shape(const PrimitiveShape& p, double floor_m, double top_m) {
     const double level = p.face()[2];
