@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Fits the models of host/fitted on generated scans and writes their files.
 
-usage: fit.py --topple TOPPLE --features TOPPLE_FEATURES --work FOLDER [--seeds FIRST:LAST]
+usage: fit.py --topple TOPPLE --features TOPPLE_FEATURES --work FOLDER [--seeds FIRST:LAST] [--mean-with FOLDER]
 
 Makes rooms of every kind, scanned in one way or another (topple generate), keeps them and what the models see
 of them (topple_features) in FOLDER, fits the model of the shell, then that of the joints, each by
@@ -158,7 +158,23 @@ def write(name, model):
     path.with_suffix('.tmp').rename(path)
 
 
-def fit_all(tables):
+def mean_of(models):
+    """One model whose log-odds are the mean of those of calibrated ones; their features may differ."""
+    names = list(dict.fromkeys(name for model in models for name in model['features']))
+    trees, baseline = [], 0
+    for model in models:
+        share = 1 / len(models)
+        at = [names.index(name) for name in model['features']]
+        for tree in model['trees']:
+            values = [float(f'{share * model["scale"] * value:.6g}') if feature < 0 else value
+                      for feature, value in zip(tree['feature'], tree['threshold'])]
+            trees.append({**tree, 'threshold': values,
+                          'feature': [-1 if feature < 0 else at[feature] for feature in tree['feature']]})
+        baseline += share * (model['scale'] * model['baseline'] + model['offset'])
+    return {**models[0], 'features': names, 'baseline': baseline, 'scale': 1.0, 'offset': 0.0, 'trees': trees}
+
+
+def fit_all(tables, mean_with=None):
     rooms = [np.full(len(t.nodes), t.room) for t in tables]
     known = np.concatenate([t.known for t in tables])
     rows = np.concatenate([t.nodes for t in tables])[known]
@@ -180,8 +196,10 @@ def fit_all(tables):
     plain[:, [k for k, name in enumerate(tables[0].joint_names) if 'colour' in name]] = np.nan
     rows, one, of_room = np.concatenate([rows, plain]), np.tile(one, 2), np.tile(of_room, 2)
     _, joint_file, _ = fit(rows, one, of_room, tables[0].joint_names, 15, 'joints')
-    write('shell.model.json', shell_file)
-    write('joint.model.json', joint_file)
+    for name, model in (('shell.model.json', shell_file), ('joint.model.json', joint_file)):
+        if mean_with:
+            model = mean_of([json.loads((mean_with / name).read_text()), model])
+        write(name, model)
 
 
 def make(arguments, kind, way, seed):
@@ -215,6 +233,8 @@ def main():
     parser.add_argument('--kinds', nargs='+', default=KINDS)
     parser.add_argument('--only-make', action='store_true', help='make the scans and tables, fit nothing')
     parser.add_argument('--ways', nargs='+', default=WAYS, help='of scanning; rooms take them in turn')
+    parser.add_argument('--mean-with', type=Path, metavar='FOLDER',
+                        help='write the mean log-odds of the fit and of the models in this folder')
     parser.add_argument('--all-ways', action='store_true', help='scan each room in all of them')
     arguments = parser.parse_args()
     first, last = map(int, arguments.seeds.split(':'))
@@ -228,7 +248,8 @@ def main():
         made = list(pool.map(lambda w: make(arguments, *w), wanted))
     if not arguments.only_make:
         rooms = {(kind, seed): n for n, (kind, _, seed) in enumerate(wanted)}
-        fit_all([Table(*m, rooms[kind, seed]) for m, (kind, _, seed) in zip(made, wanted) if m])
+        fit_all([Table(*m, rooms[kind, seed]) for m, (kind, _, seed) in zip(made, wanted) if m],
+                arguments.mean_with)
 
 
 if __name__ == '__main__':

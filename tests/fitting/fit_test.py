@@ -84,6 +84,16 @@ class Fitting(unittest.TestCase):
         expected = file['scale'] * model.decision_function(rows) + file['offset']
         self.assertLess(max(abs(log_odds(file, row) - e) for row, e in zip(rows, expected)), 1e-2)
 
+    def test_the_mean_of_models_has_the_mean_of_their_log_odds(self):
+        rows, _, _, one, _ = fitted(600)
+        other = {**one, 'features': ['c', 'b', 'd'], 'scale': 0.5, 'offset': 1.0, 'trees': one['trees'][:9]}
+        mean = json.loads(json.dumps(fit.mean_of([one, other])))
+        self.assertEqual(mean['features'], ['a', 'b', 'c', 'd'])
+        last = rows[:, 0][::-1]
+        for row, d in zip(rows, last):
+            expected = (log_odds(one, row) + log_odds(other, [row[2], row[1], d])) / 2
+            self.assertAlmostEqual(log_odds(mean, [*row, d]), expected, places=4)
+
     def test_probabilities_are_calibrated_on_what_was_not_fitted(self):
         _, truth, _, _, out_of_fold = fitted(2000)
         self.assertEqual(out_of_fold.shape, truth.shape)
