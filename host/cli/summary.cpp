@@ -21,17 +21,22 @@ double risk_of(const Object& o, const std::string& disturbance) {
 // others' risk says more about the scan.
 void print_sentences(const std::vector<const Object*>& riskiest_first) {
     std::vector<const Object*> certain, doubtful;
-    for (const Object* o : riskiest_first)
+    std::size_t unseen = 0;
+    for (const Object* o : riskiest_first) {
         (barrier_within_error(*o) || !o->seen_enough ? doubtful : certain).push_back(o);
+        unseen += !barrier_within_error(*o) && !o->seen_enough;
+    }
     const auto& told = certain.empty() ? doubtful : certain;
     if (told.empty()) return;
     const std::size_t shown = std::min(sentences_shown, told.size());
     std::printf("\nThe %zu riskiest of the %zu whose barrier is %s", shown, told.size(),
                 certain.empty() ? "within its error (~0)" : "certain");
-    if (!certain.empty() && !doubtful.empty())
+    if (!certain.empty() && doubtful.size() > unseen)
         std::printf(
             "; %zu more have ~0: they stand on edge, or the scan hardly shows their support",
-            doubtful.size());
+            doubtful.size() - unseen);
+    if (!certain.empty() && unseen > 0)
+        std::printf("; %zu more have no rank, since nothing was seen to hold them", unseen);
     std::printf(":\n");
     for (std::size_t i = 0; i < shown; ++i) {
         const Object& o = *told[i];

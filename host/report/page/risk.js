@@ -86,8 +86,11 @@ function eventsText(scene) {
 // Of which objects the list is, and where the others are.
 function rankedText(scene, shown, movable) {
   const doubtful = scene.objects.filter(isDoubtful);
-  const certain = doubtful.length ? `the ${movable - doubtful.length} objects whose barrier is certain` : `${plural(movable, 'object')} that can fall`;
-  const listed = `The ${shown} riskiest of ${certain}: by the chance that one event upsets them, times the energy that they then set free.`;
+  const unseen = scene.objects.filter(object => !object.grounded && !isDoubtful(object) && object.seen_enough === false).length;
+  const uncertain = doubtful.length + unseen;
+  const certain = uncertain ? `the ${movable - uncertain} objects whose barrier is certain` : `${plural(movable, 'object')} that can fall`;
+  const listed = `The ${shown} riskiest of ${certain}: by the chance that one event upsets them, times the energy that they then set free.` +
+    (unseen ? ` ${unseen} more ${unseen === 1 ? 'has' : 'have'} no rank, since nothing was seen to hold ${unseen === 1 ? 'it' : 'them'}.` : '');
   if (!doubtful.length) return listed;
   const risky = doubtful.some(object => largestRisk(object) > 0);
   return `${listed} ${doubtful.length} more stand${doubtful.length === 1 ? 's' : ''} on edge, or the scan hardly shows the support: ` +
