@@ -3,12 +3,14 @@
 
 namespace topple::geometry {
 
+inline constexpr double least_depth_sigma = 0.0012;
+
 // Standard deviation of one depth reading, metres, at depth z metres: the structured-light model of
 // Nguyen, Izadi & Lovell 2012 (their axial noise, seen head on).
-inline double depth_sigma(double z) {
-    const double beyond = z > 0.4 ? z - 0.4 : 0.0;
-    return 0.0012 + 0.0019 * beyond * beyond;
+template <class Real>
+Real depth_sigma(Real z) {
+    const Real beyond = z > Real(0.4) ? z - Real(0.4) : Real(0);
+    return Real(least_depth_sigma) + Real(0.0019) * beyond * beyond;
 }
-inline constexpr double least_depth_sigma = 0.0012;
 
 }  // namespace topple::geometry

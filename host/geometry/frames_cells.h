@@ -8,6 +8,7 @@
 
 #include "device/native/thread_pool.h"
 #include "geometry/frames_fusion.h"
+#include "geometry/frames_witnesses.h"
 
 namespace topple::geometry {
 
@@ -77,9 +78,10 @@ struct CellTables {
 
 struct FrameFusion::Cells {
     static constexpr std::size_t shard_count = CellTables::shard_count, block_count = 16;
-    explicit Cells(unsigned threads) : pool(threads) {}
+    Cells(const Intrinsics& intrinsics, unsigned threads) : pool(threads), witnesses(intrinsics) {}
     device::ThreadPool pool;
     CellTables tables;
+    Witnesses witnesses;
     // Per block of image rows and shard: runs of readings in one cell.
     std::array<std::array<std::vector<CellSums>, shard_count>, block_count> runs;
     std::vector<Vec3> viewpoints;
@@ -95,6 +97,8 @@ struct FusedCells {
 };
 // Drops cells of stray readings.
 void drop_weak(FusedCells& fused, std::size_t frames, device::ThreadPool& pool);
+// Drops cells that the frames deny.
+void drop_denied(FusedCells& fused, const Witnesses& witnesses, device::ThreadPool& pool);
 // One step of moving least squares, then bins anew: readings spread to both sides of a surface by
 // their noise become one layer. Cells whose readings spread by less than least_sigma_m stay.
 void flatten_layers(FusedCells& fused, double least_sigma_m, device::ThreadPool& pool);

@@ -57,6 +57,14 @@ void visit_surroundings(const FusedCells& fused, device::ThreadPool& pool, const
     });
 }
 
+void drop_cells(FusedCells& fused, const std::vector<std::uint8_t>& drop) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < drop.size(); ++i) {
+        if (drop[i] == 0) fused.cells[kept++] = fused.cells[i];
+    }
+    fused.cells.resize(kept);
+}
+
 // The level of the grid, from 0 for its own cells, at which each cell's plane is fitted. Readings
 // spread by sigma to both sides; a neighbourhood must be wider than that to see which way the
 // surface runs. Coarser grids give the wider ones.
@@ -177,11 +185,24 @@ void drop_weak(FusedCells& fused, std::size_t frames, device::ThreadPool& pool) 
                           10.0 * static_cast<double>(cell.weight) < weight / around;
         drop[i] = lonely || weak;
     });
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < drop.size(); ++i) {
-        if (drop[i] == 0) fused.cells[kept++] = fused.cells[i];
-    }
-    fused.cells.resize(kept);
+    drop_cells(fused, drop);
+}
+
+void drop_denied(FusedCells& fused, const Witnesses& witnesses, device::ThreadPool& pool) {
+    const std::size_t n = fused.cells.size();
+    FusedPoints points;
+    for (std::vector<float>* values : {&points.x, &points.y, &points.z, &points.sigma})
+        values->resize(n);
+    pool.each(n, fused_chunk, [&](std::size_t i) {
+        const std::array<double, 3> at = mean_of(fused.cells[i]);
+        constexpr auto bias = static_cast<double>(key_bias);
+        points.x[i] = static_cast<float>((at[0] - bias) * fused.cell_m);
+        points.y[i] = static_cast<float>((at[1] - bias) * fused.cell_m);
+        points.z[i] = static_cast<float>((at[2] - bias) * fused.cell_m);
+        points.sigma[i] =
+            static_cast<float>(least_depth_sigma * std::sqrt(65535.0 / fused.cells[i].best_weight));
+    });
+    drop_cells(fused, witnesses.deny(points, pool));
 }
 
 void flatten_layers(FusedCells& fused, double least_sigma_m, device::ThreadPool& pool) {

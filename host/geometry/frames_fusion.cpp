@@ -118,7 +118,9 @@ class PatchSums {
 }  // namespace
 
 FrameFusion::FrameFusion(const Intrinsics& intrinsics, double cell_m, unsigned threads)
-    : cells_(std::make_unique<Cells>(threads)), intrinsics_(intrinsics), cell_m_(cell_m) {
+    : cells_(std::make_unique<Cells>(intrinsics, threads)),
+      intrinsics_(intrinsics),
+      cell_m_(cell_m) {
     check(intrinsics, cell_m);
     // One entry per stored depth: what depends on depth alone.
     cells_->sigma_limit.resize(65536);
@@ -145,6 +147,7 @@ void FrameFusion::add(const DepthFrame& frame) {
     c.viewpoints.push_back({m[3], m[7], m[11]});
     const double per_cell = 1 / cell_m_;
 
+    c.witnesses.add(frame);
     const auto add_rows = [&](std::uint64_t block) {
         auto& runs = c.runs[block];
         for (auto& list : runs) list.clear();
@@ -195,6 +198,8 @@ FusedCloud FrameFusion::finish(const std::function<void()>& poll) {
     cells_->runs = {};
     poll();
     drop_weak(fused, cells_->viewpoints.size(), cells_->pool);
+    poll();
+    drop_denied(fused, cells_->witnesses, cells_->pool);
     poll();
     // Twice: a first plane through the outer layers leans towards them, since half of the surface's
     // readings lie beyond its reach. Where the noise stays within a cell there are no such layers.

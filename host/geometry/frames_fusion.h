@@ -21,9 +21,9 @@ struct FusedCloud {
 // Fuses depth frames into one cloud: back-projects, then takes the mean of the readings in each
 // cell of `cell_m`, weighted by the inverse variance of a depth reading (which grows with depth),
 // the mean of their colours in the same way, and drops cells that a single stray reading made where
-// others had the chance to see them. Frames are added one at a time, so a sequence of any length
-// needs memory for the cloud only. The result does not depend on the order of the frames beyond
-// rounding.
+// others had the chance to see them, and those that most frames deny. Frames are added one at a
+// time, so a sequence of any length needs memory for the cloud and Witnesses::most_frames of them
+// only. Of no more frames than that the result does not depend on their order beyond rounding.
 class FrameFusion {
   public:
     // threads: 0 for one per core. The result does not depend on it.

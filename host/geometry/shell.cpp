@@ -12,15 +12,18 @@
 namespace topple::geometry {
 namespace {
 
-// What is flat has normals whose mean is no shorter: a cupboard's front and one of its sides are
-// not, and are filled. What is level is no more than 45 degrees from it; and a floor no higher
-// above the lowest than a platform is, or as large as a gallery.
-constexpr double flat_face = 0.9, level_cos = 0.7, platform_m = 0.5, gallery_m2 = 4;
+// What is flat has normals whose mean is no shorter, and a wall even: a cupboard's front and one of
+// its sides are none, and are filled, while the floor of a coarse scan is rough. What is level is
+// no more than 45 degrees from it; and a floor no higher above the lowest than a platform is, or as
+// large as a gallery.
+constexpr double flat_face = 0.7, wall_face = 0.9, level_cos = 0.7, platform_m = 0.5,
+                 gallery_m2 = 4;
 
 Role role_of_shape(const PrimitiveShape& p, double floor_m, double top_m) {
     const double level = p.face()[2];
     if (p.normal.norm() < flat_face) return Role::fixture;
-    if (std::abs(level) < level_cos) return Role::wall;
+    if (std::abs(level) < level_cos)
+        return p.normal.norm() < wall_face ? Role::fixture : Role::wall;
     const double height = p.center[2] - floor_m;
     // Of a sheet whose sides are confused, the nearer end of the room tells.
     if (level < 0 && top_m - p.center[2] < height) return Role::ceiling;

@@ -6,6 +6,7 @@
 
 #include "geometry/depth_noise.h"
 #include "geometry/frames_fusion.h"
+#include "geometry/frames_witnesses.h"
 #include "geometry_random.h"
 #include "topple/error.h"
 
@@ -51,6 +52,66 @@ TEST(Fusion, WallBecomesThinAndStraysGo) {
     EXPECT_LT(off[off.size() / 2], 0.003);  // sigma of one reading: 14 mm
     EXPECT_LT(off[off.size() * 95 / 100], 0.01);
     EXPECT_LT(off.back(), 0.1);  // nothing between the two surfaces
+}
+
+// A wall with a board of 4 cm and a post of 2 cm before it. A sensor that bends depths as real ones
+// do sees the wall 5 cm off from 3.5 m, to either side; from 1.5 m it sees it right.
+DepthFrame bent_view(double from_m, double bend, std::uint64_t seed) {
+    test::Random random(seed);
+    DepthFrame frame;
+    frame.camera_to_world[3] = 0.1 * random.normal();
+    frame.camera_to_world[11] = 3.5 - from_m;
+    for (std::uint32_t v = 0; v < camera.height; ++v) {
+        for (std::uint32_t u = 0; u < camera.width; ++u) {
+            const auto x_at = [&](double z) {
+                return (u - camera.cx) / camera.fx * z + frame.camera_to_world[3];
+            };
+            double z = from_m;
+            if (std::abs(x_at(from_m - 0.04) - 0.4) < 0.15) z = from_m - 0.04;
+            if (std::abs(x_at(from_m - 0.3) + 0.2) < 0.01) z = from_m - 0.3;
+            const double off = bend * z * z + depth_sigma(z) * random.normal();
+            frame.depth.push_back(static_cast<std::uint16_t>(std::lround(1000 * (z + off))));
+        }
+    }
+    return frame;
+}
+
+TEST(Fusion, CopiesThatFarFramesMakeOfASurfaceGo) {
+    FrameFusion fusion(camera, 0.01);
+    for (int i = 0; i < 24; ++i) {
+        const auto seed = static_cast<std::uint64_t>(i);
+        fusion.add(bent_view(3.5, i % 2 ? 0.003 : -0.003, seed));
+        if (i % 4 == 0) fusion.add(bent_view(1.5, 0, 100 + seed));
+    }
+    const FusedCloud fused = fusion.finish();
+    std::size_t copies = 0, wall = 0, board = 0, post = 0;
+    for (std::size_t i = 0; i < fused.cloud.size(); ++i) {
+        const double x = fused.cloud.x[i], y = fused.cloud.y[i], z = fused.cloud.z[i];
+        // Where the near frames look.
+        if (std::abs(x) > 0.6 || std::abs(y) > 0.4) continue;
+        const bool on_board = std::abs(x - 0.4) < 0.13, by_board = std::abs(x - 0.4) < 0.2;
+        wall += !by_board && std::abs(z - 3.5) < 0.015;
+        board += on_board && std::abs(z - 3.46) < 0.015;
+        post += std::abs(x + 0.2) < 0.02 && std::abs(z - 3.2) < 0.02;
+        copies += (!by_board && z > 3.4 && std::abs(z - 3.5) > 0.03) ||
+                  (on_board && std::abs(z - 3.46) > 0.03);
+    }
+    EXPECT_GT(wall, 4000u);
+    EXPECT_GT(board, 1500u);
+    EXPECT_GT(post, 60u);
+    EXPECT_LT(copies, wall / 100);
+}
+
+// Of a long sequence some frames are kept as witnesses; what they say holds for all.
+TEST(Fusion, LongSequencesKeepSomeWitnesses) {
+    Witnesses witnesses(camera);
+    for (std::size_t i = 0; i < 5 * Witnesses::most_frames; ++i)
+        witnesses.add(bent_view(1.5, 0, i));
+    // Before the wall, on it, and behind it by what a far reading may be off, and by more.
+    const FusedPoints points{
+        {0, 0, 0, 0}, {0, 0, 0, 0}, {3.45F, 3.5F, 3.55F, 3.9F}, {0.02F, 0.02F, 0.02F, 0.02F}};
+    device::ThreadPool pool(2);
+    EXPECT_EQ(witnesses.deny(points, pool), (std::vector<std::uint8_t>{1, 0, 1, 0}));
 }
 
 TEST(Fusion, OrderOfFramesDoesNotMatter) {

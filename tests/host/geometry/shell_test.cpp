@@ -66,6 +66,22 @@ TEST(Shell, IsTheRoomAndNotWhatStandsInIt) {
     }
 }
 
+// In a coarse scan each normal comes from few points. Mean length of the normals: 0.8.
+TEST(Shell, OfARoughFloorIsAFloor) {
+    SurfaceSamples samples = room();
+    const double lean = std::acos(0.8);
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+        if (samples.primitive[n] != floor) continue;
+        const double heading = 2.4 * static_cast<double>(n);  // the golden angle: all ways alike
+        samples.nx[n] = static_cast<float>(std::sin(lean) * std::cos(heading));
+        samples.ny[n] = static_cast<float>(std::sin(lean) * std::sin(heading));
+        samples.nz[n] = static_cast<float>(std::cos(lean));
+    }
+    const Shell shell = find_shell(samples, parts);
+    expect_shell(shell, {floor}, {table, box, crate});
+    EXPECT_EQ(shell.role[at(floor)], Role::floor);
+}
+
 TEST(Shell, NeedsNoCeiling) {
     const Shell shell = find_shell(room({ceiling}), parts);
     expect_shell(shell, {floor, west, south, east, north}, {table, box, crate, ceiling});

@@ -171,12 +171,11 @@ class Scanner {
         kept_ = seen_.size();
     }
 
-    // What SLAM gets wrong: millimetres and tenths of a degree, slowly changing; in clouds that
-    // others fused sometimes centimetres.
+    // What SLAM gets wrong: millimetres and tenths of a degree, slowly changing; sometimes
+    // centimetres.
     std::vector<Mat4> drifted(const std::vector<Mat4>& poses) {
         const std::size_t n = poses.size();
-        const bool fused = options_.kind == ScanKind::sparse || options_.kind == ScanKind::cloud;
-        const double worse = fused && random_.chance(0.3) ? 3 : 1;
+        const double worse = random_.chance(0.3) ? 3 : 1;
         const double off = worse * random_.uniform(0.001, 0.005),
                      turn = worse * random_.uniform(0.0005, 0.0025);
         std::vector<std::vector<double>> noise;
@@ -214,7 +213,7 @@ class Scanner {
         const double focal = random_.uniform(262, 300);
         scan_.intrinsics = {320, 240, focal, focal, 159.5, 119.5, 1000};
         scan_.truth_m = 0.015;
-        const Sensor sensor = any_sensor(random_);
+        const Sensor sensor = any_sensor(scan_.intrinsics, random_);
         const auto poses = hand_held_walk(world_, caster_, frame_count(1.5, 40, 90), random_);
         const auto told = drifted(poses);
         shoot(poses, scan_.intrinsics, sensor, [&](std::size_t n, Shot& shot) {
@@ -231,9 +230,10 @@ class Scanner {
                                : Intrinsics{320, 240, 320 * focal, 320 * focal, 159.5, 119.5, 1000};
         const Mat4 pose = best_view(world_, caster_, random_);
         scan_.world_to_scan = inverse(pose);
-        shoot({pose}, scan_.intrinsics, any_sensor(random_), [&](std::size_t, Shot& shot) {
-            keep_frame({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, shot);
-        });
+        shoot({pose}, scan_.intrinsics, any_sensor(scan_.intrinsics, random_),
+              [&](std::size_t, Shot& shot) {
+                  keep_frame({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, shot);
+              });
         thin();
     }
 
@@ -245,7 +245,7 @@ class Scanner {
         const Intrinsics k = sparse ? Intrinsics{192, 144, 164, 164, 95.5, 71.5, 1000}
                                     : Intrinsics{320, 240, 277, 277, 159.5, 119.5, 1000};
         scan_.truth_m = 0.015;
-        const Sensor sensor = any_sensor(random_);
+        const Sensor sensor = any_sensor(k, random_);
         const auto poses = hand_held_walk(world_, caster_, frame_count(2.5, 60, 130), random_);
         const auto told = drifted(poses);
         std::vector<ColouredPoint> all;

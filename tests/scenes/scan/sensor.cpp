@@ -62,7 +62,7 @@ ExactView look(const RayCaster& caster, const Intrinsics& k, const Mat4& camera_
     return view;
 }
 
-Sensor any_sensor(Random& random) {
+Sensor any_sensor(const Intrinsics& k, Random& random) {
     Sensor s;
     const double quality = random.uniform(0.5, 1.5);
     s.most_m = random.uniform(3.8, 6.0);
@@ -75,6 +75,10 @@ Sensor any_sensor(Random& random) {
     s.grazing = random.uniform(0.15, 0.32);
     s.blobs = random.uniform(1.8, 2.8);
     s.specks = random.uniform(0.002, 0.02);
+    if (random.chance(0.6)) {
+        const double size = random.uniform(0.0005, 0.003);
+        s.bend = smooth_noise_image(k.width, k.height, 0.12 * k.width, size, random);
+    }
     return s;
 }
 
@@ -115,6 +119,7 @@ std::vector<float> rough_depth(const ExactView& view, const Intrinsics& k, const
             }
             const double beyond = std::max(0.0, z - 0.4);
             z += noise[at] * (sensor.axial_m + sensor.growth * beyond * beyond);
+            if (!sensor.bend.empty()) z += sensor.bend[at] * z * z;
             if (sensor.step > 0) z = 1 / (std::round(1 / z / sensor.step) * sensor.step);
             if (drawn_graze < (sensor.grazing - view.cosine[from]) / (0.8 * sensor.grazing))
                 continue;

@@ -41,8 +41,10 @@ struct Sensor {
     double grazing = 0.28;     // cosine of incidence below which readings get lost
     double blobs = 2;          // standard deviations beyond which a patch gives no reading
     double specks = 0.01;      // share of readings lost anywhere
+    std::vector<float> bend;   // by pixel: what depth is off, over its square, 1/m; or empty
 };
-Sensor any_sensor(Random& random);
+// Three of five are bent: by some centimetres at 4 m, as uncalibrated ones are.
+Sensor any_sensor(const Intrinsics& k, Random& random);
 
 // Depth in metres, 0 for no reading.
 std::vector<float> rough_depth(const ExactView& view, const Intrinsics& k, const Sensor& sensor,
