@@ -69,8 +69,8 @@ Witnesses::Frame Witnesses::keep(const DepthFrame& frame) const {
             const std::uint16_t least = std::min({above[u].least, row[u].least, below[u].least});
             const std::uint16_t greatest =
                 std::max({above[u].greatest, row[u].greatest, below[u].greatest});
-            kept.pixels[std::size_t{v} * width_ + u] = {
-                row[u].depth, least, least > 0 ? greatest : std::uint16_t{0}};
+            kept.pixels[std::size_t{v} * width_ + u] = {row[u].depth, least,
+                                                        least > 0 ? greatest : std::uint16_t{0}};
         }
     }
     return kept;

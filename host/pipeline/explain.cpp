@@ -40,9 +40,18 @@ double azimuth(const Vec3& way) {
 std::string what(const Scene& scene, const SolidParts& parts, std::int32_t primitive) {
     if (primitive < 0) return "what lies below";
     const auto at = static_cast<std::size_t>(primitive);
-    if (parts.solids->role(primitive) == Role::floor) return "the floor";
     const Object& object = scene.objects[static_cast<std::size_t>(scene.primitives[at].object)];
-    return object.grounded ? "the ground" : "object " + std::to_string(object.id);
+    if (!object.grounded) return "object " + std::to_string(object.id);
+    switch (parts.solids->role(primitive)) {
+        case Role::floor:
+            return "the floor";
+        case Role::wall:
+            return "a wall";
+        case Role::ceiling:
+            return "the ceiling";
+        default:
+            return "what is built in";
+    }
 }
 
 class Sentence {

@@ -80,6 +80,9 @@ inline constexpr int bands = 14;  // of equal energy: their borders are contours
 inline constexpr std::array<Bytes3, 5> unsafety_ramp{
     {{253, 236, 178}, {252, 187, 92}, {240, 118, 56}, {201, 44, 44}, {112, 10, 50}}};
 
+// What may move and has no unsafety: no scan shows what holds it. No hue of the ramp's.
+inline constexpr Bytes3 unranked_colour{118, 132, 176};
+
 // Share 0 to 1 of the way along colours.
 Bytes3 colour_along(std::span<const Bytes3> colours, double share);
 Bytes3 ramp_colour(double share);

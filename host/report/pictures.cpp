@@ -99,8 +99,9 @@ class Pictures {
             if (!movable) {
                 out.push_back(faded(io::colour_of(-1), 0.8));
             } else if (by_risk) {
-                const double share = std::isfinite(found->unsafety) ? (found->unsafety - 1) / 9 : 0;
-                out.push_back(colour_along(unsafety_ramp, share));
+                out.push_back(std::isfinite(found->unsafety)
+                                  ? colour_along(unsafety_ramp, (found->unsafety - 1) / 9)
+                                  : unranked_colour);
             } else {
                 out.push_back(faded(io::colour_of(id), fade));
             }
@@ -131,6 +132,11 @@ class Pictures {
                  "Unsafety, by what a walk, a gale or an earthquake is expected to set "
                  "free. Labels: object, unsafety; ?: the scan hardly shows its support.");
         legend(canvas, unsafety_ramp, "1 safest", "10");
+        const auto unranked = [](const Object& o) {
+            return !o.grounded && !std::isfinite(o.unsafety);
+        };
+        if (std::ranges::any_of(scene_.objects, unranked))
+            swatch(canvas, unranked_colour, "not ranked: nothing was seen to hold it");
         for (const Object* object : riskiest(scene_, image_)) label(canvas, *object, true);
         canvas.save();
     }
@@ -277,6 +283,13 @@ class Pictures {
             canvas.rectangle(x + n, y, 1, tall, colour(colour_along(stops, n / (wide - 1))));
         canvas.text(x, y + tall + 17, low, Align::left, {.size = 13});
         canvas.text(x + wide, y + tall + 17, high, Align::right, {.size = 13});
+    }
+
+    // Above the legend.
+    static void swatch(Canvas& canvas, const Bytes3& of, const std::string& says) {
+        constexpr double x = 20, y = height - 76, side = 14;
+        canvas.rectangle(x, y, side, side, colour(of));
+        canvas.text(x + side + 8, y + side - 2, says, Align::left, {.size = 13});
     }
 
     // The object's number, and its unsafety, where its middle is seen; moved up from others'.

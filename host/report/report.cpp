@@ -214,6 +214,7 @@ std::string data_json(const Scene& scene) {
     json["drawings"] = landscapes_json(scene);
     json["ramp"] = {{"colours", ramp}, {"bands", bands}};
     json["unsafety_ramp"] = unsafety_ramp;
+    json["unranked_colour"] = unranked_colour;
     return script_safe(json.dump());
 }
 

@@ -41,7 +41,9 @@ function colourAlong(colours, share) {
   return colours[low].map((value, c) => Math.round(value + (colours[low + 1][c] - value) * (at - low)));
 }
 
+// What may move and was not ranked has a colour of its own.
 function riskColour(scene, unsafety) {
+  if (unsafety === null) return scene.unranked_colour;
   return colourAlong(scene.unsafety_ramp, (unsafety - 1) / 9);
 }
 

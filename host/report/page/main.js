@@ -74,6 +74,10 @@ function legend(scene, state, view) {
   const ends = (low, high) => element('div', {className: 'ends'}, [element('span', {text: low}), element('span', {text: high})]);
   if (state.mode === 'risk') {
     box.append(element('div', {text: 'Unsafety'}), bar(scene.unsafety_ramp), ends('1 safest', '10'));
+    if (scene.objects.some(object => !object.grounded && object.unsafety === null)) {
+      const swatch = element('span', {className: 'swatch', style: {background: css(scene.unranked_colour)}});
+      box.append(element('div', {}, [swatch, element('span', {text: 'not ranked: nothing was seen to hold it'})]));
+    }
   }
   if (state.fieldsOn.includes('walks')) {
     box.append(element('div', {text: 'Floor: how many of 100 walks pass there'}), bar(scene.ramp.colours), ends('0', number(100 * scene.view.walks.most)));
