@@ -86,10 +86,11 @@ void print_summary(const Scene& scene, const std::filesystem::path& out) {
     const char* sample = counted > scene.points.x.size() ? " (samples of the scan)" : "";
     for (const Object& o : scene.objects) grounded += o.grounded;
     std::printf(
-        "%zu points%s, %zu primitives, %zu objects (%zu fixed to the ground), %zu supports; %.1f s "
-        "on %s (%s)\n",
-        scene.points.x.size(), sample, scene.primitives.size(), scene.objects.size(), grounded,
-        scene.supports.size(), seconds, scene.backend.c_str(), scene.device.c_str());
+        "%zu points%s, voxels of %.3g cm, %zu primitives, %zu objects (%zu fixed to the ground), "
+        "%zu supports; %.1f s on %s (%s)\n",
+        scene.points.x.size(), sample, 100 * scene.voxel_size_m, scene.primitives.size(),
+        scene.objects.size(), grounded, scene.supports.size(), seconds, scene.backend.c_str(),
+        scene.device.c_str());
     print_objects(scene);
     for (const std::string& note : scene.notes) std::printf("Note: %s\n", note.c_str());
     std::printf("\nReport: %s\n", (out / "report.html").c_str());

@@ -16,6 +16,7 @@
 #include "io/frame_sequence.h"
 #include "io/octomap.h"
 #include "io/read_cloud.h"
+#include "io/text.h"
 #include "pipeline/caller_points.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/voxel_stage.h"
@@ -231,6 +232,11 @@ void look_at_cloud(device::Device& device, Ingested& out) {
     out.cell_m = std::clamp(1.25 * spacing.nearest_m, least_cell_m, largest_cell_m);
     out.surfels = geometry::surfels_for(spacing, surfel_cells * out.cell_m);
     out.notes = cloud.notes;
+    // A depth image's gaps are no news.
+    if (cloud.dropped > 0 && cloud.height <= 1)
+        out.notes.push_back(io::counted(cloud.dropped, "point") + " of " +
+                            std::to_string(cloud.dropped + cloud.size()) +
+                            " were not finite and are left out.");
     Intrinsics intrinsics;
     DepthFrame frame;
     if (cloud.height > 1 && geometry::frame_of_organised_cloud(cloud, intrinsics, frame)) {

@@ -197,8 +197,9 @@ void add_notes(const tiles::SpilledPoints& points, const tiles::Layout& layout, 
     io::note_offset(moved);
     scene.notes.insert(scene.notes.end(), moved.notes.begin(), moved.notes.end());
     if (points.dropped() > 0)
-        scene.notes.push_back(io::counted(points.dropped(), "point") +
-                              " of the input were not finite and are left out.");
+        scene.notes.push_back(io::counted(points.dropped(), "point") + " of " +
+                              std::to_string(points.dropped() + points.points()) +
+                              " were not finite and are left out.");
     scene.notes.push_back("The cloud of " + io::counted(points.points(), "point") +
                           " was parsed in " + io::counted(layout.blocks.size(), "block") +
                           ", thinned to one point per " +

@@ -75,6 +75,14 @@ TEST(DefectiveCloud, none) {
     expect_understood(room, parsed(room.cloud));
 }
 
+TEST(DefectiveCloud, what_was_left_out_is_told) {
+    SmallRoom room = SmallRoom::scattered();
+    room.cloud.dropped = 1234;  // as readers leave out points that are not finite
+    EXPECT_TRUE(noted(parsed(room.cloud), "1234 points of " +
+                                              std::to_string(1234 + room.part.size()) +
+                                              " were not finite and are left out."));
+}
+
 TEST(SlowDefectiveCloud, no_noise_at_all) {
     for (const double step_m : {0.01, 0.0125}) {
         SCOPED_TRACE(step_m);
