@@ -15,6 +15,7 @@
 #include "evaluation/groupings.h"
 #include "evaluation/joint_weights.h"
 #include "evaluation/kind_score.h"
+#include "evaluation/measures.h"
 #include "evaluation/pictures.h"
 #include "evaluation/room.h"
 #include "evaluation/tables.h"
@@ -29,7 +30,8 @@ struct EvaluateArguments {
     std::string backend = "auto", out = "evaluation";
     evaluation::RoomOptions options;
     unsigned seeds = 8, first = 1;
-    bool groupings = false, fit_joints = false, bases = false;
+    bool groupings = false, fit_joints = false, bases = false, measures = false;
+    bool frames_of_things = false;   // of --measures: depth frames, not clean points
     std::vector<std::string> kinds;  // of rooms; none: those of --furniture
     scenes::ScanOptions scan{.kind = scenes::ScanKind::sparse};
 };
@@ -139,6 +141,22 @@ void judge_kinds(EvaluateArguments& a) {
     write(std::filesystem::path(a.out) / "kinds.csv", evaluation::kinds_csv(scores));
 }
 
+void judge_measures(EvaluateArguments& a) {
+    const evaluation::MeasureOptions options{.frames = a.frames_of_things,
+                                             .parse = a.options.parse};
+    const std::vector<scenes::MeasuredShape> shapes = scenes::measured_shapes();
+    std::vector<evaluation::MeasureScore> scores;
+    for (std::size_t s = 0; s < shapes.size(); ++s) {
+        std::fprintf(stderr, "%s, %zu of %zu\n", shapes[s].name.c_str(), s + 1, shapes.size());
+        for (unsigned n = 0; n < a.seeds; ++n)
+            scores.push_back(evaluation::measure(shapes[s], a.first + n, options));
+    }
+    const std::string table = evaluation::measures_table(scores);
+    std::fputs(table.c_str(), stdout);
+    write(std::filesystem::path(a.out) / "measures.txt", table);
+    write(std::filesystem::path(a.out) / "measures.csv", evaluation::measures_csv(scores));
+}
+
 int run(EvaluateArguments& a) {
     check(a);
     if (!a.fit_joints) make_folder(a.out);
@@ -148,6 +166,8 @@ int run(EvaluateArguments& a) {
     try {
         if (a.fit_joints) {
             print_weights(a);
+        } else if (a.measures) {
+            judge_measures(a);
         } else if (!a.kinds.empty()) {
             judge_kinds(a);
         } else if (a.groupings) {
@@ -188,6 +208,16 @@ Command add_evaluate(CLI::App& app) {
     app.add_flag("--bases", a->bases,
                  "How often what each rule of completion takes to be solid is solid, instead")
         ->excludes(groupings);
+    CLI::Option* const measures =
+        app.add_flag("--measures", a->measures,
+                     "Mass and barrier of 30 things of known measures instead, from clean points 4 "
+                     "mm apart, each at as many places as --seeds")
+            ->excludes(groupings)
+            ->excludes("--fit-joints")
+            ->excludes("--bases");
+    app.add_flag("--from-frames", a->frames_of_things,
+                 "From a walk's noisy depth frames instead, with --measures")
+        ->needs(measures);
     app.add_flag("--single", a->options.camera.single,
                  "One frame of each room, without its pose, as in the paper's 6.1 and 6.2");
     add_furniture(app, a->options.room.varied);
@@ -200,6 +230,7 @@ Command add_evaluate(CLI::App& app) {
             ->check(CLI::IsMember(names))
             ->excludes(groupings)
             ->excludes("--fit-joints")
+            ->excludes(measures)
             ->excludes("--single");
     add_scan(app, a->scan.kind)->needs(kinds);
     app.add_option("--tilt", a->options.room.tilt_deg,
