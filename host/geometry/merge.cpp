@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 #include "geometry/region_facts.h"
@@ -34,7 +33,6 @@ class Merger {
         merge_level_pieces();
         merge_convex_borders();
         merge_face_pieces();
-        merge_sides();
     }
 
     // The solid of each region: its root.
@@ -96,37 +94,6 @@ class Merger {
         for (const Candidate& c : candidates) {
             const std::int32_t a = root(c.a), b = root(c.b);
             if (a != b && convex(a, b, options_.concavity_max)) join(a, b);
-        }
-    }
-
-    // The two sides of a board often have no visible edge between them: pairs of regions where, of
-    // the one's samples, this share has the other's opposite face right behind it.
-    void merge_sides() {
-        struct Sides {
-            double share;
-            std::int32_t a, b;
-        };
-        std::map<std::pair<std::int32_t, std::int32_t>, double> share;
-        for (std::size_t k = 0; k < parent_.size(); ++k) {
-            const std::vector<std::int64_t>& behind = facts_.behind(k);
-            for (const std::int64_t at : behind)
-                if (at >= 0)
-                    share[{static_cast<std::int32_t>(k), r_.label[static_cast<std::size_t>(at)]}] +=
-                        1.0 / static_cast<double>(behind.size());
-        }
-        std::vector<Sides> sides;
-        for (const auto& [pair, value] : share) {
-            const auto back = share.find({pair.second, pair.first});
-            const double other = back == share.end() ? 0 : back->second;
-            // Each pair once, by the better of its two shares.
-            if (value < other || (value == other && pair.first > pair.second)) continue;
-            if (value >= options_.board_share) sides.push_back({value, pair.first, pair.second});
-        }
-        std::stable_sort(sides.begin(), sides.end(),
-                         [](const Sides& x, const Sides& y) { return x.share > y.share; });
-        for (const Sides& pair : sides) {
-            const std::int32_t a = root(pair.a), b = root(pair.b);
-            if (a != b && convex(a, b, options_.board_concavity_max)) join(a, b);
         }
     }
 

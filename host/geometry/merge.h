@@ -26,12 +26,6 @@ struct MergeOptions {
     double concavity_max = 0.12;
     // Points of each region that stand for it when the merged set's convexity is checked.
     std::uint32_t samples = 48;
-    // Opposite faces closer than this are the two sides of one board, metres, where this share of
-    // one face has the other right behind it.
-    double board_m = 0.06;
-    double board_share = 0.4;
-    // Largest concavity of a set that becomes one by being two sides of a board.
-    double board_concavity_max = 0.2;
     // Pieces of a level plane that bounds the scene (a floor or table among things) are one where
     // at most this share of the surfels around them lies below it; each holds at least this share
     // of all surfels.
@@ -97,12 +91,6 @@ double inside_share(const Surfels& surfels, const Regions& regions, const Border
 // Share of point pairs of two regions that no convex solid has both on its surface: one lies in
 // front of the other's surface, or free space lies between them.
 double concavity(const RegionSamples& a, const RegionSamples& b, const FreeSpace& free);
-
-// For each sample of a region the nearest surfel of another region right behind it, within
-// MergeOptions::board_m, whose surface faces the opposite way; -1 if none.
-std::vector<std::int64_t> surfels_behind(const Surfels& surfels, const Regions& regions,
-                                         const RegionSamples& samples, std::size_t region,
-                                         const MergeOptions& options);
 
 // Whether two planes are pieces of one face, parted by something that stands against it: the board
 // between two compartments of a shelf. The gap is covered in front and has nothing close behind.

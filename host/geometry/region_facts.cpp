@@ -21,7 +21,6 @@ void RegionFacts::update(const std::vector<std::int32_t>& changed) {
     const std::size_t count = cuts_.members.size();
     samples_.resize(count);
     box_.resize(count);
-    behind_.resize(count);
     touching_.resize(count);
     for (const std::int32_t k : changed) forget(k);
     threads_.each(changed.size(), 4, [&](std::size_t n) {
@@ -29,7 +28,6 @@ void RegionFacts::update(const std::vector<std::int32_t>& changed) {
         samples_[k] = sample_region(s_, cuts_, k, options_);
         box_[k].setEmpty();
         for (const std::uint32_t i : cuts_.members[k]) box_[k].extend(position(s_, i));
-        behind_[k] = surfels_behind(s_, cuts_.regions, samples_[k], k, options_);
     });
     find_borders(changed);
     find_face_pieces(changed);

@@ -37,8 +37,6 @@ class RegionFacts {
     device::ThreadPool& threads() const { return threads_; }
     // Pairs of planes that are pieces of one face (are_face_pieces()).
     const std::set<Pair>& face_pieces() const { return face_pieces_; }
-    // For each sample of region k the surfel right behind it that faces the opposite way, or -1.
-    const std::vector<std::int64_t>& behind(std::size_t k) const { return behind_[k]; }
     // Share of point pairs that no convex solid has both on its surface; 1 where a cut parts the
     // regions.
     double concavity(std::int32_t a, std::int32_t b);
@@ -55,7 +53,6 @@ class RegionFacts {
     device::ThreadPool& threads_;
     std::vector<RegionSamples> samples_;
     std::vector<Eigen::AlignedBox3d> box_;
-    std::vector<std::vector<std::int64_t>> behind_;
     std::vector<std::set<std::int32_t>> touching_;
     std::map<Pair, Border> borders_;
     std::set<Pair> face_pieces_;

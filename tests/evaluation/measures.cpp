@@ -64,8 +64,7 @@ Scanned scan_and_parse(const scenes::World& world, const MeasureOptions& options
         return {parse(scenes::clean_points(world, options.spacing_m), options.parse),
                 [](const Vec3& p) { return p; }};
     }
-    const scenes::Scan scan =
-        scenes::scan(world, options_of(world));
+    const scenes::Scan scan = scenes::scan(world, options_of(world));
     const scenes::TemporaryFolder folder("topple_measure");
     scenes::write_scan(folder.path(), world, scan, options_of(world), "measured");
     // Rigid: its transpose takes back.
@@ -152,9 +151,9 @@ MeasureScore measure(const scenes::MeasuredShape& shape, std::uint64_t seed,
     out.barrier = found->barrier_J / truth.barrier_J;
     out.barrier_sigmas = (found->barrier_J - truth.barrier_J) / found->barrier_error_J;
     const Vec3 center = scanned.to_room(found->center_of_mass_m);
-    out.center_m = std::hypot(center[0] - truth.center_of_mass_m[0],
-                              center[1] - truth.center_of_mass_m[1],
-                              center[2] - truth.center_of_mass_m[2]);
+    out.center_m =
+        std::hypot(center[0] - truth.center_of_mass_m[0], center[1] - truth.center_of_mass_m[1],
+                   center[2] - truth.center_of_mass_m[2]);
     return out;
 }
 

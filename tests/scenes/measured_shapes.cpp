@@ -65,7 +65,8 @@ void add_hull_points(const Part& part, std::vector<Vec3>& points) {
     const auto axes = part.axes();
     const auto add = [&](double x, double y, double z) {
         Vec3 p = part.center;
-        for (std::size_t a = 0; a < 3; ++a) p[a] += x * axes[0][a] + y * axes[1][a] + z * axes[2][a];
+        for (std::size_t a = 0; a < 3; ++a)
+            p[a] += x * axes[0][a] + y * axes[1][a] + z * axes[2][a];
         points.push_back(p);
     };
     const Vec3 half{part.size[0] / 2, part.size[1] / 2, part.size[2] / 2};

@@ -84,16 +84,6 @@ TEST(Merge, BoxesOfEqualHeightStayApart) {
     EXPECT_GT(parsed.of(scene, 2).share, 0.9);
 }
 
-TEST(Merge, TwoSidesOfABoardAreOneWithoutTheirEdge) {
-    Builder scene;
-    scene.face({0, 0, 0.5}, {1, 0, 0}, {0, 0.4, 0}, 0);
-    scene.face({0, 0, 0.46}, {0, 0.4, 0}, {1, 0, 0}, 0);
-    const Parsed parsed(scene);
-    EXPECT_GT(parsed.of(scene, 0).share, 0.98);
-    ASSERT_EQ(parsed.primitives.regions.size(), 1u);
-    EXPECT_EQ(parsed.primitives.regions[0].size(), 2u);
-}
-
 // The air between a shelf's boards is thin too, but their faces look at each other.
 TEST(Merge, FacesThatLookAtEachOtherStayApart) {
     Builder scene;

@@ -7,7 +7,7 @@
 #include "geometry/merge.h"
 #include "geometry/split.h"
 
-// Regions that belong together although the scan does not show them to touch.
+// Whether what several regions or surfels show is one surface.
 namespace topple::geometry {
 
 // Surfels are sorted by cell.
@@ -65,27 +65,6 @@ bool in_one_surface(const Surfels& surfels, const PrimitiveSet& primitives, std:
         return false;
     const double bound = 2 * std::max(ra.residual_m, rb.residual_m) + 0.25 * surfels.cell_m;
     return std::abs(distance(ra.model, q)) <= bound && std::abs(distance(rb.model, p)) <= bound;
-}
-
-std::vector<std::int64_t> surfels_behind(const Surfels& s, const Regions& regions,
-                                         const RegionSamples& samples, std::size_t region,
-                                         const MergeOptions& options) {
-    constexpr double opposite = -0.7;  // cosine
-    std::vector<std::int64_t> out;
-    for (std::size_t m = 0; m < samples.points.size(); ++m) {
-        const Eigen::Vector3d &p = samples.points[m], &n = samples.normals[m];
-        std::int64_t found = -1;
-        for (double t = 0.5 * s.cell_m; t <= options.board_m && found < 0; t += 0.5 * s.cell_m) {
-            const std::int64_t at = surfel_at(s, p - t * n);
-            if (at < 0) continue;
-            const auto i = static_cast<std::size_t>(at);
-            const std::int32_t label = regions.label[i];
-            if (label < 0 || static_cast<std::size_t>(label) == region) continue;
-            if (n.dot(Eigen::Vector3d(s.nx[i], s.ny[i], s.nz[i])) < opposite) found = at;
-        }
-        out.push_back(found);
-    }
-    return out;
 }
 
 std::vector<std::pair<std::int32_t, std::int32_t>> find_level_pieces(
