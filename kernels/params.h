@@ -92,6 +92,12 @@ STRUCT(SegmentedSumParams) {
     int origin_k;
 } STRUCT_END(SegmentedSumParams)
 
+// cell_share
+STRUCT(CellShareParams) {
+    uint cell_count;
+    float voxel_m;
+} STRUCT_END(CellShareParams)
+
 // group_landscape
 STRUCT(LandscapeParams) {
     uint candidate_count;

@@ -42,9 +42,11 @@ void add(const SolidCells& from, std::size_t n, SolidCells& to) {
 
 }  // namespace
 
-SolidScene::SolidScene(SolidCells cells, std::vector<Role> roles, SolidCells strays)
+SolidScene::SolidScene(SolidCells cells, std::vector<Role> roles, SolidCells strays,
+                       BoundaryCells boundary)
     : cells_(std::move(cells)),
       strays_(std::move(strays)),
+      boundary_(std::move(boundary)),
       columns_(cells_),
       roles_(std::move(roles)) {
     check(cells_, roles_.size());

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/boundary_cells.h"
 #include "core/cell_columns.h"
 #include "core/role.h"
 #include "core/solid_cells.h"
@@ -18,10 +19,13 @@ class SolidScene {
     // cells: sorted by (i, j, k). roles: by primitive. strays: cells far from all others, sorted;
     // they are solid, but no primitive's, and in nobody's way. Throws Error(usage) for cells that
     // are not sorted, whose arrays differ in length, or whose primitive has no role.
-    SolidScene(SolidCells cells, std::vector<Role> roles, SolidCells strays = {});
+    // boundary: what bounds the solids within voxels; none: all cells are solid as wholes.
+    SolidScene(SolidCells cells, std::vector<Role> roles, SolidCells strays = {},
+               BoundaryCells boundary = {});
 
     double voxel_m() const { return cells_.voxel_m; }
     const SolidCells& cells() const { return cells_; }
+    const BoundaryCells& boundary() const { return boundary_; }
     const CellColumns& columns() const { return columns_; }
     std::size_t primitives() const { return roles_.size(); }
     Role role(std::int32_t primitive) const { return role_of(roles_, primitive); }
@@ -33,6 +37,7 @@ class SolidScene {
 
   private:
     SolidCells cells_, strays_;
+    BoundaryCells boundary_;
     CellColumns columns_;
     std::vector<Role> roles_;
 };

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "physics/tipping.h"
+#include "solids/cell_shape.h"
 
 namespace topple::graph {
 namespace {
@@ -49,10 +50,44 @@ void add_silhouettes(const SolidCells& cells, std::span<const std::int32_t> u,
             static_cast<double>(lines[p]) * (cells.voxel_m * cells.voxel_m);
 }
 
+void add_corners(std::int32_t i, std::int32_t j, double h,
+                 std::vector<std::array<double, 2>>& corners) {
+    for (const int di : {0, 1}) {
+        for (const int dj : {0, 1}) corners.push_back({(i + di) * h, (j + dj) * h});
+    }
+}
+
 struct Columns {
     std::vector<std::array<double, 2>> corners;
     std::uint64_t count = 0;
     double height_sum = 0;
+};
+
+// The outlines of undersides: of the surfaces that bound them within voxels.
+class Shapes {
+  public:
+    Shapes(const BoundaryCells& boundary, double voxel_m)
+        : boundary_(boundary), voxel_m_(voxel_m) {}
+    // Of a primitive's lowest cell in a column. Returns its height, or else `coarse_m`.
+    double add(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive,
+               double coarse_m, std::vector<std::array<double, 2>>& corners) const {
+        if (boundary_.size() == 0) {
+            add_corners(i, j, voxel_m_, corners);
+            return coarse_m;
+        }
+        double sum = 0;
+        const std::vector<Vec3> own =
+            solids::underside_of(boundary_, i, j, k, primitive, voxel_m_);
+        for (const Vec3& c : own) {
+            corners.push_back({c[0], c[1]});
+            sum += c[2];
+        }
+        return own.empty() ? coarse_m : sum / static_cast<double>(own.size());
+    }
+
+  private:
+    const BoundaryCells& boundary_;
+    double voxel_m_;
 };
 
 std::pair<std::int32_t, std::int32_t> ends(const physics::TouchingPair& pair) {
@@ -106,13 +141,6 @@ struct Underside {
     std::int32_t i, j, lowest, unseen;
 };
 
-void add_corners(std::int32_t i, std::int32_t j, double h,
-                 std::vector<std::array<double, 2>>& corners) {
-    for (const int di : {0, 1}) {
-        for (const int dj : {0, 1}) corners.push_back({(i + di) * h, (j + dj) * h});
-    }
-}
-
 // The convex hull of a primitive's columns, seen from above: it may go on where it is hidden, but
 // not beyond that.
 std::vector<std::array<double, 2>> outline_of(const std::vector<Underside>& columns, double h) {
@@ -124,19 +152,24 @@ std::vector<std::array<double, 2>> outline_of(const std::vector<Underside>& colu
 // The columns that may rest on a surface at this height, within its outline if that is known:
 // unseen from their underside down to it, or, where they end at it, for some way on: else it is air
 // that they end in.
-void add_hidden_corners(const std::vector<Underside>& undersides, double height_m,
+std::uint64_t add_hidden_corners(const std::vector<Underside>& undersides, double height_m,
                         const std::vector<std::array<double, 2>>& outline, double h,
+                        std::int32_t primitive, const Shapes& shapes,
                         std::vector<std::array<double, 2>>& corners) {
     const auto within = [&](const Underside& u) {
         return outline.empty() ||
                physics::footing(outline, (u.i + 0.5) * h, (u.j + 0.5) * h).margin_m > 0;
     };
     const double surface = height_m / h;
+    std::uint64_t columns = 0;
     for (const Underside& u : undersides) {
         const double above = u.lowest - surface;
-        if (above >= -1.5 && u.unseen >= std::max(above - 0.5, 2.0) && within(u))
-            add_corners(u.i, u.j, h, corners);
+        const bool rests = above >= -1.5 && u.unseen >= std::max(above - 0.5, 2.0) && within(u);
+        if (rests)
+            shapes.add(u.i, u.j, u.lowest, primitive, height_m, corners);
+        columns += rests;
     }
+    return columns;
 }
 
 // Solid that belongs to no primitive is mostly noise: it carries what rests on it with this share
@@ -146,7 +179,8 @@ constexpr double least_on_scraps = 0.15;
 // What is not seen to hang, and is not seen to stand either, stands on the highest level surface
 // under it: others hide its foot, and it hides its shadow on the table.
 void add_hidden_carryings(const std::vector<std::vector<Underside>>& undersides,
-                          const std::vector<Extent>& extents, double h, ContactGraph& graph) {
+                          const std::vector<Extent>& extents, double h, const Shapes& shapes,
+                          ContactGraph& graph) {
     constexpr double least_hidden = 0.5;  // share of the columns below which nobody has seen
     std::vector<Carrying> found;
     for (std::int32_t p = 0; p < graph.primitives; ++p) {
@@ -166,8 +200,8 @@ void add_hidden_carryings(const std::vector<std::vector<Underside>>& undersides,
         }
         if (best.supporter < 0) continue;
         std::vector<std::array<double, 2>> corners;
-        add_hidden_corners(own, best.height_m, {}, h, corners);
-        const double columns = static_cast<double>(corners.size()) / 4;
+        const auto columns = static_cast<double>(
+            add_hidden_corners(own, best.height_m, {}, h, p, shapes, corners));
         if (columns < least_hidden * static_cast<double>(own.size())) continue;
         best.supported = p;
         best.area_m2 = columns * h * h;
@@ -248,7 +282,8 @@ std::span<const Leaning> ContactGraph::leanings_of(std::int32_t primitive) const
 }
 
 ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells,
-                                 std::int32_t primitives, unsigned gap) {
+                                 std::int32_t primitives, unsigned gap,
+                                 const BoundaryCells& boundary) {
     ContactGraph graph;
     graph.primitives = primitives;
     graph.voxel_m = cells.voxel_m;
@@ -264,6 +299,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     add_silhouettes(cells, cells.i, cells.j, 2, graph);
 
     const double h = cells.voxel_m;
+    const Shapes shapes(boundary, h);
     std::map<std::pair<std::int32_t, std::int32_t>, Columns> carried;  // (supported, supporter)
     std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, std::uint64_t> gaps;
     std::map<std::pair<std::int32_t, std::int32_t>, std::uint64_t> hidden;
@@ -295,8 +331,8 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         if (empty > static_cast<std::int32_t>(gap)) continue;
         Columns& columns = carried[{upper, lower}];
         ++columns.count;
-        columns.height_sum += (cells.k[n - 1] + 1) * h;
-        add_corners(cells.i[n], cells.j[n], h, columns.corners);
+        columns.height_sum += shapes.add(cells.i[n], cells.j[n], cells.k[n], upper,
+                                         (cells.k[n - 1] + 1) * h, columns.corners);
     }
     std::vector<std::vector<std::array<double, 2>>> outlines(count);  // of those asked for
     for (std::size_t p = 0; p < count; ++p)
@@ -315,13 +351,13 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
             const auto below = static_cast<std::size_t>(supporter);
             if (outlines[below].empty()) outlines[below] = outline_of(undersides[below], h);
             add_hidden_corners(undersides[static_cast<std::size_t>(supported)], height,
-                               outlines[below], h, columns.corners);
+                               outlines[below], h, supported, shapes, columns.corners);
         }
         graph.carryings.push_back(
             {supporter, supported, area * h * h, height, physics::convex_polygon(columns.corners)});
     }
     add_leanings(graph);
-    add_hidden_carryings(undersides, extents, h, graph);
+    add_hidden_carryings(undersides, extents, h, shapes, graph);
     add_hidden_joints(device, cells, primitives, hidden, graph);
     for (const auto& [key, columns] : gaps) {
         const auto& [upper, lower, empty] = key;

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "physics/tipping.h"
+#include "solids/cell_shape.h"
 
 namespace topple::graph {
 namespace {
@@ -20,10 +21,9 @@ constexpr double often_near = 0.3, often_leaning = 0.1, often_hidden = 0.03;
 constexpr double often_hung = 0.05;
 constexpr std::int32_t uneven_foot = 2;  // voxels
 
-void add_corners(const Underside& u, double h, Points& points) {
-    for (const int di : {0, 1}) {
-        for (const int dj : {0, 1}) points.push_back({(u.i + di) * h, (u.j + dj) * h});
-    }
+void add_corners(const Underside& u, double h, const BoundaryCells& boundary, Points& points) {
+    for (const Vec3& c : solids::underside_of(boundary, u.i, u.j, u.k, u.own, h))
+        points.push_back({c[0], c[1]});
 }
 
 double margin_of(const physics::Candidate& c, const Points& polygon) {
@@ -115,13 +115,13 @@ std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
             continue;
         columns.push_back({cells.i[n], cells.j[n], cells.k[n],
                            below ? cells.k[n] - cells.k[n - 1] - 1 : -1,
-                           below ? cells.primitive[n - 1] : -1});
+                           below ? cells.primitive[n - 1] : -1, cells.primitive[n]});
     }
     return out;
 }
 
 Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& columns,
-                const ContactGraph& contacts, double noise_m) {
+                const ContactGraph& contacts, double noise_m, const BoundaryCells& boundary) {
     if (columns.empty()) return {RestKind::none, 1, {}, 0, 0};
     const double h = contacts.voxel_m;
     std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
@@ -133,10 +133,10 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
     double near_height = held ? c.support_height_m : std::numeric_limits<double>::infinity();
     for (const Underside& u : columns) {
         if (u.gap >= 0 && u.gap <= noise_gap) {
-            add_corners(u, h, near);
+            add_corners(u, h, boundary, near);
             near_height = std::min(near_height, (u.k - u.gap) * h);
         }
-        if (u.k <= lowest + uneven_foot) add_corners(u, h, hidden);
+        if (u.k <= lowest + uneven_foot) add_corners(u, h, boundary, hidden);
     }
     Points leaning = near;
     for (const std::int32_t p : c.primitives) {
@@ -147,7 +147,7 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
     }
     const double height = std::isfinite(near_height) ? near_height : low_m;
     Points whole;
-    for (const Underside& u : columns) add_corners(u, h, whole);
+    for (const Underside& u : columns) add_corners(u, h, boundary, whole);
     whole = physics::convex_polygon(std::move(whole));
     const double widest = std::max(margin_of(c, whole), noise_m);
     struct Way {

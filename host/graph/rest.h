@@ -22,6 +22,7 @@ struct Underside {
     std::int32_t i, j, k;    // the lowest cell
     std::int32_t gap;        // empty cells down to the next solid of another object; -1: none
     std::int32_t primitive;  // of that solid; -1: of none
+    std::int32_t own;        // primitive of the lowest cell
 };
 // By object, sorted by (i, j, k).
 std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
@@ -53,8 +54,9 @@ struct Rest {
 // The likeliest way in which a body stands: of each, how often scans miss so much of a support,
 // times the likelihood that a body stands so far from its border: of a margin as a share of what it
 // would be if all of the body were held. candidate: with the contacts that were seen.
-// noise_m: what the border of a support is known to, one standard error.
+// noise_m: what the border of a support is known to, one standard error. boundary: what bounds the
+// columns' cells, if that is known.
 Rest infer_rest(const physics::Candidate& candidate, const std::vector<Underside>& columns,
-                const ContactGraph& contacts, double noise_m);
+                const ContactGraph& contacts, double noise_m, const BoundaryCells& boundary = {});
 
 }  // namespace topple::graph

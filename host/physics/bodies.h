@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/boundary_cells.h"
 #include "core/solid_cells.h"
 #include "device/device.h"
 #include "topple/input.h"
@@ -15,15 +16,17 @@ namespace topple::physics {
 
 // Mass properties of one primitive or of a group of them.
 struct Body {
-    std::uint64_t voxels = 0;
+    std::uint64_t voxels = 0;  // that are it for the most part
     double volume_m3 = 0, mass_kg = 0;
     Vec3 center{};  // centre of mass
 };
 
-// Mass properties of `count` labels over the cells (kernel segmented_sum; exact integer sums).
+// Mass properties of `count` labels over the cells (kernel segmented_sum; exact integer sums), of
+// which those of `boundary` count with their shares. Sorted by (i, j, k) where there are any.
 // density_kg_m3: one value per label.
 std::vector<Body> mass_properties(device::Device& device, const SolidCells& cells,
-                                  std::int32_t count, std::span<const double> density_kg_m3);
+                                  std::int32_t count, std::span<const double> density_kg_m3,
+                                  const BoundaryCells& boundary = {});
 
 Body combine(std::span<const Body> bodies);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 
 #include "device/queue.h"
 #include "physics/bodies.h"
@@ -18,7 +19,44 @@ constexpr std::size_t slab_cells = std::size_t{1} << 23;  // 32 MiB per array, w
 
 struct Moments {
     std::uint64_t cells = 0, i = 0, j = 0, k = 0;
+    // Of shares of voxels: 4096ths of voxels, and their moments about the scene's lowest corner in
+    // those times quarters of an edge.
+    std::uint64_t shares = 0, parts = 0;
+    std::array<std::int64_t, 3> part_moment{};
 };
+
+// The cells that are not in the boundary, with their labels; the others have none.
+SolidCells whole_cells(const SolidCells& cells, const BoundaryCells& boundary,
+                       std::vector<Moments>& moments) {
+    SolidCells out = cells;
+    std::size_t n = 0;
+    for (std::size_t b = 0; b < boundary.size(); ++b) {
+        const std::tuple at(boundary.i[b], boundary.j[b], boundary.k[b]);
+        while (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
+        if (n == cells.size()) break;
+        if (std::tie(cells.i[n], cells.j[n], cells.k[n]) != at ||
+            cells.primitive[n] != boundary.primitive[b])
+            continue;
+        out.primitive[n] = -1;
+        ++moments[static_cast<std::size_t>(cells.primitive[n])].parts;
+    }
+    return out;
+}
+
+void add_shares(const BoundaryCells& boundary, const std::array<std::int32_t, 3>& origin,
+                std::vector<Moments>& moments) {
+    constexpr std::int64_t steps = 4;  // of an edge
+    const std::vector<std::int32_t>* axes[3] = {&boundary.i, &boundary.j, &boundary.k};
+    for (std::size_t b = 0; b < boundary.size(); ++b) {
+        Moments& m = moments[static_cast<std::size_t>(boundary.primitive[b])];
+        m.shares += boundary.share[b];
+        for (std::size_t a = 0; a < 3; ++a) {
+            const std::int64_t middle =
+                (std::int64_t{(*axes[a])[b]} - origin[a]) * steps + steps / 2;
+            m.part_moment[a] += std::int64_t{boundary.share[b]} * middle + boundary.moment[a][b];
+        }
+    }
+}
 
 void check_cells(const SolidCells& cells, std::int32_t count) {
     const std::size_t n = cells.size();
@@ -104,7 +142,8 @@ void add_slab(device::Device& device, const SolidCells& cells, std::size_t begin
 }  // namespace
 
 std::vector<Body> mass_properties(device::Device& device, const SolidCells& cells,
-                                  std::int32_t count, std::span<const double> density_kg_m3) {
+                                  std::int32_t count, std::span<const double> density_kg_m3,
+                                  const BoundaryCells& boundary) {
     if (count < 0 || density_kg_m3.size() != static_cast<std::size_t>(count)) {
         throw Error(ErrorKind::usage, "mass_properties: " + std::to_string(density_kg_m3.size()) +
                                           " densities for " + std::to_string(count) + " labels");
@@ -114,21 +153,30 @@ std::vector<Body> mass_properties(device::Device& device, const SolidCells& cell
     check_cells(cells, count);
     const std::array<std::int32_t, 3> origin = origin_of(cells);
     std::vector<Moments> moments(bodies.size());
+    const bool parted = boundary.size() > 0;
+    const SolidCells whole = parted ? whole_cells(cells, boundary, moments) : SolidCells{};
     for (std::size_t begin = 0; begin < cells.size(); begin += slab_cells) {
-        add_slab(device, cells, begin, std::min(begin + slab_cells, cells.size()), origin, moments);
+        add_slab(device, parted ? whole : cells, begin, std::min(begin + slab_cells, cells.size()),
+                 origin, moments);
     }
+    add_shares(boundary, origin, moments);
     const double voxel = cells.voxel_m;
     for (std::size_t l = 0; l < bodies.size(); ++l) {
         const Moments& m = moments[l];
-        if (m.cells == 0) continue;
+        if (m.cells == 0 && m.shares == 0) continue;
         Body& body = bodies[l];
-        body.voxels = m.cells;
-        body.volume_m3 = static_cast<double>(m.cells) * voxel * voxel * voxel;
+        body.voxels = m.cells + m.parts;
+        const double parts = static_cast<double>(m.shares) / BoundaryCells::whole;
+        const double volume = static_cast<double>(m.cells) + parts;
+        body.volume_m3 = volume * voxel * voxel * voxel;
         body.mass_kg = body.volume_m3 * density_kg_m3[l];
         const std::uint64_t sums[3] = {m.i, m.j, m.k};
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double mean = static_cast<double>(sums[axis]) / static_cast<double>(m.cells);
-            body.center[axis] = (mean + origin[axis] + 0.5) * voxel;
+            const double whole_moment =
+                static_cast<double>(sums[axis]) + 0.5 * static_cast<double>(m.cells);
+            const double moment = static_cast<double>(m.part_moment[axis]) /
+                                  (4.0 * BoundaryCells::whole);
+            body.center[axis] = ((whole_moment + moment) / volume + origin[axis]) * voxel;
         }
     }
     return bodies;

@@ -10,6 +10,7 @@
 #include "geometry/primitive_shapes.h"
 #include "physics/body_landscape.h"
 #include "physics/drop.h"
+#include "physics/solid_hulls.h"
 
 namespace topple {
 namespace {
@@ -44,7 +45,8 @@ std::vector<graph::Joint> find_joints(const SolidParts& parts, const graph::Cont
 }
 
 // Objects by group, the ground first.
-void collect_objects(const SolidCells& cells, const std::vector<bool>& shell, ObjectStage& out) {
+void collect_objects(const SolidCells& cells, const BoundaryCells& boundary,
+                     const std::vector<bool>& shell, ObjectStage& out) {
     const std::vector<std::int32_t>& group = out.grouping.group;
     const bool has_ground = std::find(group.begin(), group.end(), -1) != group.end();
     std::int32_t objects = 0;
@@ -66,7 +68,7 @@ void collect_objects(const SolidCells& cells, const std::vector<bool>& shell, Ob
         if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
         if (!object.grounded) {
             graph::Rest rest = graph::infer_rest(object.candidate, columns[o], out.contacts,
-                                                 border_noise * cells.voxel_m);
+                                                 border_noise * cells.voxel_m, boundary);
             object.rest = rest.kind;
             object.rest_probability = rest.probability;
             object.margin_error_m = rest.margin_error_m;
@@ -101,14 +103,12 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
     std::vector<physics::Body> bodies =
         stage("bodies", [&] { return physics::mass_properties(device, cells, count, density); });
     graph::ContactGraph contacts =
-        stage("contacts", [&] { return graph::build_contact_graph(device, cells, count); });
-    physics::SupportTable table = stage("supports", [&] {
-        return physics::SupportTable(device, cells, count,
-                                     physics::geodesic_sphere(sphere_frequency));
-    });
+        stage("contacts", [&] {
+            return graph::build_contact_graph(device, cells, count, 1, parts.solids->boundary());
+        });
     std::vector<graph::Joint> joints =
         stage("joints", [&] { return find_joints(parts, contacts, bodies); });
-    return {std::move(bodies), std::move(contacts), std::move(table), std::move(joints),
+    return {std::move(bodies), std::move(contacts), std::move(joints),
             shell_odds(parts.shell_log_odds)};
 }
 
@@ -170,19 +170,31 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
                          const ParseOptions& options, StageClock& stage) {
     ObjectStage out;
     PartStage parts = weigh_parts(device, solid, options, stage);
-    out.bodies = std::move(parts.bodies);
     out.contacts = std::move(parts.contacts);
-    const physics::SupportTable& table = parts.table;
     stage("grouping", [&] {
         graph::GroupingOptions grouping;
         grouping.seed = options.seed;
         grouping.time_limit_s = options.grouping_time_s.value_or(0);
         grouping.cancelled = options.cancelled;
-        out.grouping = graph::group_primitives(out.contacts, out.bodies, parts.joints, parts.shell,
+        out.grouping = graph::group_primitives(out.contacts, parts.bodies, parts.joints, parts.shell,
                                                grouping, device.threads().threads());
     });
+    const SolidCells& cells = solid.solids->cells();
+    const BoundaryCells& boundary = solid.solids->boundary();
+    out.bodies = stage("masses", [&] {
+        const std::vector<double> density(solid.model.size(), options.density_kg_m3);
+        return physics::mass_properties(device, cells, static_cast<std::int32_t>(density.size()),
+                                        density, boundary);
+    });
+    const physics::SupportTable table = stage("supports", [&] {
+        std::vector<bool> loose;
+        for (const std::int32_t g : out.grouping.group) loose.push_back(g >= 0);
+        return physics::SupportTable(
+            device, physics::solid_hulls(cells, boundary, loose, device.threads()), cells.voxel_m,
+            physics::geodesic_sphere(sphere_frequency));
+    });
     stage("barriers", [&] {
-        collect_objects(solid.solids->cells(), parts.shell.pinned, out);
+        collect_objects(cells, boundary, parts.shell.pinned, out);
         find_barriers(device, table, *solid.solids, out.object_of_primitive, options.friction,
                       out.objects);
     });

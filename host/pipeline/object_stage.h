@@ -53,7 +53,6 @@ struct ObjectStage {
 struct PartStage {
     std::vector<physics::Body> bodies;  // by primitive
     graph::ContactGraph contacts;
-    physics::SupportTable table;
     std::vector<graph::Joint> joints;
     graph::ShellOdds shell;
 };

@@ -10,6 +10,8 @@
 #include "device/native/thread_pool.h"
 #include "geometry/ledges.h"
 #include "pipeline/view_coverage.h"
+#include "solids/boundary.h"
+#include "solids/patches.h"
 #include "vdb/completion.h"
 
 namespace topple {
@@ -70,8 +72,34 @@ std::vector<std::uint8_t> unseen_below(const vdb::VolumeView& view, std::span<co
     return out;
 }
 
+// What bounds the solids within their voxels: the faces of the primitives.
+BoundaryCells find_boundary(device::Device& device, const Ingested& input,
+                            const GeometryStage& geometry, const std::vector<std::int32_t>& number,
+                            const SolidCells& cells) {
+    const geometry::Regions& faces = geometry.primitives.faces;
+    std::vector<std::int32_t> face_of_point;
+    face_of_point.reserve(input.cloud.size());
+    for (const std::uint32_t s : geometry.surfels.of_point)
+        face_of_point.push_back(faces.label[s]);
+    std::vector<SurfacePatch> patches = solids::fit_patches(
+        input.cloud, faces.regions, face_of_point, geometry.frame.axes, device.threads());
+    const solids::SeenCells seen =
+        solids::seen_cells(input.cloud, numbered(geometry.primitive_of_point, number),
+                           face_of_point, geometry.frame.axes, cells.voxel_m);
+    std::vector<solids::KnownRest> rests;
+    for (const vdb::StandsOn& on : ledges(geometry)) {
+        const std::int32_t above = number[static_cast<std::size_t>(on.above)],
+                           below = number[static_cast<std::size_t>(on.below)];
+        if (above >= 0 && below >= 0) rests.push_back({above, below, on.height_m});
+    }
+    return solids::find_boundary(device, cells, seen, std::move(patches), rests);
+}
+
 // Strays are no body, and in no way.
-std::shared_ptr<const SolidScene> solid_scene(const vdb::VoxelScene& volume, SolidCells cells,
+std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Ingested& input,
+                                              const GeometryStage& geometry,
+                                              const std::vector<std::int32_t>& number,
+                                              const vdb::VoxelScene& volume, SolidCells cells,
                                               std::vector<Role> roles) {
     cells.unseen_below = unseen_below(vdb::VolumeView(volume, cells, roles), roles);
     SolidCells near, strays;
@@ -86,7 +114,9 @@ std::shared_ptr<const SolidScene> solid_scene(const vdb::VoxelScene& volume, Sol
         to.basis.push_back(cells.basis[n]);
         to.unseen_below.push_back(cells.unseen_below[n]);
     }
-    return std::make_shared<const SolidScene>(std::move(near), std::move(roles), std::move(strays));
+    BoundaryCells boundary = find_boundary(device, input, geometry, number, near);
+    return std::make_shared<const SolidScene>(std::move(near), std::move(roles), std::move(strays),
+                                              std::move(boundary));
 }
 
 // Returns whether the frames show the scene from around.
@@ -163,7 +193,8 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, const Geom
         std::vector<Role> roles;
         for (std::size_t p = 0; p < geometry.role.size(); ++p)
             if (out.number[p] >= 0) roles.push_back(geometry.role[p]);
-        out.solids = solid_scene(*out.scene, std::move(cells), std::move(roles));
+        out.solids = solid_scene(device, input, geometry, out.number, *out.scene,
+                                 std::move(cells), std::move(roles));
     });
     return out;
 }

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "core/boundary_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace topple {
+
+double SurfacePatch::value(const Vec3& p) const {
+    const double u = p[0] - origin[0], v = p[1] - origin[1], w = p[2] - origin[2];
+    return c[0] + c[1] * u + c[2] * v + c[3] * w + c[4] * u * u + c[5] * v * v + c[6] * w * w +
+           c[7] * u * v + c[8] * u * w + c[9] * v * w;
+}
+
+Vec3 SurfacePatch::gradient(const Vec3& p) const {
+    const double u = p[0] - origin[0], v = p[1] - origin[1], w = p[2] - origin[2];
+    return {c[1] + 2 * c[4] * u + c[7] * v + c[8] * w, c[2] + 2 * c[5] * v + c[7] * u + c[9] * w,
+            c[3] + 2 * c[6] * w + c[8] * u + c[9] * v};
+}
+
+double SurfacePatch::distance(const Vec3& p) const {
+    // On a tube's axis the gradient vanishes.
+    constexpr double least = 0.2;
+    const Vec3 g = gradient(p);
+    return value(p) / std::max(std::hypot(g[0], g[1], g[2]), least);
+}
+
+bool SurfacePatch::flat() const {
+    return std::all_of(c.begin() + 4, c.end(), [](double v) { return v == 0; });
+}
+
+bool BoundaryCells::solid(std::size_t n, const Vec3& p, double slack_m) const {
+    const bool any = any_group(n);
+    if (slots_used(n) == 0) return !any;
+    bool own = false, all = true, one = false, group_all = true, group_one = false;
+    for (std::size_t s = 0; s < slots_used(n); ++s) {
+        const SlotUse u = use(n, s);
+        double d = patches[slot[s][n]].distance(p);
+        if (u.outside) d = -d;
+        const bool in = d <= slack_m;
+        if (u.bounds) {
+            if (!in) return false;
+            continue;
+        }
+        own = true;
+        group_all = group_all && in;
+        group_one = group_one || in;
+        if (!u.last) continue;
+        all = all && group_one;
+        one = one || group_all;
+        group_all = true;
+        group_one = false;
+    }
+    return !own || (any ? one : all);
+}
+
+std::size_t BoundaryCells::find(std::int32_t vi, std::int32_t vj, std::int32_t vk,
+                                std::int32_t p) const {
+    const std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t> wanted{vi, vj, vk, p};
+    std::size_t low = 0, high = size();
+    while (low < high) {
+        const std::size_t middle = (low + high) / 2;
+        if (std::tie(i[middle], j[middle], k[middle], primitive[middle]) < wanted)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    if (low == size() || std::tie(i[low], j[low], k[low], primitive[low]) != wanted) return absent;
+    return low;
+}
+
+std::uint32_t make_form(bool any_group, const std::array<SlotUse, BoundaryCells::slots>& uses,
+                        std::size_t used) {
+    auto form = static_cast<std::uint32_t>(used) | (any_group ? 8U : 0U);
+    for (std::size_t s = 0; s < used; ++s) {
+        const std::uint32_t bits =
+            (uses[s].outside ? 1U : 0U) | (uses[s].last ? 2U : 0U) | (uses[s].bounds ? 4U : 0U);
+        form |= bits << (4 + 3 * s);
+    }
+    return form;
+}
+
+}  // namespace topple

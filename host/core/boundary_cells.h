@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "topple/scene.h"
+
+namespace topple {
+
+// A piece of a primitive's surface: where f(p) = c0 + c1 u + c2 v + c3 w + c4 uu + c5 vv + c6 ww
+// + c7 uv + c8 uw + c9 vw is 0, (u, v, w) = p - origin; f < 0 is solid, |grad f| about 1, so that
+// |f| is close to the distance in metres near the surface (paper, Eqs. 1-2). Grid frame.
+struct SurfacePatch {
+    Vec3 origin{};
+    std::array<double, 10> c{};
+    double noise_m = 0;   // standard deviation of its points about it
+    double offset_m = 0;  // standard error of where it lies along its normal
+
+    double value(const Vec3& p) const;
+    Vec3 gradient(const Vec3& p) const;
+    double distance(const Vec3& p) const;  // signed, to first order
+    bool flat() const;
+};
+
+// How one patch bounds what is solid in a voxel. Slots that are no bounds form groups, each of
+// slots in a row that ends with `last`.
+struct SlotUse {
+    bool outside = false;  // what is outside of the patch is meant
+    bool last = false;
+    bool bounds = false;  // it bounds all, whatever the groups say
+};
+
+// What bounds solids within voxels, finer than these: for each primitive and each voxel through
+// which its surface passes the patches that do, and the part of the voxel that is the primitive's.
+// Two primitives may share a voxel. A primitive's voxel that is not here is solid as a whole.
+// Sorted by (i, j, k, primitive).
+struct BoundaryCells {
+    static constexpr std::size_t slots = 4;       // patches of a voxel at most
+    static constexpr std::uint32_t whole = 4096;  // share of a voxel that is all solid
+
+    std::vector<SurfacePatch> patches;
+    std::vector<std::int32_t> i, j, k, primitive;
+    std::array<std::vector<std::uint32_t>, slots> slot;  // patches
+    std::vector<std::uint32_t> form;                     // see make_form()
+    std::vector<std::uint32_t> share;                    // 4096ths of the voxel
+    // Of the share about the voxel's middle, in quarters of its edge: kernel cell_share.
+    std::array<std::vector<std::int32_t>, 3> moment;
+
+    std::size_t size() const { return i.size(); }
+    std::uint32_t slots_used(std::size_t n) const { return form[n] & 7; }
+    // Whether one group suffices for being solid and all members of it must agree; else all groups
+    // must agree, and one member of each suffices. Of a voxel without slots nothing or all is solid.
+    bool any_group(std::size_t n) const { return form[n] >> 3 & 1; }
+    SlotUse use(std::size_t n, std::size_t s) const {
+        const std::uint32_t bits = form[n] >> (4 + 3 * s);
+        return {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0};
+    }
+    // Whether p, a point in voxel n or on its border, is solid; patches count as slack_m wider.
+    bool solid(std::size_t n, const Vec3& p, double slack_m) const;
+    static constexpr std::size_t absent = ~std::size_t{0};
+    std::size_t find(std::int32_t vi, std::int32_t vj, std::int32_t vk, std::int32_t p) const;
+};
+
+// The word that kernel cell_share reads.
+std::uint32_t make_form(bool any_group, const std::array<SlotUse, BoundaryCells::slots>& uses,
+                        std::size_t used);
+
+}  // namespace topple

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "physics/solid_hulls.h"
+
+#include <tuple>
+#include <utility>
+
+#include "physics/qhull.h"
+#include "physics/support_rows.h"
+#include "solids/cell_shape.h"
+
+namespace topple::physics {
+
+std::vector<std::vector<Vec3>> solid_hulls(const SolidCells& cells, const BoundaryCells& boundary,
+                                           const std::vector<bool>& wanted,
+                                           device::ThreadPool& threads) {
+    SolidCells whole = cells;
+    std::vector<std::vector<std::size_t>> parts(wanted.size());
+    std::size_t n = 0;
+    for (std::size_t b = 0; b < boundary.size(); ++b) {
+        const auto p = static_cast<std::size_t>(boundary.primitive[b]);
+        if (wanted[p]) parts[p].push_back(b);
+        const std::tuple at(boundary.i[b], boundary.j[b], boundary.k[b]);
+        while (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
+        if (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) == at &&
+            cells.primitive[n] == boundary.primitive[b])
+            whole.primitive[n] = -1;
+    }
+    for (std::int32_t& p : whole.primitive)
+        if (p >= 0 && !wanted[static_cast<std::size_t>(p)]) p = -1;
+    const auto coarse = voxel_hulls(whole, static_cast<std::int32_t>(wanted.size()));
+    std::vector<std::vector<Vec3>> out(wanted.size());
+    threads.each(wanted.size(), 1, [&](std::size_t p) {
+        const double h = cells.voxel_m;
+        std::vector<Vec3> points;
+        for (const auto& c : coarse[p]) points.push_back({c[0] * h, c[1] * h, c[2] * h});
+        for (const std::size_t b : parts[p]) {
+            const std::vector<Vec3> corners = solids::corners_of(boundary, b, h);
+            points.insert(points.end(), corners.begin(), corners.end());
+        }
+        if (points.size() > 4) {
+            if (const auto hull = convex_hull(points)) {
+                for (const std::uint32_t v : hull->vertices) out[p].push_back(points[v]);
+                return;
+            }
+        }
+        out[p] = std::move(points);
+    });
+    return out;
+}
+
+}  // namespace topple::physics

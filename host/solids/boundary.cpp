@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "solids/boundary.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "solids/combine.h"
+
+namespace topple::solids {
+namespace {
+
+using Key = std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t>;
+
+// Gathers what was seen of a primitive in the 27 voxels around one; voxels must come sorted.
+class Around {
+  public:
+    explicit Around(const SeenCells& seen) : seen_(seen) {}
+
+    // Adds up by patch; `out` is emptied first.
+    void gather(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t p,
+                std::vector<SeenPatch>& out) {
+        out.clear();
+        for (std::size_t column = 0; column < 9; ++column) {
+            const std::int32_t ci = i + static_cast<std::int32_t>(column / 3) - 1,
+                               cj = j + static_cast<std::int32_t>(column % 3) - 1;
+            std::size_t& at = at_[column];
+            const std::tuple first(ci, cj, k - 1);
+            while (at < seen_.size() &&
+                   std::tie(seen_.i[at], seen_.j[at], seen_.k[at]) < first)
+                ++at;
+            for (std::size_t m = at; m < seen_.size() && seen_.i[m] == ci && seen_.j[m] == cj &&
+                                     seen_.k[m] <= k + 1;
+                 ++m) {
+                if (seen_.primitive[m] == p)
+                    add(m, column == 4 && seen_.k[m] == k, out);
+            }
+        }
+    }
+
+  private:
+    void add(std::size_t m, bool here, std::vector<SeenPatch>& out) const {
+        const auto patch = static_cast<std::uint32_t>(seen_.patch[m]);
+        auto found = std::ranges::find(out, patch, &SeenPatch::patch);
+        if (found == out.end()) found = out.insert(out.end(), SeenPatch{patch});
+        const double count = seen_.count[m];
+        found->count += count;
+        if (here) found->here += count;
+        const float* at[3] = {&seen_.x[m], &seen_.y[m], &seen_.z[m]};
+        for (std::size_t a = 0; a < 3; ++a) found->mean[a] += count * double{*at[a]};
+    }
+
+    const SeenCells& seen_;
+    std::array<std::size_t, 9> at_{};
+};
+
+// A voxel that may be on a primitive's border.
+struct Candidate {
+    std::int32_t i, j, k, primitive;
+    bool own = false;      // one of the primitive's cells
+    bool extends = false;  // the primitive goes on into it
+    Key key() const { return {i, j, k, primitive}; }
+};
+
+// The directions that what was seen around each cell of its primitive faces.
+std::vector<std::uint8_t> faced_around(const SolidCells& cells, const SeenCells& seen,
+                                       std::span<const SurfacePatch> patches,
+                                       std::vector<Candidate>& candidates) {
+    std::vector<std::uint8_t> faced(cells.size(), 0);
+    Around around(seen);
+    std::vector<SeenPatch> found;
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const std::int32_t p = cells.primitive[n];
+        if (p < 0) continue;
+        around.gather(cells.i[n], cells.j[n], cells.k[n], p, found);
+        for (const SeenPatch& s : found) {
+            Vec3 mean = s.mean;
+            for (double& v : mean) v /= s.count;
+            faced[n] |= faced_by(patches[s.patch].gradient(mean));
+        }
+        if (!found.empty()) candidates.push_back({cells.i[n], cells.j[n], cells.k[n], p, true});
+    }
+    return faced;
+}
+
+// Voxels of one primitive in which another was seen, too.
+void add_shared(const SolidCells& cells, const SeenCells& seen,
+                std::vector<Candidate>& candidates) {
+    std::size_t n = 0;
+    for (std::size_t m = 0; m < seen.size(); ++m) {
+        const std::tuple at(seen.i[m], seen.j[m], seen.k[m]);
+        while (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
+        if (n == cells.size()) break;
+        if (std::tie(cells.i[n], cells.j[n], cells.k[n]) != at) continue;
+        if (cells.primitive[n] >= 0 && cells.primitive[n] != seen.primitive[m])
+            candidates.push_back({seen.i[m], seen.j[m], seen.k[m], seen.primitive[m]});
+    }
+}
+
+// What mates reach, or bound of their primitive's own cells.
+void add_mates(const SolidCells& cells, std::span<const Mate> mates,
+               std::vector<Candidate>& candidates) {
+    std::size_t n = 0;
+    for (const Mate& m : mates) {
+        const std::tuple at(m.i, m.j, m.k);
+        while (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
+        const bool own = n < cells.size() &&
+                         std::tie(cells.i[n], cells.j[n], cells.k[n]) == at &&
+                         cells.primitive[n] == m.primitive;
+        if (own || m.extends) candidates.push_back({m.i, m.j, m.k, m.primitive, own, !own});
+    }
+}
+
+void unite(std::vector<Candidate>& candidates) {
+    std::ranges::sort(candidates, {}, &Candidate::key);
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < candidates.size(); ++n) {
+        if (kept > 0 && candidates[kept - 1].key() == candidates[n].key()) {
+            candidates[kept - 1].own = candidates[kept - 1].own || candidates[n].own;
+            candidates[kept - 1].extends = candidates[kept - 1].extends || candidates[n].extends;
+        } else {
+            candidates[kept++] = candidates[n];
+        }
+    }
+    candidates.resize(kept);
+}
+
+}  // namespace
+
+BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, const SeenCells& seen,
+                            std::vector<SurfacePatch> patches,
+                            std::span<const KnownRest> rests) {
+    BoundaryCells out;
+    std::vector<Candidate> candidates;
+    const std::vector<std::uint8_t> faced = faced_around(cells, seen, patches, candidates);
+    add_shared(cells, seen, candidates);
+    const std::vector<Mate> mates = find_mates(cells, seen, faced, rests, patches);
+    add_mates(cells, mates, candidates);
+    unite(candidates);
+
+    Around around(seen);
+    std::vector<SeenPatch> found;
+    std::size_t mate = 0;
+    for (const Candidate& c : candidates) {
+        around.gather(c.i, c.j, c.k, c.primitive, found);
+        for (SeenPatch& s : found)
+            for (double& v : s.mean) v /= s.count;
+        const double h = cells.voxel_m;
+        const Vec3 middle{(c.i + 0.5) * h, (c.j + 0.5) * h, (c.k + 0.5) * h};
+        Combination sum = combine(found, patches, middle, h);
+        const auto key_of = [&](const Mate& m) { return Key(m.i, m.j, m.k, m.primitive); };
+        while (mate < mates.size() && key_of(mates[mate]) < c.key()) ++mate;
+        for (std::size_t m = mate; m < mates.size() && key_of(mates[m]) == c.key(); ++m)
+            add_bound(mates[m].patch, mates[m].outside, patches, middle, h, sum);
+        // What is not the primitive's cell must be bounded by something, or mates reach it.
+        if (sum.nothing ? !c.own : c.own ? sum.used == 0 : sum.used == 0 && !c.extends) continue;
+        out.i.push_back(c.i);
+        out.j.push_back(c.j);
+        out.k.push_back(c.k);
+        out.primitive.push_back(c.primitive);
+        for (std::size_t s = 0; s < BoundaryCells::slots; ++s) out.slot[s].push_back(sum.slot[s]);
+        out.form.push_back(make_form(sum.any_group, sum.use, sum.used));
+    }
+    out.patches = std::move(patches);
+    measure_shares(device, cells.voxel_m, out);
+    return out;
+}
+
+}  // namespace topple::solids

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/boundary_cells.h"
+#include "core/solid_cells.h"
+#include "device/device.h"
+#include "solids/patches.h"
+
+namespace topple::solids {
+
+// A known height at which one primitive stands on another, where neither shows it: of a ledge in a
+// stack. Grid frame.
+struct KnownRest {
+    std::int32_t above = -1, below = -1;  // primitives
+    double height_m = 0;
+};
+
+// What bounds the solids within their voxels: patches that were seen in a voxel or right beside it;
+// and where two solids touch, or one reaches what faces it unseen, the patch of the one that goes on
+// there, for both: they share no volume and leave none.
+BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, const SeenCells& seen,
+                            std::vector<SurfacePatch> patches,
+                            std::span<const KnownRest> rests = {});
+
+// The part of each voxel that is solid, and its moments (kernel cell_share).
+void measure_shares(device::Device& device, double voxel_m, BoundaryCells& boundary);
+
+// Where two primitives' solids end at one another: for the voxels of one, patches that bound it.
+struct Mate {
+    std::int32_t i, j, k, primitive;
+    std::uint32_t patch;
+    bool outside;  // of the patch is where the primitive is
+    bool extends;  // the primitive goes on into this voxel; else it counts for its own ones alone
+};
+// Adds patches of known rests to `patches`. faced: by cell, bits of the directions -x +x -y +y -z
+// +z that a patch of the cell's primitive that was seen beside it faces. Sorted by (i, j, k,
+// primitive).
+std::vector<Mate> find_mates(const SolidCells& cells, const SeenCells& seen,
+                             std::span<const std::uint8_t> faced,
+                             std::span<const KnownRest> rests, std::vector<SurfacePatch>& patches);
+
+// Bits of the directions that a gradient has its largest part along, roughly.
+std::uint8_t faced_by(const Vec3& gradient);
+// Half of the range of a patch's values over a voxel: its own, if it is flat.
+double reach_of(const Vec3& gradient, double voxel_m);
+
+}  // namespace topple::solids

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+#include "solids/cell_shape.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace topple::solids {
+namespace {
+
+constexpr double slack = 1e-4;  // of a voxel: what lies so close to a patch is on it
+
+double bend(const SurfacePatch& patch) {
+    double most = 0;
+    for (std::size_t n = 4; n < patch.c.size(); ++n)
+        most = std::max(most, (n < 7 ? 2 : 1) * std::abs(patch.c[n]));
+    return most;
+}
+
+// A part of a voxel, and the patches that pass it.
+class Part {
+  public:
+    Part(const BoundaryCells& b, std::size_t n, double voxel_m, const Vec3& low, double edge,
+         std::vector<Vec3>& out)
+        : b_(b), n_(n), slack_(slack * voxel_m), low_(low), edge_(edge), out_(out) {
+        const Vec3 middle{low[0] + edge / 2, low[1] + edge / 2, low[2] + edge / 2};
+        for (std::size_t s = 0; s < b.slots_used(n); ++s) {
+            const SurfacePatch& patch = b.patches[b.slot[s][n]];
+            // The cube's half diagonal, and as much again for what is curved.
+            if (std::abs(patch.distance(middle)) < (patch.flat() ? 0.87 : 1.3) * edge)
+                patches_.push_back(&patch);
+        }
+    }
+
+    void add_corners() {
+        for (unsigned c = 0; c < 8; ++c) keep(at(c & 1, c >> 1 & 1, c >> 2));
+        for (std::size_t p = 0; p < patches_.size(); ++p) {
+            add_edges(*patches_[p]);
+            for (std::size_t q = p + 1; q < patches_.size(); ++q) {
+                add_sides(*patches_[p], *patches_[q]);
+                for (std::size_t r = q + 1; r < patches_.size(); ++r)
+                    add_meeting(*patches_[p], *patches_[q], *patches_[r]);
+            }
+        }
+    }
+    bool passed() const { return !patches_.empty(); }
+
+  private:
+    Vec3 at(double u, double v, double w) const {
+        return {low_[0] + u * edge_, low_[1] + v * edge_, low_[2] + w * edge_};
+    }
+    bool within(const Vec3& p) const {
+        for (std::size_t a = 0; a < 3; ++a)
+            if (!(p[a] >= low_[a] - slack_ && p[a] <= low_[a] + edge_ + slack_)) return false;
+        return true;
+    }
+    void keep(const Vec3& p) {
+        if (b_.solid(n_, p, slack_)) out_.push_back(p);
+    }
+
+    // Along an edge a patch's value is a polynomial of degree two.
+    void add_edges(const SurfacePatch& patch) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (unsigned c = 0; c < 4; ++c) {
+                Vec3 from = low_;
+                from[(axis + 1) % 3] += (c & 1) * edge_;
+                from[(axis + 2) % 3] += (c >> 1) * edge_;
+                Vec3 to = from, half = from;
+                to[axis] += edge_;
+                half[axis] += edge_ / 2;
+                const double f0 = patch.value(from), f1 = patch.value(to),
+                             fh = patch.value(half);
+                const double a = 2 * (f0 + f1 - 2 * fh), b = f1 - f0 - a;
+                for (const double t : roots(a, b, f0)) {
+                    Vec3 p = from;
+                    p[axis] += t * edge_;
+                    keep(p);
+                }
+            }
+        }
+    }
+    static std::vector<double> roots(double a, double b, double c) {
+        std::vector<double> out;
+        const auto add = [&](double t) {
+            if (t >= 0 && t <= 1) out.push_back(t);
+        };
+        if (std::abs(a) < 1e-9 * std::abs(b)) {
+            if (b != 0) add(-c / b);
+            return out;
+        }
+        const double root = b * b - 4 * a * c;
+        if (a == 0 || root < 0) return out;
+        const double q = -0.5 * (b + std::copysign(std::sqrt(root), b));
+        add(q / a);
+        if (q != 0) add(c / q);
+        return out;
+    }
+
+    // Newton's method from the middle of a side, within its plane.
+    void add_sides(const SurfacePatch& p, const SurfacePatch& q) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (const double end : {0.0, 1.0}) {
+                Vec3 x = at(0.5, 0.5, 0.5);
+                x[axis] = low_[axis] + end * edge_;
+                const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+                for (int round = 0; round < 4; ++round) {
+                    const Vec3 gp = p.gradient(x), gq = q.gradient(x);
+                    const double det = gp[u] * gq[v] - gp[v] * gq[u];
+                    if (std::abs(det) < 1e-3) break;
+                    const double fp = p.value(x), fq = q.value(x);
+                    x[u] -= (fp * gq[v] - fq * gp[v]) / det;
+                    x[v] -= (gp[u] * fq - gq[u] * fp) / det;
+                }
+                settle({&p, &q}, x);
+            }
+        }
+    }
+    void add_meeting(const SurfacePatch& p, const SurfacePatch& q, const SurfacePatch& r) {
+        Vec3 x = at(0.5, 0.5, 0.5);
+        for (int round = 0; round < 4; ++round) {
+            Eigen::Matrix3d g;
+            Eigen::Vector3d f;
+            int row = 0;
+            for (const SurfacePatch* patch : {&p, &q, &r}) {
+                const Vec3 gradient = patch->gradient(x);
+                g.row(row) << gradient[0], gradient[1], gradient[2];
+                f[row++] = patch->value(x);
+            }
+            if (std::abs(g.determinant()) < 1e-3) return;
+            const Eigen::Vector3d step = g.inverse() * f;
+            for (std::size_t a = 0; a < 3; ++a) x[a] -= step[static_cast<int>(a)];
+        }
+        settle({&p, &q, &r}, x);
+    }
+    void settle(std::initializer_list<const SurfacePatch*> on, const Vec3& x) {
+        if (!within(x)) return;
+        for (const SurfacePatch* patch : on)
+            if (!(std::abs(patch->distance(x)) < slack_)) return;
+        keep(x);
+    }
+
+    const BoundaryCells& b_;
+    std::size_t n_;
+    double slack_;
+    Vec3 low_;
+    double edge_;
+    std::vector<Vec3>& out_;
+    std::vector<const SurfacePatch*> patches_;
+};
+
+}  // namespace
+
+std::vector<Vec3> corners_of(const BoundaryCells& b, std::size_t n, double h) {
+    std::vector<Vec3> out;
+    if (b.share[n] == 0) return out;
+    double most = 0;
+    for (std::size_t s = 0; s < b.slots_used(n); ++s)
+        most = std::max(most, bend(b.patches[b.slot[s][n]]));
+    // A chord of an arc lies so far inside of it, in voxels, and what of that is too much.
+    constexpr double tolerance = 0.005;
+    constexpr int most_parts = 4;
+    const int parts =
+        std::clamp(static_cast<int>(std::ceil(std::sqrt(most * h / 8 / tolerance))), 1, most_parts);
+    const double edge = h / parts;
+    for (int u = 0; u < parts; ++u) {
+        for (int v = 0; v < parts; ++v) {
+            for (int w = 0; w < parts; ++w) {
+                Part part(b, n, h, {b.i[n] * h + u * edge, b.j[n] * h + v * edge,
+                                    b.k[n] * h + w * edge},
+                          edge, out);
+                if (parts == 1 || part.passed()) part.add_corners();
+            }
+        }
+    }
+    if (parts > 1) {
+        const Vec3 low{b.i[n] * h, b.j[n] * h, b.k[n] * h};
+        for (unsigned c = 0; c < 8; ++c) {
+            const Vec3 corner{low[0] + (c & 1) * h, low[1] + (c >> 1 & 1) * h,
+                              low[2] + (c >> 2) * h};
+            if (b.solid(n, corner, slack * h)) out.push_back(corner);
+        }
+    }
+    return out;
+}
+
+std::vector<Vec3> underside_of(const BoundaryCells& b, std::int32_t i,
+                               std::int32_t j, std::int32_t k, std::int32_t p, double h) {
+    std::size_t n = b.find(i, j, k - 1, p);
+    if (n == BoundaryCells::absent || b.share[n] == 0) n = b.find(i, j, k, p);
+    std::vector<Vec3> out;
+    if (n == BoundaryCells::absent) {
+        for (const int di : {0, 1})
+            for (const int dj : {0, 1}) out.push_back({(i + di) * h, (j + dj) * h, k * h});
+        return out;
+    }
+    const std::vector<Vec3> corners = corners_of(b, n, h);
+    // What bounds it below, if anything does.
+    const SurfacePatch* below = nullptr;
+    for (std::size_t s = 0; s < b.slots_used(n); ++s) {
+        const SlotUse use = b.use(n, s);
+        const SurfacePatch& patch = b.patches[b.slot[s][n]];
+        const Vec3 g = patch.gradient({(i + 0.5) * h, (j + 0.5) * h, (b.k[n] + 0.5) * h});
+        constexpr double facing = 0.7;  // cosine
+        const double down = use.outside ? g[2] : -g[2];
+        if (use.bounds && down >= facing * std::hypot(g[0], g[1], g[2])) below = &patch;
+    }
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const Vec3& c : corners) lowest = std::min(lowest, c[2]);
+    constexpr double even = 0.1;  // of a voxel
+    for (const Vec3& c : corners) {
+        const bool on = below ? std::abs(below->distance(c)) < 2 * slack * h
+                              : c[2] <= lowest + even * h;
+        if (on) out.push_back(c);
+    }
+    return out;
+}
+
+}  // namespace topple::solids

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/boundary_cells.h"
+
+// The outer form of solids, from the patches that bound them. Grid frame, metres.
+namespace topple::solids {
+
+// Points whose convex hull is about that of the solid part of a boundary voxel: corners of the
+// voxel, where patches cross its edges, where two patches meet on one of its sides, and three
+// within it. Where patches are curved, those of parts of the voxel.
+std::vector<Vec3> corners_of(const BoundaryCells& boundary, std::size_t n, double voxel_m);
+
+// Of the lowest voxel of a primitive in a column, the outline of its underside: corners of the patch that bounds it
+// below, or of its lowest side; nothing where the primitive does not reach there. The voxel below
+// comes first where the primitive goes on into it.
+std::vector<Vec3> underside_of(const BoundaryCells& boundary, std::int32_t i,
+                               std::int32_t j, std::int32_t k, std::int32_t primitive,
+                               double voxel_m);
+
+}  // namespace topple::solids

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "solids/boundary.h"
+
+namespace topple::solids {
+namespace {
+
+using Place = std::array<std::int32_t, 3>;
+
+// How far, in voxels, a solid's last voxel may end from the patch at which it ends indeed.
+constexpr double reach = 1.5;
+constexpr double facing = 0.7;  // least cosine
+constexpr std::int32_t beyond = 3;  // voxels that a patch goes on past where it was seen
+
+struct Box {
+    Place low{std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max(),
+              std::numeric_limits<std::int32_t>::max()};
+    Place high{std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::min(),
+               std::numeric_limits<std::int32_t>::min()};
+    void add(const Place& p) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            low[a] = std::min(low[a], p[a]);
+            high[a] = std::max(high[a], p[a]);
+        }
+    }
+    bool meets(const Box& other) const {
+        for (std::size_t a = 0; a < 3; ++a)
+            if (low[a] > std::int64_t{other.high[a]} + beyond ||
+                other.low[a] > std::int64_t{high[a]} + beyond)
+                return false;
+        return true;
+    }
+};
+
+Place place(const SolidCells& c, std::size_t n) {
+    return {c.i[n], c.j[n], c.k[n]};
+}
+
+// A face of a cell that is the border of its primitive.
+struct Face {
+    std::size_t cell;
+    std::int32_t other;  // primitive beyond, across one empty voxel at most; -1: none
+};
+
+// Of each primitive and direction.
+struct Side {
+    std::vector<Face> faces;
+    std::set<std::int32_t> others;
+    Box box;
+};
+
+// The next cell along +axis, at most one empty voxel away; `absent` where there is none.
+constexpr std::size_t absent = ~std::size_t{0};
+std::vector<std::size_t> next_cells(const SolidCells& c, std::size_t axis) {
+    std::vector<std::size_t> out(c.size(), absent);
+    for (std::int32_t step = 1; step <= 2; ++step) {
+        std::size_t m = 0;
+        for (std::size_t n = 0; n < c.size(); ++n) {
+            Place wanted = place(c, n);
+            wanted[axis] += step;
+            while (m < c.size() && place(c, m) < wanted) ++m;
+            if (m == c.size()) break;
+            if (out[n] == absent && place(c, m) == wanted) out[n] = m;
+        }
+    }
+    return out;
+}
+
+class MateFinder {
+  public:
+    MateFinder(const SolidCells& cells, const SeenCells& seen, std::span<const std::uint8_t> faced,
+               std::vector<SurfacePatch>& patches)
+        : cells_(cells), faced_(faced), patches_(patches), extent_(patches.size()) {
+        for (std::size_t n = 0; n < seen.size(); ++n) {
+            of_primitive_[seen.primitive[n]].insert(static_cast<std::uint32_t>(seen.patch[n]));
+            extent_[static_cast<std::size_t>(seen.patch[n])].add({seen.i[n], seen.j[n], seen.k[n]});
+        }
+    }
+
+    void add_rests(std::span<const KnownRest> rests) {
+        for (const KnownRest& r : rests) {
+            SurfacePatch level;
+            level.origin = {0, 0, r.height_m};
+            level.c = {0, 0, 0, 1, 0, 0, 0, 0, 0, 0};
+            rests_[{r.above, r.below}].push_back(static_cast<std::uint32_t>(patches_.size()));
+            patches_.push_back(level);
+        }
+    }
+
+    std::vector<Mate> find() {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::vector<std::size_t> next = next_cells(cells_, axis);
+            std::vector<std::size_t> previous(cells_.size(), absent);
+            for (std::size_t n = 0; n < next.size(); ++n)
+                if (next[n] != absent) previous[next[n]] = n;
+            add_sides(axis, -1, previous);
+            add_sides(axis, 1, next);
+        }
+        std::ranges::sort(mates_, {}, [](const Mate& m) {
+            return std::tuple(m.i, m.j, m.k, m.primitive, m.patch, m.outside, !m.extends);
+        });
+        const auto same = [](const Mate& a, const Mate& b) {
+            return std::tie(a.i, a.j, a.k, a.primitive, a.patch, a.outside) ==
+                   std::tie(b.i, b.j, b.k, b.primitive, b.patch, b.outside);
+        };
+        mates_.erase(std::unique(mates_.begin(), mates_.end(), same), mates_.end());
+        return std::move(mates_);
+    }
+
+  private:
+    void add_sides(std::size_t axis, int way, const std::vector<std::size_t>& beside) {
+        const std::size_t direction = 2 * axis + (way > 0);
+        std::map<std::int32_t, Side> sides;
+        for (std::size_t n = 0; n < cells_.size(); ++n) {
+            const std::int32_t p = cells_.primitive[n];
+            if (p < 0 || (faced_[n] >> direction & 1)) continue;
+            const std::size_t m = beside[n];
+            const bool adjacent =
+                m != absent &&
+                std::abs(std::int64_t{place(cells_, m)[axis]} - place(cells_, n)[axis]) == 1;
+            const std::int32_t other = m == absent ? -1 : cells_.primitive[m];
+            if (other == p && adjacent) continue;
+            Side& side = sides[p];
+            side.faces.push_back({n, other == p ? -1 : other});
+            if (other >= 0 && other != p) side.others.insert(other);
+            side.box.add(place(cells_, n));
+        }
+        for (const auto& [p, side] : sides) {
+            if (!side.others.empty()) add_side(p, side, axis, way);
+        }
+    }
+
+    struct Candidate {
+        std::uint32_t patch;
+        std::int32_t other;  // -1: of any
+        bool outside;
+    };
+
+    void add_side(std::int32_t p, const Side& side, std::size_t axis, int way) {
+        std::vector<Candidate> candidates;
+        for (const std::uint32_t patch : of_primitive_[p]) candidates.push_back({patch, -1, false});
+        for (const std::int32_t q : side.others) {
+            for (const std::uint32_t patch : of_primitive_[q]) {
+                if (extent_[patch].meets(side.box)) candidates.push_back({patch, q, true});
+            }
+            if (axis != 2) continue;
+            const auto known = rests_.find(way < 0 ? std::pair(p, q) : std::pair(q, p));
+            if (known == rests_.end()) continue;
+            for (const std::uint32_t patch : known->second)
+                candidates.push_back({patch, q, way < 0});
+        }
+        for (const Face& face : side.faces) {
+            const Candidate* best = nullptr;
+            double least = reach * cells_.voxel_m;
+            const Vec3 at = middle_of(face.cell, axis, way);
+            for (const Candidate& c : candidates) {
+                if (face.other >= 0 && c.other >= 0 && c.other != face.other) continue;
+                const SurfacePatch& patch = patches_[c.patch];
+                const Vec3 g = patch.gradient(at);
+                const double along = (c.outside ? -way : way) * g[axis];
+                if (!(along >= facing * std::hypot(g[0], g[1], g[2]))) continue;
+                const double d = std::abs(patch.distance(at));
+                if (d >= least) continue;
+                least = d;
+                best = &c;
+            }
+            if (best) bound(p, face.cell, axis, way, *best);
+        }
+    }
+
+    Vec3 middle_of(std::size_t n, std::size_t axis, int way) const {
+        const double h = cells_.voxel_m;
+        Vec3 at{(cells_.i[n] + 0.5) * h, (cells_.j[n] + 0.5) * h, (cells_.k[n] + 0.5) * h};
+        at[axis] += 0.5 * way * h;
+        return at;
+    }
+
+    // Of the cells that the patch passes or leaves out inside of the primitive, and of those that it
+    // reaches beyond.
+    void bound(std::int32_t p, std::size_t n, std::size_t axis, int way, const Candidate& c) {
+        const double h = cells_.voxel_m;
+        const SurfacePatch& patch = patches_[c.patch];
+        const Place from = place(cells_, n);
+        for (std::int32_t step = -2; step <= 2; ++step) {
+            Place at = from;
+            at[axis] += way * step;
+            const Vec3 middle{(at[0] + 0.5) * h, (at[1] + 0.5) * h, (at[2] + 0.5) * h};
+            const double d = (c.outside ? -1 : 1) * patch.distance(middle);
+            const double half = reach_of(patch.gradient(middle), h);
+            if (step <= 0 ? d > -half : d < half)
+                mates_.push_back({at[0], at[1], at[2], p, c.patch, c.outside, step > 0});
+        }
+    }
+
+    const SolidCells& cells_;
+    std::span<const std::uint8_t> faced_;
+    std::vector<SurfacePatch>& patches_;
+    std::vector<Box> extent_;  // of each patch, where it was seen
+    std::map<std::int32_t, std::set<std::uint32_t>> of_primitive_;
+    std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::uint32_t>> rests_;
+    std::vector<Mate> mates_;
+};
+
+}  // namespace
+
+std::uint8_t faced_by(const Vec3& g) {
+    const double least = facing * std::hypot(g[0], g[1], g[2]);
+    std::uint8_t out = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+        if (g[a] <= -least) out |= static_cast<std::uint8_t>(1U << (2 * a));
+        if (g[a] >= least) out |= static_cast<std::uint8_t>(1U << (2 * a + 1));
+    }
+    return out;
+}
+
+double reach_of(const Vec3& g, double voxel_m) {
+    const double length = std::max(std::hypot(g[0], g[1], g[2]), 0.2);
+    return 0.5 * voxel_m * (std::abs(g[0]) + std::abs(g[1]) + std::abs(g[2])) / length;
+}
+
+std::vector<Mate> find_mates(const SolidCells& cells, const SeenCells& seen,
+                             std::span<const std::uint8_t> faced,
+                             std::span<const KnownRest> rests,
+                             std::vector<SurfacePatch>& patches) {
+    MateFinder finder(cells, seen, faced, patches);
+    finder.add_rests(rests);
+    return finder.find();
+}
+
+}  // namespace topple::solids

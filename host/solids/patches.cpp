@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+#include "solids/patches.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <tuple>
+
+#include "geometry/algebraic_model.h"
+
+namespace topple::solids {
+namespace {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+constexpr std::size_t most_points = 4000;  // of a patch: more say no more of where it lies
+constexpr double outlier = 3;              // standard deviations
+constexpr int rounds = 3;
+
+Eigen::Vector3d rotated(const std::array<Vec3, 3>& axes, double x, double y, double z) {
+    Eigen::Vector3d out;
+    for (int a = 0; a < 3; ++a) {
+        const Vec3& row = axes[static_cast<std::size_t>(a)];
+        out[a] = row[0] * x + row[1] * y + row[2] * z;
+    }
+    return out;
+}
+
+geometry::AlgebraicModel rotated(const geometry::AlgebraicModel& model,
+                                 const std::array<Vec3, 3>& axes) {
+    Eigen::Matrix3d r, q;
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b)
+            r(a, b) = axes[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)];
+    const auto& c = model.coefficients;
+    q << c[4], c[7] / 2, c[8] / 2, c[7] / 2, c[5], c[9] / 2, c[8] / 2, c[9] / 2, c[6];
+    q = (r * q * r.transpose()).eval();
+    const Eigen::Vector3d b = r * Eigen::Vector3d(c[1], c[2], c[3]);
+    const Eigen::Vector3d o =
+        r * Eigen::Vector3d(model.origin[0], model.origin[1], model.origin[2]);
+    geometry::AlgebraicModel out = model;
+    out.origin = {o.x(), o.y(), o.z()};
+    out.coefficients = {c[0],    b.x(),       b.y(),       b.z(),      q(0, 0),
+                        q(1, 1), q(2, 2),     2 * q(0, 1), 2 * q(0, 2), 2 * q(1, 2)};
+    if (model.degree == 1) std::fill(out.coefficients.begin() + 4, out.coefficients.end(), 0.0);
+    return out;
+}
+
+double median(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// The points near the model, and how far these scatter about it.
+struct Near {
+    Points points;
+    double noise_m = 0;
+};
+Near near(const geometry::AlgebraicModel& model, const Points& points) {
+    constexpr double least_m = 2e-5;  // of coordinates in single precision
+    std::vector<double> off;
+    for (const auto& p : points) off.push_back(std::abs(geometry::distance(model, p)));
+    std::vector<double> sorted = off;
+    Near out;
+    out.noise_m = std::max(1.4826 * median(sorted), least_m);
+    for (std::size_t n = 0; n < points.size(); ++n)
+        if (off[n] <= outlier * out.noise_m) out.points.push_back(points[n]);
+    return out;
+}
+
+// Nothing where the points span no plane.
+std::optional<geometry::AlgebraicModel> plane_of(const geometry::AlgebraicModel& before,
+                                                 const Points& points) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const auto& p : points) mean += p;
+    mean /= static_cast<double>(points.size());
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const auto& p : points) spread += (p - mean) * (p - mean).transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+    constexpr double least_ratio = 16;  // of the squares of the plane's width and its noise
+    if (!(solver.eigenvalues()[1] > least_ratio * solver.eigenvalues()[0])) return std::nullopt;
+    Eigen::Vector3d n = solver.eigenvectors().col(0);
+    if (n.dot(geometry::gradient(before, mean)) < 0) n = -n;
+    geometry::AlgebraicModel out;
+    out.origin = {mean.x(), mean.y(), mean.z()};
+    out.coefficients = {0, n.x(), n.y(), n.z(), 0, 0, 0, 0, 0, 0};
+    return out;
+}
+
+// The layers of the fit lie close to the surface, and it is moved to where the points are: a
+// quadric's value is no distance away from it.
+geometry::AlgebraicModel quadric_of(const geometry::AlgebraicModel& before, const Points& points,
+                                    double layer_m) {
+    Points normals;
+    for (const auto& p : points) normals.push_back(geometry::gradient(before, p).normalized());
+    geometry::AlgebraicModel out = geometry::fit_quadric(points, normals, layer_m);
+    double sum = 0;
+    for (const auto& p : points) sum += out.value(p.x(), p.y(), p.z());
+    out.coefficients[0] -= sum / static_cast<double>(points.size());
+    return out;
+}
+
+double scatter(const geometry::AlgebraicModel& model, const Points& points) {
+    double sum = 0;
+    for (const auto& p : points) sum += std::pow(geometry::distance(model, p), 2);
+    return std::sqrt(sum / static_cast<double>(points.size()));
+}
+
+SurfacePatch fit(const geometry::Region& region, const std::array<Vec3, 3>& axes,
+                 const Points& points) {
+    constexpr std::size_t least = 12;  // points that fit a quadric
+    geometry::AlgebraicModel model = rotated(region.model, axes);
+    double noise = region.residual_m;
+    std::size_t inliers = points.size();
+    for (int round = 0; round < rounds && points.size() >= least; ++round) {
+        const Near own = near(model, points);
+        if (own.points.size() < least) break;
+        if (model.degree == 1) {
+            const auto plane = plane_of(model, own.points);
+            if (!plane) break;
+            model = *plane;
+        } else {
+            const auto quadric =
+                quadric_of(model, own.points, std::max(3 * own.noise_m, 0.1 * region.residual_m));
+            if (!(scatter(quadric, own.points) <= 1.2 * scatter(model, own.points))) break;
+            model = quadric;
+        }
+        noise = own.noise_m;
+        inliers = own.points.size();
+    }
+    SurfacePatch out;
+    out.origin = model.origin;
+    out.c = model.coefficients;
+    out.noise_m = noise;
+    out.offset_m = noise / std::sqrt(static_cast<double>(std::max<std::size_t>(inliers, 1)));
+    return out;
+}
+
+struct SeenPoint {
+    std::int32_t i, j, k, primitive, patch;
+    float x, y, z;
+    auto key() const { return std::tie(i, j, k, primitive, patch); }
+};
+
+}  // namespace
+
+std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
+                                      std::span<const geometry::Region> regions,
+                                      std::span<const std::int32_t> region_of_point,
+                                      const std::array<Vec3, 3>& axes,
+                                      device::ThreadPool& threads) {
+    std::vector<std::size_t> first(regions.size() + 1, 0);
+    for (const std::int32_t r : region_of_point)
+        if (r >= 0) ++first[static_cast<std::size_t>(r) + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<std::uint32_t> order(first.back());
+    std::vector<std::size_t> at(first.begin(), first.end() - 1);
+    for (std::size_t n = 0; n < region_of_point.size(); ++n)
+        if (region_of_point[n] >= 0)
+            order[at[static_cast<std::size_t>(region_of_point[n])]++] =
+                static_cast<std::uint32_t>(n);
+    std::vector<SurfacePatch> out(regions.size());
+    threads.each(regions.size(), 16, [&](std::size_t r) {
+        const std::size_t count = first[r + 1] - first[r], step = count / most_points + 1;
+        Points points;
+        for (std::size_t m = first[r]; m < first[r + 1]; m += step) {
+            const std::uint32_t n = order[m];
+            points.push_back(rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]));
+        }
+        out[r] = fit(regions[r], axes, points);
+    });
+    return out;
+}
+
+SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primitive_of_point,
+                     std::span<const std::int32_t> patch_of_point,
+                     const std::array<Vec3, 3>& axes, double voxel_m) {
+    std::vector<SeenPoint> places;
+    for (std::size_t n = 0; n < cloud.size(); ++n) {
+        if (primitive_of_point[n] < 0 || patch_of_point[n] < 0) continue;
+        const Eigen::Vector3d p = rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]);
+        const auto cell = [&](double v) {
+            return static_cast<std::int32_t>(std::clamp(std::floor(v / voxel_m), -2e9, 2e9));
+        };
+        places.push_back({cell(p.x()), cell(p.y()), cell(p.z()), primitive_of_point[n],
+                          patch_of_point[n], static_cast<float>(p.x()), static_cast<float>(p.y()),
+                          static_cast<float>(p.z())});
+    }
+    std::ranges::stable_sort(places, {}, &SeenPoint::key);
+    SeenCells out;
+    for (std::size_t n = 0; n < places.size();) {
+        std::size_t end = n;
+        double sum[3] = {0, 0, 0};
+        for (; end < places.size() && places[end].key() == places[n].key(); ++end) {
+            sum[0] += places[end].x;
+            sum[1] += places[end].y;
+            sum[2] += places[end].z;
+        }
+        const auto count = static_cast<double>(end - n);
+        out.i.push_back(places[n].i);
+        out.j.push_back(places[n].j);
+        out.k.push_back(places[n].k);
+        out.primitive.push_back(places[n].primitive);
+        out.patch.push_back(places[n].patch);
+        out.count.push_back(static_cast<float>(count));
+        out.x.push_back(static_cast<float>(sum[0] / count));
+        out.y.push_back(static_cast<float>(sum[1] / count));
+        out.z.push_back(static_cast<float>(sum[2] / count));
+        n = end;
+    }
+    return out;
+}
+
+}  // namespace topple::solids

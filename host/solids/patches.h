@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/boundary_cells.h"
+#include "device/native/thread_pool.h"
+#include "geometry/segmentation.h"
+#include "topple/cloud_view.h"
+
+// From the seen surface to solids that are finer than their voxels. Grid frame: metres, z up.
+namespace topple::solids {
+
+// The regions' models, fitted anew to the points themselves: surfels at edges lie inside of both
+// faces. Points that a region only borders on are told from its own by their distance, in robust
+// standard deviations. region_of_point: -1 for none. axes: rows of the rotation from the cloud's
+// frame to the grid's.
+std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
+                                      std::span<const geometry::Region> regions,
+                                      std::span<const std::int32_t> region_of_point,
+                                      const std::array<Vec3, 3>& axes,
+                                      device::ThreadPool& threads);
+
+// Where the patches were seen: of each voxel, primitive and patch the points' number and mean.
+// Sorted by (i, j, k, primitive, patch).
+struct SeenCells {
+    std::vector<std::int32_t> i, j, k, primitive, patch;
+    std::vector<float> count, x, y, z;
+    std::size_t size() const { return i.size(); }
+};
+SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primitive_of_point,
+                     std::span<const std::int32_t> patch_of_point,
+                     const std::array<Vec3, 3>& axes, double voxel_m);
+
+}  // namespace topple::solids
