@@ -52,7 +52,8 @@ struct BoundaryCells {
     std::size_t size() const { return i.size(); }
     std::uint32_t slots_used(std::size_t n) const { return form[n] & 7; }
     // Whether one group suffices for being solid and all members of it must agree; else all groups
-    // must agree, and one member of each suffices. Of a voxel without slots nothing or all is solid.
+    // must agree, and one member of each suffices. Of a voxel without slots nothing or all is
+    // solid.
     bool any_group(std::size_t n) const { return form[n] >> 3 & 1; }
     SlotUse use(std::size_t n, std::size_t s) const {
         const std::uint32_t bits = form[n] >> (4 + 3 * s);

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "graph/outline.h"
 #include "physics/tipping.h"
 #include "solids/cell_shape.h"
 
@@ -50,15 +51,15 @@ void add_silhouettes(const SolidCells& cells, std::span<const std::int32_t> u,
             static_cast<double>(lines[p]) * (cells.voxel_m * cells.voxel_m);
 }
 
-void add_corners(std::int32_t i, std::int32_t j, double h,
-                 std::vector<std::array<double, 2>>& corners) {
+void add_corners(std::int32_t i, std::int32_t j, double h, std::vector<BorderPoint>& corners) {
     for (const int di : {0, 1}) {
-        for (const int dj : {0, 1}) corners.push_back({(i + di) * h, (j + dj) * h});
+        for (const int dj : {0, 1})
+            corners.push_back({{(i + di) * h, (j + dj) * h}, solids::voxel_error * h});
     }
 }
 
 struct Columns {
-    std::vector<std::array<double, 2>> corners;
+    std::vector<BorderPoint> corners;
     std::uint64_t count = 0;
     double height_sum = 0;
 };
@@ -70,17 +71,17 @@ class Shapes {
         : boundary_(boundary), voxel_m_(voxel_m) {}
     // Of a primitive's lowest cell in a column. Returns its height, or else `coarse_m`.
     double add(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive,
-               double coarse_m, std::vector<std::array<double, 2>>& corners) const {
+               double coarse_m, std::vector<BorderPoint>& corners) const {
         if (boundary_.size() == 0) {
             add_corners(i, j, voxel_m_, corners);
             return coarse_m;
         }
         double sum = 0;
-        const std::vector<Vec3> own =
+        const std::vector<solids::UndersideCorner> own =
             solids::underside_of(boundary_, i, j, k, primitive, voxel_m_);
-        for (const Vec3& c : own) {
-            corners.push_back({c[0], c[1]});
-            sum += c[2];
+        for (const solids::UndersideCorner& c : own) {
+            corners.push_back({{c.at[0], c.at[1]}, c.error_m});
+            sum += c.at[2];
         }
         return own.empty() ? coarse_m : sum / static_cast<double>(own.size());
     }
@@ -143,19 +144,19 @@ struct Underside {
 
 // The convex hull of a primitive's columns, seen from above: it may go on where it is hidden, but
 // not beyond that.
-std::vector<std::array<double, 2>> outline_of(const std::vector<Underside>& columns, double h) {
-    std::vector<std::array<double, 2>> corners;
+std::vector<std::array<double, 2>> hull_of(const std::vector<Underside>& columns, double h) {
+    std::vector<BorderPoint> corners;
     for (const Underside& u : columns) add_corners(u.i, u.j, h, corners);
-    return physics::convex_polygon(std::move(corners));
+    return graph::outline_of(corners).polygon;
 }
 
 // The columns that may rest on a surface at this height, within its outline if that is known:
 // unseen from their underside down to it, or, where they end at it, for some way on: else it is air
 // that they end in.
 std::uint64_t add_hidden_corners(const std::vector<Underside>& undersides, double height_m,
-                        const std::vector<std::array<double, 2>>& outline, double h,
-                        std::int32_t primitive, const Shapes& shapes,
-                        std::vector<std::array<double, 2>>& corners) {
+                                 const std::vector<std::array<double, 2>>& outline, double h,
+                                 std::int32_t primitive, const Shapes& shapes,
+                                 std::vector<BorderPoint>& corners) {
     const auto within = [&](const Underside& u) {
         return outline.empty() ||
                physics::footing(outline, (u.i + 0.5) * h, (u.j + 0.5) * h).margin_m > 0;
@@ -165,8 +166,7 @@ std::uint64_t add_hidden_corners(const std::vector<Underside>& undersides, doubl
     for (const Underside& u : undersides) {
         const double above = u.lowest - surface;
         const bool rests = above >= -1.5 && u.unseen >= std::max(above - 0.5, 2.0) && within(u);
-        if (rests)
-            shapes.add(u.i, u.j, u.lowest, primitive, height_m, corners);
+        if (rests) shapes.add(u.i, u.j, u.lowest, primitive, height_m, corners);
         columns += rests;
     }
     return columns;
@@ -199,13 +199,15 @@ void add_hidden_carryings(const std::vector<std::vector<Underside>>& undersides,
             }
         }
         if (best.supporter < 0) continue;
-        std::vector<std::array<double, 2>> corners;
-        const auto columns = static_cast<double>(
-            add_hidden_corners(own, best.height_m, {}, h, p, shapes, corners));
+        std::vector<BorderPoint> corners;
+        const auto columns =
+            static_cast<double>(add_hidden_corners(own, best.height_m, {}, h, p, shapes, corners));
         if (columns < least_hidden * static_cast<double>(own.size())) continue;
         best.supported = p;
         best.area_m2 = columns * h * h;
-        best.outline = physics::convex_polygon(std::move(corners));
+        Outline outline = graph::outline_of(corners);
+        best.outline = std::move(outline.polygon);
+        best.border_error_m = outline.error_m;
         found.push_back(std::move(best));
     }
     for (Carrying& c : found) {
@@ -349,12 +351,13 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         // A surface at least half as wide may go on where it is hidden; a leg does not.
         if (!scraps && 2 * extents[static_cast<std::size_t>(supporter)].columns >= load.columns) {
             const auto below = static_cast<std::size_t>(supporter);
-            if (outlines[below].empty()) outlines[below] = outline_of(undersides[below], h);
+            if (outlines[below].empty()) outlines[below] = hull_of(undersides[below], h);
             add_hidden_corners(undersides[static_cast<std::size_t>(supported)], height,
                                outlines[below], h, supported, shapes, columns.corners);
         }
-        graph.carryings.push_back(
-            {supporter, supported, area * h * h, height, physics::convex_polygon(columns.corners)});
+        Outline outline = graph::outline_of(columns.corners);
+        graph.carryings.push_back({supporter, supported, area * h * h, height,
+                                   std::move(outline.polygon), outline.error_m});
     }
     add_leanings(graph);
     add_hidden_carryings(undersides, extents, h, shapes, graph);

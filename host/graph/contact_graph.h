@@ -23,6 +23,7 @@ struct Carrying {
     // seen between the supported primitive and the height of the contact. Of a box seen from the
     // front, the rear stands on the table, too, but not beyond the table's edge.
     std::vector<std::array<double, 2>> outline;
+    double border_error_m = 0;  // of the outline: one standard error
 };
 
 // One primitive whose side touches another's.
@@ -57,7 +58,8 @@ struct ContactGraph {
 };
 
 // Gaps of up to `gap` empty voxels count as contact: sensor noise leaves such gaps. Heights and
-// outlines of contacts are those of the surfaces in `boundary`, where there are any, else of voxels.
+// outlines of contacts are those of the surfaces in `boundary`, where there are any, else of
+// voxels.
 ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells,
                                  std::int32_t primitives, unsigned gap = 1,
                                  const BoundaryCells& boundary = {});

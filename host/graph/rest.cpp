@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "graph/outline.h"
 #include "physics/tipping.h"
 #include "solids/cell_shape.h"
 
@@ -20,10 +21,12 @@ constexpr double often_near = 0.3, often_leaning = 0.1, often_hidden = 0.03;
 // How often what is seen to hold a thing holds it above its foot only.
 constexpr double often_hung = 0.05;
 constexpr std::int32_t uneven_foot = 2;  // voxels
+constexpr double least_error_m = 1e-4;   // no border is known better
 
-void add_corners(const Underside& u, double h, const BoundaryCells& boundary, Points& points) {
-    for (const Vec3& c : solids::underside_of(boundary, u.i, u.j, u.k, u.own, h))
-        points.push_back({c[0], c[1]});
+void add_corners(const Underside& u, double h, const BoundaryCells& boundary,
+                 std::vector<BorderPoint>& points) {
+    for (const solids::UndersideCorner& c : solids::underside_of(boundary, u.i, u.j, u.k, u.own, h))
+        points.push_back({{c.at[0], c.at[1]}, c.error_m});
 }
 
 double margin_of(const physics::Candidate& c, const Points& polygon) {
@@ -121,7 +124,7 @@ std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
 }
 
 Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& columns,
-                const ContactGraph& contacts, double noise_m, const BoundaryCells& boundary) {
+                const ContactGraph& contacts, const BoundaryCells& boundary) {
     if (columns.empty()) return {RestKind::none, 1, {}, 0, 0};
     const double h = contacts.voxel_m;
     std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
@@ -129,7 +132,9 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
     const double low_m = lowest * h;
     const bool held = !c.support_polygon.empty();
 
-    Points near = c.support_polygon, hidden = c.support_polygon;
+    std::vector<BorderPoint> seen;
+    add_points(c.support_polygon, c.border_error_m, seen);
+    std::vector<BorderPoint> near = seen, hidden = seen;
     double near_height = held ? c.support_height_m : std::numeric_limits<double>::infinity();
     for (const Underside& u : columns) {
         if (u.gap >= 0 && u.gap <= noise_gap) {
@@ -138,48 +143,45 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
         }
         if (u.k <= lowest + uneven_foot) add_corners(u, h, boundary, hidden);
     }
-    Points leaning = near;
+    std::vector<BorderPoint> leaning = near;
     for (const std::int32_t p : c.primitives) {
         for (const Leaning& l : contacts.leanings_of(p)) {
             if (!std::binary_search(c.primitives.begin(), c.primitives.end(), l.against))
-                leaning.insert(leaning.end(), l.outline.begin(), l.outline.end());
+                add_points({l.outline.begin(), l.outline.end()}, solids::voxel_error * h, leaning);
         }
     }
     const double height = std::isfinite(near_height) ? near_height : low_m;
-    Points whole;
-    for (const Underside& u : columns) add_corners(u, h, boundary, whole);
-    whole = physics::convex_polygon(std::move(whole));
-    const double widest = std::max(margin_of(c, whole), noise_m);
+    std::vector<BorderPoint> all_columns;
+    for (const Underside& u : columns) add_corners(u, h, boundary, all_columns);
+    Outline whole = outline_of(all_columns);
+    const double widest = margin_of(c, whole.polygon);
     struct Way {
         RestKind kind;
-        Points points;
+        std::vector<BorderPoint> points;
         double height, often;
     };
     const bool hung = held && c.support_height_m > low_m + noise_gap * h;
     std::array<Way, 4> ways{
-        Way{RestKind::seen, c.support_polygon, c.support_height_m, hung ? often_hung : 1},
+        Way{RestKind::seen, std::move(seen), c.support_height_m, hung ? often_hung : 1},
         Way{RestKind::near, std::move(near), height, often_near},
         Way{RestKind::leaning, std::move(leaning), height, often_leaning},
         Way{RestKind::hidden, std::move(hidden), low_m, often_hidden}};
     Rest best;
-    double most = -1, all = 0;
-    for (Way& way : ways) {
-        if (way.points.empty()) continue;
-        way.points = physics::convex_polygon(std::move(way.points));
-        const double chance = way.often * stands(c, way.points, noise_m, widest);
-        all += chance;
-        if (chance <= most) continue;
+    double most = -1, sum = 0, noise_m = 0;
+    const auto weigh = [&](RestKind kind, Outline outline, double at_m, double often) {
+        const double noise = std::max(outline.error_m, least_error_m);
+        const double chance = often * stands(c, outline.polygon, noise, std::max(widest, noise));
+        sum += chance;
+        if (chance <= most) return;
         most = chance;
-        best = {way.kind, 0, std::move(way.points), way.height, 0};
-    }
+        noise_m = noise;
+        best = {kind, 0, std::move(outline.polygon), at_m, 0};
+    };
+    for (const Way& way : ways)
+        if (!way.points.empty()) weigh(way.kind, outline_of(way.points), way.height, way.often);
     // Even its foot is too small: all that is above may rest on something.
-    const double chance = 0.3 * often_hidden * stands(c, whole, noise_m, widest);
-    all += chance;
-    if (chance > most) {
-        most = chance;
-        best = {RestKind::hidden, 0, std::move(whole), low_m, 0};
-    }
-    best.probability = all > 0 ? most / all : 1;
+    weigh(RestKind::hidden, std::move(whole), low_m, 0.3 * often_hidden);
+    best.probability = sum > 0 ? most / sum : 1;
     take_for_standing(c, noise_m, best);
     return best;
 }

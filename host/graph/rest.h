@@ -54,9 +54,8 @@ struct Rest {
 // The likeliest way in which a body stands: of each, how often scans miss so much of a support,
 // times the likelihood that a body stands so far from its border: of a margin as a share of what it
 // would be if all of the body were held. candidate: with the contacts that were seen.
-// noise_m: what the border of a support is known to, one standard error. boundary: what bounds the
-// columns' cells, if that is known.
+// boundary: what bounds the columns' cells, if that is known.
 Rest infer_rest(const physics::Candidate& candidate, const std::vector<Underside>& columns,
-                const ContactGraph& contacts, double noise_m, const BoundaryCells& boundary = {});
+                const ContactGraph& contacts, const BoundaryCells& boundary = {});
 
 }  // namespace topple::graph

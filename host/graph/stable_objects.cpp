@@ -10,7 +10,9 @@
 #include "fitted/boosted_trees.h"
 #include "graph/greedy_contraction.h"
 #include "graph/group_energy.h"
+#include "graph/outline.h"
 #include "physics/tipping.h"
+#include "solids/cell_shape.h"
 
 namespace topple::graph {
 namespace {
@@ -34,12 +36,12 @@ physics::Candidate candidate_of(const ContactGraph& graph, std::span<const physi
     std::vector<physics::Body> parts;
     for (const std::int32_t p : primitives) parts.push_back(bodies[static_cast<std::size_t>(p)]);
     candidate.body = physics::combine(parts);
-    std::vector<std::array<double, 2>> points;
+    std::vector<BorderPoint> points;
     candidate.support_height_m = std::numeric_limits<double>::infinity();
     for (const std::int32_t p : primitives) {
         for (const Carrying& c : graph.carriers_of(p)) {
             if (std::binary_search(primitives.begin(), primitives.end(), c.supporter)) continue;
-            points.insert(points.end(), c.outline.begin(), c.outline.end());
+            add_points(c.outline, c.border_error_m, points);
             candidate.support_height_m = std::min(candidate.support_height_m, c.height_m);
         }
     }
@@ -50,10 +52,15 @@ physics::Candidate candidate_of(const ContactGraph& graph, std::span<const physi
             if (!ground[static_cast<std::size_t>(l.against)]) continue;
             if (l.height_m < candidate.body.center[2]) continue;
             if (std::binary_search(primitives.begin(), primitives.end(), l.against)) continue;
-            points.insert(points.end(), l.outline.begin(), l.outline.end());
+            for (const auto& at : l.outline)
+                points.push_back({at, solids::voxel_error * graph.voxel_m});
         }
     }
-    if (!points.empty()) candidate.support_polygon = physics::convex_polygon(points);
+    if (!points.empty()) {
+        Outline outline = outline_of(points);
+        candidate.support_polygon = std::move(outline.polygon);
+        candidate.border_error_m = outline.error_m;
+    }
     candidate.primitives = std::move(primitives);
     return candidate;
 }

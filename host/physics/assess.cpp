@@ -12,6 +12,7 @@
 #include "physics/hull_ways.h"
 #include "physics/pose_passes.h"
 #include "physics/tipping.h"
+#include "physics/weld.h"
 #include "topple/error.h"
 
 namespace topple::physics {
@@ -142,7 +143,8 @@ std::vector<Vec3> held_vertices(const Candidate& candidate, std::span<const Vec3
     for (const Vec3& v : vertices) held.push_back({v[0], v[1], std::max(v[2], level)});
     for (const auto& [x, y] : candidate.support_polygon)
         held.push_back({x - c[0], y - c[1], level});
-    return held;
+    constexpr double alike_m = 1e-5;
+    return welded(held, alike_m);
 }
 
 // Nothing where the vertices have no hull about the centre of mass.

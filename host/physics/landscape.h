@@ -87,6 +87,7 @@ struct Candidate {
     Body body;
     std::vector<std::array<double, 2>> support_polygon;
     double support_height_m = 0;
+    double border_error_m = 0;  // of the polygon's border: one standard error
     // How far it falls below that height where it tips over each of the polygon's edges
     // (drops_when_tipped_m); empty: nowhere.
     std::vector<double> edge_drop_m = {};

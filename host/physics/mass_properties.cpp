@@ -174,8 +174,8 @@ std::vector<Body> mass_properties(device::Device& device, const SolidCells& cell
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double whole_moment =
                 static_cast<double>(sums[axis]) + 0.5 * static_cast<double>(m.cells);
-            const double moment = static_cast<double>(m.part_moment[axis]) /
-                                  (4.0 * BoundaryCells::whole);
+            const double moment =
+                static_cast<double>(m.part_moment[axis]) / (4.0 * BoundaryCells::whole);
             body.center[axis] = ((whole_moment + moment) / volume + origin[axis]) * voxel;
         }
     }

@@ -6,6 +6,7 @@
 
 #include "physics/qhull.h"
 #include "physics/support_rows.h"
+#include "physics/weld.h"
 #include "solids/cell_shape.h"
 
 namespace topple::physics {
@@ -37,13 +38,13 @@ std::vector<std::vector<Vec3>> solid_hulls(const SolidCells& cells, const Bounda
             const std::vector<Vec3> corners = solids::corners_of(boundary, b, h);
             points.insert(points.end(), corners.begin(), corners.end());
         }
-        if (points.size() > 4) {
-            if (const auto hull = convex_hull(points)) {
-                for (const std::uint32_t v : hull->vertices) out[p].push_back(points[v]);
-                return;
-            }
+        constexpr double alike = 0.005;  // of a voxel
+        points = welded(points, alike * h);
+        if (const auto hull = convex_hull(points)) {
+            for (const std::uint32_t v : hull->vertices) out[p].push_back(points[v]);
+        } else {
+            out[p] = std::move(points);
         }
-        out[p] = std::move(points);
     });
     return out;
 }

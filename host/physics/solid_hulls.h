@@ -10,7 +10,8 @@
 namespace topple::physics {
 
 // Corners of the convex hull of each primitive that `wanted` names, metres, grid frame; the others
-// have none. Whole cells count with their corners, those of the boundary with what is solid of them.
+// have none. Whole cells count with their corners, those of the boundary with what is solid of
+// them.
 std::vector<std::vector<Vec3>> solid_hulls(const SolidCells& cells, const BoundaryCells& boundary,
                                            const std::vector<bool>& wanted,
                                            device::ThreadPool& threads);

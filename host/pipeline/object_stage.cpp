@@ -18,9 +18,6 @@ namespace {
 // 10 f^2 + 2 = 2562 directions: neighbours are 4 degrees apart.
 constexpr unsigned sphere_frequency = 16;
 
-// What the border of a support, made of whole voxels, is known to (one standard error), in voxels.
-constexpr double border_noise = 0.5;
-
 // What is less sure to be the room's than this is left to its joints.
 constexpr double surely_shell = 0.9;
 
@@ -67,8 +64,8 @@ void collect_objects(const SolidCells& cells, const BoundaryCells& boundary,
         object.grounded = has_ground && o == 0;
         if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
         if (!object.grounded) {
-            graph::Rest rest = graph::infer_rest(object.candidate, columns[o], out.contacts,
-                                                 border_noise * cells.voxel_m, boundary);
+            graph::Rest rest =
+                graph::infer_rest(object.candidate, columns[o], out.contacts, boundary);
             object.rest = rest.kind;
             object.rest_probability = rest.probability;
             object.margin_error_m = rest.margin_error_m;
@@ -102,10 +99,9 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
     const SolidCells& cells = parts.solids->cells();
     std::vector<physics::Body> bodies =
         stage("bodies", [&] { return physics::mass_properties(device, cells, count, density); });
-    graph::ContactGraph contacts =
-        stage("contacts", [&] {
-            return graph::build_contact_graph(device, cells, count, 1, parts.solids->boundary());
-        });
+    graph::ContactGraph contacts = stage("contacts", [&] {
+        return graph::build_contact_graph(device, cells, count, 1, parts.solids->boundary());
+    });
     std::vector<graph::Joint> joints =
         stage("joints", [&] { return find_joints(parts, contacts, bodies); });
     return {std::move(bodies), std::move(contacts), std::move(joints),
@@ -176,8 +172,8 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
         grouping.seed = options.seed;
         grouping.time_limit_s = options.grouping_time_s.value_or(0);
         grouping.cancelled = options.cancelled;
-        out.grouping = graph::group_primitives(out.contacts, parts.bodies, parts.joints, parts.shell,
-                                               grouping, device.threads().threads());
+        out.grouping = graph::group_primitives(out.contacts, parts.bodies, parts.joints,
+                                               parts.shell, grouping, device.threads().threads());
     });
     const SolidCells& cells = solid.solids->cells();
     const BoundaryCells& boundary = solid.solids->boundary();
@@ -189,9 +185,9 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
     const physics::SupportTable table = stage("supports", [&] {
         std::vector<bool> loose;
         for (const std::int32_t g : out.grouping.group) loose.push_back(g >= 0);
-        return physics::SupportTable(
-            device, physics::solid_hulls(cells, boundary, loose, device.threads()), cells.voxel_m,
-            physics::geodesic_sphere(sphere_frequency));
+        return physics::SupportTable(device,
+                                     physics::solid_hulls(cells, boundary, loose, device.threads()),
+                                     cells.voxel_m, physics::geodesic_sphere(sphere_frequency));
     });
     stage("barriers", [&] {
         collect_objects(cells, boundary, parts.shell.pinned, out);

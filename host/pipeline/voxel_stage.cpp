@@ -79,13 +79,14 @@ BoundaryCells find_boundary(device::Device& device, const Ingested& input,
     const geometry::Regions& faces = geometry.primitives.faces;
     std::vector<std::int32_t> face_of_point;
     face_of_point.reserve(input.cloud.size());
-    for (const std::uint32_t s : geometry.surfels.of_point)
-        face_of_point.push_back(faces.label[s]);
+    for (const std::uint32_t s : geometry.surfels.of_point) face_of_point.push_back(faces.label[s]);
     std::vector<SurfacePatch> patches = solids::fit_patches(
         input.cloud, faces.regions, face_of_point, geometry.frame.axes, device.threads());
-    const solids::SeenCells seen =
-        solids::seen_cells(input.cloud, numbered(geometry.primitive_of_point, number),
-                           face_of_point, geometry.frame.axes, cells.voxel_m);
+    std::vector<std::int32_t> solid_of_point = numbered(geometry.primitive_of_point, number);
+    solids::drop_explained(input.cloud, patches, geometry.frame.axes, 2 * geometry.surfels.cell_m,
+                           solid_of_point, face_of_point);
+    const solids::SeenCells seen = solids::seen_cells(input.cloud, solid_of_point, face_of_point,
+                                                      geometry.frame.axes, cells.voxel_m);
     std::vector<solids::KnownRest> rests;
     for (const vdb::StandsOn& on : ledges(geometry)) {
         const std::int32_t above = number[static_cast<std::size_t>(on.above)],
@@ -193,8 +194,8 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, const Geom
         std::vector<Role> roles;
         for (std::size_t p = 0; p < geometry.role.size(); ++p)
             if (out.number[p] >= 0) roles.push_back(geometry.role[p]);
-        out.solids = solid_scene(device, input, geometry, out.number, *out.scene,
-                                 std::move(cells), std::move(roles));
+        out.solids = solid_scene(device, input, geometry, out.number, *out.scene, std::move(cells),
+                                 std::move(roles));
     });
     return out;
 }

@@ -27,14 +27,12 @@ class Around {
                                cj = j + static_cast<std::int32_t>(column % 3) - 1;
             std::size_t& at = at_[column];
             const std::tuple first(ci, cj, k - 1);
-            while (at < seen_.size() &&
-                   std::tie(seen_.i[at], seen_.j[at], seen_.k[at]) < first)
+            while (at < seen_.size() && std::tie(seen_.i[at], seen_.j[at], seen_.k[at]) < first)
                 ++at;
-            for (std::size_t m = at; m < seen_.size() && seen_.i[m] == ci && seen_.j[m] == cj &&
-                                     seen_.k[m] <= k + 1;
+            for (std::size_t m = at;
+                 m < seen_.size() && seen_.i[m] == ci && seen_.j[m] == cj && seen_.k[m] <= k + 1;
                  ++m) {
-                if (seen_.primitive[m] == p)
-                    add(m, column == 4 && seen_.k[m] == k, out);
+                if (seen_.primitive[m] == p) add(m, column == 4 && seen_.k[m] == k, out);
             }
         }
     }
@@ -105,8 +103,7 @@ void add_mates(const SolidCells& cells, std::span<const Mate> mates,
     for (const Mate& m : mates) {
         const std::tuple at(m.i, m.j, m.k);
         while (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
-        const bool own = n < cells.size() &&
-                         std::tie(cells.i[n], cells.j[n], cells.k[n]) == at &&
+        const bool own = n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) == at &&
                          cells.primitive[n] == m.primitive;
         if (own || m.extends) candidates.push_back({m.i, m.j, m.k, m.primitive, own, !own});
     }
@@ -129,8 +126,7 @@ void unite(std::vector<Candidate>& candidates) {
 }  // namespace
 
 BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, const SeenCells& seen,
-                            std::vector<SurfacePatch> patches,
-                            std::span<const KnownRest> rests) {
+                            std::vector<SurfacePatch> patches, std::span<const KnownRest> rests) {
     BoundaryCells out;
     std::vector<Candidate> candidates;
     const std::vector<std::uint8_t> faced = faced_around(cells, seen, patches, candidates);

@@ -19,8 +19,8 @@ struct KnownRest {
 };
 
 // What bounds the solids within their voxels: patches that were seen in a voxel or right beside it;
-// and where two solids touch, or one reaches what faces it unseen, the patch of the one that goes on
-// there, for both: they share no volume and leave none.
+// and where two solids touch, or one reaches what faces it unseen, the patch of the one that goes
+// on there, for both: they share no volume and leave none.
 BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, const SeenCells& seen,
                             std::vector<SurfacePatch> patches,
                             std::span<const KnownRest> rests = {});
@@ -39,8 +39,8 @@ struct Mate {
 // +z that a patch of the cell's primitive that was seen beside it faces. Sorted by (i, j, k,
 // primitive).
 std::vector<Mate> find_mates(const SolidCells& cells, const SeenCells& seen,
-                             std::span<const std::uint8_t> faced,
-                             std::span<const KnownRest> rests, std::vector<SurfacePatch>& patches);
+                             std::span<const std::uint8_t> faced, std::span<const KnownRest> rests,
+                             std::vector<SurfacePatch>& patches);
 
 // Bits of the directions that a gradient has its largest part along, roughly.
 std::uint8_t faced_by(const Vec3& gradient);

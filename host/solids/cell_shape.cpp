@@ -9,7 +9,7 @@
 namespace topple::solids {
 namespace {
 
-constexpr double slack = 1e-4;  // of a voxel: what lies so close to a patch is on it
+constexpr double slack = 1e-6;  // of a voxel: what lies so close to a patch is on it
 
 double bend(const SurfacePatch& patch) {
     double most = 0;
@@ -69,8 +69,7 @@ class Part {
                 Vec3 to = from, half = from;
                 to[axis] += edge_;
                 half[axis] += edge_ / 2;
-                const double f0 = patch.value(from), f1 = patch.value(to),
-                             fh = patch.value(half);
+                const double f0 = patch.value(from), f1 = patch.value(to), fh = patch.value(half);
                 const double a = 2 * (f0 + f1 - 2 * fh), b = f1 - f0 - a;
                 for (const double t : roots(a, b, f0)) {
                     Vec3 p = from;
@@ -149,6 +148,37 @@ class Part {
     std::vector<const SurfacePatch*> patches_;
 };
 
+// The patch that bounds a voxel from below, if one does.
+const SurfacePatch* bound_below(const BoundaryCells& b, std::size_t n, double h) {
+    constexpr double facing = 0.7;  // cosine
+    const Vec3 middle{(b.i[n] + 0.5) * h, (b.j[n] + 0.5) * h, (b.k[n] + 0.5) * h};
+    for (std::size_t s = 0; s < b.slots_used(n); ++s) {
+        const SlotUse use = b.use(n, s);
+        const SurfacePatch& patch = b.patches[b.slot[s][n]];
+        const Vec3 g = patch.gradient(middle);
+        const double down = use.outside ? g[2] : -g[2];
+        if (use.bounds && down >= facing * std::hypot(g[0], g[1], g[2])) return &patch;
+    }
+    return nullptr;
+}
+
+// Of the patches that pass a corner and are not level.
+double error_beside(const BoundaryCells& b, std::size_t n, const Vec3& corner, double h) {
+    constexpr double level = 0.7;  // cosine
+    double most = 0;
+    bool any = false;
+    for (std::size_t s = 0; s < b.slots_used(n); ++s) {
+        const SurfacePatch& patch = b.patches[b.slot[s][n]];
+        const Vec3 g = patch.gradient(corner);
+        if (std::abs(g[2]) > level * std::hypot(g[0], g[1], g[2]) ||
+            std::abs(patch.distance(corner)) > 2 * slack * h)
+            continue;
+        any = true;
+        most = std::max(most, patch.offset_m);
+    }
+    return any ? most : voxel_error * h;
+}
+
 }  // namespace
 
 std::vector<Vec3> corners_of(const BoundaryCells& b, std::size_t n, double h) {
@@ -166,8 +196,8 @@ std::vector<Vec3> corners_of(const BoundaryCells& b, std::size_t n, double h) {
     for (int u = 0; u < parts; ++u) {
         for (int v = 0; v < parts; ++v) {
             for (int w = 0; w < parts; ++w) {
-                Part part(b, n, h, {b.i[n] * h + u * edge, b.j[n] * h + v * edge,
-                                    b.k[n] * h + w * edge},
+                Part part(b, n, h,
+                          {b.i[n] * h + u * edge, b.j[n] * h + v * edge, b.k[n] * h + w * edge},
                           edge, out);
                 if (parts == 1 || part.passed()) part.add_corners();
             }
@@ -184,34 +214,33 @@ std::vector<Vec3> corners_of(const BoundaryCells& b, std::size_t n, double h) {
     return out;
 }
 
-std::vector<Vec3> underside_of(const BoundaryCells& b, std::int32_t i,
-                               std::int32_t j, std::int32_t k, std::int32_t p, double h) {
+std::vector<UndersideCorner> underside_of(const BoundaryCells& b, std::int32_t i, std::int32_t j,
+                                          std::int32_t k, std::int32_t p, double h) {
     std::size_t n = b.find(i, j, k - 1, p);
     if (n == BoundaryCells::absent || b.share[n] == 0) n = b.find(i, j, k, p);
-    std::vector<Vec3> out;
+    // What it stands on reaches higher than that.
+    if (n != BoundaryCells::absent && b.share[n] == 0) {
+        if (!bound_below(b, n, h)) return {};
+        n = b.find(i, j, ++k, p);
+        if (n != BoundaryCells::absent && b.share[n] == 0) return {};
+    }
     if (n == BoundaryCells::absent) {
+        std::vector<UndersideCorner> out;
         for (const int di : {0, 1})
-            for (const int dj : {0, 1}) out.push_back({(i + di) * h, (j + dj) * h, k * h});
+            for (const int dj : {0, 1})
+                out.push_back({{(i + di) * h, (j + dj) * h, k * h}, voxel_error * h});
         return out;
     }
     const std::vector<Vec3> corners = corners_of(b, n, h);
-    // What bounds it below, if anything does.
-    const SurfacePatch* below = nullptr;
-    for (std::size_t s = 0; s < b.slots_used(n); ++s) {
-        const SlotUse use = b.use(n, s);
-        const SurfacePatch& patch = b.patches[b.slot[s][n]];
-        const Vec3 g = patch.gradient({(i + 0.5) * h, (j + 0.5) * h, (b.k[n] + 0.5) * h});
-        constexpr double facing = 0.7;  // cosine
-        const double down = use.outside ? g[2] : -g[2];
-        if (use.bounds && down >= facing * std::hypot(g[0], g[1], g[2])) below = &patch;
-    }
+    const SurfacePatch* below = bound_below(b, n, h);
     double lowest = std::numeric_limits<double>::infinity();
     for (const Vec3& c : corners) lowest = std::min(lowest, c[2]);
     constexpr double even = 0.1;  // of a voxel
+    std::vector<UndersideCorner> out;
     for (const Vec3& c : corners) {
-        const bool on = below ? std::abs(below->distance(c)) < 2 * slack * h
-                              : c[2] <= lowest + even * h;
-        if (on) out.push_back(c);
+        const bool on =
+            below ? std::abs(below->distance(c)) < 2 * slack * h : c[2] <= lowest + even * h;
+        if (on) out.push_back({c, error_beside(b, n, c, h)});
     }
     return out;
 }

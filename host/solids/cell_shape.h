@@ -14,11 +14,18 @@ namespace topple::solids {
 // within it. Where patches are curved, those of parts of the voxel.
 std::vector<Vec3> corners_of(const BoundaryCells& boundary, std::size_t n, double voxel_m);
 
-// Of the lowest voxel of a primitive in a column, the outline of its underside: corners of the patch that bounds it
-// below, or of its lowest side; nothing where the primitive does not reach there. The voxel below
-// comes first where the primitive goes on into it.
-std::vector<Vec3> underside_of(const BoundaryCells& boundary, std::int32_t i,
-                               std::int32_t j, std::int32_t k, std::int32_t primitive,
-                               double voxel_m);
+// How well a voxel's own sides are known where no patch bounds it, in voxels: one standard error.
+inline constexpr double voxel_error = 0.5;
+
+struct UndersideCorner {
+    Vec3 at{};
+    double error_m = 0;  // seen from above: of the patches beside it
+};
+// Of the lowest voxel of a primitive in a column, the outline of its underside: corners of the
+// patch that bounds it below, or of its lowest side; nothing where the primitive does not reach
+// there. The voxel below comes first where the primitive goes on into it.
+std::vector<UndersideCorner> underside_of(const BoundaryCells& boundary, std::int32_t i,
+                                          std::int32_t j, std::int32_t k, std::int32_t primitive,
+                                          double voxel_m);
 
 }  // namespace topple::solids

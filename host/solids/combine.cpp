@@ -12,8 +12,9 @@
 namespace topple::solids {
 namespace {
 
-// A curved patch may pass a voxel although it is flat in the middle: of the reach.
-constexpr double bulge = 0.05;
+// A patch on the side of a voxel passes it, and a curved one may although it is flat in the middle:
+// of its edge.
+constexpr double on_side = 0.02, bulge = 0.05;
 
 enum class Fate : std::uint8_t { passes, solid, air };
 
@@ -25,7 +26,7 @@ struct Leaf {
 Fate fate_of(const SurfacePatch& patch, const Vec3& middle, double voxel_m) {
     const double d = patch.distance(middle);
     const double half = reach_of(patch.gradient(middle), voxel_m);
-    const double rim = half + (patch.flat() ? 0 : bulge * voxel_m);
+    const double rim = half + (patch.flat() ? on_side : bulge) * voxel_m;
     return d <= -rim ? Fate::solid : d >= rim ? Fate::air : Fate::passes;
 }
 
@@ -42,8 +43,7 @@ Relation relation(const SeenPatch& a, const SeenPatch& b, std::span<const Surfac
         constexpr double parallel = 0.9;  // cosine
         const Vec3 ga = pa.gradient(a.mean), gb = pb.gradient(b.mean);
         const double product = ga[0] * gb[0] + ga[1] * gb[1] + ga[2] * gb[2];
-        const double lengths =
-            std::hypot(ga[0], ga[1], ga[2]) * std::hypot(gb[0], gb[1], gb[2]);
+        const double lengths = std::hypot(ga[0], ga[1], ga[2]) * std::hypot(gb[0], gb[1], gb[2]);
         if (product > parallel * lengths)
             return std::pair(a.here, a.count) >= std::pair(b.here, b.count) ? Relation::first
                                                                             : Relation::second;
@@ -95,8 +95,7 @@ class Tree {
     void drop_hidden(std::span<const SurfacePatch> patches, double voxel_m) {
         for (std::size_t a = 0; a < leaves_.size(); ++a) {
             for (std::size_t b = a + 1; b < leaves_.size();) {
-                const Relation r =
-                    relation(*leaves_[a].seen, *leaves_[b].seen, patches, voxel_m);
+                const Relation r = relation(*leaves_[a].seen, *leaves_[b].seen, patches, voxel_m);
                 if (r == Relation::second) std::swap(leaves_[a], leaves_[b]);
                 if (r == Relation::first || r == Relation::second)
                     leaves_.erase(leaves_.begin() + static_cast<std::ptrdiff_t>(b));
@@ -139,7 +138,8 @@ Combination combine(std::span<const SeenPatch> seen, std::span<const SurfacePatc
         leaves.push_back({&s, fate_of(patches[s.patch], middle, voxel_m)});
     // The nearest ones, of which most was seen.
     std::ranges::stable_sort(leaves, [&](const Leaf& a, const Leaf& b) {
-        return std::tuple(-a.seen->here, -a.seen->count) < std::tuple(-b.seen->here, -b.seen->count);
+        return std::tuple(-a.seen->here, -a.seen->count) <
+               std::tuple(-b.seen->here, -b.seen->count);
     });
     if (leaves.size() > BoundaryCells::slots) leaves.resize(BoundaryCells::slots);
     Combination out;
@@ -178,13 +178,17 @@ Combination combine(std::span<const SeenPatch> seen, std::span<const SurfacePatc
 
 void add_bound(std::uint32_t patch, bool outside, std::span<const SurfacePatch> patches,
                const Vec3& middle, double voxel_m, Combination& sum) {
-    if (sum.nothing) return;
+    if (sum.nothing) return;  // by what was seen, or by another
     Fate fate = fate_of(patches[patch], middle, voxel_m);
     if (outside && fate != Fate::passes) fate = fate == Fate::solid ? Fate::air : Fate::solid;
     if (fate == Fate::solid) return;
     if (fate == Fate::air) {
+        // It alone says so.
         sum = {};
-        sum.nothing = sum.any_group = true;
+        sum.nothing = true;
+        sum.slot[0] = patch;
+        sum.use[0] = {outside, false, true};
+        sum.used = 1;
         return;
     }
     if (sum.used == BoundaryCells::slots) return;

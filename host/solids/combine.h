@@ -17,7 +17,8 @@ struct SeenPatch {
     Vec3 mean{};
 };
 
-// See BoundaryCells. No slots: all of the voxel is solid, or, if any of no groups suffices, nothing.
+// See BoundaryCells. No slots: all of the voxel is solid, or, if any of no groups suffices,
+// nothing.
 struct Combination {
     bool nothing = false, any_group = false;
     std::size_t used = 0;

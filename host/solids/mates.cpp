@@ -16,7 +16,7 @@ using Place = std::array<std::int32_t, 3>;
 
 // How far, in voxels, a solid's last voxel may end from the patch at which it ends indeed.
 constexpr double reach = 1.5;
-constexpr double facing = 0.7;  // least cosine
+constexpr double facing = 0.7;      // least cosine
 constexpr std::int32_t beyond = 3;  // voxels that a patch goes on past where it was seen
 
 struct Box {
@@ -122,9 +122,8 @@ class MateFinder {
             const std::int32_t p = cells_.primitive[n];
             if (p < 0 || (faced_[n] >> direction & 1)) continue;
             const std::size_t m = beside[n];
-            const bool adjacent =
-                m != absent &&
-                std::abs(std::int64_t{place(cells_, m)[axis]} - place(cells_, n)[axis]) == 1;
+            const bool adjacent = m != absent && std::abs(std::int64_t{place(cells_, m)[axis]} -
+                                                          place(cells_, n)[axis]) == 1;
             const std::int32_t other = m == absent ? -1 : cells_.primitive[m];
             if (other == p && adjacent) continue;
             Side& side = sides[p];
@@ -182,8 +181,8 @@ class MateFinder {
         return at;
     }
 
-    // Of the cells that the patch passes or leaves out inside of the primitive, and of those that it
-    // reaches beyond.
+    // Of the cells that the patch passes or leaves out inside of the primitive, and of those that
+    // it reaches beyond.
     void bound(std::int32_t p, std::size_t n, std::size_t axis, int way, const Candidate& c) {
         const double h = cells_.voxel_m;
         const SurfacePatch& patch = patches_[c.patch];
@@ -226,8 +225,7 @@ double reach_of(const Vec3& g, double voxel_m) {
 }
 
 std::vector<Mate> find_mates(const SolidCells& cells, const SeenCells& seen,
-                             std::span<const std::uint8_t> faced,
-                             std::span<const KnownRest> rests,
+                             std::span<const std::uint8_t> faced, std::span<const KnownRest> rests,
                              std::vector<SurfacePatch>& patches) {
     MateFinder finder(cells, seen, faced, patches);
     finder.add_rests(rests);

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <optional>
 #include <tuple>
+#include <unordered_map>
+#include <utility>
 
 #include "geometry/algebraic_model.h"
 
@@ -18,6 +20,8 @@ using Points = std::vector<Eigen::Vector3d>;
 constexpr std::size_t most_points = 4000;  // of a patch: more say no more of where it lies
 constexpr double outlier = 3;              // standard deviations
 constexpr int rounds = 3;
+constexpr double common_share = 0.25;   // of the noise that all of a patch's points have in common
+constexpr double least_noise_m = 2e-5;  // of coordinates in single precision
 
 Eigen::Vector3d rotated(const std::array<Vec3, 3>& axes, double x, double y, double z) {
     Eigen::Vector3d out;
@@ -42,8 +46,8 @@ geometry::AlgebraicModel rotated(const geometry::AlgebraicModel& model,
         r * Eigen::Vector3d(model.origin[0], model.origin[1], model.origin[2]);
     geometry::AlgebraicModel out = model;
     out.origin = {o.x(), o.y(), o.z()};
-    out.coefficients = {c[0],    b.x(),       b.y(),       b.z(),      q(0, 0),
-                        q(1, 1), q(2, 2),     2 * q(0, 1), 2 * q(0, 2), 2 * q(1, 2)};
+    out.coefficients = {c[0],    b.x(),   b.y(),       b.z(),       q(0, 0),
+                        q(1, 1), q(2, 2), 2 * q(0, 1), 2 * q(0, 2), 2 * q(1, 2)};
     if (model.degree == 1) std::fill(out.coefficients.begin() + 4, out.coefficients.end(), 0.0);
     return out;
 }
@@ -60,12 +64,11 @@ struct Near {
     double noise_m = 0;
 };
 Near near(const geometry::AlgebraicModel& model, const Points& points) {
-    constexpr double least_m = 2e-5;  // of coordinates in single precision
     std::vector<double> off;
     for (const auto& p : points) off.push_back(std::abs(geometry::distance(model, p)));
     std::vector<double> sorted = off;
     Near out;
-    out.noise_m = std::max(1.4826 * median(sorted), least_m);
+    out.noise_m = std::max(1.4826 * median(sorted), least_noise_m);
     for (std::size_t n = 0; n < points.size(); ++n)
         if (off[n] <= outlier * out.noise_m) out.points.push_back(points[n]);
     return out;
@@ -135,9 +138,76 @@ SurfacePatch fit(const geometry::Region& region, const std::array<Vec3, 3>& axes
     out.origin = model.origin;
     out.c = model.coefficients;
     out.noise_m = noise;
-    out.offset_m = noise / std::sqrt(static_cast<double>(std::max<std::size_t>(inliers, 1)));
+    out.offset_m =
+        std::hypot(noise / std::sqrt(static_cast<double>(std::max<std::size_t>(inliers, 1))),
+                   common_share * noise);
     return out;
 }
+
+// The patches seen in each cell of a coarse grid.
+class PatchMap {
+  public:
+    explicit PatchMap(double cell_m) : cell_m_(cell_m) {}
+    std::array<std::int32_t, 3> cell_of(const Eigen::Vector3d& p) const {
+        std::array<std::int32_t, 3> out{};
+        for (int a = 0; a < 3; ++a)
+            out[static_cast<std::size_t>(a)] =
+                static_cast<std::int32_t>(std::clamp(std::floor(p[a] / cell_m_), -2e9, 2e9));
+        return out;
+    }
+    void add(const Eigen::Vector3d& p, std::int32_t patch) {
+        std::vector<std::int32_t>& here = cells_[key(cell_of(p))];
+        if (std::ranges::find(here, patch) == here.end()) here.push_back(patch);
+    }
+    // In the cell of a point, and those beside it.
+    void around(const Eigen::Vector3d& p, std::vector<std::int32_t>& out) const {
+        out.clear();
+        const auto at = cell_of(p);
+        for (std::int32_t n = 0; n < 27; ++n) {
+            const auto found =
+                cells_.find(key({at[0] + n / 9 - 1, at[1] + n / 3 % 3 - 1, at[2] + n % 3 - 1}));
+            if (found == cells_.end()) continue;
+            for (const std::int32_t patch : found->second)
+                if (std::ranges::find(out, patch) == out.end()) out.push_back(patch);
+        }
+    }
+
+  private:
+    // 21 bits of each; cells that share a key are far from one another.
+    static std::uint64_t key(const std::array<std::int32_t, 3>& at) {
+        std::uint64_t out = 0;
+        for (const std::int32_t a : at)
+            out = out << 21 | (static_cast<std::uint32_t>(a) & 0x1fffff);
+        return out;
+    }
+    double cell_m_;
+    std::unordered_map<std::uint64_t, std::vector<std::int32_t>> cells_;
+};
+
+// The patch of more points that lies nearest to a point, within its noise; -1 where none does.
+struct Explainer {
+    std::span<const SurfacePatch> patches;
+    const std::vector<std::size_t>& points;  // of each patch
+    const std::vector<bool>& dropped;
+
+    std::int32_t operator()(const Eigen::Vector3d& p, std::int32_t own,
+                            std::span<const std::int32_t> near) const {
+        std::int32_t best = -1;
+        double least = 1;
+        for (const std::int32_t other : near) {
+            const auto o = static_cast<std::size_t>(other), mine = static_cast<std::size_t>(own);
+            if (other == own || dropped[o] ||
+                std::pair(points[o], other) < std::pair(points[mine], own))
+                continue;
+            const double off = std::abs(patches[o].distance({p.x(), p.y(), p.z()})) /
+                               (outlier * std::max(patches[o].noise_m, least_noise_m));
+            if (off > least || (off == least && best >= 0)) continue;
+            least = off;
+            best = other;
+        }
+        return best;
+    }
+};
 
 struct SeenPoint {
     std::int32_t i, j, k, primitive, patch;
@@ -175,9 +245,57 @@ std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
     return out;
 }
 
+void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patches,
+                    const std::array<Vec3, 3>& axes, double cell_m,
+                    std::vector<std::int32_t>& primitive_of_point,
+                    std::vector<std::int32_t>& patch_of_point) {
+    constexpr double explained = 0.8;       // share of its points that makes a patch none
+    constexpr std::size_t looked_at = 200;  // of them
+    std::vector<std::vector<std::uint32_t>> members(patches.size());
+    PatchMap map(cell_m);
+    const auto point = [&](std::size_t n) {
+        return rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]);
+    };
+    for (std::size_t n = 0; n < patch_of_point.size(); ++n) {
+        if (patch_of_point[n] < 0) continue;
+        members[static_cast<std::size_t>(patch_of_point[n])].push_back(
+            static_cast<std::uint32_t>(n));
+        map.add(point(n), patch_of_point[n]);
+    }
+    std::vector<std::size_t> size, order(patches.size());
+    for (const auto& m : members) size.push_back(m.size());
+    std::vector<std::int32_t> primitive(patches.size(), -1);
+    for (std::size_t p = 0; p < patches.size(); ++p)
+        if (size[p] > 0) primitive[p] = primitive_of_point[members[p][size[p] / 2]];
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t p) { return size[p]; });
+    std::vector<bool> dropped(patches.size(), false);
+    const Explainer explain{patches, size, dropped};
+    std::vector<std::int32_t> near;
+    for (const std::size_t p : order) {
+        const auto own = static_cast<std::int32_t>(p);
+        std::size_t looked = 0, met = 0;
+        for (std::size_t m = 0; m < size[p]; m += size[p] / looked_at + 1, ++looked) {
+            const Eigen::Vector3d at = point(members[p][m]);
+            map.around(at, near);
+            met += explain(at, own, near) >= 0;
+        }
+        if (looked == 0 || static_cast<double>(met) < explained * static_cast<double>(looked))
+            continue;
+        for (const std::uint32_t n : members[p]) {
+            const Eigen::Vector3d at = point(n);
+            map.around(at, near);
+            const std::int32_t other = explain(at, own, near);
+            patch_of_point[n] = other;
+            if (other >= 0) primitive_of_point[n] = primitive[static_cast<std::size_t>(other)];
+        }
+        dropped[p] = true;
+    }
+}
+
 SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primitive_of_point,
-                     std::span<const std::int32_t> patch_of_point,
-                     const std::array<Vec3, 3>& axes, double voxel_m) {
+                     std::span<const std::int32_t> patch_of_point, const std::array<Vec3, 3>& axes,
+                     double voxel_m) {
     std::vector<SeenPoint> places;
     for (std::size_t n = 0; n < cloud.size(); ++n) {
         if (primitive_of_point[n] < 0 || patch_of_point[n] < 0) continue;

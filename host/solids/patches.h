@@ -21,8 +21,15 @@ namespace topple::solids {
 std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
                                       std::span<const geometry::Region> regions,
                                       std::span<const std::int32_t> region_of_point,
-                                      const std::array<Vec3, 3>& axes,
-                                      device::ThreadPool& threads);
+                                      const std::array<Vec3, 3>& axes, device::ThreadPool& threads);
+
+// Surfels at an edge make narrow regions of their own there, askew to both faces. A patch whose
+// points larger ones beside it explain is none: its points become theirs, and what these leave
+// belongs to no patch. Labels are of points, -1 for none; cell_m: about twice the surfels' edge.
+void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patches,
+                    const std::array<Vec3, 3>& axes, double cell_m,
+                    std::vector<std::int32_t>& primitive_of_point,
+                    std::vector<std::int32_t>& patch_of_point);
 
 // Where the patches were seen: of each voxel, primitive and patch the points' number and mean.
 // Sorted by (i, j, k, primitive, patch).
@@ -32,7 +39,7 @@ struct SeenCells {
     std::size_t size() const { return i.size(); }
 };
 SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primitive_of_point,
-                     std::span<const std::int32_t> patch_of_point,
-                     const std::array<Vec3, 3>& axes, double voxel_m);
+                     std::span<const std::int32_t> patch_of_point, const std::array<Vec3, 3>& axes,
+                     double voxel_m);
 
 }  // namespace topple::solids
