@@ -31,6 +31,8 @@ constexpr double least_facing = 0.5;
 // Closed rooms that are looked into, and the share of what is seen there that may show its back.
 constexpr unsigned most_closed = 60;
 constexpr double most_behind = 0.3;
+// The share of all surfels that is worth another place.
+constexpr double least_unseen = 0.005;
 // Places outside of the scene's box that see into it, at most.
 constexpr unsigned outside = 2;
 // The first place sees this share of all surfels, or has as much room around it as only rooms have
@@ -69,6 +71,7 @@ class Looking {
         explore(options.eyes * rooms());
         look_into_closed_rooms(options.eyes / 2);
         look_from_outside();
+        look_at_unseen(options.eyes);
     }
 
     VirtualViews finish() {
@@ -169,6 +172,48 @@ class Looking {
             if (place == places_.size()) return;
             look(view_surfels(s_, places_.middle(place), pool_));
         }
+    }
+
+    // What no place has in view yet, from the place that most of it faces, as long as that shows
+    // more. Where sides are known, what is in front of them was free.
+    void look_at_unseen(unsigned eyes) {
+        constexpr std::size_t most_surfels = 4000, most_places = 4000;  // looked at
+        for (unsigned n = 0; n < eyes; ++n) {
+            std::vector<std::size_t> unseen, places;
+            for (std::size_t i = 0; i < s_.size(); ++i)
+                if (out_.eye_of_surfel[i] == no_eye && one_sided(i)) unseen.push_back(i);
+            for (std::size_t p = 0; p < places_.size(); ++p)
+                if (sides_known_ || places_.is_free(p)) places.push_back(p);
+            if (static_cast<double>(unseen.size()) < least_unseen * static_cast<double>(s_.size()))
+                return;
+            const std::size_t step = unseen.size() / most_surfels + 1,
+                              stride = places.size() / most_places + 1;
+            std::vector<std::size_t> facing_it(places.size() / stride + 1, 0);
+            pool_.each(places.size() / stride, 16, [&](std::size_t q) {
+                const Vec3& eye = places_.middle(places[q * stride]);
+                for (std::size_t m = 0; m < unseen.size(); m += step)
+                    facing_it[q] += looks_at(unseen[m], eye);
+            });
+            const auto best = std::ranges::max_element(facing_it);
+            if (*best == 0) return;
+            const std::size_t place =
+                places[static_cast<std::size_t>(best - facing_it.begin()) * stride];
+            look(view_surfels(s_, places_.middle(place), pool_));
+            std::size_t left = 0;
+            for (const std::size_t i : unseen) left += out_.eye_of_surfel[i] == no_eye;
+            const double gain = static_cast<double>(unseen.size() - left);
+            if (gain < least_unseen * static_cast<double>(s_.size())) return;
+        }
+    }
+
+    // Whether a surfel's front is towards an eye, near enough that little comes between.
+    bool looks_at(std::size_t i, const Vec3& eye) const {
+        constexpr double near_m = 2, well = 0.4;  // cosine
+        const double away =
+            std::hypot(eye[0] - s_.x[i], eye[1] - s_.y[i], eye[2] - s_.z[i]);
+        if (away > near_m) return false;
+        const double f = facing(i, eye);
+        return side_[i] == 0 ? std::abs(f) > well : side_[i] * f > well;
     }
 
     // Share of what is seen that shows its back.

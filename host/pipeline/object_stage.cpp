@@ -11,6 +11,7 @@
 #include "physics/body_landscape.h"
 #include "physics/drop.h"
 #include "physics/solid_hulls.h"
+#include "solids/cell_shape.h"
 
 namespace topple {
 namespace {
@@ -187,7 +188,7 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
         for (const std::int32_t g : out.grouping.group) loose.push_back(g >= 0);
         return physics::SupportTable(device,
                                      physics::solid_hulls(cells, boundary, loose, device.threads()),
-                                     cells.voxel_m, physics::geodesic_sphere(sphere_frequency));
+            solids::form_error_m(boundary, cells.voxel_m), physics::geodesic_sphere(sphere_frequency));
     });
     stage("barriers", [&] {
         collect_objects(cells, boundary, parts.shell.pinned, out);

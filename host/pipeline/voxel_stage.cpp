@@ -75,7 +75,8 @@ std::vector<std::uint8_t> unseen_below(const vdb::VolumeView& view, std::span<co
 // What bounds the solids within their voxels: the faces of the primitives.
 BoundaryCells find_boundary(device::Device& device, const Ingested& input,
                             const GeometryStage& geometry, const std::vector<std::int32_t>& number,
-                            const SolidCells& cells) {
+                            const SolidCells& cells,
+                            std::span<const Role> roles) {
     const geometry::Regions& faces = geometry.primitives.faces;
     std::vector<std::int32_t> face_of_point;
     face_of_point.reserve(input.cloud.size());
@@ -93,7 +94,9 @@ BoundaryCells find_boundary(device::Device& device, const Ingested& input,
                            below = number[static_cast<std::size_t>(on.below)];
         if (above >= 0 && below >= 0) rests.push_back({above, below, on.height_m});
     }
-    return solids::find_boundary(device, cells, seen, std::move(patches), rests);
+    std::vector<bool> sheet;
+    for (const Role role : roles) sheet.push_back(in_shell(role));
+    return solids::find_boundary(device, cells, seen, std::move(patches), sheet, rests);
 }
 
 // Strays are no body, and in no way.
@@ -115,7 +118,7 @@ std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Inge
         to.basis.push_back(cells.basis[n]);
         to.unseen_below.push_back(cells.unseen_below[n]);
     }
-    BoundaryCells boundary = find_boundary(device, input, geometry, number, near);
+    BoundaryCells boundary = find_boundary(device, input, geometry, number, near, roles);
     return std::make_shared<const SolidScene>(std::move(near), std::move(roles), std::move(strays),
                                               std::move(boundary));
 }

@@ -126,7 +126,8 @@ void unite(std::vector<Candidate>& candidates) {
 }  // namespace
 
 BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, const SeenCells& seen,
-                            std::vector<SurfacePatch> patches, std::span<const KnownRest> rests) {
+                            std::vector<SurfacePatch> patches, const std::vector<bool>& sheet,
+                            std::span<const KnownRest> rests) {
     BoundaryCells out;
     std::vector<Candidate> candidates;
     const std::vector<std::uint8_t> faced = faced_around(cells, seen, patches, candidates);
@@ -147,6 +148,8 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
         Combination sum = combine(found, patches, middle, h);
         const auto key_of = [&](const Mate& m) { return Key(m.i, m.j, m.k, m.primitive); };
         while (mate < mates.size() && key_of(mates[mate]) < c.key()) ++mate;
+        const bool mated = mate < mates.size() && key_of(mates[mate]) == c.key();
+        if (sheet[static_cast<std::size_t>(c.primitive)] && !mated) continue;
         for (std::size_t m = mate; m < mates.size() && key_of(mates[m]) == c.key(); ++m)
             add_bound(mates[m].patch, mates[m].outside, patches, middle, h, sum);
         // What is not the primitive's cell must be bounded by something, or mates reach it.

@@ -20,9 +20,10 @@ struct KnownRest {
 
 // What bounds the solids within their voxels: patches that were seen in a voxel or right beside it;
 // and where two solids touch, or one reaches what faces it unseen, the patch of the one that goes
-// on there, for both: they share no volume and leave none.
+// on there, for both: they share no volume and leave none. Sheets, of which nobody knows how thick
+// they are, end within their voxels only where something stands against them. sheet: by primitive.
 BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, const SeenCells& seen,
-                            std::vector<SurfacePatch> patches,
+                            std::vector<SurfacePatch> patches, const std::vector<bool>& sheet,
                             std::span<const KnownRest> rests = {});
 
 // The part of each voxel that is solid, and its moments (kernel cell_share).

@@ -9,7 +9,8 @@
 namespace topple::solids {
 namespace {
 
-constexpr double slack = 1e-6;  // of a voxel: what lies so close to a patch is on it
+constexpr double slack = 1e-6;    // of a voxel: of what is computed
+constexpr double on_patch = 1e-3;  // what lies so close to a patch as it was fitted is on it
 
 double bend(const SurfacePatch& patch) {
     double most = 0;
@@ -82,7 +83,7 @@ class Part {
     static std::vector<double> roots(double a, double b, double c) {
         std::vector<double> out;
         const auto add = [&](double t) {
-            if (t >= 0 && t <= 1) out.push_back(t);
+            if (t >= -slack && t <= 1 + slack) out.push_back(t);
         };
         if (std::abs(a) < 1e-9 * std::abs(b)) {
             if (b != 0) add(-c / b);
@@ -171,7 +172,7 @@ double error_beside(const BoundaryCells& b, std::size_t n, const Vec3& corner, d
         const SurfacePatch& patch = b.patches[b.slot[s][n]];
         const Vec3 g = patch.gradient(corner);
         if (std::abs(g[2]) > level * std::hypot(g[0], g[1], g[2]) ||
-            std::abs(patch.distance(corner)) > 2 * slack * h)
+            std::abs(patch.distance(corner)) > on_patch * h)
             continue;
         any = true;
         most = std::max(most, patch.offset_m);
@@ -239,10 +240,20 @@ std::vector<UndersideCorner> underside_of(const BoundaryCells& b, std::int32_t i
     std::vector<UndersideCorner> out;
     for (const Vec3& c : corners) {
         const bool on =
-            below ? std::abs(below->distance(c)) < 2 * slack * h : c[2] <= lowest + even * h;
+            below ? std::abs(below->distance(c)) < on_patch * h : c[2] <= lowest + even * h;
         if (on) out.push_back({c, error_beside(b, n, c, h)});
     }
     return out;
+}
+
+double form_error_m(const BoundaryCells& b, double h) {
+    std::vector<double> noise;
+    for (std::size_t n = 0; n < b.size(); ++n)
+        if (b.slots_used(n) > 0) noise.push_back(b.patches[b.slot[0][n]].noise_m);
+    if (noise.empty()) return h;
+    const auto middle = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 2);
+    std::nth_element(noise.begin(), middle, noise.end());
+    return std::clamp(3 * *middle, 0.01 * h, h);
 }
 
 }  // namespace topple::solids

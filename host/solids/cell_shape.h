@@ -28,4 +28,9 @@ std::vector<UndersideCorner> underside_of(const BoundaryCells& boundary, std::in
                                           std::int32_t j, std::int32_t k, std::int32_t primitive,
                                           double voxel_m);
 
+// To what the outer form of the solids is known: three times the noise of the typical patch that
+// bounds them, no more than a voxel, which it is where nothing bounds them, and no less than a
+// hundredth.
+double form_error_m(const BoundaryCells& boundary, double voxel_m);
+
 }  // namespace topple::solids

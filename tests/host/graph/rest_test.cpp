@@ -31,7 +31,7 @@ class RestOf : public test::EachBackend {
             object[static_cast<std::size_t>(p)] = ground[static_cast<std::size_t>(p)] ? 0 : p;
         const auto columns = undersides(scene.cells, object, object.size());
         return infer_rest(candidate_of(contacts, scene.bodies(*device), ground, {of}),
-                          columns[static_cast<std::size_t>(of)], contacts, 0.01);
+                          columns[static_cast<std::size_t>(of)], contacts);
     }
     static std::array<double, 4> bounds(const Rest& rest) {
         std::array<double, 4> out{INFINITY, INFINITY, -INFINITY, -INFINITY};
