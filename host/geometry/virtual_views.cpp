@@ -209,8 +209,7 @@ class Looking {
     // Whether a surfel's front is towards an eye, near enough that little comes between.
     bool looks_at(std::size_t i, const Vec3& eye) const {
         constexpr double near_m = 2, well = 0.4;  // cosine
-        const double away =
-            std::hypot(eye[0] - s_.x[i], eye[1] - s_.y[i], eye[2] - s_.z[i]);
+        const double away = std::hypot(eye[0] - s_.x[i], eye[1] - s_.y[i], eye[2] - s_.z[i]);
         if (away > near_m) return false;
         const double f = facing(i, eye);
         return side_[i] == 0 ? std::abs(f) > well : side_[i] * f > well;

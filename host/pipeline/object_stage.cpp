@@ -188,7 +188,8 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
         for (const std::int32_t g : out.grouping.group) loose.push_back(g >= 0);
         return physics::SupportTable(device,
                                      physics::solid_hulls(cells, boundary, loose, device.threads()),
-            solids::form_error_m(boundary, cells.voxel_m), physics::geodesic_sphere(sphere_frequency));
+                                     solids::form_error_m(boundary, cells.voxel_m),
+                                     physics::geodesic_sphere(sphere_frequency));
     });
     stage("barriers", [&] {
         collect_objects(cells, boundary, parts.shell.pinned, out);

@@ -75,8 +75,7 @@ std::vector<std::uint8_t> unseen_below(const vdb::VolumeView& view, std::span<co
 // What bounds the solids within their voxels: the faces of the primitives.
 BoundaryCells find_boundary(device::Device& device, const Ingested& input,
                             const GeometryStage& geometry, const std::vector<std::int32_t>& number,
-                            const SolidCells& cells,
-                            std::span<const Role> roles) {
+                            const SolidCells& cells, std::span<const Role> roles) {
     const geometry::Regions& faces = geometry.primitives.faces;
     std::vector<std::int32_t> face_of_point;
     face_of_point.reserve(input.cloud.size());

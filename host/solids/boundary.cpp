@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "solids/combine.h"
@@ -123,44 +124,143 @@ void unite(std::vector<Candidate>& candidates) {
     candidates.resize(kept);
 }
 
+// What bounds each candidate, in their order; of one that nothing bounds, all is solid.
+std::vector<Combination> combine_all(const SolidCells& cells, const SeenCells& seen,
+                                     std::span<const SurfacePatch> patches,
+                                     std::span<const Mate> mates, const std::vector<bool>& sheet,
+                                     std::span<const Candidate> candidates) {
+    const double h = cells.voxel_m;
+    std::vector<Combination> out;
+    out.reserve(candidates.size());
+    Around around(seen);
+    std::vector<SeenPatch> found;
+    std::size_t mate = 0;
+    for (const Candidate& c : candidates) {
+        const auto key_of = [&](const Mate& m) { return Key(m.i, m.j, m.k, m.primitive); };
+        while (mate < mates.size() && key_of(mates[mate]) < c.key()) ++mate;
+        const bool mated = mate < mates.size() && key_of(mates[mate]) == c.key();
+        Combination sum;
+        if (!sheet[static_cast<std::size_t>(c.primitive)] || mated) {
+            around.gather(c.i, c.j, c.k, c.primitive, found);
+            for (SeenPatch& s : found)
+                for (double& v : s.mean) v /= s.count;
+            const Vec3 middle{(c.i + 0.5) * h, (c.j + 0.5) * h, (c.k + 0.5) * h};
+            sum = combine(found, patches, middle, h);
+            for (std::size_t m = mate; m < mates.size() && key_of(mates[m]) == c.key(); ++m)
+                add_bound(mates[m].patch, mates[m].outside, patches, middle, h, sum);
+        }
+        out.push_back(sum);
+    }
+    return out;
+}
+
+// What was completed is solid where it hangs together with what was seen of its primitive: beyond
+// the seen surface, cells that hide in a corner of it are air. Sorted.
+std::vector<Candidate> cut_off(const SolidCells& cells, std::span<const Candidate> candidates,
+                               std::span<const Combination> sums) {
+    std::vector<bool> air(cells.size(), false);
+    std::size_t n = 0;
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+        if (!candidates[c].own || !sums[c].nothing) continue;
+        const std::tuple at(candidates[c].i, candidates[c].j, candidates[c].k);
+        while (std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
+        air[n] = true;
+    }
+    std::vector<std::size_t> parent(cells.size());
+    std::iota(parent.begin(), parent.end(), std::size_t{0});
+    const auto root = [&](std::size_t k) {
+        while (parent[k] != k) k = parent[k] = parent[parent[k]];
+        return k;
+    };
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::vector<std::size_t> next = next_cells(cells, axis, 1);
+        for (std::size_t k = 0; k < cells.size(); ++k) {
+            const std::size_t m = next[k];
+            if (m == no_cell || air[k] || air[m] || cells.primitive[k] != cells.primitive[m])
+                continue;
+            const std::size_t a = root(k), b = root(m);
+            parent[std::max(a, b)] = std::min(a, b);
+        }
+    }
+    std::vector<bool> seen(cells.size(), false);
+    std::vector<bool> any;  // by primitive: of which nothing is left that was seen stays as it is
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        const std::int32_t p = cells.primitive[k];
+        if (p < 0 || cells.basis[k] != Basis::surface || air[k]) continue;
+        seen[root(k)] = true;
+        any.resize(std::max(any.size(), static_cast<std::size_t>(p) + 1), false);
+        any[static_cast<std::size_t>(p)] = true;
+    }
+    std::vector<Candidate> out;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        const std::int32_t p = cells.primitive[k];
+        if (p < 0 || static_cast<std::size_t>(p) >= any.size() || air[k] || seen[root(k)]) continue;
+        if (any[static_cast<std::size_t>(p)])
+            out.push_back({cells.i[k], cells.j[k], cells.k[k], p, true});
+    }
+    return out;
+}
+
+void add_cell(const Candidate& c, const Combination& sum, BoundaryCells& out) {
+    out.i.push_back(c.i);
+    out.j.push_back(c.j);
+    out.k.push_back(c.k);
+    out.primitive.push_back(c.primitive);
+    for (std::size_t s = 0; s < BoundaryCells::slots; ++s) out.slot[s].push_back(sum.slot[s]);
+    out.form.push_back(make_form(sum.any_group, sum.use, sum.used));
+}
+
 }  // namespace
+
+std::vector<std::size_t> next_cells(const SolidCells& c, std::size_t axis, std::int32_t furthest) {
+    const auto place = [&](std::size_t n) {
+        return std::array<std::int32_t, 3>{c.i[n], c.j[n], c.k[n]};
+    };
+    std::vector<std::size_t> out(c.size(), no_cell);
+    for (std::int32_t step = 1; step <= furthest; ++step) {
+        std::size_t m = 0;
+        for (std::size_t n = 0; n < c.size(); ++n) {
+            auto wanted = place(n);
+            wanted[axis] += step;
+            while (m < c.size() && place(m) < wanted) ++m;
+            if (m == c.size()) break;
+            if (out[n] == no_cell && place(m) == wanted) out[n] = m;
+        }
+    }
+    return out;
+}
 
 BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, const SeenCells& seen,
                             std::vector<SurfacePatch> patches, const std::vector<bool>& sheet,
                             std::span<const KnownRest> rests) {
-    BoundaryCells out;
     std::vector<Candidate> candidates;
     const std::vector<std::uint8_t> faced = faced_around(cells, seen, patches, candidates);
     add_shared(cells, seen, candidates);
     const std::vector<Mate> mates = find_mates(cells, seen, faced, rests, patches);
     add_mates(cells, mates, candidates);
     unite(candidates);
+    const std::vector<Combination> sums =
+        combine_all(cells, seen, patches, mates, sheet, candidates);
+    const std::vector<Candidate> air = cut_off(cells, candidates, sums);
 
-    Around around(seen);
-    std::vector<SeenPatch> found;
-    std::size_t mate = 0;
-    for (const Candidate& c : candidates) {
-        around.gather(c.i, c.j, c.k, c.primitive, found);
-        for (SeenPatch& s : found)
-            for (double& v : s.mean) v /= s.count;
-        const double h = cells.voxel_m;
-        const Vec3 middle{(c.i + 0.5) * h, (c.j + 0.5) * h, (c.k + 0.5) * h};
-        Combination sum = combine(found, patches, middle, h);
-        const auto key_of = [&](const Mate& m) { return Key(m.i, m.j, m.k, m.primitive); };
-        while (mate < mates.size() && key_of(mates[mate]) < c.key()) ++mate;
-        const bool mated = mate < mates.size() && key_of(mates[mate]) == c.key();
-        if (sheet[static_cast<std::size_t>(c.primitive)] && !mated) continue;
-        for (std::size_t m = mate; m < mates.size() && key_of(mates[m]) == c.key(); ++m)
-            add_bound(mates[m].patch, mates[m].outside, patches, middle, h, sum);
+    BoundaryCells out;
+    Combination nothing;
+    nothing.nothing = nothing.any_group = true;
+    auto cut = air.begin();
+    for (std::size_t n = 0; n < candidates.size(); ++n) {
+        const Candidate& c = candidates[n];
+        for (; cut != air.end() && cut->key() < c.key(); ++cut) add_cell(*cut, nothing, out);
+        if (cut != air.end() && cut->key() == c.key()) {
+            add_cell(*cut++, nothing, out);
+            continue;
+        }
         // What is not the primitive's cell must be bounded by something, or mates reach it.
-        if (sum.nothing ? !c.own : c.own ? sum.used == 0 : sum.used == 0 && !c.extends) continue;
-        out.i.push_back(c.i);
-        out.j.push_back(c.j);
-        out.k.push_back(c.k);
-        out.primitive.push_back(c.primitive);
-        for (std::size_t s = 0; s < BoundaryCells::slots; ++s) out.slot[s].push_back(sum.slot[s]);
-        out.form.push_back(make_form(sum.any_group, sum.use, sum.used));
+        const Combination& sum = sums[n];
+        const bool counts =
+            c.own ? sum.nothing || sum.used > 0 : !sum.nothing && (sum.used > 0 || c.extends);
+        if (counts) add_cell(c, sum, out);
     }
+    for (; cut != air.end(); ++cut) add_cell(*cut, nothing, out);
     out.patches = std::move(patches);
     measure_shares(device, cells.voxel_m, out);
     return out;

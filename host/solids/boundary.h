@@ -43,6 +43,11 @@ std::vector<Mate> find_mates(const SolidCells& cells, const SeenCells& seen,
                              std::span<const std::uint8_t> faced, std::span<const KnownRest> rests,
                              std::vector<SurfacePatch>& patches);
 
+// The next cell along +axis of each, so many voxels away at most; no_cell where there is none.
+inline constexpr std::size_t no_cell = ~std::size_t{0};
+std::vector<std::size_t> next_cells(const SolidCells& cells, std::size_t axis,
+                                    std::int32_t furthest);
+
 // Bits of the directions that a gradient has its largest part along, roughly.
 std::uint8_t faced_by(const Vec3& gradient);
 // Half of the range of a patch's values over a voxel: its own, if it is flat.

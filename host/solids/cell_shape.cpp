@@ -9,7 +9,7 @@
 namespace topple::solids {
 namespace {
 
-constexpr double slack = 1e-6;    // of a voxel: of what is computed
+constexpr double slack = 1e-6;     // of a voxel: of what is computed
 constexpr double on_patch = 1e-3;  // what lies so close to a patch as it was fitted is on it
 
 double bend(const SurfacePatch& patch) {

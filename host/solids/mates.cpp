@@ -56,23 +56,6 @@ struct Side {
     Box box;
 };
 
-// The next cell along +axis, at most one empty voxel away; `absent` where there is none.
-constexpr std::size_t absent = ~std::size_t{0};
-std::vector<std::size_t> next_cells(const SolidCells& c, std::size_t axis) {
-    std::vector<std::size_t> out(c.size(), absent);
-    for (std::int32_t step = 1; step <= 2; ++step) {
-        std::size_t m = 0;
-        for (std::size_t n = 0; n < c.size(); ++n) {
-            Place wanted = place(c, n);
-            wanted[axis] += step;
-            while (m < c.size() && place(c, m) < wanted) ++m;
-            if (m == c.size()) break;
-            if (out[n] == absent && place(c, m) == wanted) out[n] = m;
-        }
-    }
-    return out;
-}
-
 class MateFinder {
   public:
     MateFinder(const SolidCells& cells, const SeenCells& seen, std::span<const std::uint8_t> faced,
@@ -96,10 +79,10 @@ class MateFinder {
 
     std::vector<Mate> find() {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::vector<std::size_t> next = next_cells(cells_, axis);
-            std::vector<std::size_t> previous(cells_.size(), absent);
+            const std::vector<std::size_t> next = next_cells(cells_, axis, 2);
+            std::vector<std::size_t> previous(cells_.size(), no_cell);
             for (std::size_t n = 0; n < next.size(); ++n)
-                if (next[n] != absent) previous[next[n]] = n;
+                if (next[n] != no_cell) previous[next[n]] = n;
             add_sides(axis, -1, previous);
             add_sides(axis, 1, next);
         }
@@ -122,9 +105,9 @@ class MateFinder {
             const std::int32_t p = cells_.primitive[n];
             if (p < 0 || (faced_[n] >> direction & 1)) continue;
             const std::size_t m = beside[n];
-            const bool adjacent = m != absent && std::abs(std::int64_t{place(cells_, m)[axis]} -
-                                                          place(cells_, n)[axis]) == 1;
-            const std::int32_t other = m == absent ? -1 : cells_.primitive[m];
+            const bool adjacent = m != no_cell && std::abs(std::int64_t{place(cells_, m)[axis]} -
+                                                           place(cells_, n)[axis]) == 1;
+            const std::int32_t other = m == no_cell ? -1 : cells_.primitive[m];
             if (other == p && adjacent) continue;
             Side& side = sides[p];
             side.faces.push_back({n, other == p ? -1 : other});

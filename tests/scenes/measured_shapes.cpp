@@ -103,7 +103,7 @@ std::vector<MeasuredShape> measured_shapes() {
     add("box 12 x 16 x 30", sized({0.12, 0.16, 0.3}), true);
     add("box 10 x 7 x 15", sized({0.1, 0.07, 0.15}), true);
     add("cube 40", sized({0.4, 0.4, 0.4}));
-    add("cube 6", sized({0.06, 0.06, 0.06}), true);
+    add("block 6 x 5 x 8", sized({0.06, 0.05, 0.08}), true);
     add("wardrobe 90 x 50 x 180", sized({0.9, 0.5, 1.8}));
     add("book upright 4 x 18 x 24", sized({0.04, 0.18, 0.24}), true);
     add("carton 35 x 25 x 12", sized({0.35, 0.25, 0.12}));
