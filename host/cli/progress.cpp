@@ -13,7 +13,7 @@ namespace {
 
 // What a stage does, short enough that the line fits on a terminal of 80 columns.
 const char* what_it_does(const std::string& stage) {
-    static constexpr std::array<std::pair<const char*, const char*>, 29> stages{
+    static constexpr std::array<std::pair<const char*, const char*>, 31> stages{
         {{"ingest", "reading the scan"},
          {"estimate", "measuring the scan"},
          {"sorting", "sorting the points into cubes on disk"},
@@ -32,9 +32,11 @@ const char* what_it_does(const std::string& stage) {
          {"filling", "completing what is hidden"},
          {"bodies", "weighing the parts"},
          {"contacts", "finding what touches"},
-         {"supports", "finding what carries what"},
          {"joints", "judging what belongs together"},
          {"grouping", "sampling which parts are one object"},
+         {"masses", "weighing the objects"},
+         {"borders", "finding what carries what"},
+         {"supports", "measuring how far the objects reach"},
          {"barriers", "what it takes to upset each object"},
          {"field human", "walking people through the room"},
          {"field wind", "blowing from all sides"},

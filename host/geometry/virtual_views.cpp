@@ -71,7 +71,7 @@ class Looking {
         explore(options.eyes * rooms());
         look_into_closed_rooms(options.eyes / 2);
         look_from_outside();
-        look_at_unseen(options.eyes);
+        if (sides_known_) look_at_unseen(options.eyes);
     }
 
     VirtualViews finish() {
@@ -175,29 +175,26 @@ class Looking {
     }
 
     // What no place has in view yet, from the place that most of it faces, as long as that shows
-    // more. Where sides are known, what is in front of them was free.
+    // more. Since sides are known, what is in front of them was free.
     void look_at_unseen(unsigned eyes) {
         constexpr std::size_t most_surfels = 4000, most_places = 4000;  // looked at
         for (unsigned n = 0; n < eyes; ++n) {
-            std::vector<std::size_t> unseen, places;
+            std::vector<std::size_t> unseen;
             for (std::size_t i = 0; i < s_.size(); ++i)
                 if (out_.eye_of_surfel[i] == no_eye && one_sided(i)) unseen.push_back(i);
-            for (std::size_t p = 0; p < places_.size(); ++p)
-                if (sides_known_ || places_.is_free(p)) places.push_back(p);
             if (static_cast<double>(unseen.size()) < least_unseen * static_cast<double>(s_.size()))
                 return;
             const std::size_t step = unseen.size() / most_surfels + 1,
-                              stride = places.size() / most_places + 1;
-            std::vector<std::size_t> facing_it(places.size() / stride + 1, 0);
-            pool_.each(places.size() / stride, 16, [&](std::size_t q) {
-                const Vec3& eye = places_.middle(places[q * stride]);
+                              stride = places_.size() / most_places + 1;
+            std::vector<std::size_t> facing_it(places_.size() / stride + 1, 0);
+            pool_.each(places_.size() / stride, 16, [&](std::size_t q) {
+                const Vec3& eye = places_.middle(q * stride);
                 for (std::size_t m = 0; m < unseen.size(); m += step)
                     facing_it[q] += looks_at(unseen[m], eye);
             });
             const auto best = std::ranges::max_element(facing_it);
             if (*best == 0) return;
-            const std::size_t place =
-                places[static_cast<std::size_t>(best - facing_it.begin()) * stride];
+            const std::size_t place = static_cast<std::size_t>(best - facing_it.begin()) * stride;
             look(view_surfels(s_, places_.middle(place), pool_));
             std::size_t left = 0;
             for (const std::size_t i : unseen) left += out_.eye_of_surfel[i] == no_eye;

@@ -58,10 +58,20 @@ void add_corners(std::int32_t i, std::int32_t j, double h, std::vector<BorderPoi
     }
 }
 
+// A mean of heights: of those that patches tell, if any do.
+struct MeanHeight {
+    double sum[2] = {0, 0}, count[2] = {0, 0};
+    void add(double height_m, bool bounded) {
+        sum[bounded] += height_m;
+        ++count[bounded];
+    }
+    double mean_m() const { return sum[count[1] > 0] / count[count[1] > 0]; }
+};
+
 struct Columns {
     std::vector<BorderPoint> corners;
     std::uint64_t count = 0;
-    double height_sum = 0;
+    MeanHeight height;
 };
 
 // The outlines of undersides: of the surfaces that bound them within voxels.
@@ -69,21 +79,23 @@ class Shapes {
   public:
     Shapes(const BoundaryCells& boundary, double voxel_m)
         : boundary_(boundary), voxel_m_(voxel_m) {}
-    // Of a primitive's lowest cell in a column. Returns its height, or else `coarse_m`.
-    double add(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive,
-               double coarse_m, std::vector<BorderPoint>& corners) const {
+    // Of a primitive's lowest cell in a column.
+    void add(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive,
+             std::vector<BorderPoint>& corners, MeanHeight* height = nullptr) const {
         if (boundary_.size() == 0) {
             add_corners(i, j, voxel_m_, corners);
-            return coarse_m;
+            return;
         }
-        double sum = 0;
-        const std::vector<solids::UndersideCorner> own =
-            solids::underside_of(boundary_, i, j, k, primitive, voxel_m_);
-        for (const solids::UndersideCorner& c : own) {
+        for (const solids::UndersideCorner& c :
+             solids::underside_of(boundary_, i, j, k, primitive, voxel_m_)) {
             corners.push_back({{c.at[0], c.at[1]}, c.error_m});
-            sum += c.at[2];
+            if (height) height->add(c.at[2], c.bounded);
         }
-        return own.empty() ? coarse_m : sum / static_cast<double>(own.size());
+    }
+
+    // Of a primitive's highest cell in a column, the surface's height in voxels.
+    double top(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive) const {
+        return solids::top_of(boundary_, i, j, k, primitive, voxel_m_) / voxel_m_;
     }
 
   private:
@@ -128,7 +140,7 @@ struct Extent {
                point[1] <= j_high + 1.0;
     }
     double mean_top() const { return tops / static_cast<double>(columns); }
-    void add(std::int32_t i, std::int32_t j, std::int32_t top) {
+    void add(std::int32_t i, std::int32_t j, double top) {
         if (columns == 0) i_high = i, j_high = j;
         i_low = std::min(i_low, i), i_high = std::max(i_high, i);
         j_low = std::min(j_low, j), j_high = std::max(j_high, j);
@@ -166,7 +178,7 @@ std::uint64_t add_hidden_corners(const std::vector<Underside>& undersides, doubl
     for (const Underside& u : undersides) {
         const double above = u.lowest - surface;
         const bool rests = above >= -1.5 && u.unseen >= std::max(above - 0.5, 2.0) && within(u);
-        if (rests) shapes.add(u.i, u.j, u.lowest, primitive, height_m, corners);
+        if (rests) shapes.add(u.i, u.j, u.lowest, primitive, corners);
         columns += rests;
     }
     return columns;
@@ -321,7 +333,9 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         }
         const bool last = n + 1 == cells.size() || cells.i[n + 1] != cells.i[n] ||
                           cells.j[n + 1] != cells.j[n] || cells.primitive[n + 1] != upper;
-        if (last) extents[p].add(cells.i[n], cells.j[n], cells.k[n] + 1);
+        if (last)
+            extents[p].add(cells.i[n], cells.j[n],
+                           shapes.top(cells.i[n], cells.j[n], cells.k[n], upper));
         // Cells are sorted by (i, j, k): the one below in the column, if any, comes right before.
         if (n == 0 || cells.i[n - 1] != cells.i[n] || cells.j[n - 1] != cells.j[n]) continue;
         const std::int32_t lower = cells.primitive[n - 1];
@@ -333,8 +347,8 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         if (empty > static_cast<std::int32_t>(gap)) continue;
         Columns& columns = carried[{upper, lower}];
         ++columns.count;
-        columns.height_sum += shapes.add(cells.i[n], cells.j[n], cells.k[n], upper,
-                                         (cells.k[n - 1] + 1) * h, columns.corners);
+        columns.height.add((cells.k[n - 1] + 1) * h, false);
+        shapes.add(cells.i[n], cells.j[n], cells.k[n], upper, columns.corners, &columns.height);
     }
     std::vector<std::vector<std::array<double, 2>>> outlines(count);  // of those asked for
     for (std::size_t p = 0; p < count; ++p)
@@ -347,7 +361,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         if (scraps && met < least_on_scraps * static_cast<double>(load.columns)) continue;
         const double area = scraps ? met : upward_faces(graph.pairs, supporter, supported);
         if (area <= 0) continue;
-        const double height = columns.height_sum / met;
+        const double height = columns.height.mean_m();
         // A surface at least half as wide may go on where it is hidden; a leg does not.
         if (!scraps && 2 * extents[static_cast<std::size_t>(supporter)].columns >= load.columns) {
             const auto below = static_cast<std::size_t>(supporter);

@@ -23,10 +23,23 @@ constexpr double often_hung = 0.05;
 constexpr std::int32_t uneven_foot = 2;  // voxels
 constexpr double least_error_m = 1e-4;   // no border is known better
 
+// A mean of heights.
+struct MeanHeight {
+    double sum = 0, count = 0;
+    void add(double height_m) {
+        sum += height_m;
+        ++count;
+    }
+    double or_else(double height_m) const { return count > 0 ? sum / count : height_m; }
+};
+
 void add_corners(const Underside& u, double h, const BoundaryCells& boundary,
-                 std::vector<BorderPoint>& points) {
-    for (const solids::UndersideCorner& c : solids::underside_of(boundary, u.i, u.j, u.k, u.own, h))
+                 std::vector<BorderPoint>& points, MeanHeight* height = nullptr) {
+    for (const solids::UndersideCorner& c :
+         solids::underside_of(boundary, u.i, u.j, u.k, u.own, h)) {
         points.push_back({{c.at[0], c.at[1]}, c.error_m});
+        if (height) height->add(c.at[2]);
+    }
 }
 
 double margin_of(const physics::Candidate& c, const Points& polygon) {
@@ -129,20 +142,27 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
     const double h = contacts.voxel_m;
     std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
     for (const Underside& u : columns) lowest = std::min(lowest, u.k);
-    const double low_m = lowest * h;
     const bool held = !c.support_polygon.empty();
 
     std::vector<BorderPoint> seen;
     add_points(c.support_polygon, c.border_error_m, seen);
     std::vector<BorderPoint> near = seen, hidden = seen;
-    double near_height = held ? c.support_height_m : std::numeric_limits<double>::infinity();
+    MeanHeight foot, met;  // of its lowest columns, and of what they nearly stand on
+    std::int32_t lowest_met = std::numeric_limits<std::int32_t>::max();
     for (const Underside& u : columns) {
         if (u.gap >= 0 && u.gap <= noise_gap) {
             add_corners(u, h, boundary, near);
-            near_height = std::min(near_height, (u.k - u.gap) * h);
+            const std::int32_t top = u.k - u.gap - 1;
+            if (top < lowest_met) met = {};
+            lowest_met = std::min(lowest_met, top);
+            if (top == lowest_met) met.add(solids::top_of(boundary, u.i, u.j, top, u.primitive, h));
         }
-        if (u.k <= lowest + uneven_foot) add_corners(u, h, boundary, hidden);
+        if (u.k <= lowest + uneven_foot)
+            add_corners(u, h, boundary, hidden, u.k == lowest ? &foot : nullptr);
     }
+    const double low_m = foot.or_else(lowest * h);
+    double near_height = met.or_else(held ? c.support_height_m : low_m);
+    if (held) near_height = std::min(near_height, c.support_height_m);
     std::vector<BorderPoint> leaning = near;
     for (const std::int32_t p : c.primitives) {
         for (const Leaning& l : contacts.leanings_of(p)) {
@@ -150,7 +170,6 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
                 add_points({l.outline.begin(), l.outline.end()}, solids::voxel_error * h, leaning);
         }
     }
-    const double height = std::isfinite(near_height) ? near_height : low_m;
     std::vector<BorderPoint> all_columns;
     for (const Underside& u : columns) add_corners(u, h, boundary, all_columns);
     Outline whole = outline_of(all_columns);
@@ -163,8 +182,8 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
     const bool hung = held && c.support_height_m > low_m + noise_gap * h;
     std::array<Way, 4> ways{
         Way{RestKind::seen, std::move(seen), c.support_height_m, hung ? often_hung : 1},
-        Way{RestKind::near, std::move(near), height, often_near},
-        Way{RestKind::leaning, std::move(leaning), height, often_leaning},
+        Way{RestKind::near, std::move(near), near_height, often_near},
+        Way{RestKind::leaning, std::move(leaning), near_height, often_leaning},
         Way{RestKind::hidden, std::move(hidden), low_m, often_hidden}};
     Rest best;
     double most = -1, sum = 0, noise_m = 0;

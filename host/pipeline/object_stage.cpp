@@ -100,9 +100,8 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
     const SolidCells& cells = parts.solids->cells();
     std::vector<physics::Body> bodies =
         stage("bodies", [&] { return physics::mass_properties(device, cells, count, density); });
-    graph::ContactGraph contacts = stage("contacts", [&] {
-        return graph::build_contact_graph(device, cells, count, 1, parts.solids->boundary());
-    });
+    graph::ContactGraph contacts =
+        stage("contacts", [&] { return graph::build_contact_graph(device, cells, count); });
     std::vector<graph::Joint> joints =
         stage("joints", [&] { return find_joints(parts, contacts, bodies); });
     return {std::move(bodies), std::move(contacts), std::move(joints),
@@ -167,13 +166,12 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
                          const ParseOptions& options, StageClock& stage) {
     ObjectStage out;
     PartStage parts = weigh_parts(device, solid, options, stage);
-    out.contacts = std::move(parts.contacts);
     stage("grouping", [&] {
         graph::GroupingOptions grouping;
         grouping.seed = options.seed;
         grouping.time_limit_s = options.grouping_time_s.value_or(0);
         grouping.cancelled = options.cancelled;
-        out.grouping = graph::group_primitives(out.contacts, parts.bodies, parts.joints,
+        out.grouping = graph::group_primitives(parts.contacts, parts.bodies, parts.joints,
                                                parts.shell, grouping, device.threads().threads());
     });
     const SolidCells& cells = solid.solids->cells();
@@ -182,6 +180,12 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
         const std::vector<double> density(solid.model.size(), options.density_kg_m3);
         return physics::mass_properties(device, cells, static_cast<std::int32_t>(density.size()),
                                         density, boundary);
+    });
+    // The models of joints know contacts of whole voxels; what follows takes their true borders.
+    const auto count = static_cast<std::int32_t>(solid.model.size());
+    out.contacts = stage("borders", [&] {
+        return boundary.size() > 0 ? graph::build_contact_graph(device, cells, count, 1, boundary)
+                                   : std::move(parts.contacts);
     });
     const physics::SupportTable table = stage("supports", [&] {
         std::vector<bool> loose;

@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include "device/native/thread_pool.h"
@@ -93,8 +94,8 @@ BoundaryCells find_boundary(device::Device& device, const Ingested& input,
                            below = number[static_cast<std::size_t>(on.below)];
         if (above >= 0 && below >= 0) rests.push_back({above, below, on.height_m});
     }
-    std::vector<bool> sheet;
-    for (const Role role : roles) sheet.push_back(in_shell(role));
+    std::vector<bool> sheet = solids::one_sided(seen, patches, roles.size());
+    for (std::size_t p = 0; p < roles.size(); ++p) sheet[p] = sheet[p] && in_shell(roles[p]);
     return solids::find_boundary(device, cells, seen, std::move(patches), sheet, rests);
 }
 
@@ -120,6 +121,42 @@ std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Inge
     BoundaryCells boundary = find_boundary(device, input, geometry, number, near, roles);
     return std::make_shared<const SolidScene>(std::move(near), std::move(roles), std::move(strays),
                                               std::move(boundary));
+}
+
+// The part of each voxel that is solid, of whichever primitives.
+void store_fractions(const SolidScene& solids, vdb::VoxelScene& volume) {
+    const SolidCells cells = solids.with_strays();
+    const BoundaryCells& b = solids.boundary();
+    std::vector<std::int32_t> i, j, k;
+    std::vector<float> fraction;
+    const auto add = [&](const std::tuple<std::int32_t, std::int32_t, std::int32_t>& at,
+                         std::uint32_t share) {
+        i.push_back(std::get<0>(at));
+        j.push_back(std::get<1>(at));
+        k.push_back(std::get<2>(at));
+        fraction.push_back(static_cast<float>(std::min(share, BoundaryCells::whole)) /
+                           static_cast<float>(BoundaryCells::whole));
+    };
+    std::size_t n = 0, m = 0;
+    while (n < cells.size() || m < b.size()) {
+        const auto cell = [&] { return std::tuple(cells.i[n], cells.j[n], cells.k[n]); };
+        const auto part = [&] { return std::tuple(b.i[m], b.j[m], b.k[m]); };
+        const auto at = n == cells.size() ? part()
+                        : m == b.size()   ? cell()
+                                          : std::min(cell(), part());
+        // A cell of which the boundary says nothing is solid as a whole.
+        const std::int32_t own =
+            n < cells.size() && cell() == at ? cells.primitive[n] : std::int32_t{-2};
+        bool whole = own != -2;
+        std::uint32_t share = 0;
+        for (; m < b.size() && part() == at; ++m) {
+            share += b.share[m];
+            whole = whole && b.primitive[m] != own;
+        }
+        add(at, whole ? BoundaryCells::whole : share);
+        n += own != -2;
+    }
+    volume.add_field("fraction", i, j, k, fraction);
 }
 
 // Returns whether the frames show the scene from around.
@@ -198,6 +235,7 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, const Geom
             if (out.number[p] >= 0) roles.push_back(geometry.role[p]);
         out.solids = solid_scene(device, input, geometry, out.number, *out.scene, std::move(cells),
                                  std::move(roles));
+        store_fractions(*out.solids, *out.scene);
     });
     return out;
 }

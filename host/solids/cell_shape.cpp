@@ -241,9 +241,18 @@ std::vector<UndersideCorner> underside_of(const BoundaryCells& b, std::int32_t i
     for (const Vec3& c : corners) {
         const bool on =
             below ? std::abs(below->distance(c)) < on_patch * h : c[2] <= lowest + even * h;
-        if (on) out.push_back({c, error_beside(b, n, c, h)});
+        if (on) out.push_back({c, error_beside(b, n, c, h), below != nullptr});
     }
     return out;
+}
+
+double top_of(const BoundaryCells& b, std::int32_t i, std::int32_t j, std::int32_t k,
+              std::int32_t p, double h) {
+    const auto share = [&](std::int32_t at, double otherwise) {
+        const std::size_t n = b.find(i, j, at, p);
+        return n == BoundaryCells::absent ? otherwise : b.share[n] / double{BoundaryCells::whole};
+    };
+    return (k - 1 + share(k - 1, 1) + share(k, 1) + share(k + 1, 0)) * h;
 }
 
 double form_error_m(const BoundaryCells& b, double h) {

@@ -19,7 +19,8 @@ inline constexpr double voxel_error = 0.5;
 
 struct UndersideCorner {
     Vec3 at{};
-    double error_m = 0;  // seen from above: of the patches beside it
+    double error_m = 0;    // seen from above: of the patches beside it
+    bool bounded = false;  // by a patch from below, which tells its height
 };
 // Of the lowest voxel of a primitive in a column, the outline of its underside: corners of the
 // patch that bounds it below, or of its lowest side; nothing where the primitive does not reach
@@ -27,6 +28,11 @@ struct UndersideCorner {
 std::vector<UndersideCorner> underside_of(const BoundaryCells& boundary, std::int32_t i,
                                           std::int32_t j, std::int32_t k, std::int32_t primitive,
                                           double voxel_m);
+
+// The height of a primitive's surface over the middle of a column of which k is the highest voxel,
+// metres: the patches may end it there, or one voxel above or below.
+double top_of(const BoundaryCells& boundary, std::int32_t i, std::int32_t j, std::int32_t k,
+              std::int32_t primitive, double voxel_m);
 
 // To what the outer form of the solids is known: three times the noise of the typical patch that
 // bounds them, no more than a voxel, which it is where nothing bounds them, and no less than a

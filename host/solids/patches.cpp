@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -201,7 +202,7 @@ struct Explainer {
                 continue;
             const double off = std::abs(patches[o].distance({p.x(), p.y(), p.z()})) /
                                (outlier * std::max(patches[o].noise_m, least_noise_m));
-            if (off > least || (off == least && best >= 0)) continue;
+            if (off > least || (off == least && best >= 0 && best < other)) continue;
             least = off;
             best = other;
         }
@@ -209,10 +210,24 @@ struct Explainer {
     }
 };
 
+// Every so many of the points, the same ones in whatever order they come.
+bool is_chosen(const CloudView& cloud, std::size_t n, std::size_t step) {
+    std::uint64_t mixed = 0;
+    for (const float v : {cloud.x[n], cloud.y[n], cloud.z[n]})
+        mixed = (mixed ^ std::bit_cast<std::uint32_t>(v)) * 0x9e3779b97f4a7c15U;
+    return (mixed >> 32) % step == 0;
+}
+
+void sort(Points& points) {
+    std::ranges::sort(points, {},
+                      [](const Eigen::Vector3d& p) { return std::tuple(p.x(), p.y(), p.z()); });
+}
+
 struct SeenPoint {
     std::int32_t i, j, k, primitive, patch;
     float x, y, z;
     auto key() const { return std::tie(i, j, k, primitive, patch); }
+    auto order() const { return std::tie(i, j, k, primitive, patch, x, y, z); }
 };
 
 }  // namespace
@@ -236,10 +251,12 @@ std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
     threads.each(regions.size(), 16, [&](std::size_t r) {
         const std::size_t count = first[r + 1] - first[r], step = count / most_points + 1;
         Points points;
-        for (std::size_t m = first[r]; m < first[r + 1]; m += step) {
+        for (std::size_t m = first[r]; m < first[r + 1]; ++m) {
             const std::uint32_t n = order[m];
-            points.push_back(rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]));
+            if (is_chosen(cloud, n, step))
+                points.push_back(rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]));
         }
+        sort(points);
         out[r] = fit(regions[r], axes, points);
     });
     return out;
@@ -266,7 +283,8 @@ void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patche
     for (const auto& m : members) size.push_back(m.size());
     std::vector<std::int32_t> primitive(patches.size(), -1);
     for (std::size_t p = 0; p < patches.size(); ++p)
-        if (size[p] > 0) primitive[p] = primitive_of_point[members[p][size[p] / 2]];
+        for (const std::uint32_t n : members[p])
+            primitive[p] = std::max(primitive[p], primitive_of_point[n]);
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, {}, [&](std::size_t p) { return size[p]; });
     std::vector<bool> dropped(patches.size(), false);
@@ -275,8 +293,10 @@ void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patche
     for (const std::size_t p : order) {
         const auto own = static_cast<std::int32_t>(p);
         std::size_t looked = 0, met = 0;
-        for (std::size_t m = 0; m < size[p]; m += size[p] / looked_at + 1, ++looked) {
-            const Eigen::Vector3d at = point(members[p][m]);
+        for (const std::uint32_t n : members[p]) {
+            if (!is_chosen(cloud, n, size[p] / looked_at + 1)) continue;
+            ++looked;
+            const Eigen::Vector3d at = point(n);
             map.around(at, near);
             met += explain(at, own, near) >= 0;
         }
@@ -307,7 +327,7 @@ SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primi
                           patch_of_point[n], static_cast<float>(p.x()), static_cast<float>(p.y()),
                           static_cast<float>(p.z())});
     }
-    std::ranges::stable_sort(places, {}, &SeenPoint::key);
+    std::ranges::sort(places, {}, &SeenPoint::order);
     SeenCells out;
     for (std::size_t n = 0; n < places.size();) {
         std::size_t end = n;
@@ -329,6 +349,23 @@ SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primi
         out.z.push_back(static_cast<float>(sum[2] / count));
         n = end;
     }
+    return out;
+}
+
+std::vector<bool> one_sided(const SeenCells& seen, std::span<const SurfacePatch> patches,
+                            std::size_t primitives) {
+    constexpr double least = 0.95;  // length of the mean normal
+    std::vector<Eigen::Vector3d> sum(primitives, Eigen::Vector3d::Zero());
+    std::vector<double> count(primitives, 0.0);
+    for (std::size_t n = 0; n < seen.size(); ++n) {
+        const auto p = static_cast<std::size_t>(seen.primitive[n]);
+        const Vec3 g = patches[static_cast<std::size_t>(seen.patch[n])].gradient(
+            {seen.x[n], seen.y[n], seen.z[n]});
+        sum[p] += seen.count[n] * Eigen::Vector3d(g[0], g[1], g[2]).normalized();
+        count[p] += seen.count[n];
+    }
+    std::vector<bool> out;
+    for (std::size_t p = 0; p < primitives; ++p) out.push_back(sum[p].norm() >= least * count[p]);
     return out;
 }
 

@@ -13,6 +13,7 @@ std::span<const Case> all_cases() {
         {"carve", carve},
         {"six_fill_sweep", six_fill_sweep},
         {"six_fill_vote", six_fill_vote},
+        {"cell_share", cell_share},
         {"segmented_sum", segmented_sum},
         {"support_function", support_function},
         {"group_landscape", group_landscape},

@@ -14,6 +14,7 @@ Prepared carve_leaves(device::Device& device);
 Prepared carve(device::Device& device);
 Prepared six_fill_sweep(device::Device& device);
 Prepared six_fill_vote(device::Device& device);
+Prepared cell_share(device::Device& device);
 Prepared segmented_sum(device::Device& device);
 Prepared support_function(device::Device& device);
 Prepared group_landscape(device::Device& device);

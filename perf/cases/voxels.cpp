@@ -8,6 +8,8 @@
 
 #include "carve.hpp"
 #include "carve_leaves.hpp"
+#include "cell_share.hpp"
+#include "core/boundary_cells.h"
 #include "perf/cases/cases.h"
 #include "scenes/depth_camera.h"
 #include "scenes/furnished_room.h"
@@ -296,6 +298,67 @@ Prepared six_fill_vote(device::Device& device) {
             },
             {},
             [on] { return Hash().add(on->filled.download()).value(); }};
+}
+
+// The skin of boxes: seven in eight voxels have one patch, the others two that meet at an edge.
+Prepared cell_share(device::Device& device) {
+    constexpr std::uint32_t count = 1u << 19, patches = 6 * 1024;
+    constexpr std::size_t numbers = 13;  // of a patch
+    const double voxel_m = 0.02;
+    scenes::Random random(9);
+    std::vector<float> surface;
+    for (std::uint32_t n = 0; n < patches * numbers; ++n) {
+        const std::size_t at = n % numbers;
+        const double v = at < 3 ? random.uniform(-5, 5) : at < 7 ? random.uniform(-1, 1) : 0;
+        surface.push_back(static_cast<float>(v));
+    }
+    Ints c[3];
+    Words slot(BoundaryCells::slots * std::size_t{count}), form;
+    for (std::uint32_t n = 0; n < count; ++n) {
+        // Cells of a patch lie together.
+        const std::uint32_t patch = n / (count / patches) % patches;
+        const float* origin = &surface[patch * numbers];
+        for (std::size_t a = 0; a < 3; ++a)
+            c[a].push_back(static_cast<std::int32_t>(std::floor(double{origin[a]} / voxel_m)) +
+                           static_cast<std::int32_t>(n % 7) - 3);
+        const std::size_t used = n % 8 == 0 ? 2 : 1;
+        slot[n] = patch;
+        slot[count + n] = patch ^ 1U;
+        form.push_back(make_form(false, {SlotUse{.last = true}, SlotUse{.last = true}}, used));
+    }
+    struct Buffers {
+        device::Buffer<std::int32_t> i, j, k;
+        device::Buffer<std::uint32_t> slot, form;
+        device::Buffer<float> surface;
+        device::Buffer<std::uint32_t> share;
+        device::Buffer<std::int32_t> moment;
+    };
+    auto on = std::make_shared<Buffers>(Buffers{upload(device, c[0], "i"),
+                                                upload(device, c[1], "j"),
+                                                upload(device, c[2], "k"),
+                                                upload(device, slot, "slot"),
+                                                upload(device, form, "form"),
+                                                upload(device, surface, "surface"),
+                                                {device, count, "share"},
+                                                {device, 3 * count, "moment"}});
+    // Of a slot 64 samples of 21 operations; of a voxel 64 of 11.
+    const double operations = (1.125 * 64 * 21 + 64 * 11) * count;
+    return {{count, "voxels", (5 + 4 + 4 * 1.125) * 4.0 * count, operations},
+            [on, voxel_m](device::Queue& queue) {
+                queue.add<kernels::CellShare>(
+                    count,
+                    {.ci = on->i,
+                     .cj = on->j,
+                     .ck = on->k,
+                     .slot = on->slot,
+                     .form = on->form,
+                     .surface = on->surface,
+                     .share = on->share,
+                     .moment = on->moment},
+                    {.cell_count = count, .voxel_m = static_cast<float>(voxel_m)});
+            },
+            {},
+            [on] { return Hash().add(on->share.download()).add(on->moment.download()).value(); }};
 }
 
 // Four million cells whose labels lie scattered, in segments of 2,048.

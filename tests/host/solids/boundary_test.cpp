@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "solids/boundary.h"
+
+#include <gtest/gtest.h>
+
+#include "device/devices.h"
+#include "host/solids/boxes.h"
+#include "physics/bodies.h"
+#include "physics/qhull.h"
+#include "physics/solid_hulls.h"
+#include "physics/tipping.h"
+#include "solids/cell_shape.h"
+#include "topple/error.h"
+
+namespace topple::solids {
+namespace {
+
+constexpr double density = 1;  // a body's mass is its volume
+
+struct Bounded {
+    Scanned scanned;
+    BoundaryCells boundary;
+    std::vector<physics::Body> bodies;
+};
+
+Bounded bounded(const std::vector<Box>& boxes, double voxel_m) {
+    const auto device = device::open_native();
+    Bounded out{scan(boxes, voxel_m), {}, {}};
+    const std::vector<bool> sheet(boxes.size(), false);
+    out.boundary = find_boundary(*device, out.scanned.cells, out.scanned.seen(),
+                                 out.scanned.patches, sheet);
+    const std::vector<double> densities(boxes.size(), density);
+    out.bodies =
+        physics::mass_properties(*device, out.scanned.cells,
+                                 static_cast<std::int32_t>(boxes.size()), densities, out.boundary);
+    return out;
+}
+
+// Of a box of which all sides were seen, wherever it lies and however it is turned.
+TEST(Boundary, AnAskewBoxHasItsVolumeCentreAndHullAtAnyVoxelSize) {
+    const Eigen::Vector3d half(0.05, 0.08, 0.12);
+    for (const double voxel : {0.01, 0.02, 0.04}) {
+        for (int turn = 0; turn < 6; ++turn) {
+            SCOPED_TRACE(testing::Message() << voxel << " m, turn " << turn);
+            const Box box{{0.31 + 0.0037 * turn, -0.2, 0.5 + 0.003 * turn},
+                          half,
+                          turned(0.3 * turn, 0.1 * turn, -0.07 * turn)};
+            const Bounded b = bounded({box}, voxel);
+            EXPECT_NEAR(b.bodies[0].volume_m3 / box.volume(), 1, 0.004 * voxel / 0.02);
+            for (int a = 0; a < 3; ++a)
+                EXPECT_NEAR(b.bodies[0].center[static_cast<std::size_t>(a)], box.middle[a],
+                            0.02 * voxel);
+            device::ThreadPool threads(2);
+            const auto points =
+                physics::solid_hulls(b.scanned.cells, b.boundary, {true}, threads)[0];
+            double inside = 0;
+            for (const Vec3& p : points) {
+                EXPECT_TRUE(box.holds({p[0], p[1], p[2]}, 1e-5)) << p[0] << " " << p[1];
+                inside = std::max(inside, (Eigen::Vector3d(p[0], p[1], p[2]) - box.middle).norm());
+            }
+            EXPECT_NEAR(inside, half.norm(), 1e-4) << "the corners are there";
+        }
+    }
+}
+
+// Nobody saw where the upper one's underside is, nor the lower one's top under it.
+TEST(Boundary, WhatStandsOnAnotherEndsWhereThatBegins) {
+    for (const double height : {0.100, 0.1049, 0.11, 0.1163}) {
+        SCOPED_TRACE(height);
+        const Eigen::Matrix3d yaw = turned(0.4, 0, 0);
+        const Box below{{0, 0, height / 2}, {0.3, 0.25, height / 2}, yaw},
+            above{{0.02, 0.03, height + 0.06}, {0.05, 0.07, 0.06}, turned(0.7, 0, 0), 0b101111};
+        const Bounded b = bounded({below, above}, 0.02);
+        EXPECT_NEAR(b.bodies[1].volume_m3 / above.volume(), 1, 0.006);
+        EXPECT_NEAR(b.bodies[1].center[2], height + 0.06, 2e-4);
+        EXPECT_NEAR(b.bodies[0].volume_m3 / below.volume(), 1, 0.006);
+        // They share no volume and leave none.
+        EXPECT_NEAR(b.bodies[0].volume_m3 + b.bodies[1].volume_m3,
+                    below.volume() + above.volume(), 0.004 * below.volume());
+    }
+}
+
+// The true shape is an L: its inner edge is concave.
+TEST(Boundary, AConcaveEdgeIsNoWiderThanItsFaces) {
+    const Box foot{{0.1, 0.05, 0.0325}, {0.1, 0.05, 0.0325}}, post{{0.03, 0.05, 0.12}, {0.03, 0.05, 0.12}};
+    // One primitive: points within the other are none.
+    Scanned both = scan({foot, post}, 0.02), one;
+    one.patches = both.patches;
+    one.cells = both.cells;
+    std::fill(one.cells.primitive.begin(), one.cells.primitive.end(), 0);
+    for (std::size_t n = 0; n < both.cloud.size(); ++n) {
+        const Eigen::Vector3d p(both.cloud.x[n], both.cloud.y[n], both.cloud.z[n]);
+        if ((both.primitive[n] == 0 ? post : foot).holds(p, 1e-6)) continue;
+        one.cloud.x.push_back(both.cloud.x[n]);
+        one.cloud.y.push_back(both.cloud.y[n]);
+        one.cloud.z.push_back(both.cloud.z[n]);
+        one.primitive.push_back(0);
+        one.patch.push_back(both.patch[n]);
+    }
+    const auto device = device::open_native();
+    const BoundaryCells b =
+        find_boundary(*device, one.cells, one.seen(), one.patches, std::vector<bool>(1, false));
+    const double volume = 0.2 * 0.1 * 0.065 + 0.06 * 0.1 * (0.24 - 0.065);
+    EXPECT_NEAR(physics::mass_properties(*device, one.cells, 1, std::vector{density}, b)[0].volume_m3 /
+                    volume,
+                1, 0.01);
+}
+
+// What ends within its lowest voxels has the outline of its faces there.
+TEST(CellShape, TheUndersideHasTheBoxesOwnOutline) {
+    const Box box{{0.013, 0.027, 0.083}, {0.06, 0.04, 0.08}, turned(0.5, 0, 0)};
+    const Bounded b = bounded({box}, 0.02);
+    std::vector<std::array<double, 2>> points;
+    std::array<std::int32_t, 2> last{INT32_MIN, INT32_MIN};
+    const SolidCells& c = b.scanned.cells;
+    for (std::size_t n = 0; n < c.size(); ++n) {  // the first of a column is its lowest
+        if (last == std::array{c.i[n], c.j[n]}) continue;
+        last = {c.i[n], c.j[n]};
+        for (const UndersideCorner& u : underside_of(b.boundary, c.i[n], c.j[n], c.k[n], 0, 0.02)) {
+            EXPECT_NEAR(u.at[2], 0.003, 0.0025);
+            points.push_back({u.at[0], u.at[1]});
+        }
+    }
+    const auto outline = physics::convex_polygon(points);
+    double area = 0;
+    for (std::size_t n = 0; n < outline.size(); ++n) {
+        const auto &p = outline[n], &q = outline[(n + 1) % outline.size()];
+        area += (p[0] * q[1] - p[1] * q[0]) / 2;
+    }
+    EXPECT_NEAR(area / (4 * 0.06 * 0.04), 1, 0.002);
+}
+
+TEST(Boundary, NothingSeenBoundsNothing) {
+    Scanned s = scan({{{0, 0, 0}, {0.05, 0.05, 0.05}}}, 0.02);
+    s.cloud = {};
+    s.primitive.clear();
+    s.patch.clear();
+    const auto device = device::open_native();
+    EXPECT_EQ(find_boundary(*device, s.cells, s.seen(), {}, {false}).size(), 0u);
+    EXPECT_EQ(find_boundary(*device, {}, {}, {}, {}).size(), 0u);
+    EXPECT_EQ(form_error_m({}, 0.02), 0.02);
+}
+
+TEST(Boundary, IsTheSameOnAllBackends) {
+    const Scanned s = scan({{{0.1, 0.2, 0.3}, {0.1, 0.07, 0.12}, turned(0.3, 0.2, 0.1)}}, 0.02);
+    const BoundaryCells want =
+        find_boundary(*device::open_native(), s.cells, s.seen(), s.patches, {false});
+    for (const char* name : {"opencl", "vulkan"}) {
+        std::shared_ptr<device::Device> device;
+        try {
+            device = device::open_device(name);
+        } catch (const Error&) {
+            continue;
+        }
+        const BoundaryCells got = find_boundary(*device, s.cells, s.seen(), s.patches, {false});
+        EXPECT_EQ(got.share, want.share) << name;
+        EXPECT_EQ(got.moment, want.moment) << name;
+    }
+}
+
+}  // namespace
+}  // namespace topple::solids

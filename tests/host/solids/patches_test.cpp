@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "solids/patches.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "geometry/algebraic_model.h"
+#include "host/geometry/geometry_random.h"
+
+namespace topple::solids {
+namespace {
+
+using Eigen::Vector3d;
+const std::array<Vec3, 3> as_is{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+
+struct Sampled {
+    PointCloud cloud;
+    std::vector<std::int32_t> label;
+    void add(const Vector3d& p, std::int32_t of = 0) {
+        cloud.x.push_back(static_cast<float>(p.x()));
+        cloud.y.push_back(static_cast<float>(p.y()));
+        cloud.z.push_back(static_cast<float>(p.z()));
+        label.push_back(of);
+    }
+};
+
+double between(test::Random& random, double low, double high) {
+    return low + (high - low) * random.uniform();
+}
+
+geometry::Region level_region(double height) {
+    geometry::Region out;
+    out.model.origin = {0, 0, height};
+    out.model.coefficients = {0, 0, 0, 1, 0, 0, 0, 0, 0, 0};
+    out.residual_m = 0.004;
+    return out;
+}
+
+// The region's own model lies a little inside, and a tenth of its points belongs to the wall.
+TEST(Patches, LieWhereMostPointsAre) {
+    test::Random random(3);
+    Sampled s;
+    for (int n = 0; n < 3000; ++n)
+        s.add({between(random, 0, 0.3), between(random, 0, 0.2), 0.5 + 0.001 * random.normal()});
+    for (int n = 0; n < 300; ++n)
+        s.add({0.3, between(random, 0, 0.2), 0.5 + between(random, 0, 0.05)});
+    device::ThreadPool threads(2);
+    const std::vector<geometry::Region> regions{level_region(0.496)};
+    const SurfacePatch patch = fit_patches(s.cloud, regions, s.label, as_is, threads)[0];
+    EXPECT_NEAR(patch.distance({0.1, 0.1, 0.5}), 0, 1.5e-4);
+    EXPECT_GT(patch.distance({0.1, 0.1, 0.51}), 0.0099) << "it still faces up";
+    EXPECT_NEAR(patch.noise_m, 0.001, 2e-4);
+    EXPECT_LT(patch.offset_m, 0.001);
+    EXPECT_TRUE(patch.flat());
+}
+
+// The order of the points is nothing to go by.
+TEST(Patches, AreTheSameInAnyOrder) {
+    test::Random random(5);
+    Sampled there, back;
+    std::vector<Vector3d> points;
+    for (int n = 0; n < 9000; ++n)
+        points.push_back({between(random, 0, 0.3), between(random, 0, 0.2), 0.002 * random.normal()});
+    for (const auto& p : points) there.add(p);
+    for (auto p = points.rbegin(); p != points.rend(); ++p) back.add(*p);
+    device::ThreadPool threads(2);
+    const std::vector<geometry::Region> regions{level_region(0.001)};
+    const SurfacePatch a = fit_patches(there.cloud, regions, there.label, as_is, threads)[0],
+                       b = fit_patches(back.cloud, regions, back.label, as_is, threads)[0];
+    EXPECT_EQ(a.c, b.c);
+    EXPECT_EQ(a.origin, b.origin);
+    EXPECT_EQ(a.noise_m, b.noise_m);
+}
+
+TEST(Patches, OfATubeHaveItsRadius) {
+    Sampled s;
+    std::vector<Vector3d> points, normals;
+    for (int n = 0; n < 4000; ++n) {
+        const double turn = 0.7548777 * n, along = 0.5698403 * n;
+        const double angle = 2 * std::numbers::pi * (turn - std::floor(turn));
+        const Vector3d out(std::cos(angle), std::sin(angle), 0);
+        points.push_back(0.05 * out + Vector3d(1, 2, 0.2 * (along - std::floor(along))));
+        normals.push_back(out);
+        s.add(points.back());
+    }
+    // As from surfels that lie 1 mm inside.
+    std::vector<Vector3d> inside;
+    for (std::size_t n = 0; n < points.size(); ++n) inside.push_back(points[n] - 0.001 * normals[n]);
+    geometry::Region region;
+    region.model = geometry::fit_quadric(inside, normals, 0.005);
+    region.residual_m = 0.001;
+    device::ThreadPool threads(2);
+    const SurfacePatch patch =
+        fit_patches(s.cloud, std::vector{region}, s.label, as_is, threads)[0];
+    for (std::size_t n = 0; n < points.size(); n += 97) {
+        const Vec3 p{points[n].x(), points[n].y(), points[n].z()};
+        EXPECT_NEAR(patch.distance(p), 0, 3e-5);
+        const Vec3 g = patch.gradient(p);
+        EXPECT_GT(g[0] * normals[n].x() + g[1] * normals[n].y(), 0.9) << "out of the tube";
+    }
+}
+
+// Surfels along an edge make a narrow face of their own, whose points are those of both sides.
+TEST(Patches, OfAnEdgeAreItsSides) {
+    Sampled s;
+    std::vector<std::int32_t> patch_of_point;
+    const auto add = [&](const Vector3d& p) {
+        const bool edge = p.x() > 0.28 && p.z() > -0.02;
+        s.add(p);
+        patch_of_point.push_back(edge ? 2 : p.z() < 0 ? 1 : 0);
+    };
+    for (double y = 0; y < 0.2; y += 0.004) {
+        for (double x = 0; x < 0.3; x += 0.004) add({x, y, 0});
+        for (double z = -0.004; z > -0.2; z -= 0.004) add({0.3, y, z});
+    }
+    SurfacePatch top, side, edge;
+    top.c = {0, 0, 0, 1, 0, 0, 0, 0, 0, 0};
+    side.origin = {0.3, 0, 0};
+    side.c = {0, 1, 0, 0, 0, 0, 0, 0, 0, 0};
+    edge.origin = {0.295, 0, -0.005};
+    edge.c = {0, std::sqrt(0.5), 0, std::sqrt(0.5), 0, 0, 0, 0, 0, 0};
+    top.noise_m = side.noise_m = edge.noise_m = 1e-3;
+    drop_explained(s.cloud, std::vector{top, side, edge}, as_is, 0.04, s.label, patch_of_point);
+    for (std::size_t n = 0; n < patch_of_point.size(); ++n) {
+        const bool on_top = std::abs(s.cloud.z[n]) < 1e-6, on_side = s.cloud.x[n] > 0.2999F;
+        if (on_top && on_side) continue;
+        ASSERT_EQ(patch_of_point[n], on_top ? 0 : 1) << s.cloud.x[n] << " " << s.cloud.z[n];
+    }
+}
+
+TEST(SeenCells, HoldCountAndMeanOfEachPatch) {
+    Sampled s;
+    s.add({0.011, 0.012, -0.001});
+    s.add({0.013, 0.012, -0.003});
+    s.add({0.011, 0.012, 0.001});
+    s.add({0.5, 0.5, 0.5});
+    const SeenCells cells =
+        seen_cells(s.cloud, std::vector<std::int32_t>{4, 4, 4, -1},
+                   std::vector<std::int32_t>{7, 7, 7, 7}, as_is, 0.02);
+    ASSERT_EQ(cells.size(), 2u);
+    EXPECT_EQ(cells.k[0], -1);
+    EXPECT_EQ(cells.count[0], 2);
+    EXPECT_NEAR(cells.x[0], 0.012, 1e-6);
+    EXPECT_EQ(cells.primitive[1], 4);
+    EXPECT_EQ(cells.patch[1], 7);
+}
+
+}  // namespace
+}  // namespace topple::solids
