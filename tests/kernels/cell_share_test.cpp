@@ -60,22 +60,23 @@ Measured run(device::Device& device, const Inputs& in) {
     const std::size_t n = in.form.size();
     const device::Buffer<std::int32_t> i(device, in.index[0], "i"), j(device, in.index[1], "j"),
         k(device, in.index[2], "k");
-    const device::Buffer<std::uint32_t> slot(device, in.slot, "slot"), form(device, in.form, "form");
+    const device::Buffer<std::uint32_t> slot(device, in.slot, "slot"),
+        form(device, in.form, "form");
     const device::Buffer<float> surface(device, in.surface, "surface");
     const Guarded<std::uint32_t> share(device, n, "share");
     const Guarded<std::int32_t> moment(device, 3 * n, "moment");
     device::Queue queue(device);
-    queue.add<kernels::CellShare>(n,
-                                  {.ci = i,
-                                   .cj = j,
-                                   .ck = k,
-                                   .slot = slot,
-                                   .form = form,
-                                   .surface = surface,
-                                   .share = share.slice(),
-                                   .moment = moment.slice()},
-                                  {.cell_count = static_cast<std::uint32_t>(n),
-                                   .voxel_m = voxel_m});
+    queue.add<kernels::CellShare>(
+        n,
+        {.ci = i,
+         .cj = j,
+         .ck = k,
+         .slot = slot,
+         .form = form,
+         .surface = surface,
+         .share = share.slice(),
+         .moment = moment.slice()},
+        {.cell_count = static_cast<std::uint32_t>(n), .voxel_m = voxel_m});
     queue.run();
     EXPECT_TRUE(share.untouched());
     EXPECT_TRUE(moment.untouched());

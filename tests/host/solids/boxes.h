@@ -41,8 +41,8 @@ struct Scanned {
     SolidCells cells;
 
     SeenCells seen() const {
-        return seen_cells(cloud, primitive, patch,
-                          {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, cells.voxel_m);
+        return seen_cells(cloud, primitive, patch, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}},
+                          cells.voxel_m);
     }
 };
 
@@ -99,9 +99,11 @@ inline Scanned scan(const std::vector<Box>& boxes, double voxel_m, double spacin
         for (std::int32_t i = index(low.x()); i <= index(high.x()); ++i) {
             for (std::int32_t j = index(low.y()); j <= index(high.y()); ++j) {
                 for (std::int32_t k = index(low.z()); k <= index(high.z()); ++k) {
-                    const Eigen::Vector3d middle = voxel_m * Eigen::Vector3d(i + .5, j + .5, k + .5);
+                    const Eigen::Vector3d middle =
+                        voxel_m * Eigen::Vector3d(i + .5, j + .5, k + .5);
                     if (boxes[b].holds(middle))
-                        cells.try_emplace({i, j, k}, static_cast<std::int32_t>(b), Basis::three_votes);
+                        cells.try_emplace({i, j, k}, static_cast<std::int32_t>(b),
+                                          Basis::three_votes);
                 }
             }
         }

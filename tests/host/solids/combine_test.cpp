@@ -72,7 +72,8 @@ TEST(Combine, WhatPassesByDecidesOrDropsOut) {
     const Combination inside = combine(std::vector{seen(0, {0, 0, 0.05})}, patches, middle, voxel);
     EXPECT_EQ(inside.used, 0u);
     EXPECT_FALSE(inside.nothing);
-    const Combination outside = combine(std::vector{seen(1, {0, 0, -0.05})}, patches, middle, voxel);
+    const Combination outside =
+        combine(std::vector{seen(1, {0, 0, -0.05})}, patches, middle, voxel);
     EXPECT_TRUE(outside.nothing);
     EXPECT_EQ(combine({}, patches, middle, voxel).used, 0u);
 }

@@ -61,7 +61,8 @@ TEST(Patches, AreTheSameInAnyOrder) {
     Sampled there, back;
     std::vector<Vector3d> points;
     for (int n = 0; n < 9000; ++n)
-        points.push_back({between(random, 0, 0.3), between(random, 0, 0.2), 0.002 * random.normal()});
+        points.push_back(
+            {between(random, 0, 0.3), between(random, 0, 0.2), 0.002 * random.normal()});
     for (const auto& p : points) there.add(p);
     for (auto p = points.rbegin(); p != points.rend(); ++p) back.add(*p);
     device::ThreadPool threads(2);
@@ -86,7 +87,8 @@ TEST(Patches, OfATubeHaveItsRadius) {
     }
     // As from surfels that lie 1 mm inside.
     std::vector<Vector3d> inside;
-    for (std::size_t n = 0; n < points.size(); ++n) inside.push_back(points[n] - 0.001 * normals[n]);
+    for (std::size_t n = 0; n < points.size(); ++n)
+        inside.push_back(points[n] - 0.001 * normals[n]);
     geometry::Region region;
     region.model = geometry::fit_quadric(inside, normals, 0.005);
     region.residual_m = 0.001;
@@ -123,7 +125,7 @@ TEST(Patches, OfAnEdgeAreItsSides) {
     top.noise_m = side.noise_m = edge.noise_m = 1e-3;
     drop_explained(s.cloud, std::vector{top, side, edge}, as_is, 0.04, s.label, patch_of_point);
     for (std::size_t n = 0; n < patch_of_point.size(); ++n) {
-        const bool on_top = std::abs(s.cloud.z[n]) < 1e-6, on_side = s.cloud.x[n] > 0.2999F;
+        const bool on_top = std::abs(s.cloud.z[n])<1e-6, on_side = s.cloud.x[n]> 0.2999F;
         if (on_top && on_side) continue;
         ASSERT_EQ(patch_of_point[n], on_top ? 0 : 1) << s.cloud.x[n] << " " << s.cloud.z[n];
     }
@@ -135,9 +137,8 @@ TEST(SeenCells, HoldCountAndMeanOfEachPatch) {
     s.add({0.013, 0.012, -0.003});
     s.add({0.011, 0.012, 0.001});
     s.add({0.5, 0.5, 0.5});
-    const SeenCells cells =
-        seen_cells(s.cloud, std::vector<std::int32_t>{4, 4, 4, -1},
-                   std::vector<std::int32_t>{7, 7, 7, 7}, as_is, 0.02);
+    const SeenCells cells = seen_cells(s.cloud, std::vector<std::int32_t>{4, 4, 4, -1},
+                                       std::vector<std::int32_t>{7, 7, 7, 7}, as_is, 0.02);
     ASSERT_EQ(cells.size(), 2u);
     EXPECT_EQ(cells.k[0], -1);
     EXPECT_EQ(cells.count[0], 2);
