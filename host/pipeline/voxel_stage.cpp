@@ -59,44 +59,59 @@ std::vector<vdb::StandsOn> ledges(const GeometryStage& geometry) {
     return out;
 }
 
-// For each cell the unseen voxels right below it, up to what fits. What is below the shell is of no
-// interest.
-std::vector<std::uint8_t> unseen_below(const vdb::VolumeView& view, std::span<const Role> roles) {
+// The faces of the primitives: what bounds the solids within their voxels.
+struct Faces {
+    std::vector<SurfacePatch> patches;
+    solids::SeenCells seen;
+    std::vector<bool> sheet;  // by primitive: of the shell, and seen from one side only
+};
+
+Faces find_faces(device::Device& device, const Ingested& input, const GeometryStage& geometry,
+                 const std::vector<std::int32_t>& number, double voxel_m,
+                 std::span<const Role> roles) {
+    const geometry::Regions& faces = geometry.primitives.faces;
+    std::vector<std::int32_t> face_of_point;
+    face_of_point.reserve(input.cloud.size());
+    for (const std::uint32_t s : geometry.surfels.of_point) face_of_point.push_back(faces.label[s]);
+    Faces out;
+    out.patches = solids::fit_patches(input.cloud, faces.regions, face_of_point,
+                                      geometry.frame.axes, device.threads());
+    std::vector<std::int32_t> solid_of_point = numbered(geometry.primitive_of_point, number);
+    solids::drop_explained(input.cloud, out.patches, geometry.frame.axes,
+                           2 * geometry.surfels.cell_m, solid_of_point, face_of_point);
+    out.seen = solids::seen_cells(input.cloud, solid_of_point, face_of_point, geometry.frame.axes,
+                                  voxel_m);
+    out.sheet = solids::one_sided(out.seen, out.patches, roles.size());
+    for (std::size_t p = 0; p < roles.size(); ++p)
+        out.sheet[p] = out.sheet[p] && in_shell(roles[p]);
+    return out;
+}
+
+// For each cell the unseen voxels right below it, up to what fits. What is below floors and behind
+// walls is of no interest.
+std::vector<std::uint8_t> unseen_below(const vdb::VolumeView& view,
+                                       const std::vector<bool>& sheet) {
     const SolidCells& cells = view.cells();
     std::vector<std::uint8_t> out(cells.size(), 0);
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const std::int32_t p = cells.primitive[n];
-        if (p < 0 || in_shell(role_of(roles, p))) continue;
+        if (p < 0 || sheet[static_cast<std::size_t>(p)]) continue;
         out[n] = static_cast<std::uint8_t>(
             view.unseen_run({cells.i[n], cells.j[n], cells.k[n] - 1}, 2, -1, 255));
     }
     return out;
 }
 
-// What bounds the solids within their voxels: the faces of the primitives.
-BoundaryCells find_boundary(device::Device& device, const Ingested& input,
-                            const GeometryStage& geometry, const std::vector<std::int32_t>& number,
-                            const SolidCells& cells, std::span<const Role> roles) {
-    const geometry::Regions& faces = geometry.primitives.faces;
-    std::vector<std::int32_t> face_of_point;
-    face_of_point.reserve(input.cloud.size());
-    for (const std::uint32_t s : geometry.surfels.of_point) face_of_point.push_back(faces.label[s]);
-    std::vector<SurfacePatch> patches = solids::fit_patches(
-        input.cloud, faces.regions, face_of_point, geometry.frame.axes, device.threads());
-    std::vector<std::int32_t> solid_of_point = numbered(geometry.primitive_of_point, number);
-    solids::drop_explained(input.cloud, patches, geometry.frame.axes, 2 * geometry.surfels.cell_m,
-                           solid_of_point, face_of_point);
-    const solids::SeenCells seen = solids::seen_cells(input.cloud, solid_of_point, face_of_point,
-                                                      geometry.frame.axes, cells.voxel_m);
-    std::vector<solids::KnownRest> rests;
+// Heights at which one primitive is known to stand on another.
+std::vector<solids::KnownRest> known_rests(const GeometryStage& geometry,
+                                           const std::vector<std::int32_t>& number) {
+    std::vector<solids::KnownRest> out;
     for (const vdb::StandsOn& on : ledges(geometry)) {
         const std::int32_t above = number[static_cast<std::size_t>(on.above)],
                            below = number[static_cast<std::size_t>(on.below)];
-        if (above >= 0 && below >= 0) rests.push_back({above, below, on.height_m});
+        if (above >= 0 && below >= 0) out.push_back({above, below, on.height_m});
     }
-    std::vector<bool> sheet = solids::one_sided(seen, patches, roles.size());
-    for (std::size_t p = 0; p < roles.size(); ++p) sheet[p] = sheet[p] && in_shell(roles[p]);
-    return solids::find_boundary(device, cells, seen, std::move(patches), sheet, rests);
+    return out;
 }
 
 // Strays are no body, and in no way.
@@ -105,7 +120,8 @@ std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Inge
                                               const std::vector<std::int32_t>& number,
                                               const vdb::VoxelScene& volume, SolidCells cells,
                                               std::vector<Role> roles) {
-    cells.unseen_below = unseen_below(vdb::VolumeView(volume, cells, roles), roles);
+    Faces faces = find_faces(device, input, geometry, number, cells.voxel_m, roles);
+    cells.unseen_below = unseen_below(vdb::VolumeView(volume, cells, roles), faces.sheet);
     SolidCells near, strays;
     near.voxel_m = strays.voxel_m = cells.voxel_m;
     for (std::size_t n = 0; n < cells.size(); ++n) {
@@ -118,7 +134,9 @@ std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Inge
         to.basis.push_back(cells.basis[n]);
         to.unseen_below.push_back(cells.unseen_below[n]);
     }
-    BoundaryCells boundary = find_boundary(device, input, geometry, number, near, roles);
+    BoundaryCells boundary =
+        solids::find_boundary(device, near, faces.seen, std::move(faces.patches), faces.sheet,
+                              known_rests(geometry, number));
     return std::make_shared<const SolidScene>(std::move(near), std::move(roles), std::move(strays),
                                               std::move(boundary));
 }

@@ -12,7 +12,12 @@
 namespace topple::solids {
 namespace {
 
+using Place = std::array<std::int32_t, 3>;
 using Key = std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t>;
+
+Place sum_of(const Place& a, const Place& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
 
 // Gathers what was seen of a primitive in the 27 voxels around one; voxels must come sorted.
 class Around {
@@ -154,10 +159,9 @@ std::vector<Combination> combine_all(const SolidCells& cells, const SeenCells& s
     return out;
 }
 
-// What was completed is solid where it hangs together with what was seen of its primitive: beyond
-// the seen surface, cells that hide in a corner of it are air. Sorted.
-std::vector<Candidate> cut_off(const SolidCells& cells, std::span<const Candidate> candidates,
-                               std::span<const Combination> sums) {
+// By cell, whether patches say that nothing of it is solid.
+std::vector<bool> air_by_patches(const SolidCells& cells, std::span<const Candidate> candidates,
+                                 std::span<const Combination> sums) {
     std::vector<bool> air(cells.size(), false);
     std::size_t n = 0;
     for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -166,6 +170,13 @@ std::vector<Candidate> cut_off(const SolidCells& cells, std::span<const Candidat
         while (std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
         air[n] = true;
     }
+    return air;
+}
+
+// What was completed is solid where it hangs together with what was seen of its primitive: beyond
+// the seen surface, cells that hide in a corner of it are air. Marks them, too, and returns them,
+// sorted.
+std::vector<Candidate> cut_off(const SolidCells& cells, std::vector<bool>& air) {
     std::vector<std::size_t> parent(cells.size());
     std::iota(parent.begin(), parent.end(), std::size_t{0});
     const auto root = [&](std::size_t k) {
@@ -195,8 +206,50 @@ std::vector<Candidate> cut_off(const SolidCells& cells, std::span<const Candidat
     for (std::size_t k = 0; k < cells.size(); ++k) {
         const std::int32_t p = cells.primitive[k];
         if (p < 0 || static_cast<std::size_t>(p) >= any.size() || air[k] || seen[root(k)]) continue;
-        if (any[static_cast<std::size_t>(p)])
-            out.push_back({cells.i[k], cells.j[k], cells.k[k], p, true});
+        if (!any[static_cast<std::size_t>(p)]) continue;
+        out.push_back({cells.i[k], cells.j[k], cells.k[k], p, true});
+        air[k] = true;
+    }
+    return out;
+}
+
+// By candidate, whether it is no cell of the primitive's and hangs on none either: what a patch
+// reaches beyond cells that are air.
+std::vector<bool> out_of_reach(const SolidCells& cells, std::span<const Candidate> candidates,
+                               std::span<const Combination> sums, const std::vector<bool>& air) {
+    constexpr std::array<Place, 6> ways{
+        {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+    const auto place = [&](std::size_t c) {
+        return Place{candidates[c].i, candidates[c].j, candidates[c].k};
+    };
+    std::vector<bool> out(candidates.size(), false);
+    std::vector<std::size_t> open;
+    for (std::size_t c = 0; c < candidates.size(); ++c) out[c] = !candidates[c].own;
+    for (const Place& way : ways) {
+        std::size_t n = 0;
+        for (std::size_t c = 0; c < candidates.size(); ++c) {
+            if (candidates[c].own || sums[c].nothing || !out[c]) continue;
+            const Place at = sum_of(place(c), way);
+            while (n < cells.size() && Place{cells.i[n], cells.j[n], cells.k[n]} < at) ++n;
+            if (n == cells.size()) break;
+            if (Place{cells.i[n], cells.j[n], cells.k[n]} != at || air[n] ||
+                cells.primitive[n] != candidates[c].primitive)
+                continue;
+            out[c] = false;
+            open.push_back(c);
+        }
+    }
+    for (std::size_t at = 0; at < open.size(); ++at) {
+        for (const Place& way : ways) {
+            const Place p = sum_of(place(open[at]), way);
+            const Key key{p[0], p[1], p[2], candidates[open[at]].primitive};
+            const auto beside = std::ranges::lower_bound(candidates, key, {}, &Candidate::key);
+            if (beside == candidates.end() || beside->key() != key) continue;
+            const auto c = static_cast<std::size_t>(beside - candidates.begin());
+            if (!out[c] || sums[c].nothing) continue;
+            out[c] = false;
+            open.push_back(c);
+        }
     }
     return out;
 }
@@ -241,26 +294,28 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
     unite(candidates);
     const std::vector<Combination> sums =
         combine_all(cells, seen, patches, mates, sheet, candidates);
-    const std::vector<Candidate> air = cut_off(cells, candidates, sums);
+    std::vector<bool> air = air_by_patches(cells, candidates, sums);
+    const std::vector<Candidate> beyond = cut_off(cells, air);
+    const std::vector<bool> unreached = out_of_reach(cells, candidates, sums, air);
 
     BoundaryCells out;
     Combination nothing;
     nothing.nothing = nothing.any_group = true;
-    auto cut = air.begin();
+    auto cut = beyond.begin();
     for (std::size_t n = 0; n < candidates.size(); ++n) {
         const Candidate& c = candidates[n];
-        for (; cut != air.end() && cut->key() < c.key(); ++cut) add_cell(*cut, nothing, out);
-        if (cut != air.end() && cut->key() == c.key()) {
+        for (; cut != beyond.end() && cut->key() < c.key(); ++cut) add_cell(*cut, nothing, out);
+        if (cut != beyond.end() && cut->key() == c.key()) {
             add_cell(*cut++, nothing, out);
             continue;
         }
         // What is not the primitive's cell must be bounded by something, or mates reach it.
         const Combination& sum = sums[n];
-        const bool counts =
-            c.own ? sum.nothing || sum.used > 0 : !sum.nothing && (sum.used > 0 || c.extends);
+        const bool counts = c.own ? sum.nothing || sum.used > 0
+                                  : !unreached[n] && !sum.nothing && (sum.used > 0 || c.extends);
         if (counts) add_cell(c, sum, out);
     }
-    for (; cut != air.end(); ++cut) add_cell(*cut, nothing, out);
+    for (; cut != beyond.end(); ++cut) add_cell(*cut, nothing, out);
     out.patches = std::move(patches);
     measure_shares(device, cells.voxel_m, out);
     return out;
