@@ -77,8 +77,10 @@ struct Columns {
 // The outlines of undersides: of the surfaces that bound them within voxels.
 class Shapes {
   public:
-    Shapes(const BoundaryCells& boundary, double voxel_m)
-        : boundary_(boundary), voxel_m_(voxel_m) {}
+    Shapes(const SolidCells& cells, const BoundaryCells& boundary)
+        : boundary_(boundary),
+          beside_(solids::border_columns(cells, boundary)),
+          voxel_m_(cells.voxel_m) {}
     // Of a primitive's lowest cell in a column.
     void add(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive,
              std::vector<BorderPoint>& corners, MeanHeight* height = nullptr) const {
@@ -93,6 +95,18 @@ class Shapes {
         }
     }
 
+    // Whether the primitive goes on into the voxel below its lowest cell.
+    bool goes_on_below(std::int32_t i, std::int32_t j, std::int32_t k,
+                       std::int32_t primitive) const {
+        const std::size_t n = boundary_.find(i, j, k - 1, primitive);
+        return n != BoundaryCells::absent && boundary_.share[n] > 0;
+    }
+    // Columns that the primitive only reaches into.
+    std::span<const solids::BorderColumn> beside(std::int32_t primitive) const {
+        const auto [first, last] =
+            std::ranges::equal_range(beside_, primitive, {}, &solids::BorderColumn::primitive);
+        return {first, last};
+    }
     // Of a primitive's highest cell in a column, the surface's height in voxels.
     double top(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive) const {
         return solids::top_of(boundary_, i, j, k, primitive, voxel_m_) / voxel_m_;
@@ -100,6 +114,7 @@ class Shapes {
 
   private:
     const BoundaryCells& boundary_;
+    std::vector<solids::BorderColumn> beside_;
     double voxel_m_;
 };
 
@@ -164,23 +179,29 @@ std::vector<std::array<double, 2>> hull_of(const std::vector<Underside>& columns
 
 // The columns that may rest on a surface at this height, within its outline if that is known:
 // unseen from their underside down to it, or, where they end at it, for some way on: else it is air
-// that they end in.
+// that they end in. What bounds them may tell that they reach the surface.
 std::uint64_t add_hidden_corners(const std::vector<Underside>& undersides, double height_m,
                                  const std::vector<std::array<double, 2>>& outline, double h,
                                  std::int32_t primitive, const Shapes& shapes,
                                  std::vector<BorderPoint>& corners) {
-    const auto within = [&](const Underside& u) {
+    const auto within = [&](const auto& column) {
         return outline.empty() ||
-               physics::footing(outline, (u.i + 0.5) * h, (u.j + 0.5) * h).margin_m > 0;
+               physics::footing(outline, (column.i + 0.5) * h, (column.j + 0.5) * h).margin_m > 0;
     };
     const double surface = height_m / h;
     std::uint64_t columns = 0;
     for (const Underside& u : undersides) {
         const double above = u.lowest - surface;
-        const bool rests = above >= -1.5 && u.unseen >= std::max(above - 0.5, 2.0) && within(u);
-        if (rests) shapes.add(u.i, u.j, u.lowest, primitive, corners);
-        columns += rests;
+        const bool rests = above >= -1.5 &&
+                           (u.unseen >= std::max(above - 0.5, 2.0) ||
+                            (above <= 1.5 && shapes.goes_on_below(u.i, u.j, u.lowest, primitive)));
+        if (!rests || !within(u)) continue;
+        shapes.add(u.i, u.j, u.lowest, primitive, corners);
+        ++columns;
     }
+    for (const solids::BorderColumn& c : shapes.beside(primitive))
+        if (std::abs(c.k - surface) <= 1.5 && within(c))
+            shapes.add(c.i, c.j, c.k, primitive, corners);
     return columns;
 }
 
@@ -313,7 +334,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     add_silhouettes(cells, cells.i, cells.j, 2, graph);
 
     const double h = cells.voxel_m;
-    const Shapes shapes(boundary, h);
+    const Shapes shapes(cells, boundary);
     std::map<std::pair<std::int32_t, std::int32_t>, Columns> carried;  // (supported, supporter)
     std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, std::uint64_t> gaps;
     std::map<std::pair<std::int32_t, std::int32_t>, std::uint64_t> hidden;

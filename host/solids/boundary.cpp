@@ -159,6 +159,48 @@ std::vector<Combination> combine_all(const SolidCells& cells, const SeenCells& s
     return out;
 }
 
+// The bound of one solid by another's patch, as both know it.
+struct Bound {
+    Combination* of;
+    std::size_t slot;
+    double upright = 0;  // how much the patch faces up or down
+};
+
+// Where two solids meet at an edge, each may be bounded by a patch of the other: one of the two
+// says all, and both together would leave a gap. What stands on something ends there: the level
+// patch stays. owner: by patch, the primitive of which it was seen.
+void settle_edges(std::span<const Candidate> candidates, std::span<const SurfacePatch> patches,
+                  std::span<const std::int32_t> owner, double voxel_m,
+                  std::span<Combination> sums) {
+    const auto same_voxel = [&](std::size_t a, std::size_t b) {
+        return std::tie(candidates[a].i, candidates[a].j, candidates[a].k) ==
+               std::tie(candidates[b].i, candidates[b].j, candidates[b].k);
+    };
+    const auto bound_by = [&](std::size_t c, std::int32_t other) -> Bound {
+        const Vec3 middle{(candidates[c].i + 0.5) * voxel_m, (candidates[c].j + 0.5) * voxel_m,
+                          (candidates[c].k + 0.5) * voxel_m};
+        for (std::size_t s = 0; s < sums[c].used; ++s) {
+            if (!sums[c].use[s].bounds || !sums[c].use[s].outside ||
+                owner[sums[c].slot[s]] != other)
+                continue;
+            const Vec3 g = patches[sums[c].slot[s]].gradient(middle);
+            return {&sums[c], s, std::abs(g[2]) / std::hypot(g[0], g[1], g[2])};
+        }
+        return {nullptr, 0};
+    };
+    for (std::size_t n = 0; n < candidates.size(); ++n) {
+        for (std::size_t m = n + 1; m < candidates.size() && same_voxel(n, m); ++m) {
+            const Bound a = bound_by(n, candidates[m].primitive),
+                        b = bound_by(m, candidates[n].primitive);
+            if (!a.of || !b.of) continue;
+            // Of what is nothing by its bound, nobody knows what it would be else.
+            const bool drop_a = b.of->nothing || (!a.of->nothing && a.upright <= b.upright);
+            const Bound& less = drop_a ? a : b;
+            if (!less.of->nothing) drop_slot(less.slot, *less.of);
+        }
+    }
+}
+
 // By cell, whether patches say that nothing of it is solid.
 std::vector<bool> air_by_patches(const SolidCells& cells, std::span<const Candidate> candidates,
                                  std::span<const Combination> sums) {
@@ -292,8 +334,11 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
     const std::vector<Mate> mates = find_mates(cells, seen, faced, rests, patches);
     add_mates(cells, mates, candidates);
     unite(candidates);
-    const std::vector<Combination> sums =
-        combine_all(cells, seen, patches, mates, sheet, candidates);
+    std::vector<Combination> sums = combine_all(cells, seen, patches, mates, sheet, candidates);
+    std::vector<std::int32_t> owner(patches.size(), -1);
+    for (std::size_t n = 0; n < seen.size(); ++n)
+        owner[static_cast<std::size_t>(seen.patch[n])] = seen.primitive[n];
+    settle_edges(candidates, patches, owner, cells.voxel_m, sums);
     std::vector<bool> air = air_by_patches(cells, candidates, sums);
     const std::vector<Candidate> beyond = cut_off(cells, air);
     const std::vector<bool> unreached = out_of_reach(cells, candidates, sums, air);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace topple::solids {
 namespace {
@@ -243,6 +244,27 @@ std::vector<UndersideCorner> underside_of(const BoundaryCells& b, std::int32_t i
             below ? std::abs(below->distance(c)) < on_patch * h : c[2] <= lowest + even * h;
         if (on) out.push_back({c, error_beside(b, n, c, h), below != nullptr});
     }
+    return out;
+}
+
+std::vector<BorderColumn> border_columns(const SolidCells& cells, const BoundaryCells& b) {
+    std::vector<BorderColumn> out;
+    std::vector<std::int32_t> known;  // primitives of a column
+    std::size_t cell = 0;
+    for (std::size_t n = 0; n < b.size();) {
+        const std::pair column(b.i[n], b.j[n]);
+        while (cell < cells.size() && std::pair(cells.i[cell], cells.j[cell]) < column) ++cell;
+        known.clear();
+        for (; cell < cells.size() && std::pair(cells.i[cell], cells.j[cell]) == column; ++cell)
+            known.push_back(cells.primitive[cell]);
+        for (; n < b.size() && std::pair(b.i[n], b.j[n]) == column; ++n) {
+            if (b.share[n] == 0 || std::ranges::find(known, b.primitive[n]) != known.end())
+                continue;
+            known.push_back(b.primitive[n]);
+            out.push_back({b.i[n], b.j[n], b.k[n], b.primitive[n]});
+        }
+    }
+    std::ranges::stable_sort(out, {}, &BorderColumn::primitive);
     return out;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/boundary_cells.h"
+#include "core/solid_cells.h"
 
 // The outer form of solids, from the patches that bound them. Grid frame, metres.
 namespace topple::solids {
@@ -28,6 +29,14 @@ struct UndersideCorner {
 std::vector<UndersideCorner> underside_of(const BoundaryCells& boundary, std::int32_t i,
                                           std::int32_t j, std::int32_t k, std::int32_t primitive,
                                           double voxel_m);
+
+// A column of voxels that a primitive reaches into although none of its cells is there: the lowest
+// of its boundary voxels with anything solid.
+struct BorderColumn {
+    std::int32_t i, j, k, primitive;
+};
+// Sorted by (primitive, i, j).
+std::vector<BorderColumn> border_columns(const SolidCells& cells, const BoundaryCells& boundary);
 
 // The height of a primitive's surface over the middle of a column of which k is the highest voxel,
 // metres: the patches may end it there, or one voxel above or below.

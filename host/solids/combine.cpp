@@ -199,4 +199,12 @@ void add_bound(std::uint32_t patch, bool outside, std::span<const SurfacePatch> 
     ++sum.used;
 }
 
+void drop_slot(std::size_t slot, Combination& sum) {
+    for (std::size_t s = slot; s + 1 < sum.used; ++s) {
+        sum.slot[s] = sum.slot[s + 1];
+        sum.use[s] = sum.use[s + 1];
+    }
+    --sum.used;
+}
+
 }  // namespace topple::solids

@@ -32,4 +32,6 @@ Combination combine(std::span<const SeenPatch> seen, std::span<const SurfacePatc
 void add_bound(std::uint32_t patch, bool outside, std::span<const SurfacePatch> patches,
                const Vec3& middle, double voxel_m, Combination& sum);
 
+void drop_slot(std::size_t slot, Combination& sum);
+
 }  // namespace topple::solids

@@ -47,6 +47,7 @@ Place place(const SolidCells& c, std::size_t n) {
 struct Face {
     std::size_t cell;
     std::int32_t other;  // primitive beyond, across one empty voxel at most; -1: none
+    bool faced;          // a patch of its own that was seen beside it faces that way
 };
 
 // Of each primitive and direction.
@@ -103,14 +104,16 @@ class MateFinder {
         std::map<std::int32_t, Side> sides;
         for (std::size_t n = 0; n < cells_.size(); ++n) {
             const std::int32_t p = cells_.primitive[n];
-            if (p < 0 || (faced_[n] >> direction & 1)) continue;
+            if (p < 0) continue;
+            const bool faced = (faced_[n] >> direction & 1) != 0;
             const std::size_t m = beside[n];
             const bool adjacent = m != no_cell && std::abs(std::int64_t{place(cells_, m)[axis]} -
                                                            place(cells_, n)[axis]) == 1;
             const std::int32_t other = m == no_cell ? -1 : cells_.primitive[m];
-            if (other == p && adjacent) continue;
+            // A face that was seen is where it was seen, but it may pass a voxel of another.
+            if ((other == p && adjacent) || (faced && (other < 0 || other == p))) continue;
             Side& side = sides[p];
-            side.faces.push_back({n, other == p ? -1 : other});
+            side.faces.push_back({n, other == p ? -1 : other, faced});
             if (other >= 0 && other != p) side.others.insert(other);
             side.box.add(place(cells_, n));
         }
@@ -144,6 +147,7 @@ class MateFinder {
             const Vec3 at = middle_of(face.cell, axis, way);
             for (const Candidate& c : candidates) {
                 if (face.other >= 0 && c.other >= 0 && c.other != face.other) continue;
+                if (face.faced && c.outside) continue;
                 const SurfacePatch& patch = patches_[c.patch];
                 const Vec3 g = patch.gradient(at);
                 const double along = (c.outside ? -way : way) * g[axis];

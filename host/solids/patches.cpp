@@ -107,6 +107,58 @@ geometry::AlgebraicModel quadric_of(const geometry::AlgebraicModel& before, cons
     return out;
 }
 
+// The quadric of least squares of distances to first order, over all points (Taubin 1991): exact of
+// exact points, but of noisy ones on a narrow arc it follows the noise.
+std::optional<geometry::AlgebraicModel> taubin_fit(const geometry::AlgebraicModel& before,
+                                                   const Points& points) {
+    using Matrix = Eigen::Matrix<double, 10, 10>;
+    using Row = Eigen::Matrix<double, 10, 1>;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const auto& p : points) mean += p;
+    mean /= static_cast<double>(points.size());
+    double size = 0;
+    for (const auto& p : points) size += (p - mean).squaredNorm();
+    size = std::sqrt(size / static_cast<double>(points.size()));
+    if (!(size > 0)) return std::nullopt;
+    Matrix values = Matrix::Zero(), slopes = Matrix::Zero();
+    for (const auto& point : points) {
+        const Eigen::Vector3d p = (point - mean) / size;
+        const double x = p.x(), y = p.y(), z = p.z();
+        Row f, fx, fy, fz;
+        f << 1, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z;
+        fx << 0, 1, 0, 0, 2 * x, 0, 0, y, z, 0;
+        fy << 0, 0, 1, 0, 0, 2 * y, 0, x, 0, z;
+        fz << 0, 0, 0, 1, 0, 0, 2 * z, 0, x, y;
+        values += f * f.transpose();
+        slopes += fx * fx.transpose() + fy * fy.transpose() + fz * fz.transpose();
+    }
+    // Least of c' V c for c' S c = 1; S is singular along the constant, which is eliminated first.
+    const Eigen::Matrix<double, 9, 1> cross = values.block<9, 1>(1, 0) / values(0, 0);
+    const Eigen::Matrix<double, 9, 9> v =
+        values.block<9, 9>(1, 1) - values(0, 0) * cross * cross.transpose();
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(
+        v, slopes.block<9, 9>(1, 1));
+    if (solver.info() != Eigen::Success) return std::nullopt;
+    const Eigen::Matrix<double, 9, 1> c = solver.eigenvectors().col(0);
+    geometry::AlgebraicModel out;
+    out.degree = 2;
+    out.origin = {mean.x(), mean.y(), mean.z()};
+    out.coefficients[0] = -cross.dot(c);
+    for (int n = 0; n < 9; ++n)
+        out.coefficients[static_cast<std::size_t>(n) + 1] = c[n] / (n < 3 ? size : size * size);
+    // Of mean gradient 1, and facing as before.
+    double slope = 0, along = 0;
+    for (const auto& p : points) {
+        const Eigen::Vector3d g = geometry::gradient(out, p);
+        slope += g.norm();
+        along += g.dot(geometry::gradient(before, p));
+    }
+    if (!(slope > 0)) return std::nullopt;
+    const double scale = std::copysign(static_cast<double>(points.size()) / slope, along);
+    for (double& value : out.coefficients) value *= scale;
+    return out;
+}
+
 double scatter(const geometry::AlgebraicModel& model, const Points& points) {
     double sum = 0;
     for (const auto& p : points) sum += std::pow(geometry::distance(model, p), 2);
@@ -131,6 +183,11 @@ SurfacePatch fit(const geometry::Region& region, const std::array<Vec3, 3>& axes
                 quadric_of(model, own.points, std::max(3 * own.noise_m, 0.1 * region.residual_m));
             if (!(scatter(quadric, own.points) <= 1.2 * scatter(model, own.points))) break;
             model = quadric;
+            // Where the layers leave much of the distances, these are no noise.
+            constexpr double clearly = 0.7;
+            const auto exact = taubin_fit(model, own.points);
+            if (exact && scatter(*exact, own.points) < clearly * scatter(model, own.points))
+                model = *exact;
         }
         noise = own.noise_m;
         inliers = own.points.size();
