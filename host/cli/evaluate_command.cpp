@@ -216,7 +216,7 @@ Command add_evaluate(CLI::App& app) {
             ->excludes("--fit-joints")
             ->excludes("--bases");
     app.add_flag("--from-frames", a->frames_of_things,
-                 "From a walk's noisy depth frames instead, with --measures")
+                 "From the depth camera's noisy frames instead, with --measures")
         ->needs(measures);
     app.add_flag("--single", a->options.camera.single,
                  "One frame of each room, without its pose, as in the paper's 6.1 and 6.2");

@@ -9,6 +9,7 @@
 #include "evaluation/text.h"
 #include "physics/hull_landscape.h"
 #include "physics/landscape.h"
+#include "scenes/depth_camera.h"
 #include "scenes/temporary_folder.h"
 
 namespace topple::evaluation {
@@ -53,29 +54,16 @@ struct Scanned {
     std::function<Vec3(const Vec3&)> to_room;
 };
 
-scenes::ScanOptions options_of(const scenes::World& world) {
-    scenes::ScanOptions out;
-    out.seed = world.seed;
-    return out;
-}
-
 Scanned scan_and_parse(const scenes::World& world, const MeasureOptions& options) {
-    if (!options.frames) {
-        return {parse(scenes::clean_points(world, options.spacing_m), options.parse),
-                [](const Vec3& p) { return p; }};
-    }
-    const scenes::Scan scan = scenes::scan(world, options_of(world));
+    const auto to_room = [&world](const Vec3& p) { return world.to_room(p); };
+    if (!options.frames)
+        return {parse(scenes::clean_points(world, options.spacing_m), options.parse), to_room};
+    scenes::CameraOptions camera;
+    camera.seed = world.seed;
     const scenes::TemporaryFolder folder("topple_measure");
-    scenes::write_scan(folder.path(), world, scan, options_of(world), "measured");
-    // Rigid: its transpose takes back.
-    const Mat4 m = scan.world_to_scan;
-    return {parse(folder.path(), options.parse), [m](const Vec3& p) {
-                Vec3 out{};
-                for (std::size_t r = 0; r < 3; ++r)
-                    for (std::size_t c = 0; c < 3; ++c)
-                        out[r] += m[4 * c + r] * (p[c] - m[4 * c + 3]);
-                return out;
-            }};
+    scenes::write_sequence(folder.path(), world,
+                           scenes::film(world, camera, scenes::poses_around(world, camera.frames)));
+    return {parse(folder.path(), options.parse), to_room};
 }
 
 double median(std::vector<double> values) {

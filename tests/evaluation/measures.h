@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "scenes/measured_shapes.h"
-#include "scenes/scan/scan.h"
 #include "topple/parse.h"
 
 // What a parse says of the mass and the barrier of single things that are known exactly, from
@@ -34,7 +33,7 @@ struct MeasureScore {
 };
 
 struct MeasureOptions {
-    bool frames = false;       // a walk's noisy depth frames, not clean points
+    bool frames = false;       // the depth camera's noisy frames, not clean points
     double spacing_m = 0.004;  // of clean points
     ParseOptions parse;
 };

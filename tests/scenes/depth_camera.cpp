@@ -263,18 +263,12 @@ std::vector<std::int16_t> render(const World& world, const CameraOptions& option
     return part;
 }
 
-Sequence walk(const World& world, const CameraOptions& options) {
+Sequence film(const World& world, const CameraOptions& options, std::span<const Mat4> poses) {
     check(options);
     if (world.parts.size() > 32767) {
         throw Error(ErrorKind::usage, "camera: the scene has more than 32767 parts");
     }
-    const unsigned count = options.single ? 1 : options.frames;
-    Random random(options.seed, 1);
-    std::vector<Mat4> poses;
-    for (unsigned n = 0; n < count; ++n) {
-        poses.push_back(options.single ? single_pose(world)
-                                       : walking_pose(world, options, n, random));
-    }
+    const auto count = static_cast<unsigned>(poses.size());
     Sequence sequence;
     sequence.intrinsics = options.intrinsics;
     sequence.frames.resize(count);
@@ -295,6 +289,17 @@ Sequence walk(const World& world, const CameraOptions& options) {
     }
     fuse(options, sequence);
     return sequence;
+}
+
+Sequence walk(const World& world, const CameraOptions& options) {
+    check(options);
+    Random random(options.seed, 1);
+    std::vector<Mat4> poses;
+    for (unsigned n = 0; n < (options.single ? 1 : options.frames); ++n) {
+        poses.push_back(options.single ? single_pose(world)
+                                       : walking_pose(world, options, n, random));
+    }
+    return film(world, options, poses);
 }
 
 }  // namespace topple::scenes

@@ -46,6 +46,9 @@ std::vector<std::int16_t> render(const World& world, const CameraOptions& option
                                  const Mat4& camera_to_room, std::uint64_t frame_number,
                                  std::vector<std::uint16_t>& depth);
 
+// Renders and fuses frames from these poses, camera to room.
+Sequence film(const World& world, const CameraOptions& options, std::span<const Mat4> poses);
+
 // Renders and fuses a walk around the room's free middle, at eye height, looking both out and
 // across.
 Sequence walk(const World& world, const CameraOptions& options);

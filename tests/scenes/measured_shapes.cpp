@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/measured_shapes.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "scenes/depth_camera.h"
 #include "scenes/part_surface.h"
 #include "scenes/random.h"
 
@@ -206,6 +210,32 @@ PointCloud clean_points(const World& world, double spacing_m) {
             out.ny.push_back(static_cast<float>(place.normal[1]));
             out.nz.push_back(static_cast<float>(place.normal[2]));
         }
+    }
+    return out;
+}
+
+std::vector<Mat4> poses_around(const World& world, unsigned frames) {
+    constexpr double nearest_m = 0.9, sight = 1.2, beside_wall_m = 0.15;
+    Vec3 low, high;
+    low.fill(std::numeric_limits<double>::infinity());
+    high.fill(-std::numeric_limits<double>::infinity());
+    for (const Vec3& p : hull_points(world, measured_object)) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            low[a] = std::min(low[a], p[a]);
+            high[a] = std::max(high[a], p[a]);
+        }
+    }
+    const Vec3 middle{(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2};
+    const double across = std::hypot(high[0] - low[0], high[1] - low[1]),
+                 away = std::max(nearest_m, across / 2 + sight * (high[2] - low[2]) / 2 + 0.5);
+    std::vector<Mat4> out;
+    for (unsigned n = 0; n < frames; ++n) {
+        const double angle = 2 * std::numbers::pi * n / frames;
+        Vec3 eye{middle[0] + away * std::cos(angle), middle[1] + away * std::sin(angle), 0};
+        for (std::size_t a = 0; a < 2; ++a) eye[a] = std::max(eye[a], beside_wall_m);
+        constexpr std::array<double, 3> heights{0.35, 1.1, 1.7};
+        eye[2] = heights[n % heights.size()];
+        out.push_back(look_at(eye, middle));
     }
     return out;
 }

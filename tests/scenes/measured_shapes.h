@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenes/scene.h"
+#include "topple/input.h"
 
 // Single things whose mass and barrier are known exactly, in an otherwise empty corner of a room.
 namespace topple::scenes {
@@ -28,6 +29,10 @@ World measured_world(const MeasuredShape& shape, std::uint64_t seed);
 
 // What of the surfaces is in view, evenly spaced: all but what touches something.
 PointCloud clean_points(const World& world, double spacing_m);
+
+// Poses, camera to room, of someone who walks around the shape with the camera at three heights, as
+// far away as its size asks for and the walls allow.
+std::vector<Mat4> poses_around(const World& world, unsigned frames);
 
 // Points whose convex hull is that of an object's parts, room frame: corners, and those of a
 // polygon of a third of a degree for what is round.
