@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -242,6 +243,15 @@ class PatchMap {
     std::unordered_map<std::uint64_t, std::vector<std::int32_t>> cells_;
 };
 
+double distance_to(const SurfacePatch& patch, const Eigen::Vector3d& p) {
+    return patch.distance({p.x(), p.y(), p.z()});
+}
+
+Eigen::Vector3d normal_of(const SurfacePatch& patch, const Eigen::Vector3d& p) {
+    const Vec3 g = patch.gradient({p.x(), p.y(), p.z()});
+    return Eigen::Vector3d(g[0], g[1], g[2]).normalized();
+}
+
 // The patch of more points that lies nearest to a point, within its noise; -1 where none does.
 struct Explainer {
     std::span<const SurfacePatch> patches;
@@ -257,7 +267,7 @@ struct Explainer {
             if (other == own || dropped[o] ||
                 std::pair(points[o], other) < std::pair(points[mine], own))
                 continue;
-            const double off = std::abs(patches[o].distance({p.x(), p.y(), p.z()})) /
+            const double off = std::abs(distance_to(patches[o], p)) /
                                (outlier * std::max(patches[o].noise_m, least_noise_m));
             if (off > least || (off == least && best >= 0 && best < other)) continue;
             least = off;
@@ -266,6 +276,25 @@ struct Explainer {
         return best;
     }
 };
+
+// Whether a patch is the rounded edge of two much larger ones, A and B: where depth readings of
+// both sides mix, its points lie between them. All of them are near both, and it faces between
+// them.
+bool is_edge(const Eigen::Vector3d& normal, std::span<const Eigen::Vector3d> beside) {
+    const auto angle = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+        return std::acos(std::clamp(a.dot(b), -1.0, 1.0));
+    };
+    constexpr double slack = 0.26, least = 0.5, most = 2.6;  // radians
+    for (std::size_t a = 0; a < beside.size(); ++a) {
+        for (std::size_t b = a + 1; b < beside.size(); ++b) {
+            const double whole = angle(beside[a], beside[b]);
+            if (whole > least && whole < most &&
+                angle(beside[a], normal) + angle(normal, beside[b]) < whole + slack)
+                return true;
+        }
+    }
+    return false;
+}
 
 // Every so many of the points, the same ones in whatever order they come.
 bool is_chosen(const CloudView& cloud, std::size_t n, std::size_t step) {
@@ -325,6 +354,7 @@ void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patche
                     std::vector<std::int32_t>& patch_of_point) {
     constexpr double explained = 0.8;       // share of its points that makes a patch none
     constexpr std::size_t looked_at = 200;  // of them
+    constexpr std::size_t much_larger = 4;
     std::vector<std::vector<std::uint32_t>> members(patches.size());
     PatchMap map(cell_m);
     const auto point = [&](std::size_t n) {
@@ -350,14 +380,30 @@ void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patche
     for (const std::size_t p : order) {
         const auto own = static_cast<std::int32_t>(p);
         std::size_t looked = 0, met = 0;
+        std::map<std::int32_t, std::size_t> beside;  // much larger patches: points near them
+        Eigen::Vector3d middle = Eigen::Vector3d::Zero();
         for (const std::uint32_t n : members[p]) {
             if (!is_chosen(cloud, n, size[p] / looked_at + 1)) continue;
             ++looked;
             const Eigen::Vector3d at = point(n);
+            middle += at;
             map.around(at, near);
             met += explain(at, own, near) >= 0;
+            for (const std::int32_t other : near) {
+                const auto o = static_cast<std::size_t>(other);
+                if (!dropped[o] && size[o] > much_larger * size[p])
+                    beside[other] += std::abs(distance_to(patches[o], at)) < cell_m / 2;
+            }
         }
-        if (looked == 0 || static_cast<double>(met) < explained * static_cast<double>(looked))
+        if (looked == 0) continue;
+        const double enough = explained * static_cast<double>(looked);
+        middle /= static_cast<double>(looked);
+        std::vector<Eigen::Vector3d> sides;
+        for (const auto& [other, count] : beside) {
+            if (static_cast<double>(count) >= enough)
+                sides.push_back(normal_of(patches[static_cast<std::size_t>(other)], middle));
+        }
+        if (static_cast<double>(met) < enough && !is_edge(normal_of(patches[p], middle), sides))
             continue;
         for (const std::uint32_t n : members[p]) {
             const Eigen::Vector3d at = point(n);

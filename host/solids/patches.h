@@ -24,8 +24,9 @@ std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
                                       const std::array<Vec3, 3>& axes, device::ThreadPool& threads);
 
 // Surfels at an edge make narrow regions of their own there, askew to both faces. A patch whose
-// points larger ones beside it explain is none: its points become theirs, and what these leave
-// belongs to no patch. Labels are of points, -1 for none; cell_m: about twice the surfels' edge.
+// points larger ones beside it explain is none, nor is one within a surfel of two much larger ones
+// that faces between them: its points become theirs, and what these leave belongs to no patch.
+// Labels are of points, -1 for none; cell_m: about twice the surfels' edge.
 void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patches,
                     const std::array<Vec3, 3>& axes, double cell_m,
                     std::vector<std::int32_t>& primitive_of_point,
