@@ -16,8 +16,9 @@ namespace topple {
 struct SurfacePatch {
     Vec3 origin{};
     std::array<double, 10> c{};
-    double noise_m = 0;   // standard deviation of its points about it
-    double offset_m = 0;  // standard error of where it lies along its normal
+    double noise_m = 0;           // standard deviation of its points about it
+    double offset_m = 0;          // standard error of where it lies along its normal
+    std::int32_t primitive = -1;  // on whose points it was seen; -1: on nobody's
 
     double value(const Vec3& p) const;
     Vec3 gradient(const Vec3& p) const;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "physics/bodies.h"
+#include "physics/body_errors.h"
 #include "physics/landscape.h"
 
 // Position landscapes (paper, 3.1 Case II and Eq. 5): what it takes to push an object off its
@@ -95,13 +96,13 @@ struct Instability {
 // something to release, tipping where equal; without any, the barrier is that of tipping.
 Instability combine_curves(const Stability& tip, const SlideResult& slide);
 
-// What a support whose border is known to border_m (one standard error) leaves open in that
-// barrier:
-//     tipping over an edge at m > 0 from the centre of mass, h above it, to first order:
-//         M g border m / sqrt(h^2 + m^2), but what it would be at the centre of mass at least;
-//         without an edge, M g border;
-//     sliding: friction M g border.
-double barrier_error_J(const Candidate& body, const Stability& tip, const Instability& how,
-                       double border_m, double friction);
+// One standard error of that barrier, from those of the support's border (border_m), the centre of
+// mass and the mass, to first order, as independent ones:
+//     tipping over an edge at m > 0 from the centre of mass, h above it, of
+//         M g (sqrt(h^2 + m^2) - h); but where m is small, of what is to be expected of it at 0;
+//         without an edge, M g border_m;
+//     sliding: friction M g border_m.
+double barrier_error_J(const Candidate& body, const BodyError& known, const Stability& tip,
+                       const Instability& how, double border_m, double friction);
 
 }  // namespace topple::physics

@@ -153,8 +153,9 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
         if (how.mode == "tip" && how.drop_m > 0)
             how.onto = physics::met_when_tipped(cells, columns, candidates[o], how.weakest,
                                                 (*how.edge)[0]);
-        objects[o].barrier_error_J = physics::barrier_error_J(candidates[o], tipping[o], how,
-                                                              objects[o].margin_error_m, friction);
+        objects[o].barrier_error_J =
+            physics::barrier_error_J(candidates[o], objects[o].body_error, tipping[o], how,
+                                     objects[o].margin_error_m, friction);
         objects[o].tipping = std::move(tipping[o]);
         objects[o].level_tipping = std::move(level[o]);
         objects[o].sliding = std::move(sliding[o]);
@@ -176,10 +177,12 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
     });
     const SolidCells& cells = solid.solids->cells();
     const BoundaryCells& boundary = solid.solids->boundary();
-    out.bodies = stage("masses", [&] {
-        const std::vector<double> density(solid.model.size(), options.density_kg_m3);
-        return physics::mass_properties(device, cells, static_cast<std::int32_t>(density.size()),
-                                        density, boundary);
+    const std::vector<double> density(solid.model.size(), options.density_kg_m3);
+    std::vector<physics::VolumeError> errors;
+    stage("masses", [&] {
+        out.bodies = physics::mass_properties(
+            device, cells, static_cast<std::int32_t>(density.size()), density, boundary);
+        errors = physics::volume_errors(cells, boundary);
     });
     // The models of joints know contacts of whole voxels; what follows takes their true borders.
     const auto count = static_cast<std::int32_t>(solid.model.size());
@@ -197,6 +200,9 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
     });
     stage("barriers", [&] {
         collect_objects(cells, boundary, parts.shell.pinned, out);
+        for (StableObject& o : out.objects)
+            o.body_error =
+                physics::body_error(o.candidate.body, o.candidate.primitives, errors, density);
         find_barriers(device, table, *solid.solids, out.object_of_primitive, options.friction,
                       out.objects);
     });

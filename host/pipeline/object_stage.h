@@ -26,6 +26,7 @@ struct StableObject {
     physics::Stability level_tipping;  // if its support went on beyond all of its edges
     physics::SlideResult sliding;
     physics::Instability instability;  // of tipping and sliding together
+    physics::BodyError body_error;
     double barrier_error_J = 0;
     // How it stands (graph/rest.h); its candidate is held up in that way.
     graph::RestKind rest = graph::RestKind::seen;

@@ -168,10 +168,9 @@ struct Bound {
 
 // Where two solids meet at an edge, each may be bounded by a patch of the other: one of the two
 // says all, and both together would leave a gap. What stands on something ends there: the level
-// patch stays. owner: by patch, the primitive of which it was seen.
+// patch stays.
 void settle_edges(std::span<const Candidate> candidates, std::span<const SurfacePatch> patches,
-                  std::span<const std::int32_t> owner, double voxel_m,
-                  std::span<Combination> sums) {
+                  double voxel_m, std::span<Combination> sums) {
     const auto same_voxel = [&](std::size_t a, std::size_t b) {
         return std::tie(candidates[a].i, candidates[a].j, candidates[a].k) ==
                std::tie(candidates[b].i, candidates[b].j, candidates[b].k);
@@ -181,7 +180,7 @@ void settle_edges(std::span<const Candidate> candidates, std::span<const Surface
                           (candidates[c].k + 0.5) * voxel_m};
         for (std::size_t s = 0; s < sums[c].used; ++s) {
             if (!sums[c].use[s].bounds || !sums[c].use[s].outside ||
-                owner[sums[c].slot[s]] != other)
+                patches[sums[c].slot[s]].primitive != other)
                 continue;
             const Vec3 g = patches[sums[c].slot[s]].gradient(middle);
             return {&sums[c], s, std::abs(g[2]) / std::hypot(g[0], g[1], g[2])};
@@ -328,6 +327,8 @@ std::vector<std::size_t> next_cells(const SolidCells& c, std::size_t axis, std::
 BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, const SeenCells& seen,
                             std::vector<SurfacePatch> patches, const std::vector<bool>& sheet,
                             std::span<const KnownRest> rests) {
+    for (std::size_t n = 0; n < seen.size(); ++n)
+        patches[static_cast<std::size_t>(seen.patch[n])].primitive = seen.primitive[n];
     std::vector<Candidate> candidates;
     const std::vector<std::uint8_t> faced = faced_around(cells, seen, patches, candidates);
     add_shared(cells, seen, candidates);
@@ -335,10 +336,7 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
     add_mates(cells, mates, candidates);
     unite(candidates);
     std::vector<Combination> sums = combine_all(cells, seen, patches, mates, sheet, candidates);
-    std::vector<std::int32_t> owner(patches.size(), -1);
-    for (std::size_t n = 0; n < seen.size(); ++n)
-        owner[static_cast<std::size_t>(seen.patch[n])] = seen.primitive[n];
-    settle_edges(candidates, patches, owner, cells.voxel_m, sums);
+    settle_edges(candidates, patches, cells.voxel_m, sums);
     std::vector<bool> air = air_by_patches(cells, candidates, sums);
     const std::vector<Candidate> beyond = cut_off(cells, air);
     const std::vector<bool> unreached = out_of_reach(cells, candidates, sums, air);

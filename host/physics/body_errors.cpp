@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "physics/body_errors.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "solids/boundary.h"
+#include "solids/cell_shape.h"
+
+namespace topple::physics {
+namespace {
+
+// A sum of pieces of surface.
+struct Pieces {
+    double area_m2 = 0;
+    Vec3 moment{};
+    void add(double area, const Vec3& at) {
+        area_m2 += area;
+        for (std::size_t a = 0; a < 3; ++a) moment[a] += area * at[a];
+    }
+    VolumeError error(std::int32_t primitive, std::int32_t from, double thick_m) const {
+        VolumeError out{primitive, from, area_m2 * thick_m, moment};
+        for (double& v : out.center) v /= area_m2;
+        return out;
+    }
+};
+
+Vec3 middle(std::int32_t i, std::int32_t j, std::int32_t k, double h) {
+    return {(i + 0.5) * h, (j + 0.5) * h, (k + 0.5) * h};
+}
+
+// A plane crosses (|nx| + |ny| + |nz|) voxels for each square of a voxel's side.
+double area_within(const Vec3& gradient, double h) {
+    const double length = std::hypot(gradient[0], gradient[1], gradient[2]);
+    return h * h * length /
+           (std::abs(gradient[0]) + std::abs(gradient[1]) + std::abs(gradient[2]));
+}
+
+void add_patches(const BoundaryCells& b, double h, std::vector<VolumeError>& out) {
+    std::map<std::pair<std::int32_t, std::uint32_t>, Pieces> pieces;  // primitive, patch
+    for (std::size_t n = 0; n < b.size(); ++n) {
+        const Vec3 at = middle(b.i[n], b.j[n], b.k[n], h);
+        std::array<std::uint32_t, BoundaryCells::slots> through{};
+        std::size_t count = 0;
+        for (std::size_t s = 0; s < b.slots_used(n); ++s) {
+            const SurfacePatch& patch = b.patches[b.slot[s][n]];
+            const double d = patch.distance(at), half = solids::reach_of(patch.gradient(at), h);
+            // Of two voxels that a patch lies between, it passes one.
+            if (d > -half && d <= half) through[count++] = b.slot[s][n];
+        }
+        for (std::size_t s = 0; s < count; ++s) {
+            const Vec3 gradient = b.patches[through[s]].gradient(at);
+            pieces[{b.primitive[n], through[s]}].add(
+                area_within(gradient, h) / static_cast<double>(count), at);
+        }
+    }
+    for (const auto& [key, sum] : pieces) {
+        const SurfacePatch& patch = b.patches[key.second];
+        const std::int32_t from = patch.primitive == key.first ? -1 : patch.primitive;
+        out.push_back(sum.error(key.first, from, patch.offset_m));
+    }
+}
+
+// Sides of cells that no patch bounds and that are the border of their primitive.
+void add_unseen_sides(const SolidCells& cells, const std::vector<bool>& bounded,
+                      std::vector<VolumeError>& out) {
+    const double h = cells.voxel_m;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::vector<std::size_t> next = solids::next_cells(cells, axis, 1);
+        std::vector<std::size_t> previous(cells.size(), solids::no_cell);
+        for (std::size_t n = 0; n < next.size(); ++n)
+            if (next[n] != solids::no_cell) previous[next[n]] = n;
+        for (const int way : {-1, 1}) {
+            std::map<std::pair<std::int32_t, std::int32_t>, Pieces> pieces;  // primitive, other
+            for (std::size_t n = 0; n < cells.size(); ++n) {
+                const std::int32_t p = cells.primitive[n];
+                const std::size_t m = way < 0 ? previous[n] : next[n];
+                const std::int32_t other = m == solids::no_cell ? -1 : cells.primitive[m];
+                if (p < 0 || bounded[n] || other == p || (m != solids::no_cell && bounded[m]))
+                    continue;
+                Vec3 at = middle(cells.i[n], cells.j[n], cells.k[n], h);
+                at[axis] += 0.5 * way * h;
+                pieces[{p, other}].add(h * h, at);
+            }
+            for (const auto& [key, sum] : pieces)
+                out.push_back(sum.error(key.first, key.second, solids::voxel_error * h));
+        }
+    }
+}
+
+void add_guesses(const SolidCells& cells, std::vector<VolumeError>& out) {
+    std::map<std::pair<std::int32_t, Basis>, Pieces> pieces;
+    const double cube = cells.voxel_m * cells.voxel_m * cells.voxel_m;
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        if (cells.primitive[n] < 0 || cells.basis[n] < Basis::column) continue;
+        pieces[{cells.primitive[n], cells.basis[n]}].add(
+            cube, middle(cells.i[n], cells.j[n], cells.k[n], cells.voxel_m));
+    }
+    for (const auto& [key, sum] : pieces)
+        out.push_back(sum.error(key.first, -1, 1 - probability_solid(key.second)));
+}
+
+}  // namespace
+
+std::vector<VolumeError> volume_errors(const SolidCells& cells, const BoundaryCells& boundary) {
+    std::vector<bool> bounded(cells.size(), false);
+    std::size_t n = 0;
+    for (std::size_t b = 0; b < boundary.size(); ++b) {
+        const std::tuple at(boundary.i[b], boundary.j[b], boundary.k[b]);
+        while (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
+        if (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) == at)
+            bounded[n] = true;
+    }
+    std::vector<VolumeError> out;
+    add_patches(boundary, cells.voxel_m, out);
+    add_unseen_sides(cells, bounded, out);
+    add_guesses(cells, out);
+    std::ranges::stable_sort(out, {}, &VolumeError::primitive);
+    return out;
+}
+
+BodyError body_error(const Body& body, std::span<const std::int32_t> primitives,
+                     std::span<const VolumeError> errors, std::span<const double> densities) {
+    BodyError out;
+    if (!(body.mass_kg > 0)) return out;
+    double mass = 0;
+    Vec3 moment{};
+    for (const std::int32_t p : primitives) {
+        const auto [first, last] = std::ranges::equal_range(errors, p, {}, &VolumeError::primitive);
+        for (auto e = first; e != last; ++e) {
+            if (e->from >= 0 && std::ranges::binary_search(primitives, e->from)) continue;
+            const double more = e->volume_m3 * densities[static_cast<std::size_t>(p)];
+            mass += more * more;
+            for (std::size_t a = 0; a < 3; ++a) {
+                const double turn = more * (e->center[a] - body.center[a]);
+                moment[a] += turn * turn;
+            }
+        }
+    }
+    out.mass_kg = std::sqrt(mass);
+    for (std::size_t a = 0; a < 3; ++a) out.center_m[a] = std::sqrt(moment[a]) / body.mass_kg;
+    return out;
+}
+
+}  // namespace topple::physics
