@@ -101,6 +101,9 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         to.agreement = from.agreement;
         to.why = from.why.sentence.c_str();
         to.advice = from.advice.sentence.c_str();
+        to.mass_error_kg = from.mass_error_kg;
+        copy_vector(from.center_of_mass_error_m, to.center_of_mass_error_m);
+        to.footprint_error_m = from.footprint_error_m;
         give(to, object, "object");
     });
 }

@@ -30,10 +30,11 @@ void print_sentences(const std::vector<const Object*>& riskiest_first) {
     if (told.empty()) return;
     const std::size_t shown = std::min(sentences_shown, told.size());
     std::printf("\nThe %zu riskiest of the %zu whose barrier is %s", shown, told.size(),
-                certain.empty() ? "within its error (~0)" : "certain");
+                certain.empty() ? "within its error" : "certain");
     if (!certain.empty() && doubtful.size() > unseen)
         std::printf(
-            "; %zu more have ~0: they stand on edge, or the scan hardly shows their support",
+            "; that of %zu more is within its error of 0: they stand on edge, or the scan hardly "
+            "shows their support",
             doubtful.size() - unseen);
     if (!certain.empty() && unseen > 0)
         std::printf("; %zu more have no rank, since nothing was seen to hold them", unseen);
@@ -62,9 +63,12 @@ void print_objects(const Scene& scene) {
                 "barrier J", "release J", "mode", "human J", "wind J", "quake J", "rests on");
     for (std::size_t i = 0; i < std::min(rows_shown, movable.size()); ++i) {
         const Object& o = *movable[i];
-        char barrier[32] = "~0", unsafety[32] = "-";
+        char barrier[32], unsafety[32] = "-";
         if (o.seen_enough) std::snprintf(unsafety, sizeof(unsafety), "%.1f", o.unsafety);
-        if (!barrier_within_error(o)) std::snprintf(barrier, sizeof(barrier), "%.3g", o.barrier_J);
+        if (barrier_within_error(o))
+            std::snprintf(barrier, sizeof(barrier), "0-%.2g", o.barrier_J + o.barrier_error_J);
+        else
+            std::snprintf(barrier, sizeof(barrier), "%.3g", o.barrier_J);
         std::printf("%6d %8s %8.3g %9s %9.3g %6s %10.3g %10.3g %10.3g  %s\n", o.id, unsafety,
                     o.mass_kg, barrier, o.release_J, o.mode.c_str(), risk_of(o, "human"),
                     risk_of(o, "wind"), risk_of(o, "earthquake"),

@@ -101,6 +101,9 @@ Json to_json(const Object& o) {
         {"agreement", number(o.agreement)},
         {"mass_kg", number(o.mass_kg)},
         {"center_of_mass_m", vector(o.center_of_mass_m)},
+        {"mass_error_kg", number(o.mass_error_kg)},
+        {"center_of_mass_error_m", vector(o.center_of_mass_error_m)},
+        {"footprint_error_m", number(o.footprint_error_m)},
         {"barrier_J", number(o.barrier_J)},
         {"barrier_error_J", number(o.barrier_error_J)},
         {"release_J", number(o.release_J)},
@@ -218,6 +221,11 @@ Object object_of(const Json& json) {
     o.barrier_J = number_at(json, "barrier_J");
     // Earlier versions did not write it.
     if (json.contains("barrier_error_J")) o.barrier_error_J = number_at(json, "barrier_error_J");
+    if (json.contains("mass_error_kg")) {  // nor these
+        o.mass_error_kg = number_at(json, "mass_error_kg");
+        o.center_of_mass_error_m = vector_at(json, "center_of_mass_error_m");
+        o.footprint_error_m = number_at(json, "footprint_error_m");
+    }
     o.release_J = number_at(json, "release_J");
     o.mode = json.at("mode").get<std::string>();
     o.direction = vector_at(json, "direction");

@@ -35,8 +35,7 @@ Vec3 middle(std::int32_t i, std::int32_t j, std::int32_t k, double h) {
 // A plane crosses (|nx| + |ny| + |nz|) voxels for each square of a voxel's side.
 double area_within(const Vec3& gradient, double h) {
     const double length = std::hypot(gradient[0], gradient[1], gradient[2]);
-    return h * h * length /
-           (std::abs(gradient[0]) + std::abs(gradient[1]) + std::abs(gradient[2]));
+    return h * h * length / (std::abs(gradient[0]) + std::abs(gradient[1]) + std::abs(gradient[2]));
 }
 
 void add_patches(const BoundaryCells& b, double h, std::vector<VolumeError>& out) {

@@ -55,8 +55,11 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
         to.agreement = from.agreement;
         to.mass_kg = from.candidate.body.mass_kg;
         to.center_of_mass_m = to_input(from.candidate.body.center);
+        to.mass_error_kg = from.body_error.mass_kg;
+        to.center_of_mass_error_m = to_input.errors(from.body_error.center_m);
         if (!from.grounded) {
             to.barrier_J = from.instability.barrier_J;
+            to.footprint_error_m = from.margin_error_m;
             to.barrier_error_J = from.barrier_error_J;
             to.release_J = from.instability.release_J;
             to.mode = from.instability.mode;

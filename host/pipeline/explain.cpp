@@ -107,7 +107,8 @@ class Sentence {
         return on.grounded ? "the ground" : "object " + std::to_string(on.id);
     }
     std::string barrier() const {
-        return barrier_within_error(object_) ? "~0 J" : energy(why_.W_J);
+        if (!barrier_within_error(object_)) return energy(why_.W_J);
+        return "between 0 and " + energy(object_.barrier_J + object_.barrier_error_J);
     }
     std::string to() const {
         return std::isnan(why_.azimuth_deg) ? "" : "to the " + compass(why_.azimuth_deg) + " ";

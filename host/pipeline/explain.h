@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "pipeline/advise.h"
 #include "pipeline/object_stage.h"
@@ -18,6 +19,13 @@ class ToInput {
         Vec3 out{};
         for (std::size_t c = 0; c < 3; ++c)
             out[c] = g[0] * axes_[0][c] + g[1] * axes_[1][c] + g[2] * axes_[2][c];
+        return out;
+    }
+    // Of standard errors along the grid's axes, those along the input's.
+    Vec3 errors(const Vec3& g) const {
+        Vec3 out{};
+        for (std::size_t c = 0; c < 3; ++c)
+            out[c] = std::hypot(g[0] * axes_[0][c], g[1] * axes_[1][c], g[2] * axes_[2][c]);
         return out;
     }
 

@@ -66,6 +66,10 @@ Scanned scan_and_parse(const scenes::World& world, const MeasureOptions& options
     return {parse(folder.path(), options.parse), to_room};
 }
 
+Vec3 difference(const Vec3& a, const Vec3& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
 double median(std::vector<double> values) {
     if (values.empty()) return MeasureScore::none;
     std::ranges::sort(values);
@@ -103,6 +107,12 @@ void add_spread(const std::vector<double>& ratios, const char* name, std::string
            percent(share_within(ratios, 1, 0.15)).c_str());
 }
 
+void add_sigmas(const std::vector<double>& sigmas, const char* name, std::string& text) {
+    append(text, "  %-8s within one standard error: %s, within two: %s\n", name,
+           percent(share_within(sigmas, 0, 1)).c_str(),
+           percent(share_within(sigmas, 0, 2)).c_str());
+}
+
 }  // namespace
 
 TrueMeasures true_measures(const scenes::World& world, std::int32_t object, double density_kg_m3) {
@@ -137,11 +147,18 @@ MeasureScore measure(const scenes::MeasuredShape& shape, std::uint64_t seed,
     if (!found) return out;
     out.mass = found->mass_kg / truth.mass_kg;
     out.barrier = found->barrier_J / truth.barrier_J;
+    out.mass_sigmas = (found->mass_kg - truth.mass_kg) / found->mass_error_kg;
     out.barrier_sigmas = (found->barrier_J - truth.barrier_J) / found->barrier_error_J;
     const Vec3 center = scanned.to_room(found->center_of_mass_m);
-    out.center_m =
-        std::hypot(center[0] - truth.center_of_mass_m[0], center[1] - truth.center_of_mass_m[1],
-                   center[2] - truth.center_of_mass_m[2]);
+    const Vec3 off = difference(center, truth.center_of_mass_m);
+    out.center_m = std::hypot(off[0], off[1], off[2]);
+    for (std::size_t a = 0; a < 3; ++a) {
+        Vec3 along = found->center_of_mass_m;
+        along[a] += 1;
+        const Vec3 axis = difference(scanned.to_room(along), center);
+        out.center_sigmas[a] = (off[0] * axis[0] + off[1] * axis[1] + off[2] * axis[2]) /
+                               found->center_of_mass_error_m[a];
+    }
     return out;
 }
 
@@ -164,18 +181,24 @@ std::string measures_table(const std::vector<MeasureScore>& scores) {
     const auto all = [](const MeasureScore&) { return true; };
     add_spread(known(scores, &MeasureScore::mass, all), "mass", text);
     add_spread(known(scores, &MeasureScore::barrier, all), "barrier", text);
-    const auto sigmas = known(scores, &MeasureScore::barrier_sigmas, all);
-    append(text, "  barriers within one of their standard errors: %s, within two: %s\n",
-           percent(share_within(sigmas, 0, 1)).c_str(),
-           percent(share_within(sigmas, 0, 2)).c_str());
+    add_sigmas(known(scores, &MeasureScore::mass_sigmas, all), "mass", text);
+    std::vector<double> centers;
+    for (const MeasureScore& s : scores)
+        for (const double v : s.center_sigmas)
+            if (std::isfinite(v)) centers.push_back(v);
+    add_sigmas(centers, "center", text);
+    add_sigmas(known(scores, &MeasureScore::barrier_sigmas, all), "barrier", text);
     return text;
 }
 
 std::string measures_csv(const std::vector<MeasureScore>& scores) {
-    std::string text = "name,seed,mass,barrier,center_m,barrier_sigmas,parse_s\n";
+    std::string text =
+        "name,seed,mass,barrier,center_m,mass_sigmas,center_sigmas_x,center_sigmas_y,center_sigmas_"
+        "z,barrier_sigmas,parse_s\n";
     for (const MeasureScore& s : scores) {
-        append(text, "%s,%llu,%.5f,%.5f,%.5f,%.3f,%.2f\n", s.name.c_str(),
+        append(text, "%s,%llu,%.5f,%.5f,%.5f,%.3f,%.3f,%.3f,%.3f,%.3f,%.2f\n", s.name.c_str(),
                static_cast<unsigned long long>(s.seed), s.mass, s.barrier, s.center_m,
+               s.mass_sigmas, s.center_sigmas[0], s.center_sigmas[1], s.center_sigmas[2],
                s.barrier_sigmas, s.parse_s);
     }
     return text;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -27,8 +28,9 @@ struct MeasureScore {
     std::uint64_t seed = 0;
     double mass = none, barrier = none;  // over the true ones; NaN: the thing was not found
     double center_m = none;              // from the true centre of mass
-    // How many of its own standard errors the barrier is off.
-    double barrier_sigmas = none;
+    // How many of its own standard errors each is off.
+    double mass_sigmas = none, barrier_sigmas = none;
+    std::array<double, 3> center_sigmas{none, none, none};  // along each axis of the input
     double parse_s = 0;
 };
 

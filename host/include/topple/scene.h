@@ -114,7 +114,12 @@ struct Object {
     double mass_kg = 0;
     Vec3 center_of_mass_m{};
     double barrier_J = 0;  // least energy that moves it out of its basin
-    // Of the barrier, one standard error: what half a voxel in its support's border changes.
+    // One standard error each: of the mass and, along each axis, of its centre, by what surfaces
+    // were not seen and how well the others were, at the density that was given; of where the
+    // border of its footprint lies; and of the barrier, by all of these.
+    double mass_error_kg = 0;
+    Vec3 center_of_mass_error_m{};
+    double footprint_error_m = 0;
     double barrier_error_J = 0;
     double release_J = 0;       // what it can release then
     std::string mode = "none";  // "tip" | "slide" | "none"
@@ -137,7 +142,7 @@ struct Object {
     Advice advice;
 };
 
-// Whether the barrier can't be told from 0.
+// Whether the barrier can't be told from 0: what is known then is 0 to barrier_J + barrier_error_J.
 inline bool barrier_within_error(const Object& o) {
     return !o.grounded && o.barrier_J <= o.barrier_error_J;
 }

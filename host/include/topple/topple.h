@@ -180,6 +180,8 @@ typedef struct topple_object {
     double risk_human_J, risk_wind_J, risk_earthquake_J; /* per event; NaN: not asked for */
     double unsafety, agreement;
     const char *why, *advice; /* sentences */
+    /* one standard error each, as barrier_error_J */
+    double mass_error_kg, center_of_mass_error_m[3], footprint_error_m;
 } topple_object;
 typedef struct topple_contact {
     size_t size;

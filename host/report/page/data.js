@@ -62,6 +62,11 @@ function number(value, unit) {
   return unit ? text + '\u00a0' + unit : text;
 }
 
+// What one standard error adds to a figure.
+function within(error) {
+  return error > 0 ? ' \u00b1\u00a0' + number(Number(error.toPrecision(2))) : '';
+}
+
 function plural(count, noun) {
   return count.toLocaleString('en') + ' ' + noun + (count === 1 ? '' : 's');
 }

@@ -5,11 +5,6 @@
 
 const listedObjects = 8, listedDoubts = 4, listedOnPhones = 3;
 
-// It stands, and yet its barrier can't be told from 0: its risk says more about the scan than about it.
-function isDoubtful(object) {
-  return !object.grounded && object.barrier_J !== null && object.barrier_J <= object.barrier_error_J;
-}
-
 function byRisk(scene, wanted) {
   return scene.objects.filter(object => !object.grounded && largestRisk(object) > 0 && wanted(object))
     .sort((a, b) => largestRisk(b) - largestRisk(a) || a.id - b.id);

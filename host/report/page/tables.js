@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
 'use strict';
 
-// A barrier that a voxel more or less would undo can't be told from 0.
+// It stands, and yet its barrier can't be told from 0: its risk says more about the scan than about it.
+function isDoubtful(object) {
+  return !object.grounded && object.barrier_J !== null && object.barrier_J <= object.barrier_error_J;
+}
+
+// A barrier that can't be told from 0 is anything up to where its error ends.
 function barrierText(object, unit) {
   if (object.grounded || object.barrier_J === null) return number(null);
-  return object.barrier_J <= object.barrier_error_J ? '~0' + (unit ? '\u00a0' + unit : '') : number(object.barrier_J, unit);
+  if (!isDoubtful(object)) return number(object.barrier_J, unit);
+  return '0\u2013' + number(Number((object.barrier_J + object.barrier_error_J).toPrecision(2)), unit);
 }
 
 // Object columns: heading, value to sort by, and what stands in the cell.
@@ -136,11 +142,12 @@ function showObject(panel, scene, id, choose) {
   if (fallKnown(object)) panel.append(element('p', {className: 'why', text: happensText(scene, object)}));
   if (object.advice && object.advice.sentence) panel.append(element('p', {className: 'advice', text: object.advice.sentence}));
   panel.append(element('p', {className: 'why', text: object.why.sentence}));
-  const pairs = [['Mass', number(object.mass_kg, 'kg')],
-    ['Centre of mass', object.center_of_mass_m.map(v => v === null ? '\u2013' : v.toFixed(2)).join(', ') + ' m']];
+  const pairs = [['Mass', number(object.mass_kg, 'kg') + within(object.mass_error_kg)],
+    ['Centre of mass', object.center_of_mass_m.map(v => v === null ? '\u2013' : v.toFixed(2)).join(', ') + ' m' + within(Math.hypot(...(object.center_of_mass_error_m || [])))]];
   if (!object.grounded) {
-    pairs.push(['Barrier: energy that moves it', barrierText(object, 'J')],
-      ['Error of the barrier', number(object.barrier_error_J, 'J')], ['It then can release', number(object.release_J, 'J')]);
+    pairs.push(['Barrier: energy that moves it', barrierText(object, 'J') + (isDoubtful(object) ? '' : within(object.barrier_error_J))],
+      ['It then can release', number(object.release_J, 'J')]);
+    if (object.footprint_error_m > 0) pairs.push(['Error of its footprint', number(1000 * object.footprint_error_m, 'mm')]);
   }
   if (object.why.azimuth_deg !== null) pairs.push(['Weakest direction', azimuthText(object.why.azimuth_deg)]);
   for (const name of object.grounded ? [] : scene.disturbances) {
@@ -161,7 +168,7 @@ function showObject(panel, scene, id, choose) {
 
 function riskText(object, name) {
   const spread = (object.risk_spread_J || {})[name], risk = object.risk_J[name];
-  return number(risk, 'J') + (risk > 0 && spread > 0 ? ` \u00b1 ${Number(spread.toPrecision(2))}` : '');
+  return number(risk, 'J') + (risk > 0 ? within(spread) : '');
 }
 
 function azimuthText(degrees) {
