@@ -8,6 +8,7 @@
 #include "geometry/depth_noise.h"
 #include "geometry/frames_cells.h"
 #include "geometry/plane_fit.h"
+#include "geometry/plane_mean.h"
 
 namespace topple::geometry {
 namespace {
@@ -128,13 +129,14 @@ void flatten_level(FusedCells& fused, const CellGrid& grid, double scale,
         queries.cell.push_back(static_cast<std::uint32_t>(cell));
         for (std::size_t a = 0; a < 3; ++a) queries.at[a].push_back(grid.mean[a][cell]);
     }
-    const PlaneFit fit = fit_planes(device, grid, std::move(queries));
+    const PlaneFit fit = fit_planes(device, grid, queries);
+    const std::vector<float> offsets = mean_offsets(grid, queries, fit, pool);
     pool.each(which.size(), fused_chunk, [&](std::size_t k) {
         CellSums& cell = fused.cells[which[k]];
         const std::uint32_t home = cell_of[which[k]], q = query_of[home];
         const std::array<std::int32_t, 3> index{grid.x[home], grid.y[home], grid.z[home]};
         const std::array<double, 3> at = mean_of(cell);
-        double offset = fit.offset[q];  // from the cell to the plane, cells of the level
+        double offset = offsets[q];  // from the cell to the surface, cells of the level
         for (std::size_t a = 0; a < 3; ++a) {
             const double from_query = (at[a] - static_cast<double>(key_bias)) / scale -
                                       (index[a] + 0.5 + double{grid.mean[a][home]});
