@@ -38,8 +38,17 @@ double area_within(const Vec3& gradient, double h) {
     return h * h * length / (std::abs(gradient[0]) + std::abs(gradient[1]) + std::abs(gradient[2]));
 }
 
+// Of the six directions along axes, the one that a gradient is nearest to.
+int facing(const Vec3& gradient) {
+    std::size_t axis = 0;
+    for (std::size_t a = 1; a < 3; ++a)
+        if (std::abs(gradient[a]) > std::abs(gradient[axis])) axis = a;
+    return 2 * static_cast<int>(axis) + (gradient[axis] > 0);
+}
+
+// What a curved patch is off on one side is not what it is on another.
 void add_patches(const BoundaryCells& b, double h, std::vector<VolumeError>& out) {
-    std::map<std::pair<std::int32_t, std::uint32_t>, Pieces> pieces;  // primitive, patch
+    std::map<std::tuple<std::int32_t, std::uint32_t, int>, Pieces> pieces;  // primitive, patch, way
     for (std::size_t n = 0; n < b.size(); ++n) {
         const Vec3 at = middle(b.i[n], b.j[n], b.k[n], h);
         std::array<std::uint32_t, BoundaryCells::slots> through{};
@@ -52,14 +61,15 @@ void add_patches(const BoundaryCells& b, double h, std::vector<VolumeError>& out
         }
         for (std::size_t s = 0; s < count; ++s) {
             const Vec3 gradient = b.patches[through[s]].gradient(at);
-            pieces[{b.primitive[n], through[s]}].add(
+            pieces[{b.primitive[n], through[s], facing(gradient)}].add(
                 area_within(gradient, h) / static_cast<double>(count), at);
         }
     }
     for (const auto& [key, sum] : pieces) {
-        const SurfacePatch& patch = b.patches[key.second];
-        const std::int32_t from = patch.primitive == key.first ? -1 : patch.primitive;
-        out.push_back(sum.error(key.first, from, patch.offset_m));
+        const auto& [primitive, seen, way] = key;
+        const SurfacePatch& patch = b.patches[seen];
+        const std::int32_t from = patch.primitive == primitive ? -1 : patch.primitive;
+        out.push_back(sum.error(primitive, from, patch.offset_m));
     }
 }
 

@@ -12,6 +12,10 @@
 namespace topple::solids {
 namespace {
 
+// In voxels, one standard error: what the solid's form is off where patches meet, bend or end.
+// Found from things of known measures (docs/evaluation.md).
+constexpr double patch_error = 0.025;
+
 using Place = std::array<std::int32_t, 3>;
 using Key = std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t>;
 
@@ -329,6 +333,8 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
                             std::span<const KnownRest> rests) {
     for (std::size_t n = 0; n < seen.size(); ++n)
         patches[static_cast<std::size_t>(seen.patch[n])].primitive = seen.primitive[n];
+    for (SurfacePatch& p : patches)
+        p.offset_m = std::hypot(p.offset_m, patch_error * cells.voxel_m);
     std::vector<Candidate> candidates;
     const std::vector<std::uint8_t> faced = faced_around(cells, seen, patches, candidates);
     add_shared(cells, seen, candidates);
