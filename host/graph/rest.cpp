@@ -137,7 +137,8 @@ std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
 }
 
 Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& columns,
-                const ContactGraph& contacts, const BoundaryCells& boundary) {
+                const ContactGraph& contacts, const BoundaryCells& boundary,
+                double center_error_m) {
     if (columns.empty()) return {RestKind::none, 1, {}, 0, 0};
     const double h = contacts.voxel_m;
     std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
@@ -188,7 +189,7 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
     Rest best;
     double most = -1, sum = 0, noise_m = 0;
     const auto weigh = [&](RestKind kind, Outline outline, double at_m, double often) {
-        const double noise = std::max(outline.error_m, least_error_m);
+        const double noise = std::hypot(std::max(outline.error_m, least_error_m), center_error_m);
         const double chance = often * stands(c, outline.polygon, noise, std::max(widest, noise));
         sum += chance;
         if (chance <= most) return;

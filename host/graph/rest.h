@@ -54,8 +54,10 @@ struct Rest {
 // The likeliest way in which a body stands: of each, how often scans miss so much of a support,
 // times the likelihood that a body stands so far from its border: of a margin as a share of what it
 // would be if all of the body were held. candidate: with the contacts that were seen.
-// boundary: what bounds the columns' cells, if that is known.
+// boundary: what bounds the columns' cells, if that is known. center_error_m: of the body's centre,
+// horizontal, which is one with that of the border.
 Rest infer_rest(const physics::Candidate& candidate, const std::vector<Underside>& columns,
-                const ContactGraph& contacts, const BoundaryCells& boundary = {});
+                const ContactGraph& contacts, const BoundaryCells& boundary = {},
+                double center_error_m = 0);
 
 }  // namespace topple::graph

@@ -100,13 +100,15 @@ void add_unseen_sides(const SolidCells& cells, const std::vector<bool>& bounded,
     }
 }
 
-void add_guesses(const SolidCells& cells, std::vector<VolumeError>& out) {
+// shares: of each cell, the part that is its primitive's.
+void add_guesses(const SolidCells& cells, std::span<const double> shares,
+                 std::vector<VolumeError>& out) {
     std::map<std::pair<std::int32_t, Basis>, Pieces> pieces;
     const double cube = cells.voxel_m * cells.voxel_m * cells.voxel_m;
     for (std::size_t n = 0; n < cells.size(); ++n) {
-        if (cells.primitive[n] < 0 || cells.basis[n] < Basis::column) continue;
+        if (cells.primitive[n] < 0 || cells.basis[n] < Basis::column || !(shares[n] > 0)) continue;
         pieces[{cells.primitive[n], cells.basis[n]}].add(
-            cube, middle(cells.i[n], cells.j[n], cells.k[n], cells.voxel_m));
+            shares[n] * cube, middle(cells.i[n], cells.j[n], cells.k[n], cells.voxel_m));
     }
     for (const auto& [key, sum] : pieces)
         out.push_back(sum.error(key.first, -1, 1 - probability_solid(key.second)));
@@ -116,17 +118,20 @@ void add_guesses(const SolidCells& cells, std::vector<VolumeError>& out) {
 
 std::vector<VolumeError> volume_errors(const SolidCells& cells, const BoundaryCells& boundary) {
     std::vector<bool> bounded(cells.size(), false);
+    std::vector<double> shares(cells.size(), 1.0);
     std::size_t n = 0;
     for (std::size_t b = 0; b < boundary.size(); ++b) {
         const std::tuple at(boundary.i[b], boundary.j[b], boundary.k[b]);
         while (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
-        if (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) == at)
-            bounded[n] = true;
+        if (n == cells.size() || std::tie(cells.i[n], cells.j[n], cells.k[n]) != at) continue;
+        bounded[n] = true;
+        if (cells.primitive[n] == boundary.primitive[b])
+            shares[n] = static_cast<double>(boundary.share[b]) / BoundaryCells::whole;
     }
     std::vector<VolumeError> out;
     add_patches(boundary, cells.voxel_m, out);
     add_unseen_sides(cells, bounded, out);
-    add_guesses(cells, out);
+    add_guesses(cells, shares, out);
     std::ranges::stable_sort(out, {}, &VolumeError::primitive);
     return out;
 }

@@ -47,23 +47,21 @@ Instability combine_curves(const Stability& tip, const SlideResult& slide) {
 }
 
 double barrier_error_J(const Candidate& body, const BodyError& known, const Stability& tip,
-                       const Instability& how, double border_m, double friction) {
+                       const Instability& how, double margin_error_m, double friction) {
     const double weight = body.body.mass_kg * gravity;
     if (!(weight > 0)) return 0;
     const double of_mass = how.barrier_J * known.mass_kg / body.body.mass_kg;
-    if (how.mode == "slide") return std::hypot(friction * weight * border_m, of_mass);
-    if (!how.edge || !(tip.margin_m > 0)) return std::hypot(weight * border_m, of_mass);
+    if (how.mode == "slide") return std::hypot(friction * weight * margin_error_m, of_mass);
+    if (!how.edge || !(tip.margin_m > 0)) return std::hypot(weight * margin_error_m, of_mass);
     const auto& [a, b] = *how.edge;
-    const double beside_error = std::hypot(border_m, known.center_m[0] * how.weakest[0],
-                                           known.center_m[1] * how.weakest[1]);
     const double beside =
         std::max(0.0, ((a[0] + b[0]) / 2 - body.body.center[0]) * how.weakest[0] +
                           ((a[1] + b[1]) / 2 - body.body.center[1]) * how.weakest[1]);
-    const double height = std::max(body.body.center[2] - body.support_height_m, beside_error);
+    const double height = std::max(body.body.center[2] - body.support_height_m, margin_error_m);
     const double radius = std::hypot(height, beside);
-    const double tipping = weight * std::max(std::hypot(beside / radius * beside_error,
+    const double tipping = weight * std::max(std::hypot(beside / radius * margin_error_m,
                                                         (1 - height / radius) * known.center_m[2]),
-                                             std::hypot(height, beside_error) - height);
+                                             std::hypot(height, margin_error_m) - height);
     return std::hypot(tipping, of_mass);
 }
 

@@ -96,13 +96,14 @@ struct Instability {
 // something to release, tipping where equal; without any, the barrier is that of tipping.
 Instability combine_curves(const Stability& tip, const SlideResult& slide);
 
-// One standard error of that barrier, from those of the support's border (border_m), the centre of
-// mass and the mass, to first order, as independent ones:
+// One standard error of that barrier, from those of the margin (how far inside of its support's
+// border the centre of mass is), of its height and of the mass, to first order, as independent
+// ones:
 //     tipping over an edge at m > 0 from the centre of mass, h above it, of
 //         M g (sqrt(h^2 + m^2) - h); but where m is small, of what is to be expected of it at 0;
-//         without an edge, M g border_m;
-//     sliding: friction M g border_m.
+//         without an edge, M g margin_error_m;
+//     sliding: friction M g margin_error_m.
 double barrier_error_J(const Candidate& body, const BodyError& known, const Stability& tip,
-                       const Instability& how, double border_m, double friction);
+                       const Instability& how, double margin_error_m, double friction);
 
 }  // namespace topple::physics

@@ -44,7 +44,8 @@ std::vector<graph::Joint> find_joints(const SolidParts& parts, const graph::Cont
 
 // Objects by group, the ground first.
 void collect_objects(const SolidCells& cells, const BoundaryCells& boundary,
-                     const std::vector<bool>& shell, ObjectStage& out) {
+                     const std::vector<bool>& shell, std::span<const double> density,
+                     ObjectStage& out) {
     const std::vector<std::int32_t>& group = out.grouping.group;
     const bool has_ground = std::find(group.begin(), group.end(), -1) != group.end();
     std::int32_t objects = 0;
@@ -58,15 +59,19 @@ void collect_objects(const SolidCells& cells, const BoundaryCells& boundary,
             static_cast<std::int32_t>(p));
     }
     const auto columns = graph::undersides(cells, out.object_of_primitive, members.size());
+    const auto errors = physics::volume_errors(cells, boundary);
     for (std::size_t o = 0; o < members.size(); ++o) {
         StableObject object;
         object.candidate =
             graph::candidate_of(out.contacts, out.bodies, shell, std::move(members[o]));
+        object.body_error = physics::body_error(object.candidate.body, object.candidate.primitives,
+                                                errors, density);
         object.grounded = has_ground && o == 0;
         if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
         if (!object.grounded) {
-            graph::Rest rest =
-                graph::infer_rest(object.candidate, columns[o], out.contacts, boundary);
+            graph::Rest rest = graph::infer_rest(
+                object.candidate, columns[o], out.contacts, boundary,
+                std::max(object.body_error.center_m[0], object.body_error.center_m[1]));
             object.rest = rest.kind;
             object.rest_probability = rest.probability;
             object.margin_error_m = rest.margin_error_m;
@@ -178,11 +183,9 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
     const SolidCells& cells = solid.solids->cells();
     const BoundaryCells& boundary = solid.solids->boundary();
     const std::vector<double> density(solid.model.size(), options.density_kg_m3);
-    std::vector<physics::VolumeError> errors;
-    stage("masses", [&] {
-        out.bodies = physics::mass_properties(
-            device, cells, static_cast<std::int32_t>(density.size()), density, boundary);
-        errors = physics::volume_errors(cells, boundary);
+    out.bodies = stage("masses", [&] {
+        return physics::mass_properties(device, cells, static_cast<std::int32_t>(density.size()),
+                                        density, boundary);
     });
     // The models of joints know contacts of whole voxels; what follows takes their true borders.
     const auto count = static_cast<std::int32_t>(solid.model.size());
@@ -199,10 +202,7 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
                                      physics::geodesic_sphere(sphere_frequency));
     });
     stage("barriers", [&] {
-        collect_objects(cells, boundary, parts.shell.pinned, out);
-        for (StableObject& o : out.objects)
-            o.body_error =
-                physics::body_error(o.candidate.body, o.candidate.primitives, errors, density);
+        collect_objects(cells, boundary, parts.shell.pinned, density, out);
         find_barriers(device, table, *solid.solids, out.object_of_primitive, options.friction,
                       out.objects);
     });

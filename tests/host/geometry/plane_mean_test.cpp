@@ -67,8 +67,7 @@ double off_tube(double radius, double noise, bool with_mean) {
 
 TEST(PlaneMean, DoesNotShrinkWhatIsRound) {
     for (const double radius : {6.0, 12.0, 24.0}) {
-        const double plane = off_tube(radius, 0.05, false),
-                     mean = off_tube(radius, 0.05, true);
+        const double plane = off_tube(radius, 0.05, false), mean = off_tube(radius, 0.05, true);
         EXPECT_LT(plane, -0.3 / radius) << "a plane alone does, radius " << radius;
         EXPECT_LT(std::abs(mean), 0.15 * std::abs(plane)) << radius;
     }

@@ -7,8 +7,8 @@ namespace topple::graph {
 namespace {
 
 TEST(Outline, HasTheErrorOfItsCornersAlone) {
-    const std::vector<BorderPoint> points{{{0, 0}, 0.01}, {{1, 0}, 0.02}, {{1, 1}, 0.03},
-                                          {{0, 1}, 0.02}, {{0.5, 0.5}, 1}};
+    const std::vector<BorderPoint> points{
+        {{0, 0}, 0.01}, {{1, 0}, 0.02}, {{1, 1}, 0.03}, {{0, 1}, 0.02}, {{0.5, 0.5}, 1}};
     const Outline out = outline_of(points);
     EXPECT_EQ(out.polygon.size(), 4u);
     EXPECT_NEAR(out.error_m, 0.02, 1e-12);

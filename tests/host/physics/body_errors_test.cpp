@@ -30,9 +30,8 @@ Known known(const std::vector<solids::Box>& boxes) {
         solids::find_boundary(*device, scanned.cells, scanned.seen(), scanned.patches,
                               std::vector<bool>(boxes.size(), false));
     const std::vector<double> densities(boxes.size(), density);
-    const auto bodies =
-        mass_properties(*device, scanned.cells, static_cast<std::int32_t>(boxes.size()), densities,
-                        boundary);
+    const auto bodies = mass_properties(
+        *device, scanned.cells, static_cast<std::int32_t>(boxes.size()), densities, boundary);
     std::vector<std::int32_t> all;
     for (std::size_t n = 0; n < boxes.size(); ++n) all.push_back(static_cast<std::int32_t>(n));
     Known out;
