@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
+#include "solids/coherence.h"
 #include "solids/combine.h"
 
 namespace topple::solids {
@@ -15,13 +15,6 @@ namespace {
 // In voxels, one standard error: what the solid's form is off where patches meet, bend or end.
 // Found from things of known measures (docs/evaluation.md).
 constexpr double patch_error = 0.025;
-
-using Place = std::array<std::int32_t, 3>;
-using Key = std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t>;
-
-Place sum_of(const Place& a, const Place& b) {
-    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
 
 // Gathers what was seen of a primitive in the 27 voxels around one; voxels must come sorted.
 class Around {
@@ -63,18 +56,10 @@ class Around {
     std::array<std::size_t, 9> at_{};
 };
 
-// A voxel that may be on a primitive's border.
-struct Candidate {
-    std::int32_t i, j, k, primitive;
-    bool own = false;      // one of the primitive's cells
-    bool extends = false;  // the primitive goes on into it
-    Key key() const { return {i, j, k, primitive}; }
-};
-
 // The directions that what was seen around each cell of its primitive faces.
 std::vector<std::uint8_t> faced_around(const SolidCells& cells, const SeenCells& seen,
                                        std::span<const SurfacePatch> patches,
-                                       std::vector<Candidate>& candidates) {
+                                       std::vector<BorderVoxel>& candidates) {
     std::vector<std::uint8_t> faced(cells.size(), 0);
     Around around(seen);
     std::vector<SeenPatch> found;
@@ -94,7 +79,7 @@ std::vector<std::uint8_t> faced_around(const SolidCells& cells, const SeenCells&
 
 // Voxels of one primitive in which another was seen, too.
 void add_shared(const SolidCells& cells, const SeenCells& seen,
-                std::vector<Candidate>& candidates) {
+                std::vector<BorderVoxel>& candidates) {
     std::size_t n = 0;
     for (std::size_t m = 0; m < seen.size(); ++m) {
         const std::tuple at(seen.i[m], seen.j[m], seen.k[m]);
@@ -108,7 +93,7 @@ void add_shared(const SolidCells& cells, const SeenCells& seen,
 
 // What mates reach, or bound of their primitive's own cells.
 void add_mates(const SolidCells& cells, std::span<const Mate> mates,
-               std::vector<Candidate>& candidates) {
+               std::vector<BorderVoxel>& candidates) {
     std::size_t n = 0;
     for (const Mate& m : mates) {
         const std::tuple at(m.i, m.j, m.k);
@@ -119,8 +104,8 @@ void add_mates(const SolidCells& cells, std::span<const Mate> mates,
     }
 }
 
-void unite(std::vector<Candidate>& candidates) {
-    std::ranges::sort(candidates, {}, &Candidate::key);
+void unite(std::vector<BorderVoxel>& candidates) {
+    std::ranges::sort(candidates, {}, &BorderVoxel::key);
     std::size_t kept = 0;
     for (std::size_t n = 0; n < candidates.size(); ++n) {
         if (kept > 0 && candidates[kept - 1].key() == candidates[n].key()) {
@@ -137,15 +122,15 @@ void unite(std::vector<Candidate>& candidates) {
 std::vector<Combination> combine_all(const SolidCells& cells, const SeenCells& seen,
                                      std::span<const SurfacePatch> patches,
                                      std::span<const Mate> mates, const std::vector<bool>& sheet,
-                                     std::span<const Candidate> candidates) {
+                                     std::span<const BorderVoxel> candidates) {
     const double h = cells.voxel_m;
     std::vector<Combination> out;
     out.reserve(candidates.size());
     Around around(seen);
     std::vector<SeenPatch> found;
     std::size_t mate = 0;
-    for (const Candidate& c : candidates) {
-        const auto key_of = [&](const Mate& m) { return Key(m.i, m.j, m.k, m.primitive); };
+    for (const BorderVoxel& c : candidates) {
+        const auto key_of = [&](const Mate& m) { return CellKey(m.i, m.j, m.k, m.primitive); };
         while (mate < mates.size() && key_of(mates[mate]) < c.key()) ++mate;
         const bool mated = mate < mates.size() && key_of(mates[mate]) == c.key();
         Combination sum;
@@ -173,7 +158,7 @@ struct Bound {
 // Where two solids meet at an edge, each may be bounded by a patch of the other: one of the two
 // says all, and both together would leave a gap. What stands on something ends there: the level
 // patch stays.
-void settle_edges(std::span<const Candidate> candidates, std::span<const SurfacePatch> patches,
+void settle_edges(std::span<const BorderVoxel> candidates, std::span<const SurfacePatch> patches,
                   double voxel_m, std::span<Combination> sums) {
     const auto same_voxel = [&](std::size_t a, std::size_t b) {
         return std::tie(candidates[a].i, candidates[a].j, candidates[a].k) ==
@@ -204,102 +189,7 @@ void settle_edges(std::span<const Candidate> candidates, std::span<const Surface
     }
 }
 
-// By cell, whether patches say that nothing of it is solid.
-std::vector<bool> air_by_patches(const SolidCells& cells, std::span<const Candidate> candidates,
-                                 std::span<const Combination> sums) {
-    std::vector<bool> air(cells.size(), false);
-    std::size_t n = 0;
-    for (std::size_t c = 0; c < candidates.size(); ++c) {
-        if (!candidates[c].own || !sums[c].nothing) continue;
-        const std::tuple at(candidates[c].i, candidates[c].j, candidates[c].k);
-        while (std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
-        air[n] = true;
-    }
-    return air;
-}
-
-// What was completed is solid where it hangs together with what was seen of its primitive: beyond
-// the seen surface, cells that hide in a corner of it are air. Marks them, too, and returns them,
-// sorted.
-std::vector<Candidate> cut_off(const SolidCells& cells, std::vector<bool>& air) {
-    std::vector<std::size_t> parent(cells.size());
-    std::iota(parent.begin(), parent.end(), std::size_t{0});
-    const auto root = [&](std::size_t k) {
-        while (parent[k] != k) k = parent[k] = parent[parent[k]];
-        return k;
-    };
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::vector<std::size_t> next = next_cells(cells, axis, 1);
-        for (std::size_t k = 0; k < cells.size(); ++k) {
-            const std::size_t m = next[k];
-            if (m == no_cell || air[k] || air[m] || cells.primitive[k] != cells.primitive[m])
-                continue;
-            const std::size_t a = root(k), b = root(m);
-            parent[std::max(a, b)] = std::min(a, b);
-        }
-    }
-    std::vector<bool> seen(cells.size(), false);
-    std::vector<bool> any;  // by primitive: of which nothing is left that was seen stays as it is
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-        const std::int32_t p = cells.primitive[k];
-        if (p < 0 || cells.basis[k] != Basis::surface || air[k]) continue;
-        seen[root(k)] = true;
-        any.resize(std::max(any.size(), static_cast<std::size_t>(p) + 1), false);
-        any[static_cast<std::size_t>(p)] = true;
-    }
-    std::vector<Candidate> out;
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-        const std::int32_t p = cells.primitive[k];
-        if (p < 0 || static_cast<std::size_t>(p) >= any.size() || air[k] || seen[root(k)]) continue;
-        if (!any[static_cast<std::size_t>(p)]) continue;
-        out.push_back({cells.i[k], cells.j[k], cells.k[k], p, true});
-        air[k] = true;
-    }
-    return out;
-}
-
-// By candidate, whether it is no cell of the primitive's and hangs on none either: what a patch
-// reaches beyond cells that are air.
-std::vector<bool> out_of_reach(const SolidCells& cells, std::span<const Candidate> candidates,
-                               std::span<const Combination> sums, const std::vector<bool>& air) {
-    constexpr std::array<Place, 6> ways{
-        {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
-    const auto place = [&](std::size_t c) {
-        return Place{candidates[c].i, candidates[c].j, candidates[c].k};
-    };
-    std::vector<bool> out(candidates.size(), false);
-    std::vector<std::size_t> open;
-    for (std::size_t c = 0; c < candidates.size(); ++c) out[c] = !candidates[c].own;
-    for (const Place& way : ways) {
-        std::size_t n = 0;
-        for (std::size_t c = 0; c < candidates.size(); ++c) {
-            if (candidates[c].own || sums[c].nothing || !out[c]) continue;
-            const Place at = sum_of(place(c), way);
-            while (n < cells.size() && Place{cells.i[n], cells.j[n], cells.k[n]} < at) ++n;
-            if (n == cells.size()) break;
-            if (Place{cells.i[n], cells.j[n], cells.k[n]} != at || air[n] ||
-                cells.primitive[n] != candidates[c].primitive)
-                continue;
-            out[c] = false;
-            open.push_back(c);
-        }
-    }
-    for (std::size_t at = 0; at < open.size(); ++at) {
-        for (const Place& way : ways) {
-            const Place p = sum_of(place(open[at]), way);
-            const Key key{p[0], p[1], p[2], candidates[open[at]].primitive};
-            const auto beside = std::ranges::lower_bound(candidates, key, {}, &Candidate::key);
-            if (beside == candidates.end() || beside->key() != key) continue;
-            const auto c = static_cast<std::size_t>(beside - candidates.begin());
-            if (!out[c] || sums[c].nothing) continue;
-            out[c] = false;
-            open.push_back(c);
-        }
-    }
-    return out;
-}
-
-void add_cell(const Candidate& c, const Combination& sum, BoundaryCells& out) {
+void add_cell(const BorderVoxel& c, const Combination& sum, BoundaryCells& out) {
     out.i.push_back(c.i);
     out.j.push_back(c.j);
     out.k.push_back(c.k);
@@ -335,7 +225,7 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
         patches[static_cast<std::size_t>(seen.patch[n])].primitive = seen.primitive[n];
     for (SurfacePatch& p : patches)
         p.offset_m = std::hypot(p.offset_m, patch_error * cells.voxel_m);
-    std::vector<Candidate> candidates;
+    std::vector<BorderVoxel> candidates;
     const std::vector<std::uint8_t> faced = faced_around(cells, seen, patches, candidates);
     add_shared(cells, seen, candidates);
     const std::vector<Mate> mates = find_mates(cells, seen, faced, rests, patches);
@@ -344,7 +234,7 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
     std::vector<Combination> sums = combine_all(cells, seen, patches, mates, sheet, candidates);
     settle_edges(candidates, patches, cells.voxel_m, sums);
     std::vector<bool> air = air_by_patches(cells, candidates, sums);
-    const std::vector<Candidate> beyond = cut_off(cells, air);
+    const std::vector<BorderVoxel> beyond = cut_off(cells, air);
     const std::vector<bool> unreached = out_of_reach(cells, candidates, sums, air);
 
     BoundaryCells out;
@@ -352,7 +242,7 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
     nothing.nothing = nothing.any_group = true;
     auto cut = beyond.begin();
     for (std::size_t n = 0; n < candidates.size(); ++n) {
-        const Candidate& c = candidates[n];
+        const BorderVoxel& c = candidates[n];
         for (; cut != beyond.end() && cut->key() < c.key(); ++cut) add_cell(*cut, nothing, out);
         if (cut != beyond.end() && cut->key() == c.key()) {
             add_cell(*cut++, nothing, out);
