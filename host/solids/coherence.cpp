@@ -71,9 +71,7 @@ std::vector<bool> out_of_reach(const SolidCells& cells, std::span<const BorderVo
                                std::span<const Combination> sums, const std::vector<bool>& air) {
     constexpr std::array<Place, 6> ways{
         {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
-    const auto place = [&](std::size_t c) {
-        return Place{voxels[c].i, voxels[c].j, voxels[c].k};
-    };
+    const auto place = [&](std::size_t c) { return Place{voxels[c].i, voxels[c].j, voxels[c].k}; };
     std::vector<bool> out(voxels.size(), false);
     std::vector<std::size_t> open;
     for (std::size_t c = 0; c < voxels.size(); ++c) out[c] = !voxels[c].own;

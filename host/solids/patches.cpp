@@ -3,16 +3,13 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <optional>
 #include <tuple>
-#include <unordered_map>
-#include <utility>
 
 #include "geometry/algebraic_model.h"
+#include "solids/grid_points.h"
 
 namespace topple::solids {
 namespace {
@@ -20,19 +17,9 @@ namespace {
 using Points = std::vector<Eigen::Vector3d>;
 
 constexpr std::size_t most_points = 4000;  // of a patch: more say no more of where it lies
-constexpr double outlier = 3;              // standard deviations
 constexpr int rounds = 3;
 constexpr double common_share = 0.25;   // of the noise that all of a patch's points have in common
 constexpr double least_noise_m = 2e-5;  // of coordinates in single precision
-
-Eigen::Vector3d rotated(const std::array<Vec3, 3>& axes, double x, double y, double z) {
-    Eigen::Vector3d out;
-    for (int a = 0; a < 3; ++a) {
-        const Vec3& row = axes[static_cast<std::size_t>(a)];
-        out[a] = row[0] * x + row[1] * y + row[2] * z;
-    }
-    return out;
-}
 
 geometry::AlgebraicModel rotated(const geometry::AlgebraicModel& model,
                                  const std::array<Vec3, 3>& axes) {
@@ -196,125 +183,17 @@ SurfacePatch fit(const geometry::Region& region, const std::array<Vec3, 3>& axes
     SurfacePatch out;
     out.origin = model.origin;
     out.c = model.coefficients;
-    out.noise_m = noise;
+    out.noise_m = std::max(noise, least_noise_m);
     out.offset_m =
         std::hypot(noise / std::sqrt(static_cast<double>(std::max<std::size_t>(inliers, 1))),
                    common_share * noise);
     return out;
 }
 
-// The patches seen in each cell of a coarse grid.
-class PatchMap {
-  public:
-    explicit PatchMap(double cell_m) : cell_m_(cell_m) {}
-    std::array<std::int32_t, 3> cell_of(const Eigen::Vector3d& p) const {
-        std::array<std::int32_t, 3> out{};
-        for (int a = 0; a < 3; ++a)
-            out[static_cast<std::size_t>(a)] =
-                static_cast<std::int32_t>(std::clamp(std::floor(p[a] / cell_m_), -2e9, 2e9));
-        return out;
-    }
-    void add(const Eigen::Vector3d& p, std::int32_t patch) {
-        std::vector<std::int32_t>& here = cells_[key(cell_of(p))];
-        if (std::ranges::find(here, patch) == here.end()) here.push_back(patch);
-    }
-    // In the cell of a point, and those beside it.
-    void around(const Eigen::Vector3d& p, std::vector<std::int32_t>& out) const {
-        out.clear();
-        const auto at = cell_of(p);
-        for (std::int32_t n = 0; n < 27; ++n) {
-            const auto found =
-                cells_.find(key({at[0] + n / 9 - 1, at[1] + n / 3 % 3 - 1, at[2] + n % 3 - 1}));
-            if (found == cells_.end()) continue;
-            for (const std::int32_t patch : found->second)
-                if (std::ranges::find(out, patch) == out.end()) out.push_back(patch);
-        }
-    }
-
-  private:
-    // 21 bits of each; cells that share a key are far from one another.
-    static std::uint64_t key(const std::array<std::int32_t, 3>& at) {
-        std::uint64_t out = 0;
-        for (const std::int32_t a : at)
-            out = out << 21 | (static_cast<std::uint32_t>(a) & 0x1fffff);
-        return out;
-    }
-    double cell_m_;
-    std::unordered_map<std::uint64_t, std::vector<std::int32_t>> cells_;
-};
-
-double distance_to(const SurfacePatch& patch, const Eigen::Vector3d& p) {
-    return patch.distance({p.x(), p.y(), p.z()});
-}
-
-Eigen::Vector3d normal_of(const SurfacePatch& patch, const Eigen::Vector3d& p) {
-    const Vec3 g = patch.gradient({p.x(), p.y(), p.z()});
-    return Eigen::Vector3d(g[0], g[1], g[2]).normalized();
-}
-
-// The patch of more points that lies nearest to a point, within its noise; -1 where none does.
-struct Explainer {
-    std::span<const SurfacePatch> patches;
-    const std::vector<std::size_t>& points;  // of each patch
-    const std::vector<bool>& dropped;
-
-    std::int32_t operator()(const Eigen::Vector3d& p, std::int32_t own,
-                            std::span<const std::int32_t> near) const {
-        std::int32_t best = -1;
-        double least = 1;
-        for (const std::int32_t other : near) {
-            const auto o = static_cast<std::size_t>(other), mine = static_cast<std::size_t>(own);
-            if (other == own || dropped[o] ||
-                std::pair(points[o], other) < std::pair(points[mine], own))
-                continue;
-            const double off = std::abs(distance_to(patches[o], p)) /
-                               (outlier * std::max(patches[o].noise_m, least_noise_m));
-            if (off > least || (off == least && best >= 0 && best < other)) continue;
-            least = off;
-            best = other;
-        }
-        return best;
-    }
-};
-
-// Whether a patch is the rounded edge of two much larger ones, A and B: where depth readings of
-// both sides mix, its points lie between them. All of them are near both, and it faces between
-// them.
-bool is_edge(const Eigen::Vector3d& normal, std::span<const Eigen::Vector3d> beside) {
-    const auto angle = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-        return std::acos(std::clamp(a.dot(b), -1.0, 1.0));
-    };
-    constexpr double slack = 0.26, least = 0.5, most = 2.6;  // radians
-    for (std::size_t a = 0; a < beside.size(); ++a) {
-        for (std::size_t b = a + 1; b < beside.size(); ++b) {
-            const double whole = angle(beside[a], beside[b]);
-            if (whole > least && whole < most &&
-                angle(beside[a], normal) + angle(normal, beside[b]) < whole + slack)
-                return true;
-        }
-    }
-    return false;
-}
-
-// Every so many of the points, the same ones in whatever order they come.
-bool is_chosen(const CloudView& cloud, std::size_t n, std::size_t step) {
-    std::uint64_t mixed = 0;
-    for (const float v : {cloud.x[n], cloud.y[n], cloud.z[n]})
-        mixed = (mixed ^ std::bit_cast<std::uint32_t>(v)) * 0x9e3779b97f4a7c15U;
-    return (mixed >> 32) % step == 0;
-}
-
 void sort(Points& points) {
     std::ranges::sort(points, {},
                       [](const Eigen::Vector3d& p) { return std::tuple(p.x(), p.y(), p.z()); });
 }
-
-struct SeenPoint {
-    std::int32_t i, j, k, primitive, patch;
-    float x, y, z;
-    auto key() const { return std::tie(i, j, k, primitive, patch); }
-    auto order() const { return std::tie(i, j, k, primitive, patch, x, y, z); }
-};
 
 }  // namespace
 
@@ -345,130 +224,6 @@ std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
         sort(points);
         out[r] = fit(regions[r], axes, points);
     });
-    return out;
-}
-
-void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patches,
-                    const std::array<Vec3, 3>& axes, double cell_m,
-                    std::vector<std::int32_t>& primitive_of_point,
-                    std::vector<std::int32_t>& patch_of_point) {
-    constexpr double explained = 0.8;       // share of its points that makes a patch none
-    constexpr std::size_t looked_at = 200;  // of them
-    constexpr std::size_t much_larger = 4;
-    std::vector<std::vector<std::uint32_t>> members(patches.size());
-    PatchMap map(cell_m);
-    const auto point = [&](std::size_t n) {
-        return rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]);
-    };
-    for (std::size_t n = 0; n < patch_of_point.size(); ++n) {
-        if (patch_of_point[n] < 0) continue;
-        members[static_cast<std::size_t>(patch_of_point[n])].push_back(
-            static_cast<std::uint32_t>(n));
-        map.add(point(n), patch_of_point[n]);
-    }
-    std::vector<std::size_t> size, order(patches.size());
-    for (const auto& m : members) size.push_back(m.size());
-    std::vector<std::int32_t> primitive(patches.size(), -1);
-    for (std::size_t p = 0; p < patches.size(); ++p)
-        for (const std::uint32_t n : members[p])
-            primitive[p] = std::max(primitive[p], primitive_of_point[n]);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, {}, [&](std::size_t p) { return size[p]; });
-    std::vector<bool> dropped(patches.size(), false);
-    const Explainer explain{patches, size, dropped};
-    std::vector<std::int32_t> near;
-    for (const std::size_t p : order) {
-        const auto own = static_cast<std::int32_t>(p);
-        std::size_t looked = 0, met = 0;
-        std::map<std::int32_t, std::size_t> beside;  // much larger patches: points near them
-        Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-        for (const std::uint32_t n : members[p]) {
-            if (!is_chosen(cloud, n, size[p] / looked_at + 1)) continue;
-            ++looked;
-            const Eigen::Vector3d at = point(n);
-            middle += at;
-            map.around(at, near);
-            met += explain(at, own, near) >= 0;
-            for (const std::int32_t other : near) {
-                const auto o = static_cast<std::size_t>(other);
-                if (!dropped[o] && size[o] > much_larger * size[p])
-                    beside[other] += std::abs(distance_to(patches[o], at)) < cell_m / 2;
-            }
-        }
-        if (looked == 0) continue;
-        const double enough = explained * static_cast<double>(looked);
-        middle /= static_cast<double>(looked);
-        std::vector<Eigen::Vector3d> sides;
-        for (const auto& [other, count] : beside) {
-            if (static_cast<double>(count) >= enough)
-                sides.push_back(normal_of(patches[static_cast<std::size_t>(other)], middle));
-        }
-        if (static_cast<double>(met) < enough && !is_edge(normal_of(patches[p], middle), sides))
-            continue;
-        for (const std::uint32_t n : members[p]) {
-            const Eigen::Vector3d at = point(n);
-            map.around(at, near);
-            const std::int32_t other = explain(at, own, near);
-            patch_of_point[n] = other;
-            if (other >= 0) primitive_of_point[n] = primitive[static_cast<std::size_t>(other)];
-        }
-        dropped[p] = true;
-    }
-}
-
-SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primitive_of_point,
-                     std::span<const std::int32_t> patch_of_point, const std::array<Vec3, 3>& axes,
-                     double voxel_m) {
-    std::vector<SeenPoint> places;
-    for (std::size_t n = 0; n < cloud.size(); ++n) {
-        if (primitive_of_point[n] < 0 || patch_of_point[n] < 0) continue;
-        const Eigen::Vector3d p = rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]);
-        const auto cell = [&](double v) {
-            return static_cast<std::int32_t>(std::clamp(std::floor(v / voxel_m), -2e9, 2e9));
-        };
-        places.push_back({cell(p.x()), cell(p.y()), cell(p.z()), primitive_of_point[n],
-                          patch_of_point[n], static_cast<float>(p.x()), static_cast<float>(p.y()),
-                          static_cast<float>(p.z())});
-    }
-    std::ranges::sort(places, {}, &SeenPoint::order);
-    SeenCells out;
-    for (std::size_t n = 0; n < places.size();) {
-        std::size_t end = n;
-        double sum[3] = {0, 0, 0};
-        for (; end < places.size() && places[end].key() == places[n].key(); ++end) {
-            sum[0] += places[end].x;
-            sum[1] += places[end].y;
-            sum[2] += places[end].z;
-        }
-        const auto count = static_cast<double>(end - n);
-        out.i.push_back(places[n].i);
-        out.j.push_back(places[n].j);
-        out.k.push_back(places[n].k);
-        out.primitive.push_back(places[n].primitive);
-        out.patch.push_back(places[n].patch);
-        out.count.push_back(static_cast<float>(count));
-        out.x.push_back(static_cast<float>(sum[0] / count));
-        out.y.push_back(static_cast<float>(sum[1] / count));
-        out.z.push_back(static_cast<float>(sum[2] / count));
-        n = end;
-    }
-    return out;
-}
-
-std::vector<bool> one_sided(const SeenCells& seen, std::span<const SurfacePatch> patches,
-                            std::size_t primitives) {
-    constexpr double least = 0.95;  // length of the mean normal
-    std::vector<Eigen::Vector3d> sum(primitives, Eigen::Vector3d::Zero());
-    std::vector<double> count(primitives, 0.0);
-    for (std::size_t n = 0; n < seen.size(); ++n) {
-        const auto p = static_cast<std::size_t>(seen.primitive[n]);
-        const Vec3 g = patches[static_cast<std::size_t>(seen.patch[n])].gradient(
-            {seen.x[n], seen.y[n], seen.z[n]});
-        sum[p] += seen.count[n] * Eigen::Vector3d(g[0], g[1], g[2]).normalized();
-        count[p] += seen.count[n];
-    }
-    std::vector<bool> out;
-    for (std::size_t p = 0; p < primitives; ++p) out.push_back(sum[p].norm() >= least * count[p]);
     return out;
 }
 

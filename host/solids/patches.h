@@ -14,6 +14,9 @@
 // From the seen surface to solids that are finer than their voxels. Grid frame: metres, z up.
 namespace topple::solids {
 
+// In standard deviations of a patch's points: what lies farther from it is not of it.
+inline constexpr double outlier = 3;
+
 // The regions' models, fitted anew to the points themselves: surfels at edges lie inside of both
 // faces. Points that a region only borders on are told from its own by their distance, in robust
 // standard deviations. region_of_point: -1 for none. axes: rows of the rotation from the cloud's

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "topple/cloud_view.h"
+#include "topple/input.h"
+
+namespace topple::solids {
+
+// A cloud's points in the grid frame, whose axes are these in the cloud's.
+inline Eigen::Vector3d rotated(const std::array<Vec3, 3>& axes, double x, double y, double z) {
+    Eigen::Vector3d out;
+    for (int a = 0; a < 3; ++a) {
+        const Vec3& row = axes[static_cast<std::size_t>(a)];
+        out[a] = row[0] * x + row[1] * y + row[2] * z;
+    }
+    return out;
+}
+
+// Every so many of the points, the same ones in whatever order they come.
+inline bool is_chosen(const CloudView& cloud, std::size_t n, std::size_t step) {
+    std::uint64_t mixed = 0;
+    for (const float v : {cloud.x[n], cloud.y[n], cloud.z[n]})
+        mixed = (mixed ^ std::bit_cast<std::uint32_t>(v)) * 0x9e3779b97f4a7c15U;
+    return (mixed >> 32) % step == 0;
+}
+
+}  // namespace topple::solids
