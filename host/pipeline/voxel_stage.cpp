@@ -10,6 +10,7 @@
 
 #include "device/native/thread_pool.h"
 #include "geometry/ledges.h"
+#include "geometry/surface_gaps.h"
 #include "pipeline/view_coverage.h"
 #include "solids/boundary.h"
 #include "solids/patches.h"
@@ -17,6 +18,9 @@
 
 namespace topple {
 namespace {
+
+// Voxels of so many times the points' cell have no holes where a surface was seen.
+constexpr double closing_cells = 1.75;
 
 // Frames are carved in batches of this many bytes of depth, so that any number of them fits.
 constexpr std::uint64_t batch_bytes = 16u << 20;
@@ -59,6 +63,21 @@ std::vector<vdb::StandsOn> ledges(const GeometryStage& geometry) {
     return out;
 }
 
+PointCloud with_gaps(const CloudView& cloud, const geometry::GapPoints& gaps) {
+    PointCloud out;
+    const auto joined = [](const auto& first, const std::vector<float>& then) {
+        std::vector<float> all;
+        all.reserve(first.size() + then.size());
+        for (const float v : first) all.push_back(v);
+        all.insert(all.end(), then.begin(), then.end());
+        return all;
+    };
+    out.x = joined(cloud.x, gaps.x);
+    out.y = joined(cloud.y, gaps.y);
+    out.z = joined(cloud.z, gaps.z);
+    return out;
+}
+
 // The faces of the primitives: what bounds the solids within their voxels.
 struct Faces {
     std::vector<SurfacePatch> patches;
@@ -66,9 +85,29 @@ struct Faces {
     std::vector<bool> sheet;  // by primitive: of the shell, and seen from one side only
 };
 
+// Where patches were seen, and what lies between: gaps of sparse scans.
+solids::SeenCells seen_and_between(const CloudView& cloud, const geometry::GapPoints& gaps,
+                                   std::vector<std::int32_t> solid, std::vector<std::int32_t> face,
+                                   const std::vector<std::int32_t>& number,
+                                   const std::array<Vec3, 3>& axes, double voxel_m) {
+    if (gaps.size() == 0) return solids::seen_cells(cloud, solid, face, axes, voxel_m);
+    std::int32_t faces = 0;
+    for (const std::int32_t f : face) faces = std::max(faces, f + 1);
+    std::vector<bool> left(static_cast<std::size_t>(faces), false);
+    for (const std::int32_t f : face)
+        if (f >= 0) left[static_cast<std::size_t>(f)] = true;
+    const PointCloud all = with_gaps(cloud, gaps);
+    for (std::size_t n = 0; n < gaps.size(); ++n) {
+        const std::int32_t f = gaps.face[n];
+        solid.push_back(number[static_cast<std::size_t>(gaps.primitive[n])]);
+        face.push_back(f >= 0 && f < faces && left[static_cast<std::size_t>(f)] ? f : -1);
+    }
+    return solids::seen_cells(all, solid, face, axes, voxel_m);
+}
+
 Faces find_faces(device::Device& device, const Ingested& input, const GeometryStage& geometry,
-                 const std::vector<std::int32_t>& number, double voxel_m,
-                 std::span<const Role> roles) {
+                 const geometry::GapPoints& gaps, const std::vector<std::int32_t>& number,
+                 double voxel_m, std::span<const Role> roles) {
     const geometry::Regions& faces = geometry.primitives.faces;
     std::vector<std::int32_t> face_of_point;
     face_of_point.reserve(input.cloud.size());
@@ -79,8 +118,8 @@ Faces find_faces(device::Device& device, const Ingested& input, const GeometrySt
     std::vector<std::int32_t> solid_of_point = numbered(geometry.primitive_of_point, number);
     solids::drop_explained(input.cloud, out.patches, geometry.frame.axes,
                            2 * geometry.surfels.cell_m, solid_of_point, face_of_point);
-    out.seen = solids::seen_cells(input.cloud, solid_of_point, face_of_point, geometry.frame.axes,
-                                  voxel_m);
+    out.seen = seen_and_between(input.cloud, gaps, std::move(solid_of_point),
+                                std::move(face_of_point), number, geometry.frame.axes, voxel_m);
     out.sheet = solids::one_sided(out.seen, out.patches, roles.size());
     for (std::size_t p = 0; p < roles.size(); ++p)
         out.sheet[p] = out.sheet[p] && in_shell(roles[p]);
@@ -117,10 +156,11 @@ std::vector<solids::KnownRest> known_rests(const GeometryStage& geometry,
 // Strays are no body, and in no way.
 std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Ingested& input,
                                               const GeometryStage& geometry,
+                                              const geometry::GapPoints& gaps,
                                               const std::vector<std::int32_t>& number,
                                               const vdb::VoxelScene& volume, SolidCells cells,
                                               std::vector<Role> roles) {
-    Faces faces = find_faces(device, input, geometry, number, cells.voxel_m, roles);
+    Faces faces = find_faces(device, input, geometry, gaps, number, cells.voxel_m, roles);
     cells.unseen_below = unseen_below(vdb::VolumeView(volume, cells, roles), faces.sheet);
     SolidCells near, strays;
     near.voxel_m = strays.voxel_m = cells.voxel_m;
@@ -202,7 +242,7 @@ bool carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScen
 double voxel_for_cell(double cell_m) {
     constexpr std::array<double, 8> handy{0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05};
     for (const double h : handy) {
-        if (h >= 1.75 * cell_m) return h;
+        if (h >= closing_cells * cell_m) return h;
     }
     return 2 * cell_m;
 }
@@ -227,9 +267,20 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, const Geom
                        double voxel_m, StageClock& stage) {
     VoxelStage out;
     const vdb::VoxelFrame frame{voxel_m, geometry.frame.axes};
+    geometry::GapPoints gaps;
     stage("voxels", [&] {
-        out.scene =
-            std::make_shared<vdb::VoxelScene>(frame, input.cloud, geometry.primitive_of_point);
+        // Larger voxels close gaps by themselves.
+        if (voxel_m < closing_cells * input.cell_m)
+            gaps = geometry::close_gaps(geometry.surfels, geometry.primitives.faces.label,
+                                        geometry.primitives.label, voxel_m / 2);
+        if (gaps.size() == 0) {
+            out.scene =
+                std::make_shared<vdb::VoxelScene>(frame, input.cloud, geometry.primitive_of_point);
+            return;
+        }
+        std::vector<std::int32_t> label = geometry.primitive_of_point;
+        label.insert(label.end(), gaps.primitive.begin(), gaps.primitive.end());
+        out.scene = std::make_shared<vdb::VoxelScene>(frame, with_gaps(input.cloud, gaps), label);
     });
     bool around = false;
     stage("carving", [&] {
@@ -251,8 +302,8 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, const Geom
         std::vector<Role> roles;
         for (std::size_t p = 0; p < geometry.role.size(); ++p)
             if (out.number[p] >= 0) roles.push_back(geometry.role[p]);
-        out.solids = solid_scene(device, input, geometry, out.number, *out.scene, std::move(cells),
-                                 std::move(roles));
+        out.solids = solid_scene(device, input, geometry, gaps, out.number, *out.scene,
+                                 std::move(cells), std::move(roles));
         store_fractions(*out.solids, *out.scene);
     });
     return out;

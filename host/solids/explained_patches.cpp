@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "solids/patches.h"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "solids/grid_points.h"
+#include "solids/patches.h"
 
 namespace topple::solids {
 namespace {
@@ -78,8 +77,8 @@ struct Explainer {
             if (other == own || dropped[o] ||
                 std::pair(points[o], other) < std::pair(points[mine], own))
                 continue;
-            const double off = std::abs(distance_to(patches[o], p)) /
-                               (outlier * patches[o].noise_m);
+            const double off =
+                std::abs(distance_to(patches[o], p)) / (outlier * patches[o].noise_m);
             if (off > least || (off == least && best >= 0 && best < other)) continue;
             least = off;
             best = other;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "solids/patches.h"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
 #include "solids/grid_points.h"
+#include "solids/patches.h"
 
 namespace topple::solids {
 namespace {
