@@ -46,7 +46,8 @@ class Taken {
 
 class Closing {
   public:
-    Closing(const Surfels& surfels, double step_m) : s_(surfels), step_(static_cast<float>(step_m)) {}
+    Closing(const Surfels& surfels, double step_m)
+        : s_(surfels), step_(static_cast<float>(step_m)) {}
 
     void cover(const std::array<std::size_t, 3>& corner, std::int32_t primitive,
                std::int32_t face) {
