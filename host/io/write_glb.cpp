@@ -37,18 +37,23 @@ aiMaterial* material_of(const GlbNode& node) {
     return material;
 }
 
+aiVector3D* vectors_of(const std::vector<Vec3>& from) {
+    auto* out = new aiVector3D[from.size()];
+    for (std::size_t n = 0; n < from.size(); ++n) {
+        out[n] = {static_cast<float>(from[n][0]), static_cast<float>(from[n][1]),
+                  static_cast<float>(from[n][2])};
+    }
+    return out;
+}
+
 aiMesh* mesh_of(const GlbNode& node, unsigned material) {
     auto* mesh = new aiMesh;
     mesh->mName = node.name;
     mesh->mMaterialIndex = material;
     mesh->mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
     mesh->mNumVertices = static_cast<unsigned>(node.mesh.vertex.size());
-    mesh->mVertices = new aiVector3D[mesh->mNumVertices];
-    for (unsigned n = 0; n < mesh->mNumVertices; ++n) {
-        const Vec3& v = node.mesh.vertex[n];
-        mesh->mVertices[n] = {static_cast<float>(v[0]), static_cast<float>(v[1]),
-                              static_cast<float>(v[2])};
-    }
+    mesh->mVertices = vectors_of(node.mesh.vertex);
+    if (!node.mesh.normal.empty()) mesh->mNormals = vectors_of(node.mesh.normal);
     if (!node.vertex_colour.empty()) {
         mesh->mColors[0] = new aiColor4D[mesh->mNumVertices];
         for (unsigned n = 0; n < mesh->mNumVertices; ++n)

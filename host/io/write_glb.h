@@ -7,14 +7,20 @@
 #include <string>
 #include <vector>
 
-#include "io/voxel_mesh.h"
+#include "topple/input.h"
 
 namespace topple::io {
+
+struct GlbMesh {
+    std::vector<Vec3> vertex;
+    std::vector<Vec3> normal;  // of each vertex; or empty, for flat triangles
+    std::vector<std::array<std::uint32_t, 3>> triangle;  // counter-clockwise seen from outside
+};
 
 struct GlbNode {
     std::string name;
     std::array<std::uint8_t, 3> colour{};  // sRGB
-    TriangleMesh mesh;                     // the input's frame, metres
+    GlbMesh mesh;                          // the input's frame, metres
     // sRGB, of each vertex, instead of `colour`; or empty.
     std::vector<std::array<std::uint8_t, 3>> vertex_colour{};
 };

@@ -107,7 +107,7 @@ ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOp
         assemble_points(input, geometry, voxels, parts, objects, safety, scene);
         if (options.coordinates) take_coordinates(input, scene.points);
     });
-    return {std::move(scene), std::move(voxels.scene), nullptr};
+    return {std::move(scene), std::move(voxels.scene), nullptr, std::move(voxels.solids)};
 }
 
 template <class Ingest>

@@ -3,11 +3,13 @@
 #include <future>
 #include <memory>
 
+#include "core/solid_scene.h"
 #include "io/landscapes_json.h"
 #include "io/octomap.h"
 #include "io/output_folder.h"
 #include "io/scene_json.h"
 #include "io/write_ply.h"
+#include "pipeline/object_surfaces.h"
 #include "pipeline/objects_glb.h"
 #include "pipeline/tiled_result.h"
 #include "report/pictures.h"
@@ -34,6 +36,15 @@ void write_points(const std::filesystem::path& file, const ParseResult& result, 
     }
 }
 
+// Of a cloud that was parsed in blocks nothing is known within voxels.
+std::vector<ObjectSurface> surfaces_of(const ParseResult& result, const vdb::VoxelScene& voxels,
+                                       unsigned threads) {
+    if (!result.solids)
+        return object_surfaces(result.scene, voxels.solid_cells(), {}, voxels.frame(), threads);
+    return object_surfaces(result.scene, result.solids->with_strays(), result.solids->boundary(),
+                           voxels.frame(), threads);
+}
+
 void write_all_else(const std::filesystem::path& folder, const ParseResult& result,
                     const OutputOptions& options, const Poll& poll) {
     const Scene& scene = result.scene;
@@ -49,7 +60,9 @@ void write_all_else(const std::filesystem::path& folder, const ParseResult& resu
     poll();
     if (options.pictures) report::write_pictures(folder, scene);
     poll();
-    if (options.glb) write_objects_glb(folder / "objects.glb", scene, *voxels);
+    if (options.glb)
+        write_objects_glb(folder / "objects.glb", scene,
+                          surfaces_of(result, *voxels, options.threads), voxels->frame());
     poll();
     if (options.octomap) write_map(folder / "map.bt", *voxels);
     io::write_landscapes_json(folder / "landscapes.json", scene);

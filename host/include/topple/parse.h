@@ -23,6 +23,7 @@ class VoxelScene;
 namespace topple {
 
 class Crew;
+class SolidScene;
 class TiledResult;
 
 struct ParseOptions {
@@ -84,6 +85,8 @@ struct ParseResult {
     // Of a cloud that was parsed in blocks: its points' labels and the voxel grids, on disk.
     // scene.points is a sample then, and `voxels` is null.
     std::shared_ptr<const TiledResult> tiled;
+    // The solids, finer than the voxels; null for a cloud that was parsed in blocks.
+    std::shared_ptr<const SolidScene> solids;
 };
 
 // Parses a scan: a point cloud (.ply, .pcd, .xyz, .las), a mesh (.obj, .stl, .glb, .gltf, .ply with

@@ -48,7 +48,10 @@ TEST_F(MeshColour, of_vertices_are_mixed_between_them) {
 // What the writer of objects.glb makes of sRGB comes back.
 TEST_F(MeshColour, of_materials_and_vertices_of_gltf) {
     std::vector<GlbNode> nodes{{"red", {200, 100, 40}, {}}, {"own", {9, 9, 9}, {}}};
-    for (auto& node : nodes) node.mesh = voxel_boundary(std::vector{std::array{0, 0, 0}});
+    for (auto& node : nodes) {
+        node.mesh.vertex = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        node.mesh.triangle = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    }
     for (Vec3& v : nodes[1].mesh.vertex) v[0] += 5;
     nodes[1].vertex_colour.assign(nodes[1].mesh.vertex.size(), {30, 130, 230});
     write_glb(path("a.glb"), nodes, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}});

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+#include "solids/object_voxels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+
+#include "solids/vectors.h"
+
+namespace topple::solids {
+namespace {
+
+// Less of a voxel than this is what noise leaves beyond a face.
+constexpr std::uint32_t sliver = BoundaryCells::whole / 50;
+
+struct Share {
+    std::int32_t object, primitive;
+    std::uint32_t share, most;  // of all, and of the primitive
+    bool cell, whole;
+};
+
+void add(std::int32_t object, std::int32_t primitive, std::uint32_t share, bool cell,
+         std::vector<Share>& to) {
+    auto found = std::ranges::find(to, object, &Share::object);
+    if (found == to.end()) found = to.insert(to.end(), Share{object, primitive, 0, 0, false, false});
+    if (share > found->most) {
+        found->most = share;
+        found->primitive = primitive;
+    }
+    found->share += share;
+    found->cell = found->cell || cell;
+}
+
+using Place = std::array<std::int32_t, 3>;
+
+// Finds what lies behind cells of which a patch leaves hardly anything.
+class LayersBehind {
+  public:
+    LayersBehind(const SolidCells& cells, const BoundaryCells& boundary)
+        : cells_(cells), b_(boundary) {
+        for (std::uint32_t n = 0; n < boundary.patches.size(); ++n) {
+            const std::int32_t p = boundary.patches[n].primitive;
+            if (p < 0) continue;
+            if (static_cast<std::size_t>(p) >= patches_of_.size())
+                patches_of_.resize(static_cast<std::size_t>(p) + 1);
+            patches_of_[static_cast<std::size_t>(p)].push_back(n);
+        }
+    }
+
+    // Of one object's voxels, sorted: those that are to be filled, too. Where a layer of single
+    // voxels goes over into the one behind, both are there, so that they hang together.
+    std::vector<ObjectVoxel> find(std::span<const ObjectVoxel> voxels) const {
+        std::vector<ObjectVoxel> out;
+        std::vector<Step> steps;
+        for (const ObjectVoxel& v : voxels) {
+            if (!v.cell || (v.filled && !is_thin(v))) continue;
+            if (const std::optional<Step> step = behind(v)) steps.push_back(*step);
+        }
+        const auto fill = [&](const ObjectVoxel& like, const Place& at) {
+            if (!find_at(voxels, at) && !is_cell(at))
+                out.push_back({like.object, like.primitive, at, 0, 0, false, true, true});
+        };
+        for (const Step& s : steps) fill(*s.from, moved(s.from->at, s.axis, s.sign));
+        for (const Step& s : steps) {
+            if (s.from->filled) continue;
+            for (std::size_t to = 1; to <= 2; ++to) {
+                for (const std::int32_t side : {-1, 1}) {
+                    const Place beside = moved(s.from->at, (s.axis + to) % 3, side);
+                    const ObjectVoxel* found = find_at(voxels, beside);
+                    if (found && found->filled) fill(*found, moved(beside, s.axis, s.sign));
+                }
+            }
+        }
+        std::ranges::stable_sort(out, {}, &ObjectVoxel::at);
+        out.erase(std::ranges::unique(out, {}, &ObjectVoxel::at).begin(), out.end());
+        return out;
+    }
+
+  private:
+    // From a voxel to the one behind it.
+    struct Step {
+        const ObjectVoxel* from;
+        std::size_t axis;
+        std::int32_t sign;
+    };
+    static Place moved(Place at, std::size_t axis, std::int32_t by) {
+        at[axis] += by;
+        return at;
+    }
+    static const ObjectVoxel* find_at(std::span<const ObjectVoxel> voxels, const Place& at) {
+        const auto found = std::ranges::lower_bound(voxels, at, {}, &ObjectVoxel::at);
+        return found != voxels.end() && found->at == at ? &*found : nullptr;
+    }
+
+    // Whether one patch bounds a voxel, or may, and nobody knows where its other side is.
+    bool is_thin(const ObjectVoxel& v) const {
+        if (v.whole) return true;
+        return v.last == v.first + 1 && b_.slots_used(v.first) == 1 &&
+               b_.share[v.first] < BoundaryCells::whole / 2;
+    }
+    // To the other side of the primitive's patch beside it, unless that is an edge.
+    std::optional<Step> behind(const ObjectVoxel& v) const {
+        std::optional<Step> out;
+        if (v.primitive < 0 || static_cast<std::size_t>(v.primitive) >= patches_of_.size())
+            return out;
+        const auto& patches = patches_of_[static_cast<std::size_t>(v.primitive)];
+        const std::optional<Beside> patch = patch_beside(patches, v.at);
+        if (!patch) return out;
+        const Vec3& g = patch->normal;
+        std::size_t axis = 0;
+        for (std::size_t a = 1; a < 3; ++a)
+            if (std::abs(g[a]) > std::abs(g[axis])) axis = a;
+        const std::int32_t sign = g[axis] > 0 ? -1 : 1;
+        if (!other_beside(patches, v.at, g) &&
+            !other_beside(patches, moved(v.at, axis, sign), g))
+            out = Step{&v, axis, sign};
+        return out;
+    }
+    // The normal of a patch outside of which a voxel's middle is, if it passes the voxel or nearly
+    // so, and how far away it is.
+    struct Beside {
+        double away;
+        Vec3 normal;
+    };
+    std::optional<Beside> beside(const SurfacePatch& patch, const Place& at) const {
+        constexpr double slack = 0.1;  // voxels
+        const double h = cells_.voxel_m;
+        const Vec3 middle{(at[0] + 0.5) * h, (at[1] + 0.5) * h, (at[2] + 0.5) * h};
+        const double d = patch.distance(middle);
+        if (d < 0 || d > h) return std::nullopt;
+        const Vec3 g = unit(patch.gradient(middle));
+        const double reach = (std::abs(g[0]) + std::abs(g[1]) + std::abs(g[2])) / 2 + slack;
+        if (d > reach * h) return std::nullopt;
+        return Beside{d, g};
+    }
+    std::optional<Beside> patch_beside(std::span<const std::uint32_t> patches,
+                                       const Place& at) const {
+        std::optional<Beside> out;
+        for (const std::uint32_t n : patches) {
+            const std::optional<Beside> b = beside(b_.patches[n], at);
+            if (b && (!out || b->away < out->away)) out = b;
+        }
+        return out;
+    }
+    // Whether one is there that faces elsewhere.
+    bool other_beside(std::span<const std::uint32_t> patches, const Place& at,
+                      const Vec3& normal) const {
+        constexpr double same = 0.85;  // cosine
+        return std::ranges::any_of(patches, [&](std::uint32_t n) {
+            const std::optional<Beside> b = beside(b_.patches[n], at);
+            return b && dot(b->normal, normal) < same;
+        });
+    }
+    bool is_cell(const Place& at) const {
+        const auto place = [&](std::size_t n) {
+            return Place{cells_.i[n], cells_.j[n], cells_.k[n]};
+        };
+        std::size_t low = 0, high = cells_.size();
+        while (low < high) {
+            const std::size_t middle = (low + high) / 2;
+            (place(middle) < at ? low : high) = place(middle) < at ? middle + 1 : middle;
+        }
+        return low < cells_.size() && place(low) == at;
+    }
+
+    const SolidCells& cells_;
+    const BoundaryCells& b_;
+    std::vector<std::vector<std::uint32_t>> patches_of_;
+};
+
+// Gives each object the layers behind its own.
+void add_layers_behind(const SolidCells& cells, const BoundaryCells& boundary,
+                       std::vector<ObjectVoxel>& voxels) {
+    const LayersBehind layers(cells, boundary);
+    std::vector<ObjectVoxel> all;
+    for (std::size_t first = 0, last = 0; first < voxels.size(); first = last) {
+        while (last < voxels.size() && voxels[last].object == voxels[first].object) ++last;
+        const auto own = std::span<const ObjectVoxel>(voxels).subspan(first, last - first);
+        const std::vector<ObjectVoxel> added = layers.find(own);
+        std::ranges::merge(own, added, std::back_inserter(all), {}, &ObjectVoxel::at,
+                           &ObjectVoxel::at);
+    }
+    voxels = std::move(all);
+}
+
+}  // namespace
+
+std::vector<ObjectVoxel> object_voxels(const SolidCells& cells, const BoundaryCells& b,
+                                       std::span<const std::int32_t> object_of_primitive) {
+    const auto object_of = [&](std::int32_t p) {
+        return p >= 0 && static_cast<std::size_t>(p) < object_of_primitive.size()
+                   ? object_of_primitive[static_cast<std::size_t>(p)]
+                   : std::int32_t{-1};
+    };
+    std::vector<ObjectVoxel> out;
+    std::vector<Share> here;
+    std::size_t n = 0, m = 0;
+    while (n < cells.size() || m < b.size()) {
+        const auto cell = [&] { return std::array{cells.i[n], cells.j[n], cells.k[n]}; };
+        const auto part = [&] { return std::array{b.i[m], b.j[m], b.k[m]}; };
+        const auto at = n == cells.size() ? part()
+                        : m == b.size()   ? cell()
+                                          : std::min(cell(), part());
+        const bool is_cell = n < cells.size() && cell() == at;
+        bool bounded = false;
+        here.clear();
+        const std::size_t first = m;
+        for (; m < b.size() && part() == at; ++m) {
+            const bool own = is_cell && b.primitive[m] == cells.primitive[n];
+            add(object_of(b.primitive[m]), b.primitive[m], b.share[m], own, here);
+            bounded = bounded || own;
+        }
+        if (is_cell && !bounded) {
+            add(object_of(cells.primitive[n]), cells.primitive[n], BoundaryCells::whole, true, here);
+            std::ranges::find(here, object_of(cells.primitive[n]), &Share::object)->whole = true;
+        }
+        for (const Share& s : here) {
+            if (s.share == 0 && !s.cell) continue;
+            out.push_back({s.object, s.primitive, at, static_cast<std::uint32_t>(first),
+                           static_cast<std::uint32_t>(m), s.cell, s.whole, s.share >= sliver});
+        }
+        n += is_cell;
+    }
+    std::ranges::stable_sort(out, {}, &ObjectVoxel::object);
+    add_layers_behind(cells, b, out);
+    return out;
+}
+
+}  // namespace topple::solids

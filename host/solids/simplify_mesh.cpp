@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+#include "solids/simplify_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solids/vectors.h"
+
+namespace topple::solids {
+namespace {
+
+// The sum of the squared distances to planes.
+class Quadric {
+  public:
+    // normal: of unit length, or shorter, to count for less.
+    void add_plane(const Vec3& normal, const Vec3& through) {
+        const double d = -dot(normal, through);
+        const std::array<double, 4> p{normal[0], normal[1], normal[2], d};
+        std::size_t n = 0;
+        for (std::size_t a = 0; a < 4; ++a)
+            for (std::size_t b = a; b < 4; ++b) m_[n++] += p[a] * p[b];
+    }
+    void add(const Quadric& other) {
+        for (std::size_t n = 0; n < m_.size(); ++n) m_[n] += other.m_[n];
+    }
+    double at(const Vec3& p) const {
+        const double x = p[0], y = p[1], z = p[2];
+        return x * (m_[0] * x + 2 * (m_[1] * y + m_[2] * z + m_[3])) +
+               y * (m_[4] * y + 2 * (m_[5] * z + m_[6])) + z * (m_[7] * z + 2 * m_[8]) + m_[9];
+    }
+
+  private:
+    std::array<double, 10> m_{};
+};
+
+class Simplifier {
+  public:
+    Simplifier(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
+               const SimplifyOptions& options)
+        : mesh_(mesh),
+          patches_(patches),
+          most_(options.tolerance_m * options.tolerance_m),
+          longest_(options.longest_m > 0 ? options.longest_m * options.longest_m : INFINITY),
+          around_(mesh.vertex.size()),
+          quadric_(mesh.vertex.size()) {
+        for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t)
+            for (const std::uint32_t v : mesh.triangle[t]) around_[v].push_back(t);
+        for (std::uint32_t v = 0; v < around_.size(); ++v) add_planes(v);
+    }
+
+    void run() {
+        // A vertex that can't go is asked again once something around it has changed.
+        std::vector<bool> asked(around_.size(), false);
+        std::vector<std::size_t> changed(around_.size(), 0);  // in which round
+        bool any = true;
+        for (std::size_t round = 1; any; ++round) {
+            any = false;
+            for (std::uint32_t v = 0; v < around_.size(); ++v) {
+                // Changes of one round lie apart, or long fans would arise.
+                if (around_[v].empty() || asked[v] || changed[v] == round) continue;
+                asked[v] = true;
+                if (!remove(v)) continue;
+                any = true;
+                for (const std::uint32_t n : neighbours_) {
+                    asked[n] = false;
+                    changed[n] = round;
+                }
+            }
+        }
+    }
+
+    // Takes what is no longer used out of the mesh.
+    void compact() {
+        std::vector<std::uint32_t> number(mesh_.vertex.size());
+        std::uint32_t vertices = 0;
+        for (std::uint32_t v = 0; v < around_.size(); ++v) {
+            if (around_[v].empty()) continue;
+            number[v] = vertices;
+            mesh_.vertex[vertices] = mesh_.vertex[v];
+            mesh_.corner[vertices++] = mesh_.corner[v];
+        }
+        std::size_t triangles = 0;
+        for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
+            const auto [a, b, c] = mesh_.triangle[t];
+            if (a == b) continue;
+            mesh_.triangle[triangles] = {number[a], number[b], number[c]};
+            mesh_.facet[triangles++] = mesh_.facet[t];
+        }
+        mesh_.vertex.resize(vertices);
+        mesh_.corner.resize(vertices);
+        mesh_.triangle.resize(triangles);
+        mesh_.facet.resize(triangles);
+    }
+
+  private:
+    Vec3 area(const std::array<std::uint32_t, 3>& t) const {
+        const Vec3& p = mesh_.vertex[t[0]];
+        return cross(minus(mesh_.vertex[t[1]], p), minus(mesh_.vertex[t[2]], p));
+    }
+    // The vertex after v in a triangle, going round; that before it is two after.
+    static std::uint32_t after(const std::array<std::uint32_t, 3>& t, std::uint32_t v,
+                               std::size_t steps = 1) {
+        const std::size_t at = t[0] == v ? 0 : t[1] == v ? 1 : 2;
+        return t[(at + steps) % 3];
+    }
+
+    void add_planes(std::uint32_t v) {
+        // How much further than from a patch a vertex may be from a border of primitives, and from
+        // what no patch tells of.
+        constexpr double wider = 10, unknown = 10;
+        const Vec3& at = mesh_.vertex[v];
+        const bool bordered = is_bordered(v);
+        for (const std::uint32_t t : around_[v]) {
+            const Vec3 own = area(mesh_.triangle[t]);
+            const bool known = mesh_.facet[t].patch != no_patch;
+            const Vec3 normal = unit(known ? outwards(mesh_.facet[t], patches_, at) : own);
+            Vec3 counted = normal;
+            if (!known)
+                for (double& x : counted) x /= unknown;
+            quadric_[v].add_plane(counted, at);
+            const std::uint32_t next = after(mesh_.triangle[t], v);
+            if (!bordered || !is_border(t, v, next)) continue;
+            Vec3 across = unit(cross(minus(mesh_.vertex[next], at), normal));
+            for (double& x : across) x /= wider;
+            quadric_[v].add_plane(across, at);
+            quadric_[next].add_plane(across, at);
+        }
+    }
+    // Whether a vertex has triangles of several primitives.
+    bool is_bordered(std::uint32_t v) const {
+        return std::ranges::any_of(around_[v], [&](std::uint32_t t) {
+            return mesh_.facet[t].primitive != mesh_.facet[around_[v].front()].primitive;
+        });
+    }
+    // Whether another primitive lies beyond the edge from v to `next` of triangle t.
+    bool is_border(std::uint32_t t, std::uint32_t v, std::uint32_t next) const {
+        for (const std::uint32_t other : around_[v]) {
+            if (after(mesh_.triangle[other], v, 2) == next)
+                return mesh_.facet[other].primitive != mesh_.facet[t].primitive;
+        }
+        return false;
+    }
+
+    void find_neighbours(std::uint32_t v) {
+        neighbours_.clear();
+        for (const std::uint32_t t : around_[v]) neighbours_.push_back(after(mesh_.triangle[t], v));
+        std::ranges::sort(neighbours_);
+    }
+
+    // Merges v into the nearest neighbour that can take it.
+    bool remove(std::uint32_t v) {
+        find_neighbours(v);
+        nearest_.clear();
+        const bool bordered = is_bordered(v);
+        for (const std::uint32_t u : neighbours_) {
+            if (quadric_[v].at(mesh_.vertex[u]) + quadric_[u].at(mesh_.vertex[u]) > most_) continue;
+            const Vec3 way = minus(mesh_.vertex[u], mesh_.vertex[v]);
+            nearest_.emplace_back(dot(way, way), u);
+        }
+        std::ranges::sort(nearest_);
+        for (const auto& [distance, u] : nearest_) {
+            if ((bordered && !runs_along_border(v, u)) || !stays_closed(u) || !stays_flat(v, u))
+                continue;
+            merge(v, u);
+            return true;
+        }
+        return false;
+    }
+    bool runs_along_border(std::uint32_t v, std::uint32_t u) const {
+        for (const std::uint32_t t : around_[v])
+            if (after(mesh_.triangle[t], v) == u) return is_border(t, v, u);
+        return false;
+    }
+    // The link condition: the two have no neighbours in common but those across their edge.
+    bool stays_closed(std::uint32_t u) const {
+        std::size_t common = 0;
+        for (const std::uint32_t t : around_[u])
+            common += std::ranges::binary_search(neighbours_, after(mesh_.triangle[t], u));
+        return common == 2;
+    }
+    // No triangle turns far or becomes a line, and no edge too long.
+    bool stays_flat(std::uint32_t v, std::uint32_t u) const {
+        constexpr double turn = 0.5;      // cosine
+        constexpr double narrow = 0.01;   // height over the longest side
+        for (const std::uint32_t n : neighbours_) {
+            const Vec3 edge = minus(mesh_.vertex[n], mesh_.vertex[u]);
+            if (dot(edge, edge) > longest_) return false;
+        }
+        for (const std::uint32_t t : around_[v]) {
+            auto moved = mesh_.triangle[t];
+            if (std::ranges::find(moved, u) != moved.end()) continue;
+            Vec3 outside = area(moved);
+            std::ranges::replace(moved, v, u);
+            const Vec3 then = area(moved);
+            const double size = length(then);
+            double side = 0;
+            for (std::size_t n = 0; n < 3; ++n) {
+                const Vec3 edge =
+                    minus(mesh_.vertex[moved[n]], mesh_.vertex[moved[(n + 1) % 3]]);
+                side = std::max(side, dot(edge, edge));
+            }
+            if (!(size > narrow * side)) return false;
+            // Folds of what was placed on a patch may be smoothed out.
+            if (mesh_.facet[t].patch != no_patch)
+                outside = outwards(mesh_.facet[t], patches_, mesh_.vertex[u]);
+            if (dot(outside, then) < turn * length(outside) * size) return false;
+        }
+        return true;
+    }
+    void merge(std::uint32_t v, std::uint32_t u) {
+        for (const std::uint32_t t : around_[v]) {
+            auto& triangle = mesh_.triangle[t];
+            if (std::ranges::find(triangle, u) == triangle.end()) {
+                std::ranges::replace(triangle, v, u);
+                around_[u].push_back(t);
+                continue;
+            }
+            for (const std::uint32_t w : triangle)
+                if (w != v) std::erase(around_[w], t);
+            triangle = {0, 0, 0};
+        }
+        around_[v].clear();
+        quadric_[u].add(quadric_[v]);
+    }
+
+    SurfaceMesh& mesh_;
+    std::span<const SurfacePatch> patches_;
+    double most_, longest_;                           // squared
+    std::vector<std::vector<std::uint32_t>> around_;  // triangles of each vertex; none: it is gone
+    std::vector<Quadric> quadric_;
+    std::vector<std::uint32_t> neighbours_;  // of the vertex that is looked at, ascending
+    std::vector<std::pair<double, std::uint32_t>> nearest_;
+};
+
+}  // namespace
+
+void simplify(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
+              const SimplifyOptions& options) {
+    Simplifier simplifier(mesh, patches, options);
+    simplifier.run();
+    simplifier.compact();
+}
+
+}  // namespace topple::solids

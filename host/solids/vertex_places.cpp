@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "solids/vertex_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solids/meeting_point.h"
+#include "solids/vectors.h"
+
+namespace topple::solids {
+namespace {
+
+// In voxels.
+// How far from its corner a vertex of which not all patches are known goes along each axis; along
+// one in which there is but one voxel, so that sticks and boards don't wither.
+constexpr double farthest_unknown = 0.4, farthest_thin = 0.15;
+constexpr double slack = 0.002;           // what is no further outside is not
+
+// The faces at each vertex, in rows.
+struct VertexFaces {
+    std::vector<std::uint32_t> first, face;
+    explicit VertexFaces(const BlockSurface& surface)
+        : first(surface.corner.size() + 1, 0), face(4 * surface.face.size()) {
+        for (const VoxelFace& f : surface.face)
+            for (const std::uint32_t v : f.vertex) ++first[v + 1];
+        for (std::size_t v = 0; v + 1 < first.size(); ++v) first[v + 1] += first[v];
+        std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+        for (std::uint32_t f = 0; f < surface.face.size(); ++f)
+            for (const std::uint32_t v : surface.face[f].vertex) face[next[v]++] = f;
+    }
+    std::span<const std::uint32_t> of(std::size_t v) const {
+        return std::span(face).subspan(first[v], first[v + 1] - first[v]);
+    }
+};
+
+template <class T>
+void make_unique(std::vector<T>& values) {
+    std::ranges::sort(values);
+    values.erase(std::ranges::unique(values).begin(), values.end());
+}
+
+class Places {
+  public:
+    Places(std::span<const ObjectVoxel> voxels, const BlockSurface& surface,
+           std::span<const Facet> facet, const ObjectEntries& entries,
+           std::span<const SurfacePatch> patches)
+        : voxels_(voxels),
+          surface_(surface),
+          facet_(facet),
+          entries_(entries),
+          faces_(surface),
+          meet_(patches, entries.voxel_m()),
+          h_(entries.voxel_m()),
+          known_(surface.corner.size()),
+          open_(voxels.size(), 0) {}
+
+    std::vector<Vec3> find() {
+        std::vector<Vec3> at(surface_.corner.size());
+        for (std::size_t v = 0; v < at.size(); ++v) at[v] = place(v, corner(v));
+        smooth(at);
+        for (std::size_t v = 0; v < at.size(); ++v)
+            if (!known_[v]) at[v] = place(v, at[v]);
+        return at;
+    }
+
+  private:
+    Vec3 corner(std::size_t v) const {
+        const auto& c = surface_.corner[v];
+        return {c[0] * h_, c[1] * h_, c[2] * h_};
+    }
+
+    // Where the patches of the vertex's faces meet next to `base`.
+    Vec3 place(std::size_t v, const Vec3& base) {
+        of_.clear();
+        around_.clear();
+        known_[v] = true;
+        for (const std::uint32_t f : faces_.of(v)) {
+            if (facet_[f].patch == no_patch)
+                known_[v] = false;
+            else
+                of_.push_back(facet_[f].patch);
+            around_.push_back(surface_.face[f].voxel);
+            if (surface_.face[f].beyond != no_voxel) around_.push_back(surface_.face[f].beyond);
+        }
+        if (of_.empty()) return base;
+        make_unique(of_);
+        const Vec3 met = meet_(of_, base, corner(v));
+        make_unique(around_);
+        return on_solid(met) ? met : cut(met, base, corner(v));
+    }
+
+    // Whether the solid reaches p, as the voxels nearest to it say.
+    bool on_solid(const Vec3& p) const {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const std::uint32_t n : around_) nearest = std::min(nearest, distance(n, p));
+        return std::ranges::any_of(around_, [&](std::uint32_t n) {
+            return distance(n, p) <= nearest + slack * h_ &&
+                   entries_.solid(voxels_[n], p, slack * h_);
+        });
+    }
+    double distance(std::uint32_t n, const Vec3& p) const {
+        double most = 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double low = voxels_[n].at[a] * h_;
+            most = std::max({most, low - p[a], p[a] - low - h_});
+        }
+        return most;
+    }
+
+    // A patch may end before the vertex, at another one that none of its faces stands for: the
+    // place next to `met` where the solid ends there, too; `met` where there is none.
+    Vec3 cut(const Vec3& met, const Vec3& base, const Vec3& corner) {
+        others_.clear();
+        for (const std::uint32_t n : around_) entries_.add_patches(voxels_[n], others_);
+        make_unique(others_);
+        Vec3 best = met;
+        double least = h_;
+        const auto attempt = [&] {
+            const Vec3 p = meet_(of_, base, corner);
+            const double moved = length(minus(p, met));
+            if (moved >= least || !on_solid(p)) return;
+            least = moved;
+            best = p;
+        };
+        for (std::size_t a = 0; a < others_.size(); ++a) {
+            of_.push_back(others_[a]);
+            attempt();
+            for (std::size_t b = 0; b < a; ++b) {
+                of_.push_back(others_[b]);
+                attempt();
+                of_.pop_back();
+            }
+            of_.pop_back();
+        }
+        return best;
+    }
+
+    // Taubin's smoothing of the vertices that are not known: steps towards the mean of their
+    // neighbours, and away from it, so that nothing shrinks much. What lies on patches moves along
+    // the edge where these end, between neighbours that lie on them, too.
+    void smooth(std::vector<Vec3>& at) {
+        constexpr int rounds = 10;
+        constexpr double towards = 0.5, away = -0.53;
+        find_beside();
+        std::vector<Vec3> next(beside_.size());
+        for (int round = 0; round < 2 * rounds; ++round) {
+            const double share = round % 2 ? away : towards;
+            for (std::size_t n = 0; n < beside_.size(); ++n) next[n] = moved(beside_[n], share, at);
+            for (std::size_t n = 0; n < beside_.size(); ++n) at[beside_[n].vertex] = next[n];
+        }
+    }
+    // What a vertex that is not known is drawn to.
+    struct Beside {
+        std::uint32_t vertex, count;
+        std::size_t first;  // of neighbours_
+        Vec3 reach;         // how far it may go
+    };
+    Vec3 reach_of(std::uint32_t v) const {
+        Vec3 out{farthest_unknown * h_, farthest_unknown * h_, farthest_unknown * h_};
+        for (const std::uint32_t f : faces_.of(v)) {
+            const VoxelFace& face = surface_.face[f];
+            const unsigned both = 3U << 2 * face.axis();
+            if ((open_[face.voxel] & both) == both) out[face.axis()] = farthest_thin * h_;
+        }
+        return out;
+    }
+    void find_beside() {
+        for (const VoxelFace& face : surface_.face)
+            open_[face.voxel] |= static_cast<std::uint8_t>(1U << face.direction);
+        std::vector<std::uint32_t> own, others, found;
+        for (std::uint32_t v = 0; v < known_.size(); ++v) {
+            if (known_[v]) continue;
+            found.clear();
+            for (const std::uint32_t f : faces_.of(v)) {
+                const auto& vertex = surface_.face[f].vertex;
+                const auto slot =
+                    static_cast<std::size_t>(std::ranges::find(vertex, v) - vertex.begin());
+                found.push_back(vertex[(slot + 1) % 4]);
+                found.push_back(vertex[(slot + 3) % 4]);
+            }
+            make_unique(found);
+            find_patches(v, own);
+            if (!own.empty()) {
+                std::erase_if(found, [&](std::uint32_t u) {
+                    find_patches(u, others);
+                    return known_[u] || !std::ranges::includes(others, own);
+                });
+            }
+            if (found.size() < 2) continue;
+            beside_.push_back({v, static_cast<std::uint32_t>(found.size()), neighbours_.size(),
+                               reach_of(v)});
+            neighbours_.insert(neighbours_.end(), found.begin(), found.end());
+        }
+    }
+    void find_patches(std::uint32_t v, std::vector<std::uint32_t>& out) const {
+        out.clear();
+        for (const std::uint32_t f : faces_.of(v))
+            if (facet_[f].patch != no_patch) out.push_back(facet_[f].patch);
+        make_unique(out);
+    }
+    Vec3 moved(const Beside& b, double share, const std::vector<Vec3>& at) const {
+        Vec3 sum{};
+        for (const std::uint32_t u : std::span(neighbours_).subspan(b.first, b.count))
+            for (std::size_t a = 0; a < 3; ++a) sum[a] += at[u][a];
+        const Vec3 middle = corner(b.vertex);
+        Vec3 out{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double now = at[b.vertex][a];
+            out[a] = std::clamp(now + share * (sum[a] / b.count - now), middle[a] - b.reach[a],
+                                middle[a] + b.reach[a]);
+        }
+        return out;
+    }
+
+    std::span<const ObjectVoxel> voxels_;
+    const BlockSurface& surface_;
+    std::span<const Facet> facet_;
+    const ObjectEntries& entries_;
+    VertexFaces faces_;
+    MeetingPoint meet_;
+    double h_;
+    std::vector<bool> known_;  // of each vertex: each of its faces has a patch
+    std::vector<std::uint8_t> open_;  // of each voxel, bits of the directions of its faces
+    std::vector<Beside> beside_;
+    std::vector<std::uint32_t> neighbours_;
+    std::vector<std::uint32_t> of_, others_, around_;  // of the vertex that is placed
+};
+
+}  // namespace
+
+std::vector<Vec3> vertex_places(std::span<const ObjectVoxel> voxels, const BlockSurface& surface,
+                                std::span<const Facet> facet, const ObjectEntries& entries,
+                                std::span<const SurfacePatch> patches) {
+    return Places(voxels, surface, facet, entries, patches).find();
+}
+
+}  // namespace topple::solids
