@@ -17,7 +17,7 @@ namespace topple {
 struct ObjectSurface {
     std::int32_t object = -1;  // -1: of what belongs to none
     std::vector<Vec3> vertex, normal;
-    std::vector<std::optional<Rgb8>> colour;  // of each vertex, in the scan; or empty
+    std::vector<std::optional<Rgb8>> colour;             // of each vertex, in the scan; or empty
     std::vector<std::array<std::uint32_t, 3>> triangle;  // counter-clockwise seen from outside
     std::vector<std::int32_t> primitive;                 // of each triangle
 };

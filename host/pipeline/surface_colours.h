@@ -22,8 +22,7 @@ class SurfaceColours {
   public:
     // object_of_primitive: -1 for none.
     SurfaceColours(const ScenePoints& points, const SolidCells& cells,
-                   std::span<const std::int32_t> object_of_primitive,
-                   const vdb::VoxelFrame& frame);
+                   std::span<const std::int32_t> object_of_primitive, const vdb::VoxelFrame& frame);
 
     // Of a corner of an object's voxels: the mean of those around it, next to it or one further.
     std::optional<Rgb8> at(const std::array<std::int32_t, 3>& corner, std::int32_t object) const;

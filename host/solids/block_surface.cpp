@@ -172,7 +172,8 @@ BlockSurface block_surface(std::span<const ObjectVoxel> voxels) {
     for (std::size_t first = 0; first < corners.size();) {
         std::size_t last = first;
         while (last < corners.size() && corners[last].at == corners[first].at) ++last;
-        Meeting meeting(std::span<const FaceCorner>(corners).subspan(first, last - first), out.face);
+        Meeting meeting(std::span<const FaceCorner>(corners).subspan(first, last - first),
+                        out.face);
         const std::uint32_t made = meeting.join(static_cast<std::uint32_t>(out.corner.size()));
         out.corner.insert(out.corner.end(), made, corners[first].at);
         meeting.mark_pinched(pinched);
@@ -180,7 +181,8 @@ BlockSurface block_surface(std::span<const ObjectVoxel> voxels) {
     }
     for (std::size_t f = 0; f < out.face.size(); ++f) {
         for (unsigned n = 0; n < 4; ++n) {
-            const bool both = pinched[f] >> (2 * n) & 1 && pinched[f] >> (2 * ((n + 1) % 4) + 1) & 1;
+            const bool both =
+                pinched[f] >> (2 * n) & 1 && pinched[f] >> (2 * ((n + 1) % 4) + 1) & 1;
             out.face[f].pinched |= static_cast<std::uint8_t>(both ? 1U << n : 0U);
         }
     }

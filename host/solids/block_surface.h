@@ -14,10 +14,10 @@ constexpr std::uint32_t no_voxel = ~std::uint32_t{0};
 
 // One side of a filled voxel whose neighbour there is not filled.
 struct VoxelFace {
-    std::uint32_t voxel = 0;           // among those given
-    std::uint32_t beyond = no_voxel;   // the one behind the face, if it holds a sliver
-    std::uint8_t direction = 0;        // -x +x -y +y -z +z
-    std::uint8_t pinched = 0;          // bits of its edges, see below; edge n begins at vertex n
+    std::uint32_t voxel = 0;          // among those given
+    std::uint32_t beyond = no_voxel;  // the one behind the face, if it holds a sliver
+    std::uint8_t direction = 0;       // -x +x -y +y -z +z
+    std::uint8_t pinched = 0;         // bits of its edges, see below; edge n begins at vertex n
     std::array<std::uint32_t, 4> vertex{};  // counter-clockwise seen from outside
 
     std::size_t axis() const { return direction / 2; }

@@ -14,11 +14,10 @@ namespace {
 constexpr double beyond_side = 0.25;  // how far beyond a side its patch may lie, in voxels
 
 // Where a line along an axis crosses a patch, from `start`.
-std::array<double, 2> crossings(const SurfacePatch& patch, const Vec3& start,
-                                       std::size_t axis) {
+std::array<double, 2> crossings(const SurfacePatch& patch, const Vec3& start, std::size_t axis) {
     constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
-    const double a = patch.c[4 + axis], b = patch.gradient(start)[axis],
-                 c = patch.value(start), root = b * b - 4 * a * c;
+    const double a = patch.c[4 + axis], b = patch.gradient(start)[axis], c = patch.value(start),
+                 root = b * b - 4 * a * c;
     if (!(root >= 0)) return {nowhere, nowhere};
     const double q = -0.5 * (b + std::copysign(std::sqrt(root), b));
     return {a != 0 ? q / a : nowhere, q != 0 ? c / q : nowhere};
@@ -56,8 +55,8 @@ void ObjectEntries::each(const ObjectVoxel& voxel, Do what) const {
     }
 }
 
-std::optional<Facet> ObjectEntries::way_out(const ObjectVoxel& voxel, const Vec3& start, std::size_t axis,
-                             int sign, double end) const {
+std::optional<Facet> ObjectEntries::way_out(const ObjectVoxel& voxel, const Vec3& start,
+                                            std::size_t axis, int sign, double end) const {
     std::optional<Facet> out;
     const double step = 1e-3 * h_;
     double last = -(1 + beyond_side) * h_;
@@ -94,8 +93,8 @@ void ObjectEntries::middles(const ObjectVoxel& voxel, std::vector<Vec3>& out) co
     }
 }
 
-std::optional<Facet> ObjectEntries::beside(std::int32_t primitive, const Vec3& at,
-                                           std::size_t axis, int sign) const {
+std::optional<Facet> ObjectEntries::beside(std::int32_t primitive, const Vec3& at, std::size_t axis,
+                                           int sign) const {
     constexpr double facing = 0.3;  // cosine
     std::optional<Facet> out;
     if (primitive < 0 || static_cast<std::size_t>(primitive) >= seen_on_.size()) return out;
@@ -123,8 +122,8 @@ void ObjectEntries::add_patches(const ObjectVoxel& voxel, std::vector<std::uint3
     });
 }
 
-std::vector<Facet> find_facets(std::span<const ObjectVoxel> voxels, std::span<const VoxelFace> faces,
-                               const ObjectEntries& entries) {
+std::vector<Facet> find_facets(std::span<const ObjectVoxel> voxels,
+                               std::span<const VoxelFace> faces, const ObjectEntries& entries) {
     const double h = entries.voxel_m();
     std::vector<Facet> out;
     out.reserve(faces.size());
@@ -158,6 +157,7 @@ std::vector<Facet> find_facets(std::span<const ObjectVoxel> voxels, std::span<co
         }
         out.push_back(found.value_or(Facet{}));
         out.back().primitive = voxel.primitive;
+        out.back().direction = face.direction;
     }
     return out;
 }

@@ -18,8 +18,9 @@ constexpr std::uint32_t no_patch = ~std::uint32_t{0};
 // What a triangle is a piece of.
 struct Facet {
     std::uint32_t patch = no_patch;
-    bool outside = false;  // it is the patch's outside that is solid
+    bool outside = false;         // it is the patch's outside that is solid
     std::int32_t primitive = -1;  // whose surface it is
+    std::uint8_t direction = 0;   // of the voxel's side: -x +x -y +y -z +z
 };
 // Of a facet's patch, out of the solid; not of unit length.
 Vec3 outwards(const Facet& facet, std::span<const SurfacePatch> patches, const Vec3& at);
@@ -59,7 +60,7 @@ class ObjectEntries {
 };
 
 // Of each face.
-std::vector<Facet> find_facets(std::span<const ObjectVoxel> voxels, std::span<const VoxelFace> faces,
-                               const ObjectEntries& entries);
+std::vector<Facet> find_facets(std::span<const ObjectVoxel> voxels,
+                               std::span<const VoxelFace> faces, const ObjectEntries& entries);
 
 }  // namespace topple::solids

@@ -12,7 +12,8 @@ constexpr double farthest = 1.5;  // how far a vertex may go to where its patche
 
 }  // namespace
 
-Vec3 MeetingPoint::operator()(std::span<const std::uint32_t> of, const Vec3& base, const Vec3& corner) const {
+Vec3 MeetingPoint::operator()(std::span<const std::uint32_t> of, const Vec3& base,
+                              const Vec3& corner) const {
     for (int rank = std::min<int>(3, static_cast<int>(of.size())); rank > 0; --rank) {
         Vec3 x = base;
         if (settle(of, rank, x) && near(x, corner)) return x;
@@ -23,8 +24,8 @@ Vec3 MeetingPoint::operator()(std::span<const std::uint32_t> of, const Vec3& bas
 // Newton's method. Whether the patches determine so many directions.
 bool MeetingPoint::settle(std::span<const std::uint32_t> of, int rank, Vec3& x) const {
     constexpr int rounds = 6;
-    constexpr double least = 0.02;      // eigenvalue, of the largest: creases above 16 degrees
-    constexpr double settled = 1e-6;    // of a voxel
+    constexpr double least = 0.02;    // eigenvalue, of the largest: creases above 16 degrees
+    constexpr double settled = 1e-6;  // of a voxel
     for (int round = 0; round < rounds; ++round) {
         Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
         Eigen::Vector3d b = Eigen::Vector3d::Zero();

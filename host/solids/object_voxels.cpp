@@ -24,7 +24,8 @@ struct Share {
 void add(std::int32_t object, std::int32_t primitive, std::uint32_t share, bool cell,
          std::vector<Share>& to) {
     auto found = std::ranges::find(to, object, &Share::object);
-    if (found == to.end()) found = to.insert(to.end(), Share{object, primitive, 0, 0, false, false});
+    if (found == to.end())
+        found = to.insert(to.end(), Share{object, primitive, 0, 0, false, false});
     if (share > found->most) {
         found->most = share;
         found->primitive = primitive;
@@ -49,27 +50,32 @@ class LayersBehind {
         }
     }
 
-    // Of one object's voxels, sorted: those that are to be filled, too. Where a layer of single
-    // voxels goes over into the one behind, both are there, so that they hang together.
-    std::vector<ObjectVoxel> find(std::span<const ObjectVoxel> voxels) const {
+    // Fills those of one object's voxels, sorted, and returns those to be added. Where a layer of
+    // single voxels goes over into the one behind, both are there, so that they hang together.
+    std::vector<ObjectVoxel> fill(std::span<ObjectVoxel> voxels) const {
         std::vector<ObjectVoxel> out;
         std::vector<Step> steps;
         for (const ObjectVoxel& v : voxels) {
             if (!v.cell || (v.filled && !is_thin(v))) continue;
-            if (const std::optional<Step> step = behind(v)) steps.push_back(*step);
+            const std::optional<Step> step = behind(v);
+            if (!step) continue;
+            const ObjectVoxel* there = find_at(voxels, moved(v.at, step->axis, step->sign));
+            if ((!there || !there->filled) && !is_edge(voxels, *step)) steps.push_back(*step);
         }
-        const auto fill = [&](const ObjectVoxel& like, const Place& at) {
-            if (!find_at(voxels, at) && !is_cell(at))
+        const auto take = [&](const ObjectVoxel& like, const Place& at) {
+            if (ObjectVoxel* there = find_at(voxels, at))
+                there->filled = true;
+            else if (!is_cell(at))
                 out.push_back({like.object, like.primitive, at, 0, 0, false, true, true});
         };
-        for (const Step& s : steps) fill(*s.from, moved(s.from->at, s.axis, s.sign));
+        for (const Step& s : steps) take(*s.from, moved(s.from->at, s.axis, s.sign));
         for (const Step& s : steps) {
             if (s.from->filled) continue;
             for (std::size_t to = 1; to <= 2; ++to) {
                 for (const std::int32_t side : {-1, 1}) {
                     const Place beside = moved(s.from->at, (s.axis + to) % 3, side);
                     const ObjectVoxel* found = find_at(voxels, beside);
-                    if (found && found->filled) fill(*found, moved(beside, s.axis, s.sign));
+                    if (found && found->filled) take(*found, moved(beside, s.axis, s.sign));
                 }
             }
         }
@@ -82,6 +88,7 @@ class LayersBehind {
     // From a voxel to the one behind it.
     struct Step {
         const ObjectVoxel* from;
+        Vec3 normal;  // of the patch between
         std::size_t axis;
         std::int32_t sign;
     };
@@ -89,7 +96,7 @@ class LayersBehind {
         at[axis] += by;
         return at;
     }
-    static const ObjectVoxel* find_at(std::span<const ObjectVoxel> voxels, const Place& at) {
+    static ObjectVoxel* find_at(std::span<ObjectVoxel> voxels, const Place& at) {
         const auto found = std::ranges::lower_bound(voxels, at, {}, &ObjectVoxel::at);
         return found != voxels.end() && found->at == at ? &*found : nullptr;
     }
@@ -100,23 +107,45 @@ class LayersBehind {
         return v.last == v.first + 1 && b_.slots_used(v.first) == 1 &&
                b_.share[v.first] < BoundaryCells::whole / 2;
     }
-    // To the other side of the primitive's patch beside it, unless that is an edge.
+    // To the other side of the primitive's patch beside it.
     std::optional<Step> behind(const ObjectVoxel& v) const {
         std::optional<Step> out;
         if (v.primitive < 0 || static_cast<std::size_t>(v.primitive) >= patches_of_.size())
             return out;
-        const auto& patches = patches_of_[static_cast<std::size_t>(v.primitive)];
-        const std::optional<Beside> patch = patch_beside(patches, v.at);
-        if (!patch) return out;
-        const Vec3& g = patch->normal;
-        std::size_t axis = 0;
-        for (std::size_t a = 1; a < 3; ++a)
-            if (std::abs(g[a]) > std::abs(g[axis])) axis = a;
-        const std::int32_t sign = g[axis] > 0 ? -1 : 1;
-        if (!other_beside(patches, v.at, g) &&
-            !other_beside(patches, moved(v.at, axis, sign), g))
-            out = Step{&v, axis, sign};
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const std::uint32_t n : patches_of_[static_cast<std::size_t>(v.primitive)]) {
+            const std::optional<Beside> b = beside(b_.patches[n], v.at);
+            if (!b || b->away >= nearest) continue;
+            nearest = b->away;
+            std::size_t axis = 0;
+            for (std::size_t a = 1; a < 3; ++a)
+                if (std::abs(b->normal[a]) > std::abs(b->normal[axis])) axis = a;
+            out = Step{&v, b->normal, axis, b->normal[axis] > 0 ? -1 : 1};
+        }
         return out;
+    }
+    // Whether a patch that bounds voxels around faces elsewhere and passes here, too: then the
+    // solid ends here.
+    bool is_edge(std::span<ObjectVoxel> voxels, const Step& step) const {
+        constexpr double same = 0.85;  // cosine
+        const Place &at = step.from->at, next = moved(at, step.axis, step.sign);
+        const auto ends = [&](std::size_t n) {
+            for (std::size_t s = 0; s < b_.slots_used(n); ++s) {
+                for (const Place& p : {at, next}) {
+                    const std::optional<Beside> b = beside(b_.patches[b_.slot[s][n]], p);
+                    if (b && dot(b->normal, step.normal) < same) return true;
+                }
+            }
+            return false;
+        };
+        for (int n = 0; n < 27; ++n) {
+            const ObjectVoxel* v =
+                find_at(voxels, {at[0] + n / 9 - 1, at[1] + n / 3 % 3 - 1, at[2] + n % 3 - 1});
+            if (!v) continue;
+            for (std::size_t m = v->first; m < v->last; ++m)
+                if (b_.primitive[m] == step.from->primitive && ends(m)) return true;
+        }
+        return false;
     }
     // The normal of a patch outside of which a voxel's middle is, if it passes the voxel or nearly
     // so, and how far away it is.
@@ -134,24 +163,6 @@ class LayersBehind {
         const double reach = (std::abs(g[0]) + std::abs(g[1]) + std::abs(g[2])) / 2 + slack;
         if (d > reach * h) return std::nullopt;
         return Beside{d, g};
-    }
-    std::optional<Beside> patch_beside(std::span<const std::uint32_t> patches,
-                                       const Place& at) const {
-        std::optional<Beside> out;
-        for (const std::uint32_t n : patches) {
-            const std::optional<Beside> b = beside(b_.patches[n], at);
-            if (b && (!out || b->away < out->away)) out = b;
-        }
-        return out;
-    }
-    // Whether one is there that faces elsewhere.
-    bool other_beside(std::span<const std::uint32_t> patches, const Place& at,
-                      const Vec3& normal) const {
-        constexpr double same = 0.85;  // cosine
-        return std::ranges::any_of(patches, [&](std::uint32_t n) {
-            const std::optional<Beside> b = beside(b_.patches[n], at);
-            return b && dot(b->normal, normal) < same;
-        });
     }
     bool is_cell(const Place& at) const {
         const auto place = [&](std::size_t n) {
@@ -177,8 +188,8 @@ void add_layers_behind(const SolidCells& cells, const BoundaryCells& boundary,
     std::vector<ObjectVoxel> all;
     for (std::size_t first = 0, last = 0; first < voxels.size(); first = last) {
         while (last < voxels.size() && voxels[last].object == voxels[first].object) ++last;
-        const auto own = std::span<const ObjectVoxel>(voxels).subspan(first, last - first);
-        const std::vector<ObjectVoxel> added = layers.find(own);
+        const auto own = std::span(voxels).subspan(first, last - first);
+        const std::vector<ObjectVoxel> added = layers.fill(own);
         std::ranges::merge(own, added, std::back_inserter(all), {}, &ObjectVoxel::at,
                            &ObjectVoxel::at);
     }
@@ -213,7 +224,8 @@ std::vector<ObjectVoxel> object_voxels(const SolidCells& cells, const BoundaryCe
             bounded = bounded || own;
         }
         if (is_cell && !bounded) {
-            add(object_of(cells.primitive[n]), cells.primitive[n], BoundaryCells::whole, true, here);
+            add(object_of(cells.primitive[n]), cells.primitive[n], BoundaryCells::whole, true,
+                here);
             std::ranges::find(here, object_of(cells.primitive[n]), &Share::object)->whole = true;
         }
         for (const Share& s : here) {

@@ -1,71 +1,99 @@
 // SPDX-License-Identifier: MIT
 #include "solids/shaded_mesh.h"
 
-#include <limits>
+#include <algorithm>
 
 #include "solids/vectors.h"
 
 namespace topple::solids {
+namespace {
 
-ShadedMesh shaded(const SurfaceMesh& mesh, std::span<const SurfacePatch> patches) {
-    constexpr double crease = 0.866;  // cosine of 30 degrees
-    // Each triangle's corners, in rows by vertex.
-    struct Corner {
-        std::size_t triangle, slot;
-        Vec3 own, normal;
-        double area;
-    };
-    std::vector<std::size_t> first(mesh.vertex.size() + 1, 0);
-    for (const auto& t : mesh.triangle)
-        for (const std::uint32_t v : t) ++first[v + 1];
-    for (std::size_t v = 0; v < mesh.vertex.size(); ++v) first[v + 1] += first[v];
-    std::vector<std::size_t> at(3 * mesh.triangle.size());
-    {
+// A triangle's corner at a vertex.
+struct Corner {
+    std::size_t triangle, slot;
+    Vec3 normal;  // 0 for a line that no patch tells of
+    double area;
+    bool known;         // by a patch
+    std::size_t group;  // of those that share a normal: its first corner
+};
+
+constexpr double crease = 0.866;  // cosine of 30 degrees
+
+// Makes one of those that hang together without a crease; lines join the first.
+void group(std::vector<Corner>& corners) {
+    for (std::size_t a = 0; a < corners.size(); ++a) {
+        corners[a].group = a;
+        for (std::size_t b = 0; b < a; ++b) {
+            if (corners[a].group == corners[b].group ||
+                dot(corners[a].normal, corners[b].normal) < crease)
+                continue;
+            const auto [to, from] = std::minmax(corners[a].group, corners[b].group);
+            for (std::size_t c = 0; c <= a; ++c)
+                if (corners[c].group == from) corners[c].group = to;
+        }
+    }
+    const auto any =
+        std::ranges::find_if(corners, [](const Corner& c) { return dot(c.normal, c.normal) > 0; });
+    const std::size_t to = any == corners.end() ? 0 : any->group;
+    for (Corner& c : corners)
+        if (dot(c.normal, c.normal) == 0) c.group = to;
+}
+
+// The mean by area; where all are lines, that of the first of a patch.
+Vec3 normal_of(const std::vector<Corner>& corners, std::size_t group) {
+    Vec3 sum{}, any{0, 0, 1};
+    for (const Corner& c : corners) {
+        if (c.group != group) continue;
+        if (c.known) any = c.normal;
+        for (std::size_t a = 0; a < 3; ++a) sum[a] += c.area * c.normal[a];
+    }
+    constexpr double least = 1e-200;  // squared
+    return dot(sum, sum) > least ? unit(sum) : any;
+}
+
+// The corners at each vertex, 3 times the triangle's number plus the slot, in rows.
+struct VertexCorners {
+    std::vector<std::size_t> first, at;
+    explicit VertexCorners(const SurfaceMesh& mesh)
+        : first(mesh.vertex.size() + 1, 0), at(3 * mesh.triangle.size()) {
+        for (const auto& t : mesh.triangle)
+            for (const std::uint32_t v : t) ++first[v + 1];
+        for (std::size_t v = 0; v < mesh.vertex.size(); ++v) first[v + 1] += first[v];
         std::vector<std::size_t> next(first.begin(), first.end() - 1);
         for (std::size_t n = 0; n < at.size(); ++n) at[next[mesh.triangle[n / 3][n % 3]]++] = n;
     }
+};
+
+}  // namespace
+
+ShadedMesh shaded(const SurfaceMesh& mesh, std::span<const SurfacePatch> patches) {
+    const VertexCorners rows(mesh);
     ShadedMesh out;
     out.triangle.resize(mesh.triangle.size());
     std::vector<Corner> corners;
+    std::vector<std::uint32_t> number;
     for (std::uint32_t v = 0; v < mesh.vertex.size(); ++v) {
         corners.clear();
-        for (std::size_t n = first[v]; n < first[v + 1]; ++n) {
-            const std::size_t t = at[n] / 3;
+        for (std::size_t n = rows.first[v]; n < rows.first[v + 1]; ++n) {
+            const std::size_t t = rows.at[n] / 3;
             const auto& [a, b, c] = mesh.triangle[t];
             const Vec3& p = mesh.vertex[a];
             const Vec3 across = cross(minus(mesh.vertex[b], p), minus(mesh.vertex[c], p));
             const bool known = mesh.facet[t].patch != no_patch;
-            corners.push_back({t, at[n] % 3,
-                               unit(known ? outwards(mesh.facet[t], patches, mesh.vertex[v])
-                                          : across),
-                               {}, length(across)});
+            const Vec3 normal = known ? outwards(mesh.facet[t], patches, mesh.vertex[v]) : across;
+            corners.push_back({t, rows.at[n] % 3, unit(normal), length(across), known, 0});
         }
-        const std::size_t before = out.vertex.size();
-        for (Corner& corner : corners) {
-            Vec3 sum{}, all{};
-            for (const Corner& other : corners) {
-                const bool near = dot(other.own, corner.own) >= crease;
-                for (std::size_t a = 0; a < 3; ++a) {
-                    all[a] += other.area * other.own[a];
-                    if (near) sum[a] += other.area * other.own[a];
-                }
-            }
-            // Where the areas are 0, its own direction; where it has none, that of all.
-            const double least = std::numeric_limits<double>::min();
-            corner.normal = dot(sum, sum) > least               ? unit(sum)
-                            : dot(corner.own, corner.own) > 0.5 ? corner.own
-                            : dot(all, all) > least             ? unit(all)
-                                                                : Vec3{0, 0, 1};
-            std::size_t same = before;
-            while (same < out.vertex.size() && dot(out.normal[same], corner.normal) < 1 - 1e-9)
-                ++same;
-            if (same == out.vertex.size()) {
-                out.vertex.push_back(mesh.vertex[v]);
-                out.normal.push_back(corner.normal);
-                out.from.push_back(v);
-            }
-            out.triangle[corner.triangle][corner.slot] = static_cast<std::uint32_t>(same);
+        group(corners);
+        number.assign(corners.size(), 0);
+        for (std::size_t n = 0; n < corners.size(); ++n) {
+            if (corners[n].group != n) continue;
+            number[n] = static_cast<std::uint32_t>(out.vertex.size());
+            out.vertex.push_back(mesh.vertex[v]);
+            out.normal.push_back(normal_of(corners, n));
+            out.from.push_back(v);
         }
+        for (const Corner& corner : corners)
+            out.triangle[corner.triangle][corner.slot] = number[corner.group];
     }
     return out;
 }

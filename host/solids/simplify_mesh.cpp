@@ -180,8 +180,8 @@ class Simplifier {
     }
     // No triangle turns far or becomes a line, and no edge too long.
     bool stays_flat(std::uint32_t v, std::uint32_t u) const {
-        constexpr double turn = 0.5;      // cosine
-        constexpr double narrow = 0.01;   // height over the longest side
+        constexpr double turn = 0.5;     // cosine
+        constexpr double narrow = 0.01;  // height over the longest side
         for (const std::uint32_t n : neighbours_) {
             const Vec3 edge = minus(mesh_.vertex[n], mesh_.vertex[u]);
             if (dot(edge, edge) > longest_) return false;
@@ -195,14 +195,17 @@ class Simplifier {
             const double size = length(then);
             double side = 0;
             for (std::size_t n = 0; n < 3; ++n) {
-                const Vec3 edge =
-                    minus(mesh_.vertex[moved[n]], mesh_.vertex[moved[(n + 1) % 3]]);
+                const Vec3 edge = minus(mesh_.vertex[moved[n]], mesh_.vertex[moved[(n + 1) % 3]]);
                 side = std::max(side, dot(edge, edge));
             }
             if (!(size > narrow * side)) return false;
-            // Folds of what was placed on a patch may be smoothed out.
-            if (mesh_.facet[t].patch != no_patch)
-                outside = outwards(mesh_.facet[t], patches_, mesh_.vertex[u]);
+            // Folds of what was placed on a patch may be smoothed out; what was not stays on the
+            // side that its voxel's side was on.
+            const Facet& facet = mesh_.facet[t];
+            if (facet.patch != no_patch)
+                outside = outwards(facet, patches_, mesh_.vertex[u]);
+            else if (then[facet.direction / 2] * (facet.direction % 2 ? 1 : -1) < 0)
+                return false;
             if (dot(outside, then) < turn * length(outside) * size) return false;
         }
         return true;

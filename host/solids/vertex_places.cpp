@@ -15,7 +15,7 @@ namespace {
 // How far from its corner a vertex of which not all patches are known goes along each axis; along
 // one in which there is but one voxel, so that sticks and boards don't wither.
 constexpr double farthest_unknown = 0.4, farthest_thin = 0.15;
-constexpr double slack = 0.002;           // what is no further outside is not
+constexpr double slack = 0.002;  // what is no further outside is not
 
 // The faces at each vertex, in rows.
 struct VertexFaces {
@@ -188,8 +188,8 @@ class Places {
                 });
             }
             if (found.size() < 2) continue;
-            beside_.push_back({v, static_cast<std::uint32_t>(found.size()), neighbours_.size(),
-                               reach_of(v)});
+            beside_.push_back(
+                {v, static_cast<std::uint32_t>(found.size()), neighbours_.size(), reach_of(v)});
             neighbours_.insert(neighbours_.end(), found.begin(), found.end());
         }
     }
@@ -220,7 +220,7 @@ class Places {
     VertexFaces faces_;
     MeetingPoint meet_;
     double h_;
-    std::vector<bool> known_;  // of each vertex: each of its faces has a patch
+    std::vector<bool> known_;         // of each vertex: each of its faces has a patch
     std::vector<std::uint8_t> open_;  // of each voxel, bits of the directions of its faces
     std::vector<Beside> beside_;
     std::vector<std::uint32_t> neighbours_;
