@@ -64,7 +64,7 @@ function number(value, unit) {
 
 // What one standard error adds to a figure.
 function within(error) {
-  return error > 0 ? ' \u00b1\u00a0' + number(Number(error.toPrecision(2))) : '';
+  return error > 0 ? ' \u00b1 ' + number(Number(error.toPrecision(2))) : '';
 }
 
 function plural(count, noun) {

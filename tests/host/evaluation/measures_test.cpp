@@ -116,7 +116,7 @@ TEST(Measures, TableCountsWhatWasFound) {
     for (const char* part :
          {"a                              2/2     1.000    1.200      3.0",
           "b                              0/1       nan      nan      nan", "mean bias +0.0 %",
-          "mean bias +20.0 %", "within one of their standard errors: 50.0, within two: 100.0"})
+          "mean bias +20.0 %", "barrier  within one standard error: 50.0, within two: 100.0"})
         EXPECT_NE(table.find(part), std::string::npos) << part << '\n' << table;
     const std::string csv = measures_csv(scores);
     EXPECT_EQ(std::ranges::count(csv, '\n'), 4);

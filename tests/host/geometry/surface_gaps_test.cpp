@@ -73,8 +73,8 @@ TEST(SurfaceGaps, AreClosedWithinWhatWasSeen) {
         EXPECT_EQ(gaps.face[n], 0);
         EXPECT_GT(std::min(gaps.x[n], gaps.y[n]), 0);
         EXPECT_LT(std::max(gaps.x[n], gaps.y[n]), 1);
-        covered.insert({static_cast<int>(gaps.x[n] / (2 * step)),
-                        static_cast<int>(gaps.y[n] / (2 * step))});
+        covered.insert(
+            {static_cast<int>(gaps.x[n] / (2 * step)), static_cast<int>(gaps.y[n] / (2 * step))});
     }
     int missing = 0;
     for (int i = 5; i < 45; ++i)
