@@ -2,6 +2,8 @@
 #include "pipeline/object_surfaces.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <span>
 #include <thread>
 
@@ -15,9 +17,14 @@
 namespace topple {
 namespace {
 
-// In voxels: how far a simpler surface may be from the one that was found, and the longest edge
-// where colours vary along it.
-constexpr double tolerance = 0.01, coloured_edge = 3;
+// How much simpler than they were found surfaces are made, in voxels: how far off they may be, and
+// the longest edge where colours vary along it.
+struct Level {
+    double tolerance, coloured_edge;
+};
+// The next one is for what has more triangles than programs show well.
+constexpr std::array<Level, 3> levels{{{0.01, 3}, {0.03, 4}, {0.1, 6}}};
+constexpr std::size_t most_triangles = 250'000;
 
 std::vector<std::int32_t> objects_of(const Scene& scene) {
     std::vector<std::int32_t> out;
@@ -53,16 +60,27 @@ std::vector<ObjectSurface> object_surfaces(const Scene& scene, const SolidCells&
     const auto objects = by_object(voxels);
     std::optional<SurfaceColours> colours;
     if (!scene.points.red.empty()) colours.emplace(scene.points, cells, object_of, frame);
-    std::vector<ObjectSurface> out(objects.size());
     device::ThreadPool pool(threads > 0 ? threads
                                         : std::max(1U, std::thread::hardware_concurrency()));
+    std::vector<solids::SurfaceMesh> meshes(objects.size());
     pool.each(objects.size(), 1, [&](std::size_t n) {
+        meshes[n] = solids::surface_mesh(objects[n], boundary, object_of, frame.voxel_m);
+    });
+    for (const Level& level : levels) {
+        pool.each(meshes.size(), 1, [&](std::size_t n) {
+            solids::simplify(meshes[n], boundary.patches,
+                             {.tolerance_m = level.tolerance * frame.voxel_m,
+                              .longest_m = colours ? level.coloured_edge * frame.voxel_m : 0});
+        });
+        std::size_t triangles = 0;
+        for (const solids::SurfaceMesh& mesh : meshes) triangles += mesh.triangle.size();
+        if (triangles <= most_triangles) break;
+    }
+    std::vector<ObjectSurface> out(objects.size());
+    pool.each(objects.size(), 1, [&](std::size_t n) {
+        const solids::SurfaceMesh& mesh = meshes[n];
         ObjectSurface& to = out[n];
         to.object = objects[n].front().object;
-        auto mesh = solids::surface_mesh(objects[n], boundary, object_of, frame.voxel_m);
-        solids::simplify(mesh, boundary.patches,
-                         {.tolerance_m = tolerance * frame.voxel_m,
-                          .longest_m = colours ? coloured_edge * frame.voxel_m : 0});
         auto shaded = solids::shaded(mesh, boundary.patches);
         for (Vec3& v : shaded.vertex) to.vertex.push_back(in_input(frame, v));
         for (Vec3& v : shaded.normal) to.normal.push_back(in_input(frame, v));

@@ -56,13 +56,15 @@ void write_all_else(const std::filesystem::path& folder, const ParseResult& resu
     poll();
     io::write_solid_ply(folder / "solid.ply", scene.solid);
     poll();
-    report::write_report(folder / "report.html", scene);
+    // Those of a building are too large for a page.
+    std::vector<ObjectSurface> surfaces;
+    if (!result.tiled || options.glb) surfaces = surfaces_of(result, *voxels, options.threads);
+    poll();
+    report::write_report(folder / "report.html", scene, surfaces);
     poll();
     if (options.pictures) report::write_pictures(folder, scene);
     poll();
-    if (options.glb)
-        write_objects_glb(folder / "objects.glb", scene,
-                          surfaces_of(result, *voxels, options.threads), voxels->frame());
+    if (options.glb) write_objects_glb(folder / "objects.glb", scene, surfaces, voxels->frame());
     poll();
     if (options.octomap) write_map(folder / "map.bt", *voxels);
     io::write_landscapes_json(folder / "landscapes.json", scene);

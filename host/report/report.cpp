@@ -42,6 +42,16 @@ Json records_json(const Records& records) {
     return json;
 }
 
+Json surface_json(const PackedSurface& surface) {
+    Json json{{"count", surface.cell.size()},
+              {"triangles", surface.index.size()},
+              {"cell", packed(surface.cell)},
+              {"aux", packed(surface.aux)},
+              {"index", packed(surface.index)}};
+    if (!surface.photo.empty()) json["photo"] = packed(surface.photo);
+    return json;
+}
+
 // Places to the millimetre.
 Json walks_json(const PackedWalks& walks) {
     Json paths = Json::array();
@@ -78,6 +88,7 @@ Json view_json(const PackedView& view) {
             {"groups", std::move(groups)},
             {"voxels", records_json(view.voxels)},
             {"points", records_json(view.points)},
+            {"surface", surface_json(view.surface)},
             {"fields", std::move(fields)},
             {"walks", walks_json(view.walks)}};
 }
@@ -206,9 +217,9 @@ std::string html_escaped(std::string_view text) {
     return out;
 }
 
-std::string data_json(const Scene& scene) {
+std::string data_json(const Scene& scene, std::span<const ObjectSurface> surfaces) {
     Json json = Json::parse(io::scene_json(scene));
-    const auto view = pack_view(scene);
+    const auto view = pack_view(scene, {}, surfaces);
     json["colours"] = colours_json(view);
     json["view"] = view_json(view);
     json["drawings"] = landscapes_json(scene);
@@ -234,8 +245,9 @@ void write_page(io::FileWriter& writer, std::string_view html,
 
 }  // namespace
 
-void write_report(const std::filesystem::path& file, const Scene& scene) {
-    const auto data = data_json(scene);
+void write_report(const std::filesystem::path& file, const Scene& scene,
+                  std::span<const ObjectSurface> surfaces) {
+    const auto data = data_json(scene, surfaces);
     const auto title = html_escaped(scene.source);
     io::FileWriter writer(file);
     write_page(writer, page::html,

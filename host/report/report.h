@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 
+#include "core/object_surface.h"
 #include "topple/scene.h"
 
 namespace topple::report {
@@ -12,6 +14,9 @@ namespace topple::report {
 // their figures. Scenes with more voxels or points than a browser draws well are thinned for the
 // view, and the page says so; it stays below 15 MB. Throws Error(input) where the file can't be
 // written.
-void write_report(const std::filesystem::path& file, const Scene& scene);
+//
+// surfaces: of the scene's solids; without them, and where they are too large, voxels are shown.
+void write_report(const std::filesystem::path& file, const Scene& scene,
+                  std::span<const ObjectSurface> surfaces = {});
 
 }  // namespace topple::report

@@ -10,6 +10,7 @@
 #include "report/cell_colours.h"
 #include "report/cells.h"
 #include "report/open_sides.h"
+#include "report/surface_packer.h"
 
 namespace topple::report {
 namespace {
@@ -101,8 +102,8 @@ std::int8_t signed_byte(double value) {
 
 class Packer {
   public:
-    Packer(const Scene& scene, const ViewLimits& limits)
-        : scene_(scene), limits_(limits), groups_(view_.groups) {
+    Packer(const Scene& scene, const ViewLimits& limits, std::span<const ObjectSurface> surfaces)
+        : scene_(scene), limits_(limits), surfaces_(surfaces), groups_(view_.groups) {
         view_.view_from_input = view_frame(scene);
         view_.coloured = !scene.points.red.empty();
         // With colours a record takes 16 bytes, without them 12.
@@ -118,6 +119,7 @@ class Packer {
     PackedView pack() {
         measure();
         pack_voxels();
+        pack_surfaces();
         pack_points();
         for (const auto& [name, field] : scene_.fields) pack_field(field, view_.fields[name]);
         view_.walks = pack_walks(scene_.walks, view_.view_from_input, limits_.walk_cells);
@@ -158,10 +160,12 @@ class Packer {
         add(scene_.points);
         if (at[0].empty()) at[0] = at[1] = at[2] = {0};
         bounds_ = scene_bounds<float>({at[0], at[1], at[2]}, 0.01f);
+        // Surfaces reach beyond the middles of their voxels.
+        const double margin = surfaces_.empty() ? 0 : 2 * scene_.voxel_size_m;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            view_.origin_m[axis] = bounds_.low[axis];
+            view_.origin_m[axis] = bounds_.low[axis] - margin;
             view_.step_m[axis] =
-                std::max(double{bounds_.high[axis]} - bounds_.low[axis], 1e-3) / 65535;
+                std::max(double{bounds_.high[axis]} - bounds_.low[axis] + 2 * margin, 1e-3) / 65535;
         }
         for (std::size_t i = 0; i < scene_.solid.x.size(); ++i) {
             const auto p = place(scene_.solid, i);
@@ -323,6 +327,84 @@ class Packer {
         }
     }
 
+    // In place of the voxels, where it is not too large.
+    void pack_surfaces() {
+        if (surfaces_.empty() || cells_.empty()) return;
+        SurfacePacker packer(view_.coloured);
+        for (const ObjectSurface& surface : surfaces_) {
+            packer.add(
+                surface,
+                [&](std::int32_t primitive) { return groups_.of(primitive, surface.object); },
+                [&](std::size_t v, std::uint16_t group) { return vertex_of(surface, v, group); });
+        }
+        const std::size_t record = view_.coloured ? 16 : 12;
+        // It may have some of the points' room.
+        const std::size_t own = limits_.voxels * record, of_points = limits_.points / 2 * record;
+        if (packer.bytes() > own + of_points) return;
+        if (packer.bytes() > own) limits_.points -= (packer.bytes() - own) / record;
+        view_.surface = packer.take();
+        view_.voxels.cell.clear();
+        view_.voxels.aux.clear();
+        view_.voxels.photo.clear();
+    }
+
+    SurfaceVertex vertex_of(const ObjectSurface& surface, std::size_t v,
+                            std::uint16_t group) const {
+        const auto& at = surface.vertex[v];
+        const auto& normal = surface.normal[v];
+        const Vec3 p = turned(view_.view_from_input, at[0], at[1], at[2]),
+                   n = turned(view_.view_from_input, normal[0], normal[1], normal[2]);
+        SurfaceVertex out;
+        out.cell = quantised(p, group);
+        const bool background = is_background(surface.object);
+        const Cell* cell = cell_below(p, n, background);
+        const auto facing = background && cell ? direction_code(cell->normal) : no_direction;
+        out.aux = {signed_byte(n[0]), signed_byte(n[1]), signed_byte(n[2]),
+                   static_cast<std::int8_t>(facing + (cell && cell->completed ? 64 : 0))};
+        if (!surface.colour.empty() && surface.colour[v])
+            out.photo = photo({*surface.colour[v], true});
+        return out;
+    }
+    // What is drawn of the voxels below a place of the surface, or beside it. Of the background,
+    // one that faces as the surface does or away from it goes before those of walls that meet it
+    // there.
+    const Cell* cell_below(const Vec3& p, const Vec3& normal, bool background) const {
+        constexpr float same = 0.7f;  // cosine
+        const auto cell_at = [&](const std::array<std::int32_t, 3>& index) -> const Cell* {
+            const auto found = table_.find(index);
+            return found == CellTable::absent || cells_[found].background != background
+                       ? nullptr
+                       : &cells_[found];
+        };
+        const auto along = [&](const Cell& cell) {
+            double sum = 0;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                sum += normal[axis] * double{cell.normal[axis]};
+            return std::abs(sum);
+        };
+        const Cell* nearest = nullptr;
+        for (const double depth : {0.5, 1.0, 0.0}) {
+            Vec3 at = p;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                at[axis] -= depth * view_.cube_m * normal[axis];
+            const Cell* cell = cell_at(index_of(at, view_.cube_m));
+            if (cell && (!background || along(*cell) > same)) return cell;
+            if (!nearest) nearest = cell;
+        }
+        if (nearest && !background) return nearest;
+        const Cell* best = nearest;
+        double most = nearest ? same : -1;
+        const auto middle = index_of(p, view_.cube_m);
+        for (int n = 0; n < 125; ++n) {
+            const Cell* cell =
+                cell_at({middle[0] + n / 25 - 2, middle[1] + n / 5 % 5 - 2, middle[2] + n % 5 - 2});
+            if (!cell || along(*cell) <= most) continue;
+            most = along(*cell);
+            best = cell;
+        }
+        return best;
+    }
+
     void pack_points() {
         const auto& points = scene_.points;
         auto& out = view_.points;
@@ -399,6 +481,7 @@ class Packer {
 
     const Scene& scene_;
     ViewLimits limits_;
+    std::span<const ObjectSurface> surfaces_;
     PackedView view_;
     Groups groups_;
     std::set<std::int32_t> grounded_;
@@ -413,8 +496,9 @@ class Packer {
 
 }  // namespace
 
-PackedView pack_view(const Scene& scene, const ViewLimits& limits) {
-    return Packer(scene, limits).pack();
+PackedView pack_view(const Scene& scene, const ViewLimits& limits,
+                     std::span<const ObjectSurface> surfaces) {
+    return Packer(scene, limits, surfaces).pack();
 }
 
 }  // namespace topple::report

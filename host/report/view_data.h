@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/object_surface.h"
 #include "report/view_walks.h"
 #include "topple/scene.h"
 
@@ -34,6 +36,18 @@ struct Records {
     std::size_t total = 0;  // how many the scene has
 };
 
+// The surface of the solids. cell: place and group, as of Records. aux: the normal in 1/127, then
+// where a room sees the background from: x + 1 + 3 (y + 1) + 9 (z + 1) of a direction of -1, 0 and
+// 1, 13 for things; and in bit 6 whether it was completed. photo: as of Records. index: of
+// each triangle's corners how many vertices back it is, 0 for the next one that no triangle before
+// had.
+struct PackedSurface {
+    std::vector<std::array<std::uint16_t, 4>> cell;
+    std::vector<std::array<std::int8_t, 4>> aux;
+    std::vector<std::array<std::uint8_t, 4>> photo;
+    std::vector<std::array<std::uint16_t, 3>> index;
+};
+
 // Arrows of a field: position, direction times strength, density.
 struct Arrows {
     std::vector<std::array<float, 7>> arrow;
@@ -49,11 +63,14 @@ struct PackedView {
         groups;             // primitive and object of each group
     bool coloured = false;  // the scan has colours
     Records voxels, points;
+    PackedSurface surface;  // in place of voxels; empty where there is none, or too large a one
     std::map<std::string, Arrows> fields;
     PackedWalks walks;
 };
 
-// Never fails; what is not finite is left out.
-PackedView pack_view(const Scene& scene, const ViewLimits& limits = {});
+// Never fails; what is not finite is left out. surfaces: of the scene's solids; without them voxels
+// are packed.
+PackedView pack_view(const Scene& scene, const ViewLimits& limits = {},
+                     std::span<const ObjectSurface> surfaces = {});
 
 }  // namespace topple::report

@@ -17,17 +17,20 @@ struct Corner {
     std::size_t group;  // of those that share a normal: its first corner
 };
 
-constexpr double crease = 0.866;  // cosine of 30 degrees
+// What turns more is a crease, cosines: between patches, and beside what no patch tells of.
+constexpr double crease = 0.866, smoothed_crease = 0.7;
 
 // Makes one of those that hang together without a crease; lines join the first.
 void group(std::vector<Corner>& corners) {
     for (std::size_t a = 0; a < corners.size(); ++a) {
         corners[a].group = a;
         for (std::size_t b = 0; b < a; ++b) {
+            const double least = corners[a].known && corners[b].known ? crease : smoothed_crease;
             if (corners[a].group == corners[b].group ||
-                dot(corners[a].normal, corners[b].normal) < crease)
+                dot(corners[a].normal, corners[b].normal) < least)
                 continue;
-            const auto [to, from] = std::minmax(corners[a].group, corners[b].group);
+            const std::size_t to = std::min(corners[a].group, corners[b].group),
+                              from = std::max(corners[a].group, corners[b].group);
             for (std::size_t c = 0; c <= a; ++c)
                 if (corners[c].group == from) corners[c].group = to;
         }
@@ -39,12 +42,15 @@ void group(std::vector<Corner>& corners) {
         if (dot(c.normal, c.normal) == 0) c.group = to;
 }
 
-// The mean by area; where all are lines, that of the first of a patch.
+// The mean by area, of patches where there are any; where all are lines, that of one of a patch.
 Vec3 normal_of(const std::vector<Corner>& corners, std::size_t group) {
     Vec3 sum{}, any{0, 0, 1};
+    const bool known = std::ranges::any_of(
+        corners, [&](const Corner& c) { return c.group == group && c.known && c.area > 0; });
     for (const Corner& c : corners) {
         if (c.group != group) continue;
         if (c.known) any = c.normal;
+        if (known && !c.known) continue;
         for (std::size_t a = 0; a < 3; ++a) sum[a] += c.area * c.normal[a];
     }
     constexpr double least = 1e-200;  // squared

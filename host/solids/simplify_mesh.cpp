@@ -104,16 +104,39 @@ class Simplifier {
         return t[(at + steps) % 3];
     }
 
+    static Vec3 side_of(const Facet& facet) {
+        Vec3 out{};
+        out[facet.direction / 2] = facet.direction % 2 ? 1 : -1;
+        return out;
+    }
+    // The direction that triangle t, of corners `own`, should face: its patch's at a place, so that
+    // folds are smoothed out; without one its own, or its voxel's side's where it is but a line.
+    Vec3 outside_of(std::uint32_t t, const std::array<std::uint32_t, 3>& own,
+                    const Vec3& at) const {
+        constexpr double line = 0.05;  // height over the longest side
+        if (mesh_.facet[t].patch != no_patch) return outwards(mesh_.facet[t], patches_, at);
+        const Vec3 out = area(own);
+        return length(out) > line * longest_side(own) ? out : side_of(mesh_.facet[t]);
+    }
+    // Squared.
+    double longest_side(const std::array<std::uint32_t, 3>& t) const {
+        double out = 0;
+        for (std::size_t n = 0; n < 3; ++n) {
+            const Vec3 edge = minus(mesh_.vertex[t[n]], mesh_.vertex[t[(n + 1) % 3]]);
+            out = std::max(out, dot(edge, edge));
+        }
+        return out;
+    }
+
     void add_planes(std::uint32_t v) {
         // How much further than from a patch a vertex may be from a border of primitives, and from
         // what no patch tells of.
-        constexpr double wider = 10, unknown = 10;
+        constexpr double wider = 10, unknown = 20;
         const Vec3& at = mesh_.vertex[v];
         const bool bordered = is_bordered(v);
         for (const std::uint32_t t : around_[v]) {
-            const Vec3 own = area(mesh_.triangle[t]);
             const bool known = mesh_.facet[t].patch != no_patch;
-            const Vec3 normal = unit(known ? outwards(mesh_.facet[t], patches_, at) : own);
+            const Vec3 normal = unit(outside_of(t, mesh_.triangle[t], at));
             Vec3 counted = normal;
             if (!known)
                 for (double& x : counted) x /= unknown;
@@ -189,22 +212,13 @@ class Simplifier {
         for (const std::uint32_t t : around_[v]) {
             auto moved = mesh_.triangle[t];
             if (std::ranges::find(moved, u) != moved.end()) continue;
-            Vec3 outside = area(moved);
+            const Vec3 outside = outside_of(t, moved, mesh_.vertex[u]);
             std::ranges::replace(moved, v, u);
             const Vec3 then = area(moved);
             const double size = length(then);
-            double side = 0;
-            for (std::size_t n = 0; n < 3; ++n) {
-                const Vec3 edge = minus(mesh_.vertex[moved[n]], mesh_.vertex[moved[(n + 1) % 3]]);
-                side = std::max(side, dot(edge, edge));
-            }
-            if (!(size > narrow * side)) return false;
-            // Folds of what was placed on a patch may be smoothed out; what was not stays on the
-            // side that its voxel's side was on.
-            const Facet& facet = mesh_.facet[t];
-            if (facet.patch != no_patch)
-                outside = outwards(facet, patches_, mesh_.vertex[u]);
-            else if (then[facet.direction / 2] * (facet.direction % 2 ? 1 : -1) < 0)
+            if (!(size > narrow * longest_side(moved))) return false;
+            // What is on no patch stays on the side that its voxel's side was on.
+            if (mesh_.facet[t].patch == no_patch && dot(side_of(mesh_.facet[t]), then) < 0)
                 return false;
             if (dot(outside, then) < turn * length(outside) * size) return false;
         }

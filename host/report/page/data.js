@@ -10,16 +10,29 @@ function loadScene() {
     records.aux = new Int8Array(bytesOf(records.aux));
     if (records.photo) records.photo = new Uint8Array(bytesOf(records.photo));
   }
+  const surface = view.surface;
+  surface.cell = new Uint16Array(bytesOf(surface.cell));
+  surface.aux = new Int8Array(bytesOf(surface.aux));
+  if (surface.photo) surface.photo = new Uint8Array(bytesOf(surface.photo));
+  surface.index = vertexNumbers(new Uint16Array(bytesOf(surface.index)));
   for (const name of Object.keys(view.fields)) {
     view.fields[name].arrow = new Float32Array(bytesOf(view.fields[name].arrow));
   }
-  scene.coloured = !!(view.voxels.photo || view.points.photo);
+  scene.coloured = !!(view.voxels.photo || surface.photo || view.points.photo);
   view.walks.shade = new Uint8Array(bytesOf(view.walks.shade));
   view.walks.floor_mm = new Int16Array(bytesOf(view.walks.floor_mm));
   scene.objectById = new Map(scene.objects.map(object => [object.id, object]));
   const reckoned = new Set(scene.objects.flatMap(object => Object.keys(object.risk_J)));
   scene.disturbances = [...new Set([...disturbanceNames, ...reckoned])].filter(name => reckoned.has(name));
   return scene;
+}
+
+// Of triangles' corners that tell how many vertices back they are, 0 for one that is new.
+function vertexNumbers(back) {
+  const out = new Uint32Array(back.length);
+  let next = 0;
+  for (let i = 0; i < back.length; ++i) out[i] = back[i] ? next - back[i] : next++;
+  return out;
 }
 
 function bytesOf(base64) {

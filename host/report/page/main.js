@@ -125,7 +125,7 @@ function fieldBoxes(scene, view, state) {
 
 function sayThinned(scene) {
   const view = scene.view, parts = [];
-  if (view.cube_m > 1.01 * scene.voxel_size_m) {
+  if (!view.surface.count && view.cube_m > 1.01 * scene.voxel_size_m) {
     parts.push(`Voxels are drawn merged to cubes of ${number(view.cube_m * 100, 'cm')}.`);
   }
   if (view.points.count < view.points.total) {
@@ -218,7 +218,7 @@ function start() {
   if (view) {
     if (!scene.coloured) document.querySelector('#colour-by [data-value=photo]').remove();
     radioGroup('colour-by', state.mode, mode => { state.mode = mode; repaint(); });
-    const hasSolids = scene.view.voxels.count > 0;
+    const hasSolids = scene.view.surface.count + scene.view.voxels.count > 0;
     radioGroup('show', hasSolids ? 'solids' : 'points', what => view.setShow(what));
     view.setShow(hasSolids ? 'solids' : 'points');
     fieldBoxes(scene, view, state);

@@ -58,6 +58,35 @@ const voxelVertexShader = recordShader + `
   }
 `;
 
+const surfaceVertexShader = recordShader + `
+  varying float before;  // whether the eye is on the side that a room sees it from
+  void main() {
+    vec3 at = place();
+    vec4 colour = groupColour();
+    if (colour.a < 0.1) {
+      gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+      return;
+    }
+    float inferred = floor(aux.w / 64.0 + 0.001), code = floor(aux.w - 64.0 * inferred + 0.5);
+    float xy = mod(code, 9.0);
+    vec3 facing = vec3(mod(xy, 3.0), floor(xy / 3.0 + 0.01), floor(code / 9.0 + 0.01)) - 1.0;
+    before = through > 0.5 && colour.a < 0.75 && dot(facing, facing) > 0.0 ? dot(facing, eye - at) : 1.0;
+    float light = 0.77 + 0.25 * dot(normalize(aux.xyz), vec3(-0.13, -0.43, 0.89));
+    float completed = inferred > 0.5 && colour.a > 0.75 ? 0.93 : 1.0;
+    shade = picking > 0.5 ? identity() : colour.rgb * light * completed;
+    gl_Position = projectionMatrix * viewMatrix * vec4(at, 1.0);
+  }
+`;
+
+const surfaceFragmentShader = `
+  varying vec3 shade;
+  varying float before;
+  void main() {
+    if (before < 0.0) discard;
+    gl_FragColor = vec4(shade, 1.0);
+  }
+`;
+
 const pointVertexShader = recordShader + `
   uniform float pointScale, pointSize;
   void main() {

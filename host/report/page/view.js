@@ -19,7 +19,7 @@ class View {
     this.controls.addEventListener('change', () => this.redraw());
     this.makePalette();
     this.measure();
-    this.makeVoxels();
+    this.makeSolids();
     this.makePoints();
     this.makeOverlays();
     this.ids = new THREE.WebGLRenderTarget(1, 1, {magFilter: THREE.NearestFilter, minFilter: THREE.NearestFilter});
@@ -81,7 +81,7 @@ class View {
   // The box and the reach of what is drawn, from the records' 2nd and 98th hundredths.
   measure() {
     const view = this.scene.view;
-    const records = view.voxels.count ? view.voxels : view.points;
+    const records = [view.surface, view.voxels].find(solids => solids.count) || view.points;
     this.box = new THREE.Box3(new THREE.Vector3(-0.5, -0.5, -0.5), new THREE.Vector3(0.5, 0.5, 0.5));
     this.reach = 1;
     if (!records.count) return;
@@ -99,14 +99,37 @@ class View {
 
   // --- what is drawn --------------------------------------------------------------------------------
 
+  makeSolids() {
+    this.solids = new THREE.Group();
+    this.faces = 0;
+    if (this.scene.view.surface.count) this.makeSurface();
+    else this.makeVoxels();
+    this.world.add(this.solids);
+  }
+
+  makeSurface() {
+    const {surface} = this.scene.view;
+    const geometry = new THREE.BufferGeometry();
+    // three.js knows geometry by `position`, which the shader does not read.
+    geometry.setAttribute('position', new THREE.BufferAttribute(surface.cell, 4));
+    geometry.setAttribute('cell', new THREE.BufferAttribute(surface.cell, 4));
+    geometry.setAttribute('aux', new THREE.BufferAttribute(surface.aux, 4));
+    if (surface.photo) geometry.setAttribute('photo', new THREE.BufferAttribute(surface.photo, 4, true));
+    geometry.setIndex(new THREE.BufferAttribute(surface.index, 1));
+    const mesh = new THREE.Mesh(geometry, new THREE.ShaderMaterial({
+      uniforms: this.uniforms, vertexShader: surfaceVertexShader, fragmentShader: surfaceFragmentShader,
+    }));
+    mesh.frustumCulled = false;
+    this.solids.add(mesh);
+    this.faces = surface.triangles;
+  }
+
   // One mesh for each direction of face, of the exposed faces only. Four vertices a face rather than an instance:
   // drawing in software takes long over instances.
   makeVoxels() {
     const {voxels} = this.scene.view;
     const fromCell = new Uint32Array(voxels.cell.buffer), fromAux = new Uint32Array(voxels.aux.buffer);
     const fromPhoto = voxels.photo && new Uint32Array(voxels.photo.buffer);
-    this.solids = new THREE.Group();
-    this.faces = 0;
     faceNormals.forEach((normal, face) => {
       let count = 0;
       for (let i = 0; i < voxels.count; ++i) count += voxels.aux[4 * i + 3] >> face & 1;
@@ -143,12 +166,12 @@ class View {
       this.solids.add(mesh);
       this.faces += count;
     });
-    this.world.add(this.solids);
   }
 
   // Leaves out the directions of faces that the camera, being past all of them, sees from behind only.
   hideBacks() {
     const view = this.scene.view, eye = this.camera.position.toArray();
+    if (view.surface.count) return;
     for (const mesh of this.solids.children) {
       const normal = mesh.material.uniforms.faceNormal.value.toArray(), axis = normal.findIndex(value => value !== 0);
       const low = view.origin_m[axis] - view.cube_m, high = view.origin_m[axis] + 65535 * view.step_m[axis] + view.cube_m;

@@ -291,6 +291,48 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
     }
 }
 
+// A tetrahedron in place of the scene's voxels.
+ObjectSurface tetrahedron() {
+    ObjectSurface out;
+    out.object = 5;
+    const std::array<Vec3, 4> corner{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}}};
+    const std::array<Vec3, 4> normal{{{0, 0, -1}, {0, -1, 0}, {-1, 0, 0}, {0.577, 0.577, 0.577}}};
+    const std::array<std::array<std::size_t, 3>, 4> face{
+        {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+    for (std::size_t f = 0; f < face.size(); ++f) {
+        const auto first = static_cast<std::uint32_t>(out.vertex.size());
+        for (const std::size_t c : face[f]) {
+            out.vertex.push_back(corner[c]);
+            out.normal.push_back(normal[f]);
+        }
+        out.triangle.push_back({first, first + 1, first + 2});
+        out.primitive.push_back(0);
+    }
+    return out;
+}
+
+TEST_F(Report, shows_surfaces_in_a_browser) {
+    NEEDS_BROWSER();
+    const std::vector surfaces{tetrahedron()};
+    write_report(folder_ / "report.html", test::SyntheticScene(0.08).make(), surfaces);
+    const auto page = open(folder_ / "report.html", R"(
+        toppleView.render();
+        const seen = toppleView.seen();
+        document.body.dataset.found = [...seen.keys()].filter(id => seen.get(id) > 10).sort().join(' ');
+        document.body.dataset.pixels = seen.get(5);
+        document.body.dataset.used = '1';
+    )");
+    EXPECT_EQ(page.data("ready"), "1") << page.log;
+    EXPECT_EQ(page.data("used"), "1") << page.log;
+    EXPECT_EQ(page.data("view"), "(none)") << "the 3D view must work";
+    EXPECT_EQ(page.data("faces"), "4");
+    EXPECT_EQ(page.data("found"), "5");
+    EXPECT_GT(std::stoi("0" + page.data("pixels")), 2000);
+    for (const char* wrong : {"Uncaught", "THREE.", "ERR_"}) {
+        EXPECT_EQ(page.log.find(wrong), std::string::npos) << page.log;
+    }
+}
+
 TEST_F(Report, shows_all_on_a_phone) {
     NEEDS_BROWSER();
     write_report(folder_ / "report.html", test::SyntheticScene(0.2).make());

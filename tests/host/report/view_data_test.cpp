@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "report/base64.h"
+#include "report/surface_packer.h"
 #include "synthetic_scene.h"
 
 namespace topple::report {
@@ -292,6 +294,150 @@ TEST(ViewData, colours_of_the_scan_spread_over_what_it_did_not_see) {
         const auto& photo = view.points.photo[i];
         EXPECT_EQ(photo[3], photo[0] + photo[2] > 0 ? 255 : 0);
     }
+}
+
+// A cube of n voxels as one surface of 12 triangles, its upper half another primitive's.
+ObjectSurface surface_of(const Scene& scene, int n) {
+    ObjectSurface out;
+    out.object = scene.solid.object[0];
+    const double size = n * scene.voxel_size_m;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const int side : {0, 1}) {
+            const auto first = static_cast<std::uint32_t>(out.vertex.size());
+            for (const auto& [u, v] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
+                Vec3 at{}, normal{};
+                at[std::size_t(axis)] = side * size;
+                at[std::size_t(axis + 1) % 3] = u * size;
+                at[std::size_t(axis + 2) % 3] = v * size;
+                normal[std::size_t(axis)] = 2 * side - 1;
+                out.vertex.push_back({at[0] - 3, at[1], at[2] + 1});
+                out.normal.push_back(normal);
+            }
+            const std::uint32_t b = side ? 1 : 3, d = side ? 3 : 1;
+            out.triangle.push_back({first, first + b, first + 2});
+            out.triangle.push_back({first, first + 2, first + d});
+            out.primitive.push_back(3);
+            out.primitive.push_back(axis == 2 && side ? 4 : 3);
+        }
+    }
+    return out;
+}
+
+// As the page reads them.
+std::vector<std::size_t> numbers_of(const PackedSurface& surface) {
+    std::vector<std::size_t> out;
+    std::size_t next = 0;
+    for (const auto& triangle : surface.index)
+        for (const std::uint16_t back : triangle) out.push_back(back ? next - back : next++);
+    EXPECT_EQ(next, surface.cell.size());
+    return out;
+}
+
+TEST(ViewData, surfaces_go_in_place_of_voxels) {
+    auto scene = cube_of(5, 0.02);
+    const std::vector surfaces{surface_of(scene, 5)};
+    const auto view = pack_view(scene, {}, surfaces);
+    EXPECT_TRUE(view.voxels.cell.empty());
+    EXPECT_EQ(view.voxels.total, 125u);
+    ASSERT_EQ(view.surface.index.size(), 12u);
+    EXPECT_EQ(view.surface.cell.size(), 24u + 2) << "one triangle is of another group";
+    EXPECT_EQ(view.surface.aux.size(), view.surface.cell.size());
+    EXPECT_TRUE(view.surface.photo.empty());
+    const auto number = numbers_of(view.surface);
+    std::map<std::int32_t, int> triangles;  // of each primitive
+    double six_volumes = 0;
+    for (std::size_t t = 0; t < 12; ++t) {
+        std::array<Vec3, 3> p;
+        for (std::size_t n = 0; n < 3; ++n) {
+            const auto& cell = view.surface.cell[number[3 * t + n]];
+            p[n] = place(view, cell);
+            EXPECT_EQ(view.groups[cell[3]].second, 2);
+        }
+        ++triangles[view.groups[view.surface.cell[number[3 * t]][3]].first];
+        for (std::size_t a = 0; a < 3; ++a)
+            six_volumes += p[0][a] * (p[1][(a + 1) % 3] * p[2][(a + 2) % 3] -
+                                      p[1][(a + 2) % 3] * p[2][(a + 1) % 3]);
+    }
+    EXPECT_EQ(triangles, (std::map<std::int32_t, int>{{3, 11}, {4, 1}}));
+    EXPECT_NEAR(six_volumes / 6, 1e-3, 1e-6) << "also on the border of what is drawn";
+    for (const auto& aux : view.surface.aux) {
+        EXPECT_EQ(std::abs(aux[0]) + std::abs(aux[1]) + std::abs(aux[2]), 127);
+        EXPECT_EQ(aux[3] & 31, no_direction) << "a thing is never looked through";
+    }
+}
+
+TEST(ViewData, surfaces_of_the_ground_know_which_side_was_seen) {
+    auto scene = cube_of(5, 0.02);
+    scene.objects.resize(3);
+    scene.objects[2].id = 2;
+    scene.objects[2].grounded = true;
+    // Seen from above only.
+    scene.points = {{-2.95f}, {0.05f}, {1.099f}, {0}, {0}, {1}, {3}, {2}};
+    const std::vector surfaces{surface_of(scene, 5)};
+    const auto view = pack_view(scene, {}, surfaces);
+    for (std::size_t v = 0; v < view.surface.aux.size(); ++v) {
+        const auto& aux = view.surface.aux[v];
+        if (aux[2] != 0) {
+            EXPECT_EQ(aux[3] & 31, 13 + 9) << "up, also from below";
+        }
+    }
+}
+
+TEST(ViewData, surfaces_have_the_scans_colours) {
+    auto scene = cube_of(5, 0.02);
+    scene.points = {{-2.95f}, {0.05f}, {1.099f}, {0}, {0}, {1}, {3}, {2}};
+    scene.points.red = scene.points.green = scene.points.blue = {7};
+    std::vector surfaces{surface_of(scene, 5)};
+    surfaces[0].colour.assign(24, Rgb8{10, 20, 30});
+    surfaces[0].colour[0].reset();
+    const auto view = pack_view(scene, {}, surfaces);
+    ASSERT_EQ(view.surface.photo.size(), view.surface.cell.size());
+    EXPECT_EQ(view.surface.photo[0], (std::array<std::uint8_t, 4>{0, 0, 0, 0}));
+    EXPECT_EQ(view.surface.photo[1], (std::array<std::uint8_t, 4>{10, 20, 30, 255}));
+}
+
+TEST(ViewData, surfaces_that_are_too_large_are_left_out) {
+    auto scene = cube_of(5, 0.02);
+    const std::vector surfaces{surface_of(scene, 5)};
+    const auto view = pack_view(scene, {.voxels = 30, .points = 1, .arrows = 1}, surfaces);
+    EXPECT_TRUE(view.surface.cell.empty());
+    EXPECT_FALSE(view.voxels.cell.empty());
+}
+
+// Vertices whose numbers don't fit into 16 bits any more come again.
+TEST(ViewData, surfaces_may_have_many_vertices) {
+    ObjectSurface fan;
+    for (std::uint32_t n = 0; n < 80000; ++n) {
+        fan.vertex.push_back({n * 1e-5, n % 2 * 1e-3, 1});
+        fan.normal.push_back({0, 0, 1});
+        if (n < 2) continue;
+        fan.triangle.push_back({0, n - 1, n});
+        fan.primitive.push_back(0);
+    }
+    SurfacePacker packer(false);
+    const auto group = [](std::int32_t) { return std::uint16_t{1}; };
+    packer.add(fan, group, [](std::size_t v, std::uint16_t g) {
+        SurfaceVertex out;
+        out.cell = {static_cast<std::uint16_t>(v & 65535), static_cast<std::uint16_t>(v >> 16), 0,
+                    g};
+        return out;
+    });
+    const PackedSurface packed = packer.take();
+    EXPECT_EQ(packed.cell.size(), 80001u);
+    const auto number = numbers_of(packed);
+    for (std::size_t i = 0; i < number.size(); ++i) {
+        const auto& cell = packed.cell.at(number[i]);
+        ASSERT_EQ(cell[0] + (std::uint32_t{cell[1]} << 16), fan.triangle[i / 3][i % 3]);
+    }
+}
+
+TEST(ViewData, directions_have_codes) {
+    for (int code = 0; code < 27; ++code) {
+        const std::array<float, 3> d{float(code % 3 - 1), float(code / 3 % 3 - 1),
+                                     float(code / 9 - 1)};
+        EXPECT_EQ(direction_code(d), code);
+    }
+    EXPECT_EQ(direction_code({0.95f, 0.1f, -0.2f}), 14);
 }
 
 }  // namespace

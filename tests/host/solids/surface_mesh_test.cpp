@@ -295,7 +295,11 @@ TEST(SurfaceMesh, is_closed_around_any_voxels) {
         expect_closed(mesh);
         simplify(mesh, {}, {.tolerance_m = 0.01 * h});
         expect_closed(mesh);
-        for (const Vec3& n : shaded(mesh, {}).normal) ASSERT_NEAR(length(n), 1, 1e-9);
+        const ShadedMesh shade = shaded(mesh, {});
+        for (const Vec3& n : shade.normal) ASSERT_NEAR(length(n), 1, 1e-9);
+        for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+            for (std::size_t n = 0; n < 3; ++n)
+                ASSERT_EQ(shade.from[shade.triangle[t][n]], mesh.triangle[t][n]);
     }
 }
 

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "report/surface_packer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace topple::report {
+
+std::uint8_t direction_code(const std::array<float, 3>& direction) {
+    // Of a direction at 22.5 degrees to an axis, in its plane.
+    constexpr float share = 0.4142f;
+    const float most =
+        std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])});
+    std::uint8_t code = 0;
+    for (const std::size_t axis : {2, 1, 0}) {
+        const float v = direction[axis];
+        const int step = most > 0 && std::abs(v) > share * most ? (v > 0 ? 1 : -1) : 0;
+        code = static_cast<std::uint8_t>(3 * code + step + 1);
+    }
+    return code;
+}
+
+void SurfacePacker::add(const ObjectSurface& surface,
+                        const std::function<std::uint16_t(std::int32_t)>& group_of,
+                        const std::function<SurfaceVertex(std::size_t, std::uint16_t)>& vertex_of) {
+    std::vector<std::size_t> order(surface.triangle.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t t) { return surface.primitive[t]; });
+    // The number of each vertex, good for the group at `begun` and after.
+    std::vector<std::size_t> number(surface.vertex.size(), 0);
+    std::size_t begun = out_.cell.size() + 1;
+    std::int32_t primitive = -2;
+    std::uint16_t group = 0;
+    for (const std::size_t t : order) {
+        if (surface.primitive[t] != primitive) {
+            primitive = surface.primitive[t];
+            group = group_of(primitive);
+            begun = out_.cell.size() + 1;
+        }
+        std::array<std::uint16_t, 3> index{};
+        for (std::size_t n = 0; n < 3; ++n) {
+            std::size_t& at = number[surface.triangle[t][n]];  // and 1
+            // What is too far back comes once more.
+            if (at < begun || out_.cell.size() + 1 - at > 65535) {
+                const SurfaceVertex v = vertex_of(surface.triangle[t][n], group);
+                out_.cell.push_back(v.cell);
+                out_.aux.push_back(v.aux);
+                if (coloured_) out_.photo.push_back(v.photo);
+                at = out_.cell.size();
+                index[n] = 0;
+            } else {
+                index[n] = static_cast<std::uint16_t>(out_.cell.size() + 1 - at);
+            }
+        }
+        out_.index.push_back(index);
+    }
+}
+
+}  // namespace topple::report
