@@ -11,15 +11,14 @@ namespace topple::graph {
 
 GroupEnergy::GroupEnergy(const ContactGraph& contacts, std::span<const physics::Body> bodies,
                          std::span<const Joint> joints, const ShellOdds& shell,
-                         const GroupingOptions& options)
+                         double standing_weight)
     : contacts_(contacts),
       bodies_(bodies),
       shell_(shell),
-      options_(options),
+      standing_weight_(standing_weight),
       neighbours_(bodies.size()) {
     for (const Joint& j : joints)
-        neighbours_[static_cast<std::size_t>(j.a)].push_back(
-            {j.b, j.log_odds + options.joint_bias});
+        neighbours_[static_cast<std::size_t>(j.a)].push_back({j.b, j.log_odds});
 }
 
 double GroupEnergy::joined(const GroupQuery& query) const {
@@ -43,7 +42,7 @@ double GroupEnergy::joined(const GroupQuery& query) const {
 
 double GroupEnergy::standing(const GroupQuery& query) const {
     if (query.pinned || query.nodes.empty()) return 0;
-    return options_.standing_weight *
+    return standing_weight_ *
            standing_cost(candidate_of(contacts_, bodies_, shell_.pinned, query.nodes),
                          contacts_.voxel_m);
 }

@@ -12,15 +12,14 @@
 namespace topple::graph {
 
 // The energy of a group of primitives, in nats (Eq. 8 with a fitted prior):
-//   - sum of the log-odds of the joints within it, each with joint_bias,
+//   - sum of the log-odds of the joints within it, which may be biased_joints(),
 //   + standing_weight * S, S = -ln P(it stands by itself), see standing_cost().
 // Of the ground: less the log-odds that each of its primitives is the room's, but for those that
 // are taken for the room's anyhow; S = 0. Keeps references to its arguments.
 class GroupEnergy {
   public:
     GroupEnergy(const ContactGraph& contacts, std::span<const physics::Body> bodies,
-                std::span<const Joint> joints, const ShellOdds& shell,
-                const GroupingOptions& options);
+                std::span<const Joint> joints, const ShellOdds& shell, double standing_weight);
 
     double operator()(const GroupQuery& query) const;
     // This energy with its bounds, for the sampler.
@@ -37,7 +36,7 @@ class GroupEnergy {
     const ContactGraph& contacts_;
     std::span<const physics::Body> bodies_;
     const ShellOdds& shell_;
-    const GroupingOptions& options_;
+    double standing_weight_;
     std::vector<std::vector<Neighbour>> neighbours_;
 };
 

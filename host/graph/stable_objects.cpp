@@ -10,6 +10,7 @@
 #include "fitted/boosted_trees.h"
 #include "graph/greedy_contraction.h"
 #include "graph/group_energy.h"
+#include "graph/joint_bias.h"
 #include "graph/outline.h"
 #include "physics/tipping.h"
 #include "solids/cell_shape.h"
@@ -104,9 +105,8 @@ double standing_cost(const physics::Candidate& c, double noise_m) {
 Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Body> bodies,
                           std::span<const Joint> joints, const ShellOdds& shell,
                           const GroupingOptions& options, unsigned threads) {
-    std::vector<Joint> biased(joints.begin(), joints.end());
-    for (Joint& joint : biased) joint.log_odds += options.joint_bias;
-    const GroupEnergy energy(graph, bodies, joints, shell, options);
+    const std::vector<Joint> biased = biased_joints(joints, graph.primitives, options.joint_bias);
+    const GroupEnergy energy(graph, bodies, biased, shell, options.standing_weight);
     SwendsenWangOptions sampler;
     sampler.seed = options.seed;
     sampler.chains = 4;

@@ -22,10 +22,9 @@ struct ShellOdds {
 struct GroupingOptions {
     std::uint64_t seed = 1;
     // Found on generated rooms that no model was fitted on (docs/testing.md): the weight of S(O, W)
-    // beside the joints' log-odds, and what is added to the log-odds of each, nats. The joints of
-    // two groups are no independent witnesses, and their sum says too much.
+    // beside the joints' log-odds, and the bias of joints among others (graph/joint_bias.h), nats.
     double standing_weight = 0.3;
-    double joint_bias = -1;
+    double joint_bias = -1.5;
     double time_limit_s = 0;  // see SwendsenWangOptions
     std::function<bool()> cancelled;
 };

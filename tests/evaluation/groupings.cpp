@@ -11,6 +11,7 @@
 #include "evaluation/tables.h"
 #include "evaluation/text.h"
 #include "graph/group_energy.h"
+#include "graph/joint_bias.h"
 #include "graph/stable_objects.h"
 #include "pipeline/ingest.h"
 #include "scenes/temporary_folder.h"
@@ -156,7 +157,8 @@ Groupings compare_groupings(device::Device& device, const RoomParts& room,
         judged(room, join_by_probability(p.contacts, joints, weights, p.shell.pinned));
 
     const graph::GroupingOptions options;
-    const graph::GroupEnergy energy(p.contacts, p.bodies, p.joints, p.shell, options);
+    const auto biased = graph::biased_joints(p.joints, p.contacts.primitives, options.joint_bias);
+    const graph::GroupEnergy energy(p.contacts, p.bodies, biased, p.shell, options.standing_weight);
     const EnergyOf energy_of = energy.callbacks().of;
     std::vector<graph::Edge> edges;
     for (const graph::Joint& joint : p.joints) edges.push_back({joint.a, joint.b});

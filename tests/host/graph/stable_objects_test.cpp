@@ -93,9 +93,13 @@ TEST_P(Objects, WhatStandsByItselfStaysApart) {
     scene.add(box({0, 0, 0.2}, {0.3, 0.1, 0.4}));
     EXPECT_THAT(grouped(scene, {{0, 1, -4}, {1, 2, -0.4}}).group, ElementsAre(-1, 0, 1));
     EXPECT_THAT(grouped(scene, {{0, 1, -4}, {1, 2, 0.4}}).group, ElementsAre(-1, 0, 0));
-    // What is added to each joint may make it too weak.
-    EXPECT_THAT(grouped(scene, {{0, 1, -4}, {1, 2, 0.4}}, weighing(1, -0.8)).group,
-                ElementsAre(-1, 0, 1));
+    // A bias takes from joints that have others beside them, not from one that is alone.
+    EXPECT_THAT(grouped(scene, {{0, 1, -4}, {1, 2, 0.4}}, weighing(1, -1.2)).group,
+                ElementsAre(-1, 0, 0));
+    scene.add(box({0.3, 0, 0}, {0.6, 0.3, 0.2}));
+    const std::vector<Joint> ring{{0, 1, -4}, {1, 2, 0.4}, {1, 3, 0.4}, {2, 3, 0.4}};
+    EXPECT_THAT(grouped(scene, ring).group, ElementsAre(-1, 0, 0, 0));
+    EXPECT_THAT(grouped(scene, ring, weighing(1, -1.2)).group, ElementsAre(-1, 0, 1, 2));
 }
 
 // A shelf on a wall is the room's, as the model has it; a chair pushed to it is not.
