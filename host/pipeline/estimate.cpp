@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <unordered_set>
 #include <vector>
 
 #include "core/scene_bounds.h"
@@ -19,16 +18,13 @@
 #include "pipeline/cancelling.h"
 #include "pipeline/ingest.h"
 #include "pipeline/parse_memory.h"
+#include "pipeline/surface_extent.h"
 #include "pipeline/tiled_parse.h"
-#include "pipeline/voxel_stage.h"
+#include "pipeline/voxel_size.h"
 #include "vdb/read_volume.h"
 
 namespace topple {
 namespace {
-
-// The surface is measured by cells of this size, metres; a level or upright surface through them
-// occupies about one for each of its cells, others more: 1.1 is between.
-constexpr double surface_cell_m = 0.05, cells_per_area = 1.1;
 
 // Measured on two cores of the machine whose probe takes probe_reference_s: seconds a point of a
 // large cloud (sorting, thinning, writing), seconds and bytes a thinned point (blocks, whole); the
@@ -43,43 +39,6 @@ constexpr double work_point_bytes = 16, work_thinned_bytes = 40;
 constexpr double output_point_bytes = 35, tiled_output_point_bytes = 23, output_fixed = 15e6;
 // Of a surface whose noise is about a seventh of the cell, cells a patch of a cell's size.
 constexpr double layers = 2.3;
-
-// The occupied cells of a cloud that comes in any order.
-class Surface {
-  public:
-    void add(double x, double y, double z) {
-        const std::array<std::int64_t, 3> at{cell(x), cell(y), cell(z)};
-        if (at == last_) return;
-        last_ = at;
-        std::uint64_t key = 0;
-        for (const std::int64_t c : at)
-            key = key << 21 | (static_cast<std::uint64_t>(c) & 0x1fffff);
-        cells_.insert(key);
-    }
-    Bounds<float> bounds() const {
-        std::array<std::vector<float>, 3> at;
-        for (const std::uint64_t key : cells_) {
-            for (std::size_t a = 0; a < 3; ++a) {
-                // Its 21 bits, with their sign.
-                const auto c = static_cast<std::int64_t>(key << (1 + 21 * a)) >> 43;
-                at[a].push_back(static_cast<float>(static_cast<double>(c) * surface_cell_m));
-            }
-        }
-        if (at[0].empty()) return {};
-        return scene_bounds<float>({at[0], at[1], at[2]}, static_cast<float>(surface_cell_m));
-    }
-    double area_m2() const {
-        return static_cast<double>(cells_.size()) * surface_cell_m * surface_cell_m /
-               cells_per_area;
-    }
-
-  private:
-    static std::int64_t cell(double v) {
-        return static_cast<std::int64_t>(std::floor(v / surface_cell_m));
-    }
-    std::array<std::int64_t, 3> last_{INT64_MIN, 0, 0};
-    std::unordered_set<std::uint64_t> cells_;
-};
 
 // Seconds of the work that parses are full of, on a wavy sheet: least of three runs.
 double probe(device::Device& device) {
@@ -107,7 +66,7 @@ void tell(const ParseOptions& options, double done) {
 }
 
 void look_at_cloud(const std::filesystem::path& input, const ParseOptions& options,
-                   Surface& surface, Estimate& out) {
+                   SurfaceExtent& surface, Estimate& out) {
     const auto add = [&](const PointCloud& portion) {
         out.points += portion.size();
         for (std::size_t n = 0; n < portion.size(); ++n)
@@ -128,7 +87,7 @@ void look_at_cloud(const std::filesystem::path& input, const ParseOptions& optio
 // Each frame of a sample covers what its neighbours cover, too: their union grows as that of all.
 // Returns how many pixels all frames have.
 std::uint64_t look_at_frames(const std::filesystem::path& input, const ParseOptions& options,
-                             Surface& surface, Estimate& out) {
+                             SurfaceExtent& surface, Estimate& out) {
     const io::FrameSequence frames = io::FrameSequence::open(input);
     const Intrinsics& k = frames.intrinsics();
     constexpr std::size_t most_frames = 100;
@@ -160,7 +119,7 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
     const auto device = options.device ? options.device : device::open_device("auto");
     tell(options, 0);
     Estimate out;
-    Surface surface;
+    SurfaceExtent surface;
     std::uint64_t pixels = 0;
     if (io::looks_like_sequence(input)) {
         pixels = look_at_frames(input, options, surface, out);
@@ -206,9 +165,11 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
         const double bytes = out.frames > 0 ? fused_point_bytes : point_bytes;
         out.memory_bytes = static_cast<std::uint64_t>(60e6 + bytes * looked_at);
         if (looked_at > 0)
-            out.least_bytes =
-                one_piece_bytes(looked_at, surface.bounds(),
-                                options.voxel_m > 0 ? options.voxel_m : voxel_for_cell(out.cell_m));
+            out.least_bytes = one_piece_bytes(
+                looked_at, surface.bounds(),
+                options.voxel_m > 0
+                    ? options.voxel_m
+                    : voxel_for_scan(out.cell_m, surface, looked_at, options.max_memory_bytes));
         out.output_bytes =
             static_cast<std::uint64_t>(output_fixed + output_point_bytes * looked_at);
     }

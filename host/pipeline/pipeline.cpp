@@ -18,6 +18,7 @@
 #include "pipeline/safety_stage.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/tiled_parse.h"
+#include "pipeline/voxel_size.h"
 #include "pipeline/voxel_stage.h"
 #include "topple/parse.h"
 #include "vdb/read_volume.h"
@@ -80,9 +81,7 @@ std::string unit_hint(const CloudView& cloud) {
 
 ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOptions& options,
                            Scene scene, StageClock& stage) {
-    const double voxel_m = options.voxel_m > 0 ? options.voxel_m
-                           : input.voxel_m > 0 ? input.voxel_m
-                                               : voxel_for_cell(input.cell_m);
+    const double voxel_m = voxel_for_input(input, options);
     check_memory(input.cloud, scene.source, voxel_m, options);
     record_run(device, options, voxel_m, scene);
     scene.offset_m = input.own.offset_m;
@@ -133,6 +132,8 @@ void check_options(const ParseOptions& o) {
     if (o.voxel_m != 0) check_range("--voxel", o.voxel_m, least_voxel_m, 1.0);
     check_range("--unit", o.unit_m, 1e-6, 1e6);
     check_range("--density", o.density_kg_m3, 0, 30000);
+    if (o.contents_kg_m3 && *o.contents_kg_m3 != 0)
+        check_range("--contents", *o.contents_kg_m3, 0, 30000);
     check_range("--friction", o.friction, 0, 10);
     check_range("--walks", o.walks, 1, 1e6);
     check_range("--wind", o.wind_m_s, 0, 150);

@@ -12,15 +12,13 @@
 #include "geometry/ledges.h"
 #include "geometry/surface_gaps.h"
 #include "pipeline/view_coverage.h"
+#include "pipeline/voxel_size.h"
 #include "solids/boundary.h"
 #include "solids/patches.h"
 #include "vdb/completion.h"
 
 namespace topple {
 namespace {
-
-// Voxels of so many times the points' cell have no holes where a surface was seen.
-constexpr double closing_cells = 1.75;
 
 // Frames are carved in batches of this many bytes of depth, so that any number of them fits.
 constexpr std::uint64_t batch_bytes = 16u << 20;
@@ -238,14 +236,6 @@ bool carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScen
 }
 
 }  // namespace
-
-double voxel_for_cell(double cell_m) {
-    constexpr std::array<double, 8> handy{0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05};
-    for (const double h : handy) {
-        if (h >= closing_cells * cell_m) return h;
-    }
-    return 2 * cell_m;
-}
 
 std::vector<std::int32_t> numbered(std::span<const std::int32_t> primitive,
                                    std::span<const std::int32_t> number) {

@@ -29,9 +29,6 @@ struct VoxelStage {
 // and too little to tell how it stands.
 constexpr std::uint64_t least_voxels = 8;
 
-// Edge of a solid voxel for a scan of this resolution: about two cells, rounded to a handy value.
-double voxel_for_cell(double cell_m);
-
 // Voxels, carving and completion.
 VoxelStage make_solids(device::Device& device, const Ingested& input, const GeometryStage& geometry,
                        double voxel_m, StageClock& stage);

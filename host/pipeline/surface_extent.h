@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <unordered_set>
+#include <vector>
+
+#include "core/scene_bounds.h"
+
+namespace topple {
+
+// How much surface a cloud shows, and where, by the cells of 5 cm that its points occupy; they may
+// come in any order.
+class SurfaceExtent {
+  public:
+    static constexpr double cell_m = 0.05;
+    // A level or upright surface occupies about one cell for each of its area, others more: 1.1 is
+    // between.
+    static constexpr double cells_per_area = 1.1;
+
+    void add(double x, double y, double z) {
+        const std::array<std::int64_t, 3> at{cell(x), cell(y), cell(z)};
+        if (at == last_) return;
+        last_ = at;
+        std::uint64_t key = 0;
+        for (const std::int64_t c : at)
+            key = key << 21 | (static_cast<std::uint64_t>(c) & 0x1fffff);
+        cells_.insert(key);
+    }
+    Bounds<float> bounds() const {
+        std::array<std::vector<float>, 3> at;
+        for (const std::uint64_t key : cells_) {
+            for (std::size_t a = 0; a < 3; ++a) {
+                // Its 21 bits, with their sign.
+                const auto c = static_cast<std::int64_t>(key << (1 + 21 * a)) >> 43;
+                at[a].push_back(static_cast<float>(static_cast<double>(c) * cell_m));
+            }
+        }
+        if (at[0].empty()) return {};
+        return scene_bounds<float>({at[0], at[1], at[2]}, static_cast<float>(cell_m));
+    }
+    double area_m2() const {
+        return static_cast<double>(cells_.size()) * cell_m * cell_m / cells_per_area;
+    }
+
+  private:
+    static std::int64_t cell(double v) { return static_cast<std::int64_t>(std::floor(v / cell_m)); }
+    std::array<std::int64_t, 3> last_{INT64_MIN, 0, 0};
+    std::unordered_set<std::uint64_t> cells_;
+};
+
+}  // namespace topple
