@@ -25,6 +25,7 @@ topple_options defaults() {
     o.pga_m_s2 = none;
     o.tolerable_J = from.tolerable_J;
     o.grouping_time_s = none;
+    o.contents_kg_m3 = from.contents_kg_m3.value_or(none);
     return o;
 }
 
@@ -58,6 +59,7 @@ ParseOptions parse_options(const topple_options& o, bool& cancelled) {
     to.pga_m_s2 = given(o.pga_m_s2);
     to.tolerable_J = o.tolerable_J;
     to.grouping_time_s = given(o.grouping_time_s);
+    to.contents_kg_m3 = given(o.contents_kg_m3);
     to.coordinates = !o.without_coordinates;
     if (o.progress || o.log) {
         to.progress = [&o](const std::string& stage, double done) {

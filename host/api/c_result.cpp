@@ -104,6 +104,8 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         to.mass_error_kg = from.mass_error_kg;
         copy_vector(from.center_of_mass_error_m, to.center_of_mass_error_m);
         to.footprint_error_m = from.footprint_error_m;
+        to.mass_model = from.mass_model.c_str();
+        std::ranges::copy(from.inertia_kg_m2, to.inertia_kg_m2);
         give(to, object, "object");
     });
 }

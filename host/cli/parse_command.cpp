@@ -70,6 +70,15 @@ Vec3 parse_up(const char* option, const std::string& text) {
     return up;
 }
 
+std::optional<double> parse_contents(const std::string& text) {
+    if (text == "solid") return std::nullopt;
+    double value = 0;
+    if (!io::parse_number(text, value))
+        throw Error(ErrorKind::usage,
+                    "--contents " + text + ": expected kg/m^3, a number from 0 on, or solid");
+    return value;
+}
+
 // A sibling of nothing the user owns: named after the input, in the current folder.
 std::filesystem::path default_output(const std::filesystem::path& input) {
     std::filesystem::path name = input.has_filename() ? input : input.parent_path();
@@ -235,6 +244,12 @@ Command add_parse(CLI::App& app, const Team& team) {
         ->capture_default_str();
     app.add_option("--density", a->options.density_kg_m3, "Density of all objects in kg/m^3")
         ->capture_default_str();
+    app.add_option_function<std::string>(
+           "--contents",
+           [a](const std::string& text) { a->options.contents_kg_m3 = parse_contents(text); },
+           "What closed furniture holds, in kg/m^3 of its inside, beside boards of 18 mm; or\n"
+           "solid, to weigh all things as if they were solid")
+        ->default_str("68");
     app.add_option("--friction", a->options.friction, "Coefficient of friction")
         ->capture_default_str();
     app.add_option("--seed", a->options.seed, "Seed of everything random")

@@ -36,12 +36,16 @@ Json list(const std::vector<T>& items, Convert convert) {
     return json;
 }
 
-Json matrix(const Mat4& m) {
+// Square, row-major.
+template <std::size_t N>
+Json matrix(const std::array<double, N>& m) {
+    constexpr std::size_t side = N == 16 ? 4 : 3;
+    static_assert(side * side == N);
     auto rows = Json::array();
-    for (std::size_t row = 0; row < 4; ++row) {
+    for (std::size_t row = 0; row < side; ++row) {
         auto values = Json::array();
-        for (std::size_t column = 0; column < 4; ++column)
-            values.push_back(number(m[row * 4 + column]));
+        for (std::size_t column = 0; column < side; ++column)
+            values.push_back(number(m[row * side + column]));
         rows.push_back(std::move(values));
     }
     return rows;
@@ -100,7 +104,9 @@ Json to_json(const Object& o) {
         {"grounded", o.grounded},
         {"agreement", number(o.agreement)},
         {"mass_kg", number(o.mass_kg)},
+        {"mass_model", o.mass_model},
         {"center_of_mass_m", vector(o.center_of_mass_m)},
+        {"inertia_kg_m2", matrix(o.inertia_kg_m2)},
         {"mass_error_kg", number(o.mass_error_kg)},
         {"center_of_mass_error_m", vector(o.center_of_mass_error_m)},
         {"footprint_error_m", number(o.footprint_error_m)},
@@ -225,6 +231,11 @@ Object object_of(const Json& json) {
         o.mass_error_kg = number_at(json, "mass_error_kg");
         o.center_of_mass_error_m = vector_at(json, "center_of_mass_error_m");
         o.footprint_error_m = number_at(json, "footprint_error_m");
+    }
+    if (json.contains("mass_model")) {  // nor these
+        o.mass_model = json.at("mass_model").get<std::string>();
+        for (std::size_t i = 0; i < 9; ++i)
+            o.inertia_kg_m2[i] = number_of(json.at("inertia_kg_m2").at(i / 3).at(i % 3));
     }
     o.release_J = number_at(json, "release_J");
     o.mode = json.at("mode").get<std::string>();

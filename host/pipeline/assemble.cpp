@@ -54,7 +54,9 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
         to.grounded = from.grounded;
         to.agreement = from.agreement;
         to.mass_kg = from.candidate.body.mass_kg;
+        to.mass_model = from.closed ? "closed" : "solid";
         to.center_of_mass_m = to_input(from.candidate.body.center);
+        to.inertia_kg_m2 = to_input.tensor(from.inertia);
         to.mass_error_kg = from.body_error.mass_kg;
         to.center_of_mass_error_m = to_input.errors(from.body_error.center_m);
         if (!from.grounded) {

@@ -29,6 +29,18 @@ class ToInput {
         return out;
     }
 
+    // Of a symmetric tensor along the grid's axes (xx, yy, zz, xy, xz, yz), that along the input's.
+    Mat3 tensor(const std::array<double, 6>& g) const {
+        const double full[3][3] = {{g[0], g[3], g[4]}, {g[3], g[1], g[5]}, {g[4], g[5], g[2]}};
+        Mat3 out{};
+        for (std::size_t r = 0; r < 3; ++r)
+            for (std::size_t c = 0; c < 3; ++c)
+                for (std::size_t a = 0; a < 3; ++a)
+                    for (std::size_t b = 0; b < 3; ++b)
+                        out[3 * r + c] += axes_[a][r] * full[a][b] * axes_[b][c];
+        return out;
+    }
+
   private:
     const std::array<Vec3, 3>& axes_;
 };

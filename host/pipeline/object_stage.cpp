@@ -2,6 +2,7 @@
 #include "pipeline/object_stage.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "physics/body_landscape.h"
 #include "physics/drop.h"
 #include "physics/solid_hulls.h"
+#include "pipeline/object_masses.h"
 #include "solids/cell_shape.h"
 
 namespace topple {
@@ -42,10 +44,17 @@ std::vector<graph::Joint> find_joints(const SolidParts& parts, const graph::Cont
                               contacts, bodies, parts.seams, shell);
 }
 
+void add_independent(const physics::BodyError& more, physics::BodyError& to) {
+    to.mass_kg = std::hypot(to.mass_kg, more.mass_kg);
+    for (std::size_t a = 0; a < 3; ++a)
+        to.center_m[a] = std::hypot(to.center_m[a], more.center_m[a]);
+}
+
 // Objects by group, the ground first.
-void collect_objects(const SolidCells& cells, const BoundaryCells& boundary,
-                     const std::vector<bool>& shell, std::span<const double> density,
-                     ObjectStage& out) {
+void collect_objects(const SolidScene& solids, const std::vector<bool>& shell,
+                     const ParseOptions& options, ObjectStage& out) {
+    const SolidCells& cells = solids.cells();
+    const BoundaryCells& boundary = solids.boundary();
     const std::vector<std::int32_t>& group = out.grouping.group;
     const bool has_ground = std::find(group.begin(), group.end(), -1) != group.end();
     std::int32_t objects = 0;
@@ -53,6 +62,9 @@ void collect_objects(const SolidCells& cells, const BoundaryCells& boundary,
         out.object_of_primitive.push_back(g + (has_ground ? 1 : 0));
         objects = std::max(objects, out.object_of_primitive.back() + 1);
     }
+    const ObjectMasses masses =
+        weigh_objects(solids, out.object_of_primitive, static_cast<std::size_t>(objects),
+                      has_ground ? 0 : -1, options, out.bodies);
     std::vector<std::vector<std::int32_t>> members(static_cast<std::size_t>(objects));
     for (std::size_t p = 0; p < group.size(); ++p) {
         members[static_cast<std::size_t>(out.object_of_primitive[p])].push_back(
@@ -65,7 +77,10 @@ void collect_objects(const SolidCells& cells, const BoundaryCells& boundary,
         object.candidate =
             graph::candidate_of(out.contacts, out.bodies, shell, std::move(members[o]));
         object.body_error = physics::body_error(object.candidate.body, object.candidate.primitives,
-                                                errors, density);
+                                                errors, masses.density_kg_m3);
+        object.closed = masses.closed[o];
+        object.inertia = masses.inertia[o];
+        add_independent(masses.contents_error[o], object.body_error);
         object.grounded = has_ground && o == 0;
         if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
         if (!object.grounded) {
@@ -202,7 +217,7 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
                                      physics::geodesic_sphere(sphere_frequency));
     });
     stage("barriers", [&] {
-        collect_objects(cells, boundary, parts.shell.pinned, density, out);
+        collect_objects(*solid.solids, parts.shell.pinned, options, out);
         find_barriers(device, table, *solid.solids, out.object_of_primitive, options.friction,
                       out.objects);
     });

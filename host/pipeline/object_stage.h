@@ -10,6 +10,7 @@
 #include "graph/stable_objects.h"
 #include "graph/supports.h"
 #include "physics/bodies.h"
+#include "physics/inertia.h"
 #include "physics/landscape.h"
 #include "physics/sliding.h"
 #include "pipeline/solid_parts.h"
@@ -26,6 +27,8 @@ struct StableObject {
     physics::Stability level_tipping;  // if its support went on beyond all of its edges
     physics::SlideResult sliding;
     physics::Instability instability;  // of tipping and sliding together
+    bool closed = false;               // furniture of boards around contents
+    physics::Symmetric inertia{};
     physics::BodyError body_error;
     double barrier_error_J = 0;
     // How it stands (graph/rest.h); its candidate is held up in that way.

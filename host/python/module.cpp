@@ -16,7 +16,7 @@ const char* name_of(ErrorKind kind) {
 // The library names options as the command line does, "--wind-from": as parse() does,
 // "wind_from_deg".
 std::string with_own_names(std::string text) {
-    static constexpr std::array<std::pair<const char*, const char*>, 15> names{
+    static constexpr std::array<std::pair<const char*, const char*>, 16> names{
         {{"--voxel", "voxel_m"},
          {"--unit", "unit_m"},
          {"--up", "up"},
@@ -25,6 +25,7 @@ std::string with_own_names(std::string text) {
          {"--max-memory", "max_memory_bytes"},
          {"--density", "density_kg_m3"},
          {"--friction", "friction"},
+         {"--contents", "contents_kg_m3"},
          {"--walks", "walks"},
          {"--wind", "wind_m_s"},
          {"--wind-from", "wind_from_deg"},

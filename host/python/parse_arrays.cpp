@@ -139,6 +139,7 @@ void bind_parse(py::module_& module) {
         .def_readwrite("max_memory_bytes", &ParseOptions::max_memory_bytes)
         .def_readwrite("density_kg_m3", &ParseOptions::density_kg_m3)
         .def_readwrite("friction", &ParseOptions::friction)
+        .def_readwrite("contents_kg_m3", &ParseOptions::contents_kg_m3)
         .def_readwrite("walks", &ParseOptions::walks)
         .def_readwrite("wind_m_s", &ParseOptions::wind_m_s)
         .def_readwrite("wind_from_deg", &ParseOptions::wind_from_deg)

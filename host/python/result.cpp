@@ -46,6 +46,13 @@ void bind_items(py::module_& module) {
         .def_readonly("mass_error_kg", &Object::mass_error_kg)
         .def_readonly("center_of_mass_error_m", &Object::center_of_mass_error_m)
         .def_readonly("footprint_error_m", &Object::footprint_error_m)
+        .def_readonly("mass_model", &Object::mass_model)
+        .def_property_readonly("inertia_kg_m2",
+                               [](const Object& o) {
+                                   py::array_t<double> out({3, 3});
+                                   std::ranges::copy(o.inertia_kg_m2, out.mutable_data());
+                                   return out;
+                               })
         .def_readonly("release_J", &Object::release_J)
         .def_readonly("mode", &Object::mode)
         .def_readonly("direction", &Object::direction)

@@ -17,11 +17,13 @@
 #include "geometry/sight_lines.h"
 #include "geometry/surface_samples.h"
 #include "graph/joint_features.h"
+#include "physics/closed_furniture.h"
 #include "pipeline/geometry_stage.h"
 #include "pipeline/ingest.h"
 #include "pipeline/object_stage.h"
 #include "pipeline/solid_parts.h"
 #include "pipeline/stage_clock.h"
+#include "pipeline/voxel_size.h"
 #include "pipeline/voxel_stage.h"
 #include "topple/error.h"
 
@@ -38,13 +40,32 @@ void write(const std::filesystem::path& file, const std::vector<T>& values) {
     if (!out) throw Error(ErrorKind::input, file.string() + ": can't be written");
 }
 
+// What tells closed furniture, of each object that can move: height, fill, backing; and the object
+// of each primitive, -1 for the room.
+void write_objects(device::Device& device, const SolidParts& parts, const ParseOptions& options,
+                   StageClock& stage, const std::filesystem::path& folder) {
+    const ObjectStage found = find_objects(device, parts, options, stage);
+    std::vector<double> volume;
+    for (const StableObject& o : found.objects) volume.push_back(o.candidate.body.volume_m3);
+    std::vector<std::int32_t> object = found.object_of_primitive;
+    std::vector<float> rows;
+    for (const physics::FurnitureLooks& looks :
+         physics::furniture_looks(*parts.solids, object, volume))
+        for (const double v : {looks.height_m, looks.fill, looks.backing})
+            rows.push_back(static_cast<float>(v));
+    for (std::int32_t& o : object)
+        if (found.objects[static_cast<std::size_t>(o)].grounded) o = -1;
+    write(folder / "looks.f32", rows);
+    write(folder / "object.i32", object);
+}
+
 void run(const std::filesystem::path& scan, const std::filesystem::path& folder) {
     const auto device = device::open_device("native");
     ParseOptions options;
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options);
     Ingested input = ingest(*device, scan, options);
-    const double voxel_m = input.voxel_m > 0 ? input.voxel_m : voxel_for_cell(input.cell_m);
+    const double voxel_m = voxel_for_input(input, options);
     GeometryStage geometry = find_primitives(*device, input, options, stage);
     VoxelStage voxels = make_solids(*device, input, geometry, voxel_m, stage);
     const SolidParts parts = solid_parts(geometry, voxels);
@@ -73,6 +94,7 @@ void run(const std::filesystem::path& scan, const std::filesystem::path& folder)
     std::vector<int> structure;
     for (std::size_t p = 0; p < parts.model.size(); ++p)
         structure.push_back(static_cast<int>(parts.solids->role(static_cast<std::int32_t>(p))));
+    write_objects(*device, parts, options, stage, folder);
     nlohmann::json about;
     about["node_names"] = geometry::shell_feature_names();
     about["joint_names"] = graph::joint_feature_names();

@@ -14,6 +14,7 @@
 namespace topple {
 
 using Vec3 = std::array<double, 3>;
+using Mat3 = std::array<double, 9>;  // row-major
 // Row-major 4x4 rigid transform.
 using Mat4 = std::array<double, 16>;
 

@@ -39,6 +39,8 @@ struct ParseOptions {
         0;  // to keep to, about; inputs that would need more are refused. 0: no limit
     double density_kg_m3 = 700;
     double friction = 0.3;
+    // What closed furniture (Object::mass_model) holds, over its inner volume; none: all is solid.
+    std::optional<double> contents_kg_m3 = 68;
     // People who walk by: walks that are sampled, and how a body moves meanwhile, from
     // read_motion() or your own recording; none: a table of published figures of gait.
     unsigned walks = 500;

@@ -112,7 +112,11 @@ struct Object {
     // Share of the sampler's chains that found it, but for a tenth of its parts; 1 for the ground.
     double agreement = 1;
     double mass_kg = 0;
+    // "solid", of the density that was given all through; or "closed": furniture that is boards of
+    // that density around ParseOptions::contents_kg_m3.
+    std::string mass_model = "solid";
     Vec3 center_of_mass_m{};
+    Mat3 inertia_kg_m2{};  // about its centre of mass, along the axes of the input, row-major
     double barrier_J = 0;  // least energy that moves it out of its basin
     // One standard error each: of the mass and, along each axis, of its centre, by what surfaces
     // were not seen and how well the others were, at the density that was given; of where the

@@ -134,6 +134,7 @@ typedef struct topple_options {
      * library's own working memory, handles and strings do not come from it. NULL: the library's
      * memory, which saves a copy of them. */
     const topple_allocator* allocator;
+    double contents_kg_m3; /* of closed furniture; 68. NaN: all is solid */
 } topple_options;
 void topple_options_init(topple_options* options, size_t size);
 
@@ -182,6 +183,8 @@ typedef struct topple_object {
     const char *why, *advice; /* sentences */
     /* one standard error each, as barrier_error_J */
     double mass_error_kg, center_of_mass_error_m[3], footprint_error_m;
+    const char* mass_model;  /* "solid", or "closed": boards around contents */
+    double inertia_kg_m2[9]; /* about its centre of mass, along the input's axes, row-major */
 } topple_object;
 typedef struct topple_contact {
     size_t size;

@@ -149,7 +149,7 @@ class Result:
 
 
 def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=('human', 'wind', 'earthquake'),
-          seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, walks=500, motion=None, wind_m_s=12.0,
+          seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, wind_m_s=12.0,
           wind_from_deg=None, pga_m_s2=None, accelerogram=None, tolerable_J=0.1, grouping_time_s=None, normals=None,
           viewpoint=None, colours=None, progress=None, cancelled=None):
     """Parses a scan into a Result.
@@ -165,6 +165,7 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     device: a Device of open_device(), or a backend's name. motion, accelerogram: files. normals, viewpoint: of
     points, as they are given; where the sensor was. colours: of points, sRGB as uint8, an array of shape (N, 3),
     records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. progress(stage, done) is called as stages start and go on;
+    contents_kg_m3: of closed furniture, or None where all is solid.
     cancelled() is polled, and True stops the parse with an Error of kind "cancelled". Ctrl-C stops it, too, with
     KeyboardInterrupt. Other threads of Python run meanwhile. The other options are those of `topple parse --help`.
     """
@@ -173,6 +174,7 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     options.disturbances = [disturbances] if isinstance(disturbances, str) else list(disturbances)
     options.seed = seed
     options.max_memory_bytes, options.density_kg_m3, options.friction = max_memory_bytes, density_kg_m3, friction
+    options.contents_kg_m3 = contents_kg_m3
     options.walks, options.wind_m_s, options.wind_from_deg = walks, wind_m_s, wind_from_deg
     options.pga_m_s2, options.tolerable_J, options.grouping_time_s = pga_m_s2, tolerable_J, grouping_time_s
     if motion is not None:

@@ -77,6 +77,10 @@ class Object:
     @property
     def footprint_error_m(self) -> float: ...
     @property
+    def mass_model(self) -> Literal["solid", "closed"]: ...
+    @property
+    def inertia_kg_m2(self) -> NDArray[np.float64]: ...  # (3, 3)
+    @property
     def release_J(self) -> float: ...
     @property
     def mode(self) -> Literal["tip", "slide", "none"]: ...
@@ -186,6 +190,7 @@ def parse(
     max_memory_bytes: int = ...,
     density_kg_m3: float = ...,
     friction: float = ...,
+    contents_kg_m3: Optional[float] = ...,
     walks: int = ...,
     motion: Union[str, os.PathLike[str], None] = ...,
     wind_m_s: float = ...,

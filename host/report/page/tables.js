@@ -142,7 +142,7 @@ function showObject(panel, scene, id, choose) {
   if (fallKnown(object)) panel.append(element('p', {className: 'why', text: happensText(scene, object)}));
   if (object.advice && object.advice.sentence) panel.append(element('p', {className: 'advice', text: object.advice.sentence}));
   panel.append(element('p', {className: 'why', text: object.why.sentence}));
-  const pairs = [['Mass', number(object.mass_kg, 'kg') + within(object.mass_error_kg)],
+  const pairs = [['Mass', number(object.mass_kg, 'kg') + within(object.mass_error_kg) + (object.mass_model === 'closed' ? ', as boards around contents' : '')],
     ['Centre of mass', object.center_of_mass_m.map(v => v === null ? '\u2013' : v.toFixed(2)).join(', ') + ' m' + within(Math.hypot(...(object.center_of_mass_error_m || [])))]];
   if (!object.grounded) {
     pairs.push(['Barrier: energy that moves it', barrierText(object, 'J') + (isDoubtful(object) ? '' : within(object.barrier_error_J))],

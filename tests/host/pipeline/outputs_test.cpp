@@ -152,9 +152,10 @@ void check_objects(const Json& scene, const std::set<std::string>& disturbances)
         EXPECT_TRUE(std::isfinite(length(o.at("center_of_mass_m"))));
         expect_number(o, "barrier_J", 0);
         expect_number(o, "release_J", 0);
-        // At most that of a body which rolls.
+        // At most that of a body which rolls, its support known to two voxels: what a sparse scan
+        // leaves open.
         const double error = o.at("barrier_error_J");
-        EXPECT_LE(error, (mass + 1e-3) * 9.80665 * scene.at("voxel_size_m").get<double>());
+        EXPECT_LE(error, (mass + 1e-3) * 9.80665 * 2 * scene.at("voxel_size_m").get<double>());
         EXPECT_EQ(error > 0, !o.at("grounded").get<bool>());
         EXPECT_TRUE(std::set<std::string>({"tip", "slide", "none"}).contains(o.at("mode")));
         const bool moves = o.at("mode") != "none";

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/solid_scene.h"
+#include "physics/bodies.h"
+#include "physics/body_errors.h"
+
+// Cabinets, wardrobes, chests of drawers and fridges are filled by completion, since nobody saw
+// into them, but they are no solid wood: boards around what they hold.
+namespace topple::physics {
+
+// What closed furniture looks like from outside. Grid frame.
+struct FurnitureLooks {
+    double height_m = 0;
+    double fill = 0;  // share of the smallest upright box around it that is solid
+    // Of that one of the four upright sides of that box which most of is near the room: the share
+    // of what the object has at it that has something of the room within 8 cm beyond it. 0 for what
+    // fills less than a fifth of its box.
+    double backing = 0;
+    double box_side_m2 = 0;  // of all six sides of that box
+};
+
+// Of each object, without what of it is of the room's shell. volumes_m3: by object.
+std::vector<FurnitureLooks> furniture_looks(const SolidScene& solids,
+                                            std::span<const std::int32_t> object_of_primitive,
+                                            std::span<const double> volumes_m3);
+
+// The probability that such an object is closed furniture: a logistic function of height x fill x
+// backing, fitted on objects of generated rooms (docs/algorithms.md). What stands free in a room is
+// taken to be solid: nothing tells a block from a box of boards there.
+double probability_closed(const FurnitureLooks& looks);
+
+// Boards of 18 mm, as most furniture is made of, around contents.
+struct ClosedBody {
+    static constexpr double board_m = 0.018;
+    double density_kg_m3 = 0;          // mass over the volume of all of it
+    double inertia_density_kg_m3 = 0;  // of an even solid with the same inertia
+    BodyError error;                   // by what is not known of the contents alone
+};
+
+// volume_m3: its outer volume. board_kg_m3: of what it is made of. contents_kg_m3: of what it holds
+// over its inner volume, evenly spread; known to be anything from 0 to twice that, and its centre
+// to lie anywhere in the middle half of the height.
+ClosedBody closed_body(const FurnitureLooks& looks, double volume_m3, double board_kg_m3,
+                       double contents_kg_m3);
+
+}  // namespace topple::physics

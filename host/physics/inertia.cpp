@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "physics/inertia.h"
+
+#include <cmath>
+#include <cstddef>
+#include <tuple>
+
+namespace topple::physics {
+namespace {
+
+constexpr std::array<std::array<std::size_t, 2>, 6> axes{
+    {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+
+// share: of a cube of edge h, about `at`.
+void add(const Vec3& at, double share, double h, Symmetric& to) {
+    const double volume = share * h * h * h, width = std::cbrt(share) * h;
+    for (std::size_t e = 0; e < 6; ++e) to[e] += volume * at[axes[e][0]] * at[axes[e][1]];
+    for (std::size_t a = 0; a < 3; ++a) to[a] += volume * width * width / 12;
+}
+
+}  // namespace
+
+std::vector<Symmetric> second_moments(const SolidCells& cells, std::int32_t count,
+                                      const BoundaryCells& boundary) {
+    std::vector<Symmetric> out(static_cast<std::size_t>(count), Symmetric{});
+    const double h = cells.voxel_m;
+    const auto middle = [&](std::int32_t i, std::int32_t j, std::int32_t k) {
+        return Vec3{(i + 0.5) * h, (j + 0.5) * h, (k + 0.5) * h};
+    };
+    std::size_t b = 0;
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const std::int32_t p = cells.primitive[n];
+        if (p < 0) continue;
+        const std::tuple at(cells.i[n], cells.j[n], cells.k[n], p);
+        const auto part = [&] {
+            return std::tie(boundary.i[b], boundary.j[b], boundary.k[b], boundary.primitive[b]);
+        };
+        while (b < boundary.size() && part() < at) ++b;
+        if (b < boundary.size() && part() == at) continue;  // not as a whole: below
+        add(middle(cells.i[n], cells.j[n], cells.k[n]), 1, h, out[static_cast<std::size_t>(p)]);
+    }
+    for (b = 0; b < boundary.size(); ++b) {
+        if (boundary.share[b] == 0) continue;
+        Vec3 at = middle(boundary.i[b], boundary.j[b], boundary.k[b]);
+        for (std::size_t a = 0; a < 3; ++a)
+            at[a] += h / 4 * boundary.moment[a][b] / static_cast<double>(boundary.share[b]);
+        add(at, static_cast<double>(boundary.share[b]) / BoundaryCells::whole, h,
+            out[static_cast<std::size_t>(boundary.primitive[b])]);
+    }
+    return out;
+}
+
+std::vector<Symmetric> inertia_of_objects(std::span<const Symmetric> moments,
+                                          std::span<const Body> bodies,
+                                          std::span<const std::int32_t> object_of_primitive,
+                                          std::span<const double> density_kg_m3) {
+    struct Sum {
+        double volume = 0;
+        Vec3 first{};
+        Symmetric second{};
+    };
+    std::vector<Sum> sums(density_kg_m3.size());
+    for (std::size_t p = 0; p < bodies.size(); ++p) {
+        Sum& sum = sums[static_cast<std::size_t>(object_of_primitive[p])];
+        sum.volume += bodies[p].volume_m3;
+        for (std::size_t a = 0; a < 3; ++a)
+            sum.first[a] += bodies[p].volume_m3 * bodies[p].center[a];
+        for (std::size_t e = 0; e < 6; ++e) sum.second[e] += moments[p][e];
+    }
+    std::vector<Symmetric> out(sums.size(), Symmetric{});
+    for (std::size_t o = 0; o < sums.size(); ++o) {
+        Sum& sum = sums[o];
+        if (!(sum.volume > 0)) continue;
+        for (std::size_t e = 0; e < 6; ++e)
+            sum.second[e] -= sum.first[axes[e][0]] * sum.first[axes[e][1]] / sum.volume;
+        const double trace = sum.second[0] + sum.second[1] + sum.second[2];
+        for (std::size_t e = 0; e < 6; ++e)
+            out[o][e] = density_kg_m3[o] * ((e < 3 ? trace : 0) - sum.second[e]);
+    }
+    return out;
+}
+
+}  // namespace topple::physics

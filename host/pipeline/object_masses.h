@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/solid_scene.h"
+#include "physics/bodies.h"
+#include "physics/body_errors.h"
+#include "physics/inertia.h"
+#include "topple/parse.h"
+
+namespace topple {
+
+// What objects weigh: as solids of the density that was given, or as closed furniture.
+struct ObjectMasses {
+    std::vector<double> density_kg_m3;               // by primitive: mass over volume
+    std::vector<bool> closed;                        // by object
+    std::vector<physics::BodyError> contents_error;  // by object, 0 for solids
+    std::vector<physics::Symmetric> inertia;         // by object, about its centre of mass
+};
+
+// Gives `bodies`, of primitives at the density of the options, the masses that they have in their
+// objects. grounded: the object that is the room; -1: none.
+ObjectMasses weigh_objects(const SolidScene& solids,
+                           std::span<const std::int32_t> object_of_primitive, std::size_t objects,
+                           std::int32_t grounded, const ParseOptions& options,
+                           std::vector<physics::Body>& bodies);
+
+}  // namespace topple
