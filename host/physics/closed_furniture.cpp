@@ -32,7 +32,7 @@ class Sight {
         : cells_(cells), columns_(columns), object_(object_of_primitive), room_(room) {}
 
     // Of a rectangle's side the share of what the object has within reach of it that has the room
-    // within reach beyond it.
+    // within reach of that.
     double backed(const Rectangle& r, std::size_t axis, int way, const Footprint& of,
                   std::int32_t object) const {
         const double h = cells_.voxel_m, step = 2 * h;  // along the side
@@ -46,12 +46,15 @@ class Sight {
                     return primitive(r.middle[0] + t * out[0] + s * along[0],
                                      r.middle[1] + t * out[1] + s * along[1], k);
                 };
+                // The object may end short of its box, and go a little way into a wall, of which
+                // nobody knows how thick it is.
+                int last = 1;
                 bool own = false, behind = false;
-                for (int n = 0; n > -reach && !own; --n) {
-                    const std::int32_t p = cell(n);
+                while (!own && last > -reach) {
+                    const std::int32_t p = cell(--last);
                     own = p >= 0 && object_[static_cast<std::size_t>(p)] == object;
                 }
-                for (int n = 1; own && n <= reach && !behind; ++n) {
+                for (int n = last - reach; own && n <= last + reach && !behind; ++n) {
                     const std::int32_t p = cell(n);
                     behind = p >= 0 && room_[static_cast<std::size_t>(p)];
                 }

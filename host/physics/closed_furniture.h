@@ -19,7 +19,7 @@ struct FurnitureLooks {
     double height_m = 0;
     double fill = 0;  // share of the smallest upright box around it that is solid
     // Of that one of the four upright sides of that box which most of is near the room: the share
-    // of what the object has at it that has something of the room within 8 cm beyond it. 0 for what
+    // of what the object has near it that has something of the room within 8 cm of that. 0 for what
     // fills less than a fifth of its box.
     double backing = 0;
     double box_side_m2 = 0;  // of all six sides of that box
