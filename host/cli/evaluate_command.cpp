@@ -32,6 +32,7 @@ struct EvaluateArguments {
     unsigned seeds = 8, first = 1;
     bool groupings = false, fit_joints = false, bases = false, measures = false;
     bool frames_of_things = false;   // of --measures: depth frames, not clean points
+    std::string thing;               // of --measures: those whose names begin so
     std::vector<std::string> kinds;  // of rooms; none: those of --furniture
     scenes::ScanOptions scan{.kind = scenes::ScanKind::sparse};
 };
@@ -144,7 +145,13 @@ void judge_kinds(EvaluateArguments& a) {
 void judge_measures(EvaluateArguments& a) {
     const evaluation::MeasureOptions options{.frames = a.frames_of_things,
                                              .parse = a.options.parse};
-    const std::vector<scenes::MeasuredShape> shapes = scenes::measured_shapes();
+    std::vector<scenes::MeasuredShape> shapes = scenes::measured_shapes();
+    if (!a.thing.empty())
+        std::erase_if(shapes, [&](const auto& shape) { return !shape.name.starts_with(a.thing); });
+    if (shapes.empty()) {
+        throw Error(ErrorKind::usage,
+                    "--thing " + a.thing + ": no name of the things of --measures begins so");
+    }
     std::vector<evaluation::MeasureScore> scores;
     for (std::size_t s = 0; s < shapes.size(); ++s) {
         std::fprintf(stderr, "%s, %zu of %zu\n", shapes[s].name.c_str(), s + 1, shapes.size());
@@ -210,13 +217,15 @@ Command add_evaluate(CLI::App& app) {
         ->excludes(groupings);
     CLI::Option* const measures =
         app.add_flag("--measures", a->measures,
-                     "Mass and barrier of 30 things of known measures instead, from clean points 4 "
+                     "Mass and barrier of 32 things of known measures instead, from clean points 4 "
                      "mm apart, each at as many places as --seeds")
             ->excludes(groupings)
             ->excludes("--fit-joints")
             ->excludes("--bases");
     app.add_flag("--from-frames", a->frames_of_things,
                  "From the depth camera's noisy frames instead, with --measures")
+        ->needs(measures);
+    app.add_option("--thing", a->thing, "Only those things whose names begin so, with --measures")
         ->needs(measures);
     app.add_flag("--single", a->options.camera.single,
                  "One frame of each room, without its pose, as in the paper's 6.1 and 6.2");

@@ -21,10 +21,11 @@ class Around {
   public:
     explicit Around(const SeenCells& seen) : seen_(seen) {}
 
-    // Adds up by patch; `out` is emptied first.
+    // Adds up by patch, those of the primitive and those of others; both are emptied first.
     void gather(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t p,
-                std::vector<SeenPatch>& out) {
-        out.clear();
+                std::vector<SeenPatch>& own, std::vector<SeenPatch>& others) {
+        own.clear();
+        others.clear();
         for (std::size_t column = 0; column < 9; ++column) {
             const std::int32_t ci = i + static_cast<std::int32_t>(column / 3) - 1,
                                cj = j + static_cast<std::int32_t>(column % 3) - 1;
@@ -35,9 +36,12 @@ class Around {
             for (std::size_t m = at;
                  m < seen_.size() && seen_.i[m] == ci && seen_.j[m] == cj && seen_.k[m] <= k + 1;
                  ++m) {
-                if (seen_.primitive[m] == p) add(m, column == 4 && seen_.k[m] == k, out);
+                add(m, column == 4 && seen_.k[m] == k, seen_.primitive[m] == p ? own : others);
             }
         }
+        for (std::vector<SeenPatch>* all : {&own, &others})
+            for (SeenPatch& s : *all)
+                for (double& v : s.mean) v /= s.count;
     }
 
   private:
@@ -62,16 +66,12 @@ std::vector<std::uint8_t> faced_around(const SolidCells& cells, const SeenCells&
                                        std::vector<BorderVoxel>& candidates) {
     std::vector<std::uint8_t> faced(cells.size(), 0);
     Around around(seen);
-    std::vector<SeenPatch> found;
+    std::vector<SeenPatch> found, others;
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const std::int32_t p = cells.primitive[n];
         if (p < 0) continue;
-        around.gather(cells.i[n], cells.j[n], cells.k[n], p, found);
-        for (const SeenPatch& s : found) {
-            Vec3 mean = s.mean;
-            for (double& v : mean) v /= s.count;
-            faced[n] |= faced_by(patches[s.patch].gradient(mean));
-        }
+        around.gather(cells.i[n], cells.j[n], cells.k[n], p, found, others);
+        for (const SeenPatch& s : found) faced[n] |= faced_by(patches[s.patch].gradient(s.mean));
         if (!found.empty()) candidates.push_back({cells.i[n], cells.j[n], cells.k[n], p, true});
     }
     return faced;
@@ -118,30 +118,58 @@ void unite(std::vector<BorderVoxel>& candidates) {
     candidates.resize(kept);
 }
 
+// A candidate, and a primitive whose surface is the other side of a wall there.
+struct WallSide {
+    std::size_t candidate;
+    std::int32_t other;
+};
+
+// A wall thinner than a voxel may have its two sides in two primitives, as the inside of a cup and
+// its outside: each is bounded by the other's patch, too, unless they are known to meet there.
+void add_wall(std::size_t candidate, std::span<const SeenPatch> own,
+              std::span<const SeenPatch> others, std::span<const SurfacePatch> patches,
+              const Vec3& middle, double voxel_m, Combination& sum, std::vector<WallSide>& walls) {
+    const auto meets = [&](std::int32_t other) {
+        for (std::size_t s = 0; s < sum.used; ++s)
+            if (sum.use[s].outside && patches[sum.slot[s]].primitive == other) return true;
+        return false;
+    };
+    for (const SeenPatch& o : others) {
+        const std::int32_t other = patches[o.patch].primitive;
+        const bool wall =
+            std::ranges::any_of(own, [&](const SeenPatch& s) { return are_wall(s, o, patches); });
+        if (!wall || meets(other)) continue;
+        add_bound(o.patch, false, patches, middle, voxel_m, sum);
+        if (walls.empty() || walls.back().candidate != candidate || walls.back().other != other)
+            walls.push_back({candidate, other});
+    }
+}
+
 // What bounds each candidate, in their order; of one that nothing bounds, all is solid.
 std::vector<Combination> combine_all(const SolidCells& cells, const SeenCells& seen,
                                      std::span<const SurfacePatch> patches,
                                      std::span<const Mate> mates, const std::vector<bool>& sheet,
-                                     std::span<const BorderVoxel> candidates) {
+                                     std::span<const BorderVoxel> candidates,
+                                     std::vector<WallSide>& walls) {
     const double h = cells.voxel_m;
     std::vector<Combination> out;
     out.reserve(candidates.size());
     Around around(seen);
-    std::vector<SeenPatch> found;
+    std::vector<SeenPatch> found, others;
     std::size_t mate = 0;
-    for (const BorderVoxel& c : candidates) {
+    for (std::size_t n = 0; n < candidates.size(); ++n) {
+        const BorderVoxel& c = candidates[n];
         const auto key_of = [&](const Mate& m) { return CellKey(m.i, m.j, m.k, m.primitive); };
         while (mate < mates.size() && key_of(mates[mate]) < c.key()) ++mate;
         const bool mated = mate < mates.size() && key_of(mates[mate]) == c.key();
         Combination sum;
         if (!sheet[static_cast<std::size_t>(c.primitive)] || mated) {
-            around.gather(c.i, c.j, c.k, c.primitive, found);
-            for (SeenPatch& s : found)
-                for (double& v : s.mean) v /= s.count;
+            around.gather(c.i, c.j, c.k, c.primitive, found, others);
             const Vec3 middle{(c.i + 0.5) * h, (c.j + 0.5) * h, (c.k + 0.5) * h};
             sum = combine(found, patches, middle, h);
             for (std::size_t m = mate; m < mates.size() && key_of(mates[m]) == c.key(); ++m)
                 add_bound(mates[m].patch, mates[m].outside, patches, middle, h, sum);
+            add_wall(n, found, others, patches, middle, h, sum, walls);
         }
         out.push_back(sum);
     }
@@ -189,6 +217,25 @@ void settle_edges(std::span<const BorderVoxel> candidates, std::span<const Surfa
     }
 }
 
+// Where both sides of a wall are candidates of one voxel, both say the same of it: that counts
+// once, for the one whose voxel it is.
+std::vector<bool> told_twice(std::span<const BorderVoxel> candidates,
+                             std::span<const WallSide> walls) {
+    std::vector<bool> out(candidates.size(), false);
+    for (const WallSide& w : walls) {
+        const BorderVoxel& c = candidates[w.candidate];
+        const CellKey key(c.i, c.j, c.k, w.other);
+        const auto found = std::ranges::lower_bound(candidates, key, {}, &BorderVoxel::key);
+        if (found == candidates.end() || found->key() != key) continue;
+        const auto m = static_cast<std::size_t>(found - candidates.begin());
+        if (c.own == found->own)
+            out[std::max(m, w.candidate)] = true;
+        else
+            out[c.own ? m : w.candidate] = true;
+    }
+    return out;
+}
+
 void add_cell(const BorderVoxel& c, const Combination& sum, BoundaryCells& out) {
     out.i.push_back(c.i);
     out.j.push_back(c.j);
@@ -231,7 +278,10 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
     const std::vector<Mate> mates = find_mates(cells, seen, faced, rests, patches);
     add_mates(cells, mates, candidates);
     unite(candidates);
-    std::vector<Combination> sums = combine_all(cells, seen, patches, mates, sheet, candidates);
+    std::vector<WallSide> walls;
+    std::vector<Combination> sums =
+        combine_all(cells, seen, patches, mates, sheet, candidates, walls);
+    const std::vector<bool> twice = told_twice(candidates, walls);
     settle_edges(candidates, patches, cells.voxel_m, sums);
     std::vector<bool> air = air_by_patches(cells, candidates, sums);
     const std::vector<BorderVoxel> beyond = cut_off(cells, air);
@@ -252,7 +302,11 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
         const Combination& sum = sums[n];
         const bool counts = c.own ? sum.nothing || sum.used > 0
                                   : !unreached[n] && !sum.nothing && (sum.used > 0 || c.extends);
-        if (counts) add_cell(c, sum, out);
+        if (twice[n]) {
+            if (c.own) add_cell(c, nothing, out);
+        } else if (counts) {
+            add_cell(c, sum, out);
+        }
     }
     for (; cut != beyond.end(); ++cut) add_cell(*cut, nothing, out);
     out.patches = std::move(patches);

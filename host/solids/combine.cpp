@@ -199,6 +199,15 @@ void add_bound(std::uint32_t patch, bool outside, std::span<const SurfacePatch> 
     ++sum.used;
 }
 
+bool are_wall(const SeenPatch& a, const SeenPatch& b, std::span<const SurfacePatch> patches) {
+    constexpr double away = -0.7;  // cosine
+    const SurfacePatch &pa = patches[a.patch], &pb = patches[b.patch];
+    const Vec3 ga = pa.gradient(a.mean), gb = pb.gradient(b.mean);
+    const double product = ga[0] * gb[0] + ga[1] * gb[1] + ga[2] * gb[2];
+    const double lengths = std::hypot(ga[0], ga[1], ga[2]) * std::hypot(gb[0], gb[1], gb[2]);
+    return product < away * lengths && pa.distance(b.mean) < 0 && pb.distance(a.mean) < 0;
+}
+
 void drop_slot(std::size_t slot, Combination& sum) {
     for (std::size_t s = slot; s + 1 < sum.used; ++s) {
         sum.slot[s] = sum.slot[s + 1];

@@ -32,6 +32,10 @@ Combination combine(std::span<const SeenPatch> seen, std::span<const SurfacePatc
 void add_bound(std::uint32_t patch, bool outside, std::span<const SurfacePatch> patches,
                const Vec3& middle, double voxel_m, Combination& sum);
 
+// Whether two patches are the two sides of one wall: they face away from each other, and each was
+// seen on the solid side of the other.
+bool are_wall(const SeenPatch& a, const SeenPatch& b, std::span<const SurfacePatch> patches);
+
 void drop_slot(std::size_t slot, Combination& sum);
 
 }  // namespace topple::solids

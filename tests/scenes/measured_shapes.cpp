@@ -42,6 +42,13 @@ Part bottle(double diameter, double height) {
     out.profile = {{0, -h}, {r, -h}, {r, 0.2 * h}, {neck, 0.55 * h}, {neck, h}, {0, h}};
     return out;
 }
+// Open above, its wall and bottom as thick as told.
+Part vessel(double diameter, double height, double wall) {
+    const double r = diameter / 2, h = height / 2, inner = r - wall, bottom = wall - h;
+    Part out = part(Shape::revolved, {}, {diameter, diameter, height});
+    out.profile = {{0, -h}, {r, -h}, {r, h}, {inner, h}, {inner, bottom}, {0, bottom}};
+    return out;
+}
 std::vector<Part> table(const Vec3& size, double board, double leg) {
     std::vector<Part> parts{box({0, 0, size[2] - board}, {size[0], size[1], board})};
     for (const double x : {-1, 1}) {
@@ -120,6 +127,8 @@ std::vector<MeasuredShape> measured_shapes() {
     add("cone 24 x 40", {cone({}, 0.24, 0, 0.4)});
     add("pot 20 to 30 x 30", {cone({}, 0.2, 0.3, 0.3)});
     add("cup 6 to 9 x 11", {cone({}, 0.06, 0.09, 0.11)}, true);
+    add("mug 8 x 9, 5 mm thick", {vessel(0.08, 0.09, 0.005)}, true);
+    add("bucket 30 x 30, 5 mm thick", {vessel(0.3, 0.3, 0.005)});
     add("bottle 7 x 30", {bottle(0.07, 0.3)}, true);
     add("bottle 9 x 24", {bottle(0.09, 0.24)});
     add("vase 20 x 60", {bottle(0.2, 0.6)});

@@ -63,6 +63,24 @@ TEST(Boundary, AnAskewBoxHasItsVolumeCentreAndHullAtAnyVoxelSize) {
     }
 }
 
+// As of a cup: one side of a wall is one primitive's, the other another's.
+TEST(Boundary, AWallThinnerThanAVoxelIsAsThickAsItsTwoSidesSay) {
+    for (const double thick : {0.004, 0.008, 0.015}) {
+        for (int turn = 0; turn < 4; ++turn) {
+            SCOPED_TRACE(testing::Message() << thick << " m, turn " << turn);
+            Box outside{{0.31 + 0.0037 * turn, -0.2, 0.5},
+                        {thick / 2, 0.12, 0.1},
+                        turned(0.2 * turn, 0.03 * turn, 0)};
+            Box inside = outside;
+            inside.seen = 2;  // +x
+            outside.seen = 63 & ~inside.seen;
+            const Bounded b = bounded({outside, inside}, 0.02);
+            EXPECT_NEAR((b.bodies[0].volume_m3 + b.bodies[1].volume_m3) / outside.volume(), 1,
+                        0.08);
+        }
+    }
+}
+
 // Nobody saw where the upper one's underside is, nor the lower one's top under it.
 TEST(Boundary, WhatStandsOnAnotherEndsWhereThatBegins) {
     for (const double height : {0.100, 0.1049, 0.11, 0.1163}) {
