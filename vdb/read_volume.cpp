@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <new>
 #include <string>
 
 #include "topple/error.h"
@@ -86,6 +87,10 @@ void check_whole(const std::filesystem::path& path) {
 }
 
 Candidates read_grids(const std::filesystem::path& path) {
+    std::error_code unknown;
+    // A FIFO would wait for a writer.
+    if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown))
+        fail(path, "is not a regular file");
     // The magic number of OpenVDB, little-endian.
     std::ifstream head(path, std::ios::binary);
     std::string magic(8, '\0');
@@ -114,6 +119,8 @@ Candidates read_grids(const std::filesystem::path& path) {
             if (!found.fog) found.fog = floats;
         }
     } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {
         fail(path, std::string("can't be read as OpenVDB: ") + error.what());
@@ -281,21 +288,21 @@ ScannedMap read_volume(const std::filesystem::path& file, double unit_m) {
     openvdb::initialize();
     const Candidates found = read_grids(file);
     if (found.distances) {
-        found.distances->tree().voxelizeActiveTiles();
+        found.distances->tree().voxelizeActiveTiles(false);
         Extraction extraction(file, *found.distances, unit_m);
         extraction.surface(*found.distances, 0, false);
         extraction.free_space(*found.distances, [](float v) { return v > 0; });
         return extraction.finish();
     }
     if (found.labels) {
-        found.labels->tree().voxelizeActiveTiles();
+        found.labels->tree().voxelizeActiveTiles(false);
         Extraction extraction(file, *found.labels, unit_m);
         extraction.surface(*found.labels);
         extraction.free_space(*found.labels, [](std::int32_t v) { return v == 0; });
         return extraction.finish();
     }
     if (found.fog) {
-        found.fog->tree().voxelizeActiveTiles();
+        found.fog->tree().voxelizeActiveTiles(false);
         Extraction extraction(file, *found.fog, unit_m);
         extraction.surface(*found.fog, fog_threshold, true);
         return extraction.finish();

@@ -7,6 +7,15 @@
 #include "io/text.h"
 
 namespace topple::io {
+namespace {
+
+// Pictures of rooms are packed to a tenth or twentieth; what is packed to much less shows nothing,
+// or was made to fill memory. Small ones may.
+std::uint64_t most_rgb_bytes(std::uint64_t file_bytes) {
+    return (std::uint64_t{32} << 20) + saturating_multiply(60, file_bytes);
+}
+
+}  // namespace
 
 ColourImage decode_colour_image(const std::filesystem::path& file, std::string_view bytes,
                                 const SizeCheck& check) {
@@ -16,6 +25,11 @@ ColourImage decode_colour_image(const std::filesystem::path& file, std::string_v
             fail(file, "is " + std::to_string(width) + " x " + std::to_string(height) +
                            " pixels, more than " + std::to_string(most_image_pixels) +
                            " in all; scale it down");
+        }
+        if (std::uint64_t{3} * width * height > most_rgb_bytes(bytes.size())) {
+            fail(file, "is " + std::to_string(width) + " x " + std::to_string(height) +
+                           " pixels, more than a picture of " + counted(bytes.size(), "byte") +
+                           " has; it is cut short or shows nothing");
         }
     };
     if (starts_as_png(bytes)) return decode_colour_png(file, bytes, both);

@@ -19,7 +19,7 @@ using SizeCheck = std::function<void(std::uint32_t, std::uint32_t)>;
 
 // PNG of any kind and JPEG, told apart by their first bytes. Alpha is not looked at. `file` is for
 // messages only. Throws Error(input) where the bytes are neither, are damaged or cut short, or the
-// image has more than 2^26 pixels.
+// image has more than 2^26 pixels, or far more than its file can show.
 ColourImage decode_colour_image(const std::filesystem::path& file, std::string_view bytes,
                                 const SizeCheck& check = nullptr);
 

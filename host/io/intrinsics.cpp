@@ -5,7 +5,7 @@
 
 #include "io/colour_frames.h"
 #include "io/frame_sequence.h"
-#include "io/json_problem.h"
+#include "io/json_text.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -13,7 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Sensors of depth have up to a few million pixels, cameras of colour up to a hundred million.
 constexpr std::uint32_t most_pixels_a_side = 32768;
+constexpr std::uint64_t most_depth_pixels = std::uint64_t{1} << 24;
 
 double positive_number(const fs::path& file, const nlohmann::json& json, const char* key,
                        bool may_be_zero = false) {
@@ -42,13 +44,7 @@ std::uint32_t side(const fs::path& file, const nlohmann::json& json, const char*
 
 nlohmann::json read_object(const fs::path& file) {
     const auto bytes = read_file(file, 1 << 20);
-    const auto text = bytes.text();
-    nlohmann::json json;
-    try {
-        json = nlohmann::json::parse(text.begin(), text.end());
-    } catch (const nlohmann::json::exception& error) {
-        fail(file, "is no JSON: " + json_problem(error));
-    }
+    nlohmann::json json = parse_json(file, bytes.text());
     if (!json.is_object()) {
         fail(file, std::string("must hold a JSON object, not ") + json.type_name());
     }
@@ -78,6 +74,13 @@ Intrinsics pinhole(const fs::path& file, const nlohmann::json& json) {
 Intrinsics read_intrinsics(const fs::path& file) {
     const nlohmann::json json = read_object(file);
     Intrinsics intrinsics = pinhole(file, json);
+    const std::uint64_t pixels = std::uint64_t{intrinsics.width} * intrinsics.height;
+    if (pixels > most_depth_pixels) {
+        fail(file, "says " + std::to_string(intrinsics.width) + " x " +
+                       std::to_string(intrinsics.height) + " pixels, more than the " +
+                       std::to_string(most_depth_pixels) +
+                       " that a depth image may have; scale the images down");
+    }
     if (!json.contains("depth_scale")) {
         fail(file,
              "has no \"depth_scale\"; add it: metres = value / depth_scale, so 1000 for "

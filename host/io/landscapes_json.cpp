@@ -7,6 +7,7 @@
 #include <string>
 
 #include "io/file_writer.h"
+#include "io/json_text.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -98,6 +99,16 @@ std::int32_t pose_of(const Json& json, std::size_t poses, const std::filesystem:
     return static_cast<std::int32_t>(n);
 }
 
+// Each basin joins that of a deeper pose: following them ends.
+void check_joins(const Landscape& l, const std::filesystem::path& file) {
+    for (const Landscape::Pose& pose : l.poses) {
+        std::size_t steps = 0;
+        for (std::int32_t n = pose.joins; n >= 0; n = l.poses[static_cast<std::size_t>(n)].joins) {
+            if (++steps > l.poses.size()) fail(file, "has poses that join one another in a circle");
+        }
+    }
+}
+
 Landscape landscape_of(const Json& json, const std::filesystem::path& file) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     Landscape l;
@@ -111,6 +122,7 @@ Landscape landscape_of(const Json& json, const std::filesystem::path& file) {
              pose_of(pose.at("joins"), poses.size(), file),
              number_of(pose.at("probability"), nan)});
     }
+    check_joins(l, file);
     for (const Json& pass : json.at("passes")) {
         const Json& sides = pass.at("poses");
         Landscape::Pass out{vector_of(pass.at("up")),
@@ -152,6 +164,7 @@ void write_landscapes_json(const std::filesystem::path& file, const Scene& scene
 void read_landscapes_json(const std::filesystem::path& file, Scene& scene) {
     const auto bytes = read_file(file);
     const auto text = bytes.text();
+    check_json_nesting(file, text);
     try {
         const auto json = Json::parse(text.begin(), text.end());
         if (json.at("schema") != schema) fail(file, "its schema is not " + std::string(schema));

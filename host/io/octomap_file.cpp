@@ -12,6 +12,9 @@
 namespace topple::io {
 namespace {
 
+// A map's voxels, in its unit: from below the noise of any sensor in metres, to its millimetres.
+constexpr double finest = 1e-4, coarsest = 1e4;
+
 // Walks over a stored tree, depth first as it lies in the file.
 class Walk {
   public:
@@ -107,9 +110,10 @@ OctomapFile open_octomap(const std::filesystem::path& file, std::string_view byt
         if (keyword == "id") {
             id = value;
         } else if (keyword == "res") {
-            if (!parse_number(value, map.resolution_m) || !(map.resolution_m > 0) ||
-                !std::isfinite(map.resolution_m))
-                bad("the resolution is " + in_quotes(value) + ", but must be metres, above 0");
+            if (!parse_number(value, map.resolution_m) || !(map.resolution_m >= finest) ||
+                !(map.resolution_m <= coarsest))
+                bad("the resolution is " + in_quotes(value) + ", but must be metres, from " +
+                    short_number(finest) + " to " + short_number(coarsest));
         } else if (keyword == "data") {
             break;
         } else if (keyword != "size" && !keyword.empty()) {

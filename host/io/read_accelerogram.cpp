@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/json_problem.h"
+#include "io/json_text.h"
 #include "io/text.h"
 #include "topple/input.h"
 
@@ -72,12 +72,7 @@ Named find_named(const nlohmann::json& json, std::initializer_list<const char*> 
 }
 
 Raw read_json(const fs::path& file, std::string_view text) {
-    nlohmann::json top;
-    try {
-        top = nlohmann::json::parse(text.begin(), text.end());
-    } catch (const nlohmann::json::exception& error) {
-        fail(file, "is no JSON: " + io::json_problem(error));
-    }
+    const nlohmann::json top = io::parse_json(file, text);
     if (!top.is_object())
         fail(file, std::string("must hold a JSON object, not ") + top.type_name());
     const nlohmann::json* record = &top;

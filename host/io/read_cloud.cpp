@@ -118,6 +118,14 @@ void note_offset(PointCloud& cloud) {
                           ") m, about; offset_m in scene.json has the exact way back.");
 }
 
+bool is_mesh(const std::filesystem::path& file) {
+    const MappedFile bytes(file);
+    const std::string_view text = bytes.text();
+    if (starts_as_ply(text)) return ply_has_faces(text);
+    if (text.starts_with("# .PCD")) return false;
+    return mesh_format(text, lower_extension(file)).has_value();
+}
+
 bool can_stream(const std::filesystem::path& file) {
     const auto extension = lower_extension(file);
     constexpr std::array<std::string_view, 8> clouds{".ply", ".pcd", ".las", ".xyz",

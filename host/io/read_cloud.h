@@ -26,6 +26,10 @@ PointCloud read_cloud(const std::filesystem::path& file, double unit_m = 1,
 // Notes how the points were moved, if they were.
 void note_offset(PointCloud& cloud);
 
+// Whether read_cloud() takes it for a mesh, or a cloud with faces. Throws Error(input) where it
+// can't be opened.
+bool is_mesh(const std::filesystem::path& file);
+
 // Whether the file is a cloud, no mesh or map, by its extension.
 bool can_stream(const std::filesystem::path& file);
 

@@ -12,13 +12,18 @@
 #include <vector>
 
 #include "io/cloud_builder.h"
+#include "io/files_beside.h"
 #include "io/mesh_checks.h"
 #include "io/mesh_colours.h"
+#include "io/obj_surface.h"
 #include "io/text.h"
 #include "io/triangulate.h"
 
 namespace topple::io {
 namespace {
+
+// Faces that a file may show by naming its meshes again and again.
+constexpr std::uint64_t most_repeated_faces = 20'000'000;
 
 struct Triangle {
     std::array<aiVector3t<double>, 3> corner;
@@ -28,89 +33,121 @@ struct Triangle {
     std::array<std::uint32_t, 3> vertex{};
 };
 
-struct Triangles {
-    std::vector<Triangle> all;
-    double area = 0;
-    std::uint64_t broken = 0;  // with a corner that is not finite
-};
-
-void append(const std::array<aiVector3t<double>, 3>& corner, std::uint32_t mesh,
-            const std::array<std::uint32_t, 3>& vertex, Triangles& out) {
-    auto normal = (corner[1] - corner[0]) ^ (corner[2] - corner[0]);
-    const double length = normal.Length();
-    if (!std::isfinite(length)) {
-        ++out.broken;
-    } else if (length > 0) {
-        normal /= length;
-        out.area += length / 2;
-        out.all.push_back({corner, normal, length / 2, mesh, vertex});
+// The triangles of a scene, every mesh at every place where a node shows it, again each time that
+// they are asked for: held, they would take more than the file.
+class Triangles {
+  public:
+    Triangles(const std::filesystem::path& file, const aiScene& scene, std::uint64_t file_bytes)
+        : scene_(scene) {
+        place(file, file_bytes);
+        each([&](const Triangle& t) { area_ += t.area; });
+        counted_ = true;
     }
-}
 
-void append(const aiScene& scene, std::uint32_t number, const aiMatrix4x4t<double>& to_world,
-            Triangles& out) {
-    const aiMesh& mesh = *scene.mMeshes[number];
-    std::vector<Vec3> polygon;
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-        const aiFace& face = mesh.mFaces[f];
-        polygon.clear();
-        for (unsigned c = 0; c < face.mNumIndices && face.mIndices[c] < mesh.mNumVertices; ++c) {
-            const aiVector3D& v = mesh.mVertices[face.mIndices[c]];
-            const auto p = to_world * aiVector3t<double>(v.x, v.y, v.z);
-            polygon.push_back({p.x, p.y, p.z});
-        }
-        if (polygon.size() < face.mNumIndices) {
-            ++out.broken;
-            continue;
-        }
-        const auto at = [&](std::size_t c) {
-            return aiVector3t<double>(polygon[c][0], polygon[c][1], polygon[c][2]);
-        };
-        for (const auto& t : triangulate(polygon)) {
-            append({at(t[0]), at(t[1]), at(t[2])}, number,
-                   {face.mIndices[t[0]], face.mIndices[t[1]], face.mIndices[t[2]]}, out);
+    double area() const { return area_; }
+    std::uint64_t broken() const { return broken_; }  // with a corner that is not finite
+
+    template <class Use>
+    void each(const Use& use) {
+        for (const Placed& at : placed_) {
+            for (unsigned n = 0; n < at.node->mNumMeshes; ++n)
+                each_of(at.node->mMeshes[n], at.to_world, use);
         }
     }
-}
 
-// Every mesh at every place where a node shows it.
-Triangles triangles_of(const aiScene& scene) {
+  private:
     struct Placed {
         const aiNode* node;
         aiMatrix4x4t<double> to_world;
     };
-    Triangles out;
-    std::vector<Placed> left{{scene.mRootNode, {}}};
-    while (!left.empty()) {
-        const Placed at = left.back();
-        left.pop_back();
-        const auto& m = at.node->mTransformation;
-        const aiMatrix4x4t<double> own(m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2,
-                                       m.c3, m.c4, m.d1, m.d2, m.d3, m.d4);
-        const auto to_world = at.to_world * own;
-        for (unsigned n = 0; n < at.node->mNumMeshes; ++n)
-            append(scene, at.node->mMeshes[n], to_world, out);
-        for (unsigned n = at.node->mNumChildren; n > 0; --n)
-            left.push_back({at.node->mChildren[n - 1], to_world});
+
+    // A corner takes a byte of the file at least, unless its mesh is shown more than once.
+    void place(const std::filesystem::path& file, std::uint64_t file_bytes) {
+        const std::uint64_t most = std::max<std::uint64_t>(most_repeated_faces, file_bytes);
+        std::uint64_t faces = 0;
+        std::vector<Placed> left{{scene_.mRootNode, {}}};
+        while (!left.empty()) {
+            const Placed at = left.back();
+            left.pop_back();
+            const auto& m = at.node->mTransformation;
+            const aiMatrix4x4t<double> own(m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1,
+                                           m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4);
+            const Placed here{at.node, at.to_world * own};
+            for (unsigned n = 0; n < at.node->mNumMeshes; ++n)
+                faces += scene_.mMeshes[at.node->mMeshes[n]]->mNumFaces;
+            if (faces > most) {
+                fail(file, "shows its meshes in so many places that they have more than " +
+                               counted(most, "face") + "; leave some out");
+            }
+            if (at.node->mNumMeshes > 0) placed_.push_back(here);
+            for (unsigned n = at.node->mNumChildren; n > 0; --n)
+                left.push_back({at.node->mChildren[n - 1], here.to_world});
+        }
     }
-    return out;
-}
+
+    template <class Use>
+    void each_of(std::uint32_t number, const aiMatrix4x4t<double>& to_world, const Use& use) {
+        const aiMesh& mesh = *scene_.mMeshes[number];
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const aiFace& face = mesh.mFaces[f];
+            polygon_.clear();
+            for (unsigned c = 0; c < face.mNumIndices && face.mIndices[c] < mesh.mNumVertices;
+                 ++c) {
+                const aiVector3D& v = mesh.mVertices[face.mIndices[c]];
+                const auto p = to_world * aiVector3t<double>(v.x, v.y, v.z);
+                polygon_.push_back({p.x, p.y, p.z});
+            }
+            if (polygon_.size() < face.mNumIndices) {
+                broken_ += !counted_;
+                continue;
+            }
+            for (const auto& t : triangulate(polygon_))
+                give(number, {face.mIndices[t[0]], face.mIndices[t[1]], face.mIndices[t[2]]}, t,
+                     use);
+        }
+    }
+
+    template <class Use>
+    void give(std::uint32_t mesh, const std::array<std::uint32_t, 3>& vertex,
+              const std::array<std::size_t, 3>& corners, const Use& use) {
+        const auto at = [&](std::size_t c) {
+            return aiVector3t<double>(polygon_[c][0], polygon_[c][1], polygon_[c][2]);
+        };
+        Triangle t{{at(corners[0]), at(corners[1]), at(corners[2])}, {}, 0, mesh, vertex};
+        t.normal = (t.corner[1] - t.corner[0]) ^ (t.corner[2] - t.corner[0]);
+        const double length = t.normal.Length();
+        if (!std::isfinite(length)) {
+            broken_ += !counted_;
+        } else if (length > 0) {
+            t.normal /= length;
+            t.area = length / 2;
+            use(t);
+        }
+    }
+
+    const aiScene& scene_;
+    std::vector<Placed> placed_;
+    std::vector<Vec3> polygon_;
+    double area_ = 0;
+    std::uint64_t broken_ = 0;
+    bool counted_ = false;
+};
 
 // Points of a triangle mesh: as many on each triangle as its area has, evenly spread by the
 // additive sequence of the plastic number (Roberts's R2), which is the same on every machine.
-PointCloud sample(const std::filesystem::path& file, const Triangles& triangles,
+PointCloud sample(const std::filesystem::path& file, Triangles& triangles,
                   const MeshColours& colours, double unit_m, const MeshSampling& sampling) {
-    const double area_m2 = triangles.area * unit_m * unit_m;
+    const double area_m2 = triangles.area() * unit_m * unit_m;
     const double wanted =
         std::clamp(area_m2 / (sampling.spacing_m * sampling.spacing_m),
                    static_cast<double>(sampling.fewest), static_cast<double>(sampling.most));
-    const double per_area = wanted / triangles.area;
+    const double per_area = wanted / triangles.area();
     constexpr double step_u = 0.7548776662466927, step_v = 0.5698402909980532;
     CloudFields fields{.normals = true};
     if (colours.any()) fields.colours = ColourValues::bytes;
     CloudBuilder cloud(file, static_cast<std::uint64_t>(wanted) + 1, fields);
     double due = 0.5;
-    for (const Triangle& t : triangles.all) {
+    triangles.each([&](const Triangle& t) {
         due += t.area * per_area;
         const auto side_u = t.corner[1] - t.corner[0], side_v = t.corner[2] - t.corner[0];
         for (; due >= 1; due -= 1) {
@@ -125,11 +162,11 @@ PointCloud sample(const std::filesystem::path& file, const Triangles& triangles,
                       colours.any() ? colours.at({t.mesh, t.vertex, {1 - u - v, u, v}})
                                     : std::array<double, 3>{});
         }
-    }
+    });
     PointCloud out = cloud.finish();
     out.notes = colours.notes();
-    if (triangles.broken > 0) {
-        out.notes.push_back(counted(triangles.broken, "triangle") +
+    if (triangles.broken() > 0) {
+        out.notes.push_back(counted(triangles.broken(), "triangle") +
                             " without three finite corners left out.");
     }
     return out;
@@ -157,7 +194,10 @@ std::optional<PointCloud> parse_mesh(const std::filesystem::path& file, std::str
                                      MeshFormat format, double unit_m,
                                      const MeshSampling& sampling) {
     check_mesh(file, bytes, format);
+    const std::string surface = format == MeshFormat::obj ? obj_surface(bytes) : std::string();
+    if (format == MeshFormat::obj) bytes = surface;
     Assimp::Importer importer;
+    importer.SetIOHandler(new FilesBeside(file, format == MeshFormat::gltf));  // is the importer's
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     // Refuses indices that point nowhere. Polygons are cut here: the library's own step for that
     // ends the program where a file has faces of two corners only.
@@ -175,10 +215,10 @@ std::optional<PointCloud> parse_mesh(const std::filesystem::path& file, std::str
     }
     if (!scene || !scene->mRootNode)
         fail(file, "is no mesh that can be read: " + printable(reason, 200));
-    const Triangles triangles = triangles_of(*scene);
-    if (!std::isfinite(triangles.area))
+    Triangles triangles(file, *scene, bytes.size());
+    if (!std::isfinite(triangles.area()))
         fail(file, "its triangles have no finite area; coordinates must be metres");
-    if (!(triangles.area > 0)) return std::nullopt;
+    if (!(triangles.area() > 0)) return std::nullopt;
     return sample(file, triangles, MeshColours(file, *scene, format), unit_m, sampling);
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/file_writer.h"
+#include "io/json_text.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -352,6 +353,7 @@ void write_scene_json(const std::filesystem::path& file, const Scene& scene) {
 Scene read_scene_json(const std::filesystem::path& file) {
     const auto bytes = read_file(file);
     const auto text = bytes.text();
+    check_json_nesting(file, text);
     try {
         const auto json = Json::parse(text.begin(), text.end());
         if (json.at("schema") != schema) {

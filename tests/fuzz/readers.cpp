@@ -6,6 +6,7 @@
 #include <new>
 
 #include "io/frame_sequence.h"
+#include "io/landscapes_json.h"
 #include "io/octomap.h"
 #include "io/read_cloud.h"
 #include "io/scene_json.h"
@@ -99,6 +100,12 @@ constexpr Reader all[] = {
     {"record_json", "in.json", read_as_record},
     {"record_text", "in.txt", read_as_record},
     {"scene", "in.json", [](const fs::path& file) { io::read_scene_json(file); }},
+    {"landscapes", "in.json",
+     [](const fs::path& file) {
+         Scene scene;
+         scene.objects.resize(3);
+         io::read_landscapes_json(file, scene);
+     }},
 };
 
 }  // namespace

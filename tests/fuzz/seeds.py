@@ -139,10 +139,19 @@ def scene():
     yield b'{"schema": "topple.scene/1", "source": "a", "primitives": [], "objects": [], "contacts": [], "supports": []}'
 
 
+def landscapes():
+    poses = [{"up": [0, 0, 1], "energy_J": 0, "joins_at_J": None, "joins": -1, "probability": 0.6},
+             {"up": [1, 0, 0], "energy_J": 0.5, "joins_at_J": 1.5, "joins": 0, "probability": 0.4}]
+    passes = [{"up": [0.7, 0, 0.7], "energy_J": 1.5, "poses": [0, 1], "border": [[0.7, 0.1, 0.7], [0.7, -0.1, 0.7]]}]
+    one = {"id": 1, "hull_m": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], "now": 0, "poses": poses, "passes": passes,
+           "places": {"side": 1, "step_m": 0.02, "energy_J": [None]}}
+    yield json.dumps({"schema": "topple.landscapes/1", "objects": [one]}).encode()
+
+
 def main():
     folder = pathlib.Path(sys.argv[1])
     for make in (ply, pcd, xyz, las, obj, stl, glb, octomap, depth, intrinsics, trajectory, bvh, joints, record_json,
-                 record_text, scene):
+                 record_text, scene, landscapes):
         into = folder / make.__name__
         into.mkdir(parents=True, exist_ok=True)
         for number, data in enumerate(make()):

@@ -126,6 +126,9 @@ TEST_F(Sequence, bad_intrinsics) {
         {with("width", "0"), {"\"width\" is 0"}},
         {with("height", "2.5"), {"\"height\" is 2.5", "whole"}},
         {with("height", "1e12"), {"\"height\" is 1e+12", "32768"}},
+        {R"({"width": 30000, "height": 30000, "fx": 1, "fy": 1, "cx": 1, "cy": 1,
+             "depth_scale": 1000})",
+         {"30000 x 30000 pixels", "16777216"}},
         {with("fx", "-1"), {"\"fx\" is -1", "above 0"}},
         {with("fy", "null"), {"\"fy\"", "null"}},
         {with("fy", "1e999"), {"intrinsics.json"}},
@@ -142,7 +145,7 @@ TEST_F(Sequence, bad_intrinsics) {
         expect_input_error([&] { read_intrinsics(file); }, c.message);
     }
     expect_input_error([&] { read_intrinsics(write("i.json", std::string(200000, '['))); },
-                       {"is no JSON"});
+                       {"nested", "damaged"});
 }
 
 TEST_F(Sequence, bad_trajectories) {

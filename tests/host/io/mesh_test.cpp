@@ -112,7 +112,8 @@ TEST_F(Mesh, gltf_with_its_buffer_beside_it) {
     test::write_box_gltf(folder_);
     EXPECT_NEAR(static_cast<double>(read_cloud(path("box.gltf")).size()), 70000, 2);
     std::filesystem::remove(path("box.bin"));
-    expect_input_error([&] { read_cloud(path("box.gltf")); }, {"box.gltf", "no mesh"});
+    expect_input_error([&] { read_cloud(path("box.gltf")); },
+                       {"box.gltf", "box.bin", "can't be opened"});
 }
 
 // An L of 3 m2, whose corner points inwards, from each of its corners on and both ways round.

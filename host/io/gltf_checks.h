@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+namespace topple::io {
+
+// Throws Error(input) where the JSON of a glTF contradicts itself or its buffers, would take much
+// more memory to read than a file of its size may, or names a file outside of its own folder:
+//   - brackets nested 100 deep; nodes 256 deep, in a cycle, or with two parents, so that what they
+//     hold would be there twice, four times, ...;
+//   - views beyond their buffers and accessors beyond their views, by the size of their elements;
+//   - a count of nodes, primitives, materials and the like, or data named by so many of them, of
+//     which copies would take more than import_budget();
+//   - a uri that is absolute, has a scheme or .., leads through a link out of the file's folder, or
+//     to what is no regular file; in a GLB, any but data: for a buffer.
+// text: the JSON. binary_bytes: of a GLB's second part; none: a .gltf.
+void check_gltf(const std::filesystem::path& file, std::string_view text,
+                std::optional<std::uint64_t> binary_bytes);
+
+// Where a file that `uri` names beside `folder`'s other files lies; throws Error(input), with
+// `file` in its message, where it is not there, or is not to be opened, as above.
+std::filesystem::path file_beside(const std::filesystem::path& file, std::string_view uri);
+
+}  // namespace topple::io

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#include "io/obj_surface.h"
+
+#include "io/text.h"
+
+namespace topple::io {
+
+std::string obj_surface(std::string_view bytes) {
+    std::string out;
+    out.reserve(bytes.size() + 1);
+    Lines lines(bytes);
+    bool goes_on = false, kept = false;  // a line that ends with \ is one with the next
+    for (std::string_view line; lines.next(line);) {
+        if (!goes_on) {
+            std::string_view rest = line;
+            const auto keyword = next_token(rest);
+            kept = keyword.starts_with('v') || keyword == "f";
+        }
+        goes_on = line.ends_with('\\');
+        if (kept) out.append(line).append(1, '\n');
+    }
+    return out;
+}
+
+}  // namespace topple::io

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace topple::io {
+
+// The lines of an OBJ that make its surface: vertices, with normals and what else begins with v,
+// and faces. Groups, objects, materials and lines are no surface, and the library that reads the
+// rest makes a kilobyte of each.
+std::string obj_surface(std::string_view bytes);
+
+}  // namespace topple::io
