@@ -128,6 +128,12 @@ Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Bo
     out.group = std::move(partition.label);
     out.agreement = std::move(partition.agreement);
     out.energy_curve = std::move(partition.best_energy_curve);
+    return out;
+}
+
+std::vector<double> pair_probabilities(const ContactGraph& graph, std::span<const Joint> joints,
+                                       const ShellOdds& shell) {
+    std::vector<double> out;
     for (const physics::TouchingPair& pair : graph.pairs) {
         const auto at =
             std::ranges::lower_bound(joints, std::pair(pair.a, pair.b), {},
@@ -139,7 +145,7 @@ Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Bo
         };
         const double both = room(pair.a) * room(pair.b);
         const double joint = known ? fitted::probability(at->log_odds) : 0;
-        out.pair_probability.push_back(both + (1 - both) * joint);
+        out.push_back(both + (1 - both) * joint);
     }
     return out;
 }

@@ -30,8 +30,7 @@ struct GroupingOptions {
 };
 
 struct Grouping {
-    std::vector<std::int32_t> group;       // of each primitive; -1: fixed to the ground
-    std::vector<double> pair_probability;  // by pair of the contact graph: that both are one solid
+    std::vector<std::int32_t> group;  // of each primitive; -1: fixed to the ground
     // By group: share of the sampler's chains that found it, but for a tenth of its primitives.
     std::vector<double> agreement;
     std::vector<double> energy_curve;  // best energy after each step of the annealing
@@ -58,5 +57,10 @@ double standing_cost(const physics::Candidate& candidate, double noise_m);
 Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Body> bodies,
                           std::span<const Joint> joints, const ShellOdds& shell,
                           const GroupingOptions& options, unsigned threads);
+
+// That both are one solid, of each of the graph's pairs: by their joint, or as parts of the room.
+// joints: sorted by (a, b); they may be those of another graph of the same primitives.
+std::vector<double> pair_probabilities(const ContactGraph& graph, std::span<const Joint> joints,
+                                       const ShellOdds& shell);
 
 }  // namespace topple::graph

@@ -107,7 +107,7 @@ void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& sc
         c.normal = to_input(pair.normal);
         const bool same = object(pair.a) == object(pair.b);
         c.relation = same ? "fixed" : carries.contains({pair.a, pair.b}) ? "support" : "adjacent";
-        c.probability = objects.grouping.pair_probability[i];
+        c.probability = objects.pair_probability[i];
         scene.contacts.push_back(std::move(c));
     }
 }

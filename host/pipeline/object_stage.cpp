@@ -107,8 +107,8 @@ void collect_objects(const SolidScene& solids, const std::vector<bool>& shell,
     std::vector<graph::Carried> carried;
     for (const StableObject& o : out.objects)
         carried.push_back({o.grounded, o.candidate.body.mass_kg});
-    out.supports = graph::find_supports(out.contacts, out.grouping.pair_probability,
-                                        out.object_of_primitive, carried, columns);
+    out.supports = graph::find_supports(out.contacts, out.pair_probability, out.object_of_primitive,
+                                        carried, columns);
 }
 
 }  // namespace
@@ -208,6 +208,7 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
         return boundary.size() > 0 ? graph::build_contact_graph(device, cells, count, 1, boundary)
                                    : std::move(parts.contacts);
     });
+    out.pair_probability = graph::pair_probabilities(out.contacts, parts.joints, parts.shell);
     const physics::SupportTable table = stage("supports", [&] {
         std::vector<bool> loose;
         for (const std::int32_t g : out.grouping.group) loose.push_back(g >= 0);

@@ -47,6 +47,7 @@ struct StableObject {
 struct ObjectStage {
     std::vector<physics::Body> bodies;  // by primitive
     graph::ContactGraph contacts;
+    std::vector<double> pair_probability;  // by pair of the contacts: that both are one solid
     graph::Grouping grouping;
     std::vector<std::int32_t> object_of_primitive;  // the ground, where there is one, is object 0
     std::vector<StableObject> objects;
