@@ -38,6 +38,15 @@ CloudView view_of(const topple_cloud* cloud) {
     const auto stride = [](std::int64_t bytes) {
         return static_cast<std::ptrdiff_t>(bytes ? bytes : std::int64_t{sizeof(float)});
     };
+    // Columns keep no count without values: what is NULL here would be read later.
+    const auto all = [&](const char* names, bool first, bool second, bool third) {
+        if (c.count > 0 && !(first && second && third))
+            throw Error(ErrorKind::usage, std::string("cloud: ") + names + " must not be NULL");
+    };
+    all("x, y and z", c.x, c.y, c.z);
+    if (c.nx || c.ny || c.nz) all("nx, ny and nz, where one is given,", c.nx, c.ny, c.nz);
+    if (c.red || c.green || c.blue)
+        all("red, green and blue, where one is given,", c.red, c.green, c.blue);
     CloudView view;
     view.x = {c.x, c.count, stride(c.stride_bytes)};
     view.y = {c.y, c.count, stride(c.stride_bytes)};

@@ -66,13 +66,21 @@ T* array(T* argument, const char* name, std::uint64_t count) {
     return argument;
 }
 
+// Of any version of a struct, sizeof is a multiple of its alignment: another size would cut a
+// pointer in two.
+template <class Struct>
+void check_size(std::size_t size, const char* name) {
+    if (size < sizeof(std::size_t) || size % alignof(Struct) != 0)
+        throw Error(ErrorKind::usage, std::string(name) + ": size is " + std::to_string(size) +
+                                          "; set it to sizeof of the struct");
+}
+
 // The struct as this library knows it: the caller's part of it, and `defaults` beyond.
 template <class Struct>
 Struct known(const Struct* given, const Struct& defaults, const char* name) {
     Struct out = defaults;
     if (!given) return out;
-    if (given->size < sizeof(std::size_t))
-        throw Error(ErrorKind::usage, std::string(name) + ": size is not set");
+    check_size<Struct>(given->size, name);
     std::memcpy(&out, given, std::min(given->size, sizeof(Struct)));
     out.size = sizeof(Struct);
     return out;
@@ -83,8 +91,7 @@ template <class Struct>
 void give(const Struct& from, Struct* to, const char* name) {
     needed(to, name);
     const std::size_t size = to->size;
-    if (size < sizeof(std::size_t))
-        throw Error(ErrorKind::usage, std::string(name) + ": size is not set");
+    check_size<Struct>(size, name);
     std::memcpy(to, &from, std::min(size, sizeof(Struct)));
     to->size = size;
 }

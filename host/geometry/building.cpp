@@ -29,7 +29,9 @@ std::vector<Storey> storeys_of(const Surfels& s, const Vec3& up) {
         low = std::min(low, height(n));
         high = std::max(high, height(n));
     }
-    if (!(high - low <= most_height_m)) return find_storeys({}, 0, histogram_step_m);
+    // Without a surfel it is negative.
+    if (!(high - low >= 0 && high - low <= most_height_m))
+        return find_storeys({}, 0, histogram_step_m);
     std::vector<double> area(static_cast<std::size_t>((high - low) / histogram_step_m) + 1, 0.0);
     for (std::size_t n = 0; n < s.size(); ++n)
         area[static_cast<std::size_t>((height(n) - low) / histogram_step_m)] += s.area_m2;

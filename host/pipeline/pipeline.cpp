@@ -131,6 +131,8 @@ ParseResult run(const std::string& source, const ParseOptions& options, Ingest i
 void check_options(const ParseOptions& o) {
     if (o.voxel_m != 0) check_range("--voxel", o.voxel_m, least_voxel_m, 1.0);
     check_range("--unit", o.unit_m, 1e-6, 1e6);
+    if (o.up)
+        check_range("--up: its length,", std::hypot((*o.up)[0], (*o.up)[1], (*o.up)[2]), 1e-6, 1e6);
     check_range("--density", o.density_kg_m3, 0, 30000);
     if (o.contents_kg_m3 && *o.contents_kg_m3 != 0)
         check_range("--contents", *o.contents_kg_m3, 0, 30000);

@@ -163,7 +163,7 @@ TEST_F(CApi, ErrorsSayWhatIsWrong) {
     message(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_ERROR_USAGE);
     options.size = 0;
     EXPECT_EQ(message(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_ERROR_USAGE),
-              "options: size is not set");
+              "options: size is 0; set it to sizeof of the struct");
     topple_device* other = nullptr;
     EXPECT_EQ(topple_device_open("abacus", 0, &other, &status), TOPPLE_ERROR_USAGE);
     EXPECT_EQ(topple_device_adopt_opencl(nullptr, nullptr, nullptr, &other, &status),
