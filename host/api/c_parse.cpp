@@ -61,6 +61,7 @@ ParseOptions parse_options(const topple_options& o, bool& cancelled) {
     to.grouping_time_s = given(o.grouping_time_s);
     to.contents_kg_m3 = given(o.contents_kg_m3);
     to.coordinates = !o.without_coordinates;
+    to.isolate = !o.without_isolation;
     if (o.progress || o.log) {
         to.progress = [&o](const std::string& stage, double done) {
             if (o.progress) o.progress(stage.c_str(), done, o.user);

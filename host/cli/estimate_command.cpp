@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/isolate_option.h"
 #include "cli/long_run.h"
 #include "cli/max_memory_option.h"
 #include "cli/unit_option.h"
@@ -82,6 +83,7 @@ Command add_estimate(CLI::App& app) {
     app.add_option("--voxel", a->options.voxel_m, "Edge of a solid voxel in metres, as for parse")
         ->check(CLI::PositiveNumber);
     add_unit_option(app, a->options.unit_m);
+    add_isolate_option(app, a->options.isolate);
     app.add_option("--tile", a->options.tile_m, "Edge of the tiles in metres, as for parse")
         ->check(CLI::PositiveNumber);
     add_max_memory_option(app, a->options.max_memory_bytes,

@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/isolate_option.h"
 #include "cli/long_run.h"
 #include "cli/max_memory_option.h"
 #include "cli/summary.h"
@@ -200,6 +201,7 @@ Command add_parse(CLI::App& app, const Team& team) {
     app.add_option("--voxel", a->voxel_m,
                    "Edge of a solid voxel in metres (default: from the scan's resolution)");
     add_unit_option(app, a->options.unit_m);
+    add_isolate_option(app, a->options.isolate);
     app.add_option("--up", a->up,
                    "Up in the input's frame, X,Y,Z, as from an IMU (default: found from the scan)");
     app.add_option("--disturbance", a->disturbance,

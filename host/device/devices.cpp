@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "device/probe.h"
 #include "topple/error.h"
 
 namespace topple::device {
@@ -13,11 +14,23 @@ bool has_gpu(const std::vector<Listing>& listings) {
                        [](const Listing& listing) { return listing.usable && listing.info.gpu; });
 }
 
+// Throws Error(device) where a backend's driver did not survive, or has nothing to offer.
+void check_driver(Backend backend) {
+    const std::vector<Listing> found = probe(backend);
+    if (std::ranges::any_of(found, [](const Listing& listing) { return listing.usable; })) return;
+    for (const Listing& listing : found) {
+        // Other problems are told by opening it, with the device's name.
+        if (listing.info.name.empty() && !listing.problem.empty())
+            throw Error(ErrorKind::device,
+                        std::string(to_string(backend)) + " can't be used: " + listing.problem);
+    }
+}
+
 // A software driver behind a GPU's interface is slower than the native backend on the same CPU, so
 // "auto" takes only a real GPU. Vulkan first: its kernels are built ahead of time.
 std::unique_ptr<Device> open_best(unsigned threads) {
-    if (has_gpu(list_vulkan())) return open_vulkan();
-    if (has_gpu(list_opencl())) return open_opencl();
+    if (has_gpu(probe(Backend::vulkan))) return open_vulkan();
+    if (has_gpu(probe(Backend::opencl))) return open_opencl();
     return open_native(threads);
 }
 
@@ -33,7 +46,7 @@ std::vector<Listing> list_native() {
 
 std::vector<Listing> list_devices() {
     std::vector<Listing> all = list_native();
-    for (const auto& list : {list_opencl(), list_vulkan()}) {
+    for (const auto& list : {probe(Backend::opencl), probe(Backend::vulkan)}) {
         all.insert(all.end(), list.begin(), list.end());
     }
     return all;
@@ -42,8 +55,14 @@ std::vector<Listing> list_devices() {
 std::shared_ptr<Device> open_device(const std::string& backend, unsigned threads) {
     if (backend == "auto") return open_best(threads);
     if (backend == "native") return open_native(threads);
-    if (backend == "opencl") return open_opencl();
-    if (backend == "vulkan") return open_vulkan();
+    if (backend == "opencl") {
+        check_driver(Backend::opencl);
+        return open_opencl();
+    }
+    if (backend == "vulkan") {
+        check_driver(Backend::vulkan);
+        return open_vulkan();
+    }
     throw Error(ErrorKind::usage,
                 "--backend " + backend + " is unknown; take auto, native, opencl or vulkan");
 }

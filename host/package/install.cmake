@@ -1,6 +1,5 @@
 # What `cmake --install` puts under its prefix: the program, libtopple with its headers, and the CMake
-# package `topple`. Neither the program nor the library reads files of its own at run time.
-include(GNUInstallDirs)
+# package `topple`, and the readers, which both run. Else neither reads files of its own at run time.
 include(CMakePackageConfigHelpers)
 set(PACKAGE_FOLDER ${CMAKE_INSTALL_LIBDIR}/cmake/topple)
 configure_package_config_file(${CMAKE_CURRENT_SOURCE_DIR}/package/toppleConfig.cmake.in
@@ -20,6 +19,7 @@ endif()
 configure_file(${CMAKE_CURRENT_SOURCE_DIR}/package/topple.pc.in ${CMAKE_CURRENT_BINARY_DIR}/topple.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/topple.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(TARGETS topple)
+install(TARGETS topple-reader topple-volume-reader RUNTIME DESTINATION ${TOPPLE_LIBEXECDIR})
 if(TARGET topple-mpi)
   install(TARGETS topple-mpi)
 endif()

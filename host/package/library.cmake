@@ -1,7 +1,7 @@
 # libtopple: what host/include/topple declares and all that it takes, as one library from the objects of
 # the folders' own. Its users see topple::topple, installed or by add_subdirectory (decision 6).
-set(PARTS topple_api topple_core topple_device topple_fitted topple_geometry topple_graph topple_io topple_kernels topple_physics topple_pipeline
-          topple_report topple_safety topple_solids topple_tiles topple_vdb)
+set(PARTS topple_api topple_child topple_core topple_device topple_fitted topple_geometry topple_graph topple_io topple_kernels topple_physics topple_pipeline
+          topple_reader topple_report topple_safety topple_solids topple_tiles topple_vdb)
 foreach(ISA IN ITEMS baseline avx2 avx512)
   if(TARGET topple_kernels_${ISA})
     list(APPEND PARTS topple_kernels_${ISA})
@@ -10,6 +10,7 @@ endforeach()
 list(TRANSFORM PARTS REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE OBJECTS)
 add_library(libtopple ${OBJECTS})
 add_library(topple::topple ALIAS libtopple)
+add_dependencies(libtopple topple_readers)
 
 # What those objects need when they are linked, by package, target and library; what they need of others are headers.
 set(TOPPLE_LINKED_LIBRARIES png jpeg lzf qhull_r openvdb tbb OpenCL vulkan assimp octomap octomath cairo stdc++ m pthread)

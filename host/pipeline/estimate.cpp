@@ -13,7 +13,6 @@
 #include "device/native/thread_pool.h"
 #include "geometry/surfels.h"
 #include "io/frame_sequence.h"
-#include "io/octomap.h"
 #include "io/read_cloud.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/ingest.h"
@@ -21,7 +20,6 @@
 #include "pipeline/surface_extent.h"
 #include "pipeline/tiled_parse.h"
 #include "pipeline/voxel_size.h"
-#include "vdb/read_volume.h"
 
 namespace topple {
 namespace {
@@ -75,12 +73,8 @@ void look_at_cloud(const std::filesystem::path& input, const ParseOptions& optio
     };
     if (io::can_stream(input)) {
         io::stream_cloud(input, options.unit_m, add);
-    } else if (io::looks_like_octomap(input)) {
-        add(io::read_octomap(input, options.unit_m, [&] { end_if_cancelled(options); }).cloud);
-    } else if (vdb::looks_like_volume(input)) {
-        add(vdb::read_volume(input, options.unit_m).cloud);
     } else {
-        add(io::read_cloud(input, options.unit_m));
+        add(read_input(input, options).cloud);
     }
 }
 

@@ -15,11 +15,11 @@
 #include "geometry/virtual_views.h"
 #include "io/frame_sequence.h"
 #include "io/octomap.h"
-#include "io/read_cloud.h"
 #include "io/text.h"
 #include "pipeline/caller_points.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/voxel_stage.h"
+#include "reader/read_scan.h"
 #include "vdb/read_volume.h"
 
 namespace topple {
@@ -341,6 +341,12 @@ Ingested ingest_octomap(ScannedMap map, const ParseOptions& options) {
 
 }  // namespace
 
+ScannedMap read_input(const std::filesystem::path& file, const ParseOptions& options) {
+    const auto poll = [&] { end_if_cancelled(options); };
+    return options.isolate ? reader::read_scan_apart(file, options.unit_m, poll)
+                           : reader::read_scan(file, options.unit_m, poll);
+}
+
 Ingested ingest(device::Device& device, const std::filesystem::path& input,
                 const ParseOptions& options) {
     if (options.progress) options.progress("ingest", 0);
@@ -353,12 +359,10 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
         }
         return ingest_frames(device, io::FrameSequence::open(input), options);
     }
-    if (io::looks_like_octomap(input))
-        return ingest_octomap(
-            io::read_octomap(input, options.unit_m, [&] { end_if_cancelled(options); }), options);
-    if (vdb::looks_like_volume(input))
-        return ingest_volume(device, vdb::read_volume(input, options.unit_m));
-    return ingest_cloud(device, io::read_cloud(input, options.unit_m), options);
+    ScannedMap map = read_input(input, options);
+    if (io::looks_like_octomap(input)) return ingest_octomap(std::move(map), options);
+    if (vdb::looks_like_volume(input)) return ingest_volume(device, std::move(map));
+    return ingest_cloud(device, std::move(map.cloud), options);
 }
 
 }  // namespace topple

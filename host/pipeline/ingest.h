@@ -69,6 +69,10 @@ struct Ingested {
 double cell_for_frames(const Intrinsics& intrinsics, std::size_t frames,
                        const std::function<DepthFrame(std::size_t)>& load);
 
+// A file that is no sequence of frames: its points, and of a map its free space. What libraries of
+// others read, they read in a process of their own, unless options.isolate is off.
+ScannedMap read_input(const std::filesystem::path& file, const ParseOptions& options);
+
 Ingested ingest(device::Device& device, const std::filesystem::path& input,
                 const ParseOptions& options);
 Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options);

@@ -135,6 +135,7 @@ void bind_parse(py::module_& module) {
         .def_readwrite("unit_m", &ParseOptions::unit_m)
         .def_readwrite("up", &ParseOptions::up)
         .def_readwrite("disturbances", &ParseOptions::disturbances)
+        .def_readwrite("isolate", &ParseOptions::isolate)
         .def_readwrite("seed", &ParseOptions::seed)
         .def_readwrite("max_memory_bytes", &ParseOptions::max_memory_bytes)
         .def_readwrite("density_kg_m3", &ParseOptions::density_kg_m3)

@@ -54,6 +54,11 @@ struct ParseOptions {
     // A recorded earthquake (read_accelerogram), instead of pulses about that peak.
     std::optional<Accelerogram> accelerogram;
     double tolerable_J = 0.1;  // risk per event below which nothing needs to be done
+    // Meshes, OctoMaps and OpenVDB files are read by libraries of others. They read in a process of
+    // their own, the program topple-reader, with limits of memory and time by the file's size: what
+    // crashes there is an Error here. Without, they read in this process, without limits, which is
+    // for files that you trust. What is parsed from memory needs no such library.
+    bool isolate = true;
     // Seconds for the search for objects, about; none: as long as it takes. Where a limit is met,
     // the objects depend on the machine.
     std::optional<double> grouping_time_s;

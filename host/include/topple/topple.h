@@ -123,6 +123,7 @@ typedef struct topple_options {
     double tolerable_J;        /* 0.1 */
     double grouping_time_s;    /* NaN: as long as it takes */
     int32_t without_coordinates; /* not 0: the result keeps no coordinates of its points */
+    int32_t without_isolation;   /* not 0: files of others' formats are read in this process */
     /* Called on the thread that parses, with `user`. They must return, and not by longjmp. */
     void (*progress)(const char* stage, double done, void* user); /* done: 0 to 1 */
     int (*cancelled)(void* user);                                 /* not 0: stop */

@@ -151,7 +151,7 @@ class Result:
 def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=('human', 'wind', 'earthquake'),
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, wind_m_s=12.0,
           wind_from_deg=None, pga_m_s2=None, accelerogram=None, tolerable_J=0.1, grouping_time_s=None, normals=None,
-          viewpoint=None, colours=None, progress=None, cancelled=None):
+          viewpoint=None, colours=None, isolate=True, progress=None, cancelled=None):
     """Parses a scan into a Result.
 
     source: a path, as the command line takes it; or points in metres: an array of shape (N, 3), records with
@@ -167,12 +167,14 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. progress(stage, done) is called as stages start and go on;
     contents_kg_m3: of closed furniture, or None where all is solid.
     cancelled() is polled, and True stops the parse with an Error of kind "cancelled". Ctrl-C stops it, too, with
-    KeyboardInterrupt. Other threads of Python run meanwhile. The other options are those of `topple parse --help`.
+    KeyboardInterrupt. isolate=False: meshes, OctoMaps and OpenVDB files are read in this process, not in one of
+    its own with limits of memory and time; for large files that you trust. Other threads of Python run meanwhile. The other options
+    are those of `topple parse --help`.
     """
     options = _topple.Options()
     options.voxel_m, options.unit_m, options.up = voxel_m, unit_m, up
     options.disturbances = [disturbances] if isinstance(disturbances, str) else list(disturbances)
-    options.seed = seed
+    options.seed, options.isolate = seed, isolate
     options.max_memory_bytes, options.density_kg_m3, options.friction = max_memory_bytes, density_kg_m3, friction
     options.contents_kg_m3 = contents_kg_m3
     options.walks, options.wind_m_s, options.wind_from_deg = walks, wind_m_s, wind_from_deg

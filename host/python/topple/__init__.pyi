@@ -202,6 +202,7 @@ def parse(
     normals: Optional[_Points] = ...,
     viewpoint: Optional[_Vec3] = ...,
     colours: Optional[_Points] = ...,
+    isolate: bool = ...,
     progress: Optional[Callable[[str, float], object]] = ...,
     cancelled: Optional[Callable[[], bool]] = ...,
 ) -> Result: ...

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#include "child/process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <utility>
+
+#include "child/answer_head.h"
+#include "topple/error.h"
+#include "topple/version.h"
+
+namespace topple::child {
+namespace {
+
+constexpr int poll_ms = 20;
+// The child's side of a pipe that ends with it.
+constexpr int life_descriptor = answer_descriptor + 1;
+
+[[noreturn]] void no_process(const char* what, int error) {
+    throw Error(ErrorKind::input, std::string("no process to read in: ") + what + ": " +
+                                      std::strerror(error) +
+                                      "; raise the limits (ulimit), or read the file in this "
+                                      "process (--no-isolate) if you trust it");
+}
+
+class Descriptor {
+  public:
+    explicit Descriptor(int value) : value_(value) {}
+    Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
+    Descriptor& operator=(Descriptor&&) = delete;
+    ~Descriptor() { close(); }
+    void close() {
+        if (value_ >= 0) ::close(value_);
+        value_ = -1;
+    }
+    int get() const { return value_; }
+    int take() { return std::exchange(value_, -1); }
+
+  private:
+    int value_;
+};
+
+// Above those that the child gets, so that giving it one does not overwrite another.
+Descriptor moved_up(int descriptor) {
+    const int up = ::fcntl(descriptor, F_DUPFD_CLOEXEC, life_descriptor + 1);
+    const int error = errno;
+    ::close(descriptor);
+    if (up < 0) no_process("a descriptor", error);
+    return Descriptor(up);
+}
+
+class Spawning {
+  public:
+    Spawning() {
+        ::posix_spawn_file_actions_init(&actions_);
+        ::posix_spawnattr_init(&attributes_);
+    }
+    Spawning(const Spawning&) = delete;
+    Spawning& operator=(const Spawning&) = delete;
+    ~Spawning() {
+        ::posix_spawn_file_actions_destroy(&actions_);
+        ::posix_spawnattr_destroy(&attributes_);
+    }
+
+    // Without the host's descriptors, signal handlers and masks; and in a group of its own, so that
+    // Ctrl-C is the parent's business.
+    pid_t start(const std::string& program, std::vector<std::string>& words, int answer, int life) {
+        ::posix_spawn_file_actions_addopen(&actions_, 0, "/dev/null", O_RDONLY, 0);
+        ::posix_spawn_file_actions_addopen(&actions_, 1, "/dev/null", O_WRONLY, 0);
+        ::posix_spawn_file_actions_addopen(&actions_, 2, "/dev/null", O_WRONLY, 0);
+        ::posix_spawn_file_actions_adddup2(&actions_, answer, answer_descriptor);
+        ::posix_spawn_file_actions_adddup2(&actions_, life, life_descriptor);
+        ::posix_spawn_file_actions_addclosefrom_np(&actions_, life_descriptor + 1);
+        sigset_t none, all;
+        ::sigemptyset(&none);
+        ::sigfillset(&all);
+        ::posix_spawnattr_setsigmask(&attributes_, &none);
+        ::posix_spawnattr_setsigdefault(&attributes_, &all);
+        ::posix_spawnattr_setpgroup(&attributes_, 0);
+        ::posix_spawnattr_setflags(
+            &attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+        std::vector<char*> argv;
+        for (std::string& word : words) argv.push_back(word.data());
+        argv.push_back(nullptr);
+        pid_t child = -1;
+        const int error =
+            ::posix_spawn(&child, program.c_str(), &actions_, &attributes_, argv.data(), environ);
+        if (error != 0) no_process(program.c_str(), error);
+        return child;
+    }
+
+  private:
+    posix_spawn_file_actions_t actions_;
+    posix_spawnattr_t attributes_;
+};
+
+// Waits for a child, and ends it where it goes first.
+class Child {
+  public:
+    explicit Child(pid_t id) : id_(id) {}
+    Child(const Child&) = delete;
+    Child& operator=(const Child&) = delete;
+    ~Child() {
+        if (!over_) end();
+    }
+
+    // Whether it is over.
+    bool look() {
+        const pid_t got = ::waitpid(id_, &status_, WNOHANG);
+        if (got == 0 || (got < 0 && errno == EINTR)) return false;
+        known_ = got == id_;  // else somebody else in this process waits for its children
+        return over_ = true;
+    }
+    void end() {
+        ::kill(id_, SIGKILL);
+        while (!over_) {
+            const pid_t got = ::waitpid(id_, &status_, 0);
+            over_ = got >= 0 || errno != EINTR;
+        }
+    }
+    std::string how(const Limits& limits) const {
+        if (!known_) return "ended without an answer";
+        if (WIFSIGNALED(status_)) {
+            const int signal = WTERMSIG(status_);
+            if (signal == SIGXCPU)
+                return "took more than the " + std::to_string(limits.cpu_s) + " s that it may";
+            return std::string("crashed (") + ::strsignal(signal) + ")";
+        }
+        return "ended without an answer (exit code " + std::to_string(WEXITSTATUS(status_)) + ")";
+    }
+
+  private:
+    pid_t id_;
+    int status_ = 0;
+    bool over_ = false, known_ = false;
+};
+
+}  // namespace
+
+Answer::Answer(int descriptor) {
+    const Descriptor memory(descriptor);
+    struct stat status {};
+    constexpr int seals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL;
+    if (::fcntl(memory.get(), F_ADD_SEALS, seals) != 0 || ::fstat(memory.get(), &status) != 0 ||
+        static_cast<std::uint64_t>(status.st_size) < answer_head)
+        return;
+    size_ = static_cast<std::size_t>(status.st_size);
+    void* const at = ::mmap(nullptr, size_, PROT_READ, MAP_SHARED, memory.get(), 0);
+    if (at == MAP_FAILED) return;
+    data_ = static_cast<std::byte*>(at);
+    AnswerHead head;
+    std::memcpy(&head, data_, sizeof(head));
+    if (head.magic == answer_magic && head.size == size_) return;
+    ::munmap(data_, size_);
+    data_ = nullptr;
+}
+
+Answer::Answer(Answer&& other) noexcept
+    : data_(std::exchange(other.data_, nullptr)), size_(other.size_) {}
+
+Answer::~Answer() {
+    if (data_) ::munmap(data_, size_);
+}
+
+std::span<const std::byte> Answer::bytes() const {
+    return std::span<const std::byte>(data_, size_).subspan(answer_head);
+}
+
+void Answer::release(std::size_t end) const {
+    ::madvise(data_, answer_head + end, MADV_DONTNEED);
+}
+
+Ended run(const std::string& program, const std::vector<std::string>& task, const Limits& limits,
+          const std::function<void()>& poll) {
+    const int memory = ::memfd_create("topple-answer", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+    if (memory < 0) no_process("memory to share", errno);
+    Descriptor answer = moved_up(memory);
+    int pipe[2];
+    if (::pipe2(pipe, O_CLOEXEC) != 0) no_process("a pipe", errno);
+    const Descriptor alive(pipe[0]);
+    Descriptor life = moved_up(pipe[1]);
+    std::vector<std::string> words{program, version, std::to_string(::getpid()),
+                                   std::to_string(limits.memory_bytes),
+                                   std::to_string(limits.cpu_s)};
+    words.insert(words.end(), task.begin(), task.end());
+    Child child(Spawning().start(program, words, answer.get(), life.get()));
+    life.close();
+    const auto start = std::chrono::steady_clock::now();
+    pollfd ends{alive.get(), POLLIN, 0};
+    bool over = false;
+    while (!over) {
+        // The pipe's end tells at once; but a process forked meanwhile may hold it open.
+        const bool ended = ::poll(&ends, 1, poll_ms) > 0;
+        if (ended) ::usleep(200);
+        over = child.look();
+        if (over) break;
+        if (poll) poll();
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+        if (taken.count() > limits.wall_s) {
+            child.end();
+            return {Answer(), "did not end within " +
+                                  std::to_string(static_cast<std::uint64_t>(limits.wall_s)) + " s"};
+        }
+    }
+    Answer got(answer.take());
+    std::string how = got.whole() ? std::string() : child.how(limits);
+    return {std::move(got), std::move(how)};
+}
+
+}  // namespace topple::child

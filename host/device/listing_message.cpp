@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "device/listing_message.h"
+
+#include "child/message.h"
+#include "device/devices.h"
+
+namespace topple::device {
+namespace {
+
+template <class Archive, class Info>
+void fields(Archive& a, Info& listing) {
+    a(listing.usable);
+    a(listing.problem);
+    auto& info = listing.info;
+    a(info.name);
+    a(info.driver);
+    a(info.gpu);
+    a(info.limits);
+}
+
+// Drivers' texts are printed.
+void make_printable(std::string& text) {
+    for (char& c : text) {
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
+    }
+}
+
+}  // namespace
+
+std::vector<Listing> list_backend(const std::string& backend) {
+    return backend == to_string(Backend::opencl) ? list_opencl() : list_vulkan();
+}
+
+void write_listings(const std::vector<Listing>& listings) {
+    child::Writer out;
+    out(static_cast<std::uint64_t>(listings.size()));
+    for (const Listing& listing : listings) fields(out, listing);
+    out.finish();
+}
+
+std::vector<Listing> take_listings(const child::Answer& answer, Backend backend) {
+    child::Reader in(answer);
+    std::uint64_t count = 0;
+    in(count);
+    constexpr std::uint64_t most = 1000;
+    if (count > most) throw child::BadAnswer();
+    std::vector<Listing> listings(count);
+    for (Listing& listing : listings) {
+        fields(in, listing);
+        listing.backend = listing.info.backend = backend;
+        make_printable(listing.problem);
+        make_printable(listing.info.name);
+        make_printable(listing.info.driver);
+    }
+    in.finish();
+    return listings;
+}
+
+}  // namespace topple::device

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+
+#include "child/message.h"
+#include "core/space_map.h"
+#include "topple/error.h"
+
+namespace topple::reader {
+
+// A scan, or the error in its place, as a child's answer.
+void write_scan(const ScannedMap& map, int descriptor = child::answer_descriptor);
+void write_error(const Error& error, int descriptor = child::answer_descriptor);
+
+// What a child answered. Throws the Error that it sent, and child::BadAnswer where the answer is
+// none of a scan: counts that differ, coordinates or normals out of range, boxes inside out.
+ScannedMap take_scan(const child::Answer& answer);
+
+}  // namespace topple::reader

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include <openvdb/openvdb.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <cstdlib>
+
+#include "host/io/files.h"
+#include "host/io/mesh_files.h"
+#include "host/io/octomap_files.h"
+#include "reader/read_scan.h"
+
+namespace topple::reader {
+namespace {
+
+using test::expect_input_error;
+
+class Apart : public test::Files {
+  protected:
+    Apart() {
+        if (const char* readers = std::getenv("TOPPLE_READERS")) readers_ = readers;
+    }
+    ~Apart() override { setenv("TOPPLE_READERS", readers_.c_str(), 1); }
+
+    // The readers are a script from here on.
+    void take_script(const std::string& script) {
+        for (const char* name : {"topple-reader", "topple-volume-reader"}) {
+            write(name, "#!/bin/sh\n" + script + "\n");
+            std::filesystem::permissions(path(name), std::filesystem::perms::owner_all);
+        }
+        setenv("TOPPLE_READERS", folder_.c_str(), 1);
+    }
+    std::filesystem::path volume() const {
+        openvdb::initialize();
+        auto grid = openvdb::FloatGrid::create(1);
+        for (int i = 0; i < 8; ++i) grid->tree().setValueOn({i, i, 0}, i < 4 ? -0.5f : 0.5f);
+        grid->tree().setValueOn({4, 3, 0}, 0.5f);
+        grid->setTransform(openvdb::math::Transform::createLinearTransform(0.1));
+        openvdb::io::File file(path("a.vdb").string());
+        file.write({grid});
+        file.close();
+        return path("a.vdb");
+    }
+    std::string readers_;
+};
+
+bool same(const std::vector<SpaceMap::Box>& a, const std::vector<SpaceMap::Box>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& one, const auto& two) {
+        return one.low == two.low && one.high == two.high;
+    });
+}
+
+TEST_F(Apart, the_same_comes_as_from_here) {
+    const std::filesystem::path files[] = {write("a.obj", test::box_obj()),
+                                           write("a.ply", test::box_ply()),
+                                           write("a.glb", test::box_glb()),
+                                           write("a.stl", test::box_stl()),
+                                           write("a.bt", test::binary_map(test::room_map())),
+                                           volume()};
+    for (const auto& file : files) {
+        SCOPED_TRACE(file);
+        EXPECT_TRUE(takes_others(file));
+        const ScannedMap here = read_scan(file, 0.7, [] {}), apart = read_scan_apart(file, 0.7, {});
+        EXPECT_EQ(apart.cloud.x, here.cloud.x);
+        EXPECT_EQ(apart.cloud.y, here.cloud.y);
+        EXPECT_EQ(apart.cloud.z, here.cloud.z);
+        EXPECT_EQ(apart.cloud.nx, here.cloud.nx);
+        EXPECT_EQ(apart.cloud.red, here.cloud.red);
+        EXPECT_EQ(apart.cloud.source, here.cloud.source);
+        EXPECT_EQ(apart.cloud.notes, here.cloud.notes);
+        EXPECT_EQ(apart.space.voxel_m, here.space.voxel_m);
+        EXPECT_EQ(apart.space.corner_m, here.space.corner_m);
+        EXPECT_TRUE(same(apart.space.free, here.space.free));
+        EXPECT_TRUE(same(apart.space.solid, here.space.solid));
+    }
+}
+
+TEST_F(Apart, errors_come_as_from_here) {
+    expect_input_error([&] { read_scan_apart(write("a.glb", "glTF"), 1, {}); }, {"no GLB"});
+    expect_input_error([&] { read_scan_apart(write("a.vdb", "no"), 1, {}); }, {"magic number"});
+    expect_input_error([&] { read_scan_apart(path("none.obj"), 1, {}); }, {"No such file"});
+}
+
+TEST_F(Apart, clouds_take_no_other_process) {
+    take_script("kill -SEGV $$");
+    EXPECT_EQ(read_scan_apart(write("a.xyz", "1 2 3\n4 5 6\n"), 1, {}).cloud.size(), 2u);
+}
+
+TEST_F(Apart, what_crashes_there_is_an_error_here) {
+    const auto file = write("a.obj", test::box_obj());
+    const struct {
+        const char *script, *message;
+    } cases[] = {
+        {"kill -SEGV $$", "crashed (Segmentation fault)"},
+        {"kill -XCPU $$", "took more than the 8 s"},
+        {"exit 7", "ended without an answer (exit code 7)"},
+        {"exit 0", "ended without an answer"},
+        {"head -c 1000 /dev/zero >&3", "ended without an answer"},
+        // A head that fits, and nothing of a scan behind it.
+        {"printf 'topwe1\\0\\0\\100\\0\\0\\0\\0\\0\\0\\0' >&3; head -c 48 /dev/zero >&3", "answer"},
+    };
+    for (const auto& c : cases) {
+        SCOPED_TRACE(c.script);
+        take_script(c.script);
+        expect_input_error([&] { read_scan_apart(file, 1, {}); },
+                           {"a.obj", c.message, "--no-isolate"});
+    }
+}
+
+TEST_F(Apart, what_polls_ends_it) {
+    take_script("exec sleep 100");
+    const auto file = write("a.obj", test::box_obj());
+    struct Cancelled {};
+    int polls = 0;
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_THROW(read_scan_apart(file, 1,
+                                 [&] {
+                                     if (++polls == 5) throw Cancelled();
+                                 }),
+                 Cancelled);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+    EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
+}
+
+TEST_F(Apart, says_where_a_reader_is_missing) {
+    setenv("TOPPLE_READERS", folder_.c_str(), 1);
+    try {
+        read_scan_apart(write("a.obj", test::box_obj()), 1, {});
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        EXPECT_NE(std::string(error.what()).find("TOPPLE_READERS"), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace topple::reader
