@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "topple/parse.h"
+
+namespace topple::parses {
+
+// What holds of every parse: in words what does not of this one, or nothing.
+//   - labels name primitives and objects that are there; a point's object is its primitive's;
+//     objects part the primitives among them; contacts and supports join two that are there;
+//   - an object's mass is the sum of its primitives', and a primitive's voxels are in `solid`,
+//     which has strays, too;
+//   - masses, energies, areas, errors and risks are finite and not negative, probabilities and
+//     shares are 0 to 1, the instability curve rises, unsafety is 1 to 10 or not known;
+//   - nothing holds itself up: the supports, from supporter to supported, have no cycle but of two
+//     that each carry the other.
+std::string what_is_wrong(const Scene& scene);
+
+// The same of what write_outputs() left in a folder, and that it says what the scene says: as many
+// points, voxels, primitives and objects, with the same labels.
+std::string what_is_wrong(const Scene& scene, const std::filesystem::path& folder);
+
+}  // namespace topple::parses

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "topple/parse.h"
+
+// Clouds and options by chance, for parses that nobody thought of.
+namespace topple::parses {
+
+struct RandomScene {
+    PointCloud cloud;
+    ParseOptions options;
+};
+
+// Of a seed always the same. Most are a few solids on a floor, small and sparse so that a parse
+// takes milliseconds; the others are what no scanner delivers: points in one place or on a line,
+// far apart, doubled, with wrong normals, on no floor. One option in three is out of its default,
+// one in thirty out of its range.
+RandomScene random_scene(std::uint64_t seed);
+
+}  // namespace topple::parses
