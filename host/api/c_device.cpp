@@ -7,7 +7,7 @@ namespace topple::c_api {
 namespace {
 
 template <std::size_t size>
-void copy_text(const std::string& from, char (&to)[size]) {
+void copy_text(std::string_view from, char (&to)[size]) {
     const std::size_t length = std::min(from.size(), size - 1);
     std::memcpy(to, from.data(), length);
     to[length] = 0;
@@ -23,7 +23,7 @@ int opened(topple_device** device, topple_status* status, const Open& open) {
 
 }  // namespace
 
-int set(topple_status* status, int code, const std::string& message) noexcept {
+int set(topple_status* status, int code, std::string_view message) noexcept {
     if (status) {
         status->code = code;
         copy_text(message, status->message);

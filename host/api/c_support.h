@@ -2,10 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 
 #include "topple/device.h"
 #include "topple/error.h"
@@ -26,7 +29,7 @@ struct OutOfMemory {
     std::size_t bytes;
 };
 
-int set(topple_status* status, int code, const std::string& message) noexcept;
+int set(topple_status* status, int code, std::string_view message) noexcept;
 
 // Runs `body`, and makes a code and a message of what it throws.
 template <class Body>
@@ -37,8 +40,9 @@ int guarded(topple_status* status, const Body& body) noexcept {
     } catch (const Cancelled&) {
         return set(status, TOPPLE_ERROR_CANCELLED, "cancelled");
     } catch (const OutOfMemory& e) {
-        return set(status, TOPPLE_ERROR_MEMORY,
-                   "the allocator gave no " + std::to_string(e.bytes) + " bytes");
+        std::array<char, 64> text{};
+        std::snprintf(text.data(), text.size(), "the allocator gave no %zu bytes", e.bytes);
+        return set(status, TOPPLE_ERROR_MEMORY, text.data());
     } catch (const Error& e) {
         return set(status,
                    e.kind() == ErrorKind::usage    ? TOPPLE_ERROR_USAGE

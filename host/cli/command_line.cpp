@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <map>
 #include <new>
 #include <span>
@@ -17,6 +18,18 @@ namespace {
 
 Error wrong_usage(const std::string& what) {
     return {ErrorKind::usage, what + " (see topple --help)"};
+}
+
+// An empty value, as an unset variable of a script leaves it, is none: the library takes it for the
+// default.
+void check_values(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options()) {
+        for (const std::string& value : option->results()) {
+            if (value.empty())
+                throw wrong_usage(option->get_name() +
+                                  ": its value is empty; leave it out for the default");
+        }
+    }
 }
 
 int run(const std::vector<CommandEntry>& entries, int argc, char** argv) {
@@ -33,7 +46,7 @@ int run(const std::vector<CommandEntry>& entries, int argc, char** argv) {
         "Exit codes: 0 done; 1 the input can't be parsed, or the output can't be written; 2 wrong "
         "usage;\n"
         "3 the asked-for backend or device can't be used; 130 stopped by Ctrl-C, 143 by SIGTERM.");
-    std::map<CLI::App*, Command> commands;
+    std::map<const CLI::App*, Command> commands;
     for (const CommandEntry& entry : entries) {
         CLI::App* sub = app.add_subcommand(entry.name, entry.what);
         commands[sub] = entry.define(*sub);
@@ -57,7 +70,9 @@ int run(const std::vector<CommandEntry>& entries, int argc, char** argv) {
             unknown = unknown_option(subcommands.empty() ? app : *subcommands.front(), words);
         throw wrong_usage(unknown.empty() ? error.what() : unknown);
     }
-    return commands.at(app.get_subcommands().front())();
+    const CLI::App& chosen = *app.get_subcommands().front();
+    check_values(chosen);
+    return commands.at(&chosen)();
 }
 
 }  // namespace
@@ -84,13 +99,18 @@ int run_command_line(const std::vector<CommandEntry>& commands, int argc, char**
         tell(error);
         return exit_code(error.kind());
     };
+    // Made while there is memory for it.
+    const Error out_of_memory(
+        ErrorKind::input,
+        "out of memory; use a larger --voxel or set --max-memory to be told earlier");
     try {
         return run(commands, argc, argv);
     } catch (const Error& error) {
         return fail(error);
     } catch (const std::bad_alloc&) {
-        return fail({ErrorKind::input,
-                     "out of memory; use a larger --voxel or set --max-memory to be told earlier"});
+        return fail(out_of_memory);
+    } catch (const std::filesystem::filesystem_error& error) {
+        return fail({ErrorKind::input, error.path1().string() + ": " + error.code().message()});
     } catch (const std::exception& error) {
         return fail({ErrorKind::input, error.what()});
     }

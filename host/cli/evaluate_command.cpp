@@ -204,31 +204,35 @@ Command add_evaluate(CLI::App& app) {
     app.add_option("--seeds", a->seeds, "How many rooms")->capture_default_str();
     app.add_option("--first", a->first, "Seed of the first room; the others follow")
         ->capture_default_str();
-    app.add_option("--frames", a->options.camera.frames, "Depth frames of each room")
-        ->capture_default_str();
+    CLI::Option* const frames =
+        app.add_option("--frames", a->options.camera.frames, "Depth frames of each room")
+            ->capture_default_str();
     CLI::Option* const groupings = app.add_flag(
         "--groupings", a->groupings,
         "Table 3 instead: the same primitives grouped by each joint's looks, greedily, and by SWC");
-    app.add_flag("--fit-joints", a->fit_joints,
-                 "Fit the weights of the first of these to the rooms, and print them")
-        ->excludes(groupings);
-    app.add_flag("--bases", a->bases,
-                 "How often what each rule of completion takes to be solid is solid, instead")
-        ->excludes(groupings);
+    CLI::Option* const fit_joints =
+        app.add_flag("--fit-joints", a->fit_joints,
+                     "Fit the weights of the first of these to the rooms, and print them")
+            ->excludes(groupings);
+    CLI::Option* const bases =
+        app.add_flag("--bases", a->bases,
+                     "How often what each rule of completion takes to be solid is solid, instead")
+            ->excludes(groupings);
     CLI::Option* const measures =
         app.add_flag("--measures", a->measures,
                      "Mass and barrier of 32 things of known measures instead, from clean points 4 "
                      "mm apart, each at as many places as --seeds")
             ->excludes(groupings)
-            ->excludes("--fit-joints")
-            ->excludes("--bases");
+            ->excludes(fit_joints)
+            ->excludes(bases);
     app.add_flag("--from-frames", a->frames_of_things,
                  "From the depth camera's noisy frames instead, with --measures")
         ->needs(measures);
     app.add_option("--thing", a->thing, "Only those things whose names begin so, with --measures")
         ->needs(measures);
-    app.add_flag("--single", a->options.camera.single,
-                 "One frame of each room, without its pose, as in the paper's 6.1 and 6.2");
+    CLI::Option* const single =
+        app.add_flag("--single", a->options.camera.single,
+                     "One frame of each room, without its pose, as in the paper's 6.1 and 6.2");
     add_furniture(app, a->options.room.varied);
     std::vector<std::string> names = scenes::kinds();
     names.emplace_back("all");
@@ -238,20 +242,19 @@ Command add_evaluate(CLI::App& app) {
             ->delimiter(',')
             ->check(CLI::IsMember(names))
             ->excludes(groupings)
-            ->excludes("--fit-joints")
+            ->excludes(fit_joints)
             ->excludes(measures)
-            ->excludes("--single");
+            ->excludes(single);
     add_scan(app, a->scan.kind)->needs(kinds);
     app.add_option("--tilt", a->options.room.tilt_deg,
                    "Tilt of the input's frame against the room, degrees")
         ->capture_default_str();
-    app.add_option("--voxel", a->options.parse.voxel_m, "Edge of a solid voxel in metres")
-        ->capture_default_str();
+    CLI::Option* const voxel =
+        app.add_option("--voxel", a->options.parse.voxel_m, "Edge of a solid voxel in metres")
+            ->capture_default_str();
     app.add_option("--backend", a->backend,
                    "auto (a real GPU if there is one, else native), native, opencl, vulkan")
         ->capture_default_str();
-    CLI::Option* const frames = app.get_option("--frames");
-    CLI::Option* const voxel = app.get_option("--voxel");
     return [a, frames, voxel] {
         if (!a->kinds.empty()) {
             if (std::find(a->kinds.begin(), a->kinds.end(), "all") != a->kinds.end())

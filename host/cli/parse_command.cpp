@@ -83,7 +83,8 @@ std::optional<double> parse_contents(const std::string& text) {
 // A sibling of nothing the user owns: named after the input, in the current folder.
 std::filesystem::path default_output(const std::filesystem::path& input) {
     std::filesystem::path name = input.has_filename() ? input : input.parent_path();
-    name = std::filesystem::is_directory(input) ? name.filename() : name.stem();
+    std::error_code error;
+    name = std::filesystem::is_directory(input, error) ? name.filename() : name.stem();
     if (name.empty() || name == "." || name == "..") name = "scan";
     return name.string() + "-parsed";
 }
@@ -137,17 +138,11 @@ int help(Arguments& a) {
     return 0;
 }
 
-// "3 of 14 blocks".
-std::string blocks_done(const WorkLeft& left) {
-    if (left.blocks == 0) return "the points sorted on disk";
-    return std::to_string(left.done) + " of " + io::counted(left.blocks, "block");
-}
-
 // What stays of a parse that a signal ended.
 std::string left_behind(const Arguments& a) {
     const std::optional<WorkLeft> left = work_left(a.input, a.options);
     if (!left) return "";
-    return " but " + io::path_text(a.options.work_folder) + ", which holds " + blocks_done(*left) +
+    return " but " + io::path_text(a.options.work_folder) + ", which holds " + to_text(*left) +
            ": the same command goes on from there; if it shall not, delete that folder";
 }
 
@@ -161,16 +156,17 @@ int run(Arguments& a) {
                     a.input + ": " + (error ? error.message() : "No such file or folder"));
     }
     catch_interrupts();
+    io::check_not_replaced(a.input, out);
     // Throws now, not after the parse, where nothing can be written there.
     { const io::OutputFolder probe(out); }
     // Beside the output, where there is room for it, and where the next run finds it.
     a.options.work_folder = out.parent_path() / ("." + out.filename().string() + ".topple-work");
     get_ready(a);
-    const std::optional<WorkLeft> left = work_left(a.input, a.options);
-    if (left && !a.quiet)
-        std::fprintf(stderr, "going on with %s from %s\n", blocks_done(*left).c_str(),
-                     io::path_text(a.options.work_folder).c_str());
     const auto work = [&](Progress& progress) {
+        a.options.notice = [&](const std::string& line) {
+            progress.finish();
+            if (!a.quiet) std::fprintf(stderr, "%s\n", line.c_str());
+        };
         const ParseResult result = parse(a.input, a.options);
         progress("output", 0);
         write_outputs(result, out, a.output);
@@ -210,20 +206,21 @@ Command add_parse(CLI::App& app, const Team& team) {
     app.add_option("--walks", a->options.walks, "Walks of people that are sampled")
         ->check(whole_number)
         ->capture_default_str();
-    app.add_option("--motion", a->motion,
-                   "How a walker's body moves: a recording, .bvh or a table of joint positions\n"
-                   "(default: published figures of gait)");
+    CLI::Option* const motion = app.add_option(
+        "--motion", a->motion,
+        "How a walker's body moves: a recording, .bvh or a table of joint positions\n"
+        "(default: published figures of gait)");
     app.add_option("--motion-unit", a->motion_file.unit_m,
                    "Metres in the recording's unit (default: from the size of the body)")
         ->check(CLI::PositiveNumber)
-        ->needs("--motion");
+        ->needs(motion);
     app.add_option("--motion-rate", a->motion_file.rate_hz,
                    "Frames a second of a recording that has no times")
         ->check(CLI::PositiveNumber)
-        ->needs("--motion");
+        ->needs(motion);
     app.add_option("--motion-up", a->motion_up,
                    "Up in the recording, X,Y,Z (default: from head and feet)")
-        ->needs("--motion");
+        ->needs(motion);
     app.add_option("--wind", a->options.wind_m_s, "Wind speed in m/s")->capture_default_str();
     app.add_option("--wind-from", a->options.wind_from_deg,
                    "Where the wind comes from, degrees clockwise from the scene's north\n"

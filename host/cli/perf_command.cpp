@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include "cli/commands.h"
 #include "perf/report.h"
@@ -26,7 +27,8 @@ int run(const PerfArguments& a) {
     // Told before the measuring, which takes minutes.
     for (const std::string& path : {a.json, a.csv}) {
         const auto folder = std::filesystem::path(path).parent_path();
-        if (!folder.empty() && !std::filesystem::is_directory(folder))
+        std::error_code error;
+        if (!folder.empty() && !std::filesystem::is_directory(folder, error))
             throw Error(ErrorKind::input, path + ": there is no folder " + folder.string());
     }
     const auto results = perf::run_suite(a.suite);

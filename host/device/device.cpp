@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "device/device.h"
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "device/queue.h"
 
 namespace topple::device {

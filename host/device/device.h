@@ -15,9 +15,11 @@
 // faces that the rest of the host uses are Buffer<T> (buffer.h) and Queue (queue.h).
 // Nothing here is global: every object belongs to the Device that made it, and a Device may be used
 // from one thread at a time.
-namespace topple::device {
-
+namespace topple {
 class ThreadPool;
+}
+
+namespace topple::device {
 
 // Offsets of bound ranges are multiples of this, on every backend. Vulkan asks for 256 at most,
 // some OpenCL GPUs for 512.

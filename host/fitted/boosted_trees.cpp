@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "core/json.h"
 #include "topple/error.h"
 
 namespace topple::fitted {
@@ -19,11 +19,11 @@ struct TreeArrays {
 namespace {
 
 // The column of each feature.
-std::vector<std::int32_t> columns_of(const nlohmann::json& features,
+std::vector<std::int32_t> columns_of(const Json& features,
                                      std::span<const std::string_view> columns,
                                      const std::string& name) {
     std::vector<std::int32_t> out;
-    for (const nlohmann::json& feature : features) {
+    for (const Json& feature : features) {
         const auto at = std::ranges::find(columns, feature.get<std::string>());
         if (at == columns.end())
             throw Error(ErrorKind::input, name + ": nothing is known of its feature " +
@@ -38,14 +38,14 @@ std::vector<std::int32_t> columns_of(const nlohmann::json& features,
 BoostedTrees::BoostedTrees(std::string_view json, const std::string& name,
                            std::span<const std::string_view> columns) {
     try {
-        const nlohmann::json file = nlohmann::json::parse(json);
+        const Json file = Json::parse(json);
         if (file.at("schema") != "topple.trees/1")
             throw Error(ErrorKind::input, name + ": expected schema topple.trees/1");
         const std::vector<std::int32_t> column = columns_of(file.at("features"), columns, name);
         file.at("baseline").get_to(baseline_);
         file.at("scale").get_to(scale_);
         file.at("offset").get_to(offset_);
-        for (const nlohmann::json& tree : file.at("trees")) {
+        for (const Json& tree : file.at("trees")) {
             TreeArrays arrays;
             tree.at("feature").get_to(arrays.feature);
             tree.at("threshold").get_to(arrays.threshold);

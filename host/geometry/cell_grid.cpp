@@ -74,8 +74,7 @@ void CellGrid::resize(std::size_t count) {
     for (auto& plane : spread) plane.resize(count);
 }
 
-CellGrid coarsen(const CellGrid& grid, device::ThreadPool& threads,
-                 std::vector<std::uint32_t>& parent) {
+CellGrid coarsen(const CellGrid& grid, ThreadPool& threads, std::vector<std::uint32_t>& parent) {
     CellGrid coarse;
     coarse.cell_m = 2 * grid.cell_m;
     parent.assign(grid.size(), 0);
@@ -158,7 +157,7 @@ std::size_t ColumnSweep::first_at(std::uint64_t key) const {
 
 std::vector<std::uint32_t> column_table(const ColumnSweep& sweep,
                                         std::span<const std::uint32_t> cells, std::size_t base,
-                                        device::ThreadPool& threads) {
+                                        ThreadPool& threads) {
     const std::size_t count = cells.size();
     std::vector<std::uint32_t> table(count * sweep.columns());
     threads.run(count, grid_chunk, [&](std::uint64_t begin, std::uint64_t end) {
@@ -175,7 +174,7 @@ std::vector<std::uint32_t> column_table(const ColumnSweep& sweep,
 }
 
 void cell_neighbours(std::span<const std::int32_t> x, std::span<const std::int32_t> y,
-                     std::span<const std::int32_t> z, device::ThreadPool& threads,
+                     std::span<const std::int32_t> z, ThreadPool& threads,
                      std::vector<std::uint32_t>& first, std::vector<std::uint32_t>& neighbours) {
     const std::size_t count = x.size();
     const ColumnSweep sweep(x, y, z, 1);

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 
 namespace topple::geometry {
 
@@ -64,8 +64,7 @@ struct CellGrid {
 };
 
 // The grid of twice the cell size: cells merged by weight. parent: coarse cell of each fine one.
-CellGrid coarsen(const CellGrid& grid, device::ThreadPool& threads,
-                 std::vector<std::uint32_t>& parent);
+CellGrid coarsen(const CellGrid& grid, ThreadPool& threads, std::vector<std::uint32_t>& parent);
 
 // Neighbouring columns of sorted cells: for each cell and each (dx, dy) within the radius (3 at
 // most), the run of occupied cells within the radius in z.
@@ -94,11 +93,11 @@ class ColumnSweep {
 // cell of the run, counted from `base`, + (count << 29); see kernel voxel_normals.
 std::vector<std::uint32_t> column_table(const ColumnSweep& sweep,
                                         std::span<const std::uint32_t> cells, std::size_t base,
-                                        device::ThreadPool& threads);
+                                        ThreadPool& threads);
 
 // CSR of the occupied cells among the 26 around each, ascending.
 void cell_neighbours(std::span<const std::int32_t> x, std::span<const std::int32_t> y,
-                     std::span<const std::int32_t> z, device::ThreadPool& threads,
+                     std::span<const std::int32_t> z, ThreadPool& threads,
                      std::vector<std::uint32_t>& first, std::vector<std::uint32_t>& neighbours);
 
 // The first place from `at` on whose key is not below `key`; mostly a few places on.

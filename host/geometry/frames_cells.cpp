@@ -122,7 +122,7 @@ void CellTable::grow() {
     }
 }
 
-std::vector<CellSums> CellTables::sorted(device::ThreadPool& pool) const {
+std::vector<CellSums> CellTables::sorted(ThreadPool& pool) const {
     std::vector<BlockPlace> blocks;
     for (const CellTable& table : shards) {
         for (const CellTable::Block& block : table.blocks()) blocks.push_back({&block, &table});

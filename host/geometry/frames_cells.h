@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "geometry/frames_fusion.h"
 #include "geometry/frames_witnesses.h"
 
@@ -66,20 +66,20 @@ struct CellTables {
     std::array<CellTable, shard_count> shards;
     // Calls body(shard, table) once for each, one thread to a table.
     template <class Body>
-    void for_each_shard(device::ThreadPool& pool, const Body& body) {
+    void for_each_shard(ThreadPool& pool, const Body& body) {
         pool.run(shard_count, 1, [&](std::uint64_t first, std::uint64_t last) {
             for (std::uint64_t s = first; s < last; ++s)
                 body(static_cast<std::size_t>(s), shards[s]);
         });
     }
     // All cells by ascending key.
-    std::vector<CellSums> sorted(device::ThreadPool& pool) const;
+    std::vector<CellSums> sorted(ThreadPool& pool) const;
 };
 
 struct FrameFusion::Cells {
     static constexpr std::size_t shard_count = CellTables::shard_count, block_count = 16;
     Cells(const Intrinsics& intrinsics, unsigned threads) : pool(threads), witnesses(intrinsics) {}
-    device::ThreadPool pool;
+    ThreadPool pool;
     CellTables tables;
     Witnesses witnesses;
     // Per block of image rows and shard: runs of readings in one cell.
@@ -96,11 +96,11 @@ struct FusedCells {
     std::vector<CellSums> cells;
 };
 // Drops cells of stray readings.
-void drop_weak(FusedCells& fused, std::size_t frames, device::ThreadPool& pool);
+void drop_weak(FusedCells& fused, std::size_t frames, ThreadPool& pool);
 // Drops cells that the frames deny.
-void drop_denied(FusedCells& fused, const Witnesses& witnesses, device::ThreadPool& pool);
+void drop_denied(FusedCells& fused, const Witnesses& witnesses, ThreadPool& pool);
 // One step of moving least squares, then bins anew: readings spread to both sides of a surface by
 // their noise become one layer. Cells whose readings spread by less than least_sigma_m stay.
-void flatten_layers(FusedCells& fused, double least_sigma_m, device::ThreadPool& pool);
+void flatten_layers(FusedCells& fused, double least_sigma_m, ThreadPool& pool);
 
 }  // namespace topple::geometry

@@ -25,7 +25,7 @@ struct Around {
 // Calls visit(cell, around) for each cell. Each of the nine columns of three is a run of sorted
 // cells whose ends only move up, and the difference of two running sums is what it holds.
 template <class Visit>
-void visit_surroundings(const FusedCells& fused, device::ThreadPool& pool, const Visit& visit) {
+void visit_surroundings(const FusedCells& fused, ThreadPool& pool, const Visit& visit) {
     const std::size_t n = fused.cells.size();
     std::vector<std::uint64_t> key(n), count(n + 1), weight(n + 1);
     for (std::size_t i = 0; i < n; ++i) {
@@ -75,7 +75,7 @@ std::uint8_t level_for(double sigma, double cell_m) {
     return level;
 }
 
-CellGrid grid_of(const FusedCells& fused, device::ThreadPool& pool) {
+CellGrid grid_of(const FusedCells& fused, ThreadPool& pool) {
     CellGrid grid;
     grid.cell_m = fused.cell_m;
     grid.resize(fused.cells.size());
@@ -119,7 +119,7 @@ void move_to(CellSums& cell, const std::array<double, 3>& at) {
 void flatten_level(FusedCells& fused, const CellGrid& grid, double scale,
                    const std::vector<std::uint32_t>& which,
                    const std::vector<std::uint32_t>& cell_of, const std::vector<float>& sigma,
-                   device::Device& device, device::ThreadPool& pool) {
+                   device::Device& device, ThreadPool& pool) {
     std::vector<std::uint32_t> query_of(grid.size());
     for (const std::uint32_t i : which) query_of[cell_of[i]] = 1;
     PlaneQueries queries;
@@ -152,7 +152,7 @@ void flatten_level(FusedCells& fused, const CellGrid& grid, double scale,
 }
 
 // Sorts the cells by key and sums up those of one key.
-void bin_anew(FusedCells& fused, device::ThreadPool& pool) {
+void bin_anew(FusedCells& fused, ThreadPool& pool) {
     CellTables tables;
     const std::size_t n = fused.cells.size(), blocks = (n + fused_chunk - 1) / fused_chunk;
     std::vector<std::array<std::vector<std::uint32_t>, CellTables::shard_count>> parts(blocks);
@@ -174,7 +174,7 @@ void bin_anew(FusedCells& fused, device::ThreadPool& pool) {
 
 }  // namespace
 
-void drop_weak(FusedCells& fused, std::size_t frames, device::ThreadPool& pool) {
+void drop_weak(FusedCells& fused, std::size_t frames, ThreadPool& pool) {
     std::vector<std::uint8_t> drop(fused.cells.size());
     visit_surroundings(fused, pool, [&](std::size_t i, const Around& all) {
         const CellSums& cell = fused.cells[i];
@@ -190,7 +190,7 @@ void drop_weak(FusedCells& fused, std::size_t frames, device::ThreadPool& pool) 
     drop_cells(fused, drop);
 }
 
-void drop_denied(FusedCells& fused, const Witnesses& witnesses, device::ThreadPool& pool) {
+void drop_denied(FusedCells& fused, const Witnesses& witnesses, ThreadPool& pool) {
     const std::size_t n = fused.cells.size();
     FusedPoints points;
     for (std::vector<float>* values : {&points.x, &points.y, &points.z, &points.sigma})
@@ -207,7 +207,7 @@ void drop_denied(FusedCells& fused, const Witnesses& witnesses, device::ThreadPo
     drop_cells(fused, witnesses.deny(points, pool));
 }
 
-void flatten_layers(FusedCells& fused, double least_sigma_m, device::ThreadPool& pool) {
+void flatten_layers(FusedCells& fused, double least_sigma_m, ThreadPool& pool) {
     const std::size_t n = fused.cells.size();
     std::vector<float> sigma(n);  // of the readings in and around each cell, metres
     std::vector<std::uint8_t> level_of(n);

@@ -103,8 +103,7 @@ void Witnesses::vote(const Frame& frame, const FusedPoints& points, std::size_t 
     }
 }
 
-std::vector<std::uint8_t> Witnesses::deny(const FusedPoints& points,
-                                          device::ThreadPool& pool) const {
+std::vector<std::uint8_t> Witnesses::deny(const FusedPoints& points, ThreadPool& pool) const {
     std::vector<std::uint8_t> denied(points.x.size());
     pool.run(points.x.size(), points_at_once, [&](std::uint64_t first, std::uint64_t last) {
         std::vector<Votes> votes(last - first);

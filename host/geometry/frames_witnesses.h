@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "topple/cloud_view.h"
 
 namespace topple::geometry {
@@ -29,7 +29,7 @@ class Witnesses {
 
     // One flag per point: whether the readings that deny it outweigh, by their inverse variances,
     // those that confirm it.
-    std::vector<std::uint8_t> deny(const FusedPoints& points, device::ThreadPool& pool) const;
+    std::vector<std::uint8_t> deny(const FusedPoints& points, ThreadPool& pool) const;
 
   private:
     // Of a pixel and its eight neighbours in the grid that is kept; as stored in the frame, 0 where

@@ -27,8 +27,7 @@ constexpr int least_free = 2;
 }  // namespace
 
 FreeSpace::FreeSpace(const Surfels& s, const CloudView& cloud, std::span<const Vec3> viewpoints,
-                     std::span<const std::uint32_t> viewpoint_of_point,
-                     device::ThreadPool& threads) {
+                     std::span<const std::uint32_t> viewpoint_of_point, ThreadPool& threads) {
     if (s.size() == 0 || viewpoints.empty()) return;
     // The lowest viewpoint of each surfel's points, whatever their order.
     std::vector<std::uint32_t> seen_from(s.size(), 0);

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "geometry/surfels.h"
 
 namespace topple::geometry {
@@ -25,7 +25,7 @@ class FreeSpace {
     // Strays far from all others are left out, which keeps the cells small.
     // Arguments as for make_surfels; no viewpoints: nothing is known.
     FreeSpace(const Surfels& surfels, const CloudView& cloud, std::span<const Vec3> viewpoints,
-              std::span<const std::uint32_t> viewpoint_of_point, device::ThreadPool& threads);
+              std::span<const std::uint32_t> viewpoint_of_point, ThreadPool& threads);
 
     bool known() const { return !cell_.empty(); }
     double cell_m() const { return cell_m_; }

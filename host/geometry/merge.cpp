@@ -175,7 +175,7 @@ class Merger {
 }  // namespace
 
 PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const Vec3& up,
-                          const FreeSpace& free, device::ThreadPool& threads) {
+                          const FreeSpace& free, ThreadPool& threads) {
     const MergeOptions options;
     CutRegions cuts(regions);
     RegionFacts facts(surfels, cuts, free, options, threads);

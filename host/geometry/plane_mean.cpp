@@ -15,7 +15,7 @@ constexpr std::uint64_t chunk = 1 << 13;
 }  // namespace
 
 std::vector<float> mean_offsets(const CellGrid& grid, const PlaneQueries& queries,
-                                const PlaneFit& fit, device::ThreadPool& pool) {
+                                const PlaneFit& fit, ThreadPool& pool) {
     const std::size_t count = queries.cell.size();
     std::vector<std::uint32_t> query_of(grid.size(), none);
     for (std::size_t q = 0; q < count; ++q)

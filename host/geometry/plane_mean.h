@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "geometry/plane_fit.h"
 
 namespace topple::geometry {
@@ -15,6 +15,6 @@ namespace topple::geometry {
 // alone shrinks what is round. queries: one in a cell at most; fit: theirs. Planes that face
 // elsewhere don't count.
 std::vector<float> mean_offsets(const CellGrid& grid, const PlaneQueries& queries,
-                                const PlaneFit& fit, device::ThreadPool& pool);
+                                const PlaneFit& fit, ThreadPool& pool);
 
 }  // namespace topple::geometry

@@ -10,7 +10,7 @@
 namespace topple::geometry {
 
 RegionFacts::RegionFacts(const Surfels& surfels, const CutRegions& cuts, const FreeSpace& free,
-                         const MergeOptions& options, device::ThreadPool& threads)
+                         const MergeOptions& options, ThreadPool& threads)
     : s_(surfels), cuts_(cuts), free_(free), options_(options), threads_(threads) {
     std::vector<std::int32_t> all(cuts.members.size());
     std::iota(all.begin(), all.end(), 0);

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "geometry/merge.h"
 
 namespace topple::geometry {
@@ -20,7 +20,7 @@ class RegionFacts {
 
     // Keeps references to all arguments.
     RegionFacts(const Surfels& surfels, const CutRegions& cuts, const FreeSpace& free,
-                const MergeOptions& options, device::ThreadPool& threads);
+                const MergeOptions& options, ThreadPool& threads);
 
     // To be told after these regions changed; new regions count.
     void update(const std::vector<std::int32_t>& changed);
@@ -34,7 +34,7 @@ class RegionFacts {
         return borders_.at(std::minmax(a, b));
     }
     // For what works on many regions to poll.
-    device::ThreadPool& threads() const { return threads_; }
+    ThreadPool& threads() const { return threads_; }
     // Pairs of planes that are pieces of one face (are_face_pieces()).
     const std::set<Pair>& face_pieces() const { return face_pieces_; }
     // Share of point pairs that no convex solid has both on its surface; 1 where a cut parts the
@@ -50,7 +50,7 @@ class RegionFacts {
     const CutRegions& cuts_;
     const FreeSpace& free_;
     const MergeOptions& options_;
-    device::ThreadPool& threads_;
+    ThreadPool& threads_;
     std::vector<RegionSamples> samples_;
     std::vector<Eigen::AlignedBox3d> box_;
     std::vector<std::set<std::int32_t>> touching_;

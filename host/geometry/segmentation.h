@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "geometry/free_space.h"
 #include "geometry/surfels.h"
 
@@ -36,7 +36,7 @@ struct Regions {
     std::vector<std::int32_t> label;
     std::vector<Region> regions;
 };
-Regions split(const Surfels& surfels, device::ThreadPool& threads);
+Regions split(const Surfels& surfels, ThreadPool& threads);
 Regions split(const Surfels& surfels);  // on threads of its own, one per core
 
 // The cuts that a region lies beside, and on which side of each.
@@ -56,7 +56,7 @@ struct PrimitiveSet {
     std::vector<CutSides> ledges;                    // of each of `faces`
 };
 PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const Vec3& up,
-                          const FreeSpace& free, device::ThreadPool& threads);
+                          const FreeSpace& free, ThreadPool& threads);
 
 // Whether a ledge parts the faces of two surfels.
 bool ledge_between(const PrimitiveSet& primitives, std::size_t i, std::size_t j);

@@ -23,7 +23,7 @@ constexpr std::uint64_t split_chunk = 1 << 13;  // surfels handed to a thread at
 
 // The lower quartile of each surfel's neighbourhood, itself included: at most 27 values.
 std::vector<float> lower_neighbours(const Surfels& s, const std::vector<float>& value,
-                                    device::ThreadPool& threads) {
+                                    ThreadPool& threads) {
     std::vector<float> out(value.size());
     threads.each(value.size(), split_chunk, [&](std::size_t i) {
         const auto first = s.neighbour_first[i], last = s.neighbour_first[i + 1];
@@ -62,8 +62,7 @@ double normal_noise(const Surfels& s, float smooth_m) {
 
 }  // namespace
 
-SplitScale measure_scale(const Surfels& surfels, const SplitOptions& options,
-                         device::ThreadPool& threads) {
+SplitScale measure_scale(const Surfels& surfels, const SplitOptions& options, ThreadPool& threads) {
     SplitScale scale;
     scale.layer_m = options.layer_cells * surfels.cell_m;
     const float typical = quantile(surfels.roughness_m, 0.5);
@@ -108,7 +107,7 @@ Region fit_region(const Surfels& surfels, const std::vector<std::uint32_t>& memb
     return region;
 }
 
-void refit_regions(const Surfels& surfels, const SplitScale& scale, device::ThreadPool& threads,
+void refit_regions(const Surfels& surfels, const SplitScale& scale, ThreadPool& threads,
                    Regions& regions) {
     std::vector<std::vector<std::uint32_t>> members(regions.regions.size());
     std::vector<std::int32_t> order;  // old ids by lowest surfel
@@ -129,7 +128,7 @@ void refit_regions(const Surfels& surfels, const SplitScale& scale, device::Thre
     regions.regions = std::move(kept);
 }
 
-Regions split(const Surfels& surfels, device::ThreadPool& threads) {
+Regions split(const Surfels& surfels, ThreadPool& threads) {
     const SplitOptions options;
     if (surfels.size() == 0) return {};
     const SplitScale scale = measure_scale(surfels, options, threads);
@@ -140,7 +139,7 @@ Regions split(const Surfels& surfels, device::ThreadPool& threads) {
 }
 
 Regions split(const Surfels& surfels) {
-    device::ThreadPool threads(0);
+    ThreadPool threads(0);
     return split(surfels, threads);
 }
 

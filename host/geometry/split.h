@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "geometry/segmentation.h"
 
 // The steps of split() (paper, 2.1.1): regions grow from smooth seeds, first as planes, then, where
@@ -44,17 +44,16 @@ struct SplitScale {
 
 // Noise of each surfel: the roughness of the smoothest surfels around it, bounded by the scan's own
 // distribution so that an edge or a thin rod is not taken for noise.
-SplitScale measure_scale(const Surfels& surfels, const SplitOptions& options,
-                         device::ThreadPool& threads);
+SplitScale measure_scale(const Surfels& surfels, const SplitOptions& options, ThreadPool& threads);
 
 // Grows regions from seeds by rising roughness (ties by index); polls `threads`, but works alone.
 Regions grow_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
-                     device::ThreadPool& threads);
+                     ThreadPool& threads);
 
 // Gives surfels without a region to the neighbouring region that explains them best, makes regions
 // of connected leftovers, lets neighbours take regions that they explain, smooths the borders.
 void clean_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
-                   device::ThreadPool& threads, Regions& regions);
+                   ThreadPool& threads, Regions& regions);
 
 // A region of these surfels (at least one), with a model of degree 1 or 2. layer_m: see
 // fit_plane(), fit_quadric().
@@ -63,7 +62,7 @@ Region fit_region(const Surfels& surfels, const std::vector<std::uint32_t>& memb
 
 // Refits every region to its surfels (degree kept, residual and count set); drops empty regions and
 // renumbers by lowest surfel.
-void refit_regions(const Surfels& surfels, const SplitScale& scale, device::ThreadPool& threads,
+void refit_regions(const Surfels& surfels, const SplitScale& scale, ThreadPool& threads,
                    Regions& regions);
 
 inline Eigen::Vector3d position(const Surfels& s, std::size_t i) {

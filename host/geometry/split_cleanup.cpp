@@ -23,7 +23,7 @@ constexpr std::uint32_t kAbsorbBelow =
 class Cleaner {
   public:
     Cleaner(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
-            device::ThreadPool& threads, Regions& regions)
+            ThreadPool& threads, Regions& regions)
         : s_(surfels), scale_(scale), options_(options), threads_(threads), r_(regions) {}
 
     void run() {
@@ -191,14 +191,14 @@ class Cleaner {
     const Surfels& s_;
     const SplitScale& scale_;
     const SplitOptions& options_;
-    device::ThreadPool& threads_;
+    ThreadPool& threads_;
     Regions& r_;
 };
 
 }  // namespace
 
 void clean_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
-                   device::ThreadPool& threads, Regions& regions) {
+                   ThreadPool& threads, Regions& regions) {
     Cleaner(surfels, scale, options, threads, regions).run();
 }
 

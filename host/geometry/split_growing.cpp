@@ -18,7 +18,7 @@ using Members = std::vector<std::uint32_t>;
 class Grower {
   public:
     Grower(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
-           device::ThreadPool& threads)
+           ThreadPool& threads)
         : s_(surfels),
           scale_(scale),
           options_(options),
@@ -165,7 +165,7 @@ class Grower {
     const Surfels& s_;
     const SplitScale& scale_;
     const SplitOptions& options_;
-    device::ThreadPool& threads_;
+    ThreadPool& threads_;
     double cos_angle_;
     Regions out_;
     std::vector<std::uint32_t> seen_;
@@ -176,7 +176,7 @@ class Grower {
 }  // namespace
 
 Regions grow_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
-                     device::ThreadPool& threads) {
+                     ThreadPool& threads) {
     return Grower(surfels, scale, options, threads).run();
 }
 

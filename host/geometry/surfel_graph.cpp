@@ -77,7 +77,7 @@ float distance2(const Surfels& s, std::size_t i, std::size_t j) {
 
 // For each of the surfels its ties to the nearest others.
 std::vector<Tie> nearest_ties(const Surfels& s, std::vector<std::uint32_t> left, double reach_m,
-                              device::ThreadPool& threads) {
+                              ThreadPool& threads) {
     std::vector<Tie> out;
     for (int level = 1; !left.empty(); ++level) {
         const double block_m = s.cell_m * static_cast<double>(1 << level);
@@ -116,7 +116,7 @@ std::vector<Tie> nearest_ties(const Surfels& s, std::vector<std::uint32_t> left,
 
 }  // namespace
 
-void connect_surfels(Surfels& s, double reach_m, device::ThreadPool& threads) {
+void connect_surfels(Surfels& s, double reach_m, ThreadPool& threads) {
     cell_neighbours(s.cx, s.cy, s.cz, threads, s.neighbour_first, s.neighbours);
     std::vector<std::uint32_t> lonely;
     for (std::uint32_t i = 0; i < s.size(); ++i)

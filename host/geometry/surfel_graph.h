@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "geometry/surfels.h"
 
 namespace topple::geometry {
@@ -13,6 +13,6 @@ constexpr std::size_t plane_neighbours = 8, most_neighbours = 26;
 // fewer than plane_neighbours, because the cells are finer than the points there, the nearest so
 // many surfels, no further than `reach_m`. Mutual, and at most most_neighbours each: the shortest
 // ties first.
-void connect_surfels(Surfels& surfels, double reach_m, device::ThreadPool& threads);
+void connect_surfels(Surfels& surfels, double reach_m, ThreadPool& threads);
 
 }  // namespace topple::geometry

@@ -123,7 +123,7 @@ Mat4 CubeView::pose(std::size_t image) const {
     return m;
 }
 
-CubeView view_surfels(const Surfels& surfels, const Vec3& eye, device::ThreadPool& pool) {
+CubeView view_surfels(const Surfels& surfels, const Vec3& eye, ThreadPool& pool) {
     CubeView view;
     view.eye = eye;
     pool.run(6, 1, [&](std::uint64_t first, std::uint64_t last) {

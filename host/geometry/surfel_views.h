@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "geometry/surfels.h"
 
 namespace topple::geometry {
@@ -38,6 +38,6 @@ struct CubeView {
 
 // Draws surfels as discs in their planes, wide enough to leave no gaps between neighbours; those
 // without a normal as discs across the line of sight.
-CubeView view_surfels(const Surfels& surfels, const Vec3& eye, device::ThreadPool& pool);
+CubeView view_surfels(const Surfels& surfels, const Vec3& eye, ThreadPool& pool);
 
 }  // namespace topple::geometry

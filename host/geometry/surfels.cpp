@@ -48,8 +48,7 @@ constexpr std::uint64_t surfel_chunk = 1 << 14;  // points or cells handed to a 
 using Axes = std::array<FloatColumn, 3>;
 
 // Lowest and highest cell per axis. Throws Error(input) where they lie too far apart.
-CellPacking packing_of(const CloudView& cloud, const Axes& p, double cell_m,
-                       device::ThreadPool& threads) {
+CellPacking packing_of(const CloudView& cloud, const Axes& p, double cell_m, ThreadPool& threads) {
     std::array<std::array<float, 2>, 3> range{};
     threads.each(3, 1, [&](std::size_t a) {
         const auto [low, high] = std::minmax_element(p[a].begin(), p[a].end());
@@ -79,7 +78,7 @@ CellPacking packing_of(const CloudView& cloud, const Axes& p, double cell_m,
 constexpr double cell_steps = 0x1p32;
 
 // The cells of the points and their moments.
-CellGrid bin(const CloudView& cloud, double cell_m, device::ThreadPool& threads,
+CellGrid bin(const CloudView& cloud, double cell_m, ThreadPool& threads,
              std::vector<std::uint32_t>& of_point, std::vector<float>& count) {
     const Axes p{cloud.x, cloud.y, cloud.z};
     const std::size_t n = cloud.size();

@@ -53,7 +53,7 @@ PlaneFit flatten_noise(device::Device& device, CellGrid& grid, std::vector<float
     const PlaneFit fit = fit_planes(device, grid, queries_at_means(grid));
     const float noise = median_rms(fit);
     const std::size_t n = grid.size();
-    device::ThreadPool& threads = device.threads();
+    ThreadPool& threads = device.threads();
     // Positions in cells from the grid's origin, and the in-cell covariance, after the move.
     std::array<std::vector<double>, 3> moved;
     for (auto& axis : moved) axis.resize(n);

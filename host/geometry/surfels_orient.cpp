@@ -74,8 +74,7 @@ void orient_by_neighbours(Surfels& s) {
 }  // namespace
 
 Orientation sensor_side(const Surfels& s, const CloudView& cloud, std::span<const Vec3> viewpoints,
-                        std::span<const std::uint32_t> viewpoint_of_point,
-                        device::ThreadPool& threads) {
+                        std::span<const std::uint32_t> viewpoint_of_point, ThreadPool& threads) {
     Orientation result;
     const bool stored = viewpoints.empty() && !cloud.nx.empty();
     if (viewpoints.empty() && !stored) return result;

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "geometry/surfels.h"
 
 namespace topple::geometry {
@@ -19,8 +19,7 @@ struct Orientation {
 };
 Orientation sensor_side(const Surfels& surfels, const CloudView& cloud,
                         std::span<const Vec3> viewpoints,
-                        std::span<const std::uint32_t> viewpoint_of_point,
-                        device::ThreadPool& threads);
+                        std::span<const std::uint32_t> viewpoint_of_point, ThreadPool& threads);
 
 // Flips normals to the known side. Where no side is known, signs spread over each connected piece
 // from neighbour to neighbour, the most parallel first (Hoppe et al. 1992), and the piece as a

@@ -43,7 +43,7 @@ constexpr double room_m3 = 200, most_rooms = 30;
 
 class Looking {
   public:
-    Looking(const Surfels& surfels, const VirtualViewOptions& options, device::ThreadPool& pool)
+    Looking(const Surfels& surfels, const VirtualViewOptions& options, ThreadPool& pool)
         : s_(surfels),
           pool_(pool),
           places_(surfels),
@@ -396,7 +396,7 @@ class Looking {
     }
 
     const Surfels& s_;
-    device::ThreadPool& pool_;
+    ThreadPool& pool_;
     FreePlaces places_;
     // 1: the normal points to the free side, -1: away from it, 0: not known.
     std::vector<std::int8_t> side_;
@@ -409,7 +409,7 @@ class Looking {
 }  // namespace
 
 VirtualViews virtual_views(const Surfels& surfels, const VirtualViewOptions& options,
-                           device::ThreadPool& pool) {
+                           ThreadPool& pool) {
     if (surfels.size() == 0) return {};
     Looking looking(surfels, options, pool);
     looking.look_around(options);

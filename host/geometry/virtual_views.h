@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "geometry/surfels.h"
 #include "topple/input.h"
 
@@ -35,6 +35,6 @@ struct VirtualViews {
 // Where sides are known, the first place must see most surfaces from the front; where none does,
 // the sides are not believed.
 VirtualViews virtual_views(const Surfels& surfels, const VirtualViewOptions& options,
-                           device::ThreadPool& pool);
+                           ThreadPool& pool);
 
 }  // namespace topple::geometry

@@ -45,6 +45,19 @@ std::optional<double> EnergyCache::known(const GroupKey& key) {
 
 void EnergyCache::fetch(std::vector<Missing>& missing) {
     std::unique_lock lock(mutex_);
+    try {
+        await(missing, lock);
+    } catch (...) {
+        // Others may wait for what this thread was to evaluate, and never will.
+        if (!lock.owns_lock()) lock.lock();
+        if (!failure_) failure_ = std::current_exception();
+        evaluated_some_.notify_all();
+        throw;
+    }
+    if (failure_) std::rethrow_exception(failure_);
+}
+
+void EnergyCache::await(std::vector<Missing>& missing, std::unique_lock<std::mutex>& lock) {
     std::vector<GroupKey> mine;
     for (Missing& m : missing) {
         Entry& entry = known_[m.key];
@@ -62,7 +75,6 @@ void EnergyCache::fetch(std::vector<Missing>& missing) {
         else
             evaluate(lock);
     }
-    if (failure_) std::rethrow_exception(failure_);
 }
 
 void EnergyCache::evaluate(std::unique_lock<std::mutex>& lock) {
@@ -72,9 +84,9 @@ void EnergyCache::evaluate(std::unique_lock<std::mutex>& lock) {
         keys.push_back(m.key);
         queries.push_back(std::move(m.query));
     }
+    std::vector<double> values(queries.size());
     wanted_.clear();
     evaluating_ = true;
-    std::vector<double> values(queries.size());
     lock.unlock();
     std::exception_ptr failure;
     try {
@@ -84,7 +96,7 @@ void EnergyCache::evaluate(std::unique_lock<std::mutex>& lock) {
     }
     lock.lock();
     evaluating_ = false;
-    failure_ = failure;
+    if (failure) std::rethrow_exception(failure);
     for (std::size_t i = 0; i < keys.size(); ++i) {
         Entry& entry = known_[keys[i]];
         entry.value = values[i];

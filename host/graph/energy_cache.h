@@ -71,6 +71,7 @@ class EnergyCache {
     };
     Entry copy(const GroupKey& key);
     double raise(const GroupKey& key, const Entry& bound);
+    void await(std::vector<Missing>& missing, std::unique_lock<std::mutex>& lock);
     void evaluate(std::unique_lock<std::mutex>& lock);
 
     const GroupEnergies& energies_;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "graph/stamped_set.h"
 #include "physics/tipping.h"
 
 namespace topple::graph {
@@ -22,7 +21,8 @@ GroupEnergy::GroupEnergy(const ContactGraph& contacts, std::span<const physics::
 }
 
 double GroupEnergy::joined(const GroupQuery& query) const {
-    thread_local StampedSet members(0);
+    const ScratchSets::Lent lent(members_);
+    StampedSet& members = *lent;
     members.clear(bodies_.size());
     for (const std::int32_t n : query.nodes) members.add(n);
     double sum = 0;

@@ -7,6 +7,7 @@
 #include "graph/contact_graph.h"
 #include "graph/joints.h"
 #include "graph/stable_objects.h"
+#include "graph/stamped_set.h"
 #include "graph/swendsen_wang.h"
 
 namespace topple::graph {
@@ -38,6 +39,7 @@ class GroupEnergy {
     const ShellOdds& shell_;
     double standing_weight_;
     std::vector<std::vector<Neighbour>> neighbours_;
+    mutable ScratchSets members_;
 };
 
 }  // namespace topple::graph

@@ -5,12 +5,13 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <exception>
+#include <functional>
 #include <limits>
 #include <map>
 #include <thread>
 
 #include "core/random.h"
+#include "core/thread_pool.h"
 #include "graph/cut_chain.h"
 #include "graph/energy_cache.h"
 
@@ -174,29 +175,18 @@ Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
     const double limit_s = options.time_limit_s * workers / chains;
     EnergyCache cache(energies);
     std::vector<Outcome> outcomes(chains);
-    std::vector<std::exception_ptr> failures(workers);
     std::atomic<bool> cancelled = false;
-    // The caller's function is only called from the caller's thread, which is worker 0.
-    const auto work = [&](unsigned worker) {
-        const auto stopped = [&] {
-            if (worker == 0 && options.cancelled && options.cancelled()) cancelled = true;
-            return cancelled.load();
-        };
-        try {
-            for (unsigned c = worker; c < chains; c += workers)
-                outcomes[c] = run_chain(problem, cache, Random(options.seed).split(c), options,
-                                        limit_s, stopped);
-        } catch (...) {
-            failures[worker] = std::current_exception();
-        }
+    const auto here = std::this_thread::get_id();
+    const auto stopped = [&] {
+        // The caller's function is called from the caller's thread alone.
+        if (std::this_thread::get_id() == here && options.cancelled && options.cancelled())
+            cancelled = true;
+        return cancelled.load();
     };
-    {
-        std::vector<std::jthread> others;
-        for (unsigned w = 1; w < workers; ++w) others.emplace_back(work, w);
-        work(0);
-    }
-    for (const std::exception_ptr& failure : failures)
-        if (failure) std::rethrow_exception(failure);
+    ThreadPool(workers).each(chains, 1, [&](std::size_t c) {
+        outcomes[c] =
+            run_chain(problem, cache, Random(options.seed).split(c), options, limit_s, stopped);
+    });
     Partition result = combined(outcomes, edges.size());
     result.energies_evaluated = cache.evaluated();
     return result;

@@ -21,12 +21,17 @@ constexpr std::size_t buffer_bytes = 1 << 20;
                                                        : ""));
 }
 
+// Some file systems know of no such thing.
+bool has_no_sync(int error) {
+    return error == EINVAL || error == EROFS || error == ENOTSUP;
+}
+
 }  // namespace
 
 FileWriter::FileWriter(const std::filesystem::path& file) : file_(file) {
+    buffer_.reserve(buffer_bytes);  // first: what throws from here on would leave the file open
     descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor_ < 0) can_not_write(file_, errno);
-    buffer_.reserve(buffer_bytes);
 }
 
 FileWriter::~FileWriter() {
@@ -55,12 +60,25 @@ void FileWriter::flush() {
     buffer_.clear();
 }
 
+void FileWriter::sync() {
+    flush();
+    if (::fsync(descriptor_) != 0 && !has_no_sync(errno)) can_not_write(file_, errno);
+}
+
 void FileWriter::close() {
     flush();
     const int descriptor = descriptor_;
     descriptor_ = -1;
     // After EINTR the descriptor is closed all the same (Linux).
     if (::close(descriptor) != 0 && errno != EINTR) can_not_write(file_, errno);
+}
+
+void sync_folder(const std::filesystem::path& folder) {
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    const bool done = descriptor >= 0 && (::fsync(descriptor) == 0 || has_no_sync(errno));
+    const int reason = errno;
+    if (descriptor >= 0) ::close(descriptor);
+    if (!done) can_not_write(folder, reason);
 }
 
 void write_file(const std::filesystem::path& file, std::string_view text) {

@@ -19,6 +19,8 @@ class FileWriter {
 
     void write(const void* bytes, std::size_t count);
     void write(std::string_view text) { write(text.data(), text.size()); }
+    // What was written so far outlives a loss of power from here on.
+    void sync();
     void close();
 
   private:
@@ -28,6 +30,9 @@ class FileWriter {
     std::vector<char> buffer_;
     int descriptor_ = -1;
 };
+
+// So does a file's name, and that another one is gone.
+void sync_folder(const std::filesystem::path& folder);
 
 // Writes a whole file.
 void write_file(const std::filesystem::path& file, std::string_view text);

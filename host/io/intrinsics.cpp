@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/json.h"
 #include "io/colour_frames.h"
 #include "io/frame_sequence.h"
 #include "io/json_text.h"
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t most_pixels_a_side = 32768;
 constexpr std::uint64_t most_depth_pixels = std::uint64_t{1} << 24;
 
-double positive_number(const fs::path& file, const nlohmann::json& json, const char* key,
+double positive_number(const fs::path& file, const Json& json, const char* key,
                        bool may_be_zero = false) {
     const auto found = json.find(key);
     if (found == json.end()) fail(file, std::string("has no \"") + key + "\"");
@@ -32,7 +32,7 @@ double positive_number(const fs::path& file, const nlohmann::json& json, const c
     return value;
 }
 
-std::uint32_t side(const fs::path& file, const nlohmann::json& json, const char* key) {
+std::uint32_t side(const fs::path& file, const Json& json, const char* key) {
     const double value = positive_number(file, json, key);
     if (value != std::floor(value) || value > most_pixels_a_side) {
         fail(file, std::string("\"") + key + "\" is " + short_number(value) +
@@ -42,9 +42,9 @@ std::uint32_t side(const fs::path& file, const nlohmann::json& json, const char*
     return static_cast<std::uint32_t>(value);
 }
 
-nlohmann::json read_object(const fs::path& file) {
+Json read_object(const fs::path& file) {
     const auto bytes = read_file(file, 1 << 20);
-    nlohmann::json json = parse_json(file, bytes.text());
+    Json json = parse_json(file, bytes.text());
     if (!json.is_object()) {
         fail(file, std::string("must hold a JSON object, not ") + json.type_name());
     }
@@ -52,7 +52,7 @@ nlohmann::json read_object(const fs::path& file) {
 }
 
 // All but depth_scale.
-Intrinsics pinhole(const fs::path& file, const nlohmann::json& json) {
+Intrinsics pinhole(const fs::path& file, const Json& json) {
     Intrinsics intrinsics;
     intrinsics.width = side(file, json, "width");
     intrinsics.height = side(file, json, "height");
@@ -72,7 +72,7 @@ Intrinsics pinhole(const fs::path& file, const nlohmann::json& json) {
 }  // namespace
 
 Intrinsics read_intrinsics(const fs::path& file) {
-    const nlohmann::json json = read_object(file);
+    const Json json = read_object(file);
     Intrinsics intrinsics = pinhole(file, json);
     const std::uint64_t pixels = std::uint64_t{intrinsics.width} * intrinsics.height;
     if (pixels > most_depth_pixels) {
@@ -97,7 +97,7 @@ Intrinsics read_intrinsics(const fs::path& file) {
 
 std::optional<Intrinsics> read_colour_intrinsics(const fs::path& folder) {
     const fs::path file = folder / "intrinsics.json", own = folder / "color" / "intrinsics.json";
-    const nlohmann::json json = read_object(file);
+    const Json json = read_object(file);
     const auto inner = json.find("color_intrinsics");
     std::error_code error;
     if (fs::exists(own, error)) {

@@ -3,10 +3,10 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
+#include "core/json.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -47,11 +47,11 @@ inline void check_json_nesting(const std::filesystem::path& file, std::string_vi
 
 // What a text of JSON holds. Throws Error(input) where it is nested too deep, or `problem`, which
 // is "is no JSON", say.
-inline nlohmann::json parse_json(const std::filesystem::path& file, std::string_view text,
-                                 const char* problem = "is no JSON") {
+inline Json parse_json(const std::filesystem::path& file, std::string_view text,
+                       const char* problem = "is no JSON") {
     check_json_nesting(file, text);
     try {
-        return nlohmann::json::parse(text.begin(), text.end());
+        return Json::parse(text.begin(), text.end());
     } catch (const nlohmann::json::exception& error) {
         fail(file, std::string(problem) + ": " + json_problem(error));
     }

@@ -3,9 +3,9 @@
 
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/json.h"
 #include "io/file_writer.h"
 #include "io/json_text.h"
 #include "io/text.h"
@@ -13,7 +13,7 @@
 namespace topple::io {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 constexpr const char* schema = "topple.landscapes/1";
 
@@ -175,7 +175,7 @@ void read_landscapes_json(const std::filesystem::path& file, Scene& scene) {
             scene.objects[static_cast<std::size_t>(id)].landscape = landscape_of(object, file);
         }
     } catch (const Json::exception& error) {
-        fail(file, "is no landscapes.json: " + printable(error.what(), 200));
+        fail(file, "is no landscapes.json: " + json_problem(error));
     }
 }
 

@@ -121,6 +121,19 @@ void move_files(const fs::path& from, const fs::path& to) {
 
 }  // namespace
 
+void check_not_replaced(const fs::path& input, const fs::path& destination) {
+    const fs::path folder = resolved(destination);
+    std::error_code error;
+    if (!fs::exists(input, error)) return;
+    const fs::path from = fs::canonical(input, error);
+    if (error) return;  // who reads it says what is wrong with it
+    const auto [end, unlike] = std::ranges::mismatch(folder, from);
+    if (end != folder.end()) return;
+    throw Error(ErrorKind::usage, path_text(input) + ": is " + (unlike == from.end() ? "" : "in ") +
+                                      "the output folder " + path_text(destination) +
+                                      ", which is replaced; choose another with -o");
+}
+
 OutputFolder::OutputFolder(const fs::path& destination) : destination_(resolved(destination)) {
     check_replaceable(destination_, {});
     std::error_code error;

@@ -40,6 +40,11 @@ class OutputFolder {
     int slot_ = -1;  // in the list of what remove_pending_outputs() removes
 };
 
+// Throws Error(usage) where the input is the destination or lies in it, and so would be replaced by
+// what was made of it.
+void check_not_replaced(const std::filesystem::path& input,
+                        const std::filesystem::path& destination);
+
 // Removes the temporary folders of all OutputFolders that live, for a program that is about to end
 // by a signal. It is async-signal-safe: call it in the handler, then _exit(). It uses system calls
 // on memory of its own only, so it is right whatever the interrupted thread was doing; another

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "core/json.h"
 #include "io/json_text.h"
 #include "io/text.h"
 #include "topple/input.h"
@@ -53,7 +53,7 @@ struct Raw {
     std::optional<double> unit_m_s2;
 };
 
-double number_of(const fs::path& file, const nlohmann::json& json, const std::string& what) {
+double number_of(const fs::path& file, const Json& json, const std::string& what) {
     if (!json.is_number()) fail(file, what + " must be a number, not " + json.type_name());
     return json.get<double>();
 }
@@ -61,9 +61,9 @@ double number_of(const fs::path& file, const nlohmann::json& json, const std::st
 // The entry that goes by one of the names; null where there is none.
 struct Named {
     std::string name;
-    const nlohmann::json* json = nullptr;
+    const Json* json = nullptr;
 };
-Named find_named(const nlohmann::json& json, std::initializer_list<const char*> names) {
+Named find_named(const Json& json, std::initializer_list<const char*> names) {
     for (const char* name : names) {
         const auto found = json.find(name);
         if (found != json.end()) return {in_quotes(name), &*found};
@@ -72,10 +72,10 @@ Named find_named(const nlohmann::json& json, std::initializer_list<const char*> 
 }
 
 Raw read_json(const fs::path& file, std::string_view text) {
-    const nlohmann::json top = io::parse_json(file, text);
+    const Json top = io::parse_json(file, text);
     if (!top.is_object())
         fail(file, std::string("must hold a JSON object, not ") + top.type_name());
-    const nlohmann::json* record = &top;
+    const Json* record = &top;
     if (const Named series = find_named(top, {"timeSeries", "timeseries"}); series.json) {
         if (!series.json->is_array() || series.json->size() != 1 ||
             !series.json->front().is_object())
@@ -94,7 +94,7 @@ Raw read_json(const fs::path& file, std::string_view text) {
     if (!data.json->is_array())
         fail(file, data.name + " must be a list of numbers, not " + data.json->type_name());
     raw.values.reserve(data.json->size());
-    for (const nlohmann::json& value : *data.json) {
+    for (const Json& value : *data.json) {
         raw.values.push_back(
             number_of(file, value, data.name + "[" + std::to_string(raw.values.size()) + "]"));
     }

@@ -80,6 +80,13 @@ Header read_header(const std::filesystem::path& file, std::string_view bytes) {
             fail(file, "its scale " + short_number(h.scale[a]) + " and offset " +
                            short_number(h.offset[a]) + " must be finite, the scale not 0");
         }
+        // The step from the offset to the next number that there is.
+        const double step = std::nextafter(std::abs(h.offset[a]), INFINITY) - std::abs(h.offset[a]);
+        if (step > std::abs(h.scale[a])) {
+            fail(file, "its offset " + short_number(h.offset[a]) +
+                           " is so large that its scale of " + short_number(h.scale[a]) +
+                           " is lost in it: points would fall together; check the header");
+        }
     }
     return h;
 }

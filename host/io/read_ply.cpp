@@ -91,6 +91,19 @@ Wanted find_wanted(const std::filesystem::path& file, const PlyElement& vertex) 
     return wanted;
 }
 
+// The elements that come after the vertices. Where the file ends before what the header promises of
+// them does, it is cut short, even if all vertices are there. Those without any property take no
+// room, and are nobody's.
+std::vector<const PlyElement*> after(const PlyHeader& header, const PlyElement& vertices) {
+    std::vector<const PlyElement*> out;
+    bool behind = false;
+    for (const PlyElement& element : header.elements) {
+        if (behind && !element.properties.empty()) out.push_back(&element);
+        behind = behind || &element == &vertices;
+    }
+    return out;
+}
+
 // Reads vertex lines. Every item is one line.
 PointCloud read_ascii(const std::filesystem::path& file, std::string_view bytes,
                       const PlyHeader& header, const CloudSink* sink) {
@@ -153,6 +166,12 @@ PointCloud read_ascii(const std::filesystem::path& file, std::string_view bytes,
             }
             cloud.add(point, normal, colour);
         }
+        for (const PlyElement* rest : after(header, element)) {
+            for (std::uint64_t i = 0; i < rest->count; ++i) {
+                if (!lines.next(line))
+                    ply_cut_short(file, *rest, saturating_multiply(rest->count - i, 2), 0);
+            }
+        }
         return cloud.finish();
     }
     fail(file, "has no element vertex");
@@ -193,6 +212,12 @@ PointCloud read_binary(const std::filesystem::path& file, std::string_view bytes
                       wanted.fields.normals ? load(wanted.normal) : std::array<double, 3>{},
                       coloured ? load(wanted.colour) : std::array<double, 3>{});
         }
+        if (fixed && element.count > 0) {
+            PlyElement others = element;  // than the first, which was stepped over
+            --others.count;
+            items.step_over_all(others);
+        }
+        for (const PlyElement* rest : after(header, element)) items.step_over_all(*rest);
         return cloud.finish();
     }
     fail(file, "has no element vertex");

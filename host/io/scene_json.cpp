@@ -3,8 +3,8 @@
 
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
+#include "core/json.h"
 #include "io/file_writer.h"
 #include "io/json_text.h"
 #include "io/text.h"
@@ -12,7 +12,7 @@
 namespace topple::io {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 constexpr const char* schema = "topple.scene/1";
 
@@ -361,7 +361,7 @@ Scene read_scene_json(const std::filesystem::path& file) {
         }
         return scene_of(json);
     } catch (const Json::exception& error) {
-        fail(file, "is no scene.json: " + printable(error.what(), 200));
+        fail(file, "is no scene.json: " + json_problem(error));
     }
 }
 

@@ -8,15 +8,14 @@
 #include <string>
 #include <string_view>
 
+#include "core/printable.h"
 #include "topple/error.h"
 
 // What the readers share: files as bytes, lines with numbers, tokens, numbers, and messages that
 // stay one printable line whatever the input holds.
 namespace topple::io {
 
-// `text` with control characters and bytes that are no UTF-8 written as \xNN, cut after `most`
-// bytes.
-std::string printable(std::string_view text, std::size_t most = 60);
+using topple::printable;
 // The same, between double quotes.
 std::string in_quotes(std::string_view text);
 // A path, whole.

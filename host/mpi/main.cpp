@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <mpi.h>
 
+#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 // `topple parse` as an MPI job: mpirun -n RANKS topple-mpi parse INPUT -o OUT
 int main(int argc, char** argv) {
     using namespace topple;
+    std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit (ulimit -f) is an error of its write
     int threading = MPI_THREAD_SINGLE;
     MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &threading);
     int code = 3;

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <exception>
 #include <new>
+#include <system_error>
 #include <utility>
 
 namespace topple::mpi {
@@ -163,10 +164,14 @@ bool MpiCrew::serve_one() {
 
 void MpiCrew::serve() {
     while (left_ < size_ - 1) {
-        if (!serve_one()) std::this_thread::sleep_for(brief);
-        if (!stopped_ && failure()) {
-            stopped_ = true;
-            tell_all('s');
+        try {
+            if (!serve_one()) std::this_thread::sleep_for(brief);
+            if (!stopped_ && failure()) {
+                stopped_ = true;
+                tell_all('s');
+            }
+        } catch (...) {
+            note_failure(as_error(std::current_exception()));
         }
     }
     alone_ = true;
@@ -178,7 +183,11 @@ void MpiCrew::begin(const std::string& order, std::vector<Task> tasks) {
     left_ = 0;
     alone_ = false;
     tell_all('o', order);
-    server_ = std::thread([this] { serve(); });
+    try {
+        server_ = std::thread([this] { serve(); });
+    } catch (const std::system_error&) {
+        // Without a thread for them the others are served between the leader's own tasks.
+    }
 }
 
 std::optional<std::string> MpiCrew::wait() {
@@ -223,6 +232,7 @@ void MpiCrew::end(std::exception_ptr failed, const std::function<void()>& poll) 
     };
     if (failed) fail(failed);
     auto last = std::chrono::steady_clock::now();
+    if (!server_.joinable()) serve();
     while (!alone_) {
         std::this_thread::sleep_for(brief);
         if (failed || std::chrono::steady_clock::now() - last < between_polls) continue;
@@ -233,7 +243,7 @@ void MpiCrew::end(std::exception_ptr failed, const std::function<void()>& poll) 
             fail(std::current_exception());
         }
     }
-    server_.join();
+    if (server_.joinable()) server_.join();
     if (const auto first = failure()) throw *first;
 }
 

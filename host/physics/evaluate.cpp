@@ -4,7 +4,7 @@
 #include <exception>
 #include <string>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "device/queue.h"
 #include "group_landscape.hpp"
 #include "physics/assess.h"

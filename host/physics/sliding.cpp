@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "physics/slide_map.h"
 #include "physics/vectors.h"
 #include "topple/error.h"

@@ -38,11 +38,11 @@ struct Stance {
 };
 
 struct SlideOptions {
-    unsigned gap = 1;                       // empty voxels that still count as contact
-    double reach_m = 3;                     // ways longer than this are no longer one push
-    bool places = false;                    // whether to look at all places around the object
-    std::span<const Stance> stances = {};   // by object; empty: none of any
-    device::ThreadPool* threads = nullptr;  // to share the objects out among; none: one by one
+    unsigned gap = 1;                      // empty voxels that still count as contact
+    double reach_m = 3;                    // ways longer than this are no longer one push
+    bool places = false;                   // whether to look at all places around the object
+    std::span<const Stance> stances = {};  // by object; empty: none of any
+    ThreadPool* threads = nullptr;         // to share the objects out among; none: one by one
 };
 
 // For every object, on the voxel columns of its support. The support is the level that most of the

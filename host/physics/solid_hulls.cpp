@@ -12,8 +12,7 @@
 namespace topple::physics {
 
 std::vector<std::vector<Vec3>> solid_hulls(const SolidCells& cells, const BoundaryCells& boundary,
-                                           const std::vector<bool>& wanted,
-                                           device::ThreadPool& threads) {
+                                           const std::vector<bool>& wanted, ThreadPool& threads) {
     SolidCells whole = cells;
     std::vector<std::vector<std::size_t>> parts(wanted.size());
     std::size_t n = 0;

@@ -5,7 +5,7 @@
 
 #include "core/boundary_cells.h"
 #include "core/solid_cells.h"
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 
 namespace topple::physics {
 
@@ -13,7 +13,6 @@ namespace topple::physics {
 // have none. Whole cells count with their corners, those of the boundary with what is solid of
 // them.
 std::vector<std::vector<Vec3>> solid_hulls(const SolidCells& cells, const BoundaryCells& boundary,
-                                           const std::vector<bool>& wanted,
-                                           device::ThreadPool& threads);
+                                           const std::vector<bool>& wanted, ThreadPool& threads);
 
 }  // namespace topple::physics

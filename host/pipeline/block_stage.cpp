@@ -13,6 +13,7 @@
 #include "pipeline/ingest.h"
 #include "pipeline/voxel_stage.h"
 #include "tiles/binary_file.h"
+#include "tiles/work_files.h"
 
 namespace topple {
 namespace {
@@ -112,7 +113,7 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
 }
 
 std::filesystem::path block_file(const std::filesystem::path& folder, std::size_t block) {
-    return folder / ("block-" + std::to_string(block));
+    return folder / (tiles::block_prefix + std::to_string(block));
 }
 
 void write_block(const std::filesystem::path& folder, std::size_t block, const BlockParts& parts) {

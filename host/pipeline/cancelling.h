@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/thread_pool.h"
 #include "device/device.h"
-#include "device/native/thread_pool.h"
 #include "topple/error.h"
 #include "topple/parse.h"
 
@@ -21,7 +21,7 @@ class Cancelling {
         : polling_(device.threads(), [&options] { end_if_cancelled(options); }) {}
 
   private:
-    device::ThreadPool::Polling polling_;
+    ThreadPool::Polling polling_;
 };
 
 }  // namespace topple

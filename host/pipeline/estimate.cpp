@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/scene_bounds.h"
+#include "core/thread_pool.h"
 #include "device/device.h"
-#include "device/native/thread_pool.h"
 #include "geometry/surfels.h"
 #include "io/frame_sequence.h"
 #include "io/read_cloud.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "geometry/building.h"
 #include "geometry/fragments.h"
 

@@ -189,7 +189,7 @@ double cell_for_frames(const Intrinsics& k, std::size_t count,
     return std::clamp(std::max(1.5 * z / k.fx, 1.2 * noise), least_cell_m, 0.015);
 }
 
-void for_each_frame(const FrameStream& frames, device::ThreadPool& threads,
+void for_each_frame(const FrameStream& frames, ThreadPool& threads,
                     const std::function<void(DepthFrame, std::size_t)>& use, bool coloured) {
     struct Decoded {
         DepthFrame frame;

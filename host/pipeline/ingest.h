@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/space_map.h"
+#include "core/thread_pool.h"
 #include "device/device.h"
-#include "device/native/thread_pool.h"
 #include "geometry/manhattan.h"
 #include "geometry/storeys.h"
 #include "topple/cloud_view.h"
@@ -35,7 +35,7 @@ class FrameStream {
 };
 
 // Calls use(frame, i) for each frame in order. Frames are decoded by all threads, as many at once.
-void for_each_frame(const FrameStream& frames, device::ThreadPool& threads,
+void for_each_frame(const FrameStream& frames, ThreadPool& threads,
                     const std::function<void(DepthFrame, std::size_t)>& use, bool coloured = false);
 
 // Surfels are larger than the cells of the cloud: a surface then has no holes at their resolution

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "fitted/boosted_trees.h"
 #include "geometry/primitive_shapes.h"
 #include "physics/body_landscape.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <thread>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "pipeline/surface_colours.h"
 #include "solids/object_voxels.h"
 #include "solids/shaded_mesh.h"
@@ -60,8 +60,7 @@ std::vector<ObjectSurface> object_surfaces(const Scene& scene, const SolidCells&
     const auto objects = by_object(voxels);
     std::optional<SurfaceColours> colours;
     if (!scene.points.red.empty()) colours.emplace(scene.points, cells, object_of, frame);
-    device::ThreadPool pool(threads > 0 ? threads
-                                        : std::max(1U, std::thread::hardware_concurrency()));
+    ThreadPool pool(threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency()));
     std::vector<solids::SurfaceMesh> meshes(objects.size());
     pool.each(objects.size(), 1, [&](std::size_t n) {
         meshes[n] = solids::surface_mesh(objects[n], boundary, object_of, frame.voxel_m);

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "pipeline/task_list.h"
 
 namespace topple {

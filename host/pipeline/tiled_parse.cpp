@@ -30,6 +30,7 @@
 #include "pipeline/tiled_stages.h"
 #include "tiles/blocks.h"
 #include "tiles/point_spill.h"
+#include "tiles/work_files.h"
 #include "tiles/work_folder.h"
 
 namespace topple {
@@ -165,10 +166,22 @@ geometry::SceneFrame find_frame(device::Device& device, const fs::path& folder,
     return geometry::find_scene_frame(device, surfels, {options.up, part.camera_up});
 }
 
+// Where a layout is there some bin may be missing all the same, which was damaged.
+bool all_thinned(const SharedWork& shared, const tiles::SpilledPoints& points) {
+    const std::set<std::string> there = tiles::names_in(shared.folder);
+    return std::ranges::all_of(points.bins(), [&](const auto& bin) {
+        return there.contains(tiles::thinned_name(bin.bin));
+    });
+}
+
 tiles::Layout find_layout(const SharedWork& shared, const tiles::SpilledPoints& points,
                           const fs::path& input, const ParseOptions& options, StageClock& stage) {
-    if (tiles::names_in(shared.folder).contains(tiles::layout_name))
-        return tiles::read_layout(shared.folder);
+    if (tiles::names_in(shared.folder).contains(tiles::layout_name)) {
+        tiles::Layout layout = tiles::read_layout(shared.folder);
+        if (!all_thinned(shared, points))
+            stage("thinning", [&] { thin_bins(shared, points, layout.cell_m, stage); });
+        return layout;
+    }
     const double cell_m = stage("spacing", [&] {
         const double finest = 1.25 * find_spacing(points, input);
         const double wanted = options.voxel_m > 0 ? options.voxel_m / voxel_cells : building_cell_m;
@@ -266,6 +279,11 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
 
 }  // namespace
 
+std::string to_text(const WorkLeft& left) {
+    if (left.blocks == 0) return "the points sorted on disk";
+    return std::to_string(left.done) + " of " + io::counted(left.blocks, "block");
+}
+
 std::optional<WorkLeft> work_left(const fs::path& input, const ParseOptions& options) {
     const fs::path& folder = options.work_folder;
     if (folder.empty() || !may_be_tiled(input, options)) return std::nullopt;
@@ -284,6 +302,21 @@ std::optional<WorkLeft> work_left(const fs::path& input, const ParseOptions& opt
     }
 }
 
+namespace {
+
+// What an earlier run has left, and what of it is made anew.
+void tell_of_work(const fs::path& input, const tiles::WorkFolder& work,
+                  const ParseOptions& options) {
+    if (!options.notice || !work.taken_up()) return;
+    const std::string folder = io::path_text(work.path());
+    if (const auto left = work_left(input, options))
+        options.notice("going on with " + to_text(*left) + " from " + folder);
+    for (const std::string& name : work.damaged())
+        options.notice(folder + ": " + name + " is damaged and is made anew");
+}
+
+}  // namespace
+
 std::optional<ParseResult> parse_tiled(const fs::path& input, const ParseOptions& callers) {
     if (!may_be_tiled(input, callers)) return std::nullopt;
     check_options(callers);
@@ -291,7 +324,9 @@ std::optional<ParseResult> parse_tiled(const fs::path& input, const ParseOptions
     std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options);
     const std::string about = manifest(input, options);
-    auto work = std::make_unique<tiles::WorkFolder>(options.work_folder, about);
+    auto work = std::make_unique<tiles::WorkFolder>(options.work_folder, about,
+                                                    [&] { end_if_cancelled(options); });
+    tell_of_work(input, *work, options);
     or_remove(*work, [&] { stage("sorting", [&] { spill(input, *work, options, stage); }); });
     if (options.tile_m == 0 && tiles::SpilledPoints(work->path()).points() <= most_points_at_once) {
         work->finished();
@@ -300,7 +335,9 @@ std::optional<ParseResult> parse_tiled(const fs::path& input, const ParseOptions
     const auto device = options.device ? options.device : device::open_device("auto");
     const Cancelling cancelling(*device, options);
     const auto crew = options.crew ? options.crew : std::shared_ptr<Crew>(lone_crew());
-    const fs::path folder = fs::absolute(work->path());
+    std::error_code error;
+    const fs::path folder = fs::absolute(work->path(), error);
+    if (error) io::fail(work->path(), "has no absolute path: " + error.message());
     const SharedWork shared{*crew, *device, folder, about};
     ParseResult result = parse_in_blocks(input, options, std::move(work), shared, stage);
     result.scene.timings_s = std::move(timings);

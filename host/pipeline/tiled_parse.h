@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "topple/parse.h"
 
@@ -35,6 +36,9 @@ std::optional<ParseResult> parse_tiled(const std::filesystem::path& input,
 struct WorkLeft {
     std::size_t done = 0, blocks = 0;  // blocks: 0 where it had not come to them
 };
+
+// "3 of 14 blocks".
+std::string to_text(const WorkLeft& left);
 
 // Nothing: the next run begins anew.
 std::optional<WorkLeft> work_left(const std::filesystem::path& input, const ParseOptions& options);

@@ -13,11 +13,12 @@
 #include <set>
 #include <utility>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "io/text.h"
 #include "pipeline/block_stage.h"
 #include "pipeline/parse_memory.h"
 #include "pipeline/shared_stage.h"
+#include "tiles/work_files.h"
 #include "tiles/work_folder.h"
 #include "topple/version.h"
 

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "geometry/ledges.h"
 #include "geometry/surface_gaps.h"
 #include "pipeline/view_coverage.h"

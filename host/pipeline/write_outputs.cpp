@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <functional>
-#include <future>
 #include <memory>
 
 #include "core/solid_scene.h"
+#include "core/thread_pool.h"
 #include "io/landscapes_json.h"
 #include "io/octomap.h"
 #include "io/output_folder.h"
@@ -79,20 +79,17 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
         throw Error(ErrorKind::usage,
                     "the result has no coordinates of its points: call add_coordinates() first");
     }
+    io::check_not_replaced(result.scene.source, folder);
     io::OutputFolder out(folder);
     const Poll poll = [&] {
         if (options.cancelled && options.cancelled()) throw Error(ErrorKind::input, "cancelled");
     };
     const auto points = [&] { write_points(out.folder() / "points.ply", result, poll); };
+    const auto all_else = [&] { write_all_else(out.folder(), result, options, poll); };
     // Both are long, and neither needs the other.
-    std::future<void> beside;
-    if (options.threads != 1) {
-        beside = std::async(std::launch::async, points);
-    } else {
-        points();
-    }
-    write_all_else(out.folder(), result, options, poll);
-    if (beside.valid()) beside.get();
+    ThreadPool(options.threads == 1 ? 1 : 2).each(2, 1, [&](std::size_t part) {
+        part == 0 ? points() : all_else();
+    });
     poll();
     out.commit();
     if (result.tiled) result.tiled->finished();

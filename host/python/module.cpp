@@ -2,6 +2,7 @@
 #include <array>
 #include <utility>
 
+#include "busy.h"
 #include "python.h"
 #include "topple/stages.h"
 #include "topple/version.h"
@@ -87,14 +88,16 @@ void bind_devices(py::module_& module) {
         "open_device",
         [](const std::string& backend, unsigned threads) {
             auto opened = std::make_shared<SharedDevice>();
+            const Busy busy;
+            const py::gil_scoped_release release;
             opened->device = device::open_device(backend, threads);
             return opened;
         },
-        py::arg("backend") = "auto", py::arg("threads") = 0,
-        py::call_guard<py::gil_scoped_release>());
+        py::arg("backend") = "auto", py::arg("threads") = 0);
     module.def("list_devices", [] {
         std::vector<device::Listing> listings;
         {
+            const Busy busy;
             const py::gil_scoped_release release;
             listings = device::list_devices();
         }
@@ -114,6 +117,10 @@ PYBIND11_MODULE(_topple, module) {
     bind_devices(module);
     bind_result(module);
     bind_parse(module);
+    py::module_::import("atexit").attr("register")(py::cpp_function([] {
+        const py::gil_scoped_release release;
+        Busy::stop_all();
+    }));
 }
 
 }  // namespace topple::python

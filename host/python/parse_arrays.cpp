@@ -3,6 +3,7 @@
 #include <chrono>
 #include <thread>
 
+#include "busy.h"
 #include "python.h"
 
 namespace topple::python {
@@ -30,7 +31,7 @@ class Caller {
                 if (!cancelled_.is_none() && cancelled_().cast<bool>()) stop_ = true;
             });
         }
-        return stop_;
+        return stop_ || Busy::must_stop();
     }
     // With the interpreter's lock: throws what a callback or a signal has thrown.
     void rethrow() {
@@ -83,6 +84,7 @@ std::shared_ptr<Parsed> run(const std::shared_ptr<SharedDevice>& device, ParseOp
     }
     auto out = std::make_shared<Parsed>();
     try {
+        const Busy busy;
         const py::gil_scoped_release release;
         out->result = parse_with(options);
     } catch (const Error&) {
@@ -177,6 +179,7 @@ void bind_parse(py::module_& module) {
                   const std::vector<py::array>& points, const std::vector<py::array>& colours) {
                    std::optional<CloudView> view;
                    if (!points.empty()) view = view_of(points, {}, colours, {});
+                   const Busy busy;
                    const py::gil_scoped_release release;
                    ScenePoints& kept = parsed.result.scene.points;
                    if (view) add_coordinates(*view, parsed.result);
@@ -192,6 +195,7 @@ void bind_parse(py::module_& module) {
                    options.pictures = pictures;
                    options.glb = glb;
                    options.octomap = octomap;
+                   options.cancelled = Busy::must_stop;
                    write_outputs(parsed.result, folder, options);
                });
 }

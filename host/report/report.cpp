@@ -5,12 +5,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/json.h"
 #include "io/file_writer.h"
 #include "io/palette.h"
 #include "io/scene_json.h"
@@ -22,7 +22,7 @@
 namespace topple::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 // Typed arrays in the page are little-endian on every machine that runs a browser.
 static_assert(std::endian::native == std::endian::little,

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/random.h"
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "physics/landscape.h"
 #include "safety/columns.h"
 #include "safety/fields.h"

@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "physics/landscape.h"
 #include "safety/columns.h"
 #include "safety/directions.h"

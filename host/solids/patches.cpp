@@ -200,8 +200,7 @@ void sort(Points& points) {
 std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
                                       std::span<const geometry::Region> regions,
                                       std::span<const std::int32_t> region_of_point,
-                                      const std::array<Vec3, 3>& axes,
-                                      device::ThreadPool& threads) {
+                                      const std::array<Vec3, 3>& axes, ThreadPool& threads) {
     std::vector<std::size_t> first(regions.size() + 1, 0);
     for (const std::int32_t r : region_of_point)
         if (r >= 0) ++first[static_cast<std::size_t>(r) + 1];

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/boundary_cells.h"
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 #include "geometry/segmentation.h"
 #include "topple/cloud_view.h"
 
@@ -24,7 +24,7 @@ inline constexpr double outlier = 3;
 std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
                                       std::span<const geometry::Region> regions,
                                       std::span<const std::int32_t> region_of_point,
-                                      const std::array<Vec3, 3>& axes, device::ThreadPool& threads);
+                                      const std::array<Vec3, 3>& axes, ThreadPool& threads);
 
 // Surfels at an edge make narrow regions of their own there, askew to both faces. A patch whose
 // points larger ones beside it explain is none, nor is one within a surfel of two much larger ones

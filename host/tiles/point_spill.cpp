@@ -2,12 +2,9 @@
 #include "tiles/point_spill.h"
 
 #include <algorithm>
-#include <cstring>
-#include <fstream>
+#include <optional>
 #include <string>
 #include <utility>
-
-#include "tiles/binary_file.h"
 
 namespace topple::tiles {
 namespace {
@@ -47,30 +44,22 @@ SpilledPoints::SpilledPoints(const fs::path& folder)
         bin.portions = in.array<Portion>();
         bins_.push_back(std::move(bin));
     }
-    std::error_code error;
-    if (fs::file_size(file_, error) != points_ * sizeof(Point) || error) in.damaged();
-    if (coloured_ && (fs::file_size(colour_file_, error) != points_ * sizeof(Rgb8) || error))
-        in.damaged();
+    if (!PortionReader::holds<Point>(file_, points_)) damaged_file(file_);
+    if (coloured_ && !PortionReader::holds<Rgb8>(colour_file_, points_)) damaged_file(colour_file_);
 }
 
 void SpilledPoints::read_portions(std::size_t bin, bool with_colours, const Use& use) const {
-    std::ifstream in(file_, std::ios::binary), colours_in;
-    if (with_colours) colours_in.open(colour_file_, std::ios::binary);
+    PortionReader in(file_);
+    std::optional<PortionReader> colours_in;
+    if (with_colours) colours_in.emplace(colour_file_);
     std::vector<Point> points;
     std::vector<Rgb8> colours;
-    const auto read_some = [](const fs::path& file, std::ifstream& from, std::uint64_t offset,
-                              auto& values) {
-        from.seekg(static_cast<std::streamoff>(offset));
-        from.read(reinterpret_cast<char*>(values.data()),
-                  static_cast<std::streamsize>(values.size() * sizeof(values[0])));
-        if (!from) io::fail(file, "can't be read: it was cut short or removed");
-    };
-    for (const auto& [offset, count] : bins_[bin].portions) {
-        points.resize(count);
-        read_some(file_, in, offset, points);
+    for (const Portion& portion : bins_[bin].portions) {
+        points.resize(portion.points);
+        in.read(portion.before, portion.sum, points);
         if (with_colours) {
-            colours.resize(count);
-            read_some(colour_file_, colours_in, offset / sizeof(Point) * sizeof(Rgb8), colours);
+            colours.resize(portion.points);
+            colours_in->read(portion.before, portion.colour_sum, colours);
         }
         use(points, colours);
     }
@@ -87,28 +76,24 @@ void SpilledPoints::read_points(std::size_t bin,
 }
 
 PointSpill::PointSpill(const fs::path& folder, std::uint64_t buffer_bytes)
-    : folder_(folder),
-      writer_(std::make_unique<io::FileWriter>(folder / "points.bin")),
-      buffer_bytes_(buffer_bytes) {}
+    : folder_(folder), writer_(folder / "points.bin"), buffer_bytes_(buffer_bytes) {}
 
 void PointSpill::flush(Open& bin) {
     if (bin.buffer.empty()) return;
-    writer_->write(bin.buffer.data(), bin.buffer.size() * sizeof(Point));
-    bin.written.portions.push_back({offset_, bin.buffer.size()});
+    SpilledPoints::Portion portion{written_, bin.buffer.size(), writer_.add(bin.buffer), 0};
+    if (colour_writer_) portion.colour_sum = colour_writer_->add(bin.colours);
+    bin.written.portions.push_back(portion);
     bin.written.points += bin.buffer.size();
-    offset_ += bin.buffer.size() * sizeof(Point);
-    buffered_ -= bin.buffer.size() * sizeof(Point);
+    written_ += bin.buffer.size();
+    buffered_ -= bin.buffer.size() * sizeof(Point) + bin.colours.size() * sizeof(Rgb8);
     bin.buffer.clear();
-    if (!colour_writer_) return;
-    colour_writer_->write(bin.colours.data(), bin.colours.size() * sizeof(Rgb8));
-    buffered_ -= bin.colours.size() * sizeof(Rgb8);
     bin.colours.clear();
 }
 
 void PointSpill::add(const PointCloud& portion, const std::string& source) {
     // A file's points have colours all of them, or none.
     if (points_ == 0 && !portion.red.empty())
-        colour_writer_ = std::make_unique<io::FileWriter>(folder_ / "colours.bin");
+        colour_writer_ = std::make_unique<PortionWriter>(folder_ / "colours.bin");
     dropped_ += portion.dropped;
     points_ += portion.size();
     Bin last{};
@@ -159,8 +144,8 @@ void PointSpill::add(const PointCloud& portion, const std::string& source) {
 
 void PointSpill::finish(const Vec3& offset_m) {
     for (Open& bin : bins_) flush(bin);
-    writer_->close();
-    if (colour_writer_) colour_writer_->close();
+    writer_.finish();
+    if (colour_writer_) colour_writer_->finish();
     std::ranges::sort(bins_, {}, [](const Open& bin) { return bin.written.bin; });
     BinaryWriter out(folder_ / "bins.bin");
     out.value(points_);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/colour_space.h"
-#include "io/file_writer.h"
+#include "tiles/binary_file.h"
 #include "tiles/bins.h"
 #include "topple/input.h"
 
@@ -20,7 +20,8 @@ namespace topple::tiles {
 class SpilledPoints {
   public:
     struct Portion {
-        std::uint64_t offset = 0, points = 0;
+        std::uint64_t before = 0, points = 0;   // points of other portions before it in the file
+        std::uint64_t sum = 0, colour_sum = 0;  // checksums
     };
     struct BinPoints {
         Bin bin{};
@@ -39,7 +40,8 @@ class SpilledPoints {
     bool coloured() const { return coloured_; }  // some point's colour is known
 
     // Calls use(points, colours) for the bin's portions in order, without colours where the cloud
-    // has none; or use(points).
+    // has none; or use(points). Throws Error(input) naming the file where one is not what was
+    // written.
     using Use = std::function<void(std::span<const Point>, std::span<const Rgb8>)>;
     void read(std::size_t bin, const Use& use) const;
     void read_points(std::size_t bin, const std::function<void(std::span<const Point>)>& use) const;
@@ -75,11 +77,12 @@ class PointSpill {
     void flush(Open& bin);
 
     std::filesystem::path folder_;
-    std::unique_ptr<io::FileWriter> writer_, colour_writer_;
+    PortionWriter writer_;
+    std::unique_ptr<PortionWriter> colour_writer_;
     bool any_colour_ = false;
     std::vector<Open> bins_;
     std::unordered_map<std::uint64_t, std::size_t> place_;
-    std::uint64_t buffer_bytes_, buffered_ = 0, offset_ = 0, points_ = 0, dropped_ = 0;
+    std::uint64_t buffer_bytes_, buffered_ = 0, written_ = 0, points_ = 0, dropped_ = 0;
 };
 
 }  // namespace topple::tiles

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <cstdio>
 #include <numeric>
 #include <string>
+#include <system_error>
 
 #include "tiles/binary_file.h"
 
@@ -95,6 +96,34 @@ class CellSums {
     std::vector<std::array<std::uint64_t, 4>> colours_;  // sums of channels, and how many
 };
 
+// Writes places, portion by portion.
+class PlacesWriter {
+  public:
+    explicit PlacesWriter(const fs::path& file) : out_(file) { portion_.reserve(thinned_portion); }
+    void add(std::uint32_t place) {
+        portion_.push_back(place);
+        ++points_;
+        if (portion_.size() == thinned_portion) flush();
+    }
+    void finish() {
+        if (!portion_.empty()) flush();
+        out_.finish();
+    }
+    std::uint64_t points() const { return points_; }
+    const std::vector<PortionWriter::Sum>& sums() const { return sums_; }
+
+  private:
+    void flush() {
+        sums_.push_back(out_.add(portion_));
+        portion_.clear();
+    }
+
+    PortionWriter out_;
+    std::vector<std::uint32_t> portion_;
+    std::vector<PortionWriter::Sum> sums_;
+    std::uint64_t points_ = 0;
+};
+
 }  // namespace
 
 double dividing_cell(double cell_m) {
@@ -110,7 +139,7 @@ void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const
     const auto cells = static_cast<std::int64_t>(std::llround(bin_edge_m / cell_m));
     const std::array<double, 3> low{at[0] * bin_edge_m, at[1] * bin_edge_m, at[2] * bin_edge_m};
     CellSums sums;
-    io::FileWriter places(places_file(folder, at));
+    PlacesWriter places(places_file(folder, at));
     points.read(bin, [&](std::span<const Point> portion, std::span<const Rgb8> colours) {
         for (std::size_t n = 0; n < portion.size(); ++n) {
             const Point& p = portion[n];
@@ -124,10 +153,10 @@ void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const
             }
             const std::uint32_t place = sums.add(key, in_bin);
             if (!colours.empty()) sums.add_colour(place, colours[n]);
-            places.write(&place, sizeof(place));
+            places.add(place);
         }
     });
-    places.close();
+    places.finish();
     const std::vector<std::uint64_t>& keys = sums.keys();
     std::vector<std::uint32_t> order(keys.size()), rank(keys.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -147,6 +176,8 @@ void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const
     }
     BinaryWriter order_out(order_file(folder, at));
     order_out.array(rank);
+    order_out.value(places.points());
+    order_out.array(places.sums());
     order_out.finish();
     BinaryWriter file(cells_file(folder, at));
     file.array(out.x);
@@ -158,25 +189,48 @@ void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const
 }
 
 CellsOfPoints::CellsOfPoints(const fs::path& folder, const Bin& bin)
-    : file_(places_file(folder, bin)),
-      cell_of_place_(BinaryReader(order_file(folder, bin)).array<std::uint32_t>()) {}
+    : file_(places_file(folder, bin)) {
+    BinaryReader order(order_file(folder, bin));
+    cell_of_place_ = order.array<std::uint32_t>();
+    points_ = order.value<std::uint64_t>();
+    sums_ = order.array<PortionWriter::Sum>();
+    if (sums_.size() != (points_ + thinned_portion - 1) / thinned_portion) order.damaged();
+    if (!PortionReader::holds<std::uint32_t>(file_, points_)) damaged_file(file_);
+}
 
 std::uint32_t CellsOfPoints::next() {
     if (at_ == portion_.size()) {
-        std::ifstream in(file_, std::ios::binary);
-        in.seekg(static_cast<std::streamoff>(offset_));
-        portion_.resize(thinned_portion);
-        in.read(reinterpret_cast<char*>(portion_.data()),
-                static_cast<std::streamsize>(thinned_portion * sizeof(std::uint32_t)));
-        portion_.resize(static_cast<std::size_t>(in.gcount()) / sizeof(std::uint32_t));
-        offset_ += portion_.size() * sizeof(std::uint32_t);
-        at_ = 0;
-        if (portion_.empty())
+        if (read_ == points_)
             io::fail(file_, "has fewer points than the scan: the scan changed while it was parsed");
+        portion_.resize(std::min<std::uint64_t>(thinned_portion, points_ - read_));
+        PortionReader(file_).read(read_, sums_[read_ / thinned_portion], portion_);
+        read_ += portion_.size();
+        at_ = 0;
     }
     const std::uint32_t place = portion_[at_++];
-    if (place >= cell_of_place_.size()) io::fail(file_, "is damaged");
+    if (place >= cell_of_place_.size()) damaged_file(file_);
     return cell_of_place_[place];
+}
+
+void check_thinned(const fs::path& folder, const Bin& bin) {
+    read_thinned(folder, bin);
+    CellsOfPoints cells(folder, bin);
+    for (std::uint64_t n = 0; n < cells.points(); ++n) cells.next();
+}
+
+std::optional<Bin> bin_of_name(const std::string& name) {
+    Bin bin{};
+    if (std::sscanf(name.c_str(), "cells-%d_%d_%d", &bin[0], &bin[1], &bin[2]) != 3 ||
+        thinned_name(bin) != name)
+        return std::nullopt;
+    return bin;
+}
+
+void remove_thinned(const fs::path& folder, const Bin& bin) {
+    std::error_code error;
+    for (const fs::path& file :
+         {cells_file(folder, bin), order_file(folder, bin), places_file(folder, bin)})
+        fs::remove(file, error);
 }
 
 ThinnedBin read_thinned(const fs::path& folder, const Bin& bin) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,12 +40,22 @@ class CellsOfPoints {
     CellsOfPoints(const std::filesystem::path& folder, const Bin& bin);
     // Throws Error(input) beyond the last point.
     std::uint32_t next();
+    std::uint64_t points() const { return points_; }
 
   private:
     std::filesystem::path file_;
-    std::uint64_t offset_ = 0;  // of what is read next, bytes
+    std::uint64_t points_ = 0, read_ = 0;
     std::vector<std::uint32_t> cell_of_place_, portion_;
+    std::vector<std::uint64_t> sums_;  // of the portions
     std::size_t at_ = 0;
 };
+
+// Throws Error(input) naming the file where some of a bin's is not what was written.
+void check_thinned(const std::filesystem::path& folder, const Bin& bin);
+
+// The bin whose file thinned_name() names so; nothing where it names none.
+std::optional<Bin> bin_of_name(const std::string& name);
+// Removes all files of a bin.
+void remove_thinned(const std::filesystem::path& folder, const Bin& bin);
 
 }  // namespace topple::tiles

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <sys/resource.h>
+
 #include <cstdio>
 #include <sstream>
 
@@ -24,9 +26,44 @@ TEST_F(Output, refused_before_the_parse) {
     expect_failure(1, {"parse", "plane.xyz", "-o", "file"}, {"file", "no folder"});
     put("mine/notes.txt", "mine");
     expect_failure(1, {"parse", "plane.xyz", "-o", "mine"}, {"mine", "notes.txt"});
-    expect_failure(1, {"parse", "plane.xyz", "-o", ""}, {"output"});
+    expect_failure(2, {"parse", "plane.xyz", "-o", ""}, {"--output", "empty"});
     EXPECT_EQ(bytes_of_file(in("mine/notes.txt")), "mine");
     EXPECT_EQ(bytes_of_file(in("file")), "mine");
+}
+
+// The input would be gone with the earlier output.
+TEST_F(Output, never_in_the_place_of_the_input) {
+    put_plane("plane.xyz");
+    ASSERT_EQ(run({"parse", "plane.xyz", "-o", "out", "--quiet"}).code, 0);
+    const std::string points = bytes_of_file(in("out/points.ply"));
+    std::filesystem::create_symlink("out/points.ply", in("link.ply"));
+    for (const char* input : {"out/points.ply", "./out/../out/points.ply", "link.ply", "out"})
+        expect_failure(2, {"parse", input, "-o", "out"}, {"output folder out"});
+    EXPECT_EQ(bytes_of_file(in("out/points.ply")), points);
+}
+
+// A signal would end the program without a word.
+TEST_F(Output, beyond_the_limit_of_a_file) {
+    put_plane("plane.xyz");
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+    for (const rlim_t bytes : {1000u, 100'000u, 300'000u}) {
+        const rlimit limit{bytes, before.rlim_max};
+        ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+        expect_failure(1, {"parse", "plane.xyz", "-o", "out", "--quiet"},
+                       {".topple-", "can't be written: File too large"});
+        ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+    }
+}
+
+// Two runs give the same bytes: all but what holds their times.
+TEST_F(Output, is_the_same_again) {
+    put_plane("plane.xyz");
+    for (const char* out : {"a", "b"})
+        ASSERT_EQ(run({"parse", "plane.xyz", "-o", out, "--quiet", "--glb", "--octomap"}).code, 0);
+    for (const std::string name :
+         {"points.ply", "solid.ply", "volume.vdb", "objects.glb", "map.bt", "landscapes.json"})
+        EXPECT_TRUE(bytes_of_file(in("a/" + name)) == bytes_of_file(in("b/" + name))) << name;
 }
 
 TEST_F(Output, a_folder_that_may_not_be_written) {

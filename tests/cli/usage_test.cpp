@@ -34,7 +34,13 @@ TEST_F(Usage, names_the_unknown_option_and_the_nearest_one) {
 // Not quiet: the name of a stage on stderr would show that the parse had begun.
 TEST_F(Usage, refuses_values_before_it_parses) {
     put_plane("plane.xyz");
-    const std::vector<std::vector<std::string>> bad{{"--voxel", "0"},
+    const std::vector<std::vector<std::string>> bad{{"--voxel", ""},
+                                                    {"--up", ""},
+                                                    {"--unit", ""},
+                                                    {"--disturbance", ""},
+                                                    {"--motion", ""},
+                                                    {"--threads", "100000"},
+                                                    {"--voxel", "0"},
                                                     {"--voxel", "-1"},
                                                     {"--voxel", "nan"},
                                                     {"--voxel", "inf"},
@@ -94,6 +100,15 @@ TEST_F(Usage, refuses_values_before_it_parses) {
 }
 
 // It is read before the scan is.
+// One line, whatever names and values hold.
+TEST_F(Usage, control_characters_are_told_as_such) {
+    expect_failure(1, {"parse", "a\nb\033[31m.ply"}, {"a\\x0ab\\x1b[31m.ply"});
+    put_plane("plane.xyz");
+    expect_failure(2, {"parse", "plane.xyz", "--backend", "a\nb"}, {"a\\x0ab"});
+    expect_failure(2, {"parse", "plane.xyz", "--voxel", "a\r1"}, {"--voxel", "a\\x0d1"});
+    expect_failure(2, {"par\nse"}, {"par\\x0ase"});
+}
+
 TEST_F(Usage, a_bad_accelerogram_is_refused_before_the_parse) {
     put_plane("plane.xyz");
     expect_failure(1, {"parse", "plane.xyz", "--accelerogram", "none.json"}, {"none.json"});

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 
+#include <thread>
+
 #include "device/queue.h"
 #include "device_compare.h"
 #include "device_harness.h"
@@ -42,6 +44,28 @@ TEST(DeviceOpen, ListsEveryBackendInOrder) {
     }
     EXPECT_TRUE(seen[0] && seen[1] && seen[2]);
     EXPECT_TRUE(all[0].usable);
+}
+
+// Drivers are less sure of that than their specifications.
+TEST(DeviceOpen, OpenClFromEightThreadsAtOnce) {
+    std::vector<std::jthread> threads;
+    std::vector<std::string> found(8);
+    for (std::string& mine : found) {
+        threads.emplace_back([&mine] {
+            for (int repeat = 0; repeat < 4; ++repeat) {
+                mine.clear();
+                bool usable = false;
+                for (const auto& listing : device::list_devices()) {
+                    mine += listing.info.name + listing.problem + "\n";
+                    usable |= listing.usable && listing.info.backend == device::Backend::opencl;
+                }
+                if (usable) device::open_device("opencl");
+            }
+        });
+    }
+    threads.clear();
+    for (const std::string& one : found) EXPECT_EQ(one, found.front());
+    EXPECT_FALSE(found.front().empty());
 }
 
 // A CPU behind a GPU's interface never beats the native backend.

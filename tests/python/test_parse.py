@@ -3,6 +3,8 @@
 import gc
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -227,3 +229,24 @@ def test_the_stubs_name_what_there_is(result):
         block = stub.split(f'class {kind}:')[1].split('\nclass ')[0].split('\ndef ')[0]
         named = {line.split('def ')[1].split('(')[0] for line in block.splitlines() if ' def ' in line}
         assert named == {n for n in dir(item) if not n.startswith('_')} - {'x', 'y', 'z', 'nx', 'ny', 'nz'}
+
+
+# A daemon may be at work when the interpreter ends: it is stopped and waited for.
+@pytest.mark.parametrize('after_s', [0.0, 0.05, 0.3])
+def test_the_interpreter_may_end_during_a_parse(after_s):
+    script = f'''
+import sys, threading, time
+import numpy as np
+import topple
+points = np.random.default_rng(1).random((300000, 3), np.float32) * np.array([6, 6, 0.01], np.float32)
+began = threading.Event()
+def work():
+    while True:
+        topple.devices()
+        topple.parse(points, progress=lambda stage, done: began.set())
+threading.Thread(target=work, daemon=True).start()
+began.wait()
+time.sleep({after_s})
+'''
+    ended = subprocess.run([sys.executable, '-c', script], capture_output=True, text=True, timeout=60)
+    assert ended.returncode == 0, ended.stderr

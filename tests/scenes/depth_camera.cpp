@@ -2,12 +2,11 @@
 #include "scenes/depth_camera.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <thread>
 
+#include "core/thread_pool.h"
 #include "scenes/furnished_room.h"
 #include "scenes/random.h"
 #include "topple/error.h"
@@ -273,20 +272,11 @@ Sequence film(const World& world, const CameraOptions& options, std::span<const 
     sequence.intrinsics = options.intrinsics;
     sequence.frames.resize(count);
     sequence.part.resize(count);
-    std::atomic<unsigned> next{0};
-    const auto work = [&] {
-        for (unsigned n = next++; n < count; n = next++) {
-            sequence.part[n] = render(world, options, poses[n], n + 1, sequence.frames[n].depth);
-            sequence.frames[n].camera_to_world = to_input(world, poses[n]);
-        }
-    };
-    const unsigned cores =
-        options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-    {
-        std::vector<std::jthread> threads;
-        for (unsigned k = 1; k < std::min(cores, count); ++k) threads.emplace_back(work);
-        work();
-    }
+    ThreadPool(options.threads).each(count, 1, [&](std::size_t n) {
+        const auto number = static_cast<unsigned>(n);
+        sequence.part[n] = render(world, options, poses[n], number + 1, sequence.frames[n].depth);
+        sequence.frames[n].camera_to_world = to_input(world, poses[n]);
+    });
     fuse(options, sequence);
     return sequence;
 }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <thread>
-#include <vector>
+
+#include "core/thread_pool.h"
 
 namespace topple::scenes {
 
@@ -12,13 +11,10 @@ namespace topple::scenes {
 // them all. The pieces' borders depend on the number of threads: a result must not.
 template <class Body>
 void in_parallel(std::size_t count, const Body& body, std::size_t threads = 0) {
-    if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
-    std::vector<std::jthread> running;
-    for (std::size_t n = 1; n < threads; ++n) {
-        running.emplace_back(
-            [&body, count, threads, n] { body(count * n / threads, count * (n + 1) / threads); });
-    }
-    body(0, count / threads);
+    ThreadPool pool(static_cast<unsigned>(threads));
+    threads = pool.threads();
+    pool.each(threads, 1,
+              [&](std::size_t n) { body(count * n / threads, count * (n + 1) / threads); });
 }
 
 }  // namespace topple::scenes

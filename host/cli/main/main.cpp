@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <csignal>
+
 #include "cli/command_line.h"
 #include "cli/commands.h"
 
 int main(int argc, char** argv) {
     using namespace topple::cli;
+    std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit (ulimit -f) is an error of its write
     return run_command_line(
         {{"parse", parse_purpose, [](CLI::App& app) { return add_parse(app); }},
          {"estimate", "Say what memory, disk and time a parse would take", add_estimate},

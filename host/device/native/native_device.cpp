@@ -8,8 +8,8 @@
 #include <new>
 #include <string>
 
+#include "core/thread_pool.h"
 #include "device/devices.h"
-#include "device/native/thread_pool.h"
 #include "topple/error.h"
 
 namespace topple::device {
@@ -25,9 +25,10 @@ class NativeMemory final : public Memory {
             (std::max<std::uint64_t>(bytes, 1) + alignment - 1) / alignment * alignment;
         data_ = static_cast<std::byte*>(std::aligned_alloc(alignment, padded));
         if (!data_) {
-            throw Error(ErrorKind::device, "buffer " + name_ + ": the system has no " +
-                                               std::to_string(bytes) +
-                                               " bytes left; use a larger --voxel");
+            // Not of the kind device: that can be used, but the scan is too large for it.
+            throw Error(ErrorKind::input, "buffer " + name_ + ": the system has no " +
+                                              std::to_string(bytes) +
+                                              " bytes left; use a larger --voxel");
         }
     }
     ~NativeMemory() override { std::free(data_); }
@@ -142,6 +143,11 @@ class NativeDevice final : public Device {
 }  // namespace
 
 std::unique_ptr<Device> open_native(unsigned threads) {
+    if (threads > ThreadPool::most_threads) {
+        throw Error(ErrorKind::usage, "--threads " + std::to_string(threads) + ": at most " +
+                                          std::to_string(ThreadPool::most_threads) +
+                                          " are of use; leave it out for one per core");
+    }
     return std::make_unique<NativeDevice>(threads);
 }
 

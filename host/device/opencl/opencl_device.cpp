@@ -48,6 +48,7 @@ struct Parts {
 
 std::string one_line(std::string text) {
     while (!text.empty() && (text.back() == '\n' || text.back() == '\0')) text.pop_back();
+    std::ranges::replace(text, '\n', ' ');
     return text;
 }
 
@@ -179,7 +180,7 @@ OpenClDevice::Built OpenClDevice::build(const KernelSource& source) const {
         std::string log(size, '\0');
         clGetProgramBuildInfo(built.program, context_.device, CL_PROGRAM_BUILD_LOG, size,
                               log.data(), nullptr);
-        why += "\n";
+        why += ": ";
         why += one_line(log);
     }
     if (built.kernel) clReleaseKernel(built.kernel);

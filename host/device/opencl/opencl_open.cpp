@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cstdio>
+#include <mutex>
 
 #include "device/devices.h"
 #include "device/opencl/opencl_device.h"
@@ -12,6 +13,11 @@ namespace topple::device {
 namespace {
 
 constexpr const char* opencl_mend = "; install a driver, such as the package pocl-opencl-icd";
+
+// Held wherever drivers are listed, and contexts made and released: the specification says that
+// these calls may come from any thread, PoCL and the loader crash where they come from several.
+// Recursive: a context that can't be finished is released where it was made.
+std::recursive_mutex drivers;
 
 struct Found {
     cl_platform_id platform;
@@ -94,6 +100,7 @@ OpenClContext::OpenClContext(OpenClContext&& other) noexcept
 
 OpenClContext::~OpenClContext() {
     if (!owned) return;
+    const std::lock_guard lock(drivers);
     if (queue) clReleaseCommandQueue(queue);
     if (context) clReleaseContext(context);
 }
@@ -118,6 +125,7 @@ DeviceInfo describe_opencl(cl_device_id device) {
 }
 
 std::vector<Listing> list_opencl() {
+    const std::lock_guard lock(drivers);
     std::vector<Listing> listings;
     try {
         for (const Found& found : find_all()) {
@@ -138,6 +146,7 @@ std::vector<Listing> list_opencl() {
 }
 
 std::unique_ptr<Device> open_opencl() {
+    const std::lock_guard lock(drivers);
     std::vector<Found> all = find_all();
     std::stable_sort(all.begin(), all.end(),
                      [](const Found& a, const Found& b) { return rank(a) < rank(b); });
@@ -158,6 +167,7 @@ std::shared_ptr<Device> adopt_opencl(const OpenClHandles& handles) {
         throw Error(ErrorKind::device,
                     "adopt_opencl needs a context, a device and a queue, none of them null");
     }
+    const std::lock_guard lock(drivers);
     cl_command_queue_properties properties = 0;
     cl_check(clGetCommandQueueInfo(given.queue, CL_QUEUE_PROPERTIES, sizeof(properties),
                                    &properties, nullptr),

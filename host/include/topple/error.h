@@ -14,10 +14,11 @@ enum class ErrorKind {
 };
 
 // The one exception type that the library throws on purpose. `what()` is a single line that names
-// the object (file, option, kernel), the value, the limit it broke and the mend.
+// the object (file, option, kernel), the value, the limit it broke and the mend. Control characters
+// and bytes that are no UTF-8, as paths and values may hold, are written in it as \xNN.
 class Error : public std::runtime_error {
   public:
-    Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+    Error(ErrorKind kind, const std::string& message);
     ErrorKind kind() const noexcept { return kind_; }
 
   private:

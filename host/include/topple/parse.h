@@ -80,6 +80,10 @@ struct ParseOptions {
     std::function<void(const std::string&, double)> progress;
     // Polled now and then; true stops the parse with Error(input) "cancelled".
     std::function<bool()> cancelled;
+    // Called on the same thread with what a user may want to know while it runs, a line each: that
+    // it goes on with what an earlier run has left in the work folder, or makes what is damaged
+    // there anew.
+    std::function<void(const std::string&)> notice;
 };
 
 // Throws Error(usage) that names the option that is out of its range. Every parse does so first.

@@ -26,7 +26,7 @@ PointCloud cloud_of(const Builder& scene) {
 TEST(FreeSpace, WithoutViewpointsNothingIsKnown) {
     Builder scene;
     scene.face({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
-    device::ThreadPool threads(2);
+    ThreadPool threads(2);
     const FreeSpace free(scene.surfels(), cloud_of(scene), {}, {}, threads);
     EXPECT_FALSE(free.known());
     EXPECT_FALSE(free.at({0.5, 0.5, 0.5}));
@@ -39,7 +39,7 @@ TEST(FreeSpace, ReachesFromTheSensorToTheSurfaceAndNoFurther) {
     scene.box({-0.2, -0.2, 0.0}, {0.4, 0.4, 0.6}, 1);
     scene.face({1, -1, 0}, {0, 0, 1.5}, {0, 2, 0}, 2);
     const Vec3 eye{0, 0, 2};
-    device::ThreadPool threads(2);
+    ThreadPool threads(2);
     const FreeSpace free(scene.surfels(), cloud_of(scene), {&eye, 1}, {}, threads);
     EXPECT_TRUE(free.known());
     EXPECT_TRUE(free.at({0, 0, 0.9}));
@@ -58,7 +58,7 @@ TEST(FreeSpace, LinesThroughASurfaceTellNothing) {
     scene.face({-0.6, -0.6, 1}, {1.2, 0, 0}, {0, 1.2, 0}, 1);
     scene.face({0.7, -1, 0}, {0, 0, 1.8}, {0, 2, 0}, 2);
     const Vec3 eye{0, 0, 2};
-    device::ThreadPool threads(2);
+    ThreadPool threads(2);
     const FreeSpace free(scene.surfels(), cloud_of(scene), {&eye, 1}, {}, threads);
     EXPECT_TRUE(free.at({0, 0, 1.4}));
     EXPECT_FALSE(free.at({0, 0, 0.5}));
@@ -69,7 +69,7 @@ TEST(FreeSpace, AStrayFarAwayDoesNotCoarsenIt) {
     scene.face({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0);
     scene.face({1, -1, 0}, {0, 0, 1.5}, {0, 2, 0}, 1);
     const Vec3 eye{0, 0, 2};
-    device::ThreadPool threads(2);
+    ThreadPool threads(2);
     const FreeSpace before(scene.surfels(), cloud_of(scene), {&eye, 1}, {}, threads);
     for (const double side : {-1, 1}) scene.point({side * 6000, 7000, side * 5000}, {0, 0, 1}, 2);
     const FreeSpace free(scene.surfels(), cloud_of(scene), {&eye, 1}, {}, threads);
@@ -85,7 +85,7 @@ TEST(FreeSpace, TheOrderOfPointsAndTheirViewpointsDoesNotMatter) {
     std::vector<std::uint32_t> seen_from;
     for (std::size_t i = 0; i < scene.points.size(); ++i)
         seen_from.push_back(static_cast<std::uint32_t>(i % 2));
-    device::ThreadPool threads(2);
+    ThreadPool threads(2);
     const FreeSpace free(scene.surfels(), cloud_of(scene), eyes, seen_from, threads);
     std::reverse(scene.points.begin(), scene.points.end());
     std::reverse(seen_from.begin(), seen_from.end());

@@ -110,7 +110,7 @@ TEST(Fusion, LongSequencesKeepSomeWitnesses) {
     // Before the wall, on it, and behind it by what a far reading may be off, and by more.
     const FusedPoints points{
         {0, 0, 0, 0}, {0, 0, 0, 0}, {3.45F, 3.5F, 3.55F, 3.9F}, {0.02F, 0.02F, 0.02F, 0.02F}};
-    device::ThreadPool pool(2);
+    ThreadPool pool(2);
     EXPECT_EQ(witnesses.deny(points, pool), (std::vector<std::uint8_t>{1, 0, 1, 0}));
 }
 

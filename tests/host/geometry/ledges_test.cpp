@@ -120,7 +120,7 @@ TEST(Ledges, MergingPartsAStack) {
     const Vector3d x(std::cos(0.3), std::sin(0.3), 0), y(-x.y(), x.x(), 0);
     scene.face(0.24 * Vector3d::UnitZ() - 0.11 * x - 0.075 * y, 0.22 * x, 0.15 * y, 3);
     const Surfels surfels = scene.surfels();
-    device::ThreadPool threads(2);
+    ThreadPool threads(2);
     const PrimitiveSet primitives =
         merge_convex(surfels, split(surfels, threads), {0, 0, 1}, {}, threads);
     std::array<std::int32_t, 4> label;

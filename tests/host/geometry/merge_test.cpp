@@ -12,7 +12,7 @@ using scenes::Majority;
 using scenes::majority;
 
 PrimitiveSet merged(const Surfels& surfels, const FreeSpace& free = {}) {
-    device::ThreadPool threads(2);
+    ThreadPool threads(2);
     return merge_convex(surfels, split(surfels, threads), {0, 0, 1}, free, threads);
 }
 
@@ -171,7 +171,7 @@ TEST(Merge, ALegSeenFromOutsideStaysApartFromItsTable) {
     }
     const Surfels s = scene.surfels();
     const Vec3 eye{1.8, -1.2, 1.0};
-    device::ThreadPool threads(2);
+    ThreadPool threads(2);
     const FreeSpace free(s, cloud, {&eye, 1}, {}, threads);
     const PrimitiveSet apart = merged(s, free);
     EXPECT_NE(majority(scene, s, apart.label, 0).label, majority(scene, s, apart.label, 1).label);

@@ -50,7 +50,7 @@ double off_tube(double radius, double noise, bool with_mean) {
     const auto device = device::open_native();
     const PlaneQueries queries = queries_at_means(grid);
     const PlaneFit fit = fit_planes(*device, grid, queries);
-    device::ThreadPool pool(2);
+    ThreadPool pool(2);
     const std::vector<float> offset =
         with_mean ? mean_offsets(grid, queries, fit, pool) : fit.offset;
     double out = 0, count = 0;

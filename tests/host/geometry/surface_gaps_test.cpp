@@ -43,7 +43,7 @@ struct Labelled {
             face.push_back(p.face);
             primitive.push_back(p.primitive);
         }
-        device::ThreadPool threads(2);
+        ThreadPool threads(2);
         connect_surfels(s, 4 * pitch, threads);
         return close_gaps(s, face, primitive, step_m);
     }

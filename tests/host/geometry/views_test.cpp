@@ -141,7 +141,7 @@ class Views : public ::testing::Test {
     }
     static constexpr Vec3 box_low{1.5, 2.1, 0}, box_high{2.5, 3, 0.8};
     std::unique_ptr<device::Device> device = device::open_native();
-    device::ThreadPool pool{2};
+    ThreadPool pool{2};
 };
 
 // Its views are closed, and every ray ends on a wall.

@@ -97,6 +97,19 @@ TEST_F(Las, bad_files) {
     expect_input_error([&] { read_cloud(write("a.laz", changed(104, 0x81))); }, {"LAZ"});
 }
 
+// Beyond that, coordinates a scale apart are one number.
+TEST_F(Las, offsets_that_swallow_the_scale) {
+    test::LasFile las;
+    las.points = {{0, 0, 0}, {1, 2, 3}};
+    las.offset = {1e12, 0, -1e12};
+    EXPECT_EQ(read_cloud(write("a.las", las.bytes())).x.size(), 2u);
+    for (const double offset : {1e15, -1e15, 1e300}) {
+        las.offset = {0, offset, 0};
+        expect_input_error([&] { read_cloud(write("a.las", las.bytes())); },
+                           {"a.las", "offset", "scale of 0.001 is lost"});
+    }
+}
+
 TEST_F(Las, colours_of_16_bits_or_of_8) {
     using Bytes = std::vector<std::uint8_t>;
     for (const unsigned format : {2u, 3u, 5u, 7u, 8u, 10u}) {

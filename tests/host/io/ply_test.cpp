@@ -228,6 +228,37 @@ TEST_F(Ply, bad_files_are_refused_with_their_reason) {
     }
 }
 
+// All vertices are there, and yet it is no whole file.
+TEST_F(Ply, cut_within_its_faces) {
+    const std::string elements =
+        "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 2\nproperty list uchar int vertex_indices\n";
+    const std::string text =
+        header("ascii", elements) + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+    EXPECT_NO_THROW(read_cloud(write("a.ply", text)));
+    expect_input_error([&] { read_cloud(write("a.ply", text.substr(0, text.size() - 8))); },
+                       {"a.ply", "face"});
+    std::string bytes = header("binary_little_endian", elements);
+    for (const float c : {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) append(bytes, c);
+    for (const std::int32_t third : {2, 3}) {
+        append<std::uint8_t>(bytes, 3);
+        for (const std::int32_t v : {0, third - 1, third}) append(bytes, v);
+    }
+    EXPECT_NO_THROW(read_cloud(write("b.ply", bytes)));
+    for (const std::size_t less : {1u, 13u, 20u, 26u}) {
+        expect_input_error(
+            [&] { read_cloud(write("b.ply", bytes.substr(0, bytes.size() - less))); },
+            {"b.ply", "face"});
+        // And where it is read in portions.
+        expect_input_error(
+            [&] {
+                stream_cloud(write("b.ply", bytes.substr(0, bytes.size() - less)), 1,
+                             [](const PointCloud&) {});
+            },
+            {"b.ply", "face"});
+    }
+}
+
 TEST_F(Ply, is_known_by_its_first_bytes_whatever_its_name) {
     const auto text =
         header("ascii", "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n");

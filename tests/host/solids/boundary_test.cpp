@@ -50,7 +50,7 @@ TEST(Boundary, AnAskewBoxHasItsVolumeCentreAndHullAtAnyVoxelSize) {
             for (int a = 0; a < 3; ++a)
                 EXPECT_NEAR(b.bodies[0].center[static_cast<std::size_t>(a)], box.middle[a],
                             0.02 * voxel);
-            device::ThreadPool threads(2);
+            ThreadPool threads(2);
             const auto points =
                 physics::solid_hulls(b.scanned.cells, b.boundary, {true}, threads)[0];
             double inside = 0;

@@ -45,7 +45,7 @@ TEST(Patches, LieWhereMostPointsAre) {
         s.add({between(random, 0, 0.3), between(random, 0, 0.2), 0.5 + 0.001 * random.normal()});
     for (int n = 0; n < 300; ++n)
         s.add({0.3, between(random, 0, 0.2), 0.5 + between(random, 0, 0.05)});
-    device::ThreadPool threads(2);
+    ThreadPool threads(2);
     const std::vector<geometry::Region> regions{level_region(0.496)};
     const SurfacePatch patch = fit_patches(s.cloud, regions, s.label, as_is, threads)[0];
     EXPECT_NEAR(patch.distance({0.1, 0.1, 0.5}), 0, 1.5e-4);
@@ -65,7 +65,7 @@ TEST(Patches, AreTheSameInAnyOrder) {
             {between(random, 0, 0.3), between(random, 0, 0.2), 0.002 * random.normal()});
     for (const auto& p : points) there.add(p);
     for (auto p = points.rbegin(); p != points.rend(); ++p) back.add(*p);
-    device::ThreadPool threads(2);
+    ThreadPool threads(2);
     const std::vector<geometry::Region> regions{level_region(0.001)};
     const SurfacePatch a = fit_patches(there.cloud, regions, there.label, as_is, threads)[0],
                        b = fit_patches(back.cloud, regions, back.label, as_is, threads)[0];
@@ -92,7 +92,7 @@ TEST(Patches, OfATubeHaveItsRadius) {
     geometry::Region region;
     region.model = geometry::fit_quadric(inside, normals, 0.005);
     region.residual_m = 0.001;
-    device::ThreadPool threads(2);
+    ThreadPool threads(2);
     const SurfacePatch patch =
         fit_patches(s.cloud, std::vector{region}, s.label, as_is, threads)[0];
     for (std::size_t n = 0; n < points.size(); n += 97) {

@@ -14,7 +14,7 @@
 #include "scenes/temporary_folder.h"
 #include "tiles/point_spill.h"
 #include "tiles/thinned_bin.h"
-#include "tiles/work_folder.h"
+#include "tiles/work_files.h"
 #include "topple/error.h"
 
 namespace topple::tiles {

@@ -2,12 +2,11 @@
 #include "scenes/scan/scan.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <thread>
 
+#include "core/thread_pool.h"
 #include "scenes/scan/smooth.h"
 #include "scenes/scan/viewpoints.h"
 #include "topple/error.h"
@@ -117,28 +116,19 @@ class Scanner {
     void shoot(const std::vector<Mat4>& poses, const Intrinsics& k, const Sensor& sensor,
                const Use& use) {
         constexpr std::size_t batch = 16;
-        const std::size_t threads =
-            options_.threads ? options_.threads : std::max(1u, std::thread::hardware_concurrency());
+        ThreadPool threads(options_.threads);
         for (std::size_t first = 0; first < poses.size(); first += batch) {
             const std::size_t last = std::min(first + batch, poses.size());
             std::vector<Shot> shots(last - first);
-            std::atomic<std::size_t> next{first};
-            const auto work = [&] {
-                for (std::size_t n = next++; n < last; n = next++) {
-                    Shot& shot = shots[n - first];
-                    Light light = light_;
-                    light.exposure *= Random(options_.seed, 9000 + n).uniform(0.93, 1.07);
-                    shot.view =
-                        look(caster_, k, poses[n], light, Random(options_.seed, 10000 + 2 * n));
-                    shot.depth =
-                        rough_depth(shot.view, k, sensor, Random(options_.seed, 10001 + 2 * n));
-                }
-            };
-            {
-                std::vector<std::jthread> running;
-                for (std::size_t t = 1; t < threads; ++t) running.emplace_back(work);
-                work();
-            }
+            threads.each(last - first, 1, [&](std::size_t at) {
+                Shot& shot = shots[at];
+                const std::size_t n = first + at;
+                Light light = light_;
+                light.exposure *= Random(options_.seed, 9000 + n).uniform(0.93, 1.07);
+                shot.view = look(caster_, k, poses[n], light, Random(options_.seed, 10000 + 2 * n));
+                shot.depth =
+                    rough_depth(shot.view, k, sensor, Random(options_.seed, 10001 + 2 * n));
+            });
             for (std::size_t n = first; n < last; ++n) {
                 note_truth(shots[n - first].view, k, poses[n], sensor);
                 use(n, shots[n - first]);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "device/native/thread_pool.h"
+#include "core/thread_pool.h"
 
 #include <algorithm>
-#include <exception>
+#include <system_error>
 #include <utility>
 
-namespace topple::device {
+namespace topple {
 namespace {
 
 constexpr std::chrono::milliseconds between_polls{50};
@@ -14,8 +14,13 @@ constexpr std::chrono::milliseconds between_polls{50};
 
 ThreadPool::ThreadPool(unsigned threads) {
     if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
+    threads = std::min(threads, most_threads);
     workers_.reserve(threads - 1);
-    for (unsigned i = 1; i < threads; ++i) workers_.emplace_back([this] { work(); });
+    try {
+        while (workers_.size() + 1 < threads) workers_.emplace_back([this] { work(); });
+    } catch (const std::exception&) {
+        // The system has no more threads, or no memory for one: those that are there will do.
+    }
 }
 
 ThreadPool::~ThreadPool() {
@@ -51,14 +56,15 @@ void ThreadPool::run(std::uint64_t count, std::uint64_t chunk,
     std::exception_ptr ended;
     try {
         take_chunks();
-    } catch (...) {
+    } catch (...) {  // from the poll
         ended = std::current_exception();
-        next_.store(count, std::memory_order_relaxed);  // hands out no more
+        next_.store(count_, std::memory_order_relaxed);  // hands out no more
     }
     {
         std::unique_lock lock(mutex_);
         open_ = false;  // all is handed out: who wakes up from now on has nothing to do
         done_.wait(lock, [this] { return inside_ == 0; });
+        if (failure_) ended = std::exchange(failure_, nullptr);
     }
     if (ended) std::rethrow_exception(ended);
 }
@@ -88,8 +94,22 @@ void ThreadPool::take_chunks() {
         poll();
         const std::uint64_t first = next_.fetch_add(chunk_, std::memory_order_relaxed);
         if (first >= count_) return;
-        (*body_)(first, std::min(count_, first + chunk_));
+        try {
+            (*body_)(first, std::min(count_, first + chunk_));
+        } catch (...) {
+            note_failure(first);
+        }
     }
+}
+
+// All chunks before this one are handed out already, and go on to their end.
+void ThreadPool::note_failure(std::uint64_t first) {
+    const std::lock_guard lock(mutex_);
+    if (!failure_ || first < failed_) {
+        failure_ = std::current_exception();
+        failed_ = first;
+    }
+    next_.store(count_, std::memory_order_relaxed);  // hands out no more
 }
 
 void ThreadPool::work() {
@@ -109,4 +129,4 @@ void ThreadPool::work() {
     }
 }
 
-}  // namespace topple::device
+}  // namespace topple

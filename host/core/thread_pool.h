@@ -4,17 +4,24 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <thread>
 #include <vector>
 
-namespace topple::device {
+namespace topple {
 
 // A fixed set of threads that share out ranges of an index space. The caller's thread works too.
 class ThreadPool {
   public:
+    // More than any machine has use for.
+    static constexpr unsigned most_threads = 1024;
+
+    // threads: 0 for one per core; above most_threads that many. Where the system gives fewer, the
+    // pool has those that it got, at the least the caller's.
     explicit ThreadPool(unsigned threads);
     ~ThreadPool();
     ThreadPool(const ThreadPool&) = delete;
@@ -23,8 +30,9 @@ class ThreadPool {
     unsigned threads() const { return static_cast<unsigned>(workers_.size()) + 1; }
 
     // Calls body(first, last) for consecutive chunks of [0, count) until all are done. Chunks are
-    // handed out as threads become free; which thread runs which is not defined. The body must not
-    // throw. What poll() throws ends the run, once no thread is at a chunk any more.
+    // handed out in ascending order as threads become free; which thread runs which is not defined.
+    // What the body or poll() throws ends the run, once no thread is at a chunk any more: the
+    // caller gets the exception of the first chunk that failed, whatever the threads, else poll's.
     void run(std::uint64_t count, std::uint64_t chunk,
              const std::function<void(std::uint64_t, std::uint64_t)>& body);
 
@@ -57,6 +65,7 @@ class ThreadPool {
   private:
     void work();
     void take_chunks();
+    void note_failure(std::uint64_t first);
 
     std::mutex mutex_;
     std::condition_variable start_, done_;
@@ -67,10 +76,12 @@ class ThreadPool {
     const std::function<void(std::uint64_t, std::uint64_t)>* body_ = nullptr;
     std::uint64_t count_ = 0, chunk_ = 1;
     std::atomic<std::uint64_t> next_{0};
+    std::exception_ptr failure_;  // of the chunk that begins at failed_, the first that failed
+    std::uint64_t failed_ = 0;
     std::vector<std::thread> workers_;
     std::function<void()> poll_;
     std::thread::id polling_thread_;
     std::chrono::steady_clock::time_point polled_;
 };
 
-}  // namespace topple::device
+}  // namespace topple

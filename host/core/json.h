@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+// JSON whose end needs no memory. nlohmann's destructor puts what a value holds on a stack that it
+// allocates; where there is no memory for that it would end the program. Here that stack, and with
+// it every array of values, is taken from a reserve then.
+namespace topple {
+
+template <class T, class = void>
+struct JsonSerializer : nlohmann::adl_serializer<T> {};
+
+using Json = nlohmann::basic_json<std::map, std::vector, std::string, bool, std::int64_t,
+                                  std::uint64_t, double, std::allocator, JsonSerializer>;
+// Its objects keep the order in which they are made.
+using OrderedJson =
+    nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool, std::int64_t,
+                         std::uint64_t, double, std::allocator, JsonSerializer>;
+
+// What the system gives, else a part of the reserve; throws std::bad_alloc where that is used up.
+void* allocate_json(std::size_t bytes);
+void release_json(void* memory) noexcept;
+
+template <class Value>
+struct JsonAllocator {
+    using value_type = Value;
+    using size_type = std::size_t;
+    using difference_type = std::ptrdiff_t;
+    using propagate_on_container_move_assignment = std::true_type;
+    using is_always_equal = std::true_type;
+
+    Value* allocate(std::size_t count) {
+        if (count > PTRDIFF_MAX / sizeof(Value)) throw std::bad_array_new_length();
+        return static_cast<Value*>(allocate_json(count * sizeof(Value)));
+    }
+    void deallocate(Value* memory, std::size_t) noexcept { release_json(memory); }
+};
+
+}  // namespace topple
+
+// The destructor's stack has the standard's allocator, whatever the values' is.
+template <>
+class std::allocator<topple::Json> : public topple::JsonAllocator<topple::Json> {
+  public:
+    allocator() = default;
+    template <class Other>
+    allocator(const std::allocator<Other>&) noexcept {}
+    bool operator==(const allocator&) const = default;
+};
+template <>
+class std::allocator<topple::OrderedJson> : public topple::JsonAllocator<topple::OrderedJson> {
+  public:
+    allocator() = default;
+    template <class Other>
+    allocator(const std::allocator<Other>&) noexcept {}
+    bool operator==(const allocator&) const = default;
+};

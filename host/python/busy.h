@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace topple::python {
+
+// Lives while a thread works without the interpreter's lock, from before it lets go of it until it
+// has it back. A thread that comes back to an interpreter which has ended is ended by Python in the
+// midst of its functions, which takes the process along: so the interpreter's end stops what is at
+// work, in threads that are daemons, and waits for it.
+class Busy {
+  public:
+    Busy();  // throws Error(input) "cancelled" where the interpreter is ending
+    ~Busy();
+    Busy(const Busy&) = delete;
+    Busy& operator=(const Busy&) = delete;
+
+    // Whether the interpreter is ending: for long work to poll.
+    static bool must_stop();
+    // Called at the interpreter's end, without its lock: stops and waits for all.
+    static void stop_all();
+};
+
+}  // namespace topple::python
