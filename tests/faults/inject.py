@@ -208,6 +208,9 @@ def main():
                 else:
                     calls = kind.calls(fault)
                     runs = refused = bad = 0
+                    if calls == 0:
+                        bad = 1
+                        print("  %s %s: no such call: this tries nothing" % (name, fault))
                     for n in spread(calls, args.runs):
                         runs += 1
                         try:
