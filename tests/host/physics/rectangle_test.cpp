@@ -9,11 +9,11 @@
 namespace topple::physics {
 namespace {
 
-using Polygon = std::vector<std::array<double, 2>>;
+using Corners = std::vector<std::array<double, 2>>;
 
-TEST(Rectangle, OfATurnedRectangleIsItself) {
+TEST(SmallestRectangle, OfATurnedRectangleIsItself) {
     const double c = std::cos(0.7), s = std::sin(0.7);
-    Polygon polygon;
+    Corners polygon;
     for (const auto& [x, y] : {std::array{-2.0, -0.5}, {2.0, -0.5}, {2.0, 0.5}, {-2.0, 0.5}})
         polygon.push_back({3 + c * x - s * y, 1 + s * x + c * y});
     const Rectangle r = smallest_rectangle(polygon);
@@ -26,8 +26,8 @@ TEST(Rectangle, OfATurnedRectangleIsItself) {
 }
 
 // Of all turns of a box around a triangle none is smaller.
-TEST(Rectangle, NoTurnIsSmaller) {
-    const Polygon triangle{{0, 0}, {3, 0.5}, {1, 2}};
+TEST(SmallestRectangle, NoTurnIsSmaller) {
+    const Corners triangle{{0, 0}, {3, 0.5}, {1, 2}};
     const double least = smallest_rectangle(triangle).area();
     for (int n = 0; n < 900; ++n) {
         const double angle = 1e-3 * n * 3.1416 / 1.8, c = std::cos(angle), s = std::sin(angle);
@@ -43,10 +43,10 @@ TEST(Rectangle, NoTurnIsSmaller) {
     }
 }
 
-TEST(Rectangle, WithoutAnAreaThereIsNone) {
-    EXPECT_EQ(smallest_rectangle(Polygon{}).area(), 0);
-    EXPECT_EQ(smallest_rectangle(Polygon{{1, 2}}).area(), 0);
-    EXPECT_EQ(smallest_rectangle(Polygon{{1, 2}, {2, 2}}).area(), 0);
+TEST(SmallestRectangle, WithoutAnAreaThereIsNone) {
+    EXPECT_EQ(smallest_rectangle(Corners{}).area(), 0);
+    EXPECT_EQ(smallest_rectangle(Corners{{1, 2}}).area(), 0);
+    EXPECT_EQ(smallest_rectangle(Corners{{1, 2}, {2, 2}}).area(), 0);
 }
 
 }  // namespace
