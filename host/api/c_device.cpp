@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
 #include "api/c_support.h"
 #include "topple/embed.h"
 #include "topple/version.h"
@@ -9,7 +11,7 @@ namespace {
 template <std::size_t size>
 void copy_text(std::string_view from, char (&to)[size]) {
     const std::size_t length = std::min(from.size(), size - 1);
-    std::memcpy(to, from.data(), length);
+    std::copy_n(from.data(), length, to);  // an empty view may have no data
     to[length] = 0;
 }
 
