@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -11,32 +12,37 @@
 // this one, compiled in.
 namespace topple::fitted {
 
+// Of a split: its feature, or -1 in a leaf, whose value is `threshold`.
+struct TreeNode {
+    std::int32_t feature = -1;
+    float threshold = 0;  // to the left where the value is no greater
+    bool missing_left = false;
+    std::uint32_t left = 0, right = 0;  // nodes of the table
+};
+
+// A model as the build made it of its file, which it checked (fitted/embed_models.py).
+struct TreeTable {
+    std::span<const std::string_view> features;
+    std::span<const TreeNode> nodes;
+    std::span<const std::uint32_t> roots;  // of the trees: nodes
+    double baseline = 0, scale = 1, offset = 0;
+};
+
 // A calibrated classifier: gradient-boosted trees (Friedman 2001) whose sum is a log-odds, and
 // Platt's scaling of that.
 class BoostedTrees {
   public:
-    // json: a file of schema topple.trees/1. columns: the names of what rows hold, in their order.
-    // Throws Error(input), naming `name`, where it is none, or a feature of it no column.
-    BoostedTrees(std::string_view json, const std::string& name,
+    // columns: the names of what rows hold, in their order. Throws Error(input), naming `name`,
+    // where a feature is no column. Refers to the table.
+    BoostedTrees(const TreeTable& table, const std::string& name,
                  std::span<const std::string_view> columns);
 
     // The calibrated log-odds of one row, NaN where a feature is not known.
     double log_odds(std::span<const float> row) const;
 
   private:
-    // Of a split: its column, or -1 in a leaf, whose value is `threshold`.
-    struct Node {
-        std::int32_t column = -1;
-        float threshold = 0;  // to the left where the value is no greater
-        bool missing_left = false;
-        std::uint32_t left = 0, right = 0;
-    };
-    void add_tree(const struct TreeArrays& tree, std::span<const std::int32_t> column,
-                  const std::string& name);
-
-    std::vector<Node> nodes_;
-    std::vector<std::uint32_t> roots_;
-    double baseline_ = 0, scale_ = 1, offset_ = 0;
+    TreeTable table_;
+    std::vector<std::size_t> column_;  // of each feature
 };
 
 // The probability of some log-odds, and back; probabilities are kept away from 0 and 1 by a

@@ -1,13 +1,13 @@
-# Embeds the fitted models into topple_fitted.
-set(MODEL_FILES ${CMAKE_CURRENT_BINARY_DIR}/fitted/model_files.cpp)
+# Makes constants of the fitted models, in topple_fitted.
+set(MODEL_TABLES ${CMAKE_CURRENT_BINARY_DIR}/fitted/model_tables.cpp)
 file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/fitted)
-set(MODELS shell_model_json=${CMAKE_CURRENT_SOURCE_DIR}/fitted/shell.model.json
-           joint_model_json=${CMAKE_CURRENT_SOURCE_DIR}/fitted/joint.model.json)
+set(MODELS shell=${CMAKE_CURRENT_SOURCE_DIR}/fitted/shell.model.json
+           joint=${CMAKE_CURRENT_SOURCE_DIR}/fitted/joint.model.json)
 add_custom_command(
-  OUTPUT ${MODEL_FILES}
-  COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/fitted/embed_models.py ${MODEL_FILES} ${MODELS}
+  OUTPUT ${MODEL_TABLES}
+  COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/fitted/embed_models.py ${MODEL_TABLES} ${MODELS}
   DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/fitted/embed_models.py ${CMAKE_CURRENT_SOURCE_DIR}/fitted/shell.model.json
           ${CMAKE_CURRENT_SOURCE_DIR}/fitted/joint.model.json
   COMMENT "Embedding the fitted models"
   VERBATIM)
-target_sources(topple_fitted PRIVATE ${MODEL_FILES})
+target_sources(topple_fitted PRIVATE ${MODEL_TABLES})

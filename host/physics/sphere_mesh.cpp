@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <cstdint>
+#include <span>
 #include <string>
+#include <utility>
 
 #include "physics/landscape.h"
 #include "topple/error.h"
@@ -40,26 +42,43 @@ Icosahedron icosahedron() {
 }
 
 // Numbers the points of the subdivided faces; a point on an edge or corner is one point, whichever
-// face asks. Its key: the corners of the face with their non-zero weights.
+// face asks. A face asks once for each.
 class Points {
   public:
-    Points(const Icosahedron& ico, unsigned frequency) : ico_(ico), frequency_(frequency) {}
+    static constexpr std::uint32_t none = UINT32_MAX;
+
+    Points(const Icosahedron& ico, unsigned frequency)
+        : ico_(ico), frequency_(frequency), shared_(corners + corners * corners * frequency, none) {
+        direction.reserve(10 * std::size_t{frequency} * frequency + 2);
+    }
     std::uint32_t number(const std::array<std::uint32_t, 3>& corner,
                          const std::array<unsigned, 3>& weight) {
-        std::vector<std::pair<std::uint32_t, unsigned>> key;
-        for (std::size_t n = 0; n < 3; ++n) {
-            if (weight[n]) key.emplace_back(corner[n], weight[n]);
+        std::array<Weighed, 3> key{};
+        std::size_t count = 0;
+        for (std::size_t n = 0; n < 3; ++n)
+            if (weight[n]) key[count++] = {corner[n], weight[n]};
+        const std::span<Weighed> at(key.data(), count);
+        std::sort(at.begin(), at.end());
+        const auto next = static_cast<std::uint32_t>(direction.size());
+        if (count < 3) {
+            // A corner by its number, a point on an edge by both ends and the weight of the first.
+            std::uint32_t& known =
+                shared_[count == 1 ? at[0].first
+                                   : corners + (at[0].first * corners + at[1].first) * frequency_ +
+                                         at[0].second];
+            if (known != none) return known;
+            known = next;
         }
-        std::sort(key.begin(), key.end());
-        const auto [entry, added] =
-            number_.try_emplace(key, static_cast<std::uint32_t>(direction.size()));
-        if (added) direction.push_back(place(key));
-        return entry->second;
+        direction.push_back(place(at));
+        return next;
     }
     std::vector<Vec3> direction;
 
   private:
-    Vec3 place(const std::vector<std::pair<std::uint32_t, unsigned>>& key) const {
+    using Weighed = std::pair<std::uint32_t, unsigned>;  // a corner, by its number
+    static constexpr std::size_t corners = 12;
+
+    Vec3 place(std::span<const Weighed> key) const {
         if (key.size() == 1) return ico_.vertex[key[0].first];
         Vec3 p{};
         for (const auto& [corner, weight] : key) {
@@ -71,7 +90,7 @@ class Points {
     }
     const Icosahedron& ico_;
     unsigned frequency_;
-    std::map<std::vector<std::pair<std::uint32_t, unsigned>>, std::uint32_t> number_;
+    std::vector<std::uint32_t> shared_;  // of corners and points on edges: the number
 };
 
 }  // namespace
@@ -84,9 +103,14 @@ SphereMesh geodesic_sphere(unsigned frequency) {
     const Icosahedron ico = icosahedron();
     Points points(ico, frequency);
     std::vector<std::array<std::uint32_t, 2>> edges;
+    edges.reserve(60 * std::size_t{frequency} * (frequency + 1));
+    std::vector<std::uint32_t> number;  // of this face's points
     for (const auto& face : ico.face) {
+        number.assign((frequency + 1) * (std::size_t{frequency} + 1), Points::none);
         const auto at = [&](unsigned a, unsigned b) {
-            return points.number(face, {frequency - a - b, a, b});
+            std::uint32_t& known = number[a * (frequency + 1) + b];
+            if (known == Points::none) known = points.number(face, {frequency - a - b, a, b});
+            return known;
         };
         for (unsigned a = 0; a < frequency; ++a) {
             for (unsigned b = 0; a + b < frequency; ++b) {
