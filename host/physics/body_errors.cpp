@@ -13,19 +13,30 @@
 namespace topple::physics {
 namespace {
 
-// A sum of pieces of surface.
+// What a side of a solid of thickness t is off, in h^2 / t: of two voxels h or less, little of its
+// surface is seen by itself. Found from things of known measures (docs/evaluation.md).
+constexpr double thin_error = 0.06;
+
+// A sum of pieces of surface, or of volume.
 struct Pieces {
-    double area_m2 = 0;
+    double size = 0;
     Vec3 moment{};
-    void add(double area, const Vec3& at) {
-        area_m2 += area;
-        for (std::size_t a = 0; a < 3; ++a) moment[a] += area * at[a];
+    void add(double more, const Vec3& at) {
+        size += more;
+        for (std::size_t a = 0; a < 3; ++a) moment[a] += more * at[a];
     }
-    VolumeError error(std::int32_t primitive, std::int32_t from, double thick_m) const {
-        VolumeError out{primitive, from, area_m2 * thick_m, moment};
-        for (double& v : out.center) v /= area_m2;
+    Vec3 center() const {
+        Vec3 out = moment;
+        for (double& v : out) v /= size;
         return out;
     }
+};
+
+// Part of a primitive's surface, with the primitive that it borders on there or -1.
+struct Side {
+    std::int32_t primitive, from;
+    Pieces pieces;
+    double off_m;  // by how it was seen
 };
 
 Vec3 middle(std::int32_t i, std::int32_t j, std::int32_t k, double h) {
@@ -47,7 +58,7 @@ int facing(const Vec3& gradient) {
 }
 
 // What a curved patch is off on one side is not what it is on another.
-void add_patches(const BoundaryCells& b, double h, std::vector<VolumeError>& out) {
+void add_patches(const BoundaryCells& b, double h, std::vector<Side>& out) {
     std::map<std::tuple<std::int32_t, std::uint32_t, int>, Pieces> pieces;  // primitive, patch, way
     for (std::size_t n = 0; n < b.size(); ++n) {
         const Vec3 at = middle(b.i[n], b.j[n], b.k[n], h);
@@ -69,13 +80,13 @@ void add_patches(const BoundaryCells& b, double h, std::vector<VolumeError>& out
         const auto& [primitive, seen, way] = key;
         const SurfacePatch& patch = b.patches[seen];
         const std::int32_t from = patch.primitive == primitive ? -1 : patch.primitive;
-        out.push_back(sum.error(primitive, from, patch.offset_m));
+        out.push_back({primitive, from, sum, patch.offset_m});
     }
 }
 
 // Sides of cells that no patch bounds and that are the border of their primitive.
 void add_unseen_sides(const SolidCells& cells, const std::vector<bool>& bounded,
-                      std::vector<VolumeError>& out) {
+                      std::vector<Side>& out) {
     const double h = cells.voxel_m;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::vector<std::size_t> next = solids::next_cells(cells, axis, 1);
@@ -95,7 +106,7 @@ void add_unseen_sides(const SolidCells& cells, const std::vector<bool>& bounded,
                 pieces[{p, other}].add(h * h, at);
             }
             for (const auto& [key, sum] : pieces)
-                out.push_back(sum.error(key.first, key.second, solids::voxel_error * h));
+                out.push_back({key.first, key.second, sum, solids::voxel_error * h});
         }
     }
 }
@@ -111,7 +122,20 @@ void add_guesses(const SolidCells& cells, std::span<const double> shares,
             shares[n] * cube, middle(cells.i[n], cells.j[n], cells.k[n], cells.voxel_m));
     }
     for (const auto& [key, sum] : pieces)
-        out.push_back(sum.error(key.first, -1, 1 - probability_solid(key.second)));
+        out.push_back(
+            {key.first, -1, (1 - probability_solid(key.second)) * sum.size, sum.center()});
+}
+
+// The thickness of each primitive that has sides: what a board of its volume and surface has.
+std::map<std::int32_t, double> thicknesses(const SolidCells& cells, std::span<const double> shares,
+                                           std::span<const Side> sides) {
+    std::map<std::int32_t, double> area, out;
+    for (const Side& side : sides) area[side.primitive] += side.pieces.size;
+    const double cube = cells.voxel_m * cells.voxel_m * cells.voxel_m;
+    for (std::size_t n = 0; n < cells.size(); ++n)
+        if (area.contains(cells.primitive[n])) out[cells.primitive[n]] += shares[n] * cube;
+    for (auto& [primitive, thickness] : out) thickness *= 2 / area[primitive];
+    return out;
 }
 
 }  // namespace
@@ -128,9 +152,19 @@ std::vector<VolumeError> volume_errors(const SolidCells& cells, const BoundaryCe
         if (cells.primitive[n] == boundary.primitive[b])
             shares[n] = static_cast<double>(boundary.share[b]) / BoundaryCells::whole;
     }
+    std::vector<Side> sides;
+    add_patches(boundary, cells.voxel_m, sides);
+    add_unseen_sides(cells, bounded, sides);
+    const std::map<std::int32_t, double> thickness = thicknesses(cells, shares, sides);
     std::vector<VolumeError> out;
-    add_patches(boundary, cells.voxel_m, out);
-    add_unseen_sides(cells, bounded, out);
+    for (const Side& side : sides) {
+        const auto found = thickness.find(side.primitive);
+        const double h = cells.voxel_m;
+        // Of less than a quarter of a voxel nothing is known that would be more than its surface's.
+        const double t = std::max(found == thickness.end() ? 0 : found->second, 0.25 * h);
+        const double off = std::hypot(side.off_m, thin_error * h * h / t);
+        out.push_back({side.primitive, side.from, off * side.pieces.size, side.pieces.center()});
+    }
     add_guesses(cells, shares, out);
     std::ranges::stable_sort(out, {}, &VolumeError::primitive);
     return out;

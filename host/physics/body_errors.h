@@ -22,8 +22,8 @@ struct VolumeError {
     Vec3 center{};  // of the piece, metres, grid frame
 };
 
-// A patch of surface adds its area times its standard error; a side of a solid that nobody saw is
-// known to half a voxel; and of solid that nobody saw on both sides of (Basis column and after) a
+// A patch of surface adds its area times its standard error, which is the larger the thinner the
+// solid is beside a voxel; a side of a solid that nobody saw is known to half a voxel; and of solid that nobody saw on both sides of (Basis column and after) a
 // share is wrong. Sorted by primitive.
 std::vector<VolumeError> volume_errors(const SolidCells& cells, const BoundaryCells& boundary);
 

@@ -127,8 +127,8 @@ std::vector<MeasuredShape> measured_shapes() {
     add("cone 24 x 40", {cone({}, 0.24, 0, 0.4)});
     add("pot 20 to 30 x 30", {cone({}, 0.2, 0.3, 0.3)});
     add("cup 6 to 9 x 11", {cone({}, 0.06, 0.09, 0.11)}, true);
-    add("mug 8 x 9, 5 mm thick", {vessel(0.08, 0.09, 0.005)}, true);
-    add("bucket 30 x 30, 5 mm thick", {vessel(0.3, 0.3, 0.005)});
+    add("mug 8 x 9 of 5 mm", {vessel(0.08, 0.09, 0.005)}, true);
+    add("bucket 30 x 30 of 5 mm", {vessel(0.3, 0.3, 0.005)});
     add("bottle 7 x 30", {bottle(0.07, 0.3)}, true);
     add("bottle 9 x 24", {bottle(0.09, 0.24)});
     add("vase 20 x 60", {bottle(0.2, 0.6)});

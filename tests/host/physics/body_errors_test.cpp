@@ -43,6 +43,14 @@ Known known(const std::vector<solids::Box>& boxes) {
 
 const solids::Box askew{{0.31, -0.2, 0.5}, {0.1, 0.15, 0.2}, solids::turned(0.4, 0.1, -0.05)};
 
+// What a face of a box is off: by its patch, and by as much as the box is thin, 0.06 h^2 / t, where
+// t is the thickness of a board of its volume and surface.
+double off(const Known& k, const std::array<double, 3>& half) {
+    const double volume = 8 * half[0] * half[1] * half[2];
+    const double surface = 8 * (half[0] * half[1] + half[1] * half[2] + half[2] * half[0]);
+    return std::hypot(k.offset_m, 0.06 * voxel * voxel * surface / (2 * volume));
+}
+
 // Each face moves by itself: the mass by area x offset, the centre by that on its arm.
 TEST(BodyErrors, OfASeenBoxAreThoseOfItsFaces) {
     const Known k = known({askew});
@@ -51,7 +59,7 @@ TEST(BodyErrors, OfASeenBoxAreThoseOfItsFaces) {
     Vec3 moment{};
     for (std::size_t a = 0; a < 3; ++a) {
         const double area = 4 * half[(a + 1) % 3] * half[(a + 2) % 3];
-        const double face = density * area * k.offset_m;
+        const double face = density * area * off(k, half);
         mass += 2 * face * face;
         for (std::size_t b = 0; b < 3; ++b) {
             const double arm = half[a] * askew.axes(static_cast<int>(b), static_cast<int>(a));
@@ -61,6 +69,18 @@ TEST(BodyErrors, OfASeenBoxAreThoseOfItsFaces) {
     EXPECT_NEAR(k.error.mass_kg / std::sqrt(mass), 1, 0.08);
     for (std::size_t b = 0; b < 3; ++b)
         EXPECT_NEAR(k.error.center_m[b] / (std::sqrt(moment[b]) / k.body.mass_kg), 1, 0.1);
+}
+
+// A board of one voxel's thickness is known to a twentieth, one of five to a two-hundredth.
+TEST(BodyErrors, GrowAsASolidGetsThin) {
+    const auto share = [](double half) {
+        const Known k =
+            known({{{0.31, -0.2, 0.5}, {0.2, 0.15, half}, solids::turned(0.4, 0.1, -0.05)}});
+        const double face = 2 * 0.4 * 0.3 * off(k, {0.2, 0.15, half}) / std::sqrt(2.0);
+        EXPECT_NEAR(k.error.mass_kg / (density * face), 1, 0.12);
+        return k.error.mass_kg / k.body.mass_kg;
+    };
+    EXPECT_GT(share(0.5 * voxel), 6 * share(2.5 * voxel));
 }
 
 // A side that nobody saw is known to half a voxel, which outweighs all others.
