@@ -32,7 +32,7 @@ void check_values(const CLI::App& command) {
     }
 }
 
-int run(const std::vector<CommandEntry>& entries, int argc, char** argv) {
+int run(std::span<const CommandEntry> entries, int argc, char** argv) {
     CLI::App app{
         "topple tells which things in a 3D scan of a room are one solid object, what holds what "
         "up,\n"
@@ -93,22 +93,20 @@ void print_error(const Error& error) {
     std::fprintf(stderr, "topple: %s\n", error.what());
 }
 
-int run_command_line(const std::vector<CommandEntry>& commands, int argc, char** argv,
+int run_command_line(std::span<const CommandEntry> commands, int argc, char** argv,
                      const std::function<void(const Error&)>& tell) {
     const auto fail = [&](const Error& error) {
         tell(error);
         return exit_code(error.kind());
     };
-    // Made while there is memory for it.
-    const Error out_of_memory(
-        ErrorKind::input,
-        "out of memory; use a larger --voxel or set --max-memory to be told earlier");
     try {
         return run(commands, argc, argv);
     } catch (const Error& error) {
         return fail(error);
     } catch (const std::bad_alloc&) {
-        return fail(out_of_memory);
+        // What held the memory is gone.
+        return fail({ErrorKind::input,
+                     "out of memory; use a larger --voxel or set --max-memory to be told earlier"});
     } catch (const std::filesystem::filesystem_error& error) {
         return fail({ErrorKind::input, error.path1().string() + ": " + error.code().message()});
     } catch (const std::exception& error) {

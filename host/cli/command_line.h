@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
-#include <vector>
+#include <span>
 
 #include "cli/commands.h"
 #include "topple/error.h"
@@ -24,7 +24,7 @@ void print_error(const Error& error);
 
 // Runs the command that the arguments name, and returns the program's exit code. Whatever is wrong
 // with the arguments, or comes out of the command, is told by `tell`.
-int run_command_line(const std::vector<CommandEntry>& commands, int argc, char** argv,
+int run_command_line(std::span<const CommandEntry> commands, int argc, char** argv,
                      const std::function<void(const Error&)>& tell);
 
 }  // namespace topple::cli

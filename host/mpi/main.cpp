@@ -31,10 +31,11 @@ int main(int argc, char** argv) {
             [[maybe_unused]] const auto* nowhere =
                 leads ? stdout : std::freopen("/dev/null", "w", stdout);
             const cli::Team team{crew, leads, crew->cores(), [&] { return crew->stopped(); }};
-            code =
-                cli::run_command_line({{"parse", cli::parse_purpose,
-                                        [&](CLI::App& app) { return cli::add_parse(app, team); }}},
-                                      argc, argv, [&](const Error& error) { failed = error; });
+            const cli::CommandEntry commands[] = {{"parse", cli::parse_purpose, [&](CLI::App& app) {
+                                                       return cli::add_parse(app, team);
+                                                   }}};
+            code = cli::run_command_line(commands, argc, argv,
+                                         [&](const Error& error) { failed = error; });
             if (leads && failed) {
                 // Where another rank's failure has cancelled the leader, that is to be told.
                 failed = crew->failure().value_or(*failed);

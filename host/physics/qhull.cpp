@@ -5,8 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
-
-#include "topple/error.h"
+#include <new>
 
 // Last: its macros are many.
 extern "C" {
@@ -20,7 +19,7 @@ namespace {
 class Silence {
   public:
     Silence() : stream_(open_memstream(&text_, &length_)) {
-        if (!stream_) throw Error(ErrorKind::device, "no memory for Qhull's messages");
+        if (!stream_) throw std::bad_alloc();
     }
     Silence(const Silence&) = delete;
     Silence& operator=(const Silence&) = delete;
@@ -52,7 +51,11 @@ class Qhull {
         int current = 0, total = 0;
         qh_memfreeshort(&state_, &current, &total);
     }
-    bool failed() const { return failed_ != 0; }
+    // Throws std::bad_alloc where that is why.
+    bool failed() const {
+        if (failed_ == qh_ERRmem) throw std::bad_alloc();
+        return failed_ != 0;
+    }
 
     std::vector<std::uint32_t> vertices() {
         qhT* qh = &state_;

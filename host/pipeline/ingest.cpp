@@ -80,7 +80,7 @@ Ingested ingest_frames(device::Device& device, io::FrameSequence sequence,
     out.frames = std::make_unique<SequenceStream>(std::move(sequence));
     out.cell_m = cell_for_frames(out.frames->intrinsics(), out.frames->size(),
                                  [&](std::size_t f) { return out.frames->load(f); });
-    geometry::FrameFusion fusion(out.frames->intrinsics(), out.cell_m);
+    geometry::FrameFusion fusion(out.frames->intrinsics(), out.cell_m, device.threads().threads());
     const auto count = static_cast<double>(out.frames->size());
     const auto poll = [&] { end_if_cancelled(options); };
     const auto add = [&](const DepthFrame& frame, std::size_t f) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <utility>
@@ -23,13 +24,8 @@ class StageClock {
     auto operator()(const std::string& name, F stage) {
         end_if_cancelled(options_);
         if (options_.progress) options_.progress(name, 0);
-        const auto start = std::chrono::steady_clock::now();
-        struct Book {
-            StageClock& clock;
-            const std::string& name;
-            std::chrono::steady_clock::time_point start;
-            ~Book() { clock.book(name, start); }
-        } book{*this, name, start};
+        // Its place is made before: what ends a stage may be that there is no memory.
+        Book book{*this, place_of(name), std::chrono::steady_clock::now()};
         return stage();
     }
     void progress(const std::string& name, double done) const {
@@ -38,16 +34,20 @@ class StageClock {
     }
 
   private:
-    void book(const std::string& name, std::chrono::steady_clock::time_point start) {
-        const double s =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        for (auto& [n, t] : timings_) {
-            if (n == name) {
-                t += s;
-                return;
-            }
+    struct Book {
+        StageClock& clock;
+        std::size_t place;
+        std::chrono::steady_clock::time_point start;
+        ~Book() {
+            clock.timings_[place].second +=
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         }
-        timings_.emplace_back(name, s);
+    };
+    std::size_t place_of(const std::string& name) {
+        for (std::size_t n = 0; n < timings_.size(); ++n)
+            if (timings_[n].first == name) return n;
+        timings_.emplace_back(name, 0.0);
+        return timings_.size() - 1;
     }
     std::vector<std::pair<std::string, double>>& timings_;
     const ParseOptions& options_;

@@ -203,7 +203,10 @@ def main():
                         wrong += 1
                         continue
                     calls, runs, refused, unaware, bad = map(int, total.groups())
-                    for line in [l for l in report.splitlines() if l.startswith("wrong")][:20]:
+                    lines = report.splitlines()
+                    if "TOPPLE_FAULT_TRACE" not in os.environ:
+                        lines = [l for l in lines if l.startswith("wrong")][:20]
+                    for line in lines:
                         print("  %s %s: %s" % (name, fault, line))
                 else:
                     calls = kind.calls(fault)

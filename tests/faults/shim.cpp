@@ -13,7 +13,7 @@
 // TOPPLE_FAULT_TELL; of each child that did not end as it should, one with why. A child's calls
 // that would change what the program works on (rename, unlink, rmdir) are left out.
 //
-// With TOPPLE_FAULT_TRACE set a child that aborts tells from where: for addr2line.
+// With TOPPLE_FAULT_TRACE set a child that aborts or crashes tells from where: for addr2line.
 //
 // While the program has threads of its own no child is forked, since it would lack them: run it
 // with
@@ -23,6 +23,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <sys/wait.h>
@@ -116,11 +117,11 @@ void watch(pid_t child, int from, long n) {
     }
 }
 
-void trace(int) {
+void trace(int why) {
     void* frames[40];
     const int count = backtrace(frames, 40);
     backtrace_symbols_fd(frames, count, tell);
-    _exit(128 + SIGABRT);
+    _exit(128 + why);
 }
 
 // Of this process now.
@@ -144,7 +145,7 @@ bool forked(long n) {
     const pid_t child = fork();
     if (child == 0) {
         is_child = true;
-        if (traced) signal(SIGABRT, trace);
+        if (traced) signal(SIGABRT, trace), signal(SIGSEGV, trace);
         dup2(ends[1], STDERR_FILENO);
         syscall(SYS_close, ends[0]);
         syscall(SYS_close, ends[1]);
@@ -183,6 +184,12 @@ long short_write(int file, const void* bytes, std::size_t count) {
 // Terminals and pipes are no files that a disk could refuse.
 bool is_file(int file) {
     return file > STDERR_FILENO && lseek(file, 0, SEEK_CUR) >= 0;
+}
+
+// One with a name; what is written for a child process to read has none.
+bool is_output(int file) {
+    struct stat about {};
+    return is_file(file) && fstat(file, &about) == 0 && about.st_nlink > 0;
 }
 
 using Main = int (*)(int, char**, char**);
@@ -276,7 +283,7 @@ int posix_memalign(void** to, std::size_t alignment, std::size_t bytes) {
 }
 
 ssize_t write(int file, const void* bytes, std::size_t count) {
-    outputs = outputs || is_file(file);
+    outputs = outputs || is_output(file);
     if (is_file(file) && no_change()) return short_write(file, bytes, count);
     return syscall(SYS_write, file, bytes, count);
 }

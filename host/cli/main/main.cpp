@@ -7,15 +7,14 @@
 int main(int argc, char** argv) {
     using namespace topple::cli;
     std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit (ulimit -f) is an error of its write
-    return run_command_line(
-        {{"parse", parse_purpose, [](CLI::App& app) { return add_parse(app); }},
-         {"estimate", "Say what memory, disk and time a parse would take", add_estimate},
-         {"landscape", "Draw the energy landscapes of an object that a parse has found",
-          add_landscape},
-         {"devices", "List every device of every backend, or why one is missing", add_devices},
-         {"generate", "Make a scan of a furnished room, with its ground truth", add_generate},
-         {"evaluate", "Parse generated rooms and judge the results against the truth",
-          add_evaluate},
-         {"perf", "Measure every kernel, stage and parse on every backend", add_perf}},
-        argc, argv, print_error);
+    const CommandEntry commands[] = {
+        {"parse", parse_purpose, [](CLI::App& app) { return add_parse(app); }},
+        {"estimate", "Say what memory, disk and time a parse would take", add_estimate},
+        {"landscape", "Draw the energy landscapes of an object that a parse has found",
+         add_landscape},
+        {"devices", "List every device of every backend, or why one is missing", add_devices},
+        {"generate", "Make a scan of a furnished room, with its ground truth", add_generate},
+        {"evaluate", "Parse generated rooms and judge the results against the truth", add_evaluate},
+        {"perf", "Measure every kernel, stage and parse on every backend", add_perf}};
+    return run_command_line(commands, argc, argv, print_error);
 }
