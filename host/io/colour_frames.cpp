@@ -8,6 +8,7 @@
 #include <map>
 #include <system_error>
 
+#include "io/folder_names.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -23,16 +24,15 @@ std::map<fs::path, fs::path> images_in(const fs::path& folder) {
     std::map<fs::path, fs::path> out;
     std::error_code error;
     if (!fs::is_directory(folder, error)) return out;
-    fs::directory_iterator entry(folder, error);
+    const std::vector<std::string> names = folder_names(folder, error);
     if (error) fail(folder, "can't be listed: " + error.message());
-    for (; entry != fs::directory_iterator(); entry.increment(error)) {
-        if (error) fail(folder, "can't be listed: " + error.message());
-        const fs::path& file = entry->path();
+    for (const std::string& name : names) {
+        const fs::path file = folder / name;
         auto extension = file.extension().string();
         std::transform(extension.begin(), extension.end(), extension.begin(),
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         if ((extension != ".png" && extension != ".jpg" && extension != ".jpeg") ||
-            file.filename().native().front() == '.')
+            name.front() == '.')
             continue;
         const auto [at, fresh] = out.try_emplace(file.stem(), file);
         if (!fresh) {
@@ -42,7 +42,6 @@ std::map<fs::path, fs::path> images_in(const fs::path& folder) {
                              "; keep the one that is meant");
         }
     }
-    if (error) fail(folder, "can't be listed: " + error.message());
     return out;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <system_error>
 
+#include "io/folder_names.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -38,18 +39,14 @@ std::vector<fs::path> list_images(const fs::path& folder) {
              "a trajectory.txt, trajectory.log or poses.txt");
     }
     std::vector<fs::path> images;
-    fs::directory_iterator entry(depth, error);
+    const std::vector<std::string> names = folder_names(depth, error);
     if (error) fail(depth, "can't be listed: " + error.message());
-    for (; entry != fs::directory_iterator(); entry.increment(error)) {
-        if (error) fail(depth, "can't be listed: " + error.message());
-        auto extension = entry->path().extension().string();
+    for (const fs::path name : names) {
+        auto extension = name.extension().string();
         std::transform(extension.begin(), extension.end(), extension.begin(),
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        if (extension == ".png" && entry->path().filename().native().front() != '.') {
-            images.push_back(entry->path());
-        }
+        if (extension == ".png" && name.native().front() != '.') images.push_back(depth / name);
     }
-    if (error) fail(depth, "can't be listed: " + error.message());
     if (images.empty()) fail(depth, "has no .png; a sequence needs at least one depth image");
     std::sort(images.begin(), images.end(),
               [](const fs::path& a, const fs::path& b) { return a.native() < b.native(); });

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "io/folder_names.h"
 #include "io/pending_outputs.h"
 #include "io/text.h"
 
@@ -45,11 +46,8 @@ void check_replaceable(const fs::path& folder, const fs::path& ignored) {
     if (status.type() != fs::file_type::directory) {
         fail(folder, "exists and is no folder; choose another output folder");
     }
-    std::vector<std::string> names;
-    fs::directory_iterator entry(folder, error);
-    for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
-        if (entry->path().filename() != ignored) names.push_back(entry->path().filename().string());
-    }
+    std::vector<std::string> names = folder_names(folder, error);
+    std::erase(names, ignored.native());
     if (error) fail(folder, "can't be listed: " + error.message());
     if (names.empty()) return;
     std::sort(names.begin(), names.end());

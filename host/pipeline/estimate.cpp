@@ -25,12 +25,15 @@ namespace topple {
 namespace {
 
 // Measured on two cores of the machine whose probe takes probe_reference_s: seconds a point of a
-// large cloud (sorting, thinning, writing), seconds and bytes a thinned point (blocks, whole); the
-// same of a point of a cloud in one piece, a frame's pixel; and what every run takes.
+// large cloud (sorting, thinning, writing), seconds a thinned point (blocks, whole); of a parse in
+// one piece those of a point, a voxel of the surface, a voxel of the box, a frame's pixel; and what
+// every run takes.
 constexpr double probe_reference_s = 0.075;
 constexpr double tiled_point_s = 0.27e-6, thinned_point_s = 2.2e-6, tiled_fixed_s = 4;
-constexpr double point_s = 5e-6, pixel_s = 8e-8, fixed_s = 0.5;
-constexpr double point_bytes = 420, fused_point_bytes = 650;
+constexpr double point_s = 4.3e-6, surface_voxel_s = 5.2e-5, voxel_s = 6.1e-8, pixel_s = 6.5e-8,
+                 fixed_s = 0.3;
+// Of the cells that a surface passes, those in which frames are fused to a point that stays.
+constexpr double fused_share = 0.66;
 // Cells of a block of a furnished building.
 constexpr std::uint64_t block_cells = 450'000;
 constexpr double work_point_bytes = 16, work_thinned_bytes = 40;
@@ -78,29 +81,40 @@ void look_at_cloud(const std::filesystem::path& input, const ParseOptions& optio
     }
 }
 
+// Calls use(x, y, z) for every third pixel each way that has a reading.
+template <class Use>
+void each_reading(const DepthFrame& frame, const Intrinsics& k, const Use& use) {
+    const Mat4& m = frame.camera_to_world;
+    for (std::uint32_t v = 0; v < k.height; v += 3) {
+        for (std::uint32_t u = 0; u < k.width; u += 3) {
+            const double z = frame.depth[std::size_t{v} * k.width + u] / k.depth_scale;
+            if (z <= 0) continue;
+            const double x = (u - k.cx) / k.fx * z, y = (v - k.cy) / k.fy * z;
+            use(m[0] * x + m[1] * y + m[2] * z + m[3], m[4] * x + m[5] * y + m[6] * z + m[7],
+                m[8] * x + m[9] * y + m[10] * z + m[11]);
+        }
+    }
+}
+
 // Each frame of a sample covers what its neighbours cover, too: their union grows as that of all.
+// `bounds`: of what more than one of them shows, for strays are shown once.
 // Returns how many pixels all frames have.
 std::uint64_t look_at_frames(const std::filesystem::path& input, const ParseOptions& options,
-                             SurfaceExtent& surface, Estimate& out) {
+                             SurfaceExtent& surface, Bounds<float>& bounds, Estimate& out) {
     const io::FrameSequence frames = io::FrameSequence::open(input);
     const Intrinsics& k = frames.intrinsics();
     constexpr std::size_t most_frames = 100;
     const std::size_t step = std::max<std::size_t>(1, frames.size() / most_frames);
+    SurfaceExtent again;
     for (std::size_t f = 0; f < frames.size(); f += step) {
         const DepthFrame frame = frames.load(f);
-        const Mat4& m = frame.camera_to_world;
-        for (std::uint32_t v = 0; v < k.height; v += 3) {
-            for (std::uint32_t u = 0; u < k.width; u += 3) {
-                const double z = frame.depth[std::size_t{v} * k.width + u] / k.depth_scale;
-                if (z <= 0) continue;
-                const double x = (u - k.cx) / k.fx * z, y = (v - k.cy) / k.fy * z;
-                surface.add(m[0] * x + m[1] * y + m[2] * z + m[3],
-                            m[4] * x + m[5] * y + m[6] * z + m[7],
-                            m[8] * x + m[9] * y + m[10] * z + m[11]);
-            }
-        }
+        each_reading(frame, k, [&](double x, double y, double z) {
+            if (surface.has(x, y, z)) again.add(x, y, z);
+        });
+        each_reading(frame, k, [&](double x, double y, double z) { surface.add(x, y, z); });
         tell(options, static_cast<double>(f) / static_cast<double>(frames.size()));
     }
+    bounds = (again.area_m2() > 0 ? again : surface).bounds();
     out.frames = frames.size();
     out.cell_m = cell_for_frames(k, frames.size(), [&](std::size_t f) { return frames.load(f); });
     return out.frames * k.width * k.height;
@@ -114,11 +128,13 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
     tell(options, 0);
     Estimate out;
     SurfaceExtent surface;
+    Bounds<float> bounds;
     std::uint64_t pixels = 0;
     if (io::looks_like_sequence(input)) {
-        pixels = look_at_frames(input, options, surface, out);
+        pixels = look_at_frames(input, options, surface, bounds, out);
     } else {
         look_at_cloud(input, options, surface, out);
+        bounds = surface.bounds();
     }
     out.surface_m2 = surface.area_m2();
     const double slower = probe(*device) / probe_reference_s;
@@ -148,22 +164,25 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
             static_cast<std::uint64_t>(tiled_output_point_bytes * points + 15 * thinned);
     } else {
         if (out.frames > 0) {
-            out.points = static_cast<std::uint64_t>(out.surface_m2 / (out.cell_m * out.cell_m));
-            out.seconds = pixel_s * static_cast<double>(pixels);
+            out.points = static_cast<std::uint64_t>(fused_share * out.surface_m2 /
+                                                    (out.cell_m * out.cell_m));
         } else if (out.points > 0) {
             out.cell_m =
                 std::clamp(1.25 * std::sqrt(out.surface_m2 / points), least_cell_m, largest_cell_m);
         }
         const auto looked_at = static_cast<double>(out.points);
-        out.seconds += fixed_s + point_s * looked_at;
-        const double bytes = out.frames > 0 ? fused_point_bytes : point_bytes;
-        out.memory_bytes = static_cast<std::uint64_t>(60e6 + bytes * looked_at);
-        if (looked_at > 0)
-            out.least_bytes = one_piece_bytes(
-                looked_at, surface.bounds(),
-                options.voxel_m > 0
-                    ? options.voxel_m
-                    : voxel_for_scan(out.cell_m, surface, looked_at, options.max_memory_bytes));
+        if (looked_at > 0) {
+            const double h = options.voxel_m > 0 ? options.voxel_m
+                                                 : voxel_for_scan(out.cell_m, surface, looked_at,
+                                                                  options.max_memory_bytes);
+            double box = 1;
+            for (std::size_t a = 0; a < 3; ++a) box *= (bounds.high[a] - bounds.low[a]) / h;
+            out.seconds = fixed_s + point_s * looked_at + pixel_s * static_cast<double>(pixels) +
+                          surface_voxel_s * out.surface_m2 / (h * h) + voxel_s * box;
+            out.memory_bytes =
+                static_cast<std::uint64_t>(one_piece_peak(looked_at, out.surface_m2, bounds, h));
+            out.least_bytes = one_piece_bytes(looked_at, out.surface_m2, bounds, h);
+        }
         out.output_bytes =
             static_cast<std::uint64_t>(output_fixed + output_point_bytes * looked_at);
     }

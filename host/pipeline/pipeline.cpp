@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <utility>
 
-#include "core/scene_bounds.h"
 #include "device/device.h"
 #include "io/frame_sequence.h"
 #include "io/octomap.h"
@@ -17,6 +16,7 @@
 #include "pipeline/parse_memory.h"
 #include "pipeline/safety_stage.h"
 #include "pipeline/stage_clock.h"
+#include "pipeline/surface_extent.h"
 #include "pipeline/tiled_parse.h"
 #include "pipeline/voxel_size.h"
 #include "pipeline/voxel_stage.h"
@@ -46,14 +46,13 @@ void check_range(const char* option, double value, double lowest, double highest
 void check_memory(const CloudView& cloud, const std::string& source, double voxel_m,
                   const ParseOptions& options) {
     if (options.max_memory_bytes == 0) return;
-    const std::uint64_t need = one_piece_bytes(
-        static_cast<double>(cloud.size()),
-        scene_bounds<float, FloatColumn>({cloud.x, cloud.y, cloud.z}, static_cast<float>(voxel_m)),
-        voxel_m);
+    const SurfaceExtent surface = extent_of(cloud);
+    const std::uint64_t need = one_piece_bytes(static_cast<double>(cloud.size()), surface.area_m2(),
+                                               surface.bounds(), voxel_m);
     if (need > options.max_memory_bytes) {
         throw Error(ErrorKind::input,
                     std::to_string(cloud.size()) + " points at voxels of " +
-                        io::short_number(voxel_m) + " m would need about " + io::bytes_text(need) +
+                        io::short_number(voxel_m) + " m may need " + io::bytes_text(need) +
                         ", more than the " + io::bytes_text(options.max_memory_bytes) +
                         " of --max-memory; use a larger --voxel" +
                         (io::looks_like_sequence(source) || io::looks_like_octomap(source) ||

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/scene_bounds.h"
+#include "topple/cloud_view.h"
 
 namespace topple {
 
@@ -25,10 +26,11 @@ class SurfaceExtent {
         const std::array<std::int64_t, 3> at{cell(x), cell(y), cell(z)};
         if (at == last_) return;
         last_ = at;
-        std::uint64_t key = 0;
-        for (const std::int64_t c : at)
-            key = key << 21 | (static_cast<std::uint64_t>(c) & 0x1fffff);
-        cells_.insert(key);
+        cells_.insert(key(at));
+    }
+    // Whether a point was in the same cell.
+    bool has(double x, double y, double z) const {
+        return cells_.contains(key({cell(x), cell(y), cell(z)}));
     }
     Bounds<float> bounds() const {
         std::array<std::vector<float>, 3> at;
@@ -48,8 +50,20 @@ class SurfaceExtent {
 
   private:
     static std::int64_t cell(double v) { return static_cast<std::int64_t>(std::floor(v / cell_m)); }
+    static std::uint64_t key(const std::array<std::int64_t, 3>& at) {
+        std::uint64_t out = 0;
+        for (const std::int64_t c : at)
+            out = out << 21 | (static_cast<std::uint64_t>(c) & 0x1fffff);
+        return out;
+    }
     std::array<std::int64_t, 3> last_{INT64_MIN, 0, 0};
     std::unordered_set<std::uint64_t> cells_;
 };
+
+inline SurfaceExtent extent_of(const CloudView& cloud) {
+    SurfaceExtent out;
+    for (std::size_t n = 0; n < cloud.size(); ++n) out.add(cloud.x[n], cloud.y[n], cloud.z[n]);
+    return out;
+}
 
 }  // namespace topple

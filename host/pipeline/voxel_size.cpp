@@ -30,7 +30,8 @@ double voxel_for_scan(double cell_m, const SurfaceExtent& surface, double points
     const Bounds<float> bounds = surface.bounds();
     const auto fits = [&](double h) {
         return area <= most_surface_voxels * h * h &&
-               (max_memory_bytes == 0 || one_piece_bytes(points, bounds, h) <= max_memory_bytes);
+               (max_memory_bytes == 0 ||
+                one_piece_bytes(points, area, bounds, h) <= max_memory_bytes);
     };
     for (const double h : handy)
         if (h >= room_voxel_m && h < coarsest && fits(h)) return h;
@@ -40,13 +41,9 @@ double voxel_for_scan(double cell_m, const SurfaceExtent& surface, double points
 double voxel_for_input(const Ingested& input, const ParseOptions& options) {
     if (options.voxel_m > 0) return options.voxel_m;
     if (input.voxel_m > 0) return input.voxel_m;
-    SurfaceExtent surface;
-    if (voxel_for_cell(input.cell_m) > room_voxel_m) {
-        for (std::size_t n = 0; n < input.cloud.size(); ++n)
-            surface.add(input.cloud.x[n], input.cloud.y[n], input.cloud.z[n]);
-    }
-    return voxel_for_scan(input.cell_m, surface, static_cast<double>(input.cloud.size()),
-                          options.max_memory_bytes);
+    const bool asked = voxel_for_cell(input.cell_m) > room_voxel_m;
+    return voxel_for_scan(input.cell_m, asked ? extent_of(input.cloud) : SurfaceExtent(),
+                          static_cast<double>(input.cloud.size()), options.max_memory_bytes);
 }
 
 }  // namespace topple

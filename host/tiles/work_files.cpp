@@ -9,6 +9,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "io/folder_names.h"
 #include "io/text.h"
 #include "tiles/binary_file.h"
 #include "tiles/blocks.h"
@@ -106,12 +107,10 @@ std::vector<std::string> remove_damaged(const fs::path& folder, const std::funct
 }
 
 std::set<std::string> names_in(const fs::path& folder) {
-    std::set<std::string> names;
     std::error_code error;
-    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-        names.insert(at->path().filename().string());
+    const std::vector<std::string> names = io::folder_names(folder, error);
     if (error) io::fail(folder, "can't be read: " + error.message());
-    return names;
+    return {names.begin(), names.end()};
 }
 
 }  // namespace topple::tiles

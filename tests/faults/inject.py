@@ -196,10 +196,10 @@ def main():
                     work = folder / "work"
                     kind.prepare(work)
                     core = min(os.sched_getaffinity(0))
-                    _, _, report, _ = kind.run(work, "fork:%d" % args.every, threads=1, limit_s=36000, core=core)
+                    code, err, report, _ = kind.run(work, "fork:%d" % args.every, threads=1, limit_s=36000, core=core)
                     total = re.search(r"calls (\d+) children (\d+) refused (\d+) unaware (\d+) wrong (\d+)", report)
-                    if not total:
-                        print("%s %s: the run itself failed: %s" % (name, fault, report[-300:]))
+                    if code != 0 or not total:
+                        print("%s %s: the run itself failed: %s %s" % (name, fault, err[:2], report[-300:]))
                         wrong += 1
                         continue
                     calls, runs, refused, unaware, bad = map(int, total.groups())

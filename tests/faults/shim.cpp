@@ -145,7 +145,8 @@ bool forked(long n) {
     const pid_t child = fork();
     if (child == 0) {
         is_child = true;
-        if (traced) signal(SIGABRT, trace), signal(SIGSEGV, trace);
+        if (traced)
+            for (const int deadly : {SIGABRT, SIGSEGV, SIGBUS}) signal(deadly, trace);
         dup2(ends[1], STDERR_FILENO);
         syscall(SYS_close, ends[0]);
         syscall(SYS_close, ends[1]);
@@ -189,7 +190,7 @@ bool is_file(int file) {
 // One with a name; what is written for a child process to read has none.
 bool is_output(int file) {
     struct stat about {};
-    return is_file(file) && fstat(file, &about) == 0 && about.st_nlink > 0;
+    return fstat(file, &about) == 0 && S_ISREG(about.st_mode) && about.st_nlink > 0;
 }
 
 using Main = int (*)(int, char**, char**);
