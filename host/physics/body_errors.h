@@ -23,8 +23,8 @@ struct VolumeError {
 };
 
 // A patch of surface adds its area times its standard error, which is the larger the thinner the
-// solid is beside a voxel; a side of a solid that nobody saw is known to half a voxel; and of solid that nobody saw on both sides of (Basis column and after) a
-// share is wrong. Sorted by primitive.
+// solid is beside a voxel; a side of a solid that nobody saw is known to half a voxel; and of solid
+// that nobody saw on both sides of (Basis column and after) a share is wrong. Sorted by primitive.
 std::vector<VolumeError> volume_errors(const SolidCells& cells, const BoundaryCells& boundary);
 
 // Standard errors of the body that some primitives are, sorted: what one of them takes from another
