@@ -77,7 +77,8 @@ TEST(BodyErrors, GrowAsASolidGetsThin) {
         const Known k =
             known({{{0.31, -0.2, 0.5}, {0.2, 0.15, half}, solids::turned(0.4, 0.1, -0.05)}});
         const double face = 2 * 0.4 * 0.3 * off(k, {0.2, 0.15, half}) / std::sqrt(2.0);
-        EXPECT_NEAR(k.error.mass_kg / (density * face), 1, 0.12);
+        // The area of a board of one voxel is known to a sixth from the voxels that it passes.
+        EXPECT_NEAR(k.error.mass_kg / (density * face), 1, 0.17);
         return k.error.mass_kg / k.body.mass_kg;
     };
     EXPECT_GT(share(0.5 * voxel), 6 * share(2.5 * voxel));
