@@ -34,9 +34,9 @@ std::string time_text(double seconds) {
     return text;
 }
 
-// Whether the parse would be refused, as far as an estimate within a factor of two tells.
+// Whether the parse would be refused, as far as an estimate tells.
 std::string limit_text(const Estimate& e, bool may_be_tiled, std::uint64_t max_memory_bytes) {
-    const std::string least = "the least is about " + io::bytes_text(e.least_bytes);
+    const std::string least = "a parse asks for about " + io::bytes_text(e.least_bytes);
     const std::string given = io::bytes_text(max_memory_bytes) + " of --max-memory ";
     if (max_memory_bytes >= 2 * e.least_bytes) return given + "suffice; " + least;
     const std::string mend =
@@ -62,7 +62,8 @@ int run(Arguments& a) {
         if (e.tiled)
             std::printf("parsed   in blocks, thinned to one point per %.3g mm\n", 1000 * e.cell_m);
         else
-            std::printf("parsed   in one piece, at about %.2g mm\n", 1000 * e.cell_m);
+            std::printf("parsed   in one piece, voxels of %s m, points about %.2g mm apart\n",
+                        io::short_number(e.voxel_m).c_str(), 1000 * e.cell_m);
         std::printf("time     about %s\n", time_text(e.seconds).c_str());
         std::printf("memory   about %s\n", io::bytes_text(e.memory_bytes).c_str());
         if (a.options.max_memory_bytes > 0)

@@ -195,7 +195,7 @@ Command add_parse(CLI::App& app, const Team& team) {
                    "auto (a real GPU if there is one, else native), native, opencl, vulkan")
         ->capture_default_str();
     app.add_option("--voxel", a->voxel_m,
-                   "Edge of a solid voxel in metres (default: from the scan's resolution)");
+                   "Edge of a solid voxel in metres (default: 2 cm in rooms, finer where dense)");
     add_unit_option(app, a->options.unit_m);
     add_isolate_option(app, a->options.isolate);
     app.add_option("--up", a->up,
@@ -270,7 +270,7 @@ Command add_parse(CLI::App& app, const Team& team) {
                  "Write the report's main views as pictures, too: view-*.png");
     app.add_flag(
         "--glb", a->output.glb,
-        "Write the solids as meshes, too, one per object coloured by unsafety: objects.glb");
+        "Write the solids as meshes, too, one per object, coloured as scanned: objects.glb");
     app.add_flag("--octomap", a->output.octomap,
                  "Write what was seen to be free and occupied as an OctoMap, too: map.bt");
     app.add_flag("--quiet", a->quiet, "Print errors only");

@@ -172,9 +172,10 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
         }
         const auto looked_at = static_cast<double>(out.points);
         if (looked_at > 0) {
-            const double h = options.voxel_m > 0 ? options.voxel_m
-                                                 : voxel_for_scan(out.cell_m, surface, looked_at,
-                                                                  options.max_memory_bytes);
+            const double h = out.voxel_m =
+                options.voxel_m > 0
+                    ? options.voxel_m
+                    : voxel_for_scan(out.cell_m, surface, looked_at, options.max_memory_bytes);
             double box = 1;
             for (std::size_t a = 0; a < 3; ++a) box *= (bounds.high[a] - bounds.low[a]) / h;
             out.seconds = fixed_s + point_s * looked_at + pixel_s * static_cast<double>(pixels) +

@@ -17,6 +17,7 @@ struct Estimate {
     double surface_m2 = 0;
     bool tiled = false;             // parsed in blocks
     double cell_m = 0;              // one point of each such cell is looked at
+    double voxel_m = 0;             // of solids, in one piece
     double seconds = 0;             // with the device's threads
     std::uint64_t least_bytes = 0;  // with a max_memory_bytes below it parse() refuses
     std::uint64_t memory_bytes = 0, work_bytes = 0, output_bytes = 0;
