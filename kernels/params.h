@@ -30,6 +30,15 @@ STRUCT(VoxelNormalsParams) {
     uint use_prior;       // 1: weigh cells by agreement of normals
 } STRUCT_END(VoxelNormalsParams)
 
+// plane_mean
+STRUCT(PlaneMeanParams) {
+    uint query_count;
+    uint cell_count;    // stride of the planes
+    int radius;         // of the neighbourhood, cells per axis, 1 to 3
+    float reach2;       // (distance at which a cell's weight falls to 0)^2, cells^2
+    float least_cosine; // of the angle between two normals of one surface
+} STRUCT_END(PlaneMeanParams)
+
 // normal_cluster
 STRUCT(NormalClusterParams) {
     uint count;         // normals

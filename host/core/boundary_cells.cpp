@@ -23,7 +23,7 @@ double SurfacePatch::distance(const Vec3& p) const {
     // On a tube's axis the gradient vanishes.
     constexpr double least = 0.2;
     const Vec3 g = gradient(p);
-    return value(p) / std::max(std::hypot(g[0], g[1], g[2]), least);
+    return value(p) / std::max(std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]), least);
 }
 
 bool SurfacePatch::flat() const {

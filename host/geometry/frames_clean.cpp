@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "device/devices.h"
 #include "geometry/cell_grid.h"
 #include "geometry/depth_noise.h"
 #include "geometry/frames_cells.h"
 #include "geometry/plane_fit.h"
-#include "geometry/plane_mean.h"
 
 namespace topple::geometry {
 namespace {
@@ -129,8 +129,9 @@ void flatten_level(FusedCells& fused, const CellGrid& grid, double scale,
         queries.cell.push_back(static_cast<std::uint32_t>(cell));
         for (std::size_t a = 0; a < 3; ++a) queries.at[a].push_back(grid.mean[a][cell]);
     }
-    const PlaneFit fit = fit_planes(device, grid, queries);
-    const std::vector<float> offsets = mean_offsets(grid, queries, fit, pool);
+    PlaneFitter fitter(device, grid, std::move(queries));
+    const PlaneFit fit = fitter.fit({});
+    const std::vector<float> offsets = fitter.mean_offsets(fit);
     pool.each(which.size(), fused_chunk, [&](std::size_t k) {
         CellSums& cell = fused.cells[which[k]];
         const std::uint32_t home = cell_of[which[k]], q = query_of[home];

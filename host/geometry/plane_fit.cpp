@@ -7,13 +7,16 @@
 #include <utility>
 
 #include "device/queue.h"
+#include "plane_mean.hpp"
 #include "topple/error.h"
 #include "voxel_normals.hpp"
 
 namespace topple::geometry {
 namespace {
 
-constexpr std::size_t cell_planes = 10, fit_planes_count = 6;
+constexpr std::size_t cell_planes = 10, fit_planes_count = 6, mean_planes = 8;
+constexpr float least_cosine = 0.8f;  // of the angle between normals of one surface
+constexpr std::uint32_t no_query = ~0u;
 constexpr std::uint64_t query_chunk = 1 << 15;  // queries handed to a thread at once
 // Queries or cells of a tile, where a device takes as many: the tables have 100 bytes for each.
 constexpr std::size_t preferred_tile = std::size_t{1} << 20;
@@ -188,6 +191,53 @@ PlaneFit PlaneFitter::fit(const PlanePrior& prior) {
     resize(fit, cell_.size());
     for (const Tile& tile : tiles_) fit_tile(tile, prior, fit);
     return fit;
+}
+
+void PlaneFitter::mean_tile(const Tile& tile, std::span<const std::uint32_t> query_of,
+                            const PlaneFit& fit, std::vector<float>& out) {
+    const OnDevice& on = prepare(tile);
+    const std::size_t count = tile.last - tile.first, cells = tile.halo_last - tile.halo_first;
+    std::vector<float> planes(mean_planes * cells, 0.0f);
+    device_.threads().each(cells, query_chunk, [&](std::size_t c) {
+        const std::uint32_t q = query_of[tile.halo_first + c];
+        if (q == no_query) return;
+        const std::array<float, mean_planes> values{grid_.weight[tile.halo_first + c],
+                                                    queries_.at[0][q],
+                                                    queries_.at[1][q],
+                                                    queries_.at[2][q],
+                                                    fit.normal[0][q],
+                                                    fit.normal[1][q],
+                                                    fit.normal[2][q],
+                                                    fit.offset[q]};
+        for (std::size_t a = 0; a < mean_planes; ++a) planes[a * cells + c] = values[a];
+    });
+    const device::Buffer<float> d_planes(device_, std::span<const float>(planes), "planes"),
+        d_offsets(device_, count, "offsets");
+    const float reach = static_cast<float>(radius_) + 0.5f;
+    device::Queue queue(device_);
+    queue.add<kernels::PlaneMean>(count,
+                                  {.planes = d_planes,
+                                   .cell_z = on.cell_z,
+                                   .columns = on.columns,
+                                   .query_cell = on.query_cell,
+                                   .offsets = d_offsets},
+                                  {.query_count = static_cast<std::uint32_t>(count),
+                                   .cell_count = static_cast<std::uint32_t>(cells),
+                                   .radius = radius_,
+                                   .reach2 = reach * reach,
+                                   .least_cosine = least_cosine});
+    queue.run();
+    const std::vector<float> offsets = d_offsets.download();
+    for (std::size_t i = 0; i < count; ++i) out[order_[tile.first + i]] = offsets[i];
+}
+
+std::vector<float> PlaneFitter::mean_offsets(const PlaneFit& fit) {
+    std::vector<std::uint32_t> query_of(grid_.size(), no_query);
+    for (std::size_t q = 0; q < queries_.cell.size(); ++q)
+        query_of[queries_.cell[q]] = static_cast<std::uint32_t>(q);
+    std::vector<float> out(queries_.cell.size());
+    for (const Tile& tile : tiles_) mean_tile(tile, query_of, fit, out);
+    return out;
 }
 
 PlaneFit fit_planes(device::Device& device, const CellGrid& grid, PlaneQueries queries) {

@@ -45,6 +45,13 @@ class PlaneFitter {
                 int radius = default_radius);
     ~PlaneFitter();
     PlaneFit fit(const PlanePrior& prior);
+    // From each query along its normal to the surface, in cells (kernel plane_mean). The plane that
+    // is fitted to a neighbourhood of a curved surface lies inside of it by b = mean(r^2) / 2 R,
+    // parallel to its tangent plane; and r away from there by b - r^2 / 2 R. So what all planes of
+    // a neighbourhood say, on average by the same weights as they were fitted with, is right to
+    // second order, while one alone shrinks what is round. Planes that face elsewhere don't count.
+    // fit: of these queries, of which no two may be in one cell.
+    std::vector<float> mean_offsets(const PlaneFit& fit);
 
     static constexpr int default_radius = 2;
 
@@ -58,6 +65,8 @@ class PlaneFitter {
     std::vector<Tile> make_tiles() const;
     const OnDevice& prepare(const Tile& tile);
     void fit_tile(const Tile& tile, const PlanePrior& prior, PlaneFit& fit);
+    void mean_tile(const Tile& tile, std::span<const std::uint32_t> query_of, const PlaneFit& fit,
+                   std::vector<float>& out);
 
     device::Device& device_;
     const CellGrid& grid_;

@@ -43,6 +43,24 @@ std::vector<std::span<const solids::ObjectVoxel>> by_object(
     return out;
 }
 
+// Calls what(n, pool) for each object: large ones, as the building is, share out their own work.
+template <class What>
+void each_object(std::span<const std::span<const solids::ObjectVoxel>> objects, ThreadPool& pool,
+                 const What& what) {
+    constexpr std::size_t large = 50'000;  // voxels
+    std::vector<std::size_t> small;
+    for (std::size_t n = 0; n < objects.size(); ++n) {
+        if (objects[n].size() < large)
+            small.push_back(n);
+        else
+            what(n, pool);
+    }
+    pool.each(small.size(), 1, [&](std::size_t n) {
+        ThreadPool alone(1);
+        what(small[n], alone);
+    });
+}
+
 Vec3 in_input(const vdb::VoxelFrame& frame, const Vec3& v) {
     Vec3 out{};
     for (std::size_t a = 0; a < 3; ++a)
@@ -62,14 +80,16 @@ std::vector<ObjectSurface> object_surfaces(const Scene& scene, const SolidCells&
     if (!scene.points.red.empty()) colours.emplace(scene.points, cells, object_of, frame);
     ThreadPool pool(threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency()));
     std::vector<solids::SurfaceMesh> meshes(objects.size());
-    pool.each(objects.size(), 1, [&](std::size_t n) {
-        meshes[n] = solids::surface_mesh(objects[n], boundary, object_of, frame.voxel_m);
+    each_object(objects, pool, [&](std::size_t n, ThreadPool& threads_of_it) {
+        meshes[n] =
+            solids::surface_mesh(objects[n], boundary, object_of, frame.voxel_m, threads_of_it);
     });
     for (const Level& level : levels) {
-        pool.each(meshes.size(), 1, [&](std::size_t n) {
+        each_object(objects, pool, [&](std::size_t n, ThreadPool& threads_of_it) {
             solids::simplify(meshes[n], boundary.patches,
                              {.tolerance_m = level.tolerance * frame.voxel_m,
-                              .longest_m = colours ? level.coloured_edge * frame.voxel_m : 0});
+                              .longest_m = colours ? level.coloured_edge * frame.voxel_m : 0},
+                             threads_of_it);
         });
         std::size_t triangles = 0;
         for (const solids::SurfaceMesh& mesh : meshes) triangles += mesh.triangle.size();

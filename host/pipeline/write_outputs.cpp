@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <functional>
+#include <future>
 #include <memory>
+#include <vector>
 
 #include "core/solid_scene.h"
 #include "core/thread_pool.h"
@@ -45,30 +47,40 @@ std::vector<ObjectSurface> surfaces_of(const ParseResult& result, const vdb::Vox
                            voxels.frame(), threads);
 }
 
-void write_all_else(const std::filesystem::path& folder, const ParseResult& result,
-                    const OutputOptions& options, const Poll& poll) {
+// The files of an output, each written by itself: what takes longest first.
+std::vector<std::function<void()>> writers(const std::filesystem::path& folder,
+                                           const ParseResult& result, const OutputOptions& options,
+                                           const Poll& poll) {
     const Scene& scene = result.scene;
-    const auto voxels = result.tiled
-                            ? std::make_shared<const vdb::VoxelScene>(result.tiled->load_voxels())
+    // Of a building they are read from disk, by the first that wants them.
+    const auto load = [&result] {
+        return result.tiled ? std::make_shared<const vdb::VoxelScene>(result.tiled->load_voxels())
                             : result.voxels;
-    poll();
-    voxels->write(folder / "volume.vdb");
-    poll();
-    io::write_solid_ply(folder / "solid.ply", scene.solid);
-    poll();
-    // Those of a building are too large for a page.
-    std::vector<ObjectSurface> surfaces;
-    if (!result.tiled || options.glb) surfaces = surfaces_of(result, *voxels, options.threads);
-    poll();
-    report::write_report(folder / "report.html", scene, surfaces);
-    poll();
-    if (options.pictures) report::write_pictures(folder, scene);
-    poll();
-    if (options.glb) write_objects_glb(folder / "objects.glb", scene, surfaces, voxels->frame());
-    poll();
-    if (options.octomap) write_map(folder / "map.bt", *voxels);
-    io::write_landscapes_json(folder / "landscapes.json", scene);
-    io::write_scene_json(folder / "scene.json", scene);
+    };
+    const std::shared_future<std::shared_ptr<const vdb::VoxelScene>> voxels =
+        std::async(std::launch::deferred, load);
+    std::vector<std::function<void()>> out;
+    out.emplace_back([=, &result, &options, &scene, &poll] {
+        // Those of a building are too large for a page.
+        std::vector<ObjectSurface> surfaces;
+        if (!result.tiled || options.glb)
+            surfaces = surfaces_of(result, *voxels.get(), options.threads);
+        poll();
+        report::write_report(folder / "report.html", scene, surfaces);
+        poll();
+        if (options.glb)
+            write_objects_glb(folder / "objects.glb", scene, surfaces, voxels.get()->frame());
+    });
+    out.emplace_back([=] { voxels.get()->write(folder / "volume.vdb"); });
+    out.emplace_back([=, &result, &poll] { write_points(folder / "points.ply", result, poll); });
+    if (options.pictures) out.emplace_back([=, &scene] { report::write_pictures(folder, scene); });
+    out.emplace_back([=, &scene] { io::write_solid_ply(folder / "solid.ply", scene.solid); });
+    if (options.octomap) out.emplace_back([=] { write_map(folder / "map.bt", *voxels.get()); });
+    out.emplace_back([=, &scene] {
+        io::write_landscapes_json(folder / "landscapes.json", scene);
+        io::write_scene_json(folder / "scene.json", scene);
+    });
+    return out;
 }
 
 }  // namespace
@@ -84,11 +96,11 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
     const Poll poll = [&] {
         if (options.cancelled && options.cancelled()) throw Error(ErrorKind::input, "cancelled");
     };
-    const auto points = [&] { write_points(out.folder() / "points.ply", result, poll); };
-    const auto all_else = [&] { write_all_else(out.folder(), result, options, poll); };
-    // Both are long, and neither needs the other.
-    ThreadPool(options.threads == 1 ? 1 : 2).each(2, 1, [&](std::size_t part) {
-        part == 0 ? points() : all_else();
+    const auto files = writers(out.folder(), result, options, poll);
+    // Surfaces have threads of their own.
+    ThreadPool(options.threads == 1 ? 1 : 2).each(files.size(), 1, [&](std::size_t n) {
+        poll();
+        files[n]();
     });
     poll();
     out.commit();

@@ -11,11 +11,19 @@ constexpr std::uint64_t no_key = UINT64_MAX;
 constexpr std::array<std::array<std::int32_t, 3>, 6> faces{
     {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
-std::uint64_t key_of(const std::array<std::int32_t, 3>& index) {
+// Of the block that a cell lies in.
+std::uint64_t block_of(const std::array<std::int32_t, 3>& index) {
     std::uint64_t key = 0;
     for (const auto value : index)
-        key = key << 21 | (static_cast<std::uint32_t>(value + (1 << 20)) & 0x1FFFFF);
+        key = key << 18 | (static_cast<std::uint32_t>(value + (1 << 20)) >> 3 & 0x3FFFF);
     return key;
+}
+// The cell's place within its block.
+std::size_t place_of(const std::array<std::int32_t, 3>& index) {
+    std::size_t place = 0;
+    for (const auto value : index)
+        place = place << 3 | (static_cast<std::uint32_t>(value + (1 << 20)) & 7);
+    return place;
 }
 
 std::array<std::int32_t, 3> beside(const std::array<std::int32_t, 3>& index, std::size_t face) {
@@ -31,7 +39,7 @@ bool unit(std::array<float, 3>& v) {
 
 }  // namespace
 
-CellTable::CellTable() : keys_(1024, no_key), values_(1024, absent), shift_(64 - 10) {}
+CellTable::CellTable() : keys_(64, no_key), blocks_(64, absent), shift_(64 - 6) {}
 
 std::size_t CellTable::slot_of(std::uint64_t key) const {
     // The highest bits of the product depend on all of the key's.
@@ -41,30 +49,37 @@ std::size_t CellTable::slot_of(std::uint64_t key) const {
 }
 
 std::uint32_t CellTable::find(const std::array<std::int32_t, 3>& index) const {
-    return values_[slot_of(key_of(index))];
+    const auto block = blocks_[slot_of(block_of(index))];
+    return block == absent ? absent : values_[block * block_cells + place_of(index)];
 }
 
 std::uint32_t CellTable::insert(const std::array<std::int32_t, 3>& index, std::uint32_t value) {
-    const auto key = key_of(index);
+    const auto key = block_of(index);
     const auto slot = slot_of(key);
-    if (keys_[slot] != no_key) return values_[slot];
-    keys_[slot] = key;
-    values_[slot] = value;
-    if (2 * ++used_ > keys_.size()) grow();
-    return value;
+    std::size_t block = blocks_[slot];
+    if (keys_[slot] == no_key) {
+        block = values_.size() / block_cells;
+        keys_[slot] = key;
+        blocks_[slot] = static_cast<std::uint32_t>(block);
+        values_.resize(values_.size() + block_cells, absent);
+        if (2 * (block + 1) > keys_.size()) grow();
+    }
+    auto& stored = values_[block * block_cells + place_of(index)];
+    if (stored == absent) stored = value;
+    return stored;
 }
 
 void CellTable::grow() {
     std::vector<std::uint64_t> keys(2 * keys_.size(), no_key);
-    std::vector<std::uint32_t> values(keys.size(), absent);
+    std::vector<std::uint32_t> blocks(keys.size(), absent);
     keys.swap(keys_);
-    values.swap(values_);
+    blocks.swap(blocks_);
     --shift_;
     for (std::size_t old = 0; old < keys.size(); ++old) {
         if (keys[old] == no_key) continue;
         const auto slot = slot_of(keys[old]);
         keys_[slot] = keys[old];
-        values_[slot] = values[old];
+        blocks_[slot] = blocks[old];
     }
 }
 

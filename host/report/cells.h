@@ -20,8 +20,9 @@ struct Cell {
     std::array<float, 3> normal{};
 };
 
-// Finds a cell by its index. Open addressing; it answers membership only, so its order reaches
-// nothing.
+// Finds a cell by its index: a dense array for each block of 8 x 8 x 8 cells that has any, since
+// whoever asks for one asks for those beside it. The blocks are found by open addressing; it
+// answers membership only, so its order reaches nothing.
 class CellTable {
   public:
     CellTable();
@@ -32,12 +33,13 @@ class CellTable {
     std::uint32_t insert(const std::array<std::int32_t, 3>& index, std::uint32_t value);
 
   private:
+    static constexpr std::size_t block_cells = 512;
     std::size_t slot_of(std::uint64_t key) const;
     void grow();
-    std::vector<std::uint64_t> keys_;
-    std::vector<std::uint32_t> values_;
-    std::size_t used_ = 0;
-    int shift_;  // of a hash, to as many bits as the tables have slots
+    std::vector<std::uint64_t> keys_;    // of blocks
+    std::vector<std::uint32_t> blocks_;  // of each key: its place among
+    std::vector<std::uint32_t> values_;  // block_cells each
+    int shift_;                          // of a hash, to as many bits as the tables have slots
 };
 
 // Marks which faces of each cell are exposed; returns how many cells have one.

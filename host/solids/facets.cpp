@@ -122,43 +122,52 @@ void ObjectEntries::add_patches(const ObjectVoxel& voxel, std::vector<std::uint3
     });
 }
 
-std::vector<Facet> find_facets(std::span<const ObjectVoxel> voxels,
-                               std::span<const VoxelFace> faces, const ObjectEntries& entries) {
+namespace {
+
+Facet facet_of(const VoxelFace& face, std::span<const ObjectVoxel> voxels,
+               const ObjectEntries& entries, std::vector<Vec3>& starts) {
     const double h = entries.voxel_m();
-    std::vector<Facet> out;
-    out.reserve(faces.size());
-    std::vector<Vec3> starts;
-    for (const VoxelFace& face : faces) {
-        const ObjectVoxel& voxel = voxels[face.voxel];
-        const std::size_t axis = face.axis();
-        const double side = (voxel.at[axis] + face.direction % 2) * h;
-        const auto end = [&](const Vec3& start) {
-            return face.sign() * (side - start[axis]) + beyond_side * h;
-        };
-        std::optional<Facet> found;
-        if (!voxel.whole) {
-            entries.middles(voxel, starts);
-            for (const Vec3& start : starts) {
-                found = entries.way_out(voxel, start, axis, face.sign(), end(start));
-                if (found) break;
-            }
+    const ObjectVoxel& voxel = voxels[face.voxel];
+    const std::size_t axis = face.axis();
+    const double side = (voxel.at[axis] + face.direction % 2) * h;
+    const auto end = [&](const Vec3& start) {
+        return face.sign() * (side - start[axis]) + beyond_side * h;
+    };
+    Vec3 middle{};
+    for (std::size_t a = 0; a < 3; ++a) middle[a] = (voxel.at[a] + 0.5) * h;
+    std::optional<Facet> found;
+    if (!voxel.whole) {
+        entries.middles(voxel, starts);
+        for (const Vec3& start : starts) {
+            found = entries.way_out(voxel, start, axis, face.sign(), end(start));
+            if (found) break;
         }
-        // A patch that lies in the side itself may bound the sliver behind it only.
-        if (!found && face.beyond != no_voxel) {
-            Vec3 middle{};
-            for (std::size_t a = 0; a < 3; ++a) middle[a] = (voxel.at[a] + 0.5) * h;
-            found = entries.way_out(voxels[face.beyond], middle, axis, face.sign(), end(middle));
-        }
-        if (!found && voxel.whole) {
-            Vec3 middle{};
-            for (std::size_t a = 0; a < 3; ++a) middle[a] = (voxel.at[a] + 0.5) * h;
-            middle[axis] = side;
-            found = entries.beside(voxel.primitive, middle, axis, face.sign());
-        }
-        out.push_back(found.value_or(Facet{}));
-        out.back().primitive = voxel.primitive;
-        out.back().direction = face.direction;
     }
+    // A patch that lies in the side itself may bound the sliver behind it only.
+    if (!found && face.beyond != no_voxel)
+        found = entries.way_out(voxels[face.beyond], middle, axis, face.sign(), end(middle));
+    if (!found && voxel.whole) {
+        middle[axis] = side;
+        found = entries.beside(voxel.primitive, middle, axis, face.sign());
+    }
+    Facet out = found.value_or(Facet{});
+    out.primitive = voxel.primitive;
+    out.direction = face.direction;
+    return out;
+}
+
+}  // namespace
+
+std::vector<Facet> find_facets(std::span<const ObjectVoxel> voxels,
+                               std::span<const VoxelFace> faces, const ObjectEntries& entries,
+                               ThreadPool& pool) {
+    constexpr std::uint64_t chunk = 1 << 11;
+    std::vector<Facet> out(faces.size());
+    pool.run(faces.size(), chunk, [&](std::uint64_t first, std::uint64_t last) {
+        std::vector<Vec3> starts;
+        for (std::uint64_t f = first; f < last; ++f)
+            out[f] = facet_of(faces[f], voxels, entries, starts);
+    });
     return out;
 }
 

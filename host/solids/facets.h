@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/boundary_cells.h"
+#include "core/thread_pool.h"
 #include "solids/block_surface.h"
 #include "solids/object_voxels.h"
 
@@ -61,6 +62,7 @@ class ObjectEntries {
 
 // Of each face.
 std::vector<Facet> find_facets(std::span<const ObjectVoxel> voxels,
-                               std::span<const VoxelFace> faces, const ObjectEntries& entries);
+                               std::span<const VoxelFace> faces, const ObjectEntries& entries,
+                               ThreadPool& pool);
 
 }  // namespace topple::solids

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "geometry/cell_grid.h"
 #include "solids/vectors.h"
+#include "solids/vertex_rings.h"
 
 namespace topple::solids {
 namespace {
@@ -41,14 +44,20 @@ class Simplifier {
           patches_(patches),
           most_(options.tolerance_m * options.tolerance_m),
           longest_(options.longest_m > 0 ? options.longest_m * options.longest_m : INFINITY),
-          around_(mesh.vertex.size()),
-          quadric_(mesh.vertex.size()) {
-        for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t)
-            for (const std::uint32_t v : mesh.triangle[t]) around_[v].push_back(t);
-        for (std::uint32_t v = 0; v < around_.size(); ++v) add_planes(v);
-    }
+          around_(mesh) {}
 
-    void run() {
+    // Of the planes of the mesh as it is.
+    void find_quadrics(ThreadPool& pool) {
+        quadric_.resize(around_.size());
+        pool.each(around_.size(), 1 << 12,
+                  [&](std::size_t v) { add_planes(static_cast<std::uint32_t>(v)); });
+    }
+    std::vector<Quadric>& quadrics() { return quadric_; }
+
+    // Vertices that are `fixed` stay, and nothing is merged into them: there is more around them
+    // than the mesh has. Empty: none is.
+    void run(std::span<const std::uint8_t> fixed = {}) {
+        fixed_ = fixed;
         // A vertex that can't go is asked again once something around it has changed.
         std::vector<bool> asked(around_.size(), false);
         std::vector<std::size_t> changed(around_.size(), 0);  // in which round
@@ -59,7 +68,7 @@ class Simplifier {
                 // Changes of one round lie apart, or long fans would arise.
                 if (around_[v].empty() || asked[v] || changed[v] == round) continue;
                 asked[v] = true;
-                if (!remove(v)) continue;
+                if (is_fixed(v) || !remove(v)) continue;
                 any = true;
                 for (const std::uint32_t n : neighbours_) {
                     asked[n] = false;
@@ -69,15 +78,15 @@ class Simplifier {
         }
     }
 
-    // Takes what is no longer used out of the mesh.
-    void compact() {
-        std::vector<std::uint32_t> number(mesh_.vertex.size());
-        std::uint32_t vertices = 0;
+    // Takes what is no longer used out of the mesh. Returns the vertices that stay, ascending.
+    std::vector<std::uint32_t> compact() {
+        std::vector<std::uint32_t> number(mesh_.vertex.size()), kept;
         for (std::uint32_t v = 0; v < around_.size(); ++v) {
             if (around_[v].empty()) continue;
-            number[v] = vertices;
-            mesh_.vertex[vertices] = mesh_.vertex[v];
-            mesh_.corner[vertices++] = mesh_.corner[v];
+            number[v] = static_cast<std::uint32_t>(kept.size());
+            mesh_.vertex[kept.size()] = mesh_.vertex[v];
+            mesh_.corner[kept.size()] = mesh_.corner[v];
+            kept.push_back(v);
         }
         std::size_t triangles = 0;
         for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
@@ -86,13 +95,16 @@ class Simplifier {
             mesh_.triangle[triangles] = {number[a], number[b], number[c]};
             mesh_.facet[triangles++] = mesh_.facet[t];
         }
-        mesh_.vertex.resize(vertices);
-        mesh_.corner.resize(vertices);
+        mesh_.vertex.resize(kept.size());
+        mesh_.corner.resize(kept.size());
         mesh_.triangle.resize(triangles);
         mesh_.facet.resize(triangles);
+        return kept;
     }
 
   private:
+    bool is_fixed(std::uint32_t v) const { return !fixed_.empty() && fixed_[v] != 0; }
+
     Vec3 area(const std::array<std::uint32_t, 3>& t) const {
         const Vec3& p = mesh_.vertex[t[0]];
         return cross(minus(mesh_.vertex[t[1]], p), minus(mesh_.vertex[t[2]], p));
@@ -129,25 +141,33 @@ class Simplifier {
     }
 
     void add_planes(std::uint32_t v) {
-        // How much further than from a patch a vertex may be from a border of primitives, and from
-        // what no patch tells of.
-        constexpr double wider = 10, unknown = 20;
-        const Vec3& at = mesh_.vertex[v];
+        // How much further than from a patch a vertex may be from what no patch tells of.
+        constexpr double unknown = 20;
         const bool bordered = is_bordered(v);
         for (const std::uint32_t t : around_[v]) {
             const bool known = mesh_.facet[t].patch != no_patch;
+            const Vec3& at = mesh_.vertex[v];
             const Vec3 normal = unit(outside_of(t, mesh_.triangle[t], at));
             Vec3 counted = normal;
             if (!known)
                 for (double& x : counted) x /= unknown;
             quadric_[v].add_plane(counted, at);
-            const std::uint32_t next = after(mesh_.triangle[t], v);
-            if (!bordered || !is_border(t, v, next)) continue;
-            Vec3 across = unit(cross(minus(mesh_.vertex[next], at), normal));
-            for (double& x : across) x /= wider;
-            quadric_[v].add_plane(across, at);
-            quadric_[next].add_plane(across, at);
+            if (!bordered) continue;
+            const std::uint32_t next = after(mesh_.triangle[t], v),
+                                before = after(mesh_.triangle[t], v, 2);
+            if (is_border(t, v, next)) add_border(v, next, normal, quadric_[v]);
+            if (is_border(t, before, v))
+                add_border(before, v, unit(outside_of(t, mesh_.triangle[t], mesh_.vertex[before])),
+                           quadric_[v]);
         }
+    }
+    // The plane through a border of primitives across the surface.
+    void add_border(std::uint32_t from, std::uint32_t to, const Vec3& normal, Quadric& out) const {
+        // How much further than from a patch a vertex may be from it.
+        constexpr double wider = 10;
+        Vec3 across = unit(cross(minus(mesh_.vertex[to], mesh_.vertex[from]), normal));
+        for (double& x : across) x /= wider;
+        out.add_plane(across, mesh_.vertex[from]);
     }
     // Whether a vertex has triangles of several primitives.
     bool is_bordered(std::uint32_t v) const {
@@ -176,6 +196,7 @@ class Simplifier {
         nearest_.clear();
         const bool bordered = is_bordered(v);
         for (const std::uint32_t u : neighbours_) {
+            if (is_fixed(u)) continue;
             if (quadric_[v].at(mesh_.vertex[u]) + quadric_[u].at(mesh_.vertex[u]) > most_) continue;
             const Vec3 way = minus(mesh_.vertex[u], mesh_.vertex[v]);
             nearest_.emplace_back(dot(way, way), u);
@@ -225,37 +246,172 @@ class Simplifier {
         return true;
     }
     void merge(std::uint32_t v, std::uint32_t u) {
+        gained_.clear();
         for (const std::uint32_t t : around_[v]) {
             auto& triangle = mesh_.triangle[t];
             if (std::ranges::find(triangle, u) == triangle.end()) {
                 std::ranges::replace(triangle, v, u);
-                around_[u].push_back(t);
+                gained_.push_back(t);
                 continue;
             }
             for (const std::uint32_t w : triangle)
-                if (w != v) std::erase(around_[w], t);
+                if (w != v) around_.erase(w, t);
             triangle = {0, 0, 0};
         }
-        around_[v].clear();
+        around_.clear(v);
+        around_.append(u, gained_);
         quadric_[u].add(quadric_[v]);
     }
 
     SurfaceMesh& mesh_;
     std::span<const SurfacePatch> patches_;
-    double most_, longest_;                           // squared
-    std::vector<std::vector<std::uint32_t>> around_;  // triangles of each vertex; none: it is gone
+    double most_, longest_;  // squared
+    VertexRings around_;     // of a vertex that is gone, none
     std::vector<Quadric> quadric_;
+    std::span<const std::uint8_t> fixed_;
     std::vector<std::uint32_t> neighbours_;  // of the vertex that is looked at, ascending
+    std::vector<std::uint32_t> gained_;
     std::vector<std::pair<double, std::uint32_t>> nearest_;
 };
+
+// A block's part of a mesh, that is simplified by itself.
+struct Piece {
+    SurfaceMesh mesh;
+    std::vector<Quadric> quadric;
+    std::vector<std::uint8_t> fixed;
+    std::vector<std::uint32_t> from;  // of each vertex: which one of the whole, ascending
+};
+
+// Cuts a mesh into pieces that fit a cache and may be simplified at once, and joins them again.
+// What they are depends on the mesh alone.
+class Pieces {
+  public:
+    static constexpr std::int32_t edge = 32;  // of a block, voxels
+
+    explicit Pieces(const SurfaceMesh& mesh) : mesh_(mesh), shared_(mesh.vertex.size(), 0) {
+        std::vector<std::uint64_t> keys;
+        keys.reserve(mesh.triangle.size());
+        for (const auto& t : mesh.triangle) keys.push_back(block_of(mesh.corner[t[0]]));
+        blocks_ = geometry::group_keys(keys);
+        constexpr std::uint64_t none = ~std::uint64_t{0};
+        std::vector<std::uint64_t> block(mesh.vertex.size(), none);
+        for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+            for (const std::uint32_t v : mesh.triangle[t]) {
+                if (block[v] == none) block[v] = keys[t];
+                if (block[v] != keys[t]) shared_[v] = 1;
+            }
+        }
+    }
+    std::size_t size() const { return blocks_.size(); }
+
+    Piece cut(std::size_t n, std::span<const Quadric> quadric) const {
+        Piece out;
+        for (const std::uint32_t t : blocks_.group(n))
+            for (const std::uint32_t v : mesh_.triangle[t]) out.from.push_back(v);
+        std::ranges::sort(out.from);
+        out.from.erase(std::ranges::unique(out.from).begin(), out.from.end());
+        for (const std::uint32_t v : out.from) {
+            out.mesh.vertex.push_back(mesh_.vertex[v]);
+            out.mesh.corner.push_back(mesh_.corner[v]);
+            out.quadric.push_back(quadric[v]);
+            out.fixed.push_back(shared_[v]);
+        }
+        const auto number = [&](std::uint32_t v) {
+            return static_cast<std::uint32_t>(std::ranges::lower_bound(out.from, v) -
+                                              out.from.begin());
+        };
+        for (const std::uint32_t t : blocks_.group(n)) {
+            const auto [a, b, c] = mesh_.triangle[t];
+            out.mesh.triangle.push_back({number(a), number(b), number(c)});
+            out.mesh.facet.push_back(mesh_.facet[t]);
+        }
+        return out;
+    }
+
+    // The mesh that the pieces are now, and what was summed up at its vertices.
+    static SurfaceMesh joined(const SurfaceMesh& before, std::span<const Piece> pieces,
+                              std::vector<Quadric>& quadric) {
+        std::vector<std::uint32_t> number(before.vertex.size(), 0);
+        for (const Piece& p : pieces)
+            for (const std::uint32_t v : p.from) number[v] = 1;
+        SurfaceMesh out;
+        for (std::uint32_t v = 0; v < number.size(); ++v) {
+            if (number[v] == 0) continue;
+            number[v] = static_cast<std::uint32_t>(out.vertex.size());
+            out.vertex.push_back(before.vertex[v]);
+            out.corner.push_back(before.corner[v]);
+            quadric[out.vertex.size() - 1] = quadric[v];
+        }
+        quadric.resize(out.vertex.size());
+        for (const Piece& p : pieces) {
+            for (std::size_t v = 0; v < p.from.size(); ++v)
+                if (p.fixed[v] == 0) quadric[number[p.from[v]]] = p.quadric[v];
+            for (std::size_t t = 0; t < p.mesh.triangle.size(); ++t) {
+                const auto [a, b, c] = p.mesh.triangle[t];
+                out.triangle.push_back({number[p.from[a]], number[p.from[b]], number[p.from[c]]});
+                out.facet.push_back(p.mesh.facet[t]);
+            }
+        }
+        return out;
+    }
+
+  private:
+    static std::uint64_t block_of(const std::array<std::int32_t, 3>& corner) {
+        std::uint64_t key = 0;
+        for (const std::int32_t c : corner)
+            key = key << 21 | (static_cast<std::uint32_t>((c + (1 << 25)) / edge) & 0x1fffff);
+        return key;
+    }
+    const SurfaceMesh& mesh_;
+    geometry::KeyGroups blocks_;
+    std::vector<std::uint8_t> shared_;  // of each vertex: by several blocks
+};
+
+template <class T>
+void keep(std::span<const std::uint32_t> which, std::vector<T>& of) {
+    for (std::size_t n = 0; n < which.size(); ++n) of[n] = of[which[n]];
+    of.resize(which.size());
+}
+
+// Each block by itself, up to its borders.
+void simplify_blocks(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
+                     const SimplifyOptions& options, std::vector<Quadric>& quadric,
+                     ThreadPool& pool) {
+    const Pieces blocks(mesh);
+    std::vector<Piece> pieces(blocks.size());
+    pool.each(pieces.size(), 1, [&](std::size_t n) {
+        Piece& p = pieces[n];
+        p = blocks.cut(n, quadric);
+        Simplifier simplifier(p.mesh, patches, options);
+        simplifier.quadrics().swap(p.quadric);
+        simplifier.run(p.fixed);
+        simplifier.quadrics().swap(p.quadric);
+        const std::vector<std::uint32_t> kept = simplifier.compact();
+        keep(kept, p.quadric);
+        keep(kept, p.fixed);
+        keep(kept, p.from);
+    });
+    mesh = Pieces::joined(mesh, pieces, quadric);
+}
 
 }  // namespace
 
 void simplify(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
-              const SimplifyOptions& options) {
-    Simplifier simplifier(mesh, patches, options);
-    simplifier.run();
-    simplifier.compact();
+              const SimplifyOptions& options, ThreadPool& pool) {
+    constexpr std::size_t large = 20'000;  // vertices that are worth cutting apart
+    Simplifier first(mesh, patches, options);
+    first.find_quadrics(pool);
+    if (mesh.vertex.size() < large) {
+        first.run();
+        first.compact();
+        return;
+    }
+    std::vector<Quadric> quadric = std::move(first.quadrics());
+    simplify_blocks(mesh, patches, options, quadric, pool);
+    Simplifier rest(mesh, patches, options);
+    rest.quadrics().swap(quadric);
+    rest.run();
+    rest.compact();
 }
 
 }  // namespace topple::solids

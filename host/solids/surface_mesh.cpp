@@ -75,12 +75,13 @@ class Triangles {
 }  // namespace
 
 SurfaceMesh surface_mesh(std::span<const ObjectVoxel> voxels, const BoundaryCells& boundary,
-                         std::span<const std::int32_t> object_of_primitive, double voxel_m) {
+                         std::span<const std::int32_t> object_of_primitive, double voxel_m,
+                         ThreadPool& pool) {
     BlockSurface surface = block_surface(voxels);
     const ObjectEntries entries(boundary, object_of_primitive, voxel_m);
-    const std::vector<Facet> facet = find_facets(voxels, surface.face, entries);
+    const std::vector<Facet> facet = find_facets(voxels, surface.face, entries, pool);
     SurfaceMesh out;
-    out.vertex = vertex_places(voxels, surface, facet, entries, boundary.patches);
+    out.vertex = vertex_places(voxels, surface, facet, entries, boundary.patches, pool);
     out.corner = std::move(surface.corner);
     Triangles triangles(boundary.patches, out);
     for (std::size_t f = 0; f < surface.face.size(); ++f) triangles.add(surface.face[f], facet[f]);

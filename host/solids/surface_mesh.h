@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/boundary_cells.h"
+#include "core/thread_pool.h"
 #include "solids/facets.h"
 #include "solids/object_voxels.h"
 
@@ -32,6 +33,7 @@ struct SurfaceMesh {
 
 // voxels: of one object, sorted by (i, j, k).
 SurfaceMesh surface_mesh(std::span<const ObjectVoxel> voxels, const BoundaryCells& boundary,
-                         std::span<const std::int32_t> object_of_primitive, double voxel_m);
+                         std::span<const std::int32_t> object_of_primitive, double voxel_m,
+                         ThreadPool& pool);
 
 }  // namespace topple::solids

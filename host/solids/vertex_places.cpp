@@ -55,12 +55,19 @@ class Places {
           known_(surface.corner.size()),
           open_(voxels.size(), 0) {}
 
-    std::vector<Vec3> find() {
+    std::vector<Vec3> find(ThreadPool& pool) {
+        constexpr std::uint64_t chunk = 1 << 11;
         std::vector<Vec3> at(surface_.corner.size());
-        for (std::size_t v = 0; v < at.size(); ++v) at[v] = place(v, corner(v));
+        pool.run(at.size(), chunk, [&](std::uint64_t first, std::uint64_t last) {
+            Scratch scratch;
+            for (std::uint64_t v = first; v < last; ++v) at[v] = place(v, corner(v), scratch);
+        });
         smooth(at);
-        for (std::size_t v = 0; v < at.size(); ++v)
-            if (!known_[v]) at[v] = place(v, at[v]);
+        pool.run(at.size(), chunk, [&](std::uint64_t first, std::uint64_t last) {
+            Scratch scratch;
+            for (std::uint64_t v = first; v < last; ++v)
+                if (!known_[v]) at[v] = place(v, at[v], scratch);
+        });
         return at;
     }
 
@@ -70,31 +77,36 @@ class Places {
         return {c[0] * h_, c[1] * h_, c[2] * h_};
     }
 
+    // Of the vertex that is placed: its patches, others, and the voxels around it.
+    struct Scratch {
+        std::vector<std::uint32_t> of, others, around;
+    };
+
     // Where the patches of the vertex's faces meet next to `base`.
-    Vec3 place(std::size_t v, const Vec3& base) {
-        of_.clear();
-        around_.clear();
+    Vec3 place(std::size_t v, const Vec3& base, Scratch& s) {
+        s.of.clear();
+        s.around.clear();
         known_[v] = true;
         for (const std::uint32_t f : faces_.of(v)) {
             if (facet_[f].patch == no_patch)
                 known_[v] = false;
             else
-                of_.push_back(facet_[f].patch);
-            around_.push_back(surface_.face[f].voxel);
-            if (surface_.face[f].beyond != no_voxel) around_.push_back(surface_.face[f].beyond);
+                s.of.push_back(facet_[f].patch);
+            s.around.push_back(surface_.face[f].voxel);
+            if (surface_.face[f].beyond != no_voxel) s.around.push_back(surface_.face[f].beyond);
         }
-        if (of_.empty()) return base;
-        make_unique(of_);
-        const Vec3 met = meet_(of_, base, corner(v));
-        make_unique(around_);
-        return on_solid(met) ? met : cut(met, base, corner(v));
+        if (s.of.empty()) return base;
+        make_unique(s.of);
+        const Vec3 met = meet_(s.of, base, corner(v));
+        make_unique(s.around);
+        return on_solid(met, s.around) ? met : cut(met, base, corner(v), s);
     }
 
     // Whether the solid reaches p, as the voxels nearest to it say.
-    bool on_solid(const Vec3& p) const {
+    bool on_solid(const Vec3& p, std::span<const std::uint32_t> around) const {
         double nearest = std::numeric_limits<double>::infinity();
-        for (const std::uint32_t n : around_) nearest = std::min(nearest, distance(n, p));
-        return std::ranges::any_of(around_, [&](std::uint32_t n) {
+        for (const std::uint32_t n : around) nearest = std::min(nearest, distance(n, p));
+        return std::ranges::any_of(around, [&](std::uint32_t n) {
             return distance(n, p) <= nearest + slack * h_ &&
                    entries_.solid(voxels_[n], p, slack * h_);
         });
@@ -110,28 +122,28 @@ class Places {
 
     // A patch may end before the vertex, at another one that none of its faces stands for: the
     // place next to `met` where the solid ends there, too; `met` where there is none.
-    Vec3 cut(const Vec3& met, const Vec3& base, const Vec3& corner) {
-        others_.clear();
-        for (const std::uint32_t n : around_) entries_.add_patches(voxels_[n], others_);
-        make_unique(others_);
+    Vec3 cut(const Vec3& met, const Vec3& base, const Vec3& corner, Scratch& s) const {
+        s.others.clear();
+        for (const std::uint32_t n : s.around) entries_.add_patches(voxels_[n], s.others);
+        make_unique(s.others);
         Vec3 best = met;
         double least = h_;
         const auto attempt = [&] {
-            const Vec3 p = meet_(of_, base, corner);
+            const Vec3 p = meet_(s.of, base, corner);
             const double moved = length(minus(p, met));
-            if (moved >= least || !on_solid(p)) return;
+            if (moved >= least || !on_solid(p, s.around)) return;
             least = moved;
             best = p;
         };
-        for (std::size_t a = 0; a < others_.size(); ++a) {
-            of_.push_back(others_[a]);
+        for (std::size_t a = 0; a < s.others.size(); ++a) {
+            s.of.push_back(s.others[a]);
             attempt();
             for (std::size_t b = 0; b < a; ++b) {
-                of_.push_back(others_[b]);
+                s.of.push_back(s.others[b]);
                 attempt();
-                of_.pop_back();
+                s.of.pop_back();
             }
-            of_.pop_back();
+            s.of.pop_back();
         }
         return best;
     }
@@ -220,19 +232,18 @@ class Places {
     VertexFaces faces_;
     MeetingPoint meet_;
     double h_;
-    std::vector<bool> known_;         // of each vertex: each of its faces has a patch
-    std::vector<std::uint8_t> open_;  // of each voxel, bits of the directions of its faces
+    std::vector<std::uint8_t> known_;  // of each vertex: each of its faces has a patch
+    std::vector<std::uint8_t> open_;   // of each voxel, bits of the directions of its faces
     std::vector<Beside> beside_;
     std::vector<std::uint32_t> neighbours_;
-    std::vector<std::uint32_t> of_, others_, around_;  // of the vertex that is placed
 };
 
 }  // namespace
 
 std::vector<Vec3> vertex_places(std::span<const ObjectVoxel> voxels, const BlockSurface& surface,
                                 std::span<const Facet> facet, const ObjectEntries& entries,
-                                std::span<const SurfacePatch> patches) {
-    return Places(voxels, surface, facet, entries, patches).find();
+                                std::span<const SurfacePatch> patches, ThreadPool& pool) {
+    return Places(voxels, surface, facet, entries, patches).find(pool);
 }
 
 }  // namespace topple::solids

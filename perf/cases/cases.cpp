@@ -8,6 +8,7 @@ std::span<const Case> all_cases() {
         {"triad", triad},
         {"multiply_add", multiply_add},
         {"voxel_normals", voxel_normals},
+        {"plane_mean", plane_mean},
         {"normal_cluster", normal_cluster},
         {"carve_leaves", carve_leaves},
         {"carve", carve},

@@ -9,6 +9,7 @@ namespace topple::perf {
 Prepared triad(device::Device& device);
 Prepared multiply_add(device::Device& device);
 Prepared voxel_normals(device::Device& device);
+Prepared plane_mean(device::Device& device);
 Prepared normal_cluster(device::Device& device);
 Prepared carve_leaves(device::Device& device);
 Prepared carve(device::Device& device);

@@ -4,6 +4,7 @@
 
 #include "normal_cluster.hpp"
 #include "perf/cases/cases.h"
+#include "plane_mean.hpp"
 #include "scenes/random.h"
 #include "voxel_normals.hpp"
 
@@ -17,37 +18,46 @@ int height(int x, int y) {
     return (x / 3 + y / 5 + (x % 64 < 32 ? x % 32 : 32 - x % 32) / 4) % 1024;
 }
 
+// A sheet of 448 x 448 cells, as surfaces are: each finds its 25 columns in a few cache lines.
+struct Sheet {
+    static constexpr int side = 448, radius = 2, width = 2 * radius + 1;
+    static constexpr std::uint32_t count = side * side;
+    std::vector<std::int32_t> cell_z;
+    std::vector<std::uint32_t> columns, query_cell;
+    double pairs = 0;  // of queries and cells in their reach
+
+    Sheet() : cell_z(count), columns(std::size_t{width * width} * count), query_cell(count) {
+        for (std::uint32_t n = 0; n < count; ++n) {
+            const int x = static_cast<int>(n) / side, y = static_cast<int>(n) % side;
+            cell_z[n] = height(x, y);
+            query_cell[n] = n;
+            for (int c = 0; c < width * width; ++c) {
+                const int a = x + c / width - radius, b = y + c % width - radius;
+                const bool in = a >= 0 && b >= 0 && a < side && b < side &&
+                                std::abs(height(a, b) - cell_z[n]) <= radius;
+                columns[static_cast<std::size_t>(c) * count + n] =
+                    in ? static_cast<std::uint32_t>(a * side + b) | 1u << 29 : 0u;
+                pairs += in;
+            }
+        }
+    }
+};
+
 }  // namespace
 
-// A sheet of 448 x 448 cells, as surfaces are: each query finds its 25 columns in a few cache
-// lines.
 Prepared voxel_normals(device::Device& device) {
-    constexpr int side = 448, radius = 2, width = 2 * radius + 1;
-    constexpr std::uint32_t count = side * side;
+    constexpr std::uint32_t count = Sheet::count;
+    const Sheet sheet;
     Random random(4);
     std::vector<float> cells(10 * std::size_t{count}), query(3 * std::size_t{count}),
         prior(3 * std::size_t{count}, 0.0f);
-    std::vector<std::int32_t> cell_z(count);
-    std::vector<std::uint32_t> columns(std::size_t{width * width} * count), query_cell(count);
-    double pairs = 0;
     for (std::uint32_t n = 0; n < count; ++n) {
-        const int x = static_cast<int>(n) / side, y = static_cast<int>(n) % side;
-        cell_z[n] = height(x, y);
-        query_cell[n] = n;
         cells[n] = static_cast<float>(random.integer(1, 9));
         for (std::uint32_t k = 1; k < 4; ++k) {
             cells[k * count + n] = static_cast<float>(random.uniform(-0.4, 0.4));
             query[(k - 1) * count + n] = cells[k * count + n];
         }
         for (std::uint32_t k = 4; k < 10; ++k) cells[k * count + n] = k < 7 ? 0.05f : 0.0f;
-        for (int c = 0; c < width * width; ++c) {
-            const int a = x + c / width - radius, b = y + c % width - radius;
-            const bool in = a >= 0 && b >= 0 && a < side && b < side &&
-                            std::abs(height(a, b) - cell_z[n]) <= radius;
-            columns[static_cast<std::size_t>(c) * count + n] =
-                in ? static_cast<std::uint32_t>(a * side + b) | 1u << 29 : 0u;
-            pairs += in;
-        }
     }
     struct Buffers {
         device::Buffer<float> cells;
@@ -56,17 +66,17 @@ Prepared voxel_normals(device::Device& device) {
         device::Buffer<float> query, prior, fit;
     };
     auto on = std::make_shared<Buffers>(Buffers{upload(device, cells, "cells"),
-                                                upload(device, cell_z, "cell_z"),
-                                                upload(device, columns, "columns"),
-                                                upload(device, query_cell, "query_cell"),
+                                                upload(device, sheet.cell_z, "cell_z"),
+                                                upload(device, sheet.columns, "columns"),
+                                                upload(device, sheet.query_cell, "query_cell"),
                                                 upload(device, query, "query"),
                                                 upload(device, prior, "prior"),
                                                 {device, 6 * std::uint64_t{count}, "fit"}});
     // 50 operations for each cell in reach; 15 rotations of 45 and 60 more for each query.
-    return {{count, "queries", count * 4.0 * (10 + 1 + width * width + 1 + 3 + 6),
-             50 * pairs + (15 * 45 + 60.0) * count},
+    return {{count, "queries", count * 4.0 * (10 + 1 + Sheet::width * Sheet::width + 1 + 3 + 6),
+             50 * sheet.pairs + (15 * 45 + 60.0) * count},
             [on](device::Queue& queue) {
-                constexpr float reach = radius + 0.5f;
+                constexpr float reach = Sheet::radius + 0.5f;
                 queue.add<kernels::VoxelNormals>(count,
                                                  {.cells = on->cells,
                                                   .cell_z = on->cell_z,
@@ -77,12 +87,62 @@ Prepared voxel_normals(device::Device& device) {
                                                   .fit = on->fit},
                                                  {.query_count = count,
                                                   .cell_count = count,
-                                                  .radius = radius,
+                                                  .radius = Sheet::radius,
                                                   .inverse_reach2 = 1 / (reach * reach),
                                                   .use_prior = 0});
             },
             {},
             [on] { return Hash().add(on->fit.download()).value(); }};
+}
+
+Prepared plane_mean(device::Device& device) {
+    constexpr std::uint32_t count = Sheet::count;
+    const Sheet sheet;
+    Random random(6);
+    std::vector<float> planes(8 * std::size_t{count});
+    for (std::uint32_t n = 0; n < count; ++n) {
+        const double x = random.uniform(-0.3, 0.3), y = random.uniform(-0.3, 0.3),
+                     length = std::sqrt(x * x + y * y + 1);
+        const double values[] = {random.uniform(0.1, 1),
+                                 random.uniform(-0.4, 0.4),
+                                 random.uniform(-0.4, 0.4),
+                                 random.uniform(-0.4, 0.4),
+                                 x / length,
+                                 y / length,
+                                 1 / length,
+                                 random.uniform(-0.2, 0.2)};
+        for (std::uint32_t k = 0; k < 8; ++k) planes[k * count + n] = static_cast<float>(values[k]);
+    }
+    struct Buffers {
+        device::Buffer<float> planes;
+        device::Buffer<std::int32_t> cell_z;
+        device::Buffer<std::uint32_t> columns, query_cell;
+        device::Buffer<float> offsets;
+    };
+    auto on = std::make_shared<Buffers>(Buffers{upload(device, planes, "planes"),
+                                                upload(device, sheet.cell_z, "cell_z"),
+                                                upload(device, sheet.columns, "columns"),
+                                                upload(device, sheet.query_cell, "query_cell"),
+                                                {device, count, "offsets"}});
+    // 30 operations for each cell in reach.
+    return {{count, "queries", count * 4.0 * (8 + 1 + Sheet::width * Sheet::width + 1 + 1),
+             30 * sheet.pairs},
+            [on](device::Queue& queue) {
+                constexpr float reach = Sheet::radius + 0.5f;
+                queue.add<kernels::PlaneMean>(count,
+                                              {.planes = on->planes,
+                                               .cell_z = on->cell_z,
+                                               .columns = on->columns,
+                                               .query_cell = on->query_cell,
+                                               .offsets = on->offsets},
+                                              {.query_count = count,
+                                               .cell_count = count,
+                                               .radius = Sheet::radius,
+                                               .reach2 = reach * reach,
+                                               .least_cosine = 0.8f});
+            },
+            {},
+            [on] { return Hash().add(on->offsets.download()).value(); }};
 }
 
 // A million normals, most of them near three axes, against 12 of them.

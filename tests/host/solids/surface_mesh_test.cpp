@@ -20,6 +20,7 @@ namespace topple::solids {
 namespace {
 
 constexpr double h = 0.02;
+ThreadPool pool(2);
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
@@ -90,7 +91,8 @@ BoundaryCells boundary_of(const Scanned& scanned, std::size_t primitives = 1) {
 SurfaceMesh mesh_of(const SolidCells& cells, const BoundaryCells& boundary,
                     std::size_t primitives = 1) {
     const std::vector<std::int32_t> object(primitives, 0);
-    return surface_mesh(object_voxels(cells, boundary, object), boundary, object, cells.voxel_m);
+    return surface_mesh(object_voxels(cells, boundary, object), boundary, object, cells.voxel_m,
+                        pool);
 }
 
 // A solid of revolution about z, or a ball, by its quadric; with points all over it.
@@ -165,7 +167,7 @@ void expect_volume(const Scanned& scanned, double volume) {
     EXPECT_NEAR(volume_of(mesh.vertex, mesh.triangle) / volume, 1, 0.01);
     expect_normals(shaded(mesh, boundary.patches));
     const std::size_t before = mesh.triangle.size();
-    simplify(mesh, boundary.patches, {.tolerance_m = 0.01 * h});
+    simplify(mesh, boundary.patches, {.tolerance_m = 0.01 * h}, pool);
     expect_closed(mesh);
     EXPECT_LT(mesh.triangle.size(), before);
     EXPECT_NEAR(volume_of(mesh.vertex, mesh.triangle) / volume, 1, 0.01);
@@ -186,7 +188,7 @@ TEST(SurfaceMesh, a_tilted_box_is_six_flat_faces) {
             EXPECT_TRUE(box.holds({v[0], v[1], v[2]}, 0.02 * h))
                 << (box.axes.transpose() * (Eigen::Vector3d(v[0], v[1], v[2]) - box.middle))
                        .transpose();
-        simplify(mesh, boundary.patches, {.tolerance_m = 0.01 * h});
+        simplify(mesh, boundary.patches, {.tolerance_m = 0.01 * h}, pool);
         EXPECT_LE(mesh.vertex.size(), 16u) << "corners, and what a fold left at them";
     }
 }
@@ -238,7 +240,7 @@ TEST(SurfaceMesh, what_lies_between_an_objects_primitives_is_no_surface) {
     const auto second = std::ranges::find(voxels, 1, &ObjectVoxel::object);
     double volume = 0;
     for (const auto& part : {std::span(voxels.begin(), second), std::span(second, voxels.end())}) {
-        const SurfaceMesh mesh = surface_mesh(part, boundary, apart, h);
+        const SurfaceMesh mesh = surface_mesh(part, boundary, apart, h, pool);
         expect_closed(mesh);
         volume += volume_of(mesh.vertex, mesh.triangle);
     }
@@ -293,7 +295,7 @@ TEST(SurfaceMesh, is_closed_around_any_voxels) {
                 }
         SurfaceMesh mesh = mesh_of(cells_of(places), {});
         expect_closed(mesh);
-        simplify(mesh, {}, {.tolerance_m = 0.01 * h});
+        simplify(mesh, {}, {.tolerance_m = 0.01 * h}, pool);
         expect_closed(mesh);
         const ShadedMesh shade = shaded(mesh, {});
         for (const Vec3& n : shade.normal) ASSERT_NEAR(length(n), 1, 1e-9);
@@ -337,7 +339,7 @@ TEST(SurfaceMesh, of_nothing_is_empty) {
     EXPECT_TRUE(object_voxels({}, {}, {}).empty());
     SurfaceMesh mesh = mesh_of({}, {});
     EXPECT_TRUE(mesh.vertex.empty());
-    simplify(mesh, {}, {.tolerance_m = h});
+    simplify(mesh, {}, {.tolerance_m = h}, pool);
     EXPECT_TRUE(mesh.triangle.empty());
     EXPECT_TRUE(shaded(mesh, {}).vertex.empty());
 }
@@ -348,11 +350,32 @@ TEST(SimplifyMesh, keeps_edges_as_short_as_it_is_told_to) {
     const BoundaryCells boundary = boundary_of(scanned);
     SurfaceMesh mesh = mesh_of(scanned.cells, boundary);
     const std::size_t before = mesh.triangle.size();
-    simplify(mesh, boundary.patches, {.tolerance_m = 0.01 * h, .longest_m = 3 * h});
+    simplify(mesh, boundary.patches, {.tolerance_m = 0.01 * h, .longest_m = 3 * h}, pool);
     EXPECT_LT(mesh.triangle.size(), before / 2);
     for (const auto& t : mesh.triangle)
         for (std::size_t n = 0; n < 3; ++n)
             EXPECT_LE(length(minus(mesh.vertex[t[n]], mesh.vertex[t[(n + 1) % 3]])), 3 * h);
+}
+
+// A board of several blocks, each of which is simplified by itself first.
+TEST(SimplifyMesh, is_the_same_for_any_number_of_threads) {
+    const Box box{{0.3, 0.1, 0.2}, {0.9, 0.9, 0.1}, turned(0.3, 0.2, 0.1)};
+    const Scanned scanned = scan({box}, h);
+    const BoundaryCells boundary = boundary_of(scanned);
+    const SurfaceMesh whole = mesh_of(scanned.cells, boundary);
+    ASSERT_GT(whole.vertex.size(), 20'000u) << "or it goes as one";
+    SurfaceMesh first;
+    for (const unsigned threads : {1u, 3u}) {
+        ThreadPool some(threads);
+        SurfaceMesh mesh = whole;
+        simplify(mesh, boundary.patches, {.tolerance_m = 0.01 * h}, some);
+        expect_closed(mesh);
+        EXPECT_NEAR(volume_of(mesh.vertex, mesh.triangle) / box.volume(), 1, 0.01);
+        EXPECT_LT(mesh.vertex.size(), 500u) << "as many as in one go";
+        if (first.vertex.empty()) first = mesh;
+        EXPECT_EQ(mesh.vertex, first.vertex);
+        EXPECT_EQ(mesh.triangle, first.triangle);
+    }
 }
 
 // Of a wall that is two primitives, the upper and the lower half.
@@ -362,7 +385,7 @@ TEST(SimplifyMesh, keeps_borders_between_primitives) {
     const Scanned scanned = scan({lower, upper}, h);
     const BoundaryCells boundary = boundary_of(scanned, 2);
     SurfaceMesh mesh = mesh_of(scanned.cells, boundary, 2);
-    simplify(mesh, boundary.patches, {.tolerance_m = 0.01 * h});
+    simplify(mesh, boundary.patches, {.tolerance_m = 0.01 * h}, pool);
     for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
         for (const std::uint32_t v : mesh.triangle[t]) {
             const double z = mesh.vertex[v][2];

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "geometry/plane_mean.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <random>
 
 #include "device/devices.h"
+#include "geometry/plane_fit.h"
 
 namespace topple::geometry {
 namespace {
@@ -49,10 +48,9 @@ double off_tube(double radius, double noise, bool with_mean) {
     const CellGrid grid = grid_of(points);
     const auto device = device::open_native();
     const PlaneQueries queries = queries_at_means(grid);
-    const PlaneFit fit = fit_planes(*device, grid, queries);
-    ThreadPool pool(2);
-    const std::vector<float> offset =
-        with_mean ? mean_offsets(grid, queries, fit, pool) : fit.offset;
+    PlaneFitter fitter(*device, grid, queries);
+    const PlaneFit fit = fitter.fit({});
+    const std::vector<float> offset = with_mean ? fitter.mean_offsets(fit) : fit.offset;
     double out = 0, count = 0;
     for (std::size_t q = 0; q < queries.cell.size(); ++q) {
         const std::size_t c = queries.cell[q];
