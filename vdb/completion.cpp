@@ -80,6 +80,7 @@ void complete(device::Device& device, const CompletionOptions& options, VoxelSce
     commit(filled(device, volume, options.fill), volume, cells);
     round([&](const VolumeView& view) { return settled(view, options.ledges); });
     round([&](const VolumeView& view) { return extended(view); });
+    round([&](const VolumeView& view) { return backed(view); });
     round([&](const VolumeView& view) { return bridged(view, options.longest_gap); });
     if (options.map) commit(told(volume, *options.map), volume, cells);
     device.threads().poll();

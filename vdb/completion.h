@@ -16,7 +16,7 @@
 
 // From what was seen to what is solid. Each rule looks at the volume and proposes a list of voxels;
 // none changes anything but by commit(). Rules that build on one another run in rounds, in this
-// order: filling, settling, extending, bridging, and what a map tells.
+// order: filling, settling, extending, backing, bridging, and what a map tells.
 namespace topple::vdb {
 
 // A voxel, and what a rule takes it for. Lists of them are sorted by voxel, each but once.
@@ -42,6 +42,10 @@ class VolumeView {
     // Of a primitive that ends somewhere; walls and ceilings are known as sheets alone.
     bool is_body(std::int32_t primitive) const {
         return primitive >= 0 && !is_sheet(role_of(roles_, primitive));
+    }
+
+    bool is_upright_sheet(std::int32_t primitive) const {
+        return role_of(roles_, primitive) == Role::wall;
     }
 
     bool solid(const Voxel& at) const;
@@ -90,6 +94,10 @@ std::vector<Claim> settled(const VolumeView& view, std::span<const StandsOn> on 
 // Slender parts (up to 10 cm) whose upper end nobody saw go on, through at most 60 cm of what
 // nobody saw, to the wider thing above them: legs under a seat.
 std::vector<Claim> extended(const VolumeView& view);
+
+// Upright sheets of the shell that stand before a wall, along an axis and at most 70 cm, with
+// nothing seen between: fronts of what is built in, which reaches to the wall.
+std::vector<Claim> backed(const VolumeView& view);
 
 // Joins neighbouring primitives through what no frame saw: gaps of up to `longest_gap`
 // invisible voxels along an axis between two primitives are completed, each voxel by the nearer

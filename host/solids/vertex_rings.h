@@ -37,8 +37,7 @@ class VertexRings {
     }
     void clear(std::uint32_t v) { place_[v].count = 0; }
     void erase(std::uint32_t v, std::uint32_t triangle) {
-        const auto begin =
-            triangles_.begin() + static_cast<std::ptrdiff_t>(place_[v].first);
+        const auto begin = triangles_.begin() + static_cast<std::ptrdiff_t>(place_[v].first);
         const auto end = begin + place_[v].count;
         const auto kept = std::remove(begin, end, triangle);
         place_[v].count = static_cast<std::uint32_t>(kept - begin);

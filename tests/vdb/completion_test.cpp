@@ -164,6 +164,27 @@ TEST(Completion, ALegGoesOnToAllThatItEndsBelow) {
 
 // A closed surface of a hundred metres, say of a mesh, has more unseen voxels within than memory
 // has room for: 36 bytes for each. A point for each block of its faces is enough to tell.
+// A cabinet on a wall, of which the camera sees the front alone; a panel in the middle of the room.
+TEST(Completion, AFrontBeforeAWallReachesToItUnlessOneSawBehind) {
+    const auto backing = [](double depth, double side) {
+        Boxes boxes;
+        boxes.boxes = {{{-2, 1, -0.2}, {2, 1.1, 2}}, {{-0.4, 1 - depth, 0.8}, {0.4, 1, 1.3}}};
+        if (side > 0) boxes.boxes[1].high[1] = 1 - depth + 0.04;
+        boxes.look({0, -1.5, 1.05}, {0, 1, 1.05});
+        if (side > 0)
+            for (const double x : {-side, side}) boxes.look({x, -0.3, 1.05}, {0, 1, 1.05});
+        const auto device = device::open_native();
+        VoxelScene scene({.voxel_m = h}, boxes.cloud, boxes.label);
+        scene.carve(*device, boxes.intrinsics, boxes.frames);
+        const double claims = static_cast<double>(
+            apply(scene, {Role::wall, Role::wall}, [](const VolumeView& v) { return backed(v); }));
+        return claims / (0.8 * 0.5 * depth / (h * h * h));
+    };
+    EXPECT_NEAR(backing(0.32, 0), 1, 0.12);
+    EXPECT_EQ(backing(0.9, 0), 0) << "no furniture is so deep";
+    EXPECT_LT(backing(0.5, 1.6), 0.05) << "what lies behind was seen from the sides";
+}
+
 TEST(Completion, WhatIsTooLargeToFillIsRefused) {
     const auto device = device::open_device("native", 2);
     const auto memory = static_cast<double>(device->info().limits.memory_bytes);
