@@ -6,14 +6,15 @@
 
 #include "vdb/completion.h"
 
-// Fronts of what is built in: a wall cabinet that was seen from before alone has neither sides nor a
-// back, but the wall.
+// Fronts of what is built in: a wall cabinet that was seen from before alone has neither sides nor
+// a back, but the wall.
 namespace topple::vdb {
 namespace {
 
 constexpr double deepest_m = 0.7;  // of built-in furniture
 constexpr double flat_m = 0.08;    // thickness of a sheet's voxels, beside one voxel
-constexpr std::size_t outermost = 20;  // of its voxels this part at either end is no more than noise
+constexpr std::size_t outermost =
+    20;  // of its voxels this part at either end is no more than noise
 // Share of a front's columns behind which nobody saw anything, down to the wall.
 constexpr double hidden_share = 0.6;
 

@@ -134,7 +134,8 @@ CellGrid coarsen(const CellGrid& grid, ThreadPool& threads, std::vector<std::uin
 
 ColumnSweep::ColumnSweep(std::span<const std::int32_t> x, std::span<const std::int32_t> y,
                          std::span<const std::int32_t> z, int radius)
-    : keys_(x.size() + 1, ~std::uint64_t{0}), height_(2 * static_cast<std::uint64_t>(radius) + 1) {
+    : keys_(x.size() + most_height, ~std::uint64_t{0}),
+      height_(2 * static_cast<std::uint64_t>(radius) + 1) {
     if (x.empty()) return;
     std::array<std::int64_t, 3> lowest{}, highest{};
     const std::array<std::span<const std::int32_t>, 3> index{x, y, z};
@@ -161,7 +162,7 @@ std::vector<std::uint32_t> column_table(const ColumnSweep& sweep,
     const std::size_t count = cells.size();
     std::vector<std::uint32_t> table(count * sweep.columns());
     threads.run(count, grid_chunk, [&](std::uint64_t begin, std::uint64_t end) {
-        sweep.run(
+        sweep.run_by_column(
             begin, end, [&](std::size_t k) { return cells[k]; },
             [&](std::size_t k, std::size_t column, std::size_t lo, std::size_t hi) {
                 // An empty column may start beyond the tile; its start is never read.

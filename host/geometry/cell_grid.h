@@ -78,15 +78,22 @@ class ColumnSweep {
     // The cells must ascend.
     template <class Cells, class Visit>
     void run(std::size_t first, std::size_t last, const Cells& cells, const Visit& visit) const;
+    // The same for one column after the other, which is faster.
+    template <class Cells, class Visit>
+    void run_by_column(std::size_t first, std::size_t last, const Cells& cells,
+                       const Visit& visit) const;
     std::size_t columns() const { return lowest_.size(); }
 
   private:
-    static constexpr std::size_t most_columns = 49;
-    std::vector<std::uint64_t> keys_;    // one more than cells, the last above all
+    static constexpr std::size_t most_columns = 49, most_height = 7;
+    std::vector<std::uint64_t> keys_;    // most_height more than cells, those above all
     std::vector<std::uint64_t> lowest_;  // of each column's run, relative to the cell's key
     std::uint64_t height_ = 0;           // keys of a run
     std::size_t first_at(std::uint64_t key) const;
     std::size_t advance(std::size_t at, std::uint64_t key) const;
+    template <std::size_t height, class Cells, class Visit>
+    void run_columns(std::size_t first, std::size_t last, const Cells& cells,
+                     const Visit& visit) const;
 };
 
 // A sweep's runs for ascending cells, a plane of cells.size() entries for each column: the first
@@ -135,6 +142,31 @@ void ColumnSweep::run(std::size_t first, std::size_t last, const Cells& cells,
             visit(k, c, lo[c], hi[c]);
         }
     }
+}
+
+template <std::size_t height, class Cells, class Visit>
+void ColumnSweep::run_columns(std::size_t first, std::size_t last, const Cells& cells,
+                              const Visit& visit) const {
+    for (std::size_t c = 0; c < lowest_.size(); ++c) {
+        std::size_t lo = first_at(keys_[cells(first)] + lowest_[c]);
+        for (std::size_t k = first; k < last; ++k) {
+            const std::uint64_t low = keys_[cells(k)] + lowest_[c];
+            lo = advance(lo, low);
+            // No more cells than the run is high; counted without a branch.
+            std::size_t hi = lo;
+            for (std::size_t step = 0; step < height; ++step) hi += keys_[lo + step] < low + height;
+            visit(k, c, lo, hi);
+        }
+    }
+}
+
+template <class Cells, class Visit>
+void ColumnSweep::run_by_column(std::size_t first, std::size_t last, const Cells& cells,
+                                const Visit& visit) const {
+    if (first == last) return;
+    if (height_ == 3) run_columns<3>(first, last, cells, visit);
+    if (height_ == 5) run_columns<5>(first, last, cells, visit);
+    if (height_ == 7) run_columns<7>(first, last, cells, visit);
 }
 
 }  // namespace topple::geometry

@@ -76,26 +76,43 @@ Witnesses::Frame Witnesses::keep(const DepthFrame& frame) const {
     return kept;
 }
 
-void Witnesses::vote(const Frame& frame, const FusedPoints& points, std::size_t first,
-                     std::vector<Votes>& votes) const {
-    const std::array<float, 16>& m = frame.camera_to_world;
-    const auto columns = static_cast<float>(width_), rows = static_cast<float>(height_);
-    for (std::size_t k = 0; k < votes.size(); ++k) {
-        const std::size_t i = first + k;
-        const float x = points.x[i] - m[3], y = points.y[i] - m[7], z = points.z[i] - m[11];
+void Witnesses::project(const Frame& frame, const FusedPoints& points, std::size_t first,
+                        Projected& out) const {
+    // Copies: a compiler can't know that what is written is none of them.
+    const std::array<float, 16> m = frame.camera_to_world;
+    const float columns = static_cast<float>(width_), rows = static_cast<float>(height_);
+    const float fx = fx_, fy = fy_, cx = cx_, cy = cy_;
+    const auto width = static_cast<std::int32_t>(width_);
+    const float *px = &points.x[first], *py = &points.y[first], *pz = &points.z[first];
+    float* const depths = out.depth.data();
+    std::int32_t* const pixels = out.pixel.data();
+    for (std::size_t k = 0; k < out.depth.size(); ++k) {
+        const float x = px[k] - m[3], y = py[k] - m[7], z = pz[k] - m[11];
         const float depth = m[2] * x + m[6] * y + m[10] * z;
-        const float u = (m[0] * x + m[4] * y + m[8] * z) / depth * fx_ + cx_;
-        const float v = (m[1] * x + m[5] * y + m[9] * z) / depth * fy_ + cy_;
-        if (!(depth > nearest_m && u >= 0 && v >= 0 && u < columns && v < rows)) continue;
-        const Pixel& seen =
-            frame.pixels[static_cast<std::size_t>(v) * width_ + static_cast<std::size_t>(u)];
+        const float u = (m[0] * x + m[4] * y + m[8] * z) / depth * fx + cx;
+        const float v = (m[1] * x + m[5] * y + m[9] * z) / depth * fy + cy;
+        const bool in = (depth > nearest_m) & (u >= 0) & (v >= 0) & (u < columns) & (v < rows);
+        depths[k] = depth;
+        const auto row = static_cast<std::int32_t>(in ? v : 0.0f),
+                   column = static_cast<std::int32_t>(in ? u : 0.0f);
+        pixels[k] = in ? row * width + column : -1;
+    }
+}
+
+void Witnesses::vote(const Frame& frame, const FusedPoints& points, std::size_t first,
+                     Projected& at, std::vector<Votes>& votes) const {
+    project(frame, points, first, at);
+    for (std::size_t k = 0; k < votes.size(); ++k) {
+        if (at.pixel[k] < 0) continue;
+        const Pixel& seen = frame.pixels[static_cast<std::size_t>(at.pixel[k])];
         if (seen.depth == 0) continue;
+        const float depth = at.depth[k];
         const float reading = metres_ * seen.depth, sigma = depth_sigma(reading);
         const float weight = 1 / (sigma * sigma);
         const float least = metres_ * seen.least, greatest = metres_ * seen.greatest;
         const bool through = least > depth + beyond_surface * sigma + pose_error_m;
         const bool copied = seen.least > 0 && greatest < depth &&
-                            least > depth - copy * points.sigma[i] - pose_error_m;
+                            least > depth - copy * points.sigma[first + k] - pose_error_m;
         if (std::abs(reading - depth) <= on_surface * sigma + pose_error_m)
             votes[k].confirm += weight;
         else if (through || copied)
@@ -107,7 +124,8 @@ std::vector<std::uint8_t> Witnesses::deny(const FusedPoints& points, ThreadPool&
     std::vector<std::uint8_t> denied(points.x.size());
     pool.run(points.x.size(), points_at_once, [&](std::uint64_t first, std::uint64_t last) {
         std::vector<Votes> votes(last - first);
-        for (const Frame& frame : frames_) vote(frame, points, first, votes);
+        Projected at{std::vector<float>(last - first), std::vector<std::int32_t>(last - first)};
+        for (const Frame& frame : frames_) vote(frame, points, first, at, votes);
         for (std::size_t k = 0; k < votes.size(); ++k)
             denied[first + k] = votes[k].deny > votes[k].confirm;
     });

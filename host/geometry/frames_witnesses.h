@@ -45,7 +45,15 @@ class Witnesses {
         float confirm = 0, deny = 0;  // sums of inverse variances
     };
     Frame keep(const DepthFrame& frame) const;
-    void vote(const Frame& frame, const FusedPoints& points, std::size_t first,
+    // Of a run of points: their depths in a frame, and the pixels that they lie in, -1 for those
+    // out of its view.
+    struct Projected {
+        std::vector<float> depth;
+        std::vector<std::int32_t> pixel;
+    };
+    void project(const Frame& frame, const FusedPoints& points, std::size_t first,
+                 Projected& out) const;
+    void vote(const Frame& frame, const FusedPoints& points, std::size_t first, Projected& at,
               std::vector<Votes>& votes) const;
 
     std::uint32_t step_, width_, height_;  // pixels of the frames from one kept to the next; counts
