@@ -19,8 +19,8 @@ double distance_to(const SurfacePatch& patch, const Eigen::Vector3d& p) {
 }
 
 // The nearest patch within whose noise a point lies; -1 where none does.
-std::int32_t explaining(std::span<const SurfacePatch> patches,
-                        std::span<const std::int32_t> near, const Eigen::Vector3d& p) {
+std::int32_t explaining(std::span<const SurfacePatch> patches, std::span<const std::int32_t> near,
+                        const Eigen::Vector3d& p) {
     std::int32_t best = -1;
     double least = 1;
     for (const std::int32_t n : near) {
@@ -174,7 +174,8 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
         const auto found = beside.find({primitive_of_point[n], map.cell_of(at)});
         if (found == beside.end()) continue;
         for (const std::size_t f : found->second) {
-            const double d = distance_to(faces[f].patch, at), rim = outlier * faces[f].patch.noise_m;
+            const double d = distance_to(faces[f].patch, at),
+                         rim = outlier * faces[f].patch.noise_m;
             faces[f].before += d > rim;
             faces[f].behind += d < -rim;
         }
