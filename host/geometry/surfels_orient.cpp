@@ -80,16 +80,16 @@ SensorSides::SensorSides(const CloudView& cloud, std::span<const Vec3> viewpoint
       viewpoint_of_point_(viewpoint_of_point),
       known_(!viewpoints.empty() || !cloud.nx.empty()) {}
 
+std::array<double, 3> SensorSides::way(std::size_t i) const {
+    if (viewpoints_.empty()) return {cloud_.nx[i], cloud_.ny[i], cloud_.nz[i]};
+    const Vec3& eye = viewpoints_[viewpoint_of_point_.empty() ? 0 : viewpoint_of_point_[i]];
+    return {eye[0] - cloud_.x[i], eye[1] - cloud_.y[i], eye[2] - cloud_.z[i]};
+}
+
 std::array<float, 3> SensorSides::towards(std::size_t i) const {
     // Sums of up to 2^33 multiples of 2^-20 are exact.
     constexpr double steps = 0x1p20;
-    std::array<double, 3> d{};
-    if (viewpoints_.empty()) {
-        d = {cloud_.nx[i], cloud_.ny[i], cloud_.nz[i]};
-    } else {
-        const Vec3& eye = viewpoints_[viewpoint_of_point_.empty() ? 0 : viewpoint_of_point_[i]];
-        d = {eye[0] - cloud_.x[i], eye[1] - cloud_.y[i], eye[2] - cloud_.z[i]};
-    }
+    const std::array<double, 3> d = way(i);
     const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     std::array<float, 3> out{};
     if (!(length > 0) || !std::isfinite(length)) return out;

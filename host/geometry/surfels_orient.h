@@ -18,7 +18,9 @@ class SensorSides {
     SensorSides(const CloudView& cloud, std::span<const Vec3> viewpoints,
                 std::span<const std::uint32_t> viewpoint_of_point);
     bool known() const { return known_; }
-    // Unit direction from a point to its sensor, rounded so that sums are exact, whatever their
+    // The way from a point to its sensor, of any length.
+    std::array<double, 3> way(std::size_t point) const;
+    // Its unit direction, rounded so that sums are exact, whatever their
     // order; 0 where it is not known.
     std::array<float, 3> towards(std::size_t point) const;
 

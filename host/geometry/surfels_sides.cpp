@@ -19,12 +19,13 @@ constexpr double least_sigmas = 4, least_cells = 0.1, least_cosine = 0.5;
 
 using Axes = std::array<FloatColumn, 3>;
 
-// Towards the sensor, along the normal of the point's cell.
-double cosine(const SensorSides& sides, const PlaneFit& planes, std::size_t point,
-              std::size_t cell) {
-    const std::array<float, 3> t = sides.towards(point);
-    return double{t[0]} * planes.normal[0][cell] + double{t[1]} * planes.normal[1][cell] +
-           double{t[2]} * planes.normal[2][cell];
+// Whether the point's sensor was behind the plane of its cell.
+bool is_behind(const SensorSides& sides, const PlaneFit& planes, std::size_t point,
+               std::size_t cell) {
+    const std::array<double, 3> way = sides.way(point);
+    return way[0] * planes.normal[0][cell] + way[1] * planes.normal[1][cell] +
+               way[2] * planes.normal[2][cell] <
+           0;
 }
 
 // The points of one side of a cell, along the normal of its plane, in cells.
@@ -76,7 +77,7 @@ void part_sides(const CloudView& cloud, const SensorSides& sides, ThreadPool& th
     if (!sides.known()) return;
     std::vector<std::uint8_t> behind(cloud.size());
     threads.each(cloud.size(), sides_chunk,
-                 [&](std::size_t i) { behind[i] = cosine(sides, planes, i, of_point[i]) < 0; });
+                 [&](std::size_t i) { behind[i] = is_behind(sides, planes, i, of_point[i]); });
     std::vector<std::uint8_t> seen_from(grid.size(), 0);  // 1: in front, 2: behind
     for (std::size_t i = 0; i < cloud.size(); ++i)
         seen_from[of_point[i]] |= static_cast<std::uint8_t>(1 << behind[i]);

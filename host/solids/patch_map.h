@@ -23,7 +23,11 @@ class PatchMap {
         return out;
     }
     void add(const Eigen::Vector3d& p, std::int32_t patch) {
-        std::vector<std::int32_t>& here = cells_[key(cell_of(p))];
+        const std::uint64_t cell = key(cell_of(p));
+        if (cell == last_cell_ && patch == last_patch_) return;  // as of most points of a scan
+        last_cell_ = cell;
+        last_patch_ = patch;
+        std::vector<std::int32_t>& here = cells_[cell];
         if (std::ranges::find(here, patch) == here.end()) here.push_back(patch);
     }
     // In the cell of a point, and those beside it.
@@ -48,6 +52,8 @@ class PatchMap {
         return out;
     }
     double cell_m_;
+    std::uint64_t last_cell_ = 0;
+    std::int32_t last_patch_ = -1;
     std::unordered_map<std::uint64_t, std::vector<std::int32_t>> cells_;
 };
 
