@@ -149,18 +149,19 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
         std::vector<Eigen::Vector3d> points;
         for (const std::size_t n : all) points.push_back(left[n].at);
         Face face{plane_through(points), left[number].primitive, {}};
-        double noise = 0;  // the primitive's own here
-        for (const std::size_t n : all) {
+        for (const std::size_t n : all)
             if (std::abs(distance_to(face.patch, left[n].at)) <= outlier * face.patch.noise_m)
                 face.points.push_back(left[n].point);
+        if (static_cast<double>(face.points.size()) < enough * static_cast<double>(all.size()))
+            continue;
+        double noise = 0;  // the primitive's own here
+        for (const std::size_t n : all) {
             map.around(left[n].at, near);
             for (const std::int32_t p : near)
                 if (primitive[static_cast<std::size_t>(p)] == face.primitive)
                     noise = std::max(noise, patches[static_cast<std::size_t>(p)].noise_m);
         }
-        if (face.patch.noise_m > noise ||
-            static_cast<double>(face.points.size()) < enough * static_cast<double>(all.size()))
-            continue;
+        if (face.patch.noise_m > noise) continue;
         for (const std::size_t n : all)
             for (const Key& key : around({face.primitive, left[n].cell}))
                 if (beside[key].empty() || beside[key].back() != faces.size())
