@@ -74,6 +74,40 @@ void CellGrid::resize(std::size_t count) {
     for (auto& plane : spread) plane.resize(count);
 }
 
+void set_moments(const std::array<FloatColumn, 3>& cloud, std::span<const std::uint32_t> points,
+                 std::size_t cell, CellGrid& grid) {
+    // Sums of places are integers: a cell's edge counts as this much. Enough for 2^33 points.
+    constexpr double cell_steps = 0x1p32;
+    const std::array<std::int32_t, 3> at{grid.x[cell], grid.y[cell], grid.z[cell]};
+    std::array<std::int64_t, 3> sum{};
+    std::array<std::int64_t, 6> products{};
+    const auto steps = [](double v) { return static_cast<std::int64_t>(v * cell_steps); };
+    for (const std::uint32_t i : points) {
+        std::array<double, 3> d{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            d[a] = cloud[a][i] / grid.cell_m - (static_cast<double>(at[a]) + 0.5);
+            sum[a] += steps(d[a]);
+            products[a] += steps(d[a] * d[a]);
+        }
+        products[3] += steps(d[0] * d[1]);
+        products[4] += steps(d[0] * d[2]);
+        products[5] += steps(d[1] * d[2]);
+    }
+    const double size = static_cast<double>(points.size());
+    std::array<double, 3> first{};
+    std::array<double, 6> second{};
+    for (std::size_t a = 0; a < 3; ++a) first[a] = static_cast<double>(sum[a]) / cell_steps / size;
+    for (std::size_t a = 0; a < 6; ++a)
+        second[a] = static_cast<double>(products[a]) / cell_steps / size;
+    for (std::size_t a = 0; a < 3; ++a) {
+        grid.mean[a][cell] = static_cast<float>(first[a]);
+        grid.spread[a][cell] = static_cast<float>(second[a] - first[a] * first[a]);
+    }
+    grid.spread[3][cell] = static_cast<float>(second[3] - first[0] * first[1]);
+    grid.spread[4][cell] = static_cast<float>(second[4] - first[0] * first[2]);
+    grid.spread[5][cell] = static_cast<float>(second[5] - first[1] * first[2]);
+}
+
 CellGrid coarsen(const CellGrid& grid, ThreadPool& threads, std::vector<std::uint32_t>& parent) {
     CellGrid coarse;
     coarse.cell_m = 2 * grid.cell_m;
@@ -167,7 +201,7 @@ std::vector<std::uint32_t> column_table(const ColumnSweep& sweep,
             [&](std::size_t k, std::size_t column, std::size_t lo, std::size_t hi) {
                 // An empty column may start beyond the tile; its start is never read.
                 table[column * count + k] = hi > lo ? static_cast<std::uint32_t>(lo - base) |
-                                                          static_cast<std::uint32_t>(hi - lo) << 29
+                                                          static_cast<std::uint32_t>(hi - lo) << 28
                                                     : 0;
             });
     });

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/thread_pool.h"
+#include "topple/cloud_view.h"
 
 namespace topple::geometry {
 
@@ -63,6 +64,11 @@ struct CellGrid {
     void resize(std::size_t count);
 };
 
+// Sets the mean and covariance of one cell of the grid to those of some points, whatever their
+// order.
+void set_moments(const std::array<FloatColumn, 3>& cloud, std::span<const std::uint32_t> points,
+                 std::size_t cell, CellGrid& grid);
+
 // The grid of twice the cell size: cells merged by weight. parent: coarse cell of each fine one.
 CellGrid coarsen(const CellGrid& grid, ThreadPool& threads, std::vector<std::uint32_t>& parent);
 
@@ -97,7 +103,7 @@ class ColumnSweep {
 };
 
 // A sweep's runs for ascending cells, a plane of cells.size() entries for each column: the first
-// cell of the run, counted from `base`, + (count << 29); see kernel voxel_normals.
+// cell of the run, counted from `base`, + (count << 28); see kernel voxel_normals.
 std::vector<std::uint32_t> column_table(const ColumnSweep& sweep,
                                         std::span<const std::uint32_t> cells, std::size_t base,
                                         ThreadPool& threads);
@@ -152,9 +158,11 @@ void ColumnSweep::run_columns(std::size_t first, std::size_t last, const Cells& 
         for (std::size_t k = first; k < last; ++k) {
             const std::uint64_t low = keys_[cells(k)] + lowest_[c];
             lo = advance(lo, low);
-            // No more cells than the run is high; counted without a branch.
+            // Mostly no more cells than the run is high: counted without a branch.
             std::size_t hi = lo;
             for (std::size_t step = 0; step < height; ++step) hi += keys_[lo + step] < low + height;
+            if (hi == lo + height)  // of two surfels each, perhaps
+                while (keys_[hi] < low + height) ++hi;
             visit(k, c, lo, hi);
         }
     }

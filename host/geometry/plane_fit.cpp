@@ -86,9 +86,9 @@ PlaneFitter::~PlaneFitter() = default;
 std::vector<PlaneFitter::Tile> PlaneFitter::make_tiles() const {
     const auto side = static_cast<std::size_t>(2 * radius_ + 1);
     const std::uint64_t binding = device_.info().limits.max_binding_bytes;
-    // The packed columns leave 29 bits for the cell.
+    // The packed columns leave 28 bits for the cell.
     const std::size_t most_halo =
-        std::min<std::size_t>(binding / (4 * cell_planes), (1u << 29) - 1);
+        std::min<std::size_t>(binding / (4 * cell_planes), (1u << 28) - 1);
     const std::size_t most_queries =
         std::clamp<std::size_t>(binding / (4 * side * side), 1, preferred_tile);
     const auto lower = [&](std::int64_t x) {

@@ -12,6 +12,7 @@
 #include "geometry/surfels_clean.h"
 #include "geometry/surfels_colour.h"
 #include "geometry/surfels_orient.h"
+#include "geometry/surfels_sides.h"
 #include "topple/error.h"
 
 namespace topple::geometry {
@@ -73,10 +74,6 @@ CellPacking packing_of(const CloudView& cloud, const Axes& p, double cell_m, Thr
     return {lowest, highest};
 }
 
-// Sums of places in a cell are integers, so that they do not depend on the order of the points: a
-// cell's edge counts as this much. Enough for 2^33 points.
-constexpr double cell_steps = 0x1p32;
-
 // The cells of the points and their moments.
 CellGrid bin(const CloudView& cloud, double cell_m, ThreadPool& threads,
              std::vector<std::uint32_t>& of_point, std::vector<float>& count) {
@@ -99,38 +96,12 @@ CellGrid bin(const CloudView& cloud, double cell_m, ThreadPool& threads,
         const auto points = cells.group(cell);
         const std::array<std::int64_t, 3> at{index(cloud.x[points[0]]), index(cloud.y[points[0]]),
                                              index(cloud.z[points[0]])};
-        std::array<std::int64_t, 3> sum{};
-        std::array<std::int64_t, 6> products{};
-        const auto steps = [](double v) { return static_cast<std::int64_t>(v * cell_steps); };
-        for (const std::uint32_t i : points) {
-            of_point[i] = static_cast<std::uint32_t>(cell);
-            std::array<double, 3> d{};
-            for (std::size_t a = 0; a < 3; ++a) {
-                d[a] = p[a][i] / cell_m - (static_cast<double>(at[a]) + 0.5);
-                sum[a] += steps(d[a]);
-                products[a] += steps(d[a] * d[a]);
-            }
-            products[3] += steps(d[0] * d[1]);
-            products[4] += steps(d[0] * d[2]);
-            products[5] += steps(d[1] * d[2]);
-        }
-        const double size = static_cast<double>(points.size());
-        std::array<double, 3> first{};
-        std::array<double, 6> second{};
-        for (std::size_t a = 0; a < 3; ++a)
-            first[a] = static_cast<double>(sum[a]) / cell_steps / size;
-        for (std::size_t a = 0; a < 6; ++a)
-            second[a] = static_cast<double>(products[a]) / cell_steps / size;
+        for (const std::uint32_t i : points) of_point[i] = static_cast<std::uint32_t>(cell);
         grid.x[cell] = static_cast<std::int32_t>(at[0]);
         grid.y[cell] = static_cast<std::int32_t>(at[1]);
         grid.z[cell] = static_cast<std::int32_t>(at[2]);
-        for (std::size_t a = 0; a < 3; ++a) {
-            grid.mean[a][cell] = static_cast<float>(first[a]);
-            grid.spread[a][cell] = static_cast<float>(second[a] - first[a] * first[a]);
-        }
-        grid.spread[3][cell] = static_cast<float>(second[3] - first[0] * first[1]);
-        grid.spread[4][cell] = static_cast<float>(second[4] - first[0] * first[2]);
-        grid.spread[5][cell] = static_cast<float>(second[5] - first[1] * first[2]);
+        set_moments(p, points, cell, grid);
+        const double size = static_cast<double>(points.size());
         count[cell] = static_cast<float>(size);
         grid.weight[cell] = fit_weight(size);
     });
@@ -215,7 +186,9 @@ Surfels make_surfels(device::Device& device, const CloudView& cloud, const Surfe
         none.neighbour_first.assign(1, 0);
         return none;
     }
-    const PlaneFit rough = flatten_noise(device, grid, count, of_point);
+    PlaneFit rough = flatten_noise(device, grid, count, of_point);
+    const SensorSides sides(cloud, viewpoints, viewpoint_of_point);
+    part_sides(cloud, sides, device.threads(), grid, count, of_point, rough);
     Surfels s = from_grid(grid);
     s.weight = std::move(count);
     s.of_point = std::move(of_point);
@@ -223,8 +196,7 @@ Surfels make_surfels(device::Device& device, const CloudView& cloud, const Surfe
     connect_surfels(s, scale.reach_m, device.threads());
 
     set_normals(s, rough, nullptr, cell_m);
-    const Orientation towards =
-        sensor_side(s, cloud, viewpoints, viewpoint_of_point, device.threads());
+    const Orientation towards = sensor_side(s, sides, device.threads());
     orient(s, towards);
     // The second pass knows which side each cell faces and leaves the others out.
     const std::vector<float> px = s.nx, py = s.ny, pz = s.nz;

@@ -11,10 +11,10 @@
 
 namespace topple::geometry {
 
-// The cloud resampled to one oriented surface element per occupied cell of a cubic grid: the
-// working resolution of everything up to the primitives. Input frame, metres, one array per field.
-// Surfels are sorted by cell (x, then y, then z), so their order does not depend on the order of
-// the points.
+// The cloud resampled to one oriented surface element per occupied cell of a cubic grid, or two
+// where a cell holds both sides of a thin wall (part_sides()): the working resolution of everything
+// up to the primitives. Input frame, metres, one array per field. Surfels are sorted by cell (x,
+// then y, then z), so their order does not depend on the order of the points.
 struct Surfels {
     double cell_m = 0;
     double area_m2 = 0;                    // surface that a surfel stands for

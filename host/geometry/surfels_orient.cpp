@@ -73,35 +73,44 @@ void orient_by_neighbours(Surfels& s) {
 
 }  // namespace
 
-Orientation sensor_side(const Surfels& s, const CloudView& cloud, std::span<const Vec3> viewpoints,
-                        std::span<const std::uint32_t> viewpoint_of_point, ThreadPool& threads) {
+SensorSides::SensorSides(const CloudView& cloud, std::span<const Vec3> viewpoints,
+                         std::span<const std::uint32_t> viewpoint_of_point)
+    : cloud_(cloud),
+      viewpoints_(viewpoints),
+      viewpoint_of_point_(viewpoint_of_point),
+      known_(!viewpoints.empty() || !cloud.nx.empty()) {}
+
+std::array<double, 3> SensorSides::way(std::size_t i) const {
+    if (viewpoints_.empty()) return {cloud_.nx[i], cloud_.ny[i], cloud_.nz[i]};
+    const Vec3& eye = viewpoints_[viewpoint_of_point_.empty() ? 0 : viewpoint_of_point_[i]];
+    return {eye[0] - cloud_.x[i], eye[1] - cloud_.y[i], eye[2] - cloud_.z[i]};
+}
+
+std::array<float, 3> SensorSides::towards(std::size_t i) const {
+    // Sums of up to 2^33 multiples of 2^-20 are exact.
+    constexpr double steps = 0x1p20;
+    const std::array<double, 3> d = way(i);
+    const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    std::array<float, 3> out{};
+    if (!(length > 0) || !std::isfinite(length)) return out;
+    for (std::size_t a = 0; a < 3; ++a)
+        out[a] = static_cast<float>(std::round(d[a] / length * steps) / steps);
+    return out;
+}
+
+Orientation sensor_side(const Surfels& s, const SensorSides& sides, ThreadPool& threads) {
     Orientation result;
-    const bool stored = viewpoints.empty() && !cloud.nx.empty();
-    if (viewpoints.empty() && !stored) return result;
+    if (!sides.known()) return result;
     for (auto& axis : result.towards) axis.assign(s.size(), 0.0);
     // The directions in parallel, their sums after that; block by block, since all of them would
-    // take as much memory as the cloud. Sums of up to 2^33 multiples of 2^-20 are exact.
-    constexpr double steps = 0x1p20;
+    // take as much memory as the cloud.
     constexpr std::size_t block = 1 << 16;
-    std::vector<std::array<float, 3>> unit(std::min(block, cloud.size()));
-    for (std::size_t begin = 0; begin < cloud.size(); begin += block) {
-        const std::size_t size = std::min(block, cloud.size() - begin);
-        threads.each(size, size / 16 + 1, [&](std::size_t k) {
-            const std::size_t i = begin + k;
-            std::array<double, 3> d{};
-            if (stored) {
-                d = {cloud.nx[i], cloud.ny[i], cloud.nz[i]};
-            } else {
-                const Vec3& eye =
-                    viewpoints[viewpoint_of_point.empty() ? 0 : viewpoint_of_point[i]];
-                d = {eye[0] - cloud.x[i], eye[1] - cloud.y[i], eye[2] - cloud.z[i]};
-            }
-            const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-            const bool known = length > 0 && std::isfinite(length);
-            for (std::size_t a = 0; a < 3; ++a)
-                unit[k][a] =
-                    known ? static_cast<float>(std::round(d[a] / length * steps) / steps) : 0.0f;
-        });
+    const std::size_t points = s.of_point.size();
+    std::vector<std::array<float, 3>> unit(std::min(block, points));
+    for (std::size_t begin = 0; begin < points; begin += block) {
+        const std::size_t size = std::min(block, points - begin);
+        threads.each(size, size / 16 + 1,
+                     [&](std::size_t k) { unit[k] = sides.towards(begin + k); });
         for (std::size_t k = 0; k < size; ++k) {
             const std::uint32_t at = s.of_point[begin + k];
             for (std::size_t a = 0; a < 3; ++a) result.towards[a][at] += unit[k][a];

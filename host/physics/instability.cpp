@@ -33,7 +33,8 @@ Instability combine_curves(const Stability& tip, const SlideResult& slide) {
     };
     // Tipping may find its first release behind a higher pass than its lowest.
     const InstabilityStep* first = tip.curve.empty() ? nullptr : &tip.curve.front();
-    if (tip.release_J > 0 && !(slides && slide.absorbed_J < tip.barrier_J)) {
+    const bool tips = tip.release_J > 0 || (tip.barrier_J > 0 && (slides || first));
+    if (tips && !(slides && slide.absorbed_J < tip.barrier_J)) {
         take("tip", tip.barrier_J, tip.release_J, tip.easiest);
     } else if (slides && !(first && first->W_J < slide.absorbed_J)) {
         take("slide", slide.absorbed_J, slide.released_J, slide);

@@ -92,8 +92,9 @@ struct Instability {
     std::int32_t onto = -1;
 };
 
-// The curve is the larger of both at every W. The mode is the one with the least barrier that has
-// something to release, tipping where equal; without any, the barrier is that of tipping.
+// The curve is the larger of both at every W. The mode is the one with the least barrier, tipping
+// where equal, if either has something to release, and tipping from a barrier of 0 only if it does;
+// without any, the barrier is that of tipping.
 Instability combine_curves(const Stability& tip, const SlideResult& slide);
 
 // One standard error of that barrier, from those of the margin (how far inside of its support's

@@ -116,6 +116,8 @@ Faces find_faces(device::Device& device, const Ingested& input, const GeometrySt
     std::vector<std::int32_t> solid_of_point = numbered(geometry.primitive_of_point, number);
     solids::drop_explained(input.cloud, out.patches, geometry.frame.axes,
                            2 * geometry.surfels.cell_m, solid_of_point, face_of_point);
+    solids::add_narrow_faces(input.cloud, geometry.frame.axes, 2 * geometry.surfels.cell_m,
+                             out.patches, solid_of_point, face_of_point);
     out.seen = seen_and_between(input.cloud, gaps, std::move(solid_of_point),
                                 std::move(face_of_point), number, geometry.frame.axes, voxel_m);
     out.sheet = solids::one_sided(out.seen, out.patches, roles.size());

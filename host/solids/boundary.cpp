@@ -145,6 +145,45 @@ void add_wall(std::size_t candidate, std::span<const SeenPatch> own,
     }
 }
 
+// How much a patch faces up or down.
+double level(const SurfacePatch& patch, const Vec3& at) {
+    const Vec3 g = patch.gradient(at);
+    return std::abs(g[2]) / std::hypot(g[0], g[1], g[2]);
+}
+
+// Where faces of two primitives meet in a concave edge, as the bottom of a cup and its wall, both
+// would fill the corner behind it. What stands on something ends there: of two faces the more level
+// one bounds the other's primitive; its own is bounded by the other side of the wall instead.
+void add_corner(std::span<const SeenPatch> own, std::span<const SeenPatch> others,
+                std::span<const SurfacePatch> patches, const Vec3& middle, double voxel_m,
+                Combination& sum) {
+    const auto wall = [&](const SeenPatch& a, const SeenPatch& b) {
+        return are_wall(a, b, patches);
+    };
+    const auto is_own = [&](const SeenPatch& s) {
+        return std::ranges::any_of(own, [&](const SeenPatch& o) {
+            return patches[o.patch].primitive == patches[s.patch].primitive || wall(o, s);
+        });
+    };
+    std::vector<const SeenPatch*> mine, theirs;
+    for (const SeenPatch& s : own) mine.push_back(&s);
+    for (const SeenPatch& s : others) (is_own(s) ? mine : theirs).push_back(&s);
+    for (const SeenPatch* o : theirs) {
+        if (o->here == 0) continue;
+        for (const SeenPatch* s : mine) {
+            if (s->here == 0 || !are_concave(*s, *o, patches, voxel_m)) continue;
+            const std::pair a(level(patches[s->patch], s->mean), s->patch),
+                b(level(patches[o->patch], o->mean), o->patch);
+            if (b > a) {
+                add_bound(o->patch, true, patches, middle, voxel_m, sum);
+                continue;
+            }
+            for (const SeenPatch* back : theirs)
+                if (wall(*o, *back)) add_bound(back->patch, false, patches, middle, voxel_m, sum);
+        }
+    }
+}
+
 // What bounds each candidate, in their order; of one that nothing bounds, all is solid.
 std::vector<Combination> combine_all(const SolidCells& cells, const SeenCells& seen,
                                      std::span<const SurfacePatch> patches,
@@ -170,6 +209,7 @@ std::vector<Combination> combine_all(const SolidCells& cells, const SeenCells& s
             for (std::size_t m = mate; m < mates.size() && key_of(mates[m]) == c.key(); ++m)
                 add_bound(mates[m].patch, mates[m].outside, patches, middle, h, sum);
             add_wall(n, found, others, patches, middle, h, sum, walls);
+            add_corner(found, others, patches, middle, h, sum);
         }
         out.push_back(sum);
     }
@@ -199,8 +239,7 @@ void settle_edges(std::span<const BorderVoxel> candidates, std::span<const Surfa
             if (!sums[c].use[s].bounds || !sums[c].use[s].outside ||
                 patches[sums[c].slot[s]].primitive != other)
                 continue;
-            const Vec3 g = patches[sums[c].slot[s]].gradient(middle);
-            return {&sums[c], s, std::abs(g[2]) / std::hypot(g[0], g[1], g[2])};
+            return {&sums[c], s, level(patches[sums[c].slot[s]], middle)};
         }
         return {nullptr, 0};
     };

@@ -30,7 +30,24 @@ Fate fate_of(const SurfacePatch& patch, const Vec3& middle, double voxel_m) {
     return d <= -rim ? Fate::solid : d >= rim ? Fate::air : Fate::passes;
 }
 
+// The mean of points of a bent surface lies beside it.
+Vec3 onto(const SurfacePatch& patch, Vec3 p) {
+    constexpr int steps = 3;
+    for (int step = 0; step < steps && !patch.flat(); ++step) {
+        const Vec3 g = patch.gradient(p);
+        const double length = std::hypot(g[0], g[1], g[2]), d = patch.distance(p);
+        if (!(length > 0)) break;
+        for (std::size_t a = 0; a < 3; ++a) p[a] -= d * g[a] / length;
+    }
+    return p;
+}
+
 enum class Relation : std::uint8_t { both, either, first, second };
+
+// How far off a patch what lies on it may seem to be.
+double tolerance(const SurfacePatch& a, const SurfacePatch& b, double voxel_m) {
+    return 2 * (a.noise_m + b.noise_m) + 0.02 * voxel_m;
+}
 
 // Of two patches whose edge is convex each lies inside of the other. Parallel ones at a step lie
 // one in and one out: the one of which more was seen in the voxel is there.
@@ -38,8 +55,8 @@ Relation relation(const SeenPatch& a, const SeenPatch& b, std::span<const Surfac
                   double voxel_m) {
     const SurfacePatch &pa = patches[a.patch], &pb = patches[b.patch];
     const double of_a = pb.distance(a.mean), of_b = pa.distance(b.mean);
-    const double tolerance = 2 * (pa.noise_m + pb.noise_m) + 0.02 * voxel_m;
-    if (of_a * of_b < 0 && std::min(std::abs(of_a), std::abs(of_b)) > tolerance) {
+    const double least = tolerance(pa, pb, voxel_m);
+    if (of_a * of_b < 0 && std::min(std::abs(of_a), std::abs(of_b)) > least) {
         constexpr double parallel = 0.9;  // cosine
         const Vec3 ga = pa.gradient(a.mean), gb = pb.gradient(b.mean);
         const double product = ga[0] * gb[0] + ga[1] * gb[1] + ga[2] * gb[2];
@@ -48,7 +65,7 @@ Relation relation(const SeenPatch& a, const SeenPatch& b, std::span<const Surfac
             return std::pair(a.here, a.count) >= std::pair(b.here, b.count) ? Relation::first
                                                                             : Relation::second;
     }
-    return of_a + of_b > tolerance ? Relation::either : Relation::both;
+    return of_a + of_b > least ? Relation::either : Relation::both;
 }
 
 // The patches as "and" and "or" of one another, where that can be written so (a cograph); else as
@@ -202,10 +219,18 @@ void add_bound(std::uint32_t patch, bool outside, std::span<const SurfacePatch> 
 bool are_wall(const SeenPatch& a, const SeenPatch& b, std::span<const SurfacePatch> patches) {
     constexpr double away = -0.7;  // cosine
     const SurfacePatch &pa = patches[a.patch], &pb = patches[b.patch];
-    const Vec3 ga = pa.gradient(a.mean), gb = pb.gradient(b.mean);
+    const Vec3 on_a = onto(pa, a.mean), on_b = onto(pb, b.mean);
+    const Vec3 ga = pa.gradient(on_a), gb = pb.gradient(on_b);
     const double product = ga[0] * gb[0] + ga[1] * gb[1] + ga[2] * gb[2];
     const double lengths = std::hypot(ga[0], ga[1], ga[2]) * std::hypot(gb[0], gb[1], gb[2]);
-    return product < away * lengths && pa.distance(b.mean) < 0 && pb.distance(a.mean) < 0;
+    return product < away * lengths && pa.distance(on_b) < 0 && pb.distance(on_a) < 0;
+}
+
+bool are_concave(const SeenPatch& a, const SeenPatch& b, std::span<const SurfacePatch> patches,
+                 double voxel_m) {
+    const SurfacePatch &pa = patches[a.patch], &pb = patches[b.patch];
+    const double least = tolerance(pa, pb, voxel_m);
+    return pa.distance(onto(pb, b.mean)) > least && pb.distance(onto(pa, a.mean)) > least;
 }
 
 void drop_slot(std::size_t slot, Combination& sum) {

@@ -36,6 +36,10 @@ void add_bound(std::uint32_t patch, bool outside, std::span<const SurfacePatch> 
 // seen on the solid side of the other.
 bool are_wall(const SeenPatch& a, const SeenPatch& b, std::span<const SurfacePatch> patches);
 
+// Whether two patches meet in a concave edge, if they do: each was seen outside of the other.
+bool are_concave(const SeenPatch& a, const SeenPatch& b, std::span<const SurfacePatch> patches,
+                 double voxel_m);
+
 void drop_slot(std::size_t slot, Combination& sum);
 
 }  // namespace topple::solids

@@ -4,54 +4,14 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <unordered_map>
 #include <utility>
 
 #include "solids/grid_points.h"
+#include "solids/patch_map.h"
 #include "solids/patches.h"
 
 namespace topple::solids {
 namespace {
-
-// The patches seen in each cell of a coarse grid.
-class PatchMap {
-  public:
-    explicit PatchMap(double cell_m) : cell_m_(cell_m) {}
-    std::array<std::int32_t, 3> cell_of(const Eigen::Vector3d& p) const {
-        std::array<std::int32_t, 3> out{};
-        for (int a = 0; a < 3; ++a)
-            out[static_cast<std::size_t>(a)] =
-                static_cast<std::int32_t>(std::clamp(std::floor(p[a] / cell_m_), -2e9, 2e9));
-        return out;
-    }
-    void add(const Eigen::Vector3d& p, std::int32_t patch) {
-        std::vector<std::int32_t>& here = cells_[key(cell_of(p))];
-        if (std::ranges::find(here, patch) == here.end()) here.push_back(patch);
-    }
-    // In the cell of a point, and those beside it.
-    void around(const Eigen::Vector3d& p, std::vector<std::int32_t>& out) const {
-        out.clear();
-        const auto at = cell_of(p);
-        for (std::int32_t n = 0; n < 27; ++n) {
-            const auto found =
-                cells_.find(key({at[0] + n / 9 - 1, at[1] + n / 3 % 3 - 1, at[2] + n % 3 - 1}));
-            if (found == cells_.end()) continue;
-            for (const std::int32_t patch : found->second)
-                if (std::ranges::find(out, patch) == out.end()) out.push_back(patch);
-        }
-    }
-
-  private:
-    // 21 bits of each; cells that share a key are far from one another.
-    static std::uint64_t key(const std::array<std::int32_t, 3>& at) {
-        std::uint64_t out = 0;
-        for (const std::int32_t a : at)
-            out = out << 21 | (static_cast<std::uint32_t>(a) & 0x1fffff);
-        return out;
-    }
-    double cell_m_;
-    std::unordered_map<std::uint64_t, std::vector<std::int32_t>> cells_;
-};
 
 double distance_to(const SurfacePatch& patch, const Eigen::Vector3d& p) {
     return patch.distance({p.x(), p.y(), p.z()});

@@ -52,7 +52,7 @@ struct Near {
     Points points;
     double noise_m = 0;
 };
-Near near(const geometry::AlgebraicModel& model, const Points& points) {
+Near near(const geometry::AlgebraicModel& model, std::span<const Eigen::Vector3d> points) {
     std::vector<double> off;
     for (const auto& p : points) off.push_back(std::abs(geometry::distance(model, p)));
     std::vector<double> sorted = off;
@@ -153,22 +153,27 @@ double scatter(const geometry::AlgebraicModel& model, const Points& points) {
     return std::sqrt(sum / static_cast<double>(points.size()));
 }
 
-SurfacePatch fit(const geometry::Region& region, const std::array<Vec3, 3>& axes,
-                 const Points& points) {
-    constexpr std::size_t least = 12;  // points that fit a quadric
-    geometry::AlgebraicModel model = rotated(region.model, axes);
-    double noise = region.residual_m;
+void sort(Points& points) {
+    std::ranges::sort(points, {},
+                      [](const Eigen::Vector3d& p) { return std::tuple(p.x(), p.y(), p.z()); });
+}
+
+}  // namespace
+
+SurfacePatch fit_patch(geometry::AlgebraicModel model, double residual_m,
+                       std::span<const Eigen::Vector3d> points) {
+    double noise = residual_m;
     std::size_t inliers = points.size();
-    for (int round = 0; round < rounds && points.size() >= least; ++round) {
+    for (int round = 0; round < rounds && points.size() >= least_points; ++round) {
         const Near own = near(model, points);
-        if (own.points.size() < least) break;
+        if (own.points.size() < least_points) break;
         if (model.degree == 1) {
             const auto plane = plane_of(model, own.points);
             if (!plane) break;
             model = *plane;
         } else {
             const auto quadric =
-                quadric_of(model, own.points, std::max(3 * own.noise_m, 0.1 * region.residual_m));
+                quadric_of(model, own.points, std::max(3 * own.noise_m, 0.1 * residual_m));
             if (!(scatter(quadric, own.points) <= 1.2 * scatter(model, own.points))) break;
             model = quadric;
             // Where the layers leave much of the distances, these are no noise.
@@ -189,13 +194,6 @@ SurfacePatch fit(const geometry::Region& region, const std::array<Vec3, 3>& axes
                    common_share * noise);
     return out;
 }
-
-void sort(Points& points) {
-    std::ranges::sort(points, {},
-                      [](const Eigen::Vector3d& p) { return std::tuple(p.x(), p.y(), p.z()); });
-}
-
-}  // namespace
 
 std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
                                       std::span<const geometry::Region> regions,
@@ -221,7 +219,7 @@ std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
                 points.push_back(rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]));
         }
         sort(points);
-        out[r] = fit(regions[r], axes, points);
+        out[r] = fit_patch(rotated(regions[r].model, axes), regions[r].residual_m, points);
     });
     return out;
 }

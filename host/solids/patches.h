@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -16,6 +17,13 @@ namespace topple::solids {
 
 // In standard deviations of a patch's points: what lies farther from it is not of it.
 inline constexpr double outlier = 3;
+
+// Points that make a patch at least: a quadric has nine figures.
+inline constexpr std::size_t least_points = 12;
+
+// A model fitted anew to the points near it. residual_m: what it leaves of its own.
+SurfacePatch fit_patch(geometry::AlgebraicModel model, double residual_m,
+                       std::span<const Eigen::Vector3d> points);
 
 // The regions' models, fitted anew to the points themselves: surfels at edges lie inside of both
 // faces. Points that a region only borders on are told from its own by their distance, in robust
@@ -34,6 +42,15 @@ void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patche
                     const std::array<Vec3, 3>& axes, double cell_m,
                     std::vector<std::int32_t>& primitive_of_point,
                     std::vector<std::int32_t>& patch_of_point);
+
+// Faces too narrow for regions of their own, as the rim of a cup. Points that lie off their patch
+// go to the nearest one beside it that explains them. Where those left over within a primitive hang
+// together in one plane, all of the primitive around them behind it, that plane is added to the
+// patches. Arguments as of drop_explained(), after it.
+void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, double cell_m,
+                      std::vector<SurfacePatch>& patches,
+                      std::vector<std::int32_t>& primitive_of_point,
+                      std::vector<std::int32_t>& patch_of_point);
 
 // Where the patches were seen: of each voxel, primitive and patch the points' number and mean.
 // Sorted by (i, j, k, primitive, patch).

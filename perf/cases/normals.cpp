@@ -36,7 +36,7 @@ struct Sheet {
                 const bool in = a >= 0 && b >= 0 && a < side && b < side &&
                                 std::abs(height(a, b) - cell_z[n]) <= radius;
                 columns[static_cast<std::size_t>(c) * count + n] =
-                    in ? static_cast<std::uint32_t>(a * side + b) | 1u << 29 : 0u;
+                    in ? static_cast<std::uint32_t>(a * side + b) | 1u << 28 : 0u;
                 pairs += in;
             }
         }

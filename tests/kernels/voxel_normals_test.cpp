@@ -88,7 +88,7 @@ Inputs inputs_for(const std::vector<PlaneCell>& cells, std::size_t queries, int 
                     }
                     if (count++ == 0) first = static_cast<std::uint32_t>(j);
                 }
-                in.columns.push_back(first | count << 29);
+                in.columns.push_back(first | count << 28);
             }
         }
     }

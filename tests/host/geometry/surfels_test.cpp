@@ -111,6 +111,58 @@ TEST_F(SurfelsTest, ThinBoardKeepsItsTwoSides) {
     EXPECT_GT(static_cast<double>(right), 0.97 * static_cast<double>(s.size()));
 }
 
+// Both sides in one cell: by where they were seen from, or by the points' own normals.
+TEST_F(SurfelsTest, WallThinnerThanACellHasTwoSides) {
+    constexpr double thick = 0.005, noise = 2e-4;
+    for (const bool stored : {false, true}) {
+        SCOPED_TRACE(stored ? "normals" : "viewpoints");
+        Random random(6);
+        PointCloud cloud;
+        std::vector<Vec3> eyes{{0.5, 0.5, 2}, {0.5, 0.5, -2}};
+        std::vector<std::uint32_t> eye_of;
+        for (int i = 0; i < 40'000; ++i) {
+            const bool top = (i & 1) == 0;
+            add(cloud, random.uniform(), random.uniform(),
+                0.007 + (top ? thick : 0) + noise * random.normal());
+            if (stored) {
+                cloud.nx.push_back(0);
+                cloud.ny.push_back(0);
+                cloud.nz.push_back(top ? 1.0f : -1.0f);
+            } else {
+                eye_of.push_back(top ? 0 : 1);
+            }
+        }
+        if (stored) eyes.clear();
+        const Surfels s = make_surfels(*device, cloud, 0.02, eyes, eye_of);
+        std::size_t right = 0;
+        for (std::size_t i = 0; i < s.size(); ++i) {
+            const bool top = s.nz[i] > 0;
+            right +=
+                std::abs(s.nz[i]) > 0.99 && std::abs(s.z[i] - 0.007 - (top ? thick : 0)) < 1e-3;
+        }
+        EXPECT_EQ(s.size(), 2 * 2500u);
+        EXPECT_EQ(right, s.size());
+        for (std::size_t i = 0; i < cloud.size(); ++i) {
+            const bool top = (i & 1) == 0;
+            ASSERT_EQ(s.nz[s.of_point[i]] > 0, top);
+        }
+    }
+}
+
+// Noise, also of normals that are turned at times, is no wall.
+TEST_F(SurfelsTest, WhatIsNoWallHasOneSide) {
+    Random random(7);
+    PointCloud cloud;
+    for (int i = 0; i < 40'000; ++i) {
+        add(cloud, random.uniform(), random.uniform(), 0.01 + 0.002 * random.normal());
+        cloud.nx.push_back(0);
+        cloud.ny.push_back(0);
+        cloud.nz.push_back(random.uniform() < 0.1 ? -1.0f : 1.0f);
+    }
+    const Surfels s = make_surfels(*device, cloud, 0.02, {}, {});
+    EXPECT_LT(s.size(), 2520u);
+}
+
 TEST_F(SurfelsTest, FieldsAreConsistentAndOrderFree) {
     PointCloud cloud = room(0.002, 5), reversed = cloud;
     for (auto* axis : {&reversed.x, &reversed.y, &reversed.z})

@@ -202,6 +202,15 @@ TEST_F(Sliding, CurvesCombine) {
     both = combine_curves(tip, way);
     EXPECT_EQ(both.mode, "tip");
     EXPECT_EQ(both.curve.size(), 3u);
+    // Tipping alone may lead nowhere lower: it is how the body leaves its pose first, all the same.
+    tip.release_J = 0;
+    tip.curve.clear();
+    both = combine_curves(tip, way);
+    EXPECT_EQ(both.mode, "tip");
+    EXPECT_EQ(both.barrier_J, 2);
+    EXPECT_EQ(both.release_J, 0);
+    ASSERT_EQ(both.curve.size(), 1u);
+    EXPECT_EQ(both.curve[0].W_J, 3);
     const Instability none = combine_curves(Stability{}, SlideResult{});
     EXPECT_EQ(none.mode, "none");
     EXPECT_TRUE(none.curve.empty());

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <numbers>
+
 #include "device/devices.h"
 #include "host/solids/boxes.h"
 #include "physics/bodies.h"
@@ -82,6 +85,80 @@ TEST(Boundary, AWallThinnerThanAVoxelIsAsThickAsItsTwoSidesSay) {
 }
 
 // Nobody saw where the upper one's underside is, nor the lower one's top under it.
+// A cup of three primitives: its outside, its inside, and the bottom within it. Its voxels are as
+// wide as what its wall bends around.
+TEST(Boundary, ACupIsItsWallAndItsBottom) {
+    constexpr double outer = 0.04, inner = 0.035, height = 0.09, thick = 0.005, spacing = 0.004;
+    constexpr double pi = std::numbers::pi;
+    for (int place = 0; place < 4; ++place) {
+        SCOPED_TRACE(place);
+        const Eigen::Vector3d foot(0.3 + 0.0047 * place, -0.2 + 0.0061 * place, 0.5);
+        Scanned s;
+        s.cells.voxel_m = 0.02;
+        const auto add = [&](double r, double angle, double z, std::int32_t primitive,
+                             std::int32_t patch) {
+            s.cloud.x.push_back(static_cast<float>(foot.x() + r * std::cos(angle)));
+            s.cloud.y.push_back(static_cast<float>(foot.y() + r * std::sin(angle)));
+            s.cloud.z.push_back(static_cast<float>(foot.z() + z));
+            s.primitive.push_back(primitive);
+            s.patch.push_back(patch);
+        };
+        const auto around = [&](double r, double z, std::int32_t primitive, std::int32_t patch) {
+            const int steps = static_cast<int>(std::ceil(2 * pi * r / spacing));
+            for (int n = 0; n < steps; ++n) add(r, 2 * pi * n / steps, z, primitive, patch);
+        };
+        for (double z = spacing / 2; z < height; z += spacing) {
+            around(outer, z, 0, 0);
+            if (z > thick) around(inner, z, 1, 1);
+        }
+        for (double r = spacing / 2; r < inner; r += spacing) around(r, thick, 2, 2);
+        around((outer + inner) / 2, height, 0, 3);
+        around((outer + inner) / 2, height, 1, 4);
+        // And what it stands on.
+        for (double r = outer; r < 0.09; r += spacing) around(r, 0, 3, 5);
+        const auto tube = [&](double r, double sign) {
+            SurfacePatch out = plane(foot, {0, 0, 0});
+            out.c = {-sign * r / 2, 0, 0, 0, sign / (2 * r), sign / (2 * r), 0, 0, 0, 0};
+            return out;
+        };
+        const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+        s.patches = {tube(outer, 1),
+                     tube(inner, -1),
+                     plane(foot + thick * up, up),
+                     plane(foot + height * up, up),
+                     plane(foot + height * up, up),
+                     plane(foot, up)};
+        std::map<std::array<std::int32_t, 3>, std::int32_t> cells;
+        const auto index = [&](double v) {
+            return static_cast<std::int32_t>(std::floor(v / s.cells.voxel_m));
+        };
+        for (std::size_t n = 0; n < s.cloud.size(); ++n)
+            cells.try_emplace(
+                {index(s.cloud.x[n]), index(s.cloud.y[n]), index(s.cloud.z[n] - 1e-6)},
+                s.primitive[n]);
+        for (const auto& [at, primitive] : cells) {
+            s.cells.i.push_back(at[0]);
+            s.cells.j.push_back(at[1]);
+            s.cells.k.push_back(at[2]);
+            s.cells.primitive.push_back(primitive);
+            s.cells.basis.push_back(Basis::surface);
+        }
+        const auto device = device::open_native();
+        const BoundaryCells boundary =
+            find_boundary(*device, s.cells, s.seen(), s.patches, std::vector<bool>(4, false));
+        const std::vector<physics::Body> bodies = physics::mass_properties(
+            *device, s.cells, 4, std::vector<double>(4, density), boundary);
+        const double wall = pi * (outer * outer - inner * inner) * height,
+                     bottom = pi * inner * inner * thick;
+        const double volume = bodies[0].volume_m3 + bodies[1].volume_m3 + bodies[2].volume_m3;
+        EXPECT_NEAR(volume / (wall + bottom), 1, 0.03);
+        double z = 0;
+        for (std::size_t n = 0; n < 3; ++n) z += bodies[n].volume_m3 * bodies[n].center[2];
+        EXPECT_NEAR(z / volume - foot.z(),
+                    (wall * height / 2 + bottom * thick / 2) / (wall + bottom), 0.001);
+    }
+}
+
 TEST(Boundary, WhatStandsOnAnotherEndsWhereThatBegins) {
     for (const double height : {0.100, 0.1049, 0.11, 0.1163}) {
         SCOPED_TRACE(height);

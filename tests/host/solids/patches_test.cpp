@@ -131,6 +131,66 @@ TEST(Patches, OfAnEdgeAreItsSides) {
     }
 }
 
+// The rim of a box's wall, 8 mm wide: points that the regions of both sides hold between them.
+TEST(NarrowFaces, AreWhatPointsOffTheirPatchesLieIn) {
+    constexpr double thick = 0.008, high = 0.1;
+    const auto patch = [](const Vector3d& at, const Vector3d& out) {
+        SurfacePatch p;
+        p.origin = {at.x(), at.y(), at.z()};
+        p.c = {0, out.x(), out.y(), out.z(), 0, 0, 0, 0, 0, 0};
+        p.noise_m = 2e-4;
+        return p;
+    };
+    test::Random random(9);
+    Sampled s;
+    std::vector<std::int32_t> on;
+    for (int n = 0; n < 2000; ++n) {
+        s.add({1e-4 * random.normal(), between(random, 0, 0.2), between(random, 0, high)});
+        on.push_back(0);
+        s.add({thick + 1e-4 * random.normal(), between(random, 0, 0.2), between(random, 0, high)});
+        on.push_back(1);
+    }
+    const std::size_t sides = s.label.size();
+    for (int n = 0; n < 200; ++n) {
+        s.add({between(random, 0.001, thick - 0.001), between(random, 0, 0.2),
+               high + 1e-4 * random.normal()});
+        on.push_back(n % 2);
+    }
+    // One of the far side among those of the near one.
+    on[1] = 0;
+    std::vector<SurfacePatch> patches{patch({0, 0, 0}, {-1, 0, 0}),
+                                      patch({thick, 0, 0}, {1, 0, 0})};
+    add_narrow_faces(s.cloud, as_is, 0.02, patches, s.label, on);
+    ASSERT_EQ(patches.size(), 3u);
+    EXPECT_NEAR(patches[2].distance({0.004, 0.1, high}), 0, 1e-4);
+    EXPECT_NEAR(patches[2].gradient({0.004, 0.1, high})[2], 1, 1e-2) << "the wall is below";
+    EXPECT_EQ(on[1], 1);
+    for (std::size_t n = 0; n < on.size(); ++n)
+        ASSERT_EQ(on[n], n >= sides ? 2 : static_cast<std::int32_t>(n % 2));
+}
+
+// Points in the middle of a board are no face: the board goes on to both sides of them.
+TEST(NarrowFaces, HaveTheirPrimitiveBehindThem) {
+    test::Random random(11);
+    Sampled s;
+    std::vector<std::int32_t> on;
+    std::vector<SurfacePatch> patches(2);
+    for (int side = 0; side < 2; ++side) {
+        patches[static_cast<std::size_t>(side)].c = {side * -0.01, 0, 0, side ? 1.0 : -1.0};
+        patches[static_cast<std::size_t>(side)].noise_m = 1e-4;
+    }
+    for (int n = 0; n < 3000; ++n) {
+        s.add({between(random, 0, 0.2), between(random, 0, 0.2), n % 2 * 0.01});
+        on.push_back(n % 2);
+    }
+    for (int n = 0; n < 100; ++n) {
+        s.add({between(random, 0, 0.2), between(random, 0, 0.2), 0.005});
+        on.push_back(0);
+    }
+    add_narrow_faces(s.cloud, as_is, 0.02, patches, s.label, on);
+    EXPECT_EQ(patches.size(), 2u);
+}
+
 TEST(SeenCells, HoldCountAndMeanOfEachPatch) {
     Sampled s;
     s.add({0.011, 0.012, -0.001});
