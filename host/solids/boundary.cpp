@@ -16,10 +16,17 @@ namespace {
 // Found from things of known measures (docs/evaluation.md).
 constexpr double patch_error = 0.025;
 
-// Gathers what was seen of a primitive in the 27 voxels around one; voxels must come sorted.
+constexpr std::uint64_t voxel_chunk = 1 << 13;  // voxels handed to a thread at once
+
+// Gathers what was seen of a primitive in the 27 voxels around one; voxels must come sorted, from
+// (i, j, k) on.
 class Around {
   public:
-    explicit Around(const SeenCells& seen) : seen_(seen) {}
+    Around(const SeenCells& seen, std::int32_t i, std::int32_t j, std::int32_t k) : seen_(seen) {
+        for (std::size_t column = 0; column < 9; ++column)
+            at_[column] = first_at(i + static_cast<std::int32_t>(column / 3) - 1,
+                                   j + static_cast<std::int32_t>(column % 3) - 1, k - 1);
+    }
 
     // Adds up by patch, those of the primitive and those of others; both are emptied first.
     void gather(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t p,
@@ -45,6 +52,16 @@ class Around {
     }
 
   private:
+    std::size_t first_at(std::int32_t i, std::int32_t j, std::int32_t k) const {
+        std::size_t low = 0, high = seen_.size();
+        while (low < high) {
+            const std::size_t middle = (low + high) / 2;
+            const bool before =
+                std::tie(seen_.i[middle], seen_.j[middle], seen_.k[middle]) < std::tie(i, j, k);
+            (before ? low : high) = before ? middle + 1 : middle;
+        }
+        return low;
+    }
     void add(std::size_t m, bool here, std::vector<SeenPatch>& out) const {
         const auto patch = static_cast<std::uint32_t>(seen_.patch[m]);
         auto found = std::ranges::find(out, patch, &SeenPatch::patch);
@@ -63,17 +80,23 @@ class Around {
 // The directions that what was seen around each cell of its primitive faces.
 std::vector<std::uint8_t> faced_around(const SolidCells& cells, const SeenCells& seen,
                                        std::span<const SurfacePatch> patches,
-                                       std::vector<BorderVoxel>& candidates) {
-    std::vector<std::uint8_t> faced(cells.size(), 0);
-    Around around(seen);
-    std::vector<SeenPatch> found, others;
-    for (std::size_t n = 0; n < cells.size(); ++n) {
-        const std::int32_t p = cells.primitive[n];
-        if (p < 0) continue;
-        around.gather(cells.i[n], cells.j[n], cells.k[n], p, found, others);
-        for (const SeenPatch& s : found) faced[n] |= faced_by(patches[s.patch].gradient(s.mean));
-        if (!found.empty()) candidates.push_back({cells.i[n], cells.j[n], cells.k[n], p, true});
-    }
+                                       std::vector<BorderVoxel>& candidates, ThreadPool& pool) {
+    std::vector<std::uint8_t> faced(cells.size(), 0), beside(cells.size(), 0);
+    pool.run(cells.size(), voxel_chunk, [&](std::uint64_t first, std::uint64_t last) {
+        Around around(seen, cells.i[first], cells.j[first], cells.k[first]);
+        std::vector<SeenPatch> found, others;
+        for (std::uint64_t n = first; n < last; ++n) {
+            const std::int32_t p = cells.primitive[n];
+            if (p < 0) continue;
+            around.gather(cells.i[n], cells.j[n], cells.k[n], p, found, others);
+            for (const SeenPatch& s : found)
+                faced[n] |= faced_by(patches[s.patch].gradient(s.mean));
+            beside[n] = !found.empty();
+        }
+    });
+    for (std::size_t n = 0; n < cells.size(); ++n)
+        if (beside[n])
+            candidates.push_back({cells.i[n], cells.j[n], cells.k[n], cells.primitive[n], true});
     return faced;
 }
 
@@ -157,6 +180,7 @@ double level(const SurfacePatch& patch, const Vec3& at) {
 void add_corner(std::span<const SeenPatch> own, std::span<const SeenPatch> others,
                 std::span<const SurfacePatch> patches, const Vec3& middle, double voxel_m,
                 Combination& sum) {
+    if (own.empty() || others.empty()) return;
     const auto wall = [&](const SeenPatch& a, const SeenPatch& b) {
         return are_wall(a, b, patches);
     };
@@ -189,30 +213,33 @@ std::vector<Combination> combine_all(const SolidCells& cells, const SeenCells& s
                                      std::span<const SurfacePatch> patches,
                                      std::span<const Mate> mates, const std::vector<bool>& sheet,
                                      std::span<const BorderVoxel> candidates,
-                                     std::vector<WallSide>& walls) {
+                                     std::vector<WallSide>& walls, ThreadPool& pool) {
     const double h = cells.voxel_m;
-    std::vector<Combination> out;
-    out.reserve(candidates.size());
-    Around around(seen);
-    std::vector<SeenPatch> found, others;
-    std::size_t mate = 0;
-    for (std::size_t n = 0; n < candidates.size(); ++n) {
-        const BorderVoxel& c = candidates[n];
-        const auto key_of = [&](const Mate& m) { return CellKey(m.i, m.j, m.k, m.primitive); };
-        while (mate < mates.size() && key_of(mates[mate]) < c.key()) ++mate;
-        const bool mated = mate < mates.size() && key_of(mates[mate]) == c.key();
-        Combination sum;
-        if (!sheet[static_cast<std::size_t>(c.primitive)] || mated) {
+    const auto key_of = [](const Mate& m) { return CellKey(m.i, m.j, m.k, m.primitive); };
+    std::vector<Combination> out(candidates.size());
+    std::vector<std::vector<WallSide>> found_walls(candidates.size() / voxel_chunk + 1);
+    pool.run(candidates.size(), voxel_chunk, [&](std::uint64_t first, std::uint64_t last) {
+        const BorderVoxel& from = candidates[first];
+        Around around(seen, from.i, from.j, from.k);
+        std::vector<WallSide>& here = found_walls[first / voxel_chunk];
+        std::vector<SeenPatch> found, others;
+        auto mate = std::ranges::lower_bound(mates, from.key(), {}, key_of);
+        for (std::uint64_t n = first; n < last; ++n) {
+            const BorderVoxel& c = candidates[n];
+            while (mate != mates.end() && key_of(*mate) < c.key()) ++mate;
+            const bool mated = mate != mates.end() && key_of(*mate) == c.key();
+            if (sheet[static_cast<std::size_t>(c.primitive)] && !mated) continue;
             around.gather(c.i, c.j, c.k, c.primitive, found, others);
             const Vec3 middle{(c.i + 0.5) * h, (c.j + 0.5) * h, (c.k + 0.5) * h};
+            Combination& sum = out[n];
             sum = combine(found, patches, middle, h);
-            for (std::size_t m = mate; m < mates.size() && key_of(mates[m]) == c.key(); ++m)
-                add_bound(mates[m].patch, mates[m].outside, patches, middle, h, sum);
-            add_wall(n, found, others, patches, middle, h, sum, walls);
+            for (auto m = mate; m != mates.end() && key_of(*m) == c.key(); ++m)
+                add_bound(m->patch, m->outside, patches, middle, h, sum);
+            add_wall(n, found, others, patches, middle, h, sum, here);
             add_corner(found, others, patches, middle, h, sum);
         }
-        out.push_back(sum);
-    }
+    });
+    for (const auto& some : found_walls) walls.insert(walls.end(), some.begin(), some.end());
     return out;
 }
 
@@ -312,14 +339,15 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
     for (SurfacePatch& p : patches)
         p.offset_m = std::hypot(p.offset_m, patch_error * cells.voxel_m);
     std::vector<BorderVoxel> candidates;
-    const std::vector<std::uint8_t> faced = faced_around(cells, seen, patches, candidates);
+    const std::vector<std::uint8_t> faced =
+        faced_around(cells, seen, patches, candidates, device.threads());
     add_shared(cells, seen, candidates);
     const std::vector<Mate> mates = find_mates(cells, seen, faced, rests, patches);
     add_mates(cells, mates, candidates);
     unite(candidates);
     std::vector<WallSide> walls;
     std::vector<Combination> sums =
-        combine_all(cells, seen, patches, mates, sheet, candidates, walls);
+        combine_all(cells, seen, patches, mates, sheet, candidates, walls, device.threads());
     const std::vector<bool> twice = told_twice(candidates, walls);
     settle_edges(candidates, patches, cells.voxel_m, sums);
     std::vector<bool> air = air_by_patches(cells, candidates, sums);
