@@ -19,10 +19,10 @@ bool chance(Random& random, double share) {
 
 class Maker {
   public:
-    explicit Maker(std::uint64_t seed) : random_(seed) {}
+    Maker(std::uint64_t seed, bool small) : random_(seed), small_(small) {}
 
     PointCloud cloud() {
-        spacing_ = random_.uniform(0.03, 0.09);
+        spacing_ = random_.uniform(0.03, 0.09) * (small_ ? 2.5 : 1);
         noise_ = chance(random_, 0.5) ? 0 : random_.uniform(0, 0.5) * spacing_;
         normals_ = chance(random_, 0.4);
         turn_ = random_.uniform(0, 2 * M_PI);
@@ -30,7 +30,7 @@ class Maker {
             odd();
         } else {
             if (!chance(random_, 0.1)) floor();
-            const std::uint64_t things = random_.below(7);
+            const std::uint64_t things = random_.below(small_ ? 4 : 7);
             for (std::uint64_t n = 0; n < things; ++n) thing();
         }
         damage();
@@ -44,7 +44,9 @@ class Maker {
             if (chance(random_, 0.03)) value = wrong;
         };
         const double nan = std::numeric_limits<double>::quiet_NaN();
-        pick(o.voxel_m, 0.01, 0.1, chance(random_, 0.5) ? 1e-9 : nan);
+        if (small_) o.voxel_m = random_.uniform(0.07, 0.2);
+        pick(o.voxel_m, small_ ? 0.05 : 0.01, small_ ? 0.3 : 0.1,
+             chance(random_, 0.5) ? 1e-9 : nan);
         pick(o.density_kg_m3, 1, 20000, -1);
         pick(o.friction, 0.001, 5, nan);
         pick(o.wind_m_s, 0.1, 150, 1e9);
@@ -180,6 +182,7 @@ class Maker {
     }
 
     Random random_;
+    bool small_;
     PointCloud cloud_;
     double spacing_ = 0.03, noise_ = 0, turn_ = 0, top_ = 0;
     std::array<double, 2> at_{};
@@ -188,8 +191,8 @@ class Maker {
 
 }  // namespace
 
-RandomScene random_scene(std::uint64_t seed) {
-    Maker maker(seed);
+RandomScene random_scene(std::uint64_t seed, bool small) {
+    Maker maker(seed, small);
     RandomScene out;
     out.cloud = maker.cloud();
     out.options = maker.options();
