@@ -63,7 +63,7 @@ class VolumeChecks {
         const auto begin = number<std::int64_t>("place"), values = number<std::int64_t>("place"),
                    end = number<std::int64_t>("place");
         if (!table) {
-            tree(type);
+            body(type, instance);
             return;
         }
         const auto size = static_cast<std::int64_t>(bytes_.size());
@@ -71,24 +71,23 @@ class VolumeChecks {
             fail(file_, "is cut short: its grids reach to byte " + std::to_string(end) +
                             ", the file has " + std::to_string(size) + "; copy it again");
         }
-        if (begin < static_cast<std::int64_t>(at_) || values < begin || end < values)
+        // The tree of an instance is another grid's, and it has no values.
+        if (begin < static_cast<std::int64_t>(at_) || end < begin ||
+            (!instance && (values < begin || end < values)))
             fail(file_, which_ + "place in the file makes no sense: it is damaged");
         const std::size_t next = static_cast<std::size_t>(end);
         at_ = static_cast<std::size_t>(begin);
-        if (instance)
-            metadata();
-        else
-            tree(type);
+        body(type, instance);
         at_ = next;
     }
 
     // A grid's own metadata, its map, and the root of its tree.
-    void tree(std::string_view type) {
+    void body(std::string_view type, bool instance) {
         if (version_ >= compression_of_each_grid) skip(4, "compression");
         metadata();
         const std::string_view map = text("map");
         const auto known = std::ranges::find(maps, map, [](const auto& m) { return m.first; });
-        if (known == maps.end() ||
+        if (instance || known == maps.end() ||
             !(type.starts_with("Tree_float_5_4_3") || type.starts_with("Tree_int32_5_4_3")))
             return;  // others are not read
         skip(known->second, "map");
