@@ -26,12 +26,13 @@
 namespace topple {
 namespace {
 
-// Measured on two cores of the machine whose probe takes probe_reference_s: seconds a point of a
-// large cloud (sorting, thinning, writing), seconds a thinned point (blocks, whole); of a parse in
-// one piece those of a point, a voxel of the surface, a voxel of the box, a frame's pixel; and what
-// every run takes.
+// Measured on machines whose probe takes probe_reference_s, or as much longer or shorter: of a
+// parse in blocks seconds a point (sorting, thinning, writing) and a square metre of surface,
+// whatever its resolution; of one in one piece those of a point, a voxel of the surface, a voxel of
+// the box, a frame's pixel; and what every run takes. tests/estimates/estimates.py fits those in
+// one piece.
 constexpr double probe_reference_s = 0.075;
-constexpr double tiled_point_s = 0.27e-6, thinned_point_s = 2.2e-6, tiled_fixed_s = 4;
+constexpr double tiled_point_s = 0.27e-6, tiled_m2_s = 0.033, tiled_fixed_s = 1;
 constexpr double point_s = 4.3e-6, surface_voxel_s = 5.2e-5, voxel_s = 6.1e-8, pixel_s = 6.5e-8,
                  fixed_s = 0.3;
 // Of the cells that a surface passes, those in which frames are fused to a point that stays.
@@ -189,10 +190,12 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
                               std::max(finest, asked_cell_m > 0 ? asked_cell_m : building_cell_m));
         const double thinned =
             std::min(0.95 * points, layers * out.surface_m2 / (out.cell_m * out.cell_m));
-        out.seconds = tiled_fixed_s + tiled_point_s * points + thinned_point_s * thinned;
-        const double block = block_bytes(block_cells);
+        out.seconds = tiled_fixed_s + tiled_point_s * points + tiled_m2_s * out.surface_m2;
+        const double block = block_bytes(
+            static_cast<std::uint64_t>(std::min(thinned, static_cast<double>(block_cells))));
         double lanes =
             device->info().backend == device::Backend::native ? device->threads().threads() : 1;
+        lanes = std::clamp(std::ceil(thinned / static_cast<double>(block_cells)), 1.0, lanes);
         if (options.max_memory_bytes > 0)
             lanes = std::clamp(std::floor(static_cast<double>(options.max_memory_bytes) / block),
                                1.0, lanes);
