@@ -15,7 +15,7 @@ namespace topple {
 // generated and real scans four in five came within 25 % of this, and none to more than 1.5 of it.
 inline double one_piece_peak(double points, double surface_m2, const Bounds<float>& bounds,
                              double voxel_m) {
-    constexpr double fixed = 140e6, a_point = 500, a_surface_voxel = 1320, a_voxel = 5;
+    constexpr double fixed = 110e6, a_point = 420, a_surface_voxel = 1600, a_voxel = 1.2;
     double box = 1;
     for (std::size_t a = 0; a < 3; ++a) box *= (bounds.high[a] - bounds.low[a]) / voxel_m + 16;
     const double surface = surface_m2 / (voxel_m * voxel_m);
@@ -25,7 +25,7 @@ inline double one_piece_peak(double points, double surface_m2, const Bounds<floa
 // What a parse in one piece is sure to keep to.
 inline std::uint64_t one_piece_bytes(double points, double surface_m2, const Bounds<float>& bounds,
                                      double voxel_m) {
-    constexpr double sure = 1.5;
+    constexpr double sure = 1.6;
     return static_cast<std::uint64_t>(sure * one_piece_peak(points, surface_m2, bounds, voxel_m));
 }
 

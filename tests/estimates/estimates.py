@@ -28,9 +28,9 @@ import time
 
 KINDS = ['kitchen', 'bathroom', 'bedroom', 'living', 'office', 'shop', 'storage', 'corridor', 'precarious', 'tabletop',
          'library', 'meeting', 'lounge', 'laundry', 'depot', 'plain', 'varied']
-COLUMNS = ['seed', 'what', 'options', 'points', 'frames', 'pixels', 'surface_m2', 'tiled', 'cell_m', 'voxel_m', 'box_voxels',
-           'seconds', 'probe_s', 'probe_processor_s', 'memory_bytes', 'least_bytes', 'wall_s', 'processor_s', 'peak_bytes',
-           'limit_bytes', 'limit_peak_bytes', 'limit']
+COLUMNS = ['seed', 'what', 'options', 'points', 'frames', 'pixels', 'surface_m2', 'tiled', 'cell_m', 'voxel_m',
+           'box_voxels', 'seconds', 'probe_s', 'probe_processor_s', 'memory_bytes', 'least_bytes', 'wall_s',
+           'processor_s', 'peak_bytes', 'limit_bytes', 'limit_peak_bytes', 'limit']
 PROBE_REFERENCE_S = 0.075  # as in host/pipeline/estimate.cpp
 
 
@@ -62,7 +62,8 @@ def boxes(chance):
     faces = [((-side / 2, -side / 2, 0), (side, 0, 0), (0, side, 0))]
     for _ in range(chance.randrange(1, 12)):
         size = [chance.uniform(0.1, 0.8) for _ in range(3)]
-        faces += box((chance.uniform(-side / 2, side / 2 - size[0]), chance.uniform(-side / 2, side / 2 - size[1]), 0), size)[1:]
+        low = tuple(chance.uniform(-side / 2, side / 2 - s) for s in size[:2]) + (0,)
+        faces += box(low, size)[1:]
     return faces
 
 
@@ -87,8 +88,8 @@ def write_cloud(file, points):
         struct.pack_into('<6d', header, 131, 0.001, 0.001, 0.001, 0, 0, 0)
         file.write_bytes(bytes(header) + b''.join(struct.pack('<3i8x', *(round(1000 * c) for c in p)) for p in points))
     else:
-        file.write_bytes(('ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\n'
-                          'property float z\nend_header\n' % len(points)).encode() +
+        file.write_bytes(('ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\n'
+                          'property float y\nproperty float z\nend_header\n' % len(points)).encode() +
                          b''.join(struct.pack('<3f', *p) for p in points))
 
 
@@ -105,8 +106,9 @@ def write_mesh(file, faces):
         file.write_bytes(b'\0' * 80 + struct.pack('<I', len(triangles)) + b''.join(
             struct.pack('<12fH', 0, 0, 0, *(x for n in t for x in vertices[n]), 0) for t in triangles))
     else:
-        file.write_text('ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n'
-                        'element face %d\nproperty list uchar int vertex_indices\nend_header\n' % (len(vertices), len(quads)) +
+        file.write_text('ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\n'
+                        'property float z\nelement face %d\nproperty list uchar int vertex_indices\n'
+                        'end_header\n' % (len(vertices), len(quads)) +
                         ''.join('%g %g %g\n' % c for c in vertices) + ''.join('4 %d %d %d %d\n' % q for q in quads))
 
 
@@ -243,14 +245,16 @@ def fit(a):
     rows = [row for file in a.fit for row in read_table(file) if not row['tiled']]
 
     def reference_s(row):
-        return (row['wall_s'] / row['probe_s'] if a.clock else row['processor_s'] / row['probe_processor_s']) * PROBE_REFERENCE_S
+        probes = row['wall_s'] / row['probe_s'] if a.clock else row['processor_s'] / row['probe_processor_s']
+        return probes * PROBE_REFERENCE_S
 
     def seconds(c, row):
         return (c[0] * row['points'] + c[1] * row['surface_m2'] / row['voxel_m'] ** 2 + c[2] * row['box_voxels'] +
                 c[3] * row['pixels'] + c[4])
 
     c = search([4e-6, 5e-5, 6e-8, 6e-8, 0.3], lambda c: loss([(seconds(c, row), reference_s(row)) for row in rows]))
-    print('estimate.cpp: point_s = %.2g, surface_voxel_s = %.2g, voxel_s = %.2g, pixel_s = %.2g, fixed_s = %.2g' % tuple(c))
+    names = ('point_s', 'surface_voxel_s', 'voxel_s', 'pixel_s', 'fixed_s')
+    print('estimate.cpp: ' + ', '.join('%s = %.2g' % both for both in zip(names, c)))
     print('    %.0f %% within a quarter' % (100 * within([seconds(c, row) / reference_s(row) for row in rows])))
 
     def peak(c, row):

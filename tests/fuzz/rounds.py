@@ -5,10 +5,10 @@
   rounds.py --fuzzer FUZZ_READERS --corpus DIR --counts FILE --findings DIR --seconds N [READER[=SHARE] ...]
   rounds.py --counts FILE
 
-FUZZ_READERS is built with the preset fuzz (AddressSanitizer and UBSan) or fuzz-fast (neither, a few times as fast). Each
-reader gets a minute times its share (1 unless given) a round; all those of tests/fuzz/corpus where none is named. DIR gets
-a folder of each, which should lie in memory. FILE gets a line a turn: when, fuzzer, reader, executions, seconds of the
-processor, exit code; without a fuzzer their sums are printed. Exit code 1 where a reader broke.
+FUZZ_READERS is built with the preset fuzz (AddressSanitizer and UBSan) or fuzz-fast (neither, a few times as fast).
+Each reader gets a minute times its share (1 unless given) a round; all those of tests/fuzz/corpus where none is named.
+DIR gets a folder of each, which should lie in memory. FILE gets a line a turn: when, fuzzer, reader, executions,
+seconds of the processor, exit code; without a fuzzer their sums are printed. Exit code 1 where a reader broke.
 """
 import argparse
 import collections
@@ -34,15 +34,17 @@ def turn(a, reader, seconds):
     environment = dict(os.environ, TOPPLE_READER=reader, GLIBC_TUNABLES=TUNABLES,
                        ASAN_OPTIONS='allocator_may_return_null=1:detect_leaks=0')
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    ran = subprocess.run([a.fuzzer, '-verbosity=0', '-print_final_stats=1', '-max_total_time=%d' % seconds, '-max_len=4096',
-                          '-rss_limit_mb=2048', '-timeout=60', '-detect_leaks=0', '-entropic=0', '-reduce_inputs=0',
-                          '-artifact_prefix=%s/%s-' % (a.findings, reader), corpus],
-                         env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors='replace', check=False)
+    ran = subprocess.run([a.fuzzer, '-verbosity=0', '-print_final_stats=1', '-max_total_time=%d' % seconds,
+                          '-max_len=4096', '-rss_limit_mb=2048', '-timeout=60', '-detect_leaks=0', '-entropic=0',
+                          '-reduce_inputs=0', '-artifact_prefix=%s/%s-' % (a.findings, reader), corpus],
+                         env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors='replace',
+                         check=False)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     executions = re.search(r'number_of_executed_units:\s*(\d+)', ran.stdout)
     with open(a.counts, 'a', encoding='utf-8') as counts:
-        print(int(time.time()), a.fuzzer, reader, executions.group(1) if executions else 0,
-              '%.1f' % (after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime), ran.returncode, sep='\t', file=counts)
+        spent = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+        print(int(time.time()), a.fuzzer.name, reader, executions.group(1) if executions else 0, '%.1f' % spent,
+              ran.returncode, sep='\t', file=counts)
     if ran.returncode:
         (a.findings / ('%s-%d.log' % (reader, time.time()))).write_text(ran.stdout[-20000:])
         print('%s broke: %s' % (reader, a.findings), flush=True)
