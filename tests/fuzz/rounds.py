@@ -74,6 +74,7 @@ def main():
     a = parser.parse_args()
     if not a.fuzzer:
         return sums(a.counts)
+    a.fuzzer = a.fuzzer.resolve()
     a.findings.mkdir(parents=True, exist_ok=True)
     a.corpus.mkdir(parents=True, exist_ok=True)
     readers = a.readers or sorted(path.name for path in (HERE / 'corpus').iterdir())
