@@ -221,8 +221,8 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
             out.seconds = fixed_s + point_s * looked_at +
                           pixel_s * static_cast<double>(out.pixels) +
                           surface_voxel_s * out.surface_m2 / (h * h) + voxel_s * box;
-            out.memory_bytes =
-                static_cast<std::uint64_t>(one_piece_peak(looked_at, out.surface_m2, bounds, h));
+            out.memory_bytes = static_cast<std::uint64_t>(
+                one_piece_peak(looked_at, out.surface_m2, bounds, h, out.frames == 0));
             out.least_bytes = one_piece_bytes(looked_at, out.surface_m2, bounds, h);
         }
         out.output_bytes =
