@@ -10,7 +10,7 @@ namespace topple {
 
 // What a parse will take, before it: guesses from how many points there are and over how much
 // surface they spread, by the measured costs of the stages and the speed of this machine. Memory in
-// one piece is mostly within a quarter, time within a third; of blocks within a factor of two.
+// one piece is mostly within a quarter, time within a factor of two; so are those of blocks.
 struct Estimate {
     std::uint64_t points = 0;  // of a cloud; of frames those they are fused to
     std::uint64_t frames = 0;  // 0: a cloud
