@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "vdb/read_volume.h"
 
-#include <openvdb/io/Archive.h>
 #include <openvdb/io/File.h>
-#include <openvdb/io/GridDescriptor.h>
-#include <openvdb/io/io.h>
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <new>
 #include <string>
 
+#include "io/mapped_file.h"
+#include "io/volume_checks.h"
 #include "topple/error.h"
 
 namespace topple::vdb {
@@ -53,52 +51,13 @@ void check_size(const std::filesystem::path& file, const openvdb::GridBase& grid
     }
 }
 
-// Where the grids of a file end, as its own table says: OpenVDB reads what is cut off as zeros.
-class GridEnds : public openvdb::io::Archive {
-  public:
-    // The farthest end in bytes; 0 where the file has no table, as one written to a stream.
-    std::int64_t farthest(std::istream& in) {
-        readHeader(in);
-        openvdb::MetaMap about;
-        openvdb::io::setVersion(in, libraryVersion(), fileVersion());
-        about.readMeta(in);
-        if (!inputHasGridOffsets()) return 0;
-        std::int64_t end = 0;
-        for (std::int32_t left = readGridCount(in); left > 0 && in; --left) {
-            openvdb::io::GridDescriptor grid;
-            grid.read(in);
-            if (!in) return INT64_MAX;  // within the table
-            end = std::max(end, grid.getEndPos());
-            grid.seekToEnd(in);
-        }
-        return end;
-    }
-};
-
-void check_whole(const std::filesystem::path& path) {
-    std::error_code error;
-    const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path, error));
-    std::ifstream in(path, std::ios::binary);
-    const std::int64_t end = GridEnds().farthest(in);
-    if (error || end <= bytes) return;
-    fail(path, "is cut short: its grids reach " +
-                   (end == INT64_MAX ? "beyond its end" : "to byte " + std::to_string(end)) +
-                   ", the file has " + std::to_string(bytes) + "; copy it again");
-}
-
 Candidates read_grids(const std::filesystem::path& path) {
-    std::error_code unknown;
-    // A FIFO would wait for a writer.
-    if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown))
-        fail(path, "is not a regular file");
-    // The magic number of OpenVDB, little-endian.
-    std::ifstream head(path, std::ios::binary);
-    std::string magic(8, '\0');
-    if (!head.read(magic.data(), 8) || magic != std::string(" BDV\0\0\0\0", 8))
-        fail(path, "is no OpenVDB file: it doesn't start with its magic number");
+    {
+        const io::MappedFile bytes(path);
+        io::check_volume(path, bytes.text());
+    }
     Candidates found;
     try {
-        check_whole(path);
         openvdb::io::File file(path.string());
         file.open(false);
         for (auto name = file.beginName(); name != file.endName(); ++name) {

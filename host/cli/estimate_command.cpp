@@ -10,6 +10,7 @@
 #include "cli/long_run.h"
 #include "cli/max_memory_option.h"
 #include "cli/unit_option.h"
+#include "core/json.h"
 #include "io/read_cloud.h"
 #include "io/text.h"
 #include "pipeline/estimate.h"
@@ -21,13 +22,15 @@ namespace {
 struct Arguments {
     std::string input, backend = "auto";
     unsigned threads = 0;
-    bool quiet = false;
+    bool quiet = false, json = false;
     ParseOptions options;
 };
 
 std::string time_text(double seconds) {
     char text[32];
-    if (seconds < 90)
+    if (seconds < 9.5)
+        std::snprintf(text, sizeof(text), "%.2g s", seconds);
+    else if (seconds < 90)
         std::snprintf(text, sizeof(text), "%.0f s", std::ceil(seconds));
     else
         std::snprintf(text, sizeof(text), "%.0f min", std::ceil(seconds / 60));
@@ -45,6 +48,27 @@ std::string limit_text(const Estimate& e, bool may_be_tiled, std::uint64_t max_m
     return given + "are too few, and the parse would be refused: " + least + mend;
 }
 
+void print_json(const Estimate& e) {
+    const OrderedJson json{
+        {"points", e.points},
+        {"frames", e.frames},
+        {"pixels", e.pixels},
+        {"surface_m2", e.surface_m2},
+        {"tiled", e.tiled},
+        {"cell_m", e.cell_m},
+        {"voxel_m", e.voxel_m},
+        {"box_voxels", e.box_voxels},
+        {"seconds", e.seconds},
+        {"probe_s", e.probe_s},
+        {"probe_processor_s", e.probe_processor_s},
+        {"least_bytes", e.least_bytes},
+        {"memory_bytes", e.memory_bytes},
+        {"work_bytes", e.work_bytes},
+        {"output_bytes", e.output_bytes},
+    };
+    std::printf("%s\n", json.dump(1).c_str());
+}
+
 int run(Arguments& a) {
     catch_interrupts();
     a.options.device = device::open_device(a.backend, a.threads);
@@ -52,6 +76,7 @@ int run(Arguments& a) {
     return run_long(a.quiet, a.options, [&](Progress& progress) {
         const Estimate e = estimate(a.input, a.options);
         progress.finish();
+        if (a.json) return print_json(e);
         if (e.frames > 0)
             std::printf("input    %llu frames, about %.2g million points when fused\n",
                         static_cast<unsigned long long>(e.frames),
@@ -90,6 +115,7 @@ Command add_estimate(CLI::App& app) {
     add_max_memory_option(app, a->options.max_memory_bytes,
                           "Memory to keep to, as for parse; whether it suffices is told");
     app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");
+    app.add_flag("--json", a->json, "Print it as JSON, in seconds and bytes");
     app.add_flag("--quiet", a->quiet, "Print the estimate and errors only");
     return [a] { return run(*a); };
 }

@@ -42,6 +42,7 @@ struct JsonAllocator {
         return static_cast<Value*>(allocate_json(count * sizeof(Value)));
     }
     void deallocate(Value* memory, std::size_t) noexcept { release_json(memory); }
+    bool operator==(const JsonAllocator&) const = default;
 };
 
 }  // namespace topple

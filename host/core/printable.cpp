@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/printable.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace topple {
@@ -27,6 +28,15 @@ std::string printable(std::string_view text, std::size_t most) {
     std::string out;
     while (!text.empty()) {
         if (out.size() >= most) return out + "...";
+        std::size_t plain = 0;
+        while (plain < std::min(text.size(), most - out.size()) && text[plain] >= 0x20 &&
+               text[plain] < 0x7F)
+            ++plain;
+        if (plain > 0) {
+            out.append(text.substr(0, plain));
+            text.remove_prefix(plain);
+            continue;
+        }
         const auto length = utf8_length(text);
         const auto byte = static_cast<unsigned char>(text[0]);
         // C1 control characters (U+0080 to U+009F) steer terminals as C0 ones do.

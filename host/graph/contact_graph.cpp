@@ -20,16 +20,28 @@ namespace {
 // places and the range of keys.
 void sort_by(std::span<const std::int32_t> key, std::vector<std::size_t>& places) {
     if (key.empty()) return;
-    const auto [low, high] = std::ranges::minmax(key);
-    std::vector<std::size_t> first(static_cast<std::size_t>(std::int64_t{high} - low) + 2, 0);
-    const auto slot = [&](std::size_t n) {
-        return static_cast<std::size_t>(std::int64_t{key[n]} - low);
-    };
+    const auto ends = std::ranges::minmax(key);
+    const std::int64_t low = ends.min;
+    std::vector<std::size_t> first(static_cast<std::size_t>(ends.max - low) + 2, 0);
+    const auto slot = [&](std::size_t n) { return static_cast<std::size_t>(key[n] - low); };
     for (const std::size_t n : places) ++first[slot(n) + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
     std::vector<std::size_t> sorted(places.size());
     for (const std::size_t n : places) sorted[first[slot(n)]++] = n;
     places = std::move(sorted);
+}
+
+// Those of what is sorted by that member in which it is `key`.
+template <class T>
+std::span<const T> range_of(std::span<const T> sorted, std::int32_t key, std::int32_t T::*member) {
+    const auto first = std::ranges::lower_bound(sorted, key, {}, member);
+    const auto last = std::ranges::upper_bound(sorted, key, {}, member);
+    return {first, last};
+}
+template <class T>
+std::span<const T> range_of(const std::vector<T>& sorted, std::int32_t key,
+                            std::int32_t T::*member) {
+    return range_of(std::span<const T>(sorted), key, member);
 }
 
 // Areas seen along one axis: each line of cells along it counts once for every primitive on it.
@@ -103,9 +115,7 @@ class Shapes {
     }
     // Columns that the primitive only reaches into.
     std::span<const solids::BorderColumn> beside(std::int32_t primitive) const {
-        const auto [first, last] =
-            std::ranges::equal_range(beside_, primitive, {}, &solids::BorderColumn::primitive);
-        return {first, last};
+        return range_of(beside_, primitive, &solids::BorderColumn::primitive);
     }
     // Of a primitive's highest cell in a column, the surface's height in voxels.
     double top(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive) const {
@@ -305,15 +315,11 @@ void add_leanings(ContactGraph& graph) {
 }  // namespace
 
 std::span<const Carrying> ContactGraph::carriers_of(std::int32_t primitive) const {
-    const auto [first, last] =
-        std::ranges::equal_range(carryings, primitive, {}, &Carrying::supported);
-    return {first, last};
+    return range_of(carryings, primitive, &Carrying::supported);
 }
 
 std::span<const Leaning> ContactGraph::leanings_of(std::int32_t primitive) const {
-    const auto [first, last] =
-        std::ranges::equal_range(leanings, primitive, {}, &Leaning::primitive);
-    return {first, last};
+    return range_of(leanings, primitive, &Leaning::primitive);
 }
 
 ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells,

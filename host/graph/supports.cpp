@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "fitted/boosted_trees.h"
@@ -67,6 +68,62 @@ double probability(const Evidence& e, double supporter_kg, double supported_kg) 
     return 1 / (1 + std::exp(-odds));
 }
 
+// Objects may carry one another two and two, as what leans together does, but a longer round holds
+// nothing up: of the supports that close one, the likelier stay.
+void break_rounds(std::vector<Support>& supports, std::size_t objects) {
+    const auto id = [](std::int32_t o) { return static_cast<std::size_t>(o); };
+    std::set<Pair> stated;
+    for (const Support& s : supports) stated.emplace(s.supporter, s.supported);
+    const auto mutual = [&](const Support& s) {
+        return stated.contains({s.supported, s.supporter});
+    };
+    // What is not on any round goes, from the ground up (Kahn).
+    std::vector<std::vector<std::size_t>> carries(objects);
+    std::vector<int> carriers(objects, 0);
+    for (const Support& s : supports) {
+        if (mutual(s)) continue;
+        carries[id(s.supporter)].push_back(id(s.supported));
+        ++carriers[id(s.supported)];
+    }
+    std::vector<std::size_t> free;
+    for (std::size_t o = 0; o < objects; ++o)
+        if (carriers[o] == 0) free.push_back(o);
+    for (std::size_t n = 0; n < free.size(); ++n) {
+        for (const std::size_t o : carries[free[n]])
+            if (--carriers[o] == 0) free.push_back(o);
+    }
+    if (free.size() == objects) return;
+
+    std::vector<std::size_t> order;
+    for (std::size_t n = 0; n < supports.size(); ++n) {
+        const Support& s = supports[n];
+        if (carriers[id(s.supporter)] > 0 && carriers[id(s.supported)] > 0 && !mutual(s))
+            order.push_back(n);
+    }
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+        return supports[a].probability > supports[b].probability;
+    });
+    for (auto& list : carries) list.clear();
+    std::vector<std::size_t> dropped;
+    for (const std::size_t n : order) {
+        const std::size_t from = id(supports[n].supporter), to = id(supports[n].supported);
+        std::vector<std::size_t> reached{to};
+        std::vector<bool> seen(objects);
+        for (std::size_t at = 0; at < reached.size() && !seen[from]; ++at) {
+            for (const std::size_t o : carries[reached[at]]) {
+                if (!seen[o]) reached.push_back(o);
+                seen[o] = true;
+            }
+        }
+        if (seen[from])
+            dropped.push_back(n);
+        else
+            carries[from].push_back(to);
+    }
+    for (const std::size_t n : dropped) supports[n].probability = -1;
+    std::erase_if(supports, [](const Support& s) { return s.probability < 0; });
+}
+
 }  // namespace
 
 std::vector<Support> find_supports(const ContactGraph& contacts,
@@ -89,6 +146,7 @@ std::vector<Support> find_supports(const ContactGraph& contacts,
         const double best = likeliest[static_cast<std::size_t>(s.supported)];
         return s.probability <= 0.5 && (s.probability < best || best <= least_alone);
     });
+    break_rounds(all, objects.size());
     return all;
 }
 

@@ -29,7 +29,7 @@ struct Carried {
 //
 // Returned are those likelier than not, and of what stands on nothing such its likeliest supporter,
 // if that is likely enough: sorted by (supporter, supported). The ground carries and is not
-// carried.
+// carried. Two may carry one another; of a longer round the least likely support is left out.
 //   pair_probability  of each of the contacts' pairs, that both are one
 //   columns           undersides of each object
 std::vector<Support> find_supports(const ContactGraph& contacts,

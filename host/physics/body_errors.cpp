@@ -177,8 +177,8 @@ BodyError body_error(const Body& body, std::span<const std::int32_t> primitives,
     double mass = 0;
     Vec3 moment{};
     for (const std::int32_t p : primitives) {
-        const auto [first, last] = std::ranges::equal_range(errors, p, {}, &VolumeError::primitive);
-        for (auto e = first; e != last; ++e) {
+        auto e = std::ranges::lower_bound(errors, p, {}, &VolumeError::primitive);
+        for (; e != errors.end() && e->primitive == p; ++e) {
             if (e->from >= 0 && std::ranges::binary_search(primitives, e->from)) continue;
             const double more = e->volume_m3 * densities[static_cast<std::size_t>(p)];
             mass += more * more;

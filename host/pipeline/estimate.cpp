@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <memory>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "device/device.h"
 #include "geometry/surfels.h"
 #include "io/frame_sequence.h"
+#include "io/octomap.h"
 #include "io/read_cloud.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/ingest.h"
@@ -24,12 +26,13 @@
 namespace topple {
 namespace {
 
-// Measured on two cores of the machine whose probe takes probe_reference_s: seconds a point of a
-// large cloud (sorting, thinning, writing), seconds a thinned point (blocks, whole); of a parse in
-// one piece those of a point, a voxel of the surface, a voxel of the box, a frame's pixel; and what
-// every run takes.
+// Measured on machines whose probe takes probe_reference_s, or as much longer or shorter: of a
+// parse in blocks seconds a point (sorting, thinning, writing) and a square metre of surface,
+// whatever its resolution; of one in one piece those of a point, a voxel of the surface, a voxel of
+// the box, a frame's pixel; and what every run takes. tests/estimates/estimates.py fits those in
+// one piece.
 constexpr double probe_reference_s = 0.075;
-constexpr double tiled_point_s = 0.27e-6, thinned_point_s = 2.2e-6, tiled_fixed_s = 4;
+constexpr double tiled_point_s = 0.27e-6, tiled_m2_s = 0.033, tiled_fixed_s = 1;
 constexpr double point_s = 4.3e-6, surface_voxel_s = 5.2e-5, voxel_s = 6.1e-8, pixel_s = 6.5e-8,
                  fixed_s = 0.3;
 // Of the cells that a surface passes, those in which frames are fused to a point that stays.
@@ -42,7 +45,7 @@ constexpr double output_point_bytes = 35, tiled_output_point_bytes = 23, output_
 constexpr double layers = 2.3;
 
 // Seconds of the work that parses are full of, on a wavy sheet: least of three runs.
-double probe(device::Device& device) {
+void probe(device::Device& device, Estimate& out) {
     PointCloud cloud;
     for (int i = 0; i < 300; ++i) {
         for (int j = 0; j < 300; ++j) {
@@ -51,14 +54,16 @@ double probe(device::Device& device) {
             cloud.z.push_back(0.1f * std::sin(0.05f * static_cast<float>(i + 2 * j)));
         }
     }
-    double best = INFINITY;
+    out.probe_s = out.probe_processor_s = INFINITY;
     for (int run = 0; run < 3; ++run) {
+        const std::clock_t spent = std::clock();
         const auto start = std::chrono::steady_clock::now();
         geometry::make_surfels(device, cloud, 0.018, {}, {});
-        best = std::min(
-            best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+        out.probe_s = std::min(out.probe_s, passed.count());
+        out.probe_processor_s = std::min(
+            out.probe_processor_s, static_cast<double>(std::clock() - spent) / CLOCKS_PER_SEC);
     }
-    return best;
 }
 
 void tell(const ParseOptions& options, double done) {
@@ -66,19 +71,59 @@ void tell(const ParseOptions& options, double done) {
     if (options.progress) options.progress("estimate", done);
 }
 
-void look_at_cloud(const std::filesystem::path& input, const ParseOptions& options,
-                   SurfaceExtent& surface, Estimate& out) {
+// Beside the surface of what is no sequence of frames: its points, as far as they may be parsed in
+// one piece, and the voxels that it brings.
+struct Looked {
+    SurfaceExtent surface;
+    PointCloud cloud;
+    double voxel_m = 0;
+};
+
+Looked look_at_cloud(const std::filesystem::path& input, const ParseOptions& options,
+                     Estimate& out) {
+    Looked looked;
     const auto add = [&](const PointCloud& portion) {
         out.points += portion.size();
         for (std::size_t n = 0; n < portion.size(); ++n)
-            surface.add(portion.x[n], portion.y[n], portion.z[n]);
+            looked.surface.add(portion.x[n], portion.y[n], portion.z[n]);
+        if (out.points <= most_points_at_once) {
+            const auto append = [](std::vector<float>& to, const std::vector<float>& from) {
+                to.insert(to.end(), from.begin(), from.end());
+            };
+            append(looked.cloud.x, portion.x);
+            append(looked.cloud.y, portion.y);
+            append(looked.cloud.z, portion.z);
+        }
         tell(options, 0);
     };
     if (io::can_stream(input)) {
         io::stream_cloud(input, options.unit_m, add);
-    } else {
-        add(read_input(input, options).cloud);
+        out.tiled = options.tile_m > 0 || out.points > most_points_at_once;
+        if (out.tiled || !io::is_mesh(input)) return looked;
+        looked = {};  // of a mesh in one piece its faces count, not its vertices
+        out.points = 0;
     }
+    const ScannedMap map = read_input(input, options);
+    add(map.cloud);
+    if (io::looks_like_octomap(input)) looked.voxel_m = map.space.voxel_m;
+    return looked;
+}
+
+// The voxels and cells of a parse in one piece, as it finds them itself.
+void find_resolution(const Looked& looked, const ParseOptions& options, Estimate& out) {
+    if (out.frames == 0) {
+        out.cell_m = looked.voxel_m > 0
+                         ? looked.voxel_m / surfel_cells
+                         : std::clamp(1.25 * geometry::point_spacing(looked.cloud).nearest_m,
+                                      least_cell_m, largest_cell_m);
+    }
+    if (options.voxel_m > 0)
+        out.voxel_m = options.voxel_m;
+    else if (looked.voxel_m > 0)
+        out.voxel_m = looked.voxel_m;
+    else
+        out.voxel_m = voxel_for_scan(out.cell_m, looked.surface, static_cast<double>(out.points),
+                                     options.max_memory_bytes);
 }
 
 // Calls use(x, y, z) for every third pixel each way that has a reading.
@@ -98,9 +143,8 @@ void each_reading(const DepthFrame& frame, const Intrinsics& k, const Use& use) 
 
 // Each frame of a sample covers what its neighbours cover, too: their union grows as that of all.
 // `bounds`: of what more than one of them shows, for strays are shown once.
-// Returns how many pixels all frames have.
-std::uint64_t look_at_frames(const std::filesystem::path& input, const ParseOptions& options,
-                             SurfaceExtent& surface, Bounds<float>& bounds, Estimate& out) {
+void look_at_frames(const std::filesystem::path& input, const ParseOptions& options,
+                    SurfaceExtent& surface, Bounds<float>& bounds, Estimate& out) {
     const io::FrameSequence frames = io::FrameSequence::open(input);
     const Intrinsics& k = frames.intrinsics();
     constexpr std::size_t most_frames = 100;
@@ -117,7 +161,7 @@ std::uint64_t look_at_frames(const std::filesystem::path& input, const ParseOpti
     bounds = (again.area_m2() > 0 ? again : surface).bounds();
     out.frames = frames.size();
     out.cell_m = cell_for_frames(k, frames.size(), [&](std::size_t f) { return frames.load(f); });
-    return out.frames * k.width * k.height;
+    out.pixels = out.frames * k.width * k.height;
 }
 
 }  // namespace
@@ -127,31 +171,31 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
     const auto device = options.device ? options.device : device::open_device("auto");
     tell(options, 0);
     Estimate out;
-    SurfaceExtent surface;
+    Looked looked;
     Bounds<float> bounds;
-    std::uint64_t pixels = 0;
     if (io::looks_like_sequence(input)) {
-        pixels = look_at_frames(input, options, surface, bounds, out);
+        look_at_frames(input, options, looked.surface, bounds, out);
     } else {
-        look_at_cloud(input, options, surface, out);
-        bounds = surface.bounds();
+        looked = look_at_cloud(input, options, out);
+        bounds = looked.surface.bounds();
     }
-    out.surface_m2 = surface.area_m2();
-    const double slower = probe(*device) / probe_reference_s;
+    out.surface_m2 = looked.surface.area_m2();
+    probe(*device, out);
+    const double slower = out.probe_s / probe_reference_s;
     const auto points = static_cast<double>(out.points);
     const double asked_cell_m = options.voxel_m / voxel_cells;  // 0: not asked
-    out.tiled = out.frames == 0 && io::can_stream(input) &&
-                (options.tile_m > 0 || out.points > most_points_at_once);
     if (out.tiled) {
         const double finest = points > 0 ? 1.25 * std::sqrt(out.surface_m2 / points) : 0;
         out.cell_m = std::min(largest_cell_m,
                               std::max(finest, asked_cell_m > 0 ? asked_cell_m : building_cell_m));
         const double thinned =
             std::min(0.95 * points, layers * out.surface_m2 / (out.cell_m * out.cell_m));
-        out.seconds = tiled_fixed_s + tiled_point_s * points + thinned_point_s * thinned;
-        const double block = block_bytes(block_cells);
+        out.seconds = tiled_fixed_s + tiled_point_s * points + tiled_m2_s * out.surface_m2;
+        const double block = block_bytes(
+            static_cast<std::uint64_t>(std::min(thinned, static_cast<double>(block_cells))));
         double lanes =
             device->info().backend == device::Backend::native ? device->threads().threads() : 1;
+        lanes = std::clamp(std::ceil(thinned / static_cast<double>(block_cells)), 1.0, lanes);
         if (options.max_memory_bytes > 0)
             lanes = std::clamp(std::floor(static_cast<double>(options.max_memory_bytes) / block),
                                1.0, lanes);
@@ -166,22 +210,19 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
         if (out.frames > 0) {
             out.points = static_cast<std::uint64_t>(fused_share * out.surface_m2 /
                                                     (out.cell_m * out.cell_m));
-        } else if (out.points > 0) {
-            out.cell_m =
-                std::clamp(1.25 * std::sqrt(out.surface_m2 / points), least_cell_m, largest_cell_m);
         }
         const auto looked_at = static_cast<double>(out.points);
         if (looked_at > 0) {
-            const double h = out.voxel_m =
-                options.voxel_m > 0
-                    ? options.voxel_m
-                    : voxel_for_scan(out.cell_m, surface, looked_at, options.max_memory_bytes);
+            find_resolution(looked, options, out);
+            const double h = out.voxel_m;
             double box = 1;
             for (std::size_t a = 0; a < 3; ++a) box *= (bounds.high[a] - bounds.low[a]) / h;
-            out.seconds = fixed_s + point_s * looked_at + pixel_s * static_cast<double>(pixels) +
+            out.box_voxels = box;
+            out.seconds = fixed_s + point_s * looked_at +
+                          pixel_s * static_cast<double>(out.pixels) +
                           surface_voxel_s * out.surface_m2 / (h * h) + voxel_s * box;
-            out.memory_bytes =
-                static_cast<std::uint64_t>(one_piece_peak(looked_at, out.surface_m2, bounds, h));
+            out.memory_bytes = static_cast<std::uint64_t>(
+                one_piece_peak(looked_at, out.surface_m2, bounds, h, out.frames == 0));
             out.least_bytes = one_piece_bytes(looked_at, out.surface_m2, bounds, h);
         }
         out.output_bytes =

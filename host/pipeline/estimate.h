@@ -10,22 +10,26 @@ namespace topple {
 
 // What a parse will take, before it: guesses from how many points there are and over how much
 // surface they spread, by the measured costs of the stages and the speed of this machine. Memory in
-// one piece is mostly within a quarter, time within a third; of blocks within a factor of two.
+// one piece is mostly within a quarter, time within a factor of two; so are those of blocks.
 struct Estimate {
     std::uint64_t points = 0;  // of a cloud; of frames those they are fused to
     std::uint64_t frames = 0;  // 0: a cloud
     double surface_m2 = 0;
-    bool tiled = false;             // parsed in blocks
-    double cell_m = 0;              // one point of each such cell is looked at
-    double voxel_m = 0;             // of solids, in one piece
-    double seconds = 0;             // with the device's threads
+    bool tiled = false;  // parsed in blocks
+    double cell_m = 0;   // one point of each such cell is looked at
+    double voxel_m = 0;  // of solids, in one piece
+    double seconds = 0;  // with the device's threads
+    // What that is reckoned from, beside the points: pixels of frames, voxels of the box in one
+    // piece, and the seconds of a piece of work here, by the clock and of the processor.
+    std::uint64_t pixels = 0;
+    double box_voxels = 0, probe_s = 0, probe_processor_s = 0;
     std::uint64_t least_bytes = 0;  // with a max_memory_bytes below it parse() refuses
     std::uint64_t memory_bytes = 0, work_bytes = 0, output_bytes = 0;
 };
 
 // Reads a cloud once from front to back, and of frames a sample. Holds a hash of the surface, 50 MB
-// for a large building. options: voxel_m, unit_m, tile_m, max_memory_bytes, device, progress and
-// cancelled. Throws as parse() does.
+// for a large building, and as many points as are parsed in one piece. options: voxel_m, unit_m,
+// tile_m, max_memory_bytes, device, progress and cancelled. Throws as parse() does.
 Estimate estimate(const std::filesystem::path& input, const ParseOptions& options);
 
 }  // namespace topple

@@ -80,7 +80,8 @@ class LayersBehind {
             }
         }
         std::ranges::stable_sort(out, {}, &ObjectVoxel::at);
-        out.erase(std::ranges::unique(out, {}, &ObjectVoxel::at).begin(), out.end());
+        const auto same = [](const ObjectVoxel& a, const ObjectVoxel& b) { return a.at == b.at; };
+        out.erase(std::unique(out.begin(), out.end(), same), out.end());
         return out;
     }
 

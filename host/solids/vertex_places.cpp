@@ -37,7 +37,7 @@ struct VertexFaces {
 template <class T>
 void make_unique(std::vector<T>& values) {
     std::ranges::sort(values);
-    values.erase(std::ranges::unique(values).begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
 class Places {

@@ -3,6 +3,7 @@
 """The same input gives the same bytes, whatever computes it: backends, numbers of threads, builds, and orders of points.
 
     same_bits.py PROGRAM [PROGRAM ...] [--backends native vulkan opencl] [--threads 1 2 7] [--large]
+                 [--also PROGRAM]
 
 Parses small scans of each kind with every program (builds of another type, compiler or sanitizer) on every backend with
 each number of threads, and compares all that is written, but for what tells of the run itself: times, and the names of
@@ -77,7 +78,10 @@ def main():
     parser.add_argument('--backends', nargs='+', default=['native'])
     parser.add_argument('--threads', nargs='+', type=int, default=[1, 2, 7])
     parser.add_argument('--large', action='store_true', help='a generated kitchen and a walk through it, too')
+    parser.add_argument('--also', type=Path, help='one more program, where it is there')
     args = parser.parse_args()
+    if args.also and args.also.exists():
+        args.programs.append(args.also.resolve())
     different = 0
     with tempfile.TemporaryDirectory(prefix='topple-bits-') as temporary:
         folder = Path(temporary)

@@ -10,6 +10,8 @@
 #include "io/octomap.h"
 #include "io/read_cloud.h"
 #include "io/scene_json.h"
+#include "io/text.h"
+#include "io/volume_checks.h"
 #include "topple/error.h"
 #include "topple/motion.h"
 
@@ -83,6 +85,8 @@ constexpr Reader all[] = {
     {"stl", "in.stl", read_as_cloud},
     {"glb", "in.glb", read_as_cloud},
     {"octomap", "in.bt", read_as_octomap},
+    {"volume", "in.vdb",
+     [](const fs::path& file) { io::check_volume(file, io::read_file(file).text()); }},
     {"depth", "in.png",
      [](const fs::path& file) {
          expect(io::read_depth_png(file, 9, 7).size() == 63, "an image of another size");
@@ -114,10 +118,7 @@ std::span<const Reader> readers() {
     return all;
 }
 
-std::string try_input(const Reader& reader, const fs::path& folder, std::string_view bytes) {
-    const fs::path file = folder / reader.file;
-    std::ofstream(file, std::ios::binary)
-        .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+std::string try_file(const Reader& reader, const fs::path& file) {
     try {
         reader.read(file);
     } catch (const Error& error) {
@@ -133,6 +134,13 @@ std::string try_input(const Reader& reader, const fs::path& folder, std::string_
         return std::string("another exception: ") + error.what();
     }
     return "";
+}
+
+std::string try_input(const Reader& reader, const fs::path& folder, std::string_view bytes) {
+    const fs::path file = folder / reader.file;
+    std::ofstream(file, std::ios::binary)
+        .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    return try_file(reader, file);
 }
 
 }  // namespace topple::fuzz

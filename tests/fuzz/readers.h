@@ -16,8 +16,10 @@ struct Reader {
 
 std::span<const Reader> readers();
 
-// Feeds one input to a reader. It may return, or throw Error(input) of one printable line; what
-// else happens is returned in words. Empty: nothing did.
+// Has a reader read a file. It may return, or throw Error(input) of one printable line; what else
+// happens is returned in words. Empty: nothing did.
+std::string try_file(const Reader& reader, const std::filesystem::path& file);
+// The same for these bytes, which become a file in that folder.
 std::string try_input(const Reader& reader, const std::filesystem::path& folder,
                       std::string_view bytes);
 

@@ -38,6 +38,19 @@ def pcd():
     yield (head % (8, 1, "binary_compressed")).encode() + struct.pack("<II", len(literal), len(columns)) + literal
 
 
+def volume():
+    def text(words):
+        return struct.pack("<i", len(words)) + words
+
+    head = b" BDV\0\0\0\0" + struct.pack("<III", 224, 10, 0) + b"\1" + b"0" * 36
+    head += struct.pack("<i", 1) + text(b"creator") + text(b"string") + text(b"topple") + struct.pack("<i", 1)
+    head += text(b"distance") + text(b"Tree_float_5_4_3") + text(b"")
+    tree = struct.pack("<Ii", 1, 1) + text(b"class") + text(b"string") + text(b"level set") + text(b"UniformScaleMap")
+    tree += b"\0" * 120 + struct.pack("<ifII", 1, 0.1, 1, 0) + b"\0" * 17
+    first = len(head) + 24
+    yield head + struct.pack("<3q", first, first + len(tree), first + len(tree)) + tree
+
+
 def xyz():
     yield b"# scan\n8\n" + b"".join(b"%g %g %g\n" % c for c in CORNERS)
     yield b"id,x,y,z,nx,ny,nz\n" + b"".join(b"1,%g,%g,%g,0,0,1\n" % c for c in CORNERS)
@@ -150,7 +163,7 @@ def landscapes():
 
 def main():
     folder = pathlib.Path(sys.argv[1])
-    for make in (ply, pcd, xyz, las, obj, stl, glb, octomap, depth, intrinsics, trajectory, bvh, joints, record_json,
+    for make in (ply, pcd, xyz, las, obj, stl, glb, octomap, volume, depth, intrinsics, trajectory, bvh, joints, record_json,
                  record_text, scene, landscapes):
         into = folder / make.__name__
         into.mkdir(parents=True, exist_ok=True)

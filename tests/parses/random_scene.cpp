@@ -19,18 +19,20 @@ bool chance(Random& random, double share) {
 
 class Maker {
   public:
-    explicit Maker(std::uint64_t seed) : random_(seed) {}
+    Maker(std::uint64_t seed, bool small) : random_(seed), small_(small) {}
 
     PointCloud cloud() {
-        spacing_ = random_.uniform(0.03, 0.09);
+        spacing_ = random_.uniform(0.03, 0.09) * (small_ ? 2.5 : 1);
         noise_ = chance(random_, 0.5) ? 0 : random_.uniform(0, 0.5) * spacing_;
         normals_ = chance(random_, 0.4);
         turn_ = random_.uniform(0, 2 * M_PI);
-        if (chance(random_, 0.15)) {
+        if (small_ && chance(random_, 0.7)) {
+            image();
+        } else if (chance(random_, 0.15)) {
             odd();
         } else {
             if (!chance(random_, 0.1)) floor();
-            const std::uint64_t things = random_.below(7);
+            const std::uint64_t things = random_.below(small_ ? 4 : 7);
             for (std::uint64_t n = 0; n < things; ++n) thing();
         }
         damage();
@@ -44,7 +46,9 @@ class Maker {
             if (chance(random_, 0.03)) value = wrong;
         };
         const double nan = std::numeric_limits<double>::quiet_NaN();
-        pick(o.voxel_m, 0.01, 0.1, chance(random_, 0.5) ? 1e-9 : nan);
+        if (small_) o.voxel_m = random_.uniform(0.07, 0.2);
+        pick(o.voxel_m, small_ ? 0.05 : 0.01, small_ ? 0.3 : 0.1,
+             chance(random_, 0.5) ? 1e-9 : nan);
         pick(o.density_kg_m3, 1, 20000, -1);
         pick(o.friction, 0.001, 5, nan);
         pick(o.wind_m_s, 0.1, 150, 1e9);
@@ -125,6 +129,55 @@ class Maker {
         at_ = {low[0] + random_.uniform(-0.1, 0.1), low[1] + random_.uniform(-0.1, 0.1)};
     }
 
+    // What a depth camera sees of boxes on a floor, as an organised cloud in its own frame. It
+    // looks down a little, so that its up and the floor's are the same.
+    void image() {
+        const auto width = static_cast<std::uint32_t>(12 + random_.below(24)),
+                   height = static_cast<std::uint32_t>(10 + random_.below(16));
+        const double focal = random_.uniform(0.6, 1.4) * width, down = random_.uniform(0.1, 1.2),
+                     above = random_.uniform(0.4, 1.5);
+        struct Box {
+            Vec3 low, high;
+        };
+        std::vector<Box> boxes;  // x right, y up from the floor, z ahead
+        for (std::uint64_t n = random_.below(6); n > 0; --n) {
+            const Vec3 low{random_.uniform(-1, 0.8),
+                           chance(random_, 0.2) ? random_.uniform(0, 0.6) : 0,
+                           random_.uniform(0.3, 2)};
+            boxes.push_back(
+                {low,
+                 {low[0] + random_.uniform(0.05, 0.7), low[1] + random_.uniform(0.05, 0.9),
+                  low[2] + random_.uniform(0.05, 0.7)}});
+        }
+        if (!chance(random_, 0.1)) boxes.push_back({{-9, -1, -9}, {9, 0, 9}});
+        cloud_.width = width;
+        cloud_.height = height;
+        const double c = std::cos(down), s = std::sin(down);
+        for (std::uint32_t pixel = 0; pixel < width * height; ++pixel) {
+            const Vec3 ray{(pixel % width + 0.5 - width / 2.0) / focal,
+                           (pixel / width + 0.5 - height / 2.0) / focal, 1};  // y down
+            const Vec3 way{ray[0], -c * ray[1] - s, c - s * ray[1]}, from{0, above, 0};
+            double nearest = 6;
+            for (const Box& box : boxes) {
+                double in = 0, out = nearest;
+                for (std::size_t a = 0; a < 3; ++a) {
+                    const double t0 = (box.low[a] - from[a]) / way[a],
+                                 t1 = (box.high[a] - from[a]) / way[a];
+                    in = std::max(in, std::min(t0, t1));
+                    out = std::min(out, std::max(t0, t1));
+                }
+                if (in < out) nearest = in;
+            }
+            if (nearest >= 6 || chance(random_, 0.02)) continue;
+            nearest *= 1 + noise_ / 10 * normal(random_);
+            for (const auto& [to, a] : {std::pair{&cloud_.x, 0}, {&cloud_.y, 1}, {&cloud_.z, 2}})
+                to->push_back(static_cast<float>(nearest * ray[static_cast<std::size_t>(a)]));
+            cloud_.pixel.push_back(pixel);
+        }
+        normals_ = false;
+        imaged_ = true;
+    }
+
     void odd() {
         const auto count = static_cast<int>(1 + random_.below(600));
         const std::uint64_t kind = random_.below(6);
@@ -144,6 +197,7 @@ class Maker {
     }
 
     void damage() {
+        if (imaged_) return;  // its points are its pixels
         const float nan = std::numeric_limits<float>::quiet_NaN();
         if (chance(random_, 0.1)) {
             for (float& v : cloud_.x)
@@ -180,16 +234,17 @@ class Maker {
     }
 
     Random random_;
+    bool small_;
     PointCloud cloud_;
     double spacing_ = 0.03, noise_ = 0, turn_ = 0, top_ = 0;
     std::array<double, 2> at_{};
-    bool normals_ = false;
+    bool normals_ = false, imaged_ = false;
 };
 
 }  // namespace
 
-RandomScene random_scene(std::uint64_t seed) {
-    Maker maker(seed);
+RandomScene random_scene(std::uint64_t seed, bool small) {
+    Maker maker(seed, small);
     RandomScene out;
     out.cloud = maker.cloud();
     out.options = maker.options();

@@ -16,8 +16,8 @@ bool one_line(const std::string& text) {
 }  // namespace
 
 std::string try_parse(std::uint64_t seed, const std::shared_ptr<device::Device>& device,
-                      const std::filesystem::path& folder) {
-    RandomScene scene = random_scene(seed);
+                      const std::filesystem::path& folder, bool small) {
+    RandomScene scene = random_scene(seed, small);
     scene.options.device = device;
     try {
         const ParseResult result = parse(scene.cloud, scene.options);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "vdb/read_volume.h"
 
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
 
 #include "host/io/files.h"
 #include "vdb/completion.h"
@@ -124,6 +127,50 @@ TEST_F(ReadVolume, bad_files) {
                        {"b.vdb", "is cut short", std::to_string(large.size()), "5000"});
     expect_input_error([&] { read_volume(save(openvdb::FloatGrid::create(1))); }, {"no surface"});
     expect_input_error([&] { read_volume(save(openvdb::BoolGrid::create(true))); }, {"no grid of"});
+}
+
+// Counts and lengths are checked before OpenVDB believes them.
+TEST_F(ReadVolume, promises_beyond_the_file) {
+    const auto good = test::bytes_of_file(save(sphere(5, 2)));
+    const std::string map = "UniformScaleTranslateMap";
+    const std::size_t at = good.find(map), counts = at + map.size() + 144 + 8;
+    ASSERT_NE(at, std::string::npos) << "the map is another";
+    const auto with = [&](std::size_t place, std::uint32_t value) {
+        std::string bytes = good;
+        std::memcpy(bytes.data() + place, &value, 4);
+        return write("c.vdb", bytes);
+    };
+    EXPECT_NO_THROW(read_volume(with(counts, 0)));  // it had no tiles
+    const std::string fault = "more than the file has bytes for";
+    expect_input_error([&] { read_volume(with(counts, 1u << 30)); }, {"1073741824 tiles", fault});
+    expect_input_error([&] { read_volume(with(counts + 4, 1u << 30)); }, {"nodes", fault});
+    expect_input_error([&] { read_volume(with(at - 4, 1u << 30)); }, {"map", "1073741824 bytes"});
+    expect_input_error([&] { read_volume(with(8, 100)); }, {"file version 100"});
+    const std::size_t metadata = 8 + 4 + 8 + 1 + 36;
+    expect_input_error([&] { read_volume(with(metadata, 1u << 31)); }, {"entries", fault});
+}
+
+// What the checks know of a file is what OpenVDB writes.
+TEST_F(ReadVolume, any_map_and_a_stream) {
+    using openvdb::math::Transform;
+    const auto grid = sphere(5, 2);
+    const auto linear = [](double x, double turn, double move) {
+        auto transform = Transform::createLinearTransform(0.1);
+        if (x != 1) transform->preScale(openvdb::Vec3d(x, 1, 1));
+        if (turn != 0) transform->postRotate(turn, openvdb::math::Y_AXIS);
+        if (move != 0) transform->postTranslate({move, 0, 0});
+        return transform;
+    };
+    for (const auto& transform : {linear(1, 0, 0), linear(1, 0, 2), linear(2, 0, 0),
+                                  linear(2, 0, 2), linear(1, 0.5, 0), linear(2, 0.5, 2)}) {
+        grid->setTransform(transform);
+        openvdb::io::File(path("m.vdb").string()).write({grid, sphere(3, 1), grid});
+        EXPECT_GT(read_volume(path("m.vdb")).cloud.size(), 100u) << transform->mapType();
+    }
+    std::ofstream out(path("s.vdb"), std::ios::binary);
+    openvdb::io::Stream(out).write(openvdb::GridCPtrVec{grid});
+    out.close();
+    EXPECT_GT(read_volume(path("s.vdb")).cloud.size(), 100u);
 }
 
 TEST_F(ReadVolume, a_real_fog_volume) {

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "fuzz/libfuzzer/file_in_memory.h"
 #include "fuzz/readers.h"
-#include "scenes/temporary_folder.h"
 
 // libFuzzer's entry: TOPPLE_READER names the reader.
 namespace {
@@ -25,9 +25,9 @@ const topple::fuzz::Reader& chosen() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const topple::fuzz::Reader& reader = chosen();
-    static const topple::scenes::TemporaryFolder folder("topple_fuzz");
-    const auto wrong =
-        topple::fuzz::try_input(reader, folder.path(), {reinterpret_cast<const char*>(data), size});
+    static const std::filesystem::path file = std::filesystem::path("/nowhere") / reader.file;
+    topple::fuzz::show_file(file.c_str(), {reinterpret_cast<const char*>(data), size});
+    const auto wrong = topple::fuzz::try_file(reader, file);
     if (!wrong.empty()) {
         std::fprintf(stderr, "%s: %s\n", reader.name, wrong.c_str());
         std::abort();

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "graph/supports.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <array>
 
 #include "host/graph/floor_scene.h"
 #include "kernels/device_harness.h"
@@ -73,6 +76,35 @@ TEST_P(SupportsOf, WhatStandsOnLittleKeepsItsLikeliest) {
     EXPECT_EQ(found[1].supported, thing);
     EXPECT_GT(found[1].probability, 0.2);
     EXPECT_LT(found[1].probability, 0.5);
+}
+
+// Hooks that hang on one another: of each round the likeliest stay, and what carries the ring does.
+TEST(Supports, ThreeDoNotHoldEachOtherUp) {
+    ContactGraph contacts;
+    contacts.primitives = 5;
+    contacts.voxel_m = 0.02;
+    const auto carries = [&](std::int32_t supporter, std::int32_t supported, double columns) {
+        Carrying& c = contacts.carryings.emplace_back();
+        c.supporter = supporter;
+        c.supported = supported;
+        c.area_m2 = columns * contacts.voxel_m * contacts.voxel_m;
+    };
+    carries(0, 1, 400);
+    carries(1, 2, 900);
+    carries(2, 3, 700);
+    carries(3, 1, 500);  // the least of the round
+    carries(3, 4, 600);
+    carries(4, 3, 600);  // these two lean together
+    const std::vector<std::int32_t> object{0, 1, 2, 3, 4};
+    std::vector<Carried> objects(5, Carried{false, 2});
+    objects[0].grounded = true;
+    const auto found =
+        find_supports(contacts, {}, object, objects, std::vector<std::vector<Underside>>(5));
+    std::vector<std::array<std::int32_t, 2>> pairs;
+    for (const Support& s : found) pairs.push_back({s.supporter, s.supported});
+    EXPECT_THAT(pairs,
+                ::testing::UnorderedElementsAreArray(std::vector<std::array<std::int32_t, 2>>{
+                    {0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 3}}));
 }
 
 }  // namespace

@@ -57,13 +57,9 @@ std::string text_of(const fs::path& file) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-Output output_of(const ParseResult& result) {
-    scenes::TemporaryFolder folder("topple_tiles");
-    write_outputs(result, folder.path() / "out");
-    Output out{text_of(folder.path() / "out/points.ply"),
-               text_of(folder.path() / "out/solid.ply"),
-               {},
-               {}};
+Output output_of(const ParseResult& result, const fs::path& written) {
+    write_outputs(result, written);
+    Output out{text_of(written / "points.ply"), text_of(written / "solid.ply"), {}, {}};
     for (const Primitive& p : result.scene.primitives) out.object_of_primitive.push_back(p.object);
     for (const Object& o : result.scene.objects) {
         out.figures.insert(out.figures.end(), {o.mass_kg, o.barrier_J, o.release_J});
@@ -72,25 +68,32 @@ Output output_of(const ParseResult& result) {
     return out;
 }
 
+Output output_of(const ParseResult& result) {
+    const scenes::TemporaryFolder folder("topple_tiles");
+    return output_of(result, folder.path() / "out");
+}
+
 class SlowTiles : public ::testing::Test {
   protected:
     static void SetUpTestSuite() {
+        folder_ = new scenes::TemporaryFolder("topple_tiles");
         result_ = new ParseResult(parse(building(), coarse()));
-        output_ = new Output(output_of(*result_));
+        output_ = new Output(output_of(*result_, first_output()));
     }
     static void TearDownTestSuite() {
         delete result_;
         delete output_;
+        delete folder_;
     }
+    static fs::path first_output() { return folder_->path() / "out"; }
+    static inline const scenes::TemporaryFolder* folder_ = nullptr;
     static inline const ParseResult* result_ = nullptr;
     static inline const Output* output_ = nullptr;
 };
 
 TEST_F(SlowTiles, EveryPointComesBackInItsPlace) {
-    scenes::TemporaryFolder folder("topple_tiles");
-    write_outputs(parse(building(), coarse()), folder.path() / "out");
     const PointCloud in = io::read_cloud(building());
-    const PointCloud out = io::read_cloud(folder.path() / "out/points.ply");
+    const PointCloud out = io::read_cloud(first_output() / "points.ply");
     EXPECT_EQ(in.x, out.x);
     EXPECT_EQ(in.y, out.y);
     EXPECT_EQ(in.z, out.z);
@@ -98,8 +101,8 @@ TEST_F(SlowTiles, EveryPointComesBackInItsPlace) {
     for (const Primitive& p : result_->scene.primitives) labelled += p.points;
     EXPECT_GT(static_cast<double>(labelled), 0.97 * static_cast<double>(in.size()));
     EXPECT_LE(labelled, in.size());
-    EXPECT_TRUE(fs::exists(folder.path() / "out/volume.vdb"));
-    EXPECT_TRUE(fs::exists(folder.path() / "out/report.html"));
+    EXPECT_TRUE(fs::exists(first_output() / "volume.vdb"));
+    EXPECT_TRUE(fs::exists(first_output() / "report.html"));
 }
 
 TEST_F(SlowTiles, MemoryAndThreadsChangeNothing) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// fuzz_parses FIRST SECONDS: parses random scenes from a seed on for that long, prints what is
-// wrong with any, and at the end how many there were. Exit code 1 where something was.
+// fuzz_parses parses|small|calls FIRST SECONDS: parses random scenes (`small`: smaller ones) from a
+// seed on for that long, or calls the interface for C; prints what is wrong with any, and at the
+// end how many there were. Exit code 1 where something was.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -12,8 +13,8 @@
 
 int main(int argc, char** argv) {
     const std::string kind = argc == 4 ? argv[1] : "";
-    if (kind != "parses" && kind != "calls") {
-        std::fprintf(stderr, "usage: fuzz_parses parses|calls FIRST SECONDS\n");
+    if (kind != "parses" && kind != "small" && kind != "calls") {
+        std::fprintf(stderr, "usage: fuzz_parses parses|small|calls FIRST SECONDS\n");
         return 2;
     }
     const auto device = topple::device::open_device("native", 1);
@@ -30,13 +31,14 @@ int main(int argc, char** argv) {
         const std::string what =
             kind == "calls"
                 ? topple::parses::try_calls(seed)
-                : topple::parses::try_parse(seed, device, seed % 50 ? "" : folder.path() / "out");
+                : topple::parses::try_parse(seed, device, seed % 50 ? "" : folder.path() / "out",
+                                            kind == "small");
         if (what.empty()) continue;
         ++wrong;
         std::printf("seed %llu: %s\n", static_cast<unsigned long long>(seed), what.c_str());
         std::fflush(stdout);
     }
     std::printf("%llu %s, %llu wrong\n", static_cast<unsigned long long>(seed - first),
-                kind.c_str(), static_cast<unsigned long long>(wrong));
+                kind == "calls" ? "calls" : "parses", static_cast<unsigned long long>(wrong));
     return wrong > 0;
 }
