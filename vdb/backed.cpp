@@ -11,10 +11,9 @@
 namespace topple::vdb {
 namespace {
 
-constexpr double deepest_m = 0.7;  // of built-in furniture
-constexpr double flat_m = 0.08;    // thickness of a sheet's voxels, beside one voxel
-constexpr std::size_t outermost =
-    20;  // of its voxels this part at either end is no more than noise
+constexpr double deepest_m = 0.7;      // of built-in furniture
+constexpr double flat_m = 0.08;        // thickness of a sheet's voxels, beside one voxel
+constexpr std::size_t outermost = 20;  // of a sheet's voxels one in so many at either end is noise
 // Share of a front's columns behind which nobody saw anything, down to the wall.
 constexpr double hidden_share = 0.6;
 
@@ -31,10 +30,12 @@ void find_bounds(const SolidCells& cells, Sheet& sheet) {
     for (std::size_t a = 0; a < 3; ++a) {
         values.clear();
         for (const std::size_t n : sheet.cells) values.push_back((*place[a])[n]);
-        std::ranges::sort(values);
-        const std::size_t out = values.size() / outermost;
-        sheet.low[a] = values[out];
-        sheet.high[a] = values[values.size() - 1 - out];
+        const auto out = static_cast<std::ptrdiff_t>(values.size() / outermost);
+        const auto low = values.begin() + out, high = values.end() - 1 - out;
+        std::ranges::nth_element(values, low);
+        sheet.low[a] = *low;
+        std::ranges::nth_element(values, high);
+        sheet.high[a] = *high;
     }
 }
 
@@ -125,8 +126,8 @@ std::vector<Claim> backed(const VolumeView& view) {
     }
     // Of two fronts the one with the lower number.
     std::ranges::stable_sort(claims, {}, &Claim::at);
-    const auto again = std::ranges::unique(claims, {}, &Claim::at);
-    claims.erase(again.begin(), again.end());
+    const auto same = [](const Claim& a, const Claim& b) { return a.at == b.at; };
+    claims.erase(std::unique(claims.begin(), claims.end(), same), claims.end());
     return claims;
 }
 

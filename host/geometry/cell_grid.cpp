@@ -74,18 +74,18 @@ void CellGrid::resize(std::size_t count) {
     for (auto& plane : spread) plane.resize(count);
 }
 
-void set_moments(const std::array<FloatColumn, 3>& cloud, std::span<const std::uint32_t> points,
-                 std::size_t cell, CellGrid& grid) {
+CellMoments moments_of(const std::array<FloatColumn, 3>& cloud,
+                       std::span<const std::uint32_t> points, const std::array<std::int32_t, 3>& at,
+                       double cell_m) {
     // Sums of places are integers: a cell's edge counts as this much. Enough for 2^33 points.
     constexpr double cell_steps = 0x1p32;
-    const std::array<std::int32_t, 3> at{grid.x[cell], grid.y[cell], grid.z[cell]};
     std::array<std::int64_t, 3> sum{};
     std::array<std::int64_t, 6> products{};
     const auto steps = [](double v) { return static_cast<std::int64_t>(v * cell_steps); };
     for (const std::uint32_t i : points) {
         std::array<double, 3> d{};
         for (std::size_t a = 0; a < 3; ++a) {
-            d[a] = cloud[a][i] / grid.cell_m - (static_cast<double>(at[a]) + 0.5);
+            d[a] = cloud[a][i] / cell_m - (static_cast<double>(at[a]) + 0.5);
             sum[a] += steps(d[a]);
             products[a] += steps(d[a] * d[a]);
         }
@@ -99,13 +99,20 @@ void set_moments(const std::array<FloatColumn, 3>& cloud, std::span<const std::u
     for (std::size_t a = 0; a < 3; ++a) first[a] = static_cast<double>(sum[a]) / cell_steps / size;
     for (std::size_t a = 0; a < 6; ++a)
         second[a] = static_cast<double>(products[a]) / cell_steps / size;
+    CellMoments out;
     for (std::size_t a = 0; a < 3; ++a) {
-        grid.mean[a][cell] = static_cast<float>(first[a]);
-        grid.spread[a][cell] = static_cast<float>(second[a] - first[a] * first[a]);
+        out.mean[a] = static_cast<float>(first[a]);
+        out.spread[a] = static_cast<float>(second[a] - first[a] * first[a]);
     }
-    grid.spread[3][cell] = static_cast<float>(second[3] - first[0] * first[1]);
-    grid.spread[4][cell] = static_cast<float>(second[4] - first[0] * first[2]);
-    grid.spread[5][cell] = static_cast<float>(second[5] - first[1] * first[2]);
+    out.spread[3] = static_cast<float>(second[3] - first[0] * first[1]);
+    out.spread[4] = static_cast<float>(second[4] - first[0] * first[2]);
+    out.spread[5] = static_cast<float>(second[5] - first[1] * first[2]);
+    return out;
+}
+
+void CellGrid::set(std::size_t cell, const CellMoments& moments) {
+    for (std::size_t a = 0; a < 3; ++a) mean[a][cell] = moments.mean[a];
+    for (std::size_t a = 0; a < 6; ++a) spread[a][cell] = moments.spread[a];
 }
 
 CellGrid coarsen(const CellGrid& grid, ThreadPool& threads, std::vector<std::uint32_t>& parent) {

@@ -52,6 +52,16 @@ class CellPacking {
     int shift_x_ = 0, shift_y_ = 0;
 };
 
+// Mean and covariance (xx yy zz xy xz yz) of points in a cell, in cells, from its centre.
+struct CellMoments {
+    std::array<float, 3> mean{};
+    std::array<float, 6> spread{};
+};
+// Whatever the order of the points. at: the cell's index.
+CellMoments moments_of(const std::array<FloatColumn, 3>& cloud,
+                       std::span<const std::uint32_t> points, const std::array<std::int32_t, 3>& at,
+                       double cell_m);
+
 // The occupied cells of a cubic grid, sorted by x, then y, then z, and the moments of what is in
 // them. Lengths in cells, relative to each cell's centre, so that floats do.
 struct CellGrid {
@@ -62,12 +72,11 @@ struct CellGrid {
     std::array<std::vector<float>, 6> spread;  // covariance xx yy zz xy xz yz, cells^2
     std::size_t size() const { return x.size(); }
     void resize(std::size_t count);
+    std::array<std::int32_t, 3> index(std::size_t cell) const {
+        return {x[cell], y[cell], z[cell]};
+    }
+    void set(std::size_t cell, const CellMoments& moments);
 };
-
-// Sets the mean and covariance of one cell of the grid to those of some points, whatever their
-// order.
-void set_moments(const std::array<FloatColumn, 3>& cloud, std::span<const std::uint32_t> points,
-                 std::size_t cell, CellGrid& grid);
 
 // The grid of twice the cell size: cells merged by weight. parent: coarse cell of each fine one.
 CellGrid coarsen(const CellGrid& grid, ThreadPool& threads, std::vector<std::uint32_t>& parent);

@@ -100,7 +100,7 @@ CellGrid bin(const CloudView& cloud, double cell_m, ThreadPool& threads,
         grid.x[cell] = static_cast<std::int32_t>(at[0]);
         grid.y[cell] = static_cast<std::int32_t>(at[1]);
         grid.z[cell] = static_cast<std::int32_t>(at[2]);
-        set_moments(p, points, cell, grid);
+        grid.set(cell, moments_of(p, points, grid.index(cell), cell_m));
         const double size = static_cast<double>(points.size());
         count[cell] = static_cast<float>(size);
         grid.weight[cell] = fit_weight(size);

@@ -35,19 +35,12 @@ struct Side {
 
 Side side_of(const Axes& cloud, const SensorSides& sides, const PlaneFit& planes,
              const CellGrid& grid, std::size_t cell, std::span<const std::uint32_t> points) {
-    CellGrid one;
-    one.cell_m = grid.cell_m;
-    one.resize(1);
-    one.x[0] = grid.x[cell];
-    one.y[0] = grid.y[cell];
-    one.z[0] = grid.z[cell];
-    set_moments(cloud, points, 0, one);
+    const auto [mean, c] = moments_of(cloud, points, grid.index(cell), grid.cell_m);
     const double x = planes.normal[0][cell], y = planes.normal[1][cell], z = planes.normal[2][cell];
-    const auto& c = one.spread;
     Side out;
-    out.mean = x * one.mean[0][0] + y * one.mean[1][0] + z * one.mean[2][0];
-    out.variance = x * x * c[0][0] + y * y * c[1][0] + z * z * c[2][0] +
-                   2 * (x * y * c[3][0] + x * z * c[4][0] + y * z * c[5][0]);
+    out.mean = x * mean[0] + y * mean[1] + z * mean[2];
+    out.variance = x * x * c[0] + y * y * c[1] + z * z * c[2] +
+                   2 * (x * y * c[3] + x * z * c[4] + y * z * c[5]);
     std::array<double, 3> t{};
     for (const std::uint32_t i : points) {
         const std::array<float, 3> one_t = sides.towards(i);
@@ -134,7 +127,7 @@ void part_sides(const CloudView& cloud, const SensorSides& sides, ThreadPool& th
     for (const Parted& p : parted) {
         const auto set = [&](std::uint32_t cell, std::span<const std::uint32_t> side) {
             for (const std::uint32_t i : side) of_point[i] = cell;
-            set_moments(axes, side, cell, grid);
+            grid.set(cell, moments_of(axes, side, grid.index(cell), grid.cell_m));
             count[cell] = static_cast<float>(side.size());
             grid.weight[cell] = fit_weight(static_cast<double>(side.size()));
         };

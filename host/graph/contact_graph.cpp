@@ -38,11 +38,6 @@ std::span<const T> range_of(std::span<const T> sorted, std::int32_t key, std::in
     const auto last = std::ranges::upper_bound(sorted, key, {}, member);
     return {first, last};
 }
-template <class T>
-std::span<const T> range_of(const std::vector<T>& sorted, std::int32_t key,
-                            std::int32_t T::*member) {
-    return range_of(std::span<const T>(sorted), key, member);
-}
 
 // Areas seen along one axis: each line of cells along it counts once for every primitive on it.
 void add_silhouettes(const SolidCells& cells, std::span<const std::int32_t> u,
@@ -115,7 +110,7 @@ class Shapes {
     }
     // Columns that the primitive only reaches into.
     std::span<const solids::BorderColumn> beside(std::int32_t primitive) const {
-        return range_of(beside_, primitive, &solids::BorderColumn::primitive);
+        return range_of(std::span(beside_), primitive, &solids::BorderColumn::primitive);
     }
     // Of a primitive's highest cell in a column, the surface's height in voxels.
     double top(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t primitive) const {
@@ -315,11 +310,11 @@ void add_leanings(ContactGraph& graph) {
 }  // namespace
 
 std::span<const Carrying> ContactGraph::carriers_of(std::int32_t primitive) const {
-    return range_of(carryings, primitive, &Carrying::supported);
+    return range_of(std::span(carryings), primitive, &Carrying::supported);
 }
 
 std::span<const Leaning> ContactGraph::leanings_of(std::int32_t primitive) const {
-    return range_of(leanings, primitive, &Leaning::primitive);
+    return range_of(std::span(leanings), primitive, &Leaning::primitive);
 }
 
 ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells,

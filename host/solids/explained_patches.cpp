@@ -6,16 +6,13 @@
 #include <numeric>
 #include <utility>
 
+#include "solids/explaining.h"
 #include "solids/grid_points.h"
 #include "solids/patch_map.h"
 #include "solids/patches.h"
 
 namespace topple::solids {
 namespace {
-
-double distance_to(const SurfacePatch& patch, const Eigen::Vector3d& p) {
-    return patch.distance({p.x(), p.y(), p.z()});
-}
 
 Eigen::Vector3d normal_of(const SurfacePatch& patch, const Eigen::Vector3d& p) {
     const Vec3 g = patch.gradient({p.x(), p.y(), p.z()});
@@ -30,20 +27,11 @@ struct Explainer {
 
     std::int32_t operator()(const Eigen::Vector3d& p, std::int32_t own,
                             std::span<const std::int32_t> near) const {
-        std::int32_t best = -1;
-        double least = 1;
-        for (const std::int32_t other : near) {
-            const auto o = static_cast<std::size_t>(other), mine = static_cast<std::size_t>(own);
-            if (other == own || dropped[o] ||
-                std::pair(points[o], other) < std::pair(points[mine], own))
-                continue;
-            const double off =
-                std::abs(distance_to(patches[o], p)) / (outlier * patches[o].noise_m);
-            if (off > least || (off == least && best >= 0 && best < other)) continue;
-            least = off;
-            best = other;
-        }
-        return best;
+        const auto mine = std::pair(points[static_cast<std::size_t>(own)], own);
+        return explaining(patches, near, p, [&](std::int32_t other) {
+            const auto o = static_cast<std::size_t>(other);
+            return other != own && !dropped[o] && std::pair(points[o], other) >= mine;
+        });
     }
 };
 

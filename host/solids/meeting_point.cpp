@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solids/vectors.h"
+
 namespace topple::solids {
 namespace {
 
@@ -31,9 +33,9 @@ bool MeetingPoint::settle(std::span<const std::uint32_t> of, int rank, Vec3& x) 
         Eigen::Vector3d b = Eigen::Vector3d::Zero();
         for (const std::uint32_t p : of) {
             const Vec3 g = patches_[p].gradient(x);
-            const double length = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-            if (!(length > 0)) continue;
-            const Eigen::Vector3d n = Eigen::Vector3d(g[0], g[1], g[2]) / length;
+            const double slope = length(g);
+            if (!(slope > 0)) continue;
+            const Eigen::Vector3d n = Eigen::Vector3d(g[0], g[1], g[2]) / slope;
             a += n * n.transpose();
             b += n * patches_[p].distance(x);
         }

@@ -7,31 +7,14 @@
 #include <tuple>
 #include <vector>
 
+#include "solids/explaining.h"
 #include "solids/grid_points.h"
 #include "solids/patch_map.h"
 #include "solids/patches.h"
+#include "solids/plane_through.h"
 
 namespace topple::solids {
 namespace {
-
-double distance_to(const SurfacePatch& patch, const Eigen::Vector3d& p) {
-    return patch.distance({p.x(), p.y(), p.z()});
-}
-
-// The nearest patch within whose noise a point lies; -1 where none does.
-std::int32_t explaining(std::span<const SurfacePatch> patches, std::span<const std::int32_t> near,
-                        const Eigen::Vector3d& p) {
-    std::int32_t best = -1;
-    double least = 1;
-    for (const std::int32_t n : near) {
-        const SurfacePatch& patch = patches[static_cast<std::size_t>(n)];
-        const double off = std::abs(distance_to(patch, p)) / (outlier * patch.noise_m);
-        if (off > least || (off == least && best >= 0 && best < n)) continue;
-        least = off;
-        best = n;
-    }
-    return best;
-}
 
 // A point of a primitive that no patch explains.
 struct Left {
@@ -76,19 +59,10 @@ std::vector<std::size_t> pieces_of(std::span<const Left> left) {
 }
 
 // The plane through a piece's points, which faces nowhere yet.
-SurfacePatch plane_through(std::span<const Eigen::Vector3d> points) {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (const auto& p : points) mean += p;
-    mean /= static_cast<double>(points.size());
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (const auto& p : points) spread += (p - mean) * (p - mean).transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
-    const Eigen::Vector3d n = solver.eigenvectors().col(0);
-    geometry::AlgebraicModel model;
-    model.origin = {mean.x(), mean.y(), mean.z()};
-    model.coefficients = {0, n.x(), n.y(), n.z(), 0, 0, 0, 0, 0, 0};
-    return fit_patch(model, std::sqrt(solver.eigenvalues()[0] / static_cast<double>(points.size())),
-                     points);
+SurfacePatch patch_through(std::span<const Eigen::Vector3d> points) {
+    const PlaneThrough plane(points);
+    const auto count = static_cast<double>(points.size());
+    return fit_patch(plane.model(), std::sqrt(plane.squares[0] / count), points);
 }
 
 // A narrow face that may be, and how much of its primitive lies before and behind it nearby.
@@ -129,7 +103,7 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
     for (const std::uint32_t n : off) {
         const Eigen::Vector3d at = point(n);
         map.around(at, near);
-        const std::int32_t other = explaining(patches, near, at);
+        const std::int32_t other = explaining(patches, near, at, [](std::int32_t) { return true; });
         if (other >= 0) {
             patch_of_point[n] = other;
             primitive_of_point[n] = primitive[static_cast<std::size_t>(other)];
@@ -148,7 +122,7 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
         constexpr double enough = 0.8;  // share of the points that the plane explains
         std::vector<Eigen::Vector3d> points;
         for (const std::size_t n : all) points.push_back(left[n].at);
-        Face face{plane_through(points), left[number].primitive, {}};
+        Face face{patch_through(points), left[number].primitive, {}};
         for (const std::size_t n : all)
             if (std::abs(distance_to(face.patch, left[n].at)) <= outlier * face.patch.noise_m)
                 face.points.push_back(left[n].point);

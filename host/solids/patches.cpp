@@ -10,6 +10,7 @@
 
 #include "geometry/algebraic_model.h"
 #include "solids/grid_points.h"
+#include "solids/plane_through.h"
 
 namespace topple::solids {
 namespace {
@@ -66,20 +67,11 @@ Near near(const geometry::AlgebraicModel& model, std::span<const Eigen::Vector3d
 // Nothing where the points span no plane.
 std::optional<geometry::AlgebraicModel> plane_of(const geometry::AlgebraicModel& before,
                                                  const Points& points) {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (const auto& p : points) mean += p;
-    mean /= static_cast<double>(points.size());
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (const auto& p : points) spread += (p - mean) * (p - mean).transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+    PlaneThrough plane(points);
     constexpr double least_ratio = 16;  // of the squares of the plane's width and its noise
-    if (!(solver.eigenvalues()[1] > least_ratio * solver.eigenvalues()[0])) return std::nullopt;
-    Eigen::Vector3d n = solver.eigenvectors().col(0);
-    if (n.dot(geometry::gradient(before, mean)) < 0) n = -n;
-    geometry::AlgebraicModel out;
-    out.origin = {mean.x(), mean.y(), mean.z()};
-    out.coefficients = {0, n.x(), n.y(), n.z(), 0, 0, 0, 0, 0, 0};
-    return out;
+    if (!(plane.squares[1] > least_ratio * plane.squares[0])) return std::nullopt;
+    if (plane.normal.dot(geometry::gradient(before, plane.mean)) < 0) plane.normal = -plane.normal;
+    return plane.model();
 }
 
 // The layers of the fit lie close to the surface, and it is moved to where the points are: a

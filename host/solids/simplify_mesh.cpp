@@ -5,36 +5,13 @@
 #include <cmath>
 #include <utility>
 
-#include "geometry/cell_grid.h"
+#include "solids/error_quadric.h"
+#include "solids/mesh_pieces.h"
 #include "solids/vectors.h"
 #include "solids/vertex_rings.h"
 
 namespace topple::solids {
 namespace {
-
-// The sum of the squared distances to planes.
-class Quadric {
-  public:
-    // normal: of unit length, or shorter, to count for less.
-    void add_plane(const Vec3& normal, const Vec3& through) {
-        const double d = -dot(normal, through);
-        const std::array<double, 4> p{normal[0], normal[1], normal[2], d};
-        std::size_t n = 0;
-        for (std::size_t a = 0; a < 4; ++a)
-            for (std::size_t b = a; b < 4; ++b) m_[n++] += p[a] * p[b];
-    }
-    void add(const Quadric& other) {
-        for (std::size_t n = 0; n < m_.size(); ++n) m_[n] += other.m_[n];
-    }
-    double at(const Vec3& p) const {
-        const double x = p[0], y = p[1], z = p[2];
-        return x * (m_[0] * x + 2 * (m_[1] * y + m_[2] * z + m_[3])) +
-               y * (m_[4] * y + 2 * (m_[5] * z + m_[6])) + z * (m_[7] * z + 2 * m_[8]) + m_[9];
-    }
-
-  private:
-    std::array<double, 10> m_{};
-};
 
 class Simplifier {
   public:
@@ -52,7 +29,7 @@ class Simplifier {
         pool.each(around_.size(), 1 << 12,
                   [&](std::size_t v) { add_planes(static_cast<std::uint32_t>(v)); });
     }
-    std::vector<Quadric>& quadrics() { return quadric_; }
+    std::vector<ErrorQuadric>& quadrics() { return quadric_; }
 
     // Vertices that are `fixed` stay, and nothing is merged into them: there is more around them
     // than the mesh has. Empty: none is.
@@ -162,7 +139,8 @@ class Simplifier {
         }
     }
     // The plane through a border of primitives across the surface.
-    void add_border(std::uint32_t from, std::uint32_t to, const Vec3& normal, Quadric& out) const {
+    void add_border(std::uint32_t from, std::uint32_t to, const Vec3& normal,
+                    ErrorQuadric& out) const {
         // How much further than from a patch a vertex may be from it.
         constexpr double wider = 10;
         Vec3 across = unit(cross(minus(mesh_.vertex[to], mesh_.vertex[from]), normal));
@@ -267,104 +245,11 @@ class Simplifier {
     std::span<const SurfacePatch> patches_;
     double most_, longest_;  // squared
     VertexRings around_;     // of a vertex that is gone, none
-    std::vector<Quadric> quadric_;
+    std::vector<ErrorQuadric> quadric_;
     std::span<const std::uint8_t> fixed_;
     std::vector<std::uint32_t> neighbours_;  // of the vertex that is looked at, ascending
     std::vector<std::uint32_t> gained_;
     std::vector<std::pair<double, std::uint32_t>> nearest_;
-};
-
-// A block's part of a mesh, that is simplified by itself.
-struct Piece {
-    SurfaceMesh mesh;
-    std::vector<Quadric> quadric;
-    std::vector<std::uint8_t> fixed;
-    std::vector<std::uint32_t> from;  // of each vertex: which one of the whole, ascending
-};
-
-// Cuts a mesh into pieces that fit a cache and may be simplified at once, and joins them again.
-// What they are depends on the mesh alone.
-class Pieces {
-  public:
-    static constexpr std::int32_t edge = 32;  // of a block, voxels
-
-    explicit Pieces(const SurfaceMesh& mesh) : mesh_(mesh), shared_(mesh.vertex.size(), 0) {
-        std::vector<std::uint64_t> keys;
-        keys.reserve(mesh.triangle.size());
-        for (const auto& t : mesh.triangle) keys.push_back(block_of(mesh.corner[t[0]]));
-        blocks_ = geometry::group_keys(keys);
-        constexpr std::uint64_t none = ~std::uint64_t{0};
-        std::vector<std::uint64_t> block(mesh.vertex.size(), none);
-        for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
-            for (const std::uint32_t v : mesh.triangle[t]) {
-                if (block[v] == none) block[v] = keys[t];
-                if (block[v] != keys[t]) shared_[v] = 1;
-            }
-        }
-    }
-    std::size_t size() const { return blocks_.size(); }
-
-    Piece cut(std::size_t n, std::span<const Quadric> quadric) const {
-        Piece out;
-        for (const std::uint32_t t : blocks_.group(n))
-            for (const std::uint32_t v : mesh_.triangle[t]) out.from.push_back(v);
-        std::ranges::sort(out.from);
-        out.from.erase(std::ranges::unique(out.from).begin(), out.from.end());
-        for (const std::uint32_t v : out.from) {
-            out.mesh.vertex.push_back(mesh_.vertex[v]);
-            out.mesh.corner.push_back(mesh_.corner[v]);
-            out.quadric.push_back(quadric[v]);
-            out.fixed.push_back(shared_[v]);
-        }
-        const auto number = [&](std::uint32_t v) {
-            return static_cast<std::uint32_t>(std::ranges::lower_bound(out.from, v) -
-                                              out.from.begin());
-        };
-        for (const std::uint32_t t : blocks_.group(n)) {
-            const auto [a, b, c] = mesh_.triangle[t];
-            out.mesh.triangle.push_back({number(a), number(b), number(c)});
-            out.mesh.facet.push_back(mesh_.facet[t]);
-        }
-        return out;
-    }
-
-    // The mesh that the pieces are now, and what was summed up at its vertices.
-    static SurfaceMesh joined(const SurfaceMesh& before, std::span<const Piece> pieces,
-                              std::vector<Quadric>& quadric) {
-        std::vector<std::uint32_t> number(before.vertex.size(), 0);
-        for (const Piece& p : pieces)
-            for (const std::uint32_t v : p.from) number[v] = 1;
-        SurfaceMesh out;
-        for (std::uint32_t v = 0; v < number.size(); ++v) {
-            if (number[v] == 0) continue;
-            number[v] = static_cast<std::uint32_t>(out.vertex.size());
-            out.vertex.push_back(before.vertex[v]);
-            out.corner.push_back(before.corner[v]);
-            quadric[out.vertex.size() - 1] = quadric[v];
-        }
-        quadric.resize(out.vertex.size());
-        for (const Piece& p : pieces) {
-            for (std::size_t v = 0; v < p.from.size(); ++v)
-                if (p.fixed[v] == 0) quadric[number[p.from[v]]] = p.quadric[v];
-            for (std::size_t t = 0; t < p.mesh.triangle.size(); ++t) {
-                const auto [a, b, c] = p.mesh.triangle[t];
-                out.triangle.push_back({number[p.from[a]], number[p.from[b]], number[p.from[c]]});
-                out.facet.push_back(p.mesh.facet[t]);
-            }
-        }
-        return out;
-    }
-
-  private:
-    static std::uint64_t block_of(const std::array<std::int32_t, 3>& corner) {
-        std::uint64_t key = 0;
-        for (const std::int32_t c : corner)
-            key = key << 21 | (static_cast<std::uint32_t>((c + (1 << 25)) / edge) & 0x1fffff);
-        return key;
-    }
-    const SurfaceMesh& mesh_;
-    geometry::KeyGroups blocks_;
-    std::vector<std::uint8_t> shared_;  // of each vertex: by several blocks
 };
 
 template <class T>
@@ -375,12 +260,12 @@ void keep(std::span<const std::uint32_t> which, std::vector<T>& of) {
 
 // Each block by itself, up to its borders.
 void simplify_blocks(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
-                     const SimplifyOptions& options, std::vector<Quadric>& quadric,
+                     const SimplifyOptions& options, std::vector<ErrorQuadric>& quadric,
                      ThreadPool& pool) {
-    const Pieces blocks(mesh);
-    std::vector<Piece> pieces(blocks.size());
+    const MeshPieces blocks(mesh);
+    std::vector<MeshPiece> pieces(blocks.size());
     pool.each(pieces.size(), 1, [&](std::size_t n) {
-        Piece& p = pieces[n];
+        MeshPiece& p = pieces[n];
         p = blocks.cut(n, quadric);
         Simplifier simplifier(p.mesh, patches, options);
         simplifier.quadrics().swap(p.quadric);
@@ -391,7 +276,7 @@ void simplify_blocks(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
         keep(kept, p.fixed);
         keep(kept, p.from);
     });
-    mesh = Pieces::joined(mesh, pieces, quadric);
+    mesh = blocks.joined(pieces, quadric);
 }
 
 }  // namespace
@@ -406,7 +291,7 @@ void simplify(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
         first.compact();
         return;
     }
-    std::vector<Quadric> quadric = std::move(first.quadrics());
+    std::vector<ErrorQuadric> quadric = std::move(first.quadrics());
     simplify_blocks(mesh, patches, options, quadric, pool);
     Simplifier rest(mesh, patches, options);
     rest.quadrics().swap(quadric);

@@ -43,6 +43,16 @@ struct Sheet {
     }
 };
 
+// What both kernels read of it.
+struct SheetOnDevice {
+    device::Buffer<std::int32_t> cell_z;
+    device::Buffer<std::uint32_t> columns, query_cell;
+    SheetOnDevice(device::Device& device, const Sheet& sheet)
+        : cell_z(upload(device, sheet.cell_z, "cell_z")),
+          columns(upload(device, sheet.columns, "columns")),
+          query_cell(upload(device, sheet.query_cell, "query_cell")) {}
+};
+
 }  // namespace
 
 Prepared voxel_normals(device::Device& device) {
@@ -60,15 +70,11 @@ Prepared voxel_normals(device::Device& device) {
         for (std::uint32_t k = 4; k < 10; ++k) cells[k * count + n] = k < 7 ? 0.05f : 0.0f;
     }
     struct Buffers {
-        device::Buffer<float> cells;
-        device::Buffer<std::int32_t> cell_z;
-        device::Buffer<std::uint32_t> columns, query_cell;
-        device::Buffer<float> query, prior, fit;
+        SheetOnDevice sheet;
+        device::Buffer<float> cells, query, prior, fit;
     };
-    auto on = std::make_shared<Buffers>(Buffers{upload(device, cells, "cells"),
-                                                upload(device, sheet.cell_z, "cell_z"),
-                                                upload(device, sheet.columns, "columns"),
-                                                upload(device, sheet.query_cell, "query_cell"),
+    auto on = std::make_shared<Buffers>(Buffers{{device, sheet},
+                                                upload(device, cells, "cells"),
                                                 upload(device, query, "query"),
                                                 upload(device, prior, "prior"),
                                                 {device, 6 * std::uint64_t{count}, "fit"}});
@@ -79,9 +85,9 @@ Prepared voxel_normals(device::Device& device) {
                 constexpr float reach = Sheet::radius + 0.5f;
                 queue.add<kernels::VoxelNormals>(count,
                                                  {.cells = on->cells,
-                                                  .cell_z = on->cell_z,
-                                                  .columns = on->columns,
-                                                  .query_cell = on->query_cell,
+                                                  .cell_z = on->sheet.cell_z,
+                                                  .columns = on->sheet.columns,
+                                                  .query_cell = on->sheet.query_cell,
                                                   .query = on->query,
                                                   .prior = on->prior,
                                                   .fit = on->fit},
@@ -114,16 +120,11 @@ Prepared plane_mean(device::Device& device) {
         for (std::uint32_t k = 0; k < 8; ++k) planes[k * count + n] = static_cast<float>(values[k]);
     }
     struct Buffers {
-        device::Buffer<float> planes;
-        device::Buffer<std::int32_t> cell_z;
-        device::Buffer<std::uint32_t> columns, query_cell;
-        device::Buffer<float> offsets;
+        SheetOnDevice sheet;
+        device::Buffer<float> planes, offsets;
     };
-    auto on = std::make_shared<Buffers>(Buffers{upload(device, planes, "planes"),
-                                                upload(device, sheet.cell_z, "cell_z"),
-                                                upload(device, sheet.columns, "columns"),
-                                                upload(device, sheet.query_cell, "query_cell"),
-                                                {device, count, "offsets"}});
+    auto on = std::make_shared<Buffers>(
+        Buffers{{device, sheet}, upload(device, planes, "planes"), {device, count, "offsets"}});
     // 30 operations for each cell in reach.
     return {{count, "queries", count * 4.0 * (8 + 1 + Sheet::width * Sheet::width + 1 + 1),
              30 * sheet.pairs},
@@ -131,9 +132,9 @@ Prepared plane_mean(device::Device& device) {
                 constexpr float reach = Sheet::radius + 0.5f;
                 queue.add<kernels::PlaneMean>(count,
                                               {.planes = on->planes,
-                                               .cell_z = on->cell_z,
-                                               .columns = on->columns,
-                                               .query_cell = on->query_cell,
+                                               .cell_z = on->sheet.cell_z,
+                                               .columns = on->sheet.columns,
+                                               .query_cell = on->sheet.query_cell,
                                                .offsets = on->offsets},
                                               {.query_count = count,
                                                .cell_count = count,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "columns_by_trial.h"
 #include "device/queue.h"
 #include "device_compare.h"
 #include "device_harness.h"
@@ -64,22 +65,7 @@ Inputs inputs_for(const std::vector<FittedCell>& cells, std::size_t queries, int
     for (std::uint32_t c = 0; in.home.size() < queries; ++c)
         if (cells[c % cells.size()].weight > 0)
             in.home.push_back(c % static_cast<std::uint32_t>(cells.size()));
-    for (int dx = -radius; dx <= radius; ++dx) {
-        for (int dy = -radius; dy <= radius; ++dy) {
-            for (const std::uint32_t home : in.home) {
-                const auto& at = cells[home].index;
-                std::uint32_t first = 0, count = 0;
-                for (std::size_t j = 0; j < cells.size(); ++j) {
-                    const auto& other = cells[j].index;
-                    if (other[0] != at[0] + dx || other[1] != at[1] + dy ||
-                        std::abs(other[2] - at[2]) > radius)
-                        continue;
-                    if (count++ == 0) first = static_cast<std::uint32_t>(j);
-                }
-                in.columns.push_back(first | count << 28);
-            }
-        }
-    }
+    in.columns = columns_by_trial(cells, in.home, radius);
     return in;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "columns_by_trial.h"
 #include "device/queue.h"
 #include "device_compare.h"
 #include "device_harness.h"
@@ -75,23 +76,7 @@ Inputs inputs_for(const std::vector<PlaneCell>& cells, std::size_t queries, int 
         in.home.push_back(static_cast<std::uint32_t>(random.word() % n));
         for (std::size_t a = 0; a < 3; ++a) in.query[a * queries + q] = random.uniform(-0.5f, 0.5f);
     }
-    for (int dx = -radius; dx <= radius; ++dx) {
-        for (int dy = -radius; dy <= radius; ++dy) {
-            for (const std::uint32_t home : in.home) {
-                const PlaneCell& c = cells[home];
-                std::uint32_t first = 0, count = 0;
-                for (std::size_t j = 0; j < n; ++j) {
-                    if (cells[j].index[0] != c.index[0] + dx ||
-                        cells[j].index[1] != c.index[1] + dy ||
-                        std::abs(cells[j].index[2] - c.index[2]) > radius) {
-                        continue;
-                    }
-                    if (count++ == 0) first = static_cast<std::uint32_t>(j);
-                }
-                in.columns.push_back(first | count << 28);
-            }
-        }
-    }
+    in.columns = columns_by_trial(cells, in.home, radius);
     return in;
 }
 
