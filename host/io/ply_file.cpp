@@ -8,6 +8,8 @@
 namespace topple::io {
 namespace {
 
+using namespace std::string_view_literals;
+
 // More than any writer needs; a header beyond them is damaged or hostile.
 constexpr std::size_t most_elements = 1000, most_properties = 10000;
 
@@ -37,6 +39,8 @@ class PlyHeaderParser {
         lines_.next(line);  // "ply", as the caller has seen
         bool has_format = false;
         while (lines_.next(line)) {
+            if (line.find_first_of("\0\v\f\r"sv) != std::string_view::npos)
+                bad("a control character stands in the header");
             auto rest = line;
             const auto keyword = next_token(rest);
             if (keyword == "end_header") {
@@ -46,6 +50,7 @@ class PlyHeaderParser {
                 return std::move(header_);
             }
             if (keyword == "format") {
+                if (has_format) bad("the header has two format lines");
                 parse_format(rest);
                 has_format = true;
             } else if (keyword == "element") {
@@ -65,6 +70,12 @@ class PlyHeaderParser {
         fail(file_, "line " + std::to_string(lines_.number()) + ": " + message);
     }
 
+    // Others may read on in such a line, and understand the header in another way than we do.
+    void expect_end(std::string_view rest) const {
+        if (const auto more = next_token(rest); !more.empty())
+            bad(in_quotes(more) + " stands after what belongs in this line");
+    }
+
     void parse_format(std::string_view rest) {
         const auto name = next_token(rest);
         if (name == "ascii") {
@@ -79,6 +90,7 @@ class PlyHeaderParser {
         }
         const auto version = next_token(rest);
         if (version != "1.0") bad("PLY version " + in_quotes(version) + " is not 1.0");
+        expect_end(rest);
     }
 
     void parse_element(std::string_view rest) {
@@ -88,6 +100,7 @@ class PlyHeaderParser {
         if (element.name.empty() || !parse_count(count, element.count)) {
             bad("element " + in_quotes(element.name) + " needs a count, not " + in_quotes(count));
         }
+        expect_end(rest);
         for (const auto& other : header_.elements) {
             if (other.name == element.name)
                 bad("element " + in_quotes(element.name) + " occurs twice");
@@ -110,6 +123,7 @@ class PlyHeaderParser {
         property.type = scalar(type);
         property.name = next_token(rest);
         if (property.name.empty()) bad("a property has no name");
+        expect_end(rest);
         auto& properties = header_.elements.back().properties;
         if (properties.size() == most_properties) bad("more than 10000 properties");
         properties.push_back(std::move(property));

@@ -255,6 +255,10 @@ def hostile_files():
     yield 'elements.ply', b'ply\nformat ascii 1.0\n' + b''.join(b'element e%d 1\n' % n for n in range(50000)) + b'end_header\n'
     yield 'properties.ply', (b'ply\nformat ascii 1.0\nelement vertex 1\n'
                              + b''.join(b'property float p%d\n' % n for n in range(100000)) + b'end_header\n')
+    for line in (b'format binary_little_endian 1.0', b'element vertex\0 3', b'property float y\fz', b'element face 2 3'):
+        yield 'confused.ply', (b'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n'
+                               b'property float z\n' + line + b'\nelement face 1\nproperty list uchar int vertex_indices\n'
+                               b'end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n')
     yield 'endless.ply', b'ply\nformat ascii 1.0\n' + b'comment a\n' * 300000
     yield 'line.ply', b'ply\nformat ascii 1.0\ncomment ' + b'a' * 3000000
     for size in ('1e-30', '1e-300', '1e30', '1e400', '0', '-1', 'nan', '4e-5', '1e-4', '2000'):
