@@ -25,6 +25,7 @@ class SolidScene {
 
     double voxel_m() const { return cells_.voxel_m; }
     const SolidCells& cells() const { return cells_; }
+    const SolidCells& strays() const { return strays_; }
     const BoundaryCells& boundary() const { return boundary_; }
     const CellColumns& columns() const { return columns_; }
     std::size_t primitives() const { return roles_.size(); }

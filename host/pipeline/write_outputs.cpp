@@ -10,6 +10,7 @@
 #include "io/octomap.h"
 #include "io/output_folder.h"
 #include "io/scene_json.h"
+#include "io/solids_file.h"
 #include "io/write_ply.h"
 #include "pipeline/object_surfaces.h"
 #include "pipeline/objects_glb.h"
@@ -75,6 +76,8 @@ std::vector<std::function<void()>> writers(const std::filesystem::path& folder,
     out.emplace_back([=, &result, &poll] { write_points(folder / "points.ply", result, poll); });
     if (options.pictures) out.emplace_back([=, &scene] { report::write_pictures(folder, scene); });
     out.emplace_back([=, &scene] { io::write_solid_ply(folder / "solid.ply", scene.solid); });
+    if (result.solids)
+        out.emplace_back([=, &result] { io::write_solids(folder / "solids.bin", *result.solids); });
     if (options.octomap) out.emplace_back([=] { write_map(folder / "map.bt", *voxels.get()); });
     out.emplace_back([=, &scene] {
         io::write_landscapes_json(folder / "landscapes.json", scene);

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
         {"estimate", "Say what memory, disk and time a parse would take", add_estimate},
         {"landscape", "Draw the energy landscapes of an object that a parse has found",
          add_landscape},
+        {"export", "Make a scene for simulators of what a parse has found", add_export},
         {"devices", "List every device of every backend, or why one is missing", add_devices},
         {"generate", "Make a scan of a furnished room, with its ground truth", add_generate},
         {"evaluate", "Parse generated rooms and judge the results against the truth", add_evaluate},

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "export/convex_part.h"
+
+namespace topple::exports {
+
+// A rigid body of a simulation. World frame: z up, metres.
+struct Body {
+    std::int32_t object = -1;
+    bool fixed = false;  // of the world, which nothing moves
+    // How far up it stands: above all that carries it; 0 for what is fixed.
+    int level = 0;
+    std::vector<std::int32_t> carried_by;  // places in the list of bodies
+    std::vector<ConvexPart> parts;         // convex, together its collision shape
+    double solid_m3 = 0;                   // of what was parsed
+    double mass_kg = 0;
+    Vec3 center_m{};  // of mass
+    Mat3 inertia_kg_m2{};
+    Vec3 moved_m{};      // by settling
+    double lost_m3 = 0;  // of its parts, so that they lie in no other body's
+    // What carries it was not seen: it stands on a pad made for it, or is held where it is.
+    bool on_pad = false, held = false;
+};
+
+}  // namespace topple::exports

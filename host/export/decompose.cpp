@@ -1,0 +1,472 @@
+// SPDX-License-Identifier: MIT
+#include "export/decompose.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "physics/weld.h"
+#include "solids/cell_shape.h"
+
+namespace topple::exports {
+namespace {
+
+// A primitive is convex enough where the hulls of its pieces are this share of it larger, and a
+// piece where its own is so many voxels larger, or this share of the primitive.
+constexpr double slight_share = 0.15, slight_voxels = 8, slight_piece = 0.04;
+// A cut must take this share of a piece's excess away.
+constexpr double least_gain = 0.1;
+constexpr std::size_t most_parts = 10;
+// Of places for a cut along each axis: at changes of the section, and evenly spread ones.
+constexpr std::size_t most_changes = 6, even_places = 4;
+
+using Voxel = std::array<std::int32_t, 3>;
+constexpr std::size_t no_boundary = BoundaryCells::absent;
+
+// A voxel that is a primitive's, wholly or in part.
+struct Cell {
+    Voxel at{};
+    std::size_t boundary = no_boundary;
+};
+
+struct Piece {
+    std::int32_t id = 0;
+    std::vector<std::size_t> cells;
+    Voxel low{}, high{};
+    double hull = 0;  // its volume, in voxels
+    bool final = false;
+    double excess() const { return hull - static_cast<double>(cells.size()); }
+};
+
+// Cuts are looked for on whole voxels, of which few are corners of a hull: those that end a row
+// along each axis.
+class Decomposition {
+  public:
+    Decomposition(const SolidScene& solids, std::vector<Cell> cells)
+        : solids_(solids), cells_(std::move(cells)) {
+        Piece all;
+        for (std::size_t n = 0; n < cells_.size(); ++n) all.cells.push_back(n);
+        bound(all);
+        low_ = all.low;
+        for (std::size_t a = 0; a < 3; ++a)
+            size_[a] = static_cast<std::size_t>(all.high[a] - all.low[a]) + 1;
+        piece_.assign(size_[0] * size_[1] * size_[2], -1);
+        index_.assign(piece_.size(), 0);
+        for (std::size_t n = 0; n < cells_.size(); ++n)
+            index_[place(cells_[n].at)] = static_cast<std::uint32_t>(n);
+        add(std::move(all));
+    }
+
+    // Of a floor that is level as it was seen, a slab below that from end to end: under what stands
+    // on it, it was not seen.
+    std::optional<Decomposed> level_slab() const {
+        constexpr double thick_m = 0.05, level = 0.999;
+        const auto patches = flat_patches(pieces_[0], 1);
+        if (patches.empty()) return std::nullopt;
+        const HalfSpace top = half_space(solids_.boundary().patches[patches[0]]);
+        if (top.normal[2] < level) return std::nullopt;
+        Decomposed out;
+        auto whole = solid_of(pieces_[0], out.solid_m3);
+        if (!whole) return std::nullopt;
+        const double x = (whole->low[0] + whole->high[0]) / 2;
+        const double y = (whole->low[1] + whole->high[1]) / 2;
+        const double z = (top.offset_m - top.normal[0] * x - top.normal[1] * y) / top.normal[2];
+        std::vector<Vec3> points;
+        for (const Vec3& c : whole->corner) {
+            points.push_back({c[0], c[1], z});
+            points.push_back({c[0], c[1], z - thick_m});
+        }
+        auto slab = hull_part(points);
+        if (!slab) return std::nullopt;
+        out.excess_m3 = slab->volume_m3 - out.solid_m3;
+        slab->solid = std::move(whole->solid);
+        slab->solid_each_m3 = whole->solid_each_m3;
+        out.parts.push_back(*std::move(slab));
+        return out;
+    }
+
+    void run(double slight_m3) {
+        const double h = solids_.voxel_m();
+        const double slight = std::max(slight_voxels, slight_m3 / (h * h * h));
+        double excess = pieces_[0].excess();
+        const auto count = static_cast<double>(cells_.size());
+        while (pieces_.size() < most_parts && excess > slight_share * count) {
+            std::size_t worst = pieces_.size();
+            for (std::size_t n = 0; n < pieces_.size(); ++n) {
+                if (!pieces_[n].final &&
+                    (worst == pieces_.size() || pieces_[n].excess() > pieces_[worst].excess()))
+                    worst = n;
+            }
+            if (worst == pieces_.size() ||
+                pieces_[worst].excess() <= std::max(slight, slight_piece * count))
+                return;
+            const auto cut = best_cut(pieces_[worst]);
+            if (!cut) {
+                pieces_[worst].final = true;
+                continue;
+            }
+            Piece below, above;
+            for (const std::size_t n : pieces_[worst].cells)
+                (cells_[n].at[cut->axis] < cut->layer ? below : above).cells.push_back(n);
+            excess -= pieces_[worst].excess();
+            below.id = pieces_[worst].id;
+            bound(below);
+            bound(above);
+            above.id = static_cast<std::int32_t>(pieces_.size());
+            mark(below);
+            mark(above);
+            below.hull = hull_of(below);
+            above.hull = hull_of(above);
+            excess += below.excess() + above.excess();
+            pieces_[worst] = std::move(below);
+            pieces_.push_back(std::move(above));
+        }
+    }
+
+    Decomposed result() const {
+        Decomposed out;
+        for (const Piece& piece : pieces_) {
+            double solid_m3 = 0;
+            auto part = solid_of(piece, solid_m3);
+            out.solid_m3 += solid_m3;
+            if (!part) continue;
+            trim(piece, *part);
+            out.excess_m3 += part->volume_m3 - solid_m3;
+            out.parts.push_back(*std::move(part));
+        }
+        return out;
+    }
+
+  private:
+    // The hull of a piece's solid, and how much that is.
+    std::optional<ConvexPart> solid_of(const Piece& piece, double& solid_m3) const {
+        const double h = solids_.voxel_m(), voxel_m3 = h * h * h;
+        const BoundaryCells& boundary = solids_.boundary();
+        solid_m3 = 0;
+        std::vector<Vec3> points;
+        for (const std::size_t n : piece.cells) {
+            const Cell& cell = cells_[n];
+            solid_m3 += cell.boundary == no_boundary
+                            ? voxel_m3
+                            : boundary.share[cell.boundary] * voxel_m3 / BoundaryCells::whole;
+            if (!between_alike(cell, piece.id)) add_corners(cell, points);
+        }
+        constexpr double alike = 0.005;  // of a voxel
+        auto part = hull_part(physics::welded(points, alike * h));
+        if (part) sample(piece, solid_m3, *part);
+        return part;
+    }
+    // Corners of some of its cells.
+    void sample(const Piece& piece, double solid_m3, ConvexPart& part) const {
+        constexpr std::size_t most = 200;
+        const std::size_t step = (piece.cells.size() + most - 1) / most;
+        for (std::size_t n = step / 2; n < piece.cells.size(); n += step)
+            add_corners(cells_[piece.cells[n]], part.solid);
+        part.solid_each_m3 = solid_m3 / static_cast<double>(part.solid.size());
+    }
+    // Cuts a hull along the flat patches beyond which hardly any of its solid lies: faces are as
+    // flat as they were seen, whatever single voxels stick out.
+    void trim(const Piece& piece, ConvexPart& part) const {
+        constexpr std::size_t most_patches = 16;
+        constexpr double slight_loss = 0.002;
+        for (const std::uint32_t number : flat_patches(piece, most_patches)) {
+            auto left = cut(part, half_space(solids_.boundary().patches[number]));
+            if (!left || left->volume_m3 == part.volume_m3) continue;
+            const auto lost = static_cast<double>(part.solid.size() - left->solid.size());
+            if (lost <= slight_loss * static_cast<double>(part.solid.size()))
+                part = *std::move(left);
+        }
+    }
+    // Those that bound most of a piece's cells.
+    std::vector<std::uint32_t> flat_patches(const Piece& piece, std::size_t most) const {
+        const BoundaryCells& b = solids_.boundary();
+        std::map<std::uint32_t, std::size_t> cells;  // by patch
+        for (const std::size_t n : piece.cells) {
+            const std::size_t at = cells_[n].boundary;
+            if (at == no_boundary) continue;
+            for (std::size_t s = 0; s < b.slots_used(at); ++s)
+                if (!b.use(at, s).outside && b.patches[b.slot[s][at]].flat())
+                    ++cells[b.slot[s][at]];
+        }
+        std::vector<std::pair<std::size_t, std::uint32_t>> by_count;
+        for (const auto& [patch, count] : cells) by_count.emplace_back(count, patch);
+        std::ranges::sort(by_count, std::greater<>());
+        // A face of the piece, and no neighbour's that it touches.
+        constexpr std::size_t least_share = 50;
+        std::erase_if(by_count, [&](const auto& patch) {
+            return patch.first * least_share < piece.cells.size();
+        });
+        by_count.resize(std::min(by_count.size(), most));
+        std::vector<std::uint32_t> out;
+        for (const auto& [count, patch] : by_count) out.push_back(patch);
+        return out;
+    }
+    static HalfSpace half_space(const SurfacePatch& patch) {
+        const Vec3 g = patch.gradient(patch.origin);
+        const double length = std::hypot(g[0], g[1], g[2]);
+        const Vec3 n{g[0] / length, g[1] / length, g[2] / length};
+        return {n, n[0] * patch.origin[0] + n[1] * patch.origin[1] + n[2] * patch.origin[2] -
+                       patch.c[0] / length};
+    }
+    void add_corners(const Cell& cell, std::vector<Vec3>& out) const {
+        const double h = solids_.voxel_m();
+        if (cell.boundary != no_boundary) {
+            const auto corners = solids::corners_of(solids_.boundary(), cell.boundary, h);
+            out.insert(out.end(), corners.begin(), corners.end());
+            return;
+        }
+        for (unsigned c = 0; c < 8; ++c)
+            out.push_back({(cell.at[0] + int(c & 1)) * h, (cell.at[1] + int(c >> 1 & 1)) * h,
+                           (cell.at[2] + int(c >> 2)) * h});
+    }
+    std::size_t place(const Voxel& at) const {
+        return (static_cast<std::size_t>(at[0] - low_[0]) * size_[1] +
+                static_cast<std::size_t>(at[1] - low_[1])) *
+                   size_[2] +
+               static_cast<std::size_t>(at[2] - low_[2]);
+    }
+    bool inside(const Voxel& at) const {
+        for (std::size_t a = 0; a < 3; ++a)
+            if (at[a] < low_[a] || at[a] >= low_[a] + static_cast<std::int32_t>(size_[a]))
+                return false;
+        return true;
+    }
+    bool is(std::int32_t id, const Voxel& at) const {
+        return inside(at) && piece_[place(at)] == id;
+    }
+
+    void bound(Piece& piece) const {
+        piece.low.fill(std::numeric_limits<std::int32_t>::max());
+        piece.high.fill(std::numeric_limits<std::int32_t>::min());
+        for (const std::size_t n : piece.cells) {
+            for (std::size_t a = 0; a < 3; ++a) {
+                piece.low[a] = std::min(piece.low[a], cells_[n].at[a]);
+                piece.high[a] = std::max(piece.high[a], cells_[n].at[a]);
+            }
+        }
+    }
+    void mark(const Piece& piece) {
+        for (const std::size_t n : piece.cells) piece_[place(cells_[n].at)] = piece.id;
+    }
+    void add(Piece piece) {
+        mark(piece);
+        piece.hull = hull_of(piece);
+        pieces_.push_back(std::move(piece));
+    }
+
+    // Whether a cell lies between two of its piece that are bounded as it is, so that no corner of
+    // the piece's hull is in it.
+    bool between_alike(const Cell& cell, std::int32_t id) const {
+        for (std::size_t a = 0; a < 3; ++a) {
+            Voxel before = cell.at, after = cell.at;
+            --before[a];
+            ++after[a];
+            if (!is(id, before) || !is(id, after)) continue;
+            if (alike(cell, cells_[index_[place(before)]]) &&
+                alike(cell, cells_[index_[place(after)]]))
+                return true;
+        }
+        return false;
+    }
+    bool alike(const Cell& one, const Cell& other) const {
+        if ((one.boundary == no_boundary) != (other.boundary == no_boundary)) return false;
+        if (one.boundary == no_boundary) return true;
+        const BoundaryCells& b = solids_.boundary();
+        if (b.form[one.boundary] != b.form[other.boundary]) return false;
+        for (std::size_t s = 0; s < b.slots_used(one.boundary); ++s) {
+            if (b.slot[s][one.boundary] != b.slot[s][other.boundary] ||
+                !b.patches[b.slot[s][one.boundary]].flat())
+                return false;
+        }
+        return true;
+    }
+
+    // Corners of the piece's cells, in voxels, as far as they may be those of the hull of a slab of
+    // it. slab: by layer from the piece's lowest along an axis; none: all is one slab.
+    std::vector<std::vector<Vec3>> corners(const Piece& piece, std::size_t axis,
+                                           std::span<const std::size_t> slab_of_layer) const {
+        const auto slab_of = [&](const Voxel& at) {
+            return slab_of_layer.empty()
+                       ? 0
+                       : slab_of_layer[static_cast<std::size_t>(at[axis] - piece.low[axis])];
+        };
+        std::vector<std::vector<Vec3>> out(slab_of(piece.high) + 1);
+        for (const std::size_t n : piece.cells) {
+            const Voxel& at = cells_[n].at;
+            const std::size_t slab = slab_of(at);
+            const auto ends_at = [&](std::size_t a, std::int32_t step) {
+                Voxel next = at;
+                next[a] += step;
+                return !is(piece.id, next) || slab_of(next) != slab;
+            };
+            std::array<std::array<bool, 2>, 3> ends{};
+            bool corner = true;
+            for (std::size_t a = 0; a < 3 && corner; ++a) {
+                ends[a] = {ends_at(a, -1), ends_at(a, 1)};
+                corner = ends[a][0] || ends[a][1];
+            }
+            if (!corner) continue;
+            for (unsigned c = 0; c < 8; ++c) {
+                const std::array<unsigned, 3> bit{c & 1, c >> 1 & 1, c >> 2};
+                if (ends[0][bit[0]] && ends[1][bit[1]] && ends[2][bit[2]])
+                    out[slab].push_back(
+                        {double(at[0]) + bit[0], double(at[1]) + bit[1], double(at[2]) + bit[2]});
+            }
+        }
+        return out;
+    }
+    double hull_of(const Piece& piece) const { return volume_of(corners(piece, 0, {})[0]); }
+    static double volume_of(const std::vector<Vec3>& points) {
+        const auto hull = hull_part(points);
+        return hull ? hull->volume_m3 : 0;
+    }
+
+    // Volumes of the hulls of the first slab, the first two, and so on; or of the last ones.
+    static std::vector<double> volumes(const std::vector<std::vector<Vec3>>& slabs, bool last) {
+        std::vector<double> out(slabs.size(), 0);
+        std::vector<Vec3> points;
+        for (std::size_t n = 0; n < slabs.size(); ++n) {
+            const auto& slab = slabs[last ? slabs.size() - 1 - n : n];
+            points.insert(points.end(), slab.begin(), slab.end());
+            if (auto hull = hull_part(points)) {
+                out[n] = hull->volume_m3;
+                points = std::move(hull->corner);
+            }
+        }
+        return out;
+    }
+
+    // Where to try cuts along an axis: the layers that begin where the section changes most, and
+    // some in between. Ascending, in layers from the piece's lowest.
+    std::vector<std::size_t> places(const Piece& piece, std::size_t axis) const {
+        const auto layers = static_cast<std::size_t>(piece.high[axis] - piece.low[axis]) + 1;
+        std::vector<std::int64_t> count(layers, 0);
+        for (const std::size_t n : piece.cells)
+            ++count[static_cast<std::size_t>(cells_[n].at[axis] - piece.low[axis])];
+        std::vector<std::pair<std::int64_t, std::size_t>> changes;
+        for (std::size_t n = 1; n < layers; ++n)
+            changes.emplace_back(-std::abs(count[n] - count[n - 1]), n);
+        std::ranges::sort(changes);
+        std::vector<std::size_t> out;
+        for (std::size_t n = 0; n < std::min(most_changes, changes.size()); ++n)
+            out.push_back(changes[n].second);
+        for (std::size_t n = 1; n < even_places; ++n) out.push_back(n * layers / even_places);
+        std::ranges::sort(out);
+        out.erase(std::unique(out.begin(), out.end()), out.end());
+        std::erase(out, std::size_t{0});
+        return out;
+    }
+
+    struct Cut {
+        std::size_t axis;
+        std::int32_t layer;  // the first above it
+    };
+    // The cut that leaves least. Where none takes much away, as of a box that is hollow, the one
+    // that takes off most of what is convex.
+    std::optional<Cut> best_cut(const Piece& piece) const {
+        double least = piece.hull - least_gain * piece.excess(), most = 0;
+        std::optional<Cut> best, peel;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const std::vector<std::size_t> at = places(piece, a);
+            const auto layers = static_cast<std::size_t>(piece.high[a] - piece.low[a]) + 1;
+            std::vector<std::size_t> slab_of_layer(layers, 0);
+            std::vector<double> solid(at.size() + 1, 0);
+            for (std::size_t n = 0; n < layers; ++n)
+                slab_of_layer[n] =
+                    static_cast<std::size_t>(std::ranges::upper_bound(at, n) - at.begin());
+            for (const std::size_t n : piece.cells)
+                ++solid[slab_of_layer[static_cast<std::size_t>(cells_[n].at[a] - piece.low[a])]];
+            auto slabs = corners(piece, a, slab_of_layer);
+            for (auto& points : slabs)
+                if (auto hull = hull_part(points)) points = std::move(hull->corner);
+            const auto below = volumes(slabs, false), above = volumes(slabs, true);
+            double solid_below = 0;
+            for (std::size_t n = 1; n < slabs.size(); ++n) {
+                solid_below += solid[n - 1];
+                const double solid_above = static_cast<double>(piece.cells.size()) - solid_below;
+                const double hull_below = below[n - 1], hull_above = above[slabs.size() - 1 - n];
+                const Cut cut{a, piece.low[a] + static_cast<std::int32_t>(at[n - 1])};
+                if (hull_below + hull_above < least) {
+                    least = hull_below + hull_above;
+                    best = cut;
+                }
+                for (const auto& [hull, inside] :
+                     {std::pair(hull_below, solid_below), std::pair(hull_above, solid_above)}) {
+                    if (hull - inside > slight_share * inside || inside <= most) continue;
+                    most = inside;
+                    peel = cut;
+                }
+            }
+        }
+        return best ? best : peel;
+    }
+
+    const SolidScene& solids_;
+    std::vector<Cell> cells_;
+    std::vector<Piece> pieces_;
+    Voxel low_{};
+    std::array<std::size_t, 3> size_{};
+    std::vector<std::int32_t> piece_;   // by voxel of the box around all
+    std::vector<std::uint32_t> index_;  // of the cell there
+};
+
+std::vector<std::vector<Cell>> cells_of(const SolidScene& solids,
+                                        std::span<const double> slight_m3) {
+    const SolidCells& cells = solids.cells();
+    const BoundaryCells& boundary = solids.boundary();
+    const auto chosen = [&](std::int32_t p) {
+        return p >= 0 && slight_m3[static_cast<std::size_t>(p)] >= 0;
+    };
+    std::vector<std::vector<Cell>> out(slight_m3.size());
+    for (std::size_t b = 0; b < boundary.size(); ++b) {
+        if (!chosen(boundary.primitive[b]) || boundary.share[b] == 0) continue;
+        out[static_cast<std::size_t>(boundary.primitive[b])].push_back(
+            {{boundary.i[b], boundary.j[b], boundary.k[b]}, b});
+    }
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const std::int32_t p = cells.primitive[n];
+        if (!chosen(p) ||
+            boundary.find(cells.i[n], cells.j[n], cells.k[n], p) != BoundaryCells::absent)
+            continue;
+        out[static_cast<std::size_t>(p)].push_back({{cells.i[n], cells.j[n], cells.k[n]}});
+    }
+    return out;
+}
+
+}  // namespace
+
+std::vector<Decomposed> decompose(const SolidScene& solids, std::span<const double> slight_m3,
+                                  ThreadPool& threads) {
+    auto cells = cells_of(solids, slight_m3);
+    std::vector<Decomposed> out(slight_m3.size());
+    threads.each(slight_m3.size(), 1, [&](std::size_t p) {
+        if (cells[p].empty()) return;
+        Decomposition pieces(solids, std::move(cells[p]));
+        std::optional<Decomposed> slab;
+        if (solids.role(static_cast<std::int32_t>(p)) == Role::floor) slab = pieces.level_slab();
+        if (!slab) pieces.run(slight_m3[p]);
+        out[p] = slab ? *std::move(slab) : pieces.result();
+        for (ConvexPart& part : out[p].parts) {
+            part.primitive = static_cast<std::int32_t>(p);
+            // A box is what solids are most often, and what simulators reckon best with.
+            constexpr double alike = 0.1;  // of a voxel
+            if (const auto box = as_box(part, alike * solids.voxel_m())) {
+                const auto corners = box->corners();
+                if (auto whole = hull_part(corners)) {
+                    whole->primitive = part.primitive;
+                    whole->solid = std::move(part.solid);
+                    whole->solid_each_m3 = part.solid_each_m3;
+                    part = *std::move(whole);
+                }
+            }
+        }
+    });
+    return out;
+}
+
+}  // namespace topple::exports

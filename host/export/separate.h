@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "export/body.h"
+
+namespace topple::exports {
+
+// How two parts lie to one another, along the face of either that tells them apart best.
+struct Apart {
+    Vec3 normal{};     // unit, from the first to the second
+    double gap_m = 0;  // below 0: so deep do they overlap, at most
+};
+Apart apart(const ConvexPart& a, const ConvexPart& b);
+
+// Whether they overlap by more than a micrometre.
+bool overlap(const ConvexPart& a, const ConvexPart& b);
+
+// Whether the boxes around two parts come closer than that.
+bool near(const ConvexPart& a, const ConvexPart& b, double distance_m);
+
+// Cuts parts of different bodies where they overlap, along the plane between them that takes least
+// of what is solid; what lies below keeps its form where either would do. A body that cutting would
+// leave with nothing keeps what it has.
+void separate(std::vector<Body>& bodies);
+
+// The deepest overlap of any two bodies, metres.
+double deepest_overlap_m(const std::vector<Body>& bodies);
+
+}  // namespace topple::exports

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/solid_scene.h"
+#include "core/thread_pool.h"
+#include "export/body.h"
+#include "topple/scene.h"
+
+namespace topple::exports {
+
+// A scene as a simulator sees it: bodies that touch and do not overlap. World frame: that of
+// Scene::manhattan_from_input, z up, metres.
+struct SimScene {
+    std::vector<Body> bodies;  // those of the scene's objects first, in their order; then pads
+    double friction = 0.3;
+    double voxel_m = 0;
+    double gravity_m_s2 = 9.81;
+};
+
+// solids: of that scene. Throws Error(input) where both don't fit together.
+SimScene sim_scene(const Scene& scene, const SolidScene& solids, ThreadPool& threads);
+
+}  // namespace topple::exports

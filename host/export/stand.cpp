@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "export/stand.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "export/separate.h"
+#include "physics/vectors.h"
+
+namespace topple::exports {
+namespace {
+
+using physics::along;
+using physics::dot;
+using physics::opposite;
+
+constexpr double level_cosine = 0.9;  // of a side that carries
+
+std::vector<std::size_t> by_level(const std::vector<Body>& bodies) {
+    std::vector<std::size_t> order(bodies.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t n) { return bodies[n].level; });
+    return order;
+}
+
+// Calls use(part of the body, part below it, how they lie) for all that come within a distance of
+// one another, one over the other.
+template <class Use>
+void each_footing(std::vector<Body>& bodies, Body& body, double within_m, const Use& use) {
+    for (const std::int32_t carrier : body.carried_by) {
+        for (const ConvexPart& below : bodies[static_cast<std::size_t>(carrier)].parts) {
+            for (ConvexPart& part : body.parts) {
+                if (!near(part, below, within_m)) continue;
+                const Apart lie = apart(below, part);
+                if (lie.normal[2] >= level_cosine && lie.gap_m <= within_m) use(part, below, lie);
+            }
+        }
+    }
+}
+
+void move(Body& body, const Vec3& by) {
+    for (ConvexPart& part : body.parts) part = moved(std::move(part), by);
+    body.center_m = along(body.center_m, 1, by);
+    body.moved_m = along(body.moved_m, 1, by);
+}
+
+// A slab under the lowest corners of a body.
+Body pad_under(const Body& body, double within_m) {
+    constexpr double thick_m = 0.01;
+    double lowest = physics::infinity;
+    for (const ConvexPart& part : body.parts) lowest = std::min(lowest, part.low[2]);
+    std::vector<Vec3> points;
+    for (const ConvexPart& part : body.parts) {
+        for (const Vec3& c : part.corner) {
+            if (c[2] > lowest + within_m) continue;
+            points.push_back({c[0], c[1], lowest});
+            points.push_back({c[0], c[1], lowest - thick_m});
+        }
+    }
+    Body pad;
+    pad.fixed = true;
+    if (auto slab = hull_part(points)) pad.parts.push_back(*std::move(slab));
+    return pad;
+}
+
+// Whether a point's plumb line passes through the part.
+bool above(const ConvexPart& part, const Vec3& p) {
+    return std::ranges::all_of(part.face, [&](const HalfSpace& side) {
+        return std::abs(side.normal[2]) > 1 - 1e-9 || dot(side.normal, p) <= side.offset_m;
+    });
+}
+
+}  // namespace
+
+void settle(std::vector<Body>& bodies, double most_m) {
+    std::vector<Body> pads;
+    for (const std::size_t n : by_level(bodies)) {
+        Body& body = bodies[n];
+        if (body.fixed || body.parts.empty()) continue;
+        double gap = physics::infinity;
+        each_footing(bodies, body, most_m,
+                     [&](const ConvexPart&, const ConvexPart&, const Apart& lie) {
+                         gap = std::min(gap, lie.gap_m);
+                     });
+        if (gap == physics::infinity) {
+            Body pad = pad_under(body, most_m);
+            if (pad.parts.empty() || !above(pad.parts[0], body.center_m)) {
+                body.fixed = body.held = true;
+                continue;
+            }
+            body.on_pad = true;
+            body.carried_by = {static_cast<std::int32_t>(bodies.size() + pads.size())};
+            pads.push_back(std::move(pad));
+        } else if (gap > 0) {
+            move(body, {0, 0, -gap});
+        }
+    }
+    for (Body& pad : pads) bodies.push_back(std::move(pad));
+}
+
+void flatten_feet(std::vector<Body>& bodies, double within_m) {
+    for (const std::size_t n : by_level(bodies)) {
+        Body& body = bodies[n];
+        if (body.fixed) continue;
+        each_footing(bodies, body, within_m,
+                     [&](ConvexPart& part, const ConvexPart& below, const Apart& lie) {
+                         std::vector<Vec3> points = part.corner;
+                         const double top = extent_along(below, lie.normal).high;
+                         for (const Vec3& c : part.corner) {
+                             const double above = dot(lie.normal, c) - top;
+                             if (above > 0 && above <= within_m)
+                                 points.push_back(along(c, -above, lie.normal));
+                         }
+                         if (points.size() == part.corner.size()) return;
+                         auto flat = hull_part(points);
+                         if (!flat) return;
+                         flat->primitive = part.primitive;
+                         flat->solid = part.solid;
+                         flat->solid_each_m3 = part.solid_each_m3;
+                         for (const Body& other : bodies) {
+                             if (&other == &body) continue;
+                             for (const ConvexPart& stays : other.parts)
+                                 if (near(*flat, stays, 0) && apart(*flat, stays).gap_m < -1e-6)
+                                     return;
+                         }
+                         part = *std::move(flat);
+                     });
+    }
+}
+
+}  // namespace topple::exports

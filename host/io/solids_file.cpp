@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "io/solids_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/checksum.h"
+#include "io/file_writer.h"
+#include "io/text.h"
+
+// A head, the arrays one after another in the machine's byte order, which is little-endian wherever
+// topple runs, and the checksum of all that.
+namespace topple::io {
+namespace {
+
+struct Head {
+    std::array<char, 16> name{'t', 'o', 'p', 'p', 'l', 'e', ' ', 's',
+                              'o', 'l', 'i', 'd', 's', ' ', '1', '\n'};
+    double voxel_m = 0;
+    std::uint64_t cells = 0, below = 0, strays = 0, boundary = 0, patches = 0, primitives = 0;
+};
+static_assert(sizeof(Head) == 72 && std::is_trivially_copyable_v<Head>);
+
+// The patches without the gaps that a struct has.
+struct FlatPatches {
+    std::vector<std::array<double, 15>> form;  // origin, coefficients, noise, offset
+    std::vector<std::int32_t> primitive;
+};
+
+FlatPatches flattened(const std::vector<SurfacePatch>& patches) {
+    FlatPatches out;
+    for (const SurfacePatch& p : patches) {
+        auto& form = out.form.emplace_back();
+        auto end = std::ranges::copy(p.origin, form.begin()).out;
+        end = std::ranges::copy(p.c, end).out;
+        *end++ = p.noise_m;
+        *end = p.offset_m;
+        out.primitive.push_back(p.primitive);
+    }
+    return out;
+}
+
+std::vector<SurfacePatch> patches_of(const FlatPatches& flat) {
+    std::vector<SurfacePatch> out(flat.form.size());
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        const double* from = flat.form[n].data();
+        std::copy_n(from, 3, out[n].origin.begin());
+        std::copy_n(from + 3, 10, out[n].c.begin());
+        out[n].noise_m = from[13];
+        out[n].offset_m = from[14];
+        out[n].primitive = flat.primitive[n];
+    }
+    return out;
+}
+
+// All arrays in their order in the file: visit(array, how many).
+template <class Cells, class Boundary, class Patches, class Roles, class Visit>
+void each_array(Cells& cells, Cells& strays, Boundary& boundary, Patches& patches, Roles& roles,
+                const Head& head, const Visit& visit) {
+    for (auto* array : {&cells.i, &cells.j, &cells.k, &cells.primitive}) visit(*array, head.cells);
+    visit(cells.basis, head.cells);
+    visit(cells.unseen_below, head.below);
+    for (auto* array : {&strays.i, &strays.j, &strays.k, &strays.primitive})
+        visit(*array, head.strays);
+    visit(strays.basis, head.strays);
+    for (auto* array : {&boundary.i, &boundary.j, &boundary.k, &boundary.primitive})
+        visit(*array, head.boundary);
+    for (auto& slot : boundary.slot) visit(slot, head.boundary);
+    visit(boundary.form, head.boundary);
+    visit(boundary.share, head.boundary);
+    for (auto& moment : boundary.moment) visit(moment, head.boundary);
+    visit(patches.form, head.patches);
+    visit(patches.primitive, head.patches);
+    visit(roles, head.primitives);
+}
+
+std::vector<Role> roles_of(const SolidScene& solids) {
+    std::vector<Role> out;
+    for (std::size_t p = 0; p < solids.primitives(); ++p)
+        out.push_back(solids.role(static_cast<std::int32_t>(p)));
+    return out;
+}
+
+class Reader {
+  public:
+    Reader(const std::filesystem::path& file, std::string_view bytes)
+        : file_(file), bytes_(bytes) {}
+
+    std::shared_ptr<const SolidScene> read() {
+        check_whole();
+        SolidCells cells, strays;
+        BoundaryCells boundary;
+        cells.voxel_m = strays.voxel_m = head_.voxel_m;
+        FlatPatches patches;
+        std::vector<Role> roles;
+        const auto take = [&](auto& array, std::uint64_t count) {
+            using Item = typename std::remove_reference_t<decltype(array)>::value_type;
+            array.resize(count);
+            if (count > 0) std::memcpy(array.data(), bytes_.data() + at_, count * sizeof(Item));
+            at_ += count * sizeof(Item);
+        };
+        each_array(cells, strays, boundary, patches, roles, head_, take);
+        boundary.patches = patches_of(patches);
+        check(boundary, roles);
+        for (const auto* solid : {&cells, &strays})
+            for (const Basis basis : solid->basis)
+                expect(static_cast<std::uint8_t>(basis) < basis_count);
+        try {
+            return std::make_shared<const SolidScene>(std::move(cells), std::move(roles),
+                                                      std::move(strays), std::move(boundary));
+        } catch (const Error&) {
+            damaged();
+        }
+    }
+
+  private:
+    [[noreturn]] void damaged() const { fail(file_, "is damaged; parse the scan again"); }
+    void expect(bool right) const {
+        if (!right) damaged();
+    }
+
+    // Sizes and checksum, before anything is allocated.
+    void check_whole() {
+        const Head expected;
+        if (bytes_.size() < sizeof(Head) + sizeof(Checksum::Value)) damaged();
+        std::memcpy(&head_, bytes_.data(), sizeof(Head));
+        if (head_.name != expected.name)
+            fail(file_, "is no file of solids that this version reads; parse the scan again");
+        at_ = sizeof(Head);
+        std::uint64_t size = sizeof(Head) + sizeof(Checksum::Value);
+        const auto add = [&](auto& array, std::uint64_t count) {
+            using Item = typename std::remove_reference_t<decltype(array)>::value_type;
+            expect(count <= bytes_.size());
+            size += count * sizeof(Item);
+        };
+        SolidCells none;
+        BoundaryCells nothing;
+        FlatPatches patches;
+        std::vector<Role> roles;
+        each_array(none, none, nothing, patches, roles, head_, add);
+        expect(size == bytes_.size());
+        const std::size_t summed = bytes_.size() - sizeof(Checksum::Value);
+        const Checksum::Value sum = Checksum::of(bytes_.data(), summed);
+        expect(std::memcmp(&sum, bytes_.data() + summed, sizeof(sum)) == 0);
+        expect(std::isfinite(head_.voxel_m) && head_.voxel_m > 0 && head_.voxel_m <= 1);
+    }
+
+    void check(const BoundaryCells& boundary, const std::vector<Role>& roles) const {
+        for (const Role role : roles) expect(role <= Role::fixture);
+        for (std::size_t n = 0; n < boundary.size(); ++n) {
+            expect(boundary.primitive[n] >= 0 &&
+                   static_cast<std::uint64_t>(boundary.primitive[n]) < head_.primitives);
+            expect(boundary.share[n] <= BoundaryCells::whole);
+            expect(boundary.slots_used(n) <= BoundaryCells::slots);
+            for (std::size_t s = 0; s < boundary.slots_used(n); ++s)
+                expect(boundary.slot[s][n] < head_.patches);
+        }
+        for (const SurfacePatch& patch : boundary.patches) {
+            double sum = patch.noise_m + patch.offset_m;
+            for (const double c : patch.c) sum += std::abs(c);
+            for (const double c : patch.origin) sum += std::abs(c);
+            expect(std::isfinite(sum));
+        }
+    }
+
+    const std::filesystem::path& file_;
+    std::string_view bytes_;
+    Head head_;
+    std::size_t at_ = 0;
+};
+
+}  // namespace
+
+void write_solids(const std::filesystem::path& file, const SolidScene& solids) {
+    const SolidCells &cells = solids.cells(), &strays = solids.strays();
+    const BoundaryCells& boundary = solids.boundary();
+    Head head;
+    head.voxel_m = solids.voxel_m();
+    head.cells = cells.size();
+    head.below = cells.unseen_below.size();
+    head.strays = strays.size();
+    head.boundary = boundary.size();
+    head.patches = boundary.patches.size();
+    head.primitives = solids.primitives();
+    FileWriter out(file);
+    Checksum sum;
+    const auto put = [&](const void* bytes, std::size_t count) {
+        sum.add(bytes, count);
+        out.write(bytes, count);
+    };
+    put(&head, sizeof(head));
+    const auto put_array = [&](const auto& array, std::uint64_t) {
+        put(array.data(), array.size() * sizeof(array[0]));
+    };
+    const FlatPatches patches = flattened(boundary.patches);
+    const std::vector<Role> roles = roles_of(solids);
+    each_array(cells, strays, boundary, patches, roles, head, put_array);
+    const Checksum::Value value = sum.value();
+    out.write(&value, sizeof(value));
+    out.close();
+}
+
+std::shared_ptr<const SolidScene> read_solids(const std::filesystem::path& file) {
+    const FileBytes bytes = read_file(file);
+    return Reader(file, bytes.text()).read();
+}
+
+}  // namespace topple::io
