@@ -20,6 +20,8 @@ struct Running::State {
 };
 
 Running::Running(const std::filesystem::path& file) : state_(std::make_unique<State>()) {
+    // Else it writes a file of warnings into the current folder.
+    mju_user_warning = [](const char*) {};
     char error[1000] = "";
     state_->model = mj_loadXML(file.c_str(), nullptr, error, sizeof(error));
     trouble_ = error;
