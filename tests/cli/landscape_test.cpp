@@ -15,6 +15,8 @@ using DrawLandscape = Program;
 TEST_F(DrawLandscape, refuses_what_has_none) {
     expect_failure(2, {"landscape"}, {"OUT"});
     expect_failure(1, {"landscape", "nowhere"}, {"nowhere"});
+    put("other/notes.txt", "");
+    expect_failure(1, {"landscape", "other"}, {"other: holds no output of topple"});
     put("mine/scene.json", "{}");
     expect_failure(1, {"landscape", "mine"}, {"scene.json"});
     put_plane("plane.xyz");
