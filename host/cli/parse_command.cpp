@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -236,7 +237,7 @@ Command add_parse(CLI::App& app, const Team& team) {
            "--accelerogram-unit",
            [a](const std::string& unit) { a->accelerogram_unit_m_s2 = record_units.at(unit); },
            "Its unit: g, m/s2 or cm/s2 (default: what the file says, else g)")
-        ->check(CLI::IsMember({"g", "m/s2", "cm/s2"}));
+        ->check(one_of({"g", "m/s2", "cm/s2"}));
     app.add_option("--tolerable", a->options.tolerable_J,
                    "Risk in joules per event up to which an object may stay as it is; for others\n"
                    "the report says where to move them, or what a fixing must hold")
