@@ -9,6 +9,7 @@
 #include <string>
 #include <system_error>
 
+#include "cli/choice.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/isolate_option.h"
@@ -170,9 +171,11 @@ int run(Arguments& a) {
         };
         const ParseResult result = parse(a.input, a.options);
         progress("output", 0);
+        const auto start = std::chrono::steady_clock::now();
         write_outputs(result, out, a.output);
+        const std::chrono::duration<double> output = std::chrono::steady_clock::now() - start;
         progress.finish();
-        if (!a.quiet) print_summary(result.scene, out);
+        if (!a.quiet) print_summary(result.scene, out, output.count());
     };
     return run_long(a.quiet, a.options, work, [&] { return left_behind(a); });
 }

@@ -44,6 +44,7 @@ function timingBars(timings) {
   }
   const total = names.reduce((sum, name) => sum + (timings[name] || 0), 0);
   bars.append(element('strong', {text: 'in all'}), element('span'),
-    element('strong', {className: 'value', text: number(total, 's')}));
+    element('strong', {className: 'value', text: number(total, 's')}),
+    element('p', {className: 'hint', text: 'Without writing the output, of which this page is a part.'}));
   return bars;
 }
