@@ -45,7 +45,7 @@ function contactGraph(scene, id, choose) {
   const contacts = contactsOf(scene, id);
   if (!contacts.length) return null;
   const {left, right, shown} = contactRowsOf(contacts);
-  const step = 26, top = 26, width = 330, xLeft = 112, xRight = 226;
+  const step = 26, top = 26, width = 330, xLeft = 88, xRight = 204;
   const rows = Math.max(left.length, right.length), height = top + step * rows + 4;
   const row = (list, at) => top + step * ((rows - list.length) / 2 + list.indexOf(at) + 0.5);
   const svg = svgElement('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img', class: 'contacts',
