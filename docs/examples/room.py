@@ -17,8 +17,8 @@ scan, picture = sys.argv[1:3]
 result = topple.parse(scan, disturbances=['human', 'wind'], progress=lambda stage, done: done or print(stage))
 print(f'{len(result.objects)} objects of {len(result.point_object)} points on {result.backend}')
 
-# %% The riskiest, and why
-for o in sorted(result.objects, key=lambda o: -o.unsafety)[:3]:
+# %% The riskiest, and why; last those whose unsafety is NaN, since what holds them was not seen
+for o in sorted(result.objects, key=lambda o: np.nan_to_num(-o.unsafety, nan=0))[:3]:
     print(f'object {o.id}, unsafety {o.unsafety:.1f}: {o.why}')
 
 # %% A colour by unsafety for each point: its object's; nothing is copied but what is computed here

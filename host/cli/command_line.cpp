@@ -62,6 +62,12 @@ int run(std::span<const CommandEntry> entries, int argc, char** argv) {
         if (from != std::string::npos && is != std::string::npos && from < is)
             what = what.substr(from, is - from) + " " + what.substr(is + 3) + ": expected a number";
         throw wrong_usage(what);
+    } catch (const CLI::ValidationError& error) {
+        // "--unit: feet: expected m or cm", of which the first part is the parser's.
+        std::string what = error.what();
+        const auto name = what.find(": "), expected = what.find(": expected ");
+        if (name < expected && expected != std::string::npos) what.erase(name, 1);
+        throw wrong_usage(what);
     } catch (const CLI::ParseError& error) {
         const auto subcommands = app.get_subcommands();
         const std::span<const char* const> words(argv, static_cast<std::size_t>(argc));

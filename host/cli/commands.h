@@ -7,7 +7,9 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "cli/choice.h"
 #include "scenes/scan/scan.h"
 #include "topple/crew.h"
 
@@ -22,7 +24,7 @@ inline std::string whole_number(const std::string& text) {
     const auto digit = [](char c) { return c >= '0' && c <= '9'; };
     const bool whole =
         !text.empty() && text.size() < 20 && std::all_of(text.begin(), text.end(), digit);
-    return whole ? "" : text + " is no whole number from 0 to 10^19";
+    return whole ? "" : text + ": expected a whole number from 0 to 10^19";
 }
 
 // Adds --furniture, which sets whether generated rooms are the varied ones.
@@ -31,22 +33,25 @@ inline void add_furniture(CLI::App& app, bool& varied) {
            "--furniture", [&varied](const std::string& kind) { varied = kind == "varied"; },
            "plain (boxes, cylinders, cones), or varied (turned, hollow, rounded, splayed, leaning\n"
            "and piled things, levels, a ceiling)")
-        ->check(CLI::IsMember({"plain", "varied"}))
+        ->check(one_of({"plain", "varied"}))
         ->default_str("plain");
 }
 
 // Adds --scan, which sets how a generated room is scanned.
 inline CLI::Option* add_scan(CLI::App& app, scenes::ScanKind& kind) {
-    std::map<std::string, scenes::ScanKind> names;
+    std::map<std::string, scenes::ScanKind> kinds;
+    std::vector<std::string> names;
     using enum scenes::ScanKind;
-    for (const auto each : {walk, sparse, cloud, laser, single})
-        names[scenes::to_string(each)] = each;
+    for (const auto each : {walk, sparse, cloud, laser, single}) {
+        names.emplace_back(scenes::to_string(each));
+        kinds[names.back()] = each;
+    }
     return app
-        .add_option(
-            "--scan", kind,
+        .add_option_function<std::string>(
+            "--scan", [&kind, kinds](const std::string& name) { kind = kinds.at(name); },
             "walk: depth and colour frames of a hand-held camera; sparse or cloud: points\n"
             "fused of such; laser: points from stations; single: one frame without its pose")
-        ->transform(CLI::CheckedTransformer(names))
+        ->check(one_of(names))
         ->default_str(scenes::to_string(kind));
 }
 

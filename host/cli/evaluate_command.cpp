@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/choice.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "evaluation/bases.h"
@@ -240,7 +241,7 @@ Command add_evaluate(CLI::App& app) {
         app.add_option("--kinds", a->kinds,
                        "Rooms of these families instead, a row of the table for each; or all")
             ->delimiter(',')
-            ->check(CLI::IsMember(names))
+            ->check(one_of(names))
             ->excludes(groupings)
             ->excludes(fit_joints)
             ->excludes(measures)

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "cli/choice.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "io/text.h"
@@ -97,7 +98,7 @@ Command add_generate(CLI::App& app) {
     auto* kind =
         app.add_option("--kind", a->kind,
                        "A room of this family instead, scanned as --scan says, with truth.ply")
-            ->check(CLI::IsMember(scenes::kinds()))
+            ->check(one_of(scenes::kinds()))
             ->excludes(building)
             ->excludes(tilt)
             ->excludes(single);

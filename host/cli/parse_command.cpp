@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <string>
 #include <system_error>
 
+#include "cli/choice.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/isolate_option.h"
@@ -169,9 +171,11 @@ int run(Arguments& a) {
         };
         const ParseResult result = parse(a.input, a.options);
         progress("output", 0);
+        const auto start = std::chrono::steady_clock::now();
         write_outputs(result, out, a.output);
+        const std::chrono::duration<double> output = std::chrono::steady_clock::now() - start;
         progress.finish();
-        if (!a.quiet) print_summary(result.scene, out);
+        if (!a.quiet) print_summary(result.scene, out, output.count());
     };
     return run_long(a.quiet, a.options, work, [&] { return left_behind(a); });
 }
@@ -236,7 +240,7 @@ Command add_parse(CLI::App& app, const Team& team) {
            "--accelerogram-unit",
            [a](const std::string& unit) { a->accelerogram_unit_m_s2 = record_units.at(unit); },
            "Its unit: g, m/s2 or cm/s2 (default: what the file says, else g)")
-        ->check(CLI::IsMember({"g", "m/s2", "cm/s2"}));
+        ->check(one_of({"g", "m/s2", "cm/s2"}));
     app.add_option("--tolerable", a->options.tolerable_J,
                    "Risk in joules per event up to which an object may stay as it is; for others\n"
                    "the report says where to move them, or what a fixing must hold")

@@ -74,8 +74,9 @@ Command add_perf(CLI::App& app) {
     app.add_option("--threads", suite.threads, "Threads of the native backend (0: all cores)")
         ->check(whole_number)
         ->capture_default_str();
-    app.add_flag("!--no-roofline", suite.roofline,
-                 "Leave out the probes of bandwidth and arithmetic that no --filter names");
+    app.add_flag_function(
+        "--no-roofline", [&suite](std::int64_t) { suite.roofline = false; },
+        "Leave out the probes of bandwidth and arithmetic that no --filter names");
     app.add_flag("--list", a->list, "Print the names of the cases");
     return [a] { return run(*a); };
 }

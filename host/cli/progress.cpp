@@ -75,6 +75,7 @@ void Progress::operator()(const std::string& stage, double done) {
         stage_start_ = told_ = Clock::now();
         first_done_ = first_s_ = 0;
         if (!terminal_) std::fprintf(stderr, "%s: %s ...", stage.c_str(), what_it_does(stage));
+        line_begun_ = true;
     }
     if (terminal_) {
         std::fprintf(stderr, "\r\033[K%4.0f s  %s: %s", seconds_since(start_), stage.c_str(),
@@ -83,7 +84,9 @@ void Progress::operator()(const std::string& stage, double done) {
         std::fprintf(stderr, "%s", time_left(done).c_str());
     } else if (done > 0 && seconds_since(told_) > between_figures_s) {
         told_ = Clock::now();
-        std::fprintf(stderr, " %.0f %%", 100 * done);
+        if (!line_begun_) std::fprintf(stderr, "%s:", stage.c_str());
+        std::fprintf(stderr, " %.0f %% after %.0f s\n", 100 * done, seconds_since(stage_start_));
+        line_begun_ = false;
     }
     std::fflush(stderr);
 }
@@ -112,6 +115,7 @@ void Progress::finish() {
     if (terminal_) {
         std::fprintf(stderr, "\r\033[K");
     } else {
+        if (!line_begun_) std::fprintf(stderr, "%s:", stage_.c_str());
         std::fprintf(stderr, " %.2f s\n", seconds_since(stage_start_));
     }
     stage_.clear();

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "io/text.h"
+
 namespace topple::cli {
 namespace {
 
@@ -17,27 +19,48 @@ double risk_of(const Object& o, const std::string& disturbance) {
     return at == o.risk_J.end() ? 0 : at->second;
 }
 
-// Why the riskiest are what they are: of those whose barrier is certain, where there are any. The
-// others' risk says more about the scan.
+// The lowest unsafety is no risk worth a sentence, where there are others.
+bool at_risk(const Object* o) {
+    constexpr double printed_as_lowest = 1.05;
+    return rank_of(*o) >= printed_as_lowest;
+}
+
+// "The 3 riskiest of the 5 objects whose barrier is ...", or of fewer without an order among one.
+std::string riskiest_text(std::size_t shown, std::size_t of) {
+    if (of == 1) return "The one object";
+    if (shown == of) return "The " + std::to_string(of) + " objects";
+    return "The " + (shown == 1 ? "" : std::to_string(shown) + " ") + "riskiest of the " +
+           std::to_string(of) + " objects";
+}
+
+// Why the riskiest are what they are: of those whose barrier is above its error, where there are
+// any. The others' risk says more about the scan.
 void print_sentences(const std::vector<const Object*>& riskiest_first) {
-    std::vector<const Object*> certain, doubtful;
-    std::size_t unseen = 0;
+    std::vector<const Object*> known, doubtful, unseen;
     for (const Object* o : riskiest_first) {
-        (barrier_within_error(*o) || !o->seen_enough ? doubtful : certain).push_back(o);
-        unseen += !barrier_within_error(*o) && !o->seen_enough;
+        auto& group = barrier_within_error(*o) ? doubtful : o->seen_enough ? known : unseen;
+        group.push_back(o);
     }
-    const auto& told = certain.empty() ? doubtful : certain;
-    if (told.empty()) return;
-    const std::size_t shown = std::min(sentences_shown, told.size());
-    std::printf("\nThe %zu riskiest of the %zu whose barrier is %s", shown, told.size(),
-                certain.empty() ? "within its error" : "certain");
-    if (!certain.empty() && doubtful.size() > unseen)
+    const bool doubts = known.empty() || (std::ranges::none_of(known, at_risk) &&
+                                          std::ranges::any_of(doubtful, at_risk));
+    const auto& told = doubts ? doubtful : known;
+    if (told.empty()) {
+        if (!unseen.empty())
+            std::printf("\nNothing was seen to hold what may move here: it has no rank.\n");
+        return;
+    }
+    const auto risky = static_cast<std::size_t>(std::ranges::count_if(told, at_risk));
+    const std::size_t shown = std::min(sentences_shown, risky > 0 ? risky : told.size());
+    std::printf("\n%s whose barrier is %s its error", riskiest_text(shown, told.size()).c_str(),
+                doubts ? "within" : "above");
+    if (const std::size_t more = doubtful.size(); !doubts && more > 0)
         std::printf(
-            "; that of %zu more is within its error of 0: they stand on edge, or the scan hardly "
-            "shows their support",
-            doubtful.size() - unseen);
-    if (!certain.empty() && unseen > 0)
-        std::printf("; %zu more have no rank, since nothing was seen to hold them", unseen);
+            "; that of %zu more is within its error of 0: %s on edge, or the scan hardly shows "
+            "%s support",
+            more, more == 1 ? "it stands" : "they stand", more == 1 ? "its" : "their");
+    if (const std::size_t more = unseen.size(); more > 0)
+        std::printf("; %zu more %s no rank, since nothing was seen to hold %s", more,
+                    more == 1 ? "has" : "have", more == 1 ? "it" : "them");
     std::printf(":\n");
     for (std::size_t i = 0; i < shown; ++i) {
         const Object& o = *told[i];
@@ -81,8 +104,8 @@ void print_objects(const Scene& scene) {
 
 }  // namespace
 
-void print_summary(const Scene& scene, const std::filesystem::path& out) {
-    double seconds = 0;
+void print_summary(const Scene& scene, const std::filesystem::path& out, double output_s) {
+    double seconds = output_s;
     for (const auto& [stage, s] : scene.timings_s) seconds += s;
     std::size_t grounded = 0, counted = 0;
     for (const Primitive& p : scene.primitives) counted += static_cast<std::size_t>(p.points);
@@ -90,10 +113,11 @@ void print_summary(const Scene& scene, const std::filesystem::path& out) {
     const char* sample = counted > scene.points.x.size() ? " (samples of the scan)" : "";
     for (const Object& o : scene.objects) grounded += o.grounded;
     std::printf(
-        "%zu points%s, voxels of %.3g cm, %zu primitives, %zu objects (%zu fixed to the ground), "
-        "%zu supports; %.1f s on %s (%s)\n",
-        scene.points.x.size(), sample, 100 * scene.voxel_size_m, scene.primitives.size(),
-        scene.objects.size(), grounded, scene.supports.size(), seconds, scene.backend.c_str(),
+        "%s%s, voxels of %.3g cm, %s, %s (%zu fixed to the ground), %s; %.1f s on %s (%s)\n",
+        io::counted(scene.points.x.size(), "point").c_str(), sample, 100 * scene.voxel_size_m,
+        io::counted(scene.primitives.size(), "primitive").c_str(),
+        io::counted(scene.objects.size(), "object").c_str(), grounded,
+        io::counted(scene.supports.size(), "support").c_str(), seconds, scene.backend.c_str(),
         scene.device.c_str());
     print_objects(scene);
     for (const std::string& note : scene.notes) std::printf("Note: %s\n", note.c_str());

@@ -7,7 +7,8 @@
 
 namespace topple::cli {
 
-// Prints what was found, the objects most at risk first, and where the report lies.
-void print_summary(const Scene& scene, const std::filesystem::path& out);
+// Prints what was found, the objects most at risk first, the time that it took, of which output_s
+// was for writing it, and where the report lies.
+void print_summary(const Scene& scene, const std::filesystem::path& out, double output_s);
 
 }  // namespace topple::cli

@@ -5,6 +5,8 @@
 #include <map>
 #include <string>
 
+#include "cli/choice.h"
+
 namespace topple::cli {
 
 // --unit, which sets metres per unit of the input's coordinates.
@@ -14,7 +16,7 @@ inline void add_unit_option(CLI::App& app, double& unit_m) {
     app.add_option_function<std::string>(
            "--unit", [&unit_m](const std::string& unit) { unit_m = units.at(unit); },
            "Unit of a cloud's or mesh's coordinates: m, cm, mm or in; the output is in metres")
-        ->check(CLI::IsMember({"m", "cm", "mm", "in"}))
+        ->check(one_of({"m", "cm", "mm", "in"}))
         ->default_str("m");
 }
 

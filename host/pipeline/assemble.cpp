@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <set>
 #include <string>
 #include <utility>
 
+#include "io/text.h"
 #include "pipeline/explain.h"
 #include "topple/version.h"
 
@@ -166,10 +168,11 @@ void note_unsettled_search(Scene& scene) {
     if (doubted == 0) return;
     const auto movable = std::count_if(scene.objects.begin(), scene.objects.end(),
                                        [](const Object& o) { return !o.grounded; });
-    scene.notes.push_back("Of " + std::to_string(movable) + " objects that can move " +
-                          std::to_string(doubted) +
-                          " were found by less than half of the searches: their parts may belong "
-                          "together otherwise, as another seed may show.");
+    const bool one = doubted == 1;
+    scene.notes.push_back("Of " + io::counted(static_cast<std::uint64_t>(movable), "object") +
+                          " that can move " + std::to_string(doubted) + (one ? " was" : " were") +
+                          " found by less than half of the searches: " + (one ? "its" : "their") +
+                          " parts may belong together otherwise, as another seed may show.");
 }
 
 // An object of this share of all parts, and this many, is hardly one thing.
@@ -197,10 +200,12 @@ void note_uncertain_barriers(Scene& scene) {
     if (uncertain == 0) return;
     const auto movable = std::count_if(scene.objects.begin(), scene.objects.end(),
                                        [](const Object& o) { return !o.grounded; });
-    scene.notes.push_back(
-        "The barrier of " + std::to_string(uncertain) + " of " + std::to_string(movable) +
-        " objects that can move is 0 or within its error (the border of its support): "
-        "they stand on edge, or the scan does not show what holds them.");
+    scene.notes.push_back("The barrier of " + std::to_string(uncertain) + " of " +
+                          io::counted(static_cast<std::uint64_t>(movable), "object") +
+                          " that can move is 0 or within its error (the border of its support): " +
+                          (uncertain == 1
+                               ? "it stands on edge, or the scan does not show what holds it."
+                               : "they stand on edge, or the scan does not show what holds them."));
 }
 
 }  // namespace

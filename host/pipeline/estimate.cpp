@@ -19,6 +19,7 @@
 #include "pipeline/cancelling.h"
 #include "pipeline/ingest.h"
 #include "pipeline/parse_memory.h"
+#include "pipeline/scale_checks.h"
 #include "pipeline/surface_extent.h"
 #include "pipeline/tiled_parse.h"
 #include "pipeline/voxel_size.h"
@@ -77,6 +78,7 @@ struct Looked {
     SurfaceExtent surface;
     PointCloud cloud;
     double voxel_m = 0;
+    double spacing_m = 0;  // of the points, or of what the map has for them
 };
 
 Looked look_at_cloud(const std::filesystem::path& input, const ParseOptions& options,
@@ -109,13 +111,25 @@ Looked look_at_cloud(const std::filesystem::path& input, const ParseOptions& opt
     return looked;
 }
 
+// Refuses what a parse would refuse: figures of a room that is a thousand times too large are of no
+// use. Of more points than are held those are the first, in whatever order they come: the spacing
+// of all is at least what it were if these were strewn over the whole.
+void check_scale(const std::filesystem::path& input, const Estimate& out, Looked& looked) {
+    looked.spacing_m =
+        looked.voxel_m > 0 ? looked.voxel_m : geometry::point_spacing(looked.cloud).nearest_m;
+    const auto held = static_cast<double>(looked.cloud.size());
+    const double share = std::min(1.0, held / static_cast<double>(out.points));
+    CloudView view = looked.cloud;
+    view.source = input.string();
+    check_spacing(view, std::sqrt(share) * looked.spacing_m);
+}
+
 // The voxels and cells of a parse in one piece, as it finds them itself.
 void find_resolution(const Looked& looked, const ParseOptions& options, Estimate& out) {
     if (out.frames == 0) {
         out.cell_m = looked.voxel_m > 0
                          ? looked.voxel_m / surfel_cells
-                         : std::clamp(1.25 * geometry::point_spacing(looked.cloud).nearest_m,
-                                      least_cell_m, largest_cell_m);
+                         : std::clamp(1.25 * looked.spacing_m, least_cell_m, largest_cell_m);
     }
     if (options.voxel_m > 0)
         out.voxel_m = options.voxel_m;
@@ -177,6 +191,7 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
         look_at_frames(input, options, looked.surface, bounds, out);
     } else {
         looked = look_at_cloud(input, options, out);
+        if (out.points > 0) check_scale(input, out, looked);
         bounds = looked.surface.bounds();
     }
     out.surface_m2 = looked.surface.area_m2();

@@ -18,6 +18,7 @@
 #include "io/text.h"
 #include "pipeline/caller_points.h"
 #include "pipeline/cancelling.h"
+#include "pipeline/scale_checks.h"
 #include "pipeline/voxel_stage.h"
 #include "reader/read_scan.h"
 #include "vdb/read_volume.h"
@@ -25,8 +26,6 @@
 namespace topple {
 namespace {
 
-// What a scan of rooms extends over, for guesses at its unit.
-constexpr double least_room_m = 1.5, largest_room_m = 30;
 // Virtual views are drawn with surfels this wide: coarse enough that noise does not blur which side
 // of a surface is which.
 constexpr double view_cells = 3;
@@ -69,6 +68,23 @@ std::string position_text(const Vec3& p) {
 Vec3 position(const DepthFrame& frame) {
     const Mat4& m = frame.camera_to_world;
     return {m[3], m[7], m[11]};
+}
+
+// The median of readings of some frames, metres; 0 where there are none.
+double typical_depth(const Intrinsics& k, std::size_t count,
+                     const std::function<DepthFrame(std::size_t)>& load) {
+    std::vector<double> depths;
+    const std::size_t step = std::max<std::size_t>(1, count / 8);
+    for (std::size_t f = 0; f < count; f += step) {
+        const DepthFrame frame = load(f);
+        for (std::size_t i = 0; i < frame.depth.size(); i += 37) {
+            if (frame.depth[i]) depths.push_back(frame.depth[i] / k.depth_scale);
+        }
+    }
+    if (depths.empty()) return 0;
+    std::nth_element(depths.begin(),
+                     depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+    return depths[depths.size() / 2];
 }
 
 Ingested ingest_frames(device::Device& device, io::FrameSequence sequence,
@@ -140,53 +156,21 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
     out.frames = std::make_unique<MemoryStream>(views.intrinsics, std::move(views.frames));
 }
 
-// Refuses a cloud whose points are too far apart for surfaces at the coarsest resolution, which is
-// what a room looks like in another unit than metres.
-void check_spacing(const CloudView& cloud, double spacing) {
-    if (spacing <= sparsest_m) return;
-    const auto text = [](double value) {
-        char digits[32];
-        std::snprintf(digits, sizeof(digits), "%.3g", value);
-        return std::string(digits);
-    };
-    double extent = 0;
-    for (const FloatColumn& axis : {cloud.x, cloud.y, cloud.z}) {
-        const auto [low, high] = std::minmax_element(axis.begin(), axis.end());
-        extent = std::max(extent, static_cast<double>(*high) - *low);
-    }
-    std::string units, options;
-    for (const auto& [unit, unit_m] : {std::pair("mm", 0.001), {"cm", 0.01}, {"in", 0.0254}}) {
-        if (extent * unit_m < least_room_m || extent * unit_m > largest_room_m) continue;
-        units.append(units.empty() ? "" : " or ").append(unit);
-        options.append(options.empty() ? "--unit " : " or --unit ").append(unit);
-    }
-    throw Error(ErrorKind::input,
-                cloud.source + ": the points extend over " + text(extent) + " m and are " +
-                    text(spacing) + " m apart, more than the " + text(sparsest_m) +
-                    " m at which surfaces can be found; " +
-                    (units.empty() ? "give a denser scan"
-                                   : "if the coordinates are in " + units + ", say " + options +
-                                         ", else give a denser scan"));
-}
-
 }  // namespace
 
 double cell_for_frames(const Intrinsics& k, std::size_t count,
                        const std::function<DepthFrame(std::size_t)>& load) {
-    std::vector<double> depths;
-    const std::size_t step = std::max<std::size_t>(1, count / 8);
-    for (std::size_t f = 0; f < count; f += step) {
-        const DepthFrame frame = load(f);
-        for (std::size_t i = 0; i < frame.depth.size(); i += 37) {
-            if (frame.depth[i]) depths.push_back(frame.depth[i] / k.depth_scale);
-        }
-    }
-    if (depths.empty()) return 0.01;
-    std::nth_element(depths.begin(),
-                     depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
-    const double z = depths[depths.size() / 2];
+    const double z = typical_depth(k, count, load);
+    if (z <= 0) return 0.01;
     const double noise = geometry::depth_sigma(z);
     return std::clamp(std::max(1.5 * z / k.fx, 1.2 * noise), least_cell_m, 0.015);
+}
+
+std::string depth_scale_hint(const FrameStream& frames) {
+    const Intrinsics& k = frames.intrinsics();
+    return depth_scale_hint(
+        frames.size(), k.depth_scale,
+        typical_depth(k, frames.size(), [&](std::size_t f) { return frames.load(f); }));
 }
 
 void for_each_frame(const FrameStream& frames, ThreadPool& threads,
@@ -216,6 +200,7 @@ namespace {
 
 void check_count(const CloudView& cloud) {
     if (cloud.size() >= least_voxels) return;
+    if (cloud.size() == 0) throw Error(ErrorKind::input, cloud.source + ": has no points");
     throw Error(ErrorKind::input, cloud.source + ": " + std::to_string(cloud.size()) +
                                       (cloud.size() == 1 ? " point was" : " points were") +
                                       " found, but the smallest solid takes " +
@@ -357,7 +342,10 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
                 "--unit is for point clouds, meshes and maps; depth frames have their unit in "
                 "intrinsics.json, as depth_scale");
         }
-        return ingest_frames(device, io::FrameSequence::open(input), options);
+        Ingested out = ingest_frames(device, io::FrameSequence::open(input), options);
+        if (out.cloud.size() == 0)
+            io::fail(input, "no points were found; " + depth_scale_hint(*out.frames));
+        return out;
     }
     ScannedMap map = read_input(input, options);
     if (io::looks_like_octomap(input)) return ingest_octomap(std::move(map), options);

@@ -69,6 +69,9 @@ struct Ingested {
 double cell_for_frames(const Intrinsics& intrinsics, std::size_t frames,
                        const std::function<DepthFrame(std::size_t)>& load);
 
+// What to look at where frames show nothing that makes sense; see scale_checks.h.
+std::string depth_scale_hint(const FrameStream& frames);
+
 // A file that is no sequence of frames: its points, and of a map its free space. What libraries of
 // others read, they read in a process of their own, unless options.isolate is off.
 ScannedMap read_input(const std::filesystem::path& file, const ParseOptions& options);

@@ -15,6 +15,7 @@
 #include "pipeline/object_stage.h"
 #include "pipeline/parse_memory.h"
 #include "pipeline/safety_stage.h"
+#include "pipeline/scale_checks.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/surface_extent.h"
 #include "pipeline/tiled_parse.h"
@@ -62,22 +63,6 @@ void check_memory(const CloudView& cloud, const std::string& source, double voxe
     }
 }
 
-// For what is too small to be a scan of things that stand.
-std::string unit_hint(const CloudView& cloud) {
-    constexpr double least_m = 0.2;
-    double extent = 0;
-    for (const FloatColumn* values : {&cloud.x, &cloud.y, &cloud.z}) {
-        float low = INFINITY, high = -INFINITY;
-        for (std::size_t n = 0; n < cloud.size(); ++n) {
-            low = std::min(low, (*values)[n]);
-            high = std::max(high, (*values)[n]);
-        }
-        extent = std::max(extent, double{high} - double{low});
-    }
-    if (extent <= 0 || extent >= least_m) return {};
-    return "; it all extends over " + io::short_number(extent) + " m: check --unit";
-}
-
 ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOptions& options,
                            Scene scene, StageClock& stage) {
     const double voxel_m = voxel_for_input(input, options);
@@ -85,17 +70,22 @@ ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOp
     record_run(device, options, voxel_m, scene);
     scene.offset_m = input.own.offset_m;
     scene.notes.insert(scene.notes.end(), input.notes.begin(), input.notes.end());
+    const double extent = extent_m({input.cloud.x, input.cloud.y, input.cloud.z});
+    note_small_extent(extent, scene);
 
     const GeometryStage geometry = find_primitives(device, input, options, stage);  // 2.1
     if (!geometry.frame.note.empty()) scene.notes.push_back(geometry.frame.note);
     VoxelStage voxels = make_solids(device, input, geometry, voxel_m, stage);  // 2.2
     if (voxels.solids->primitives() == 0) {
+        const std::string scale = io::looks_like_sequence(scene.source) && input.frames
+                                      ? depth_scale_hint(*input.frames)
+                                      : small_extent_hint(extent, scene.source);
         throw Error(ErrorKind::input,
-                    scene.source + ": " + std::to_string(input.cloud.size()) +
-                        " points were found, but no surface of them fills the " +
-                        std::to_string(least_voxels) +
+                    scene.source + ": " + io::counted(input.cloud.size(), "point") +
+                        (input.cloud.size() == 1 ? " was" : " were") +
+                        " found, but no surface of them fills the " + std::to_string(least_voxels) +
                         " voxels that a solid takes; give a denser scan, or a smaller --voxel" +
-                        unit_hint(input.cloud));
+                        (scale.empty() ? "" : "; " + scale));
     }
     const SolidParts parts = solid_parts(geometry, voxels);
     const ObjectStage objects = find_objects(device, parts, options, stage);           // 3, 4

@@ -23,6 +23,7 @@
 #include "pipeline/object_stage.h"
 #include "pipeline/parse_memory.h"
 #include "pipeline/safety_stage.h"
+#include "pipeline/scale_checks.h"
 #include "pipeline/shared_stage.h"
 #include "pipeline/solid_parts.h"
 #include "pipeline/stage_clock.h"
@@ -268,6 +269,7 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
                                         objects.object_of_primitive);
         tiled->set_objects(objects.object_of_primitive);
         scene.points = tiled->sample(sampled_points);
+        note_small_extent(extent_m({scene.points.x, scene.points.y, scene.points.z}), scene);
         std::vector<TiledResult::Exposure> exposures;
         for (safety::Disturbance& d : safety.disturbances)
             if (!d.exposure.empty()) exposures.push_back({d.name, std::move(d.exposure)});

@@ -131,6 +131,8 @@ TEST_F(Input, words_instead_of_numbers) {
 }
 
 TEST_F(Input, hardly_any_point) {
+    put("none.xyz", "# x y z\n");
+    refused("none.xyz", {"has no points"});
     put("one.xyz", "1 2 3\n");
     refused("one.xyz", {"1 point was found", "takes 8"});
     put("two.xyz", "1 2 3\n1.5 2 3\n");
@@ -166,7 +168,9 @@ TEST_F(Input, in_another_unit_than_metres) {
         {"mm", 0.001}, {"cm", 0.01}, {"in", 0.0254}};
     for (const auto& [unit, unit_m] : units) {
         put("room.xyz", room_in(unit_m));
-        refused("room.xyz", {"extend over", "apart", "--unit " + unit});
+        const std::vector<std::string> told{"extend over", "apart", "--unit " + unit};
+        refused("room.xyz", told);
+        expect_failure(1, {"estimate", "room.xyz", "--quiet"}, told);
         std::filesystem::remove_all(in("out"));
         EXPECT_EQ(run({"parse", "room.xyz", "-o", "out", "--quiet", "--unit", unit}).code, 0);
         // Metres again.
@@ -179,6 +183,12 @@ TEST_F(Input, in_another_unit_than_metres) {
         EXPECT_LT(farthest, 4.1);
         std::filesystem::remove_all(in("out"));
     }
+    put("room.xyz", room_in(1));
+    const Finished tiny = run({"parse", "room.xyz", "-o", "out", "--unit", "cm"});
+    EXPECT_NE(tiny.out.find("Note: It all extends over 0.032 m: check --unit.\n"),
+              std::string::npos)
+        << tiny.out << tiny.err;
+    std::filesystem::remove_all(in("out"));
     put_sequence("frames", 2);
     expect_failure(2, {"parse", "frames", "-o", "out", "--quiet", "--unit", "mm"},
                    {"--unit", "depth_scale"});
@@ -207,6 +217,16 @@ TEST_F(Input, a_sequence_with_a_damaged_frame) {
     refused("scan", {image.filename().string()});
     std::filesystem::remove(image);
     refused("scan", {"trajectory.txt", "3"});
+}
+
+TEST_F(Input, a_sequence_whose_depth_scale_is_wrong) {
+    for (const std::string scale : {"1", "1e6"}) {
+        put_sequence("frames", 2);
+        auto intrinsics = nlohmann::json::parse(bytes_of_file(in("frames/intrinsics.json")));
+        intrinsics["depth_scale"] = std::stod(scale);
+        put("frames/intrinsics.json", intrinsics.dump());
+        refused("frames", {"depth_scale of intrinsics.json", scale == "1" ? "1, the" : "1e+06"});
+    }
 }
 
 TEST_F(Input, a_sequence_without_intrinsics) {

@@ -15,6 +15,8 @@ using DrawLandscape = Program;
 TEST_F(DrawLandscape, refuses_what_has_none) {
     expect_failure(2, {"landscape"}, {"OUT"});
     expect_failure(1, {"landscape", "nowhere"}, {"nowhere"});
+    put("other/notes.txt", "");
+    expect_failure(1, {"landscape", "other"}, {"other: holds no output of topple"});
     put("mine/scene.json", "{}");
     expect_failure(1, {"landscape", "mine"}, {"scene.json"});
     put_plane("plane.xyz");
@@ -23,6 +25,8 @@ TEST_F(DrawLandscape, refuses_what_has_none) {
     expect_failure(2, {"landscape", "out", "--object", "0"}, {"--object 0", "ground"});
     expect_failure(2, {"landscape", "out", "--object", "99"}, {"--object 99"});
     expect_failure(2, {"landscape", "out", "--object", "-1"}, {"--object"});
+    for (const char* name : {"one.jpg", "one", ".png", "one.PNG.txt"})
+        expect_failure(2, {"landscape", "out", "-o", name}, {name, ".png or .svg"});
 }
 
 // What stands below the table is of the objects whose barrier the table doesn't give from 0, and
@@ -47,7 +51,7 @@ void expect_told_summary(const std::string& out) {
     EXPECT_EQ(told, 3u) << out;
     EXPECT_FALSE(uncertain.empty()) << out;
     EXPECT_NE(out.find("\nThe 3 riskiest of the "), std::string::npos) << out;
-    EXPECT_NE(out.find(" whose barrier is certain; that of "), std::string::npos) << out;
+    EXPECT_NE(out.find(" whose barrier is above its error; that of "), std::string::npos) << out;
 }
 
 TEST_F(DrawLandscape, makes_pictures_of_the_worst_or_the_chosen_object) {

@@ -25,6 +25,10 @@ TEST_F(Usage, names_the_unknown_option_and_the_nearest_one) {
     expect_failure(2, {"parse", "--wnd", "3", "plane.xyz"}, {"--wnd", "did you mean --wind?"});
     expect_failure(2, {"parse", "plane.xyz", "--densty=3"}, {"--densty;", "--density?"});
     expect_failure(2, {"--verison"}, {"--verison", "--version?"});
+    expect_failure(2, {"parse", "plane.xyz", "--unit", "feet"},
+                   {"--unit feet: expected m, cm, mm or in"});
+    expect_failure(2, {"generate", "room", "--kind", "office", "--scan", "glass"},
+                   {"--scan glass: expected walk, sparse, cloud, laser or single"});
     // Nothing is near this one.
     const Finished far = run({"parse", "plane.xyz", "--kaleidoscope"});
     EXPECT_EQ(far.err.find("did you mean"), std::string::npos) << far.err;
@@ -130,6 +134,8 @@ TEST_F(Usage, help_names_every_command_and_option) {
               "vulkan", "human",     "earthquake",   ".ply",    ".pcd",      ".xyz"}) {
             EXPECT_NE(help.out.find(option), std::string::npos) << option << " in\n" << help.out;
         }
+        for (const char* internal : {"->", "{false}", "ENUM"})
+            EXPECT_EQ(help.out.find(internal), std::string::npos) << internal << help.out;
         if (arguments.size() > 1) continue;
         for (const char* name :
              {"parse", "devices", "generate", "--version", "Exit codes", "1024^3", "130"}) {

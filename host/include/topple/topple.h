@@ -180,7 +180,8 @@ typedef struct topple_object {
     const topple_step* instability;
     uint64_t instability_count;
     double risk_human_J, risk_wind_J, risk_earthquake_J; /* per event; NaN: not asked for */
-    double unsafety, agreement;
+    double unsafety; /* 1 to 10; NaN: not seen enough to be ranked */
+    double agreement;
     const char *why, *advice; /* sentences */
     /* one standard error each, as barrier_error_J */
     double mass_error_kg, center_of_mass_error_m[3], footprint_error_m;

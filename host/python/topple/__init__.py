@@ -6,7 +6,8 @@
     result.write("out")
 
 Lengths in metres, masses in kilograms, energies in joules, in the input's frame; ids count from 0, -1 means
-unassigned. What goes wrong is raised as topple.Error.
+unassigned. Object.unsafety, 1 to 10, is NaN where what holds the object was not seen: such objects have no rank, and
+a sort by unsafety alone would be left in no order. What goes wrong is raised as topple.Error.
 """
 import os
 import threading

@@ -93,7 +93,7 @@ class Object:
     @property
     def fall_chance(self) -> dict[str, float]: ...
     @property
-    def unsafety(self) -> float: ...
+    def unsafety(self) -> float: ...  # NaN: not seen enough to be ranked
     @property
     def instability(self) -> NDArray[np.float64]: ...  # (steps, 2): W_J, S_J
     @property

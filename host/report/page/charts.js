@@ -8,15 +8,27 @@ function svgElement(name, attributes, text) {
   return node;
 }
 
+// Two numbers in as few digits, from three on, as tell one from the other.
+function distinctNumbers(low, high) {
+  if (number(low) !== number(high)) return [number(low), number(high)];
+  for (let digits = 4; digits < 16; ++digits) {
+    const texts = [low, high].map(value => String(Number(value.toPrecision(digits))));
+    if (texts[0] !== texts[1]) return texts;
+  }
+  return [String(low), String(high)];
+}
+
 // Fig. 7d: the best energy of a partition so far, over the sampler's iterations.
 function energyChart(energies) {
   const points = [];
   energies.forEach((value, i) => { if (value !== null) points.push([i + 1, value]); });
   if (points.length < 2) return null;
-  const width = 330, height = 190, left = 46, right = 10, top = 10, bottom = 34;
   const yLow = Math.min(...points.map(p => p[1]));
   let yHigh = Math.max(...points.map(p => p[1]));
   if (yHigh - yLow < 1e-12) yHigh = yLow + 1;
+  const [lowText, highText] = distinctNumbers(yLow, yHigh);
+  const width = 330, height = 200, right = 10, top = 26, bottom = 34;
+  const left = Math.max(46, 12 + 6.5 * Math.max(lowText.length, highText.length));
   const x = value => left + (width - left - right) * (value - 1) / Math.max(energies.length - 1, 1);
   const y = value => height - bottom - (height - top - bottom) * (value - yLow) / (yHigh - yLow);
   const svg = svgElement('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': 'Energy over the sampler\u2019s iterations'});
@@ -24,12 +36,12 @@ function energyChart(energies) {
   svg.append(svgElement('path', {class: 'curve',
     d: points.map((p, i) => `${i ? 'L' : 'M'}${x(p[0]).toFixed(1)} ${y(p[1]).toFixed(1)}`).join('')}));
   const say = (px, py, anchor, text) => svg.append(svgElement('text', {x: px, y: py, 'text-anchor': anchor}, text));
-  say(left - 5, top + 9, 'end', number(yHigh));
-  say(left - 5, height - bottom, 'end', number(yLow));
+  say(left - 5, top + 9, 'end', highText);
+  say(left - 5, height - bottom, 'end', lowText);
   say(left, height - bottom + 14, 'start', '1');
   say(width - right, height - bottom + 14, 'end', energies.length.toLocaleString('en'));
   say((left + width - right) / 2, height - 6, 'middle', 'iteration');
-  say(left + 6, top + 9, 'start', 'energy (no unit)');
+  say(left, 12, 'start', 'energy (no unit)');  // above all lines
   return svg;
 }
 
@@ -44,6 +56,7 @@ function timingBars(timings) {
   }
   const total = names.reduce((sum, name) => sum + (timings[name] || 0), 0);
   bars.append(element('strong', {text: 'in all'}), element('span'),
-    element('strong', {className: 'value', text: number(total, 's')}));
+    element('strong', {className: 'value', text: number(total, 's')}),
+    element('p', {className: 'hint', text: 'Without writing the output, of which this page is a part.'}));
   return bars;
 }

@@ -45,7 +45,7 @@ function contactGraph(scene, id, choose) {
   const contacts = contactsOf(scene, id);
   if (!contacts.length) return null;
   const {left, right, shown} = contactRowsOf(contacts);
-  const step = 26, top = 26, width = 330, xLeft = 112, xRight = 226;
+  const step = 26, top = 26, width = 330, xLeft = 88, xRight = 204;
   const rows = Math.max(left.length, right.length), height = top + step * rows + 4;
   const row = (list, at) => top + step * ((rows - list.length) / 2 + list.indexOf(at) + 0.5);
   const svg = svgElement('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img', class: 'contacts',
@@ -92,7 +92,7 @@ function contactGraph(scene, id, choose) {
       sample.append(svgElement('path', {class: 'contact ' + relation, d: 'M1 4H25'}));
       return element('span', {className: 'key'}, [sample, text]);
     });
-  key.push(element('span', {text: 'Numbers: how sure it is that the two are fixed, 0 to 1.' +
+  key.push(element('span', {text: 'Numbers: the chance that the two are one solid, fixed to each other, 0 to 1.' +
     (shown.length > 14 ? ' (They are in scene.json; here are too many.)' : '') +
     (contacts.length > shown.length ? ` ${contacts.length - shown.length} more contacts, of smaller areas, are not drawn.` : '')}));
   figure.append(element('p', {className: 'hint keys'}, key));

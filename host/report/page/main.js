@@ -236,7 +236,9 @@ function start() {
     document.body.dataset.firstPictureMs = Math.round(performance.now());
     view.hideUnseenLabels();
   } else {
-    for (const bar of document.querySelectorAll('.toolbar')) bar.hidden = true;
+    // What is about the picture, which isn't there.
+    for (const part of document.querySelectorAll('.toolbar, .stage .hint')) part.hidden = true;
+    document.querySelector('.compass').style.display = 'none';
   }
   window.toppleChoose = choose;
   document.body.dataset.rows = document.querySelectorAll('#objects tbody tr').length;

@@ -78,13 +78,21 @@ function eventsText(scene) {
     (events.tolerable_J === undefined ? '' : ` What has no advice is below ${number(events.tolerable_J, 'J')} per event, which is tolerated.`);
 }
 
+// "The 3 riskiest of the 5 objects that can fall"; fewer words where that is all of them, or one.
+function riskiestOf(shown, all, which) {
+  if (all === 1) return `The one object ${which}`;
+  if (shown >= all) return `The ${all} objects ${which}, the riskiest first`;
+  return `The ${shown === 1 ? '' : shown + ' '}riskiest of the ${all} objects ${which}`;
+}
+
 // Of which objects the list is, and where the others are.
 function rankedText(scene, shown, movable) {
   const doubtful = scene.objects.filter(isDoubtful);
   const unseen = scene.objects.filter(object => !object.grounded && !isDoubtful(object) && object.seen_enough === false).length;
   const uncertain = doubtful.length + unseen;
-  const certain = uncertain ? `the ${movable - uncertain} objects whose barrier is certain` : `${plural(movable, 'object')} that can fall`;
-  const listed = `The ${shown} riskiest of ${certain}: by the chance that one event upsets them, times the energy that they then set free.` +
+  const of = riskiestOf(shown, movable - uncertain, uncertain ? 'whose barrier is above its error' : 'that can fall');
+  const one = shown === 1;
+  const listed = `${of}: by the chance that one event upsets ${one ? 'it' : 'them'}, times the energy that ${one ? 'it then sets' : 'they then set'} free.` +
     (unseen ? ` ${unseen} more ${unseen === 1 ? 'has' : 'have'} no rank, since nothing was seen to hold ${unseen === 1 ? 'it' : 'them'}.` : '');
   if (!doubtful.length) return listed;
   const risky = doubtful.some(object => largestRisk(object) > 0);

@@ -384,9 +384,9 @@ TEST_F(Report, says_so_where_disturbances_are_missing) {
         << page.data("risk");
     EXPECT_NE(page.data("risk").find("No floor was found on which people could walk"),
               std::string::npos);
-    for (const char* part :
-         {"The 3 riskiest of the 3 objects whose barrier is certain", "2 more stand on edge",
-          "As scanned, 1 more object at risk would fall at the slightest push"})
+    for (const char* part : {"The 3 objects whose barrier is above its error, the riskiest first",
+                             "2 more stand on edge",
+                             "As scanned, 1 more object at risk would fall at the slightest push"})
         EXPECT_NE(page.data("risk").find(part), std::string::npos) << part << page.data("risk");
     EXPECT_EQ(page.data("off"), "human wind walks");
     EXPECT_EQ(page.data("missing"),
@@ -398,12 +398,37 @@ TEST_F(Report, says_so_where_disturbances_are_missing) {
 TEST_F(Report, says_so_where_there_is_no_webgl) {
     NEEDS_BROWSER();
     write_report(folder_ / "report.html", test::SyntheticScene(0.2).make());
-    const auto page = open(folder_ / "report.html", "", "--disable-3d-apis");
+    const auto page = open(folder_ / "report.html", R"(
+        document.body.dataset.hints = [...document.querySelectorAll('.stage .hint')].filter(hint => !hint.hidden).length;
+    )",
+                           "--disable-3d-apis");
     EXPECT_EQ(page.data("ready"), "1") << page.log;
     EXPECT_EQ(page.data("view"), "none");
     EXPECT_EQ(page.data("rows"), "6") << "the table works without it";
+    EXPECT_EQ(page.data("hints"), "0") << "how to turn what isn't there";
     EXPECT_EQ(page.log.find("Uncaught"), std::string::npos) << page.log;
     EXPECT_NE(page.dom.find("The 3D view needs WebGL"), std::string::npos);
+}
+
+TEST_F(Report, words_fit_the_numbers) {
+    NEEDS_BROWSER();
+    write_report(folder_ / "report.html", test::SyntheticScene(0.2).make());
+    const auto page = open(folder_ / "report.html", R"(
+        document.body.dataset.ends = [[1, 2], [12345.25, 12345.75], [0.50001, 0.50002]]
+            .map(([low, high]) => distinctNumbers(low, high).join(' ')).join(', ');
+        document.body.dataset.riskiest = [[1, 1], [1, 2], [2, 2], [3, 8]]
+            .map(([shown, all]) => riskiestOf(shown, all, 'here')).join('; ');
+        const chart = energyChart([12345.75, 12345.5, 12345.25]);
+        const curve = chart.querySelector('.curve').getAttribute('d').match(/[\d.]+ [\d.]+/g).map(at => Number(at.split(' ')[1]));
+        const caption = [...chart.querySelectorAll('text')].find(text => text.textContent.startsWith('energy'));
+        document.body.dataset.free = Math.min(...curve) > Number(caption.getAttribute('y')) + 8;
+    )");
+    EXPECT_EQ(page.data("ends"), "1 2, 12345 12346, 0.50001 0.50002");
+    EXPECT_EQ(page.data("riskiest"),
+              "The one object here; The riskiest of the 2 objects here; The 2 objects here, the "
+              "riskiest first; The 3 riskiest of the 8 objects here");
+    EXPECT_EQ(page.data("free"), "true") << "a line runs through the text";
+    EXPECT_EQ(page.log.find("Uncaught"), std::string::npos) << page.log;
 }
 
 TEST_F(Report, shows_scenes_with_nothing_or_with_holes_in_them) {

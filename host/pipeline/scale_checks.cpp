@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/scale_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "io/frame_sequence.h"
+#include "io/text.h"
+#include "pipeline/ingest.h"
+#include "topple/error.h"
+
+namespace topple {
+namespace {
+
+// What a scan of rooms extends over, for guesses at its unit; and what not even that of a table
+// full of things stays below.
+constexpr double least_room_m = 1.5, largest_room_m = 30, least_scan_m = 0.5;
+
+std::string text_of(double value) {
+    char digits[32];
+    std::snprintf(digits, sizeof(digits), "%.3g", value);
+    return digits;
+}
+
+}  // namespace
+
+double extent_m(const std::array<FloatColumn, 3>& axes) {
+    double extent = 0;
+    for (const FloatColumn& axis : axes) {
+        double low = INFINITY, high = -INFINITY;
+        for (const float value : axis) {
+            low = std::min(low, double{value});
+            high = std::max(high, double{value});
+        }
+        extent = std::max(extent, high - low);
+    }
+    return extent;
+}
+
+void check_spacing(const CloudView& cloud, double spacing_m) {
+    if (spacing_m <= sparsest_m) return;
+    const double extent = extent_m({cloud.x, cloud.y, cloud.z});
+    std::string units, options;
+    for (const auto& [unit, unit_m] : {std::pair("mm", 0.001), {"cm", 0.01}, {"in", 0.0254}}) {
+        if (extent * unit_m < least_room_m || extent * unit_m > largest_room_m) continue;
+        units.append(units.empty() ? "" : " or ").append(unit);
+        options.append(options.empty() ? "--unit " : " or --unit ").append(unit);
+    }
+    throw Error(ErrorKind::input,
+                cloud.source + ": the points extend over " + text_of(extent) + " m and are " +
+                    text_of(spacing_m) + " m apart, more than the " + text_of(sparsest_m) +
+                    " m at which surfaces can be found; " +
+                    (units.empty() ? "give a denser scan"
+                                   : "if the coordinates are in " + units + ", say " + options +
+                                         ", else give a denser scan"));
+}
+
+std::string small_extent_hint(double extent_m, const std::filesystem::path& source) {
+    if (extent_m <= 0 || extent_m >= least_scan_m) return {};
+    return "it all extends over " + text_of(extent_m) + " m: check " +
+           (io::looks_like_sequence(source) ? "depth_scale in intrinsics.json" : "--unit");
+}
+
+void note_small_extent(double extent_m, Scene& scene) {
+    std::string note = small_extent_hint(extent_m, scene.source);
+    if (note.empty()) return;
+    note[0] = 'I';
+    scene.notes.push_back(note + ".");
+}
+
+std::string depth_scale_hint(std::size_t frames, double depth_scale, double typical_depth_m) {
+    const std::string of = io::counted(frames, "depth frame");
+    if (typical_depth_m <= 0) return of + " without any reading";
+    return "at the depth_scale of intrinsics.json, " + io::short_number(depth_scale) +
+           ", the readings of " + of + " lie about " + text_of(typical_depth_m) +
+           " m away: check it (metres = stored value / depth_scale)";
+}
+
+}  // namespace topple

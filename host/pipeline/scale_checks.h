@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+#include "topple/cloud_view.h"
+#include "topple/scene.h"
+
+// Whether a scan is of the size of rooms in metres: who gives another unit than the file's, or
+// none, gets it too large or too small by 25 to 1000 times, and then rather nonsense than an error.
+namespace topple {
+
+// The longest edge of the box around points with these coordinates, metres; 0 of none.
+double extent_m(const std::array<FloatColumn, 3>& axes);
+
+// Refuses a cloud whose points are `spacing_m` apart where that is too far for surfaces at the
+// coarsest resolution, which is what a room looks like in another unit than metres. Throws
+// Error(input), which names the units in which it would be a room.
+void check_spacing(const CloudView& cloud, double spacing_m);
+
+// Of what extends over less than things in a room do: "it all extends over X m: check --unit", or
+// what else gives the unit of such an input; else "".
+std::string small_extent_hint(double extent_m, const std::filesystem::path& source);
+// The same as a note of a scene from that source, which else shows shards of nothing in particular.
+void note_small_extent(double extent_m, Scene& scene);
+
+// Of frames whose typical reading is this far away: "at the depth_scale of intrinsics.json, 1, the
+// readings of 4 depth frames lie about 1500 m away: check it ...".
+std::string depth_scale_hint(std::size_t frames, double depth_scale, double typical_depth_m);
+
+}  // namespace topple
