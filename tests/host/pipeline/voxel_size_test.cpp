@@ -34,7 +34,7 @@ TEST(VoxelSize, HallsGetLargerOnesButNoneWithoutGaps) {
 TEST(VoxelSize, MemoryMakesThemLarger) {
     const SurfaceExtent room = square(8);
     const double free = voxel_for_scan(0.06, room, 1e5, 0),
-                 tight = voxel_for_scan(0.06, room, 1e5, 400 << 20);
+                 tight = voxel_for_scan(0.06, room, 1e5, 500 << 20);
     EXPECT_DOUBLE_EQ(free, 0.02);
     EXPECT_DOUBLE_EQ(tight, 0.03);
     EXPECT_DOUBLE_EQ(voxel_for_scan(0.06, room, 1e5, 1), voxel_for_cell(0.06));
