@@ -39,10 +39,11 @@ inline double block_bytes(std::uint64_t cells) {
     return fixed + a_cell * seen * static_cast<double>(cells);
 }
 
-// From joining to the output, of all blocks' cells.
+// From joining to the output, of all blocks' cells: what is found of all of them, and what is shown
+// of a sample.
 inline double whole_bytes(double cells) {
-    constexpr double fixed = 140e6, a_cell = 73;
-    return fixed + a_cell * cells;
+    constexpr double fixed = 130e6, a_cell = 73, sampled = 3e5, a_sampled_cell = 600;
+    return fixed + a_cell * cells + a_sampled_cell * std::min(cells, sampled);
 }
 
 inline std::uint64_t largest_block(const tiles::Layout& layout) {
