@@ -74,6 +74,14 @@ std::optional<ConvexPart> hull_part(std::span<const Vec3> points) {
     return out;
 }
 
+std::optional<ConvexPart> reshaped(const ConvexPart& part, std::span<const Vec3> points) {
+    auto out = hull_part(points);
+    if (!out) return out;
+    out->solid = part.solid;
+    out->solid_each_m3 = part.solid_each_m3;
+    return out;
+}
+
 std::optional<ConvexPart> cut(const ConvexPart& part, const HalfSpace& to) {
     std::vector<double> beyond;
     for (const Vec3& c : part.corner) beyond.push_back(dot(to.normal, c) - to.offset_m);
@@ -92,7 +100,6 @@ std::optional<ConvexPart> cut(const ConvexPart& part, const HalfSpace& to) {
     }
     auto out = hull_part(points);
     if (!out) return out;
-    out->primitive = part.primitive;
     out->solid_each_m3 = part.solid_each_m3;
     for (const Vec3& p : part.solid)
         if (dot(to.normal, p) <= to.offset_m + on_plane_m) out->solid.push_back(p);

@@ -27,8 +27,7 @@ struct ConvexPart {
     // Corners of each face, counter-clockwise as seen from outside.
     std::vector<std::vector<std::uint32_t>> outline;
     double volume_m3 = 0;
-    Vec3 low{}, high{};           // of the box around it
-    std::int32_t primitive = -1;  // of which it is a part; -1: of none or several
+    Vec3 low{}, high{};  // of the box around it
     // Points spread over what of it was found to be solid, and the volume that each stands for.
     std::vector<Vec3> solid;
     double solid_each_m3 = 0;
@@ -36,6 +35,9 @@ struct ConvexPart {
 
 // The hull of points; nothing where they span no volume.
 std::optional<ConvexPart> hull_part(std::span<const Vec3> points);
+
+// Another form of the same solid: the hull of points, or nothing.
+std::optional<ConvexPart> reshaped(const ConvexPart& part, std::span<const Vec3> points);
 
 // What of the part lies in the half-space, and of what is solid of it; nothing where that has no
 // volume.

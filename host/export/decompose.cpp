@@ -452,18 +452,10 @@ std::vector<Decomposed> decompose(const SolidScene& solids, std::span<const doub
         if (!slab) pieces.run(slight_m3[p]);
         out[p] = slab ? *std::move(slab) : pieces.result();
         for (ConvexPart& part : out[p].parts) {
-            part.primitive = static_cast<std::int32_t>(p);
             // A box is what solids are most often, and what simulators reckon best with.
             constexpr double alike = 0.1;  // of a voxel
-            if (const auto box = as_box(part, alike * solids.voxel_m())) {
-                const auto corners = box->corners();
-                if (auto whole = hull_part(corners)) {
-                    whole->primitive = part.primitive;
-                    whole->solid = std::move(part.solid);
-                    whole->solid_each_m3 = part.solid_each_m3;
-                    part = *std::move(whole);
-                }
-            }
+            if (const auto box = as_box(part, alike * solids.voxel_m()))
+                if (auto whole = reshaped(part, box->corners())) part = *std::move(whole);
         }
     });
     return out;

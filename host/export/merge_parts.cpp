@@ -24,9 +24,7 @@ struct Pair {
 std::optional<ConvexPart> joined(const ConvexPart& a, const ConvexPart& b) {
     std::vector<Vec3> points = a.corner;
     points.insert(points.end(), b.corner.begin(), b.corner.end());
-    auto out = hull_part(points);
-    if (out) out->primitive = a.primitive == b.primitive ? a.primitive : -1;
-    return out;
+    return hull_part(points);
 }
 
 // Each point stands for the mean of both.

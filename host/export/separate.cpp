@@ -203,9 +203,9 @@ Apart apart(const ConvexPart& a, const ConvexPart& b) {
     return out;
 }
 
-bool overlap(const ConvexPart& a, const ConvexPart& b) {
+double overlap_m(const ConvexPart& a, const ConvexPart& b) {
     const Apart lie = apart(a, b);
-    return lie.gap_m < -touching_m && !edges_apart(a, b, lie.normal);
+    return lie.gap_m < -touching_m && !edges_apart(a, b, lie.normal) ? -lie.gap_m : 0;
 }
 
 bool near(const ConvexPart& a, const ConvexPart& b, double distance_m) {
@@ -221,14 +221,9 @@ void separate(std::vector<Body>& bodies) {
 double deepest_overlap_m(const std::vector<Body>& bodies) {
     double deepest = 0;
     each_pair(bodies, [&](const Body& first, const Body& second) {
-        for (const ConvexPart& a : first.parts) {
-            for (const ConvexPart& b : second.parts) {
-                if (!near(a, b, 0)) continue;
-                const Apart lie = apart(a, b);
-                if (-lie.gap_m > std::max(deepest, touching_m) && !edges_apart(a, b, lie.normal))
-                    deepest = -lie.gap_m;
-            }
-        }
+        for (const ConvexPart& a : first.parts)
+            for (const ConvexPart& b : second.parts)
+                if (near(a, b, 0)) deepest = std::max(deepest, overlap_m(a, b));
     });
     return deepest;
 }

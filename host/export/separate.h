@@ -14,8 +14,11 @@ struct Apart {
 };
 Apart apart(const ConvexPart& a, const ConvexPart& b);
 
-// Whether they overlap by more than a micrometre.
-bool overlap(const ConvexPart& a, const ConvexPart& b);
+// How deep they overlap; 0 where that is a micrometre at most, or edges tell them apart.
+double overlap_m(const ConvexPart& a, const ConvexPart& b);
+inline bool overlap(const ConvexPart& a, const ConvexPart& b) {
+    return overlap_m(a, b) > 0;
+}
 
 // Whether the boxes around two parts come closer than that.
 bool near(const ConvexPart& a, const ConvexPart& b, double distance_m);

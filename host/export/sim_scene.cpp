@@ -109,7 +109,6 @@ void add_supports(const Scene& scene, std::vector<Body>& bodies) {
 SimScene sim_scene(const Scene& scene, const SolidScene& solids, ThreadPool& threads) {
     SimScene out;
     out.friction = scene.friction;
-    out.voxel_m = solids.voxel_m();
     out.bodies = bodies_of(scene, solids, threads);
     add_supports(scene, out.bodies);
     const double known_m = solids::form_error_m(solids.boundary(), solids.voxel_m());

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "core/solid_scene.h"
@@ -16,7 +15,6 @@ namespace topple::exports {
 struct SimScene {
     std::vector<Body> bodies;  // those of the scene's objects first, in their order; then pads
     double friction = 0.3;
-    double voxel_m = 0;
     double gravity_m_s2 = 9.81;
 };
 

@@ -113,11 +113,8 @@ void flatten_feet(std::vector<Body>& bodies, double within_m) {
                                  points.push_back(along(c, -above, lie.normal));
                          }
                          if (points.size() == part.corner.size()) return;
-                         auto flat = hull_part(points);
+                         auto flat = reshaped(part, points);
                          if (!flat) return;
-                         flat->primitive = part.primitive;
-                         flat->solid = part.solid;
-                         flat->solid_each_m3 = part.solid_each_m3;
                          for (const Body& other : bodies) {
                              if (&other == &body) continue;
                              for (const ConvexPart& stays : other.parts)
