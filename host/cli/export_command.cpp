@@ -37,23 +37,25 @@ exports::SimScene load(const std::filesystem::path& folder, unsigned count) {
 }
 
 void print_summary(const exports::SimScene& sim) {
-    std::size_t free = 0, pads = 0, held = 0, parts = 0;
+    std::size_t free = 0, pads = 0, held = 0, struts = 0, parts = 0;
     double furthest_m = 0;
     for (const exports::Body& body : sim.bodies) {
         parts += body.parts.size();
         free += !body.fixed;
         pads += body.on_pad;
         held += body.held;
+        struts += static_cast<std::size_t>(body.struts);
         furthest_m = std::max(furthest_m, std::abs(body.moved_m[2]));
     }
     std::printf(
         "%zu free bodies, %zu convex parts in all, deepest overlap %.3f mm; let down by at most "
         "%.1f mm\n",
         free, parts, 1e3 * exports::deepest_overlap_m(sim.bodies), 1e3 * furthest_m);
-    if (pads + held > 0)
+    if (pads + held + struts > 0)
         std::printf(
-            "What carries them was not seen: %zu stand on pads, %zu are held where they are\n",
-            pads, held);
+            "What carries them was not seen: %zu stand on pads, %zu are held where they are; %zu "
+            "struts\n",
+            pads, held, struts);
 }
 
 int run(const ExportArguments& a) {

@@ -22,6 +22,9 @@ struct Body {
     Mat3 inertia_kg_m2{};
     Vec3 moved_m{};      // by settling
     double lost_m3 = 0;  // of its parts, so that they lie in no other body's
+    // How far inside its footing its centre of mass stands, by its barrier; 0: it falls by itself.
+    double firm_m = 0;
+    int struts = 0;  // of its parts, the last ones: feet that were not seen
     // What carries it was not seen: it stands on a pad made for it, or is held where it is.
     bool on_pad = false, held = false;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "physics/qhull.h"
 #include "physics/vectors.h"
@@ -38,6 +39,97 @@ double volume_of(const ConvexPart& part) {
     return six / 6;
 }
 
+void bound(ConvexPart& part) {
+    part.low = part.high = part.corner[0];
+    for (const Vec3& c : part.corner) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            part.low[a] = std::min(part.low[a], c[a]);
+            part.high[a] = std::max(part.high[a], c[a]);
+        }
+    }
+}
+
+// A corner that is so far beyond a plane lies on it.
+constexpr double rounding_m = 1e-8;
+// What is less is no solid: a cube with an edge of half a millimetre.
+constexpr double least_volume_m3 = 1e-10;
+
+// What a plane leaves of a part: its faces, shortened, and one in the plane. Faces keep their
+// planes, which many cuts in a row don't blur.
+class Clipping {
+  public:
+    // beyond: by corner, how far it is.
+    Clipping(const ConvexPart& part, const std::vector<double>& beyond, ConvexPart& out)
+        : part_(part), beyond_(beyond), out_(out), number_(part.corner.size(), none) {}
+
+    void face(std::size_t n) {
+        const auto& outline = part_.outline[n];
+        std::vector<std::uint32_t> left;
+        for (std::size_t k = 0; k < outline.size(); ++k) {
+            const std::uint32_t a = outline[k], b = outline[(k + 1) % outline.size()];
+            if (inside(a)) left.push_back(kept(a));
+            if (inside(a) != inside(b)) left.push_back(crossing(a, b));
+        }
+        left.erase(std::unique(left.begin(), left.end()), left.end());
+        if (left.size() > 1 && left.front() == left.back()) left.pop_back();
+        if (left.size() < 3) return;
+        out_.outline.push_back(std::move(left));
+        out_.face.push_back(part_.face[n]);
+    }
+
+    // The points in the plane bound a convex polygon: around its middle they follow one another.
+    void cap(const HalfSpace& to) {
+        if (on_.size() < 3) return;
+        Vec3 middle{};
+        for (const std::uint32_t n : on_)
+            middle = along(middle, 1 / static_cast<double>(on_.size()), out_.corner[n]);
+        const Vec3 some = std::abs(to.normal[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+        const Vec3 u = unit(cross(some, to.normal)), v = cross(to.normal, u);
+        std::vector<std::pair<double, std::uint32_t>> by_angle;
+        for (const std::uint32_t n : on_) {
+            const Vec3 from = minus(out_.corner[n], middle);
+            by_angle.emplace_back(std::atan2(dot(v, from), dot(u, from)), n);
+        }
+        std::ranges::sort(by_angle);
+        auto& outline = out_.outline.emplace_back();
+        for (const auto& [angle, n] : by_angle) outline.push_back(n);
+        out_.face.push_back(to);
+    }
+
+  private:
+    static constexpr std::uint32_t none = ~std::uint32_t{0};
+    bool inside(std::uint32_t n) const { return beyond_[n] <= rounding_m; }
+    std::uint32_t add(const Vec3& corner, bool on) {
+        const auto n = static_cast<std::uint32_t>(out_.corner.size());
+        out_.corner.push_back(corner);
+        if (on) on_.push_back(n);
+        return n;
+    }
+    std::uint32_t kept(std::uint32_t n) {
+        if (number_[n] == none) number_[n] = add(part_.corner[n], beyond_[n] >= -rounding_m);
+        return number_[n];
+    }
+    // Of an edge that the plane crosses, which two faces share.
+    std::uint32_t crossing(std::uint32_t a, std::uint32_t b) {
+        if (a > b) std::swap(a, b);
+        const std::uint32_t in = inside(a) ? a : b;
+        if (beyond_[in] >= -rounding_m) return kept(in);
+        for (const auto& [edge, n] : crossed_)
+            if (edge == std::pair(a, b)) return n;
+        const double t = beyond_[a] / (beyond_[a] - beyond_[b]);
+        const std::uint32_t n =
+            add(along(part_.corner[a], t, minus(part_.corner[b], part_.corner[a])), true);
+        crossed_.emplace_back(std::pair(a, b), n);
+        return n;
+    }
+
+    const ConvexPart& part_;
+    const std::vector<double>& beyond_;
+    ConvexPart& out_;
+    std::vector<std::uint32_t> number_, on_;
+    std::vector<std::pair<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>> crossed_;
+};
+
 }  // namespace
 
 std::optional<ConvexPart> hull_part(std::span<const Vec3> points) {
@@ -64,13 +156,7 @@ std::optional<ConvexPart> hull_part(std::span<const Vec3> points) {
     }
     out.volume_m3 = volume_of(out);
     if (!(out.volume_m3 > 0)) return std::nullopt;
-    out.low = out.high = out.corner[0];
-    for (const Vec3& c : out.corner) {
-        for (std::size_t a = 0; a < 3; ++a) {
-            out.low[a] = std::min(out.low[a], c[a]);
-            out.high[a] = std::max(out.high[a], c[a]);
-        }
-    }
+    bound(out);
     return out;
 }
 
@@ -85,24 +171,18 @@ std::optional<ConvexPart> reshaped(const ConvexPart& part, std::span<const Vec3>
 std::optional<ConvexPart> cut(const ConvexPart& part, const HalfSpace& to) {
     std::vector<double> beyond;
     for (const Vec3& c : part.corner) beyond.push_back(dot(to.normal, c) - to.offset_m);
-    if (std::ranges::all_of(beyond, [](double d) { return d <= 0; })) return part;
-    std::vector<Vec3> points;
-    for (std::size_t n = 0; n < part.corner.size(); ++n)
-        if (beyond[n] <= 0) points.push_back(part.corner[n]);
-    for (const auto& outline : part.outline) {
-        for (std::size_t n = 0; n < outline.size(); ++n) {
-            const std::uint32_t a = outline[n], b = outline[(n + 1) % outline.size()];
-            // Each edge has two faces, which walk it in opposite directions.
-            if (a > b || (beyond[a] > 0) == (beyond[b] > 0)) continue;
-            const double t = beyond[a] / (beyond[a] - beyond[b]);
-            points.push_back(along(part.corner[a], t, minus(part.corner[b], part.corner[a])));
-        }
-    }
-    auto out = hull_part(points);
-    if (!out) return out;
-    out->solid_each_m3 = part.solid_each_m3;
+    if (std::ranges::all_of(beyond, [](double d) { return d <= rounding_m; })) return part;
+    ConvexPart out;
+    Clipping clipping(part, beyond, out);
+    for (std::size_t n = 0; n < part.outline.size(); ++n) clipping.face(n);
+    clipping.cap(to);
+    if (out.corner.size() < 4) return std::nullopt;
+    out.volume_m3 = volume_of(out);
+    if (!(out.volume_m3 > least_volume_m3)) return std::nullopt;
+    bound(out);
+    out.solid_each_m3 = part.solid_each_m3;
     for (const Vec3& p : part.solid)
-        if (dot(to.normal, p) <= to.offset_m + on_plane_m) out->solid.push_back(p);
+        if (dot(to.normal, p) <= to.offset_m + on_plane_m) out.solid.push_back(p);
     return out;
 }
 

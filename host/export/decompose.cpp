@@ -16,19 +16,19 @@
 namespace topple::exports {
 namespace {
 
-// A primitive is convex enough where the hulls of its pieces are this share of it larger, and a
-// piece where its own is so many voxels larger, or this share of the primitive.
-constexpr double slight_share = 0.15, slight_voxels = 8, slight_piece = 0.04;
+// A clump is convex enough where the hulls of its pieces are this share of it larger, and a piece
+// where its own is so many voxels larger, or this share of the clump.
+constexpr double slight_share = 0.15, slight_voxels = 16, slight_piece = 0.04;
 // A cut must take this share of a piece's excess away.
 constexpr double least_gain = 0.1;
-constexpr std::size_t most_parts = 10;
+constexpr std::size_t most_parts = 8;
 // Of places for a cut along each axis: at changes of the section, and evenly spread ones.
-constexpr std::size_t most_changes = 6, even_places = 4;
+constexpr std::size_t most_changes = 3, even_places = 2;
 
 using Voxel = std::array<std::int32_t, 3>;
 constexpr std::size_t no_boundary = BoundaryCells::absent;
 
-// A voxel that is a primitive's, wholly or in part.
+// A voxel that is a clump's, wholly or in part.
 struct Cell {
     Voxel at{};
     std::size_t boundary = no_boundary;
@@ -38,9 +38,15 @@ struct Piece {
     std::int32_t id = 0;
     std::vector<std::size_t> cells;
     Voxel low{}, high{};
-    double hull = 0;  // its volume, in voxels
+    double hull = 0;          // its volume, in voxels
+    std::size_t surface = 0;  // cells that end a row along some axis
     bool final = false;
-    double excess() const { return hull - static_cast<double>(cells.size()); }
+    // What the hull holds beyond the solid. The steps of slanted surfaces don't count: they are of
+    // the voxels, not of the solid.
+    double excess() const {
+        constexpr double steps = 0.7;
+        return hull - static_cast<double>(cells.size()) - steps * static_cast<double>(surface);
+    }
 };
 
 // Cuts are looked for on whole voxels, of which few are corners of a hull: those that end a row
@@ -120,8 +126,8 @@ class Decomposition {
             above.id = static_cast<std::int32_t>(pieces_.size());
             mark(below);
             mark(above);
-            below.hull = hull_of(below);
-            above.hull = hull_of(above);
+            measure(below);
+            measure(above);
             excess += below.excess() + above.excess();
             pieces_[worst] = std::move(below);
             pieces_.push_back(std::move(above));
@@ -163,7 +169,7 @@ class Decomposition {
     }
     // Corners of some of its cells.
     void sample(const Piece& piece, double solid_m3, ConvexPart& part) const {
-        constexpr std::size_t most = 200;
+        constexpr std::size_t most = 100;
         const std::size_t step = (piece.cells.size() + most - 1) / most;
         for (std::size_t n = step / 2; n < piece.cells.size(); n += step)
             add_corners(cells_[piece.cells[n]], part.solid);
@@ -255,7 +261,7 @@ class Decomposition {
     }
     void add(Piece piece) {
         mark(piece);
-        piece.hull = hull_of(piece);
+        measure(piece);
         pieces_.push_back(std::move(piece));
     }
 
@@ -320,7 +326,21 @@ class Decomposition {
         }
         return out;
     }
-    double hull_of(const Piece& piece) const { return volume_of(corners(piece, 0, {})[0]); }
+    void measure(Piece& piece) const {
+        piece.hull = volume_of(corners(piece, 0, {})[0]);
+        piece.surface = static_cast<std::size_t>(std::ranges::count_if(
+            piece.cells, [&](std::size_t n) { return on_surface(piece.id, cells_[n].at); }));
+    }
+    bool on_surface(std::int32_t id, const Voxel& at) const {
+        for (std::size_t a = 0; a < 3; ++a) {
+            for (const std::int32_t step : {-1, 1}) {
+                Voxel next = at;
+                next[a] += step;
+                if (!is(id, next)) return true;
+            }
+        }
+        return false;
+    }
     static double volume_of(const std::vector<Vec3>& points) {
         const auto hull = hull_part(points);
         return hull ? hull->volume_m3 : 0;
@@ -415,43 +435,46 @@ class Decomposition {
     std::vector<std::uint32_t> index_;  // of the cell there
 };
 
-std::vector<std::vector<Cell>> cells_of(const SolidScene& solids,
-                                        std::span<const double> slight_m3) {
+// By clump.
+std::vector<std::vector<Cell>> cells_of(const SolidScene& solids, std::span<const Clump> clumps) {
+    constexpr std::size_t none = ~std::size_t{0};
+    std::vector<std::size_t> clump_of(solids.primitives(), none);
+    for (std::size_t n = 0; n < clumps.size(); ++n)
+        for (const std::int32_t p : clumps[n].primitives)
+            clump_of.at(static_cast<std::size_t>(p)) = n;
+    std::vector<std::vector<Cell>> out(clumps.size());
+    const auto add = [&](std::int32_t p, const Cell& cell) {
+        if (p < 0) return;
+        const std::size_t clump = clump_of[static_cast<std::size_t>(p)];
+        if (clump != none) out[clump].push_back(cell);
+    };
     const SolidCells& cells = solids.cells();
     const BoundaryCells& boundary = solids.boundary();
-    const auto chosen = [&](std::int32_t p) {
-        return p >= 0 && slight_m3[static_cast<std::size_t>(p)] >= 0;
-    };
-    std::vector<std::vector<Cell>> out(slight_m3.size());
-    for (std::size_t b = 0; b < boundary.size(); ++b) {
-        if (!chosen(boundary.primitive[b]) || boundary.share[b] == 0) continue;
-        out[static_cast<std::size_t>(boundary.primitive[b])].push_back(
-            {{boundary.i[b], boundary.j[b], boundary.k[b]}, b});
-    }
-    for (std::size_t n = 0; n < cells.size(); ++n) {
-        const std::int32_t p = cells.primitive[n];
-        if (!chosen(p) ||
-            boundary.find(cells.i[n], cells.j[n], cells.k[n], p) != BoundaryCells::absent)
-            continue;
-        out[static_cast<std::size_t>(p)].push_back({{cells.i[n], cells.j[n], cells.k[n]}});
-    }
+    for (std::size_t b = 0; b < boundary.size(); ++b)
+        if (boundary.share[b] > 0)
+            add(boundary.primitive[b], {{boundary.i[b], boundary.j[b], boundary.k[b]}, b});
+    for (std::size_t n = 0; n < cells.size(); ++n)
+        if (boundary.find(cells.i[n], cells.j[n], cells.k[n], cells.primitive[n]) ==
+            BoundaryCells::absent)
+            add(cells.primitive[n], {{cells.i[n], cells.j[n], cells.k[n]}});
     return out;
 }
 
 }  // namespace
 
-std::vector<Decomposed> decompose(const SolidScene& solids, std::span<const double> slight_m3,
+std::vector<Decomposed> decompose(const SolidScene& solids, std::span<const Clump> clumps,
                                   ThreadPool& threads) {
-    auto cells = cells_of(solids, slight_m3);
-    std::vector<Decomposed> out(slight_m3.size());
-    threads.each(slight_m3.size(), 1, [&](std::size_t p) {
-        if (cells[p].empty()) return;
-        Decomposition pieces(solids, std::move(cells[p]));
+    auto cells = cells_of(solids, clumps);
+    std::vector<Decomposed> out(clumps.size());
+    threads.each(clumps.size(), 1, [&](std::size_t n) {
+        if (cells[n].empty()) return;
+        Decomposition pieces(solids, std::move(cells[n]));
         std::optional<Decomposed> slab;
-        if (solids.role(static_cast<std::int32_t>(p)) == Role::floor) slab = pieces.level_slab();
-        if (!slab) pieces.run(slight_m3[p]);
-        out[p] = slab ? *std::move(slab) : pieces.result();
-        for (ConvexPart& part : out[p].parts) {
+        if (clumps[n].primitives.size() == 1 && solids.role(clumps[n].primitives[0]) == Role::floor)
+            slab = pieces.level_slab();
+        if (!slab) pieces.run(clumps[n].slight_m3);
+        out[n] = slab ? *std::move(slab) : pieces.result();
+        for (ConvexPart& part : out[n].parts) {
             // A box is what solids are most often, and what simulators reckon best with.
             constexpr double alike = 0.1;  // of a voxel
             if (const auto box = as_box(part, alike * solids.voxel_m()))

@@ -3,12 +3,14 @@
 
 #include <vector>
 
-#include "export/convex_part.h"
+#include "core/thread_pool.h"
+#include "export/body.h"
 
 namespace topple::exports {
 
-// Joins parts of one body two by two, cheapest first, while the hull of both is hardly larger than
-// they are: by `most_m3` in all, and no two by more than a tenth.
-void merge_parts(std::vector<ConvexPart>& parts, double most_m3, double touching_m);
+// Joins parts of each body two by two, cheapest first, while the hull of both is hardly larger than
+// they are and comes no closer to other bodies: simulators take time for each part that touches.
+// touching_m: parts that are further apart than that are not joined.
+void merge_parts(std::vector<Body>& bodies, double touching_m, ThreadPool& threads);
 
 }  // namespace topple::exports

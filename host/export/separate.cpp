@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "physics/vectors.h"
@@ -22,6 +23,9 @@ constexpr double touching_m = 1e-6;  // what overlaps less, touches
 constexpr double hollow = 0.02;
 // What stands on something gives way to it, unless that costs so many times as much solid.
 constexpr double standing = 4;
+// Shares of a body's solid: what a cut may take before carving one part out of the other is thought
+// of, and what another piece costs that this makes, of the part.
+constexpr double dear = 0.02, another = 0.02;
 
 double gap_along(const ConvexPart& a, const ConvexPart& b, const Vec3& n) {
     return extent_along(b, n).low - extent_along(a, n).high;
@@ -66,39 +70,45 @@ bool edges_apart(const ConvexPart& a, const ConvexPart& b, const Vec3& best) {
     return false;
 }
 
-// A plane between two parts, normal from the first to the second, and what of their solids, times
-// what that costs, lies beyond it.
+// A plane between two parts, normal from the first to the second, and what it costs.
 struct Plane {
     HalfSpace of_first;
-    double cost_m3 = physics::infinity;
+    double cost = physics::infinity;
+};
+
+// Two parts that overlap, and what a cubic metre of the solid of each costs.
+struct Overlap {
+    const ConvexPart &a, &b;
+    double a_costs, b_costs;
 };
 
 // The cheapest place of a plane of that normal. The parts' hulls overlap along it, their solids
 // hardly.
-Plane best_place(const ConvexPart& a, const ConvexPart& b, const Vec3& n, double first_costs) {
+Plane best_place(const Overlap& two, const Vec3& n) {
     std::vector<std::pair<double, double>> steps;  // at a place, what more is lost from there on
-    const double low = extent_along(b, n).low, high = extent_along(a, n).high;
+    const double low = extent_along(two.b, n).low, high = extent_along(two.a, n).high;
+    const double each_a = two.a_costs * two.a.solid_each_m3;
+    const double each_b = two.b_costs * two.b.solid_each_m3;
     double lost = 0;
-    for (const Vec3& p : a.solid) {
+    for (const Vec3& p : two.a.solid) {
         const double at = dot(n, p) - on_plane_m;
         if (at <= low) continue;
-        lost += first_costs * a.solid_each_m3;
-        steps.emplace_back(at, -first_costs * a.solid_each_m3);
+        lost += each_a;
+        steps.emplace_back(at, -each_a);
     }
-    for (const Vec3& p : b.solid)
-        if (const double at = dot(n, p) + on_plane_m; at < high)
-            steps.emplace_back(at, b.solid_each_m3);
+    for (const Vec3& p : two.b.solid)
+        if (const double at = dot(n, p) + on_plane_m; at < high) steps.emplace_back(at, each_b);
     std::ranges::sort(steps);
     // Of places that cost the same, where the first part ends, or the second begins, or between.
     Plane best{{n, low}, lost};
     double last = low;
     for (const auto& [at, more] : steps) {
         const double place = std::clamp(at, low, high);
-        if (lost < best.cost_m3) best = {{n, (last + place) / 2}, lost};
+        if (lost < best.cost) best = {{n, (last + place) / 2}, lost};
         last = place;
         lost += more;
     }
-    if (lost <= best.cost_m3) best = {{n, high}, lost};
+    if (lost <= best.cost) best = {{n, high}, lost};
     return best;
 }
 
@@ -107,9 +117,13 @@ double lost_m3(const ConvexPart& part, const HalfSpace& to) {
     return part.volume_m3 - (left ? left->volume_m3 : 0);
 }
 
-Plane best_plane(const ConvexPart& a, const ConvexPart& b, double first_costs) {
+HalfSpace of_second(const Plane& plane) {
+    return {opposite(plane.of_first.normal), -plane.of_first.offset_m};
+}
+
+Plane best_plane(const Overlap& two) {
     std::vector<std::pair<double, Vec3>> ways;
-    each_direction(a, b, [&](const Vec3& n, double gap) { ways.emplace_back(gap, n); });
+    each_direction(two.a, two.b, [&](const Vec3& n, double gap) { ways.emplace_back(gap, n); });
     std::ranges::stable_sort(ways, [](const auto& p, const auto& q) { return p.first > q.first; });
     constexpr std::size_t most_ways = 12;
     ways.resize(std::min(ways.size(), most_ways));
@@ -117,45 +131,109 @@ Plane best_plane(const ConvexPart& a, const ConvexPart& b, double first_costs) {
         for (const double sign : {1.0, -1.0}) {
             Vec3 n{};
             n[axis] = sign;
-            ways.emplace_back(gap_along(a, b, n), n);
+            ways.emplace_back(gap_along(two.a, two.b, n), n);
         }
     }
     Plane best;
     for (const auto& [gap, n] : ways) {
-        Plane plane = best_place(a, b, n, first_costs);
-        if (plane.cost_m3 >= best.cost_m3) continue;
-        const HalfSpace of_second{opposite(n), -plane.of_first.offset_m};
-        plane.cost_m3 += hollow * (lost_m3(a, plane.of_first) + lost_m3(b, of_second));
-        if (plane.cost_m3 < best.cost_m3) best = plane;
+        Plane plane = best_place(two, n);
+        if (plane.cost >= best.cost) continue;
+        plane.cost += hollow * (two.a_costs * lost_m3(two.a, plane.of_first) +
+                                two.b_costs * lost_m3(two.b, of_second(plane)));
+        if (plane.cost < best.cost) best = plane;
     }
     return best;
 }
 
-// Takes from a part what lies beyond the plane; a body's last part stays as it is.
-bool take(Body& body, std::size_t& n, const HalfSpace& to) {
-    auto left = cut(body.parts[n], to);
-    if (!left && body.parts.size() == 1) return false;
-    body.lost_m3 += body.parts[n].volume_m3 - (left ? left->volume_m3 : 0);
-    if (left) {
-        body.parts[n] = *std::move(left);
-        return false;
+// A part without another: convex pieces of it that hold what of its solid lies outside of that, and
+// what is lost.
+struct Carved {
+    std::vector<ConvexPart> pieces;
+    double cost = physics::infinity;
+};
+
+Carved carved(const ConvexPart& part, const ConvexPart& by, double costs) {
+    constexpr std::size_t most_pieces = 6;
+    Carved out{{}, 0};
+    std::optional<ConvexPart> rest = part;
+    while (rest && out.pieces.size() < most_pieces) {
+        std::size_t most = 0;
+        const HalfSpace* best = nullptr;
+        for (const HalfSpace& side : by.face) {
+            const auto outside =
+                static_cast<std::size_t>(std::ranges::count_if(rest->solid, [&](const Vec3& p) {
+                    return dot(side.normal, p) > side.offset_m + on_plane_m;
+                }));
+            if (outside <= most) continue;
+            most = outside;
+            best = &side;
+        }
+        if (!best) break;
+        auto piece = cut(*rest, {opposite(best->normal), -best->offset_m});
+        rest = cut(*rest, *best);
+        if (piece) out.pieces.push_back(*std::move(piece));
     }
-    body.parts.erase(body.parts.begin() + static_cast<std::ptrdiff_t>(n));
-    --n;  // the next one took its place
-    return true;
+    if (out.pieces.empty()) return {};
+    double left = 0;
+    for (const ConvexPart& piece : out.pieces) left += static_cast<double>(piece.solid.size());
+    // Points on a plane count on both sides.
+    const double lost = std::max(0.0, static_cast<double>(part.solid.size()) - left);
+    const double whole = static_cast<double>(part.solid.size());
+    out.cost = costs * part.solid_each_m3 *
+               (lost + another * whole * static_cast<double>(out.pieces.size() - 1));
+    return out;
+}
+
+// Puts pieces into the place of a part; those but the first come at the end. Whether none took its
+// place, so that the next one did.
+bool replace(Body& body, std::size_t& n, std::vector<ConvexPart> pieces) {
+    double left_m3 = 0;
+    for (const ConvexPart& piece : pieces) left_m3 += piece.volume_m3;
+    body.lost_m3 += body.parts[n].volume_m3 - left_m3;
+    if (pieces.empty()) {
+        body.parts.erase(body.parts.begin() + static_cast<std::ptrdiff_t>(n));
+        --n;
+        return true;
+    }
+    body.parts[n] = std::move(pieces[0]);
+    for (std::size_t k = 1; k < pieces.size(); ++k) body.parts.push_back(std::move(pieces[k]));
+    return false;
+}
+
+std::vector<ConvexPart> pieces_in(const ConvexPart& part, const HalfSpace& to) {
+    std::vector<ConvexPart> out;
+    if (auto left = cut(part, to)) out.push_back(*std::move(left));
+    return out;
 }
 
 // Parts two bodies, the first of which stands no higher.
 void separate(Body& below, Body& above) {
+    const bool carries = below.fixed || below.level < above.level;
+    const double below_costs = carries ? standing : 1, above_costs = 1;
+    const double dear_m3 = dear * std::min(below.solid_m3, above.solid_m3);
     for (std::size_t p = 0; p < below.parts.size(); ++p) {
         for (std::size_t q = 0; q < above.parts.size(); ++q) {
             const ConvexPart &a = below.parts[p], &b = above.parts[q];
             if (!near(a, b, 0) || !overlap(a, b)) continue;
-            const bool carries = below.fixed || below.level < above.level;
-            const Plane plane = best_plane(a, b, carries ? standing : 1);
-            const HalfSpace of_second{opposite(plane.of_first.normal), -plane.of_first.offset_m};
-            take(above, q, of_second);
-            if (take(below, p, plane.of_first)) break;
+            const Plane plane = best_plane({a, b, below_costs, above_costs});
+            auto a_left = pieces_in(a, plane.of_first), b_left = pieces_in(b, of_second(plane));
+            const bool ends = (a_left.empty() && below.parts.size() == 1) ||
+                              (b_left.empty() && above.parts.size() == 1);
+            if (ends || plane.cost > dear_m3) {
+                const double limit = ends ? physics::infinity : plane.cost;
+                Carved a_without = carved(a, b, below_costs), b_without = carved(b, a, above_costs);
+                if (std::min(a_without.cost, b_without.cost) < limit) {
+                    if (a_without.cost <= b_without.cost) {
+                        replace(below, p, std::move(a_without.pieces));
+                    } else {
+                        replace(above, q, std::move(b_without.pieces));
+                    }
+                    continue;
+                }
+                if (ends) continue;
+            }
+            replace(above, q, std::move(b_left));
+            if (replace(below, p, std::move(a_left))) break;
         }
     }
 }
@@ -167,19 +245,8 @@ void each_pair(Bodies& bodies, const Use& use) {
         std::size_t body;
     };
     std::vector<Around> around;
-    for (std::size_t n = 0; n < bodies.size(); ++n) {
-        if (bodies[n].parts.empty()) continue;
-        Around each{{}, n};
-        each.box.low.fill(physics::infinity);
-        each.box.high.fill(-physics::infinity);
-        for (const ConvexPart& part : bodies[n].parts) {
-            for (std::size_t a = 0; a < 3; ++a) {
-                each.box.low[a] = std::min(each.box.low[a], part.low[a]);
-                each.box.high[a] = std::max(each.box.high[a], part.high[a]);
-            }
-        }
-        around.push_back(std::move(each));
-    }
+    for (std::size_t n = 0; n < bodies.size(); ++n)
+        if (!bodies[n].parts.empty()) around.push_back({box_around(bodies[n].parts), n});
     std::ranges::stable_sort(around, [&](const Around& a, const Around& b) {
         return std::pair(!bodies[a.body].fixed, bodies[a.body].level) <
                std::pair(!bodies[b.body].fixed, bodies[b.body].level);
@@ -206,6 +273,19 @@ Apart apart(const ConvexPart& a, const ConvexPart& b) {
 double overlap_m(const ConvexPart& a, const ConvexPart& b) {
     const Apart lie = apart(a, b);
     return lie.gap_m < -touching_m && !edges_apart(a, b, lie.normal) ? -lie.gap_m : 0;
+}
+
+ConvexPart box_around(std::span<const ConvexPart> parts) {
+    ConvexPart box;
+    box.low.fill(physics::infinity);
+    box.high.fill(-physics::infinity);
+    for (const ConvexPart& part : parts) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            box.low[a] = std::min(box.low[a], part.low[a]);
+            box.high[a] = std::max(box.high[a], part.high[a]);
+        }
+    }
+    return box;
 }
 
 bool near(const ConvexPart& a, const ConvexPart& b, double distance_m) {

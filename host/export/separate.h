@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "export/body.h"
@@ -19,6 +20,9 @@ double overlap_m(const ConvexPart& a, const ConvexPart& b);
 inline bool overlap(const ConvexPart& a, const ConvexPart& b) {
     return overlap_m(a, b) > 0;
 }
+
+// The box around parts, of which only `low` and `high` are set: empty where there are none.
+ConvexPart box_around(std::span<const ConvexPart> parts);
 
 // Whether the boxes around two parts come closer than that.
 bool near(const ConvexPart& a, const ConvexPart& b, double distance_m);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "export/brace.h"
 #include "export/decompose.h"
 #include "export/merge_parts.h"
 #include "export/separate.h"
@@ -14,10 +15,6 @@
 
 namespace topple::exports {
 namespace {
-
-// Of a body's solid: what the hull of a piece may hold beyond it, and what joining parts may add.
-constexpr double slight_of_object = 0.005, slight_of_ground = 0.001;
-constexpr double merged_share = 0.05;
 
 using Rotation = std::array<Vec3, 3>;  // rows
 
@@ -40,18 +37,14 @@ Mat3 turned(const Rotation& r, const Mat3& inertia) {
     return out;
 }
 
-// By primitive, see decompose().
-std::vector<double> slight_m3(const Scene& scene) {
-    std::vector<double> solid_m3(scene.objects.size(), 0), out;
-    for (const Primitive& p : scene.primitives)
-        if (p.object >= 0) solid_m3.at(static_cast<std::size_t>(p.object)) += p.volume_m3;
-    for (const Primitive& p : scene.primitives) {
-        const auto o = static_cast<std::size_t>(p.object);
-        out.push_back(p.object < 0 ? -1
-                                   : solid_m3[o] * (scene.objects[o].grounded ? slight_of_ground
-                                                                              : slight_of_object));
-    }
-    return out;
+// Energy takes the centre of mass, at a height over an edge of the footing and at a distance inside
+// it, up to above that edge: m g (sqrt(height^2 + distance^2) - height). The distance of a barrier.
+double firm_m(const Object& object, const Body& body, double gravity_m_s2) {
+    constexpr double most_m = 0.05;
+    if (!(object.barrier_J > 0) || !(object.mass_kg > 0)) return 0;
+    const double height = std::max(0.0, body.center_m[2] - box_around(body.parts).low[2]);
+    const double rise = object.barrier_J / (object.mass_kg * gravity_m_s2);
+    return std::min(most_m, std::sqrt(rise * (rise + 2 * height)));
 }
 
 std::vector<Body> bodies_of(const Scene& scene, const SolidScene& solids, ThreadPool& threads) {
@@ -59,7 +52,8 @@ std::vector<Body> bodies_of(const Scene& scene, const SolidScene& solids, Thread
         throw Error(ErrorKind::input, "the scene has " + std::to_string(scene.primitives.size()) +
                                           " primitives, but its solids are of " +
                                           std::to_string(solids.primitives()));
-    const std::vector<Decomposed> solid = decompose(solids, slight_m3(scene), threads);
+    const std::vector<Clump> clumps = clumps_of(scene, solids.voxel_m());
+    const std::vector<Decomposed> solid = decompose(solids, clumps, threads);
     const Rotation rotation = world_from_input(scene);
     std::vector<Body> out;
     for (const Object& object : scene.objects) {
@@ -69,17 +63,14 @@ std::vector<Body> bodies_of(const Scene& scene, const SolidScene& solids, Thread
         body.mass_kg = object.mass_kg;
         body.center_m = turned(rotation, object.center_of_mass_m);
         body.inertia_kg_m2 = turned(rotation, object.inertia_kg_m2);
-        for (const std::int32_t p : object.primitives) {
-            const Decomposed& each = solid.at(static_cast<std::size_t>(p));
-            body.solid_m3 += each.solid_m3;
-            body.parts.insert(body.parts.end(), each.parts.begin(), each.parts.end());
-        }
         out.push_back(std::move(body));
     }
-    threads.each(out.size(), 1, [&](std::size_t n) {
-        if (!out[n].fixed)
-            merge_parts(out[n].parts, merged_share * out[n].solid_m3, solids.voxel_m());
-    });
+    for (std::size_t n = 0; n < clumps.size(); ++n) {
+        Body& body = out.at(static_cast<std::size_t>(clumps[n].object));
+        body.solid_m3 += solid[n].solid_m3;
+        body.parts.insert(body.parts.end(), solid[n].parts.begin(), solid[n].parts.end());
+    }
+    merge_parts(out, solids.voxel_m(), threads);
     return out;
 }
 
@@ -110,12 +101,15 @@ SimScene sim_scene(const Scene& scene, const SolidScene& solids, ThreadPool& thr
     SimScene out;
     out.friction = scene.friction;
     out.bodies = bodies_of(scene, solids, threads);
+    for (std::size_t n = 0; n < out.bodies.size(); ++n)
+        out.bodies[n].firm_m = firm_m(scene.objects[n], out.bodies[n], out.gravity_m_s2);
     add_supports(scene, out.bodies);
     const double known_m = solids::form_error_m(solids.boundary(), solids.voxel_m());
     separate(out.bodies);
     settle(out.bodies, std::max(known_m, solids.voxel_m() / 2));
     separate(out.bodies);
     flatten_feet(out.bodies, solids.voxel_m());
+    brace(out.bodies, solids.voxel_m() / 2);
     return out;
 }
 

@@ -17,13 +17,6 @@ using physics::opposite;
 
 constexpr double level_cosine = 0.9;  // of a side that carries
 
-std::vector<std::size_t> by_level(const std::vector<Body>& bodies) {
-    std::vector<std::size_t> order(bodies.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, {}, [&](std::size_t n) { return bodies[n].level; });
-    return order;
-}
-
 // Calls use(part of the body, part below it, how they lie) for all that come within a distance of
 // one another, one over the other.
 template <class Use>
@@ -45,58 +38,26 @@ void move(Body& body, const Vec3& by) {
     body.moved_m = along(body.moved_m, 1, by);
 }
 
-// A slab under the lowest corners of a body.
-Body pad_under(const Body& body, double within_m) {
-    constexpr double thick_m = 0.01;
-    double lowest = physics::infinity;
-    for (const ConvexPart& part : body.parts) lowest = std::min(lowest, part.low[2]);
-    std::vector<Vec3> points;
-    for (const ConvexPart& part : body.parts) {
-        for (const Vec3& c : part.corner) {
-            if (c[2] > lowest + within_m) continue;
-            points.push_back({c[0], c[1], lowest});
-            points.push_back({c[0], c[1], lowest - thick_m});
-        }
-    }
-    Body pad;
-    pad.fixed = true;
-    if (auto slab = hull_part(points)) pad.parts.push_back(*std::move(slab));
-    return pad;
-}
-
-// Whether a point's plumb line passes through the part.
-bool above(const ConvexPart& part, const Vec3& p) {
-    return std::ranges::all_of(part.face, [&](const HalfSpace& side) {
-        return std::abs(side.normal[2]) > 1 - 1e-9 || dot(side.normal, p) <= side.offset_m;
-    });
-}
-
 }  // namespace
 
+std::vector<std::size_t> by_level(const std::vector<Body>& bodies) {
+    std::vector<std::size_t> order(bodies.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t n) { return bodies[n].level; });
+    return order;
+}
+
 void settle(std::vector<Body>& bodies, double most_m) {
-    std::vector<Body> pads;
     for (const std::size_t n : by_level(bodies)) {
         Body& body = bodies[n];
-        if (body.fixed || body.parts.empty()) continue;
+        if (body.fixed) continue;
         double gap = physics::infinity;
         each_footing(bodies, body, most_m,
                      [&](const ConvexPart&, const ConvexPart&, const Apart& lie) {
                          gap = std::min(gap, lie.gap_m);
                      });
-        if (gap == physics::infinity) {
-            Body pad = pad_under(body, most_m);
-            if (pad.parts.empty() || !above(pad.parts[0], body.center_m)) {
-                body.fixed = body.held = true;
-                continue;
-            }
-            body.on_pad = true;
-            body.carried_by = {static_cast<std::int32_t>(bodies.size() + pads.size())};
-            pads.push_back(std::move(pad));
-        } else if (gap > 0) {
-            move(body, {0, 0, -gap});
-        }
+        if (gap > 0 && gap < physics::infinity) move(body, {0, 0, -gap});
     }
-    for (Body& pad : pads) bodies.push_back(std::move(pad));
 }
 
 void flatten_feet(std::vector<Body>& bodies, double within_m) {

@@ -7,9 +7,10 @@
 
 namespace topple::exports {
 
-// Lets each body down until it touches what carries it, by `most_m` at most. What nothing carries
-// within that gets a fixed pad under its lowest corners, a body of its own at the end of the list;
-// or is held where it is, where it would fall off that.
+// Places of the bodies, what carries others first.
+std::vector<std::size_t> by_level(const std::vector<Body>& bodies);
+
+// Lets each body down until it touches what carries it, by `most_m` at most.
 void settle(std::vector<Body>& bodies, double most_m);
 
 // Makes feet flat: corners that lie within `within_m` above what carries them come down to it,

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "host/export/blocks.h"
+#include "physics/vectors.h"
 
 namespace topple::exports::test {
 namespace {
@@ -29,6 +31,29 @@ TEST(ConvexPart, CutsLeaveWhatIsInTheHalfSpace) {
     for (const Vec3& p : half->solid) EXPECT_LE(p[0] + p[1], 1 + 2 * on_plane_m);
     EXPECT_FALSE(cut(part, {{0, 0, 1}, -0.1}));
     EXPECT_EQ(cut(part, {{0, 0, 1}, 2})->volume_m3, part.volume_m3);
+}
+
+// Cut again and again, also through corners and along faces, as Qhull would have it.
+TEST(ConvexPart, ManyCutsAreTheHullOfWhatTheyLeave) {
+    std::mt19937 random(7);
+    const auto number = [&] { return static_cast<double>(random()) / 4294967296.0 * 2 - 1; };
+    for (int round = 0; round < 200; ++round) {
+        ConvexPart part = block({-1, -1, -1}, {1, 1, 1});
+        for (int n = 0; n < 12; ++n) {
+            Vec3 normal = physics::unit({number(), number(), number()});
+            if (n % 3 == 1) normal = {0, n % 2 == 1 ? 1.0 : -1.0, 0};
+            double offset = 0.4 + 0.5 * std::abs(number());
+            if (n % 4 == 2)
+                offset = physics::dot(normal, part.corner[random() % part.corner.size()]);
+            const auto left = cut(part, {normal, offset});
+            if (!left) break;
+            const auto hull = hull_part(left->corner);
+            ASSERT_TRUE(hull);
+            ASSERT_NEAR(left->volume_m3, hull->volume_m3, 1e-9);
+            ASSERT_LE(extent_along(*left, normal).high, offset + 1e-7);
+            part = *left;
+        }
+    }
 }
 
 TEST(ConvexPart, WithoutVolumeIsNone) {

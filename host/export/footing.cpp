@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "export/footing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "export/separate.h"
+#include "physics/tipping.h"
+#include "physics/vectors.h"
+
+namespace topple::exports {
+namespace {
+
+using physics::dot;
+
+constexpr double resting_m = 2e-4;
+constexpr double carries_cosine = 0.8;  // of a side that something can stand on
+
+std::vector<Point2> outline_of(const ConvexPart& part, const HalfSpace& plane) {
+    std::vector<Point2> out;
+    for (const Vec3& c : part.corner)
+        if (std::abs(dot(plane.normal, c) - plane.offset_m) <= resting_m)
+            out.push_back({c[0], c[1]});
+    return out.empty() ? out : physics::convex_polygon(std::move(out));
+}
+
+// What of a convex polygon lies in another one, both counter-clockwise.
+std::vector<Point2> common(std::vector<Point2> polygon, const std::vector<Point2>& other) {
+    if (other.size() < 3) return {};
+    for (std::size_t n = 0; n < other.size() && !polygon.empty(); ++n) {
+        const Point2 &a = other[n], &b = other[(n + 1) % other.size()];
+        const auto inside = [&](const Point2& p) {
+            return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+        };
+        std::vector<Point2> left;
+        for (std::size_t k = 0; k < polygon.size(); ++k) {
+            const Point2 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+            const double at_p = inside(p), at_q = inside(q);
+            if (at_p >= 0) left.push_back(p);
+            if ((at_p >= 0) != (at_q >= 0)) {
+                const double t = at_p / (at_p - at_q);
+                left.push_back({p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])});
+            }
+        }
+        polygon = std::move(left);
+    }
+    return polygon;
+}
+
+// Where the plumb line through a point lies in a part.
+std::optional<Extent> plumb(const ConvexPart& part, const Vec3& p) {
+    if (p[0] < part.low[0] || p[0] > part.high[0] || p[1] < part.low[1] || p[1] > part.high[1])
+        return std::nullopt;
+    Extent out{-physics::infinity, physics::infinity};
+    for (const HalfSpace& side : part.face) {
+        const double flat = side.normal[0] * p[0] + side.normal[1] * p[1];
+        if (std::abs(side.normal[2]) < 1e-9) {
+            if (flat > side.offset_m) return std::nullopt;
+            continue;
+        }
+        const double z = (side.offset_m - flat) / side.normal[2];
+        if (side.normal[2] > 0) {
+            out.high = std::min(out.high, z);
+        } else {
+            out.low = std::max(out.low, z);
+        }
+    }
+    if (out.low > out.high) return std::nullopt;
+    return out;
+}
+
+}  // namespace
+
+std::vector<Point2> footing_of(const std::vector<Body>& bodies, const Body& body) {
+    std::vector<Point2> out;
+    const ConvexPart box = box_around(body.parts);
+    for (const Body& other : bodies) {
+        if (&other == &body) continue;
+        for (const ConvexPart& below : other.parts) {
+            if (!near(box, below, resting_m)) continue;
+            for (const ConvexPart& part : body.parts) {
+                if (!near(part, below, resting_m)) continue;
+                const Apart lie = apart(below, part);
+                if (lie.normal[2] < carries_cosine || lie.gap_m > resting_m) continue;
+                const double top = extent_along(below, lie.normal).high;
+                auto under = outline_of(below, {lie.normal, top});
+                auto over = outline_of(part, {lie.normal, top + lie.gap_m});
+                if (under.size() < 3) std::swap(under, over);
+                for (const Point2& p : common(std::move(over), under)) out.push_back(p);
+            }
+        }
+    }
+    return out;
+}
+
+double margin_m(const std::vector<Point2>& points, const Body& body) {
+    if (points.empty()) return -physics::infinity;
+    return physics::footing(physics::convex_polygon(points), body.center_m[0], body.center_m[1])
+        .margin_m;
+}
+
+double height_below_m(const std::vector<Body>& bodies, const Body& body, const Vec3& point) {
+    constexpr double same_m = 1e-6;
+    double highest = -physics::infinity;
+    bool own = false;
+    for (const Body& other : bodies) {
+        for (const ConvexPart& part : other.parts) {
+            const auto line = plumb(part, point);
+            if (!line || line->low >= point[2] - same_m) continue;
+            const double top = std::min(line->high, point[2]);
+            if (&other == &body) {
+                own |= top >= highest + same_m;
+                if (top >= highest) highest = top;
+            } else if (top > highest) {
+                highest = top;
+                own = false;
+            }
+        }
+    }
+    return own ? -physics::infinity : highest;
+}
+
+}  // namespace topple::exports
