@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "export/footing.h"
@@ -14,7 +16,6 @@
 namespace topple::exports {
 namespace {
 
-constexpr std::size_t most_struts = 4;
 // Of the height of a body: a longer strut would be a post that nobody would have missed.
 constexpr double longest_share = 0.5;
 // Of the footing that the parse says a body has: so much is firm enough.
@@ -34,43 +35,53 @@ struct Strut {
     double length_m = 0;
 };
 
-// A strut under a corner, a little inwards, which meets no other body but with its foot.
-std::optional<Strut> strut_under(const std::vector<Body>& bodies, const Body& body,
-                                 const ConvexPart& part, const Vec3& corner, double half_m) {
-    Vec3 at = corner;
-    for (std::size_t a = 0; a < 2; ++a) {
-        const double middle = (part.low[a] + part.high[a]) / 2;
-        at[a] += std::clamp(middle - corner[a], -half_m, half_m);
-    }
-    double foot = -physics::infinity;
-    for (const Vec3& p :
-         {at, Vec3{at[0] - half_m, at[1] - half_m, at[2]},
-          Vec3{at[0] + half_m, at[1] - half_m, at[2]}, Vec3{at[0] - half_m, at[1] + half_m, at[2]},
-          Vec3{at[0] + half_m, at[1] + half_m, at[2]}})
-        foot = std::max(foot, height_below_m(bodies, body, p));
-    if (!(foot > -physics::infinity)) return std::nullopt;
-    // Into the part, so that it is one with it.
-    const Vec3 top{at[0], at[1], at[2] + std::min(half_m, (part.high[2] - at[2]) / 2)};
-    auto strut = bar(top, foot, half_m);
+// A strut below a body, which meets no other one but with its foot.
+std::optional<Strut> strut_at(const std::vector<Body>& bodies, const std::vector<bool>& stands,
+                              const Body& body, const Point2& at, double half_m) {
+    constexpr double into_m = 1e-3;  // the body, so that it is one with it
+    const auto middle = gap_below(bodies, stands, body, at);
+    if (!middle) return std::nullopt;
+    double foot = middle->to_m;
+    for (const double x : {-half_m, half_m})
+        for (const double y : {-half_m, half_m})
+            if (const auto gap = gap_below(bodies, stands, body, {at[0] + x, at[1] + y}))
+                foot = std::max(foot, gap->to_m);
+    if (foot > middle->from_m) return std::nullopt;
+    auto strut = bar({at[0], at[1], middle->from_m + into_m}, foot, half_m);
     if (!strut) return std::nullopt;
     for (const Body& other : bodies) {
         if (&other == &body) continue;
         for (const ConvexPart& stays : other.parts)
             if (near(*strut, stays, 0) && overlap(*strut, stays)) return std::nullopt;
     }
-    return Strut{*std::move(strut), at[2] - foot};
+    return Strut{*std::move(strut), middle->from_m - foot};
 }
 
-std::vector<Strut> struts_of(const std::vector<Body>& bodies, const Body& body, double half_m,
-                             double longest_m) {
-    std::vector<Strut> out;
+// The shortest first. They are tried a little inwards of corners, where the body is widest.
+std::vector<Strut> struts_of(const std::vector<Body>& bodies, const std::vector<bool>& stands,
+                             const Body& body, double half_m, double longest_m) {
+    std::vector<Point2> places;
     for (const ConvexPart& part : body.parts) {
         for (const Vec3& corner : part.corner) {
-            // Of an underside: the part rises from there.
-            if (corner[2] > (part.low[2] + part.high[2]) / 2) continue;
-            auto strut = strut_under(bodies, body, part, corner, half_m);
-            if (strut && strut->length_m <= longest_m) out.push_back(*std::move(strut));
+            Point2 at{corner[0], corner[1]};
+            for (std::size_t a = 0; a < 2; ++a) {
+                const double middle = (part.low[a] + part.high[a]) / 2;
+                at[a] += std::clamp(middle - corner[a], -half_m, half_m);
+            }
+            places.push_back(at);
         }
+    }
+    // One for each cell of a grid.
+    std::ranges::sort(places);
+    std::set<std::array<std::int64_t, 2>> taken;
+    std::vector<Strut> out;
+    for (const Point2& at : places) {
+        const auto cell = [&](double x) {
+            return static_cast<std::int64_t>(std::floor(x / (2 * half_m)));
+        };
+        if (!taken.insert({cell(at[0]), cell(at[1])}).second) continue;
+        auto strut = strut_at(bodies, stands, body, at, half_m);
+        if (strut && strut->length_m <= longest_m) out.push_back(*std::move(strut));
     }
     std::ranges::stable_sort(out, {}, &Strut::length_m);
     return out;
@@ -82,37 +93,49 @@ std::vector<Point2> with_foot(std::vector<Point2> points, const ConvexPart& stru
     return points;
 }
 
-// Adds struts until the footing is firm: the shortest one that is enough, or the one that helps
-// most. Whether the body stands then.
-bool add_struts(const std::vector<Body>& bodies, Body& body, double half_m) {
-    std::vector<Point2> points = footing_of(bodies, body);
-    const double firm = firm_share * body.firm_m;
+// Of struts, shortest first, as few and as short ones as make the footing firm, or as firm as all
+// make it; nothing where all don't hold the body up.
+std::vector<Strut> enough(const std::vector<Point2>& points, const Body& body,
+                          std::vector<Strut> struts, double firm_m) {
+    const auto margin_with = [&](const std::vector<bool>& used, std::size_t count) {
+        std::vector<Point2> all = points;
+        for (std::size_t n = 0; n < count; ++n)
+            if (used[n]) all = with_foot(std::move(all), struts[n].part);
+        return margin_m(all, body);
+    };
+    std::vector<bool> used(struts.size(), true);
+    std::size_t count = 0;
     double margin = margin_m(points, body);
+    while (margin < firm_m && count < struts.size()) {
+        count = std::min(struts.size(), std::max<std::size_t>(4, 2 * count));
+        margin = margin_with(used, count);
+    }
+    if (!(margin > 0)) return {};
+    firm_m = std::min(firm_m, margin);
+    for (std::size_t n = count; n-- > 0;) {
+        used[n] = false;
+        used[n] = margin_with(used, count) < firm_m;
+    }
+    std::vector<Strut> out;
+    for (std::size_t n = 0; n < count; ++n)
+        if (used[n]) out.push_back(std::move(struts[n]));
+    return out;
+}
+
+// Adds struts where the footing is not firm. Whether the body stands then.
+bool add_struts(const std::vector<Body>& bodies, const std::vector<bool>& stands, Body& body,
+                double half_m) {
+    const std::vector<Point2> points = footing_of(bodies, stands, body);
+    const double firm = firm_share * body.firm_m, margin = margin_m(points, body);
     if (margin >= firm) return true;
     const ConvexPart box = box_around(body.parts);
-    const auto struts = struts_of(bodies, body, half_m, longest_share * (box.high[2] - box.low[2]));
-    const auto before = body.parts.size();
-    while (margin < firm && body.parts.size() < before + most_struts) {
-        const Strut* best = nullptr;
-        double best_margin = margin;
-        for (const Strut& strut : struts) {
-            const double with = margin_m(with_foot(points, strut.part), body);
-            if (with <= best_margin + 1e-9 && best) continue;
-            if (with < best_margin || (with == best_margin && best)) continue;
-            best = &strut;
-            best_margin = with;
-            if (with >= firm) break;
-        }
-        if (!best) break;
-        points = with_foot(std::move(points), best->part);
-        margin = best_margin;
-        body.parts.push_back(best->part);
+    const double longest_m = std::max(longest_share * (box.high[2] - box.low[2]), 8 * half_m);
+    for (Strut& strut :
+         enough(points, body, struts_of(bodies, stands, body, half_m, longest_m), firm)) {
+        body.parts.push_back(std::move(strut.part));
         ++body.struts;
     }
-    if (margin > 0) return true;
-    body.parts.resize(before);
-    body.struts = 0;
-    return false;
+    return margin > 0 || body.struts > 0;
 }
 
 // Whether it touches something fixed beside it.
@@ -159,11 +182,13 @@ bool clear(const std::vector<Body>& bodies, const Body& body) {
 }  // namespace
 
 void brace(std::vector<Body>& bodies, double thick_m) {
-    const std::vector<std::size_t> order = by_level(bodies);
-    for (const std::size_t n : order) {
+    std::vector<bool> stands(bodies.size());
+    for (std::size_t n = 0; n < bodies.size(); ++n) stands[n] = bodies[n].fixed;
+    for (const std::size_t n : by_level(bodies)) {
         // Of what falls by itself nothing is held up.
         if (bodies[n].fixed || bodies[n].parts.empty() || !(bodies[n].firm_m > 0)) continue;
-        if (add_struts(bodies, bodies[n], thick_m / 2)) continue;
+        stands[n] = true;
+        if (add_struts(bodies, stands, bodies[n], thick_m / 2)) continue;
         Body& body = bodies[n];
         if (!leans_on_fixed(bodies, body, thick_m)) {
             Body pad = pad_under(body, thick_m);
@@ -174,6 +199,7 @@ void brace(std::vector<Body>& bodies, double thick_m) {
                 body.on_pad = true;
                 body.carried_by = {static_cast<std::int32_t>(bodies.size())};
                 bodies.push_back(std::move(pad));
+                stands.push_back(true);
                 continue;
             }
         }

@@ -49,7 +49,7 @@ std::vector<Point2> common(std::vector<Point2> polygon, const std::vector<Point2
 }
 
 // Where the plumb line through a point lies in a part.
-std::optional<Extent> plumb(const ConvexPart& part, const Vec3& p) {
+std::optional<Extent> plumb(const ConvexPart& part, const Point2& p) {
     if (p[0] < part.low[0] || p[0] > part.high[0] || p[1] < part.low[1] || p[1] > part.high[1])
         return std::nullopt;
     Extent out{-physics::infinity, physics::infinity};
@@ -72,12 +72,13 @@ std::optional<Extent> plumb(const ConvexPart& part, const Vec3& p) {
 
 }  // namespace
 
-std::vector<Point2> footing_of(const std::vector<Body>& bodies, const Body& body) {
+std::vector<Point2> footing_of(const std::vector<Body>& bodies, const std::vector<bool>& stands,
+                               const Body& body) {
     std::vector<Point2> out;
     const ConvexPart box = box_around(body.parts);
-    for (const Body& other : bodies) {
-        if (&other == &body) continue;
-        for (const ConvexPart& below : other.parts) {
+    for (std::size_t n = 0; n < bodies.size(); ++n) {
+        if (!stands[n] || &bodies[n] == &body) continue;
+        for (const ConvexPart& below : bodies[n].parts) {
             if (!near(box, below, resting_m)) continue;
             for (const ConvexPart& part : body.parts) {
                 if (!near(part, below, resting_m)) continue;
@@ -100,25 +101,27 @@ double margin_m(const std::vector<Point2>& points, const Body& body) {
         .margin_m;
 }
 
-double height_below_m(const std::vector<Body>& bodies, const Body& body, const Vec3& point) {
+std::optional<Gap> gap_below(const std::vector<Body>& bodies, const std::vector<bool>& stands,
+                             const Body& body, const Point2& at) {
     constexpr double same_m = 1e-6;
-    double highest = -physics::infinity;
-    bool own = false;
-    for (const Body& other : bodies) {
-        for (const ConvexPart& part : other.parts) {
-            const auto line = plumb(part, point);
-            if (!line || line->low >= point[2] - same_m) continue;
-            const double top = std::min(line->high, point[2]);
-            if (&other == &body) {
-                own |= top >= highest + same_m;
-                if (top >= highest) highest = top;
-            } else if (top > highest) {
-                highest = top;
-                own = false;
-            }
+    Gap gap{physics::infinity, -physics::infinity};
+    for (const ConvexPart& part : body.parts)
+        if (const auto line = plumb(part, at)) gap.from_m = std::min(gap.from_m, line->low);
+    if (!std::isfinite(gap.from_m)) return std::nullopt;
+    bool carries = false;
+    for (std::size_t n = 0; n < bodies.size(); ++n) {
+        if (&bodies[n] == &body) continue;
+        for (const ConvexPart& part : bodies[n].parts) {
+            const auto line = plumb(part, at);
+            if (!line || line->low >= gap.from_m - same_m) continue;
+            const double top = std::min(line->high, gap.from_m);
+            if (top <= gap.to_m) continue;
+            gap.to_m = top;
+            carries = stands[n];
         }
     }
-    return own ? -physics::infinity : highest;
+    if (!carries) return std::nullopt;
+    return gap;
 }
 
 }  // namespace topple::exports

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "export/body.h"
@@ -10,15 +11,22 @@ namespace topple::exports {
 
 using Point2 = std::array<double, 2>;
 
-// Where a body rests on others: points of the horizontal plane whose hull it stands on.
-std::vector<Point2> footing_of(const std::vector<Body>& bodies, const Body& body);
+// Where a body rests on others that stand: points of the horizontal plane whose hull it stands on.
+// stands: by body; those of two that lean on one another and on nothing else do not.
+std::vector<Point2> footing_of(const std::vector<Body>& bodies, const std::vector<bool>& stands,
+                               const Body& body);
 
 // How far the plumb line of a body's centre of mass lies inside the hull of points; below 0:
 // outside; -infinity without points.
 double margin_m(const std::vector<Point2>& points, const Body& body);
 
-// The height of the first part of another body straight below a point; -infinity: there is none.
-// Nothing too where a part of its own body lies between.
-double height_below_m(const std::vector<Body>& bodies, const Body& body, const Vec3& point);
+// The gap below a body along a plumb line: from its lowest point there down to what is below.
+struct Gap {
+    double from_m = 0, to_m = 0;  // heights
+};
+// Nothing where the body does not lie on that line, or where nothing, or what does not stand itself,
+// is below.
+std::optional<Gap> gap_below(const std::vector<Body>& bodies, const std::vector<bool>& stands,
+                             const Body& body, const Point2& at);
 
 }  // namespace topple::exports
