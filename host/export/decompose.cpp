@@ -93,6 +93,7 @@ class Decomposition {
         slab->solid = std::move(whole->solid);
         slab->solid_each_m3 = whole->solid_each_m3;
         out.parts.push_back(*std::move(slab));
+        out.floor = true;
         return out;
     }
 

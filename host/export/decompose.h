@@ -16,6 +16,7 @@ struct Decomposed {
     std::vector<ConvexPart> parts;
     double solid_m3 = 0;   // of the clump
     double excess_m3 = 0;  // of the parts, beyond that
+    bool floor = false;    // its one part is a level slab
 };
 
 // Parts are the hulls of pieces of a clump, which are cut along the grid where that takes most of

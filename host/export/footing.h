@@ -24,8 +24,8 @@ double margin_m(const std::vector<Point2>& points, const Body& body);
 struct Gap {
     double from_m = 0, to_m = 0;  // heights
 };
-// Nothing where the body does not lie on that line, or where nothing, or what does not stand itself,
-// is below.
+// Nothing where the body does not lie on that line, or where nothing, or what does not stand
+// itself, is below.
 std::optional<Gap> gap_below(const std::vector<Body>& bodies, const std::vector<bool>& stands,
                              const Body& body, const Point2& at);
 

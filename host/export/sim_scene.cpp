@@ -6,6 +6,7 @@
 
 #include "export/brace.h"
 #include "export/decompose.h"
+#include "export/floor.h"
 #include "export/merge_parts.h"
 #include "export/separate.h"
 #include "export/stand.h"
@@ -65,10 +66,24 @@ std::vector<Body> bodies_of(const Scene& scene, const SolidScene& solids, Thread
         body.inertia_kg_m2 = turned(rotation, object.inertia_kg_m2);
         out.push_back(std::move(body));
     }
+    // The lowest floor reaches under everything that stands on it.
+    const Decomposed* lowest = nullptr;
+    std::size_t floor_body = 0, floor_part = 0;
     for (std::size_t n = 0; n < clumps.size(); ++n) {
-        Body& body = out.at(static_cast<std::size_t>(clumps[n].object));
+        const auto place = static_cast<std::size_t>(clumps[n].object);
+        Body& body = out.at(place);
+        if (solid[n].floor && (!lowest || solid[n].parts[0].high[2] < lowest->parts[0].high[2])) {
+            lowest = &solid[n];
+            floor_body = place;
+            floor_part = body.parts.size();
+        }
         body.solid_m3 += solid[n].solid_m3;
         body.parts.insert(body.parts.end(), solid[n].parts.begin(), solid[n].parts.end());
+    }
+    if (lowest) {
+        ConvexPart floor = lowest->parts[0];
+        widen_floor(floor, out, solids.voxel_m());
+        out[floor_body].parts[floor_part] = std::move(floor);
     }
     merge_parts(out, solids.voxel_m(), threads);
     return out;
