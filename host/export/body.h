@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "export/convex_part.h"
+#include "export/visual.h"
 
 namespace topple::exports {
 
@@ -24,6 +25,7 @@ struct Body {
     double lost_m3 = 0;  // of its parts, so that they lie in no other body's
     // What carries it was not seen: it stands on a pad made for it, or is held where it is.
     bool on_pad = false, held = false;
+    Visual visual;  // empty: it has no other look than its parts
 };
 
 }  // namespace topple::exports
