@@ -44,25 +44,22 @@ struct UrdfShape {
     }
 };
 
-// What is fixed has no mass, by which Bullet knows it.
-std::string urdf_inertial(const Body& body) {
-    const bool fixed = body.fixed;
-    const Mat3 i = fixed ? Mat3{} : body.inertia_kg_m2;
+std::string urdf_inertial(double mass_kg, const Mat3& i) {
     std::string out = "    <inertial><mass";
-    append(out, attribute("value", number(fixed ? 0 : body.mass_kg)), "/><inertia",
-           attribute("ixx", number(i[0])), attribute("iyy", number(i[4])),
-           attribute("izz", number(i[8])), attribute("ixy", number(i[1])),
-           attribute("ixz", number(i[2])), attribute("iyz", number(i[5])), "/></inertial>\n");
+    append(out, attribute("value", number(mass_kg)), "/><inertia", attribute("ixx", number(i[0])),
+           attribute("iyy", number(i[4])), attribute("izz", number(i[8])),
+           attribute("ixy", number(i[1])), attribute("ixz", number(i[2])),
+           attribute("iyz", number(i[5])), "/></inertial>\n");
     return out;
 }
 
-// <contact> is Bullet's.
-std::string urdf_link(const NamedBody& named, double friction, std::string_view files,
-                      bool inertial) {
+// <contact> is Bullet's; and what has no mass is fixed there.
+std::string urdf_link(const NamedBody& named, double friction, std::string_view files) {
     const Body& body = *named.body;
     std::string out = joined("  <link", attribute("name", named.name), ">\n");
     append(out, "    <contact><lateral_friction", attribute("value", number(friction)),
-           "/></contact>\n", inertial ? urdf_inertial(body) : "");
+           "/></contact>\n",
+           body.fixed ? urdf_inertial(0, {}) : urdf_inertial(body.mass_kg, body.inertia_kg_m2));
     if (!body.visual.triangle.empty())
         append(out, "    <visual>", UrdfShape{named.name, body.center_m, files}.mesh(named.name),
                "</visual>\n");
@@ -85,22 +82,22 @@ void write_urdf(const std::filesystem::path& folder, const SimScene& scene) {
     ExportFolder files(folder, "urdf", "scene.urdf");
     files.add_visuals(bodies);
     files.add_parts(bodies);
-    // MuJoCo takes meshes' names without their folder, and gravity from here.
-    std::string all = "  <mujoco>\n    <compiler";
-    append(all, attribute("meshdir", files.beside()),
-           " discardvisual=\"false\" fusestatic=\"false\"/>\n    <option",
-           attribute("gravity", numbers({0, 0, -scene.gravity_m_s2})),
-           "/>\n  </mujoco>\n  <link name=\"world\"/>\n");
+    // MuJoCo would leave folders out of the names of meshes.
+    std::string all =
+        "  <mujoco>\n    <compiler strippath=\"false\" discardvisual=\"false\" "
+        "fusestatic=\"false\"/>\n    <option";
+    append(all, attribute("gravity", numbers({0, 0, -scene.gravity_m_s2})),
+           "/>\n  </mujoco>\n  <link name=\"world\">\n", urdf_inertial(0, {}), "  </link>\n");
     const std::string below = joined(files.beside(), "/");
     for (const NamedBody& named : bodies) {
         const bool fixed = named.body->fixed;
-        append(all, urdf_link(named, scene.friction, below, !fixed), "  <joint",
+        append(all, urdf_link(named, scene.friction, below), "  <joint",
                attribute("name", joined(named.name, "_joint")),
                attribute("type", fixed ? "fixed" : "floating"), "><parent link=\"world\"/><child",
                attribute("link", named.name), "/><origin",
                attribute("xyz", text(named.body->center_m)), " rpy=\"0 0 0\"/></joint>\n");
         files.add(joined(named.name, ".urdf"),
-                  robot(named.name, urdf_link(named, scene.friction, "", true)));
+                  robot(named.name, urdf_link(named, scene.friction, "")));
     }
     files.commit(robot("scan", all));
 }
