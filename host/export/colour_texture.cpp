@@ -37,6 +37,8 @@ std::string colour_texture() {
     image.version = PNG_IMAGE_VERSION;
     image.width = image.height = side;
     image.format = PNG_FORMAT_RGB;
+    // Else the file says that it is sRGB, as every picture is, and MuJoCo makes it linear and dark.
+    image.flags = PNG_IMAGE_FLAG_COLORSPACE_NOT_sRGB;
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
     std::string out(size, '\0');
     if (png_image_write_to_memory(&image, out.data(), &size, 0, pixels.data(), 0, nullptr) == 0)

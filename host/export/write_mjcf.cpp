@@ -107,7 +107,10 @@ void write_mjcf(const std::filesystem::path& folder, const SimScene& scene) {
     append(out, "/>\n  <option", attribute("gravity", numbers({0, 0, -scene.gravity_m_s2})),
            " timestep=\"0.002\" cone=\"elliptic\" impratio=\"10\">\n"
            "    <flag multiccd=\"enable\"/>\n"
-           "  </option>\n",
+           "  </option>\n"
+           "  <visual>\n"
+           "    <headlight ambient=\"0.5 0.5 0.5\" diffuse=\"0.5 0.5 0.5\" specular=\"0 0 0\"/>\n"
+           "  </visual>\n",
            defaults(scene, visuals), "  <asset>\n");
     if (visuals)
         append(out, "    <texture name=\"colours\" type=\"2d\"", attribute("file", colour_file),
