@@ -22,8 +22,9 @@ struct Visual {
     std::vector<std::array<std::uint32_t, 3>> triangle;  // counter-clockwise seen from outside
 };
 
-// Gives each body its object's surface, in the scan's colours; where these are not known, in the
-// object's of io::colour_of(), the building in grey. surfaces: input frame.
+// Gives the body of each object its surface, or its parts' where that encloses nothing, in the
+// scan's colours; where these are not known, in the object's of io::colour_of(), the building in
+// grey. surfaces: input frame.
 void add_visuals(SimScene& sim, const Scene& scene, std::span<const ObjectSurface> surfaces);
 
 }  // namespace topple::exports

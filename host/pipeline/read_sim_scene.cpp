@@ -32,7 +32,8 @@ exports::SimScene make_sim_scene(const Scene& scene, const SolidScene& solids,
     auto surfaces =
         std::async(options.threads == 1 ? std::launch::deferred : std::launch::async, [&] {
             return object_surfaces(scene, solids.with_strays(), solids.boundary(),
-                                   frame_of(scene, solids), options.threads);
+                                   frame_of(scene, solids), options.threads,
+                                   SurfaceDetail::simulated);
         });
     exports::SimScene out = exports::sim_scene(scene, solids, threads);
     exports::add_visuals(out, scene, surfaces.get());
