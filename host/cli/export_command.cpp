@@ -2,10 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "cli/commands.h"
+#include "export/export_folder.h"
 #include "export/separate.h"
 #include "export/write_mjcf.h"
 #include "export/write_sdf.h"
@@ -47,6 +50,12 @@ int run(const ExportArguments& a) {
     if (a.mjcf.empty() && a.urdf.empty() && a.sdf.empty() && a.usd.empty())
         throw Error(ErrorKind::usage,
                     "export: say what to make (--mjcf, --urdf, --sdf or --usd); see topple --help");
+    if (!a.usd.empty() && std::filesystem::path(a.usd).extension() != ".usda")
+        throw Error(ErrorKind::usage, "export: --usd " + a.usd + ": the name must end in .usda");
+    for (const auto& [folder, name] :
+         {std::pair{a.mjcf, "scene.xml"}, {a.urdf, "scene.urdf"}, {a.sdf, "scene.sdf"}})
+        if (!folder.empty()) exports::check_ours(std::filesystem::path(folder) / name);
+    if (!a.usd.empty()) exports::check_ours(a.usd);
     const exports::SimScene sim =
         read_sim_scene(a.parsed, {.visuals = !a.no_visuals, .threads = a.threads});
     if (!a.mjcf.empty()) exports::write_mjcf(a.mjcf, sim);
