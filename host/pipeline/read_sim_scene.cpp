@@ -9,6 +9,7 @@
 #include "io/scene_json.h"
 #include "io/solids_file.h"
 #include "pipeline/object_surfaces.h"
+#include "topple/error.h"
 
 namespace topple {
 namespace {
