@@ -5,36 +5,26 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "cli/commands.h"
-#include "core/thread_pool.h"
+#include "export/export_folder.h"
 #include "export/separate.h"
-#include "export/sim_scene.h"
 #include "export/write_mjcf.h"
-#include "io/scene_json.h"
-#include "io/solids_file.h"
+#include "export/write_sdf.h"
+#include "export/write_urdf.h"
+#include "export/write_usd.h"
+#include "pipeline/read_sim_scene.h"
 #include "topple/error.h"
 
 namespace topple::cli {
 namespace {
 
 struct ExportArguments {
-    std::string parsed, mjcf;
+    std::string parsed, mjcf, urdf, sdf, usd;
+    bool no_visuals = false;
     unsigned threads = 0;
 };
-
-exports::SimScene load(const std::filesystem::path& folder, unsigned count) {
-    const Scene scene = io::read_scene_json(folder / "scene.json");
-    const std::filesystem::path solids = folder / "solids.bin";
-    if (!std::filesystem::exists(solids)) {
-        throw Error(ErrorKind::input,
-                    solids.string() +
-                        ": is missing; parse the scan again (a cloud that was parsed in blocks "
-                        "has none and can't be exported)");
-    }
-    ThreadPool threads(count);
-    return exports::sim_scene(scene, *io::read_solids(solids), threads);
-}
 
 void print_summary(const exports::SimScene& sim) {
     std::size_t free = 0, pads = 0, held = 0, struts = 0, parts = 0;
@@ -59,10 +49,21 @@ void print_summary(const exports::SimScene& sim) {
 }
 
 int run(const ExportArguments& a) {
-    if (a.mjcf.empty())
-        throw Error(ErrorKind::usage, "export: say what to make (--mjcf DIR); see topple --help");
-    const exports::SimScene sim = load(a.parsed, a.threads);
-    exports::write_mjcf(a.mjcf, sim);
+    if (a.mjcf.empty() && a.urdf.empty() && a.sdf.empty() && a.usd.empty())
+        throw Error(ErrorKind::usage,
+                    "export: say what to make (--mjcf, --urdf, --sdf or --usd); see topple --help");
+    if (!a.usd.empty() && std::filesystem::path(a.usd).extension() != ".usda")
+        throw Error(ErrorKind::usage, "export: --usd " + a.usd + ": the name must end in .usda");
+    for (const auto& [folder, name] :
+         {std::pair{a.mjcf, "scene.xml"}, {a.urdf, "scene.urdf"}, {a.sdf, "scene.sdf"}})
+        if (!folder.empty()) exports::check_ours(std::filesystem::path(folder) / name);
+    if (!a.usd.empty()) exports::check_ours(a.usd);
+    const exports::SimScene sim =
+        read_sim_scene(a.parsed, {.visuals = !a.no_visuals, .threads = a.threads});
+    if (!a.mjcf.empty()) exports::write_mjcf(a.mjcf, sim);
+    if (!a.urdf.empty()) exports::write_urdf(a.urdf, sim);
+    if (!a.sdf.empty()) exports::write_sdf(a.sdf, sim);
+    if (!a.usd.empty()) exports::write_usd(a.usd, sim);
     print_summary(sim);
     return 0;
 }
@@ -73,6 +74,10 @@ Command add_export(CLI::App& app) {
     auto a = std::make_shared<ExportArguments>();
     app.add_option("OUT", a->parsed, "Output folder of a parse")->required();
     app.add_option("--mjcf", a->mjcf, "Folder to write scene.xml into, MuJoCo's format");
+    app.add_option("--urdf", a->urdf, "Folder to write scene.urdf into, for Bullet and ROS");
+    app.add_option("--sdf", a->sdf, "Folder to write scene.sdf into, for Gazebo");
+    app.add_option("--usd", a->usd, "File to write, .usda, for Omniverse and others that read USD");
+    app.add_flag("--no-visuals", a->no_visuals, "Only what collides, not what is seen");
     app.add_option("--threads", a->threads, "Threads; else all cores")->check(whole_number);
     return [a] { return run(*a); };
 }

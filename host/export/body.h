@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "export/convex_part.h"
+#include "export/visual.h"
 
 namespace topple::exports {
 
@@ -27,6 +28,7 @@ struct Body {
     int struts = 0;  // of its parts, the last ones: feet that were not seen
     // What carries it was not seen: it stands on a pad made for it, or is held where it is.
     bool on_pad = false, held = false;
+    Visual visual;  // empty: it has no other look than its parts
 };
 
 }  // namespace topple::exports

@@ -1,134 +1,122 @@
 // SPDX-License-Identifier: MIT
 #include "export/write_mjcf.h"
 
-#include <cstdio>
-#include <string_view>
-#include <system_error>
+#include <string>
 
-#include "io/file_writer.h"
-#include "io/text.h"
+#include "export/export_folder.h"
+#include "export/text.h"
+#include "export/turned.h"
+#include "export/write_obj.h"
 #include "physics/vectors.h"
 
 namespace topple::exports {
 namespace {
 
-std::string number(double value) {
-    char digits[32];
-    std::snprintf(digits, sizeof(digits), "%.9g", value);
-    return digits;
+using physics::minus;
+
+// Hulls are made of their corners by MuJoCo.
+void add_mesh(const NamedPart& each, const Vec3& center_m, std::string& out) {
+    std::string corners;
+    for (const Vec3& c : each.part->corner)
+        append(corners, corners.empty() ? "" : "  ", text(minus(c, center_m)));
+    append(out, "    <mesh", attribute("name", each.name), attribute("vertex", corners), "/>\n");
 }
 
-std::string numbers(std::initializer_list<double> values) {
-    std::string out;
-    for (const double v : values) {
-        if (!out.empty()) out += ' ';
-        out += number(v);
+// What a geom is, in the body's frame.
+struct GeomOf {
+    const std::string& name;
+    const Vec3& center_m;
+
+    std::string operator()(std::monostate) const {
+        return joined(attribute("type", "mesh"), attribute("mesh", name));
     }
+    std::string operator()(const Box& box) const {
+        const auto q = quaternion(box.axis);
+        return joined(attribute("type", "box"), attribute("size", text(box.half_m)),
+                      place(box.center), attribute("quat", numbers({q[0], q[1], q[2], q[3]})));
+    }
+    std::string operator()(const Cylinder& cylinder) const {
+        return joined(attribute("type", "cylinder"),
+                      attribute("size", numbers({cylinder.radius_m, cylinder.half_m})),
+                      place(cylinder.center), attribute("zaxis", text(cylinder.axis)));
+    }
+    std::string operator()(const Sphere& sphere) const {
+        return joined(attribute("type", "sphere"), attribute("size", number(sphere.radius_m)),
+                      place(sphere.center));
+    }
+
+  private:
+    std::string place(const Vec3& at) const { return attribute("pos", text(minus(at, center_m))); }
+};
+
+// Of one body; meshes that it takes go to `assets`.
+void add_body(const NamedBody& named, std::string& assets, std::string& out) {
+    const Body& body = *named.body;
+    append(out, "    <body", attribute("name", named.name), attribute("pos", text(body.center_m)),
+           ">\n");
+    if (!body.fixed) {
+        const Mat3& i = body.inertia_kg_m2;
+        append(out, "      <freejoint/>\n      <inertial pos=\"0 0 0\"",
+               attribute("mass", number(body.mass_kg)),
+               attribute("fullinertia", numbers({i[0], i[4], i[8], i[1], i[2], i[5]})), "/>\n");
+    }
+    for (const NamedPart& each : named.parts) {
+        if (is_mesh(each.shape)) add_mesh(each, body.center_m, assets);
+        append(out, "      <geom", attribute("name", each.name), attribute("class", "collision"),
+               std::visit(GeomOf{each.name, body.center_m}, each.shape), "/>\n");
+    }
+    if (!body.visual.triangle.empty()) {
+        const std::string mesh = joined(named.name, "_visual");
+        append(assets, "    <mesh", attribute("name", mesh),
+               attribute("file", joined(named.name, ".obj")), "/>\n");
+        append(out, "      <geom", attribute("name", mesh), attribute("class", "visual"),
+               attribute("mesh", mesh), "/>\n");
+    }
+    out += "    </body>\n";
+}
+
+// Viewers show groups 0 to 2.
+std::string defaults(const SimScene& scene, bool visuals) {
+    std::string out = "  <default>\n    <geom";
+    append(out, attribute("friction", numbers({scene.friction, 0.005, 0.0001})),
+           " condim=\"4\" solref=\"0.01 1\" solimp=\"0.95 0.99 0.0005\"/>\n"
+           "    <default class=\"collision\">\n      <geom",
+           attribute("group", visuals ? "3" : "0"), "/>\n    </default>\n");
+    if (visuals)
+        out +=
+            "    <default class=\"visual\">\n"
+            "      <geom type=\"mesh\" material=\"colours\" group=\"2\" contype=\"0\" "
+            "conaffinity=\"0\" mass=\"0\"/>\n"
+            "    </default>\n";
+    out += "  </default>\n";
     return out;
-}
-
-std::string text(const Vec3& v) {
-    return numbers({v[0], v[1], v[2]});
-}
-
-std::string body_name(const Body& body, std::size_t place) {
-    return body.object >= 0 ? "object_" + std::to_string(body.object)
-                            : "pad_" + std::to_string(place);
-}
-
-std::string part_name(const std::string& body, std::size_t part) {
-    return body + "_part_" + std::to_string(part);
-}
-
-// How an earlier export is known.
-constexpr std::string_view our_mark = "<!-- topple export -->\n";
-
-constexpr double box_tolerance_m = 1e-5;
-
-// One that a box stands for has no mesh.
-void add_meshes(const Body& body, const std::string& name, std::string& out) {
-    for (std::size_t n = 0; n < body.parts.size(); ++n) {
-        if (as_box(body.parts[n], box_tolerance_m)) continue;
-        out += "    <mesh name=\"" + part_name(name, n) + "\" vertex=\"";
-        bool first = true;
-        for (const Vec3& c : body.parts[n].corner) {
-            if (!first) out += "  ";
-            out += text(physics::minus(c, body.center_m));
-            first = false;
-        }
-        out += "\"/>\n";
-    }
-}
-
-void add_geoms(const Body& body, const std::string& name, const std::string& indent,
-               std::string& out) {
-    for (std::size_t n = 0; n < body.parts.size(); ++n) {
-        out += indent + "<geom name=\"" + part_name(name, n) + "\" ";
-        if (const auto box = as_box(body.parts[n], box_tolerance_m)) {
-            out += "type=\"box\" size=\"" + text(box->half_m) + "\" pos=\"" +
-                   text(physics::minus(box->center, body.center_m)) + "\" xyaxes=\"" +
-                   text(box->axis[0]) + " " + text(box->axis[1]) + "\"/>\n";
-        } else {
-            out += "type=\"mesh\" mesh=\"" + part_name(name, n) + "\"/>\n";
-        }
-    }
 }
 
 }  // namespace
 
-std::string mjcf(const SimScene& scene) {
-    std::string meshes, bodies;
-    for (std::size_t n = 0; n < scene.bodies.size(); ++n) {
-        const Body& body = scene.bodies[n];
-        if (body.parts.empty()) continue;
-        const std::string called = body_name(body, n);
-        add_meshes(body, called, meshes);
-        bodies += "    <body name=\"" + called + "\" pos=\"" + text(body.center_m) + "\">\n";
-        if (!body.fixed) {
-            const Mat3& i = body.inertia_kg_m2;
-            bodies += "      <freejoint/>\n      <inertial pos=\"0 0 0\" mass=\"" +
-                      number(body.mass_kg) + "\" fullinertia=\"" +
-                      numbers({i[0], i[4], i[8], i[1], i[2], i[5]}) + "\"/>\n";
-        }
-        add_geoms(body, called, "      ", bodies);
-        bodies += "    </body>\n";
-    }
-    return std::string(our_mark) +
-           "<mujoco model=\"scan\">\n"
-           "  <compiler angle=\"radian\"/>\n"
-           "  <option gravity=\"0 0 " +
-           number(-scene.gravity_m_s2) +
-           "\" timestep=\"0.002\" cone=\"elliptic\" impratio=\"10\">\n"
+void write_mjcf(const std::filesystem::path& folder, const SimScene& scene) {
+    const std::vector<NamedBody> bodies = named_bodies(scene);
+    ExportFolder files(folder, "mjcf", "scene.xml");
+    const bool visuals = files.add_visuals(bodies);
+    std::string assets, world;
+    for (const NamedBody& body : bodies) add_body(body, assets, world);
+    std::string out(xml_mark);
+    out += "<mujoco model=\"scan\">\n  <compiler angle=\"radian\"";
+    if (visuals)
+        append(out, attribute("meshdir", files.beside()), attribute("texturedir", files.beside()));
+    append(out, "/>\n  <option", attribute("gravity", numbers({0, 0, -scene.gravity_m_s2})),
+           " timestep=\"0.002\" cone=\"elliptic\" impratio=\"10\">\n"
            "    <flag multiccd=\"enable\"/>\n"
            "  </option>\n"
-           "  <default>\n"
-           "    <geom friction=\"" +
-           numbers({scene.friction, 0.005, 0.0001}) +
-           "\" condim=\"4\" solref=\"0.01 1\" solimp=\"0.95 0.99 0.0005\"/>\n"
-           "  </default>\n"
-           "  <asset>\n" +
-           meshes + "  </asset>\n  <worldbody>\n" + bodies + "  </worldbody>\n</mujoco>\n";
-}
-
-void write_mjcf(const std::filesystem::path& folder, const SimScene& scene) {
-    namespace fs = std::filesystem;
-    const fs::path file = folder / "scene.xml";
-    std::error_code error;
-    if (fs::exists(file, error)) {
-        const auto bytes = io::read_file(file);
-        if (!bytes.text().starts_with(our_mark))
-            io::fail(file, "exists and is no export of topple; choose another folder");
-    }
-    fs::create_directories(folder, error);
-    if (error) io::fail(folder, "can't be made: " + error.message());
-    const fs::path fresh = folder / ".scene.xml.topple-tmp";
-    io::write_file(fresh, mjcf(scene));
-    fs::rename(fresh, file, error);
-    if (error) {
-        const std::string why = error.message();
-        fs::remove(fresh, error);
-        io::fail(file, "can't be written: " + why);
-    }
+           "  <visual>\n"
+           "    <headlight ambient=\"0.5 0.5 0.5\" diffuse=\"0.5 0.5 0.5\" specular=\"0 0 0\"/>\n"
+           "  </visual>\n",
+           defaults(scene, visuals), "  <asset>\n");
+    if (visuals)
+        append(out, "    <texture name=\"colours\" type=\"2d\"", attribute("file", colour_file),
+               "/>\n    <material name=\"colours\" texture=\"colours\" specular=\"0\"/>\n");
+    append(out, assets, "  </asset>\n  <worldbody>\n", world, "  </worldbody>\n</mujoco>\n");
+    files.commit(out);
 }
 
 }  // namespace topple::exports

@@ -2,19 +2,15 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "export/sim_scene.h"
 
 namespace topple::exports {
 
-// The scene in MuJoCo's format: a body `object_ID` for each object, free where it may move, and
-// `pad_N` for each pad; a geom for each convex part, a box where it is one.
-std::string mjcf(const SimScene& scene);
-
-// Writes it as scene.xml into the folder, which is made where it is missing; an earlier export
-// there is replaced in one step. Throws Error(input): the file is another one's, or can't be
-// written.
+// Writes the scene in MuJoCo's format, as scene.xml in a folder: a body `object_ID` for each
+// object, free where it may move, and `pad_N` for each pad; a geom for each convex part, a box,
+// cylinder or sphere where it is one; and one that collides with nothing for what is seen. Replaces
+// an earlier export, see ExportFolder. Throws Error(input).
 void write_mjcf(const std::filesystem::path& folder, const SimScene& scene);
 
 }  // namespace topple::exports

@@ -22,8 +22,9 @@ namespace {
 struct Level {
     double tolerance, coloured_edge;
 };
-// The next one is for what has more triangles than programs show well.
-constexpr std::array<Level, 3> levels{{{0.01, 3}, {0.03, 4}, {0.1, 6}}};
+// The next one is for what has more triangles than programs show, or simulators load, well.
+constexpr std::array<Level, 3> shown_levels{{{0.01, 3}, {0.03, 4}, {0.1, 6}}};
+constexpr std::array<Level, 2> simulated_levels{{{0.1, 6}, {0.2, 8}}};
 constexpr std::size_t most_triangles = 250'000;
 
 std::vector<std::int32_t> objects_of(const Scene& scene) {
@@ -72,7 +73,10 @@ Vec3 in_input(const vdb::VoxelFrame& frame, const Vec3& v) {
 
 std::vector<ObjectSurface> object_surfaces(const Scene& scene, const SolidCells& cells,
                                            const BoundaryCells& boundary,
-                                           const vdb::VoxelFrame& frame, unsigned threads) {
+                                           const vdb::VoxelFrame& frame, unsigned threads,
+                                           SurfaceDetail detail) {
+    const std::span<const Level> levels =
+        detail == SurfaceDetail::shown ? std::span<const Level>(shown_levels) : simulated_levels;
     const std::vector<std::int32_t> object_of = objects_of(scene);
     const auto voxels = solids::object_voxels(cells, boundary, object_of);
     const auto objects = by_object(voxels);

@@ -6,7 +6,8 @@
 #include "core/thread_pool.h"
 #include "export/sim_scene.h"
 #include "export/write_mjcf.h"
-#include "host/export/blocks.h"
+#include "export/write_urdf.h"
+#include "host/export/shapes_scene.h"
 #include "host/io/files.h"
 #include "mujoco/running.h"
 #include "scenes/depth_camera.h"
@@ -34,6 +35,23 @@ TEST_F(ExportStands, ABoxOnAFloorHasItsMassItsPlaceAndRests) {
     const auto stay = mujoco.run(2);
     EXPECT_EQ(stay.free, 1);
     EXPECT_EQ(stay.stay, 1);
+}
+
+// With what is seen of them, as MJCF and as URDF.
+TEST_F(ExportStands, EveryShapeRests) {
+    const SimScene scene = shapes_scene();
+    write_mjcf(path("out"), scene);
+    write_urdf(path("out"), scene);
+    for (const char* file : {"out/scene.xml", "out/scene.urdf"}) {
+        mujoco::Running mujoco(path(file));
+        ASSERT_EQ(mujoco.trouble(), "") << file;
+        EXPECT_NEAR(mujoco.mass_kg("object_2"), 700 * 0.012, 1e-6);
+        EXPECT_NEAR(mujoco.height_m("object_2"), 0.3, 1e-6);
+        EXPECT_LT(mujoco.deepest_m(), 0.0006);
+        const auto stay = mujoco.run(1);
+        EXPECT_EQ(stay.free, 5) << file;
+        EXPECT_EQ(stay.stay, 5) << file;
+    }
 }
 
 TEST_F(ExportStands, WhatLeansTooFarFalls) {

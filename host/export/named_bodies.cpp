@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "export/named_bodies.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "topple/error.h"
+
+namespace topple::exports {
+namespace {
+
+bool finite(const Vec3& v) {
+    return std::ranges::all_of(v, [](double each) { return std::isfinite(each); });
+}
+
+// What is wrong with a body; empty: nothing.
+std::string fault_of(const Body& body) {
+    if (!finite(body.center_m)) return "its centre of mass is not known";
+    for (const ConvexPart& part : body.parts)
+        if (!std::ranges::all_of(part.corner, finite)) return "its shape is not finite";
+    if (body.fixed) return {};
+    if (!(body.mass_kg > 0 && std::isfinite(body.mass_kg))) return "it has no mass";
+    if (!std::ranges::all_of(body.inertia_kg_m2, [](double v) { return std::isfinite(v); }))
+        return "its inertia is not known";
+    const Eigen::Matrix3d inertia(body.inertia_kg_m2.data());
+    if (inertia.llt().info() != Eigen::Success) return "its inertia is not positive";
+    return {};
+}
+
+}  // namespace
+
+std::vector<NamedBody> named_bodies(const SimScene& scene) {
+    std::vector<NamedBody> out;
+    for (std::size_t n = 0; n < scene.bodies.size(); ++n) {
+        const Body& body = scene.bodies[n];
+        if (body.parts.empty()) continue;
+        NamedBody& to = out.emplace_back();
+        to.name = body.object >= 0 ? "object_" : "pad_";
+        to.name += body.object >= 0 ? std::to_string(body.object) : std::to_string(n);
+        const std::string fault = fault_of(body);
+        if (!fault.empty()) throw Error(ErrorKind::input, to.name + " can't be exported: " + fault);
+        to.body = &body;
+        for (const ConvexPart& part : body.parts) {
+            std::string name = to.name;
+            name += "_part_";
+            name += std::to_string(to.parts.size());
+            to.parts.push_back({std::move(name), &part, shape_of(part)});
+        }
+    }
+    return out;
+}
+
+}  // namespace topple::exports

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "export/shape.h"
+#include "export/sim_scene.h"
+
+namespace topple::exports {
+
+struct NamedPart {
+    std::string name;  // object_ID_part_N
+    const ConvexPart* part = nullptr;
+    Shape shape;
+};
+
+struct NamedBody {
+    std::string name;  // object_ID, or pad_N
+    const Body* body = nullptr;
+    std::vector<NamedPart> parts;
+};
+
+// The bodies that have a shape, as every format names them. Throws Error(input) that names the one
+// that no simulator takes: mass and inertia must be positive, and all numbers finite.
+std::vector<NamedBody> named_bodies(const SimScene& scene);
+
+}  // namespace topple::exports

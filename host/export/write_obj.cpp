@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "export/write_obj.h"
+
+#include <algorithm>
+
+#include "export/colour_texture.h"
+#include "export/export_folder.h"
+#include "export/text.h"
+#include "physics/vectors.h"
+
+namespace topple::exports {
+namespace {
+
+// A hundredth of a millimetre: what is seen need not be finer.
+constexpr int visual_digits = 5, normal_digits = 3;
+
+void add_vector(std::string& out, const char* what, const Vec3& v, int digits) {
+    out += what;
+    for (const double each : v) {
+        out += ' ';
+        append_fixed(out, each, digits);
+    }
+    out += '\n';
+}
+
+Rgb8 mean_colour(const Visual& visual, const std::array<std::uint32_t, 3>& triangle) {
+    Rgb8 out{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        unsigned sum = 1;  // rounds
+        for (const std::uint32_t v : triangle) sum += visual.colour[v][c];
+        out[c] = static_cast<std::uint8_t>(sum / 3);
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string part_obj(const ConvexPart& part, const Vec3& center_m) {
+    std::string out(text_mark);
+    for (const Vec3& c : part.corner) {
+        out += "v ";
+        out += text(physics::minus(c, center_m));
+        out += '\n';
+    }
+    for (const auto& outline : part.outline) {
+        for (std::size_t n = 1; n + 1 < outline.size(); ++n) {
+            out += 'f';
+            for (const std::uint32_t v : {outline[0], outline[n], outline[n + 1]}) {
+                out += ' ';
+                out += std::to_string(v + 1);
+            }
+            out += '\n';
+        }
+    }
+    return out;
+}
+
+std::string visual_obj(const Visual& visual) {
+    std::string out(text_mark);
+    out.reserve(64 * visual.vertex.size() + 48 * visual.triangle.size());
+    out += "mtllib ";
+    out += material_file;
+    out += '\n';
+    for (const Vec3& v : visual.vertex) add_vector(out, "v", v, visual_digits);
+    for (const Vec3& n : visual.normal) add_vector(out, "vn", n, normal_digits);
+    std::vector<std::uint32_t> texel, used;
+    for (const auto& triangle : visual.triangle)
+        texel.push_back(texel_of(mean_colour(visual, triangle)));
+    used = texel;
+    std::ranges::sort(used);
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    for (const std::uint32_t each : used) {
+        const auto [u, v] = middle_of_texel(each);
+        out += "vt ";
+        append_fixed(out, u, 7);
+        out += ' ';
+        append_fixed(out, v, 7);
+        out += '\n';
+    }
+    out += "usemtl colours\n";
+    for (std::size_t n = 0; n < visual.triangle.size(); ++n) {
+        const auto place = std::ranges::lower_bound(used, texel[n]) - used.begin() + 1;
+        const std::string t = std::to_string(place);
+        out += 'f';
+        for (const std::uint32_t v : visual.triangle[n]) {
+            const std::string vertex = std::to_string(v + 1);
+            out += ' ';
+            out += vertex;
+            out += '/';
+            out += t;
+            out += '/';
+            out += vertex;
+        }
+        out += '\n';
+    }
+    return out;
+}
+
+std::string material() {
+    std::string out(text_mark);
+    out += "newmtl colours\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nillum 1\nmap_Kd ";
+    out += colour_file;
+    out += '\n';
+    return out;
+}
+
+}  // namespace topple::exports

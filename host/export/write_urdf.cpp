@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "export/write_urdf.h"
+
+#include <string>
+
+#include "export/export_folder.h"
+#include "export/text.h"
+#include "export/turned.h"
+#include "physics/vectors.h"
+
+namespace topple::exports {
+namespace {
+
+// Where a shape is, in the body's frame, and what it is. files: what leads to the meshes.
+struct UrdfShape {
+    const std::string& name;
+    const Vec3& center_m;
+    std::string_view files;
+
+    std::string operator()(std::monostate) const { return mesh(name); }
+    std::string operator()(const Box& box) const {
+        const Vec3& h = box.half_m;
+        return joined(origin(box.center, roll_pitch_yaw(box.axis)), "<geometry><box",
+                      attribute("size", numbers({2 * h[0], 2 * h[1], 2 * h[2]})), "/></geometry>");
+    }
+    std::string operator()(const Cylinder& cylinder) const {
+        return joined(origin(cylinder.center, roll_pitch_yaw(frame_around(cylinder.axis))),
+                      "<geometry><cylinder", attribute("radius", number(cylinder.radius_m)),
+                      attribute("length", number(2 * cylinder.half_m)), "/></geometry>");
+    }
+    std::string operator()(const Sphere& sphere) const {
+        return joined(origin(sphere.center, {}), "<geometry><sphere",
+                      attribute("radius", number(sphere.radius_m)), "/></geometry>");
+    }
+    std::string mesh(const std::string& called) const {
+        return joined("<geometry><mesh", attribute("filename", joined(files, called, ".obj")),
+                      "/></geometry>");
+    }
+
+  private:
+    std::string origin(const Vec3& at, const Vec3& turn) const {
+        return joined("<origin", attribute("xyz", text(physics::minus(at, center_m))),
+                      attribute("rpy", text(turn)), "/>");
+    }
+};
+
+std::string urdf_inertial(double mass_kg, const Mat3& i) {
+    std::string out = "    <inertial><mass";
+    append(out, attribute("value", number(mass_kg)), "/><inertia", attribute("ixx", number(i[0])),
+           attribute("iyy", number(i[4])), attribute("izz", number(i[8])),
+           attribute("ixy", number(i[1])), attribute("ixz", number(i[2])),
+           attribute("iyz", number(i[5])), "/></inertial>\n");
+    return out;
+}
+
+// <contact> is Bullet's; and what has no mass is fixed there.
+std::string urdf_link(const NamedBody& named, double friction, std::string_view files) {
+    const Body& body = *named.body;
+    std::string out = joined("  <link", attribute("name", named.name), ">\n");
+    append(out, "    <contact><lateral_friction", attribute("value", number(friction)),
+           "/></contact>\n",
+           body.fixed ? urdf_inertial(0, {}) : urdf_inertial(body.mass_kg, body.inertia_kg_m2));
+    if (!body.visual.triangle.empty())
+        append(out, "    <visual>", UrdfShape{named.name, body.center_m, files}.mesh(named.name),
+               "</visual>\n");
+    for (const NamedPart& each : named.parts)
+        append(out, "    <collision", attribute("name", each.name), ">",
+               std::visit(UrdfShape{each.name, body.center_m, files}, each.shape),
+               "</collision>\n");
+    out += "  </link>\n";
+    return out;
+}
+
+std::string robot(std::string_view name, std::string_view content) {
+    return joined(xml_mark, "<robot", attribute("name", name), ">\n", content, "</robot>\n");
+}
+
+}  // namespace
+
+void write_urdf(const std::filesystem::path& folder, const SimScene& scene) {
+    const std::vector<NamedBody> bodies = named_bodies(scene);
+    ExportFolder files(folder, "urdf", "scene.urdf");
+    files.add_visuals(bodies);
+    files.add_parts(bodies);
+    // MuJoCo would leave folders out of the names of meshes.
+    std::string all =
+        "  <mujoco>\n    <compiler strippath=\"false\" discardvisual=\"false\" "
+        "fusestatic=\"false\"/>\n    <option";
+    append(all, attribute("gravity", numbers({0, 0, -scene.gravity_m_s2})),
+           "/>\n  </mujoco>\n  <link name=\"world\">\n", urdf_inertial(0, {}), "  </link>\n");
+    const std::string below = joined(files.beside(), "/");
+    for (const NamedBody& named : bodies) {
+        const bool fixed = named.body->fixed;
+        append(all, urdf_link(named, scene.friction, below), "  <joint",
+               attribute("name", joined(named.name, "_joint")),
+               attribute("type", fixed ? "fixed" : "floating"), "><parent link=\"world\"/><child",
+               attribute("link", named.name), "/><origin",
+               attribute("xyz", text(named.body->center_m)), " rpy=\"0 0 0\"/></joint>\n");
+        files.add(joined(named.name, ".urdf"),
+                  robot(named.name, urdf_link(named, scene.friction, "")));
+    }
+    files.commit(robot("scan", all));
+}
+
+}  // namespace topple::exports

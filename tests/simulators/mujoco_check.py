@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+"""scene.xml and scene.urdf as MuJoCo reads and runs them."""
+import sys
+
+from expected import WITHIN_M, Expected, matrix, near, near_inertia, needed
+
+mujoco = needed('mujoco')
+np = needed('numpy')
+
+
+def corners(model, data, geom):
+    """Points, in the world, whose extents along the axes are the geom's."""
+    size, turn = model.geom_size[geom], data.geom_xmat[geom].reshape(3, 3)
+    kind = model.geom_type[geom]
+    if kind == mujoco.mjtGeom.mjGEOM_MESH:
+        mesh = model.geom_dataid[geom]
+        first = model.mesh_vertadr[mesh]
+        local = model.mesh_vert[first:first + model.mesh_vertnum[mesh]]
+    elif kind == mujoco.mjtGeom.mjGEOM_BOX:
+        local = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * size
+    else:
+        along = np.zeros(3) if kind == mujoco.mjtGeom.mjGEOM_SPHERE else np.abs(turn[:, 2])
+        half = along * size[1] + size[0] * np.sqrt(np.maximum(0, 1 - along ** 2))
+        return data.geom_xpos[geom] + np.array([-half, half])
+    return data.geom_xpos[geom] + local @ turn.T
+
+
+def check_geoms(expected, model, data, name):
+    body = expected.bodies[name]
+    geoms = [g for g in range(model.ngeom) if model.geom_bodyid[g] == model.body(name).id]
+    hard = [g for g in geoms if model.geom_contype[g]]
+    assert len(hard) == len(body['parts']), name
+    for geom, (part, place) in zip(sorted(hard, key=lambda g: model.geom(g).name), sorted(body['parts'].items())):
+        assert model.geom(geom).name == part
+        points = corners(model, data, geom)
+        near(part, [points.min(0), points.max(0)], [place['low'], place['high']], WITHIN_M)
+    seen = [g for g in geoms if not model.geom_contype[g]]
+    assert len(seen) == body['colours'], name
+    return seen
+
+
+def check(expected, file):
+    model = mujoco.MjModel.from_xml_path(expected.path(file))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    near('gravity', model.opt.gravity, [0, 0, -expected.gravity], 1e-9)
+    assert {model.body(b).name for b in range(1, model.nbody)} == set(expected.bodies), file
+    for name, body in expected.bodies.items():
+        found = model.body(name)
+        near(name, data.xpos[found.id], body['center'], 1e-6)
+        assert model.body_dofnum[found.id] == (0 if body['fixed'] else 6), name
+        if not body['fixed']:
+            near(name, found.mass, body['mass'], 1e-6 * body['mass'])
+            near_inertia(name, found.inertia, matrix(*found.iquat), body)
+        seen = check_geoms(expected, model, data, name)
+        if file == 'scene.xml':
+            near('friction', [model.geom_friction[g][0] for g in range(model.ngeom)], [expected.friction] * model.ngeom, 1e-9)
+            for geom in seen:
+                mesh = model.geom_dataid[geom]
+                assert model.geom_matid[geom] >= 0 and model.mesh_texcoordnum[mesh] > 0, name
+    rests(expected, model, data, file)
+
+
+def rests(expected, model, data, file):
+    names = list(expected.free())
+    before = {name: data.body(name).xpos.copy() for name in names}
+    while data.time < 1:
+        mujoco.mj_step(model, data)
+    for name in names:
+        near(f'{file}: {name} after a second', data.body(name).xpos, before[name], 0.003)
+    assert not any(warning.number for warning in data.warning), file
+
+
+expected = Expected(sys.argv[1])
+check(expected, 'scene.xml')
+check(expected, 'scene.urdf')
+print('mujoco has read all')
