@@ -2,11 +2,9 @@
 #include "export/write_mjcf.h"
 
 #include <cstdio>
-#include <string_view>
-#include <system_error>
 
-#include "io/file_writer.h"
-#include "io/text.h"
+#include "export/names.h"
+#include "export/write_export.h"
 #include "physics/vectors.h"
 
 namespace topple::exports {
@@ -30,18 +28,6 @@ std::string numbers(std::initializer_list<double> values) {
 std::string text(const Vec3& v) {
     return numbers({v[0], v[1], v[2]});
 }
-
-std::string body_name(const Body& body, std::size_t place) {
-    return body.object >= 0 ? "object_" + std::to_string(body.object)
-                            : "pad_" + std::to_string(place);
-}
-
-std::string part_name(const std::string& body, std::size_t part) {
-    return body + "_part_" + std::to_string(part);
-}
-
-// How an earlier export is known.
-constexpr std::string_view our_mark = "<!-- topple export -->\n";
 
 constexpr double box_tolerance_m = 1e-5;
 
@@ -93,7 +79,8 @@ std::string mjcf(const SimScene& scene) {
         add_geoms(body, called, "      ", bodies);
         bodies += "    </body>\n";
     }
-    return std::string(our_mark) +
+    return std::string("<!-- ").append(export_mark) +
+           " -->\n"
            "<mujoco model=\"scan\">\n"
            "  <compiler angle=\"radian\"/>\n"
            "  <option gravity=\"0 0 " +
@@ -111,24 +98,7 @@ std::string mjcf(const SimScene& scene) {
 }
 
 void write_mjcf(const std::filesystem::path& folder, const SimScene& scene) {
-    namespace fs = std::filesystem;
-    const fs::path file = folder / "scene.xml";
-    std::error_code error;
-    if (fs::exists(file, error)) {
-        const auto bytes = io::read_file(file);
-        if (!bytes.text().starts_with(our_mark))
-            io::fail(file, "exists and is no export of topple; choose another folder");
-    }
-    fs::create_directories(folder, error);
-    if (error) io::fail(folder, "can't be made: " + error.message());
-    const fs::path fresh = folder / ".scene.xml.topple-tmp";
-    io::write_file(fresh, mjcf(scene));
-    fs::rename(fresh, file, error);
-    if (error) {
-        const std::string why = error.message();
-        fs::remove(fresh, error);
-        io::fail(file, "can't be written: " + why);
-    }
+    write_export(folder / "scene.xml", mjcf(scene));
 }
 
 }  // namespace topple::exports

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "export/formats.h"
+
+#include <array>
+#include <string>
+
+#include "export/write_mjcf.h"
+#include "io/text.h"
+#include "topple/error.h"
+
+namespace topple::exports {
+namespace {
+
+constexpr std::array all_formats{
+    Format{"mjcf", &ExportOptions::mjcf, "scene.xml",
+           "Folder to write scene.xml into, MuJoCo's format",
+           [](const std::filesystem::path& path, const SimScene& scene, const ExportOptions&) {
+               write_mjcf(path, scene);
+           }},
+};
+
+}  // namespace
+
+std::span<const Format> formats() {
+    return all_formats;
+}
+
+std::filesystem::path scene_file(const Format& format, const std::filesystem::path& path) {
+    return format.file ? path / format.file : path;
+}
+
+std::filesystem::path bodies_file(const Format& format, const std::filesystem::path& path) {
+    if (format.file) return path / "bodies.json";
+    return std::filesystem::path(path).replace_extension(".bodies.json");
+}
+
+void set_path(ExportOptions& options, std::string_view format, const std::filesystem::path& path) {
+    std::string known;
+    for (const Format& each : all_formats) {
+        if (format == each.name) {
+            options.*each.path = path;
+            return;
+        }
+        if (!known.empty()) known += ", ";
+        known += each.name;
+    }
+    throw Error(ErrorKind::usage,
+                "format " + io::in_quotes(format) + ": expected one of " + known);
+}
+
+}  // namespace topple::exports
