@@ -122,8 +122,9 @@ void read_options(Arguments& a) {
     }
     if (wants_export(a.exported)) {
         if (a.tile_m)
-            throw Error(ErrorKind::usage,
-                        "--tile: what is parsed in blocks can't be exported; leave one of both out");
+            throw Error(
+                ErrorKind::usage,
+                "--tile: what is parsed in blocks can't be exported; leave one of both out");
         check_export(a.exported);
     }
     if (a.accelerogram)

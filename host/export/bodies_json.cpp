@@ -13,19 +13,20 @@ OrderedJson finite(double value) {
 }
 
 OrderedJson body_json(const ExportedBody& body) {
-    return {{"name", body.name},
-            {"object", body.object},
-            {"fixed", body.fixed},
-            {"on_pad", body.on_pad},
-            {"held", body.held},
-            {"moved_m", {finite(body.moved_m[0]), finite(body.moved_m[1]), finite(body.moved_m[2])}},
-            {"parts", body.parts},
-            {"mass_kg", finite(body.mass_kg)},
-            {"solid_m3", finite(body.solid_m3)},
-            {"parts_m3", finite(body.parts_m3)},
-            {"excess_share", body.solid_m3 > 0 ? finite(body.parts_m3 / body.solid_m3 - 1)
-                                               : OrderedJson(nullptr)},
-            {"lost_m3", finite(body.lost_m3)}};
+    return {
+        {"name", body.name},
+        {"object", body.object},
+        {"fixed", body.fixed},
+        {"on_pad", body.on_pad},
+        {"held", body.held},
+        {"moved_m", {finite(body.moved_m[0]), finite(body.moved_m[1]), finite(body.moved_m[2])}},
+        {"parts", body.parts},
+        {"mass_kg", finite(body.mass_kg)},
+        {"solid_m3", finite(body.solid_m3)},
+        {"parts_m3", finite(body.parts_m3)},
+        {"excess_share",
+         body.solid_m3 > 0 ? finite(body.parts_m3 / body.solid_m3 - 1) : OrderedJson(nullptr)},
+        {"lost_m3", finite(body.lost_m3)}};
 }
 
 }  // namespace

@@ -106,16 +106,16 @@ void check_export(const ExportOptions& options) {
         exports::check_export_file(exports::scene_file(format, path));
         io::check_own_file(exports::bodies_file(format, path), exports::bodies_schema);
     }
-    if (!any)
-        throw Error(ErrorKind::usage, "export: say what to write, and where to: " + known);
+    if (!any) throw Error(ErrorKind::usage, "export: say what to write, and where to: " + known);
 }
 
 ExportSummary export_scene(const ParseResult& result, const ExportOptions& options) {
     check_export(options);
     if (!result.solids)
-        throw Error(ErrorKind::input,
-                    result.scene.source +
-                        ": was parsed in blocks, of which no solids are kept: it can't be exported");
+        throw Error(
+            ErrorKind::input,
+            result.scene.source +
+                ": was parsed in blocks, of which no solids are kept: it can't be exported");
     return write_formats(result.scene, *result.solids, options);
 }
 

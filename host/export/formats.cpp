@@ -44,8 +44,7 @@ void set_path(ExportOptions& options, std::string_view format, const std::filesy
         if (!known.empty()) known += ", ";
         known += each.name;
     }
-    throw Error(ErrorKind::usage,
-                "format " + io::in_quotes(format) + ": expected one of " + known);
+    throw Error(ErrorKind::usage, "format " + io::in_quotes(format) + ": expected one of " + known);
 }
 
 }  // namespace topple::exports

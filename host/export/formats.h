@@ -26,7 +26,8 @@ std::span<const Format> formats();
 std::filesystem::path scene_file(const Format& format, const std::filesystem::path& path);
 std::filesystem::path bodies_file(const Format& format, const std::filesystem::path& path);
 
-// Sets the path of the format of that name. Throws Error(usage) that lists them where there is none.
+// Sets the path of the format of that name. Throws Error(usage) that lists them where there is
+// none.
 void set_path(ExportOptions& options, std::string_view format, const std::filesystem::path& path);
 
 }  // namespace topple::exports

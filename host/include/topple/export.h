@@ -29,7 +29,7 @@ struct ExportOptions {
 struct ExportedBody {
     std::string name;          // in the exports: "object_3", "pad_28"
     std::int32_t object = -1;  // id; -1 for a pad
-    bool fixed = false;        // part of the world, which nothing moves: the ground, pads, what is held
+    bool fixed = false;  // part of the world, which nothing moves: the ground, pads, what is held
     // What carries it was not seen: it stands on a pad made for it, or is held where it is.
     bool on_pad = false, held = false;
     Vec3 moved_m{};           // by which it was let down, so that it touches what carries it
