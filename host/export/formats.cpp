@@ -35,6 +35,8 @@ std::filesystem::path bodies_file(const Format& format, const std::filesystem::p
 }
 
 void set_path(ExportOptions& options, std::string_view format, const std::filesystem::path& path) {
+    if (path.empty())
+        throw Error(ErrorKind::usage, std::string(format) + ": the path to write to is empty");
     std::string known;
     for (const Format& each : all_formats) {
         if (format == each.name) {
@@ -44,7 +46,8 @@ void set_path(ExportOptions& options, std::string_view format, const std::filesy
         if (!known.empty()) known += ", ";
         known += each.name;
     }
-    throw Error(ErrorKind::usage, "format " + io::in_quotes(format) + ": expected one of " + known);
+    throw Error(ErrorKind::usage,
+                io::in_quotes(format) + " is no format of an export: expected one of " + known);
 }
 
 }  // namespace topple::exports
