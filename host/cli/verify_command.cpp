@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "io/output_folder.h"
 #include "io/replace_file.h"
 #include "io/scene_json.h"
 #include "io/text.h"
@@ -55,7 +56,10 @@ class Scratch {
 };
 
 mujoco::Verdict verify(const VerifyArguments& a, Progress& progress) {
-    mujoco::find_simulator();  // what is missing is told before the work
+    // What is missing is told before the work.
+    io::check_output(a.parsed);
+    const Scene scene = io::read_scene_json(std::filesystem::path(a.parsed) / "scene.json");
+    mujoco::find_simulator();
     const Scratch scratch;
     ExportOptions options;
     options.mjcf = scratch.folder();
@@ -63,7 +67,6 @@ mujoco::Verdict verify(const VerifyArguments& a, Progress& progress) {
     options.cancelled = [] { return interrupted() != 0; };
     progress("export", 0);
     const ExportSummary exported = export_output(a.parsed, options);
-    const Scene scene = io::read_scene_json(std::filesystem::path(a.parsed) / "scene.json");
     progress("MuJoCo", 0);
     mujoco::Settled run =
         mujoco::settle_apart(scratch.folder() / "scene.xml", a.seconds, a.time_limit_s, [] {

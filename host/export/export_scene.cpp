@@ -10,6 +10,7 @@
 #include "export/separate.h"
 #include "export/sim_scene.h"
 #include "export/write_export.h"
+#include "io/output_folder.h"
 #include "io/replace_file.h"
 #include "io/scene_json.h"
 #include "io/solids_file.h"
@@ -121,15 +122,11 @@ ExportSummary export_scene(const ParseResult& result, const ExportOptions& optio
 
 ExportSummary export_output(const std::filesystem::path& output, const ExportOptions& options) {
     check_export(options);
-    std::error_code error;
+    io::check_output(output);
     const std::filesystem::path file = output / "scene.json", solids = output / "solids.bin";
-    if (!std::filesystem::exists(file, error))
-        io::fail(output, std::filesystem::exists(output, error)
-                             ? "holds no output of topple: there is no scene.json in it; give the "
-                               "folder that `topple parse` has written"
-                             : "No such file or folder");
     const Scene scene = io::read_scene_json(file);
     check_scene(scene, file);
+    std::error_code error;
     if (!std::filesystem::exists(solids, error))
         io::fail(solids,
                  "is missing; parse the scan again (a cloud that was parsed in blocks has none and "

@@ -120,6 +120,15 @@ void move_files(const fs::path& from, const fs::path& to) {
 
 }  // namespace
 
+void check_output(const fs::path& folder) {
+    std::error_code error;
+    if (fs::exists(folder / "scene.json", error)) return;
+    fail(folder, fs::exists(folder, error)
+                     ? "holds no output of topple: there is no scene.json in it; give the "
+                       "folder that `topple parse` has written"
+                     : "No such file or folder");
+}
+
 void check_not_replaced(const fs::path& input, const fs::path& destination) {
     const fs::path folder = resolved(destination);
     std::error_code error;
