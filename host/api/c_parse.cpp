@@ -5,6 +5,7 @@
 
 #include "api/c_result.h"
 #include "api/c_support.h"
+#include "export/formats.h"
 
 namespace topple::c_api {
 namespace {
@@ -185,4 +186,14 @@ int topple_result_add_coordinates(topple_result* result, const topple_cloud* clo
                                   topple_status* status) {
     return guarded(status,
                    [&] { add_coordinates(view_of(cloud), needed(result, "result").result); });
+}
+
+int topple_result_export(const topple_result* result, const char* format, const char* path,
+                         topple_status* status) {
+    return guarded(status, [&] {
+        const ParseResult& from = needed(result, "result").result;
+        ExportOptions options;
+        exports::set_path(options, &needed(format, "format"), &needed(path, "path"));
+        export_scene(from, options);
+    });
 }

@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 
 #include "cli/commands.h"
 #include "cli/landscape_picture.h"
 #include "io/landscapes_json.h"
+#include "io/output_folder.h"
 #include "io/scene_json.h"
 #include "io/text.h"
 #include "topple/error.h"
@@ -53,20 +53,10 @@ void check_ending(const std::string& out) {
                 "--output " + io::printable(out) + ": expected a name that ends in .png or .svg");
 }
 
-// Whether a parse has written it is told by its first file.
-void check_output(const std::filesystem::path& folder) {
-    std::error_code error;
-    if (std::filesystem::exists(folder / "scene.json", error)) return;
-    io::fail(folder, std::filesystem::exists(folder, error)
-                         ? "holds no output of topple: there is no scene.json in it; give the "
-                           "folder that `topple parse` has written"
-                         : "No such file or folder");
-}
-
 int run(const LandscapeArguments& a) {
     if (!a.out.empty()) check_ending(a.out);
     const std::filesystem::path folder = a.parsed;
-    check_output(folder);
+    io::check_output(folder);
     Scene scene = io::read_scene_json(folder / "scene.json");
     io::read_landscapes_json(folder / "landscapes.json", scene);
     const Object& object = chosen(scene, a.object);

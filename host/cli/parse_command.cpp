@@ -11,6 +11,7 @@
 
 #include "cli/choice.h"
 #include "cli/commands.h"
+#include "cli/export_options.h"
 #include "cli/interrupt.h"
 #include "cli/isolate_option.h"
 #include "cli/long_run.h"
@@ -21,6 +22,7 @@
 #include "io/text.h"
 #include "pipeline/tiled_parse.h"
 #include "topple/device.h"
+#include "topple/export.h"
 #include "topple/parse.h"
 
 namespace topple::cli {
@@ -40,6 +42,7 @@ struct Arguments {
     unsigned threads = 0;
     bool quiet = false;
     OutputOptions output;
+    ExportOptions exported;
     Team team;
 };
 
@@ -117,6 +120,13 @@ void read_options(Arguments& a) {
     if (!a.motion.empty()) {
         a.options.motion = std::make_shared<const BodyMotion>(read_motion(a.motion, a.motion_file));
     }
+    if (wants_export(a.exported)) {
+        if (a.tile_m)
+            throw Error(
+                ErrorKind::usage,
+                "--tile: what is parsed in blocks can't be exported; leave one of both out");
+        check_export(a.exported);
+    }
     if (a.accelerogram)
         a.options.accelerogram = read_accelerogram(*a.accelerogram, a.accelerogram_unit_m_s2);
 }
@@ -126,6 +136,8 @@ void get_ready(Arguments& a) {
     a.output.threads = a.threads > 0 ? a.threads : a.team.threads;
     a.options.device = device::open_device(a.backend, a.output.threads);
     a.output.cancelled = [] { return interrupted() != 0; };
+    a.exported.threads = a.output.threads;
+    a.exported.cancelled = a.output.cancelled;
     a.options.crew = a.team.crew;
     a.options.cancelled = [&team = a.team] {
         return interrupted() != 0 || (team.stopped && team.stopped());
@@ -174,8 +186,15 @@ int run(Arguments& a) {
         const auto start = std::chrono::steady_clock::now();
         write_outputs(result, out, a.output);
         const std::chrono::duration<double> output = std::chrono::steady_clock::now() - start;
+        std::optional<ExportSummary> exported;
+        if (wants_export(a.exported)) {
+            progress("export", 0);
+            exported = export_scene(result, a.exported);
+        }
         progress.finish();
-        if (!a.quiet) print_summary(result.scene, out, output.count());
+        if (a.quiet) return;
+        print_summary(result.scene, out, output.count());
+        if (exported) print_export(*exported);
     };
     return run_long(a.quiet, a.options, work, [&] { return left_behind(a); });
 }
@@ -277,6 +296,7 @@ Command add_parse(CLI::App& app, const Team& team) {
         "Write the solids as meshes, too, one per object, coloured as scanned: objects.glb");
     app.add_flag("--octomap", a->output.octomap,
                  "Write what was seen to be free and occupied as an OctoMap, too: map.bt");
+    add_export_options(app, a->exported);
     app.add_flag("--quiet", a->quiet, "Print errors only");
     return [a] { return a->team.leads ? run(*a) : help(*a); };
 }

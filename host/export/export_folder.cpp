@@ -9,6 +9,7 @@
 #include "export/colour_texture.h"
 #include "export/write_obj.h"
 #include "io/file_writer.h"
+#include "io/replace_file.h"
 #include "io/text.h"
 
 namespace topple::exports {
@@ -67,18 +68,7 @@ void check_ours(const fs::path& file) {
 void replace_file(const fs::path& file, std::string_view text) {
     check_ours(file);
     if (file.has_parent_path()) make_folder(file.parent_path());
-    std::string name = ".";
-    name += file.filename().native();
-    name += ".topple-tmp";
-    const fs::path fresh = file.parent_path() / name;
-    try {
-        io::write_file(fresh, text);
-        put(fresh, file);
-    } catch (...) {
-        std::error_code ignored;
-        fs::remove(fresh, ignored);
-        throw;
-    }
+    io::replace_file(file, text);
 }
 
 ExportFolder::ExportFolder(const fs::path& folder, const std::string& format,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "export/names.h"
 #include "topple/error.h"
 
 namespace topple::exports {
@@ -36,17 +37,12 @@ std::vector<NamedBody> named_bodies(const SimScene& scene) {
         const Body& body = scene.bodies[n];
         if (body.parts.empty()) continue;
         NamedBody& to = out.emplace_back();
-        to.name = body.object >= 0 ? "object_" : "pad_";
-        to.name += body.object >= 0 ? std::to_string(body.object) : std::to_string(n);
+        to.name = body_name(body, n);
         const std::string fault = fault_of(body);
         if (!fault.empty()) throw Error(ErrorKind::input, to.name + " can't be exported: " + fault);
         to.body = &body;
-        for (const ConvexPart& part : body.parts) {
-            std::string name = to.name;
-            name += "_part_";
-            name += std::to_string(to.parts.size());
-            to.parts.push_back({std::move(name), &part, shape_of(part)});
-        }
+        for (const ConvexPart& part : body.parts)
+            to.parts.push_back({part_name(to.name, to.parts.size()), &part, shape_of(part)});
     }
     return out;
 }

@@ -25,10 +25,11 @@ namespace {
 
 // What topple writes; an earlier output may hold these and nothing else. scene.json is written
 // last.
-constexpr std::array<std::string_view, 15> our_files{
-    "solids.bin",     "points.ply",    "solid.ply",           "volume.vdb",      "report.html",
-    "objects.glb",    "map.bt",        "view-objects.png",    "view-risk.png",   "view-walks.png",
-    "view-human.png", "view-wind.png", "view-earthquake.png", "landscapes.json", "scene.json"};
+constexpr std::array<std::string_view, 16> our_files{
+    "solids.bin",          "points.ply",      "solid.ply",      "volume.vdb",
+    "report.html",         "objects.glb",     "map.bt",         "view-objects.png",
+    "view-risk.png",       "view-walks.png",  "view-human.png", "view-wind.png",
+    "view-earthquake.png", "landscapes.json", "verify.json",    "scene.json"};
 
 bool is_our_scene(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -118,6 +119,15 @@ void move_files(const fs::path& from, const fs::path& to) {
 }
 
 }  // namespace
+
+void check_output(const fs::path& folder) {
+    std::error_code error;
+    if (fs::exists(folder / "scene.json", error)) return;
+    fail(folder, fs::exists(folder, error)
+                     ? "holds no output of topple: there is no scene.json in it; give the "
+                       "folder that `topple parse` has written"
+                     : "No such file or folder");
+}
 
 void check_not_replaced(const fs::path& input, const fs::path& destination) {
     const fs::path folder = resolved(destination);

@@ -40,6 +40,10 @@ class OutputFolder {
     int slot_ = -1;  // in the list of what remove_pending_outputs() removes
 };
 
+// Throws Error(input) where the folder is missing or no output of a parse, which is told by its
+// scene.json.
+void check_output(const std::filesystem::path& folder);
+
 // Throws Error(usage) where the input is the destination or lies in it, and so would be replaced by
 // what was made of it.
 void check_not_replaced(const std::filesystem::path& input,

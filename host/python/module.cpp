@@ -17,7 +17,7 @@ const char* name_of(ErrorKind kind) {
 // The library names options as the command line does, "--wind-from": as parse() does,
 // "wind_from_deg".
 std::string with_own_names(std::string text) {
-    static constexpr std::array<std::pair<const char*, const char*>, 16> names{
+    static constexpr std::array<std::pair<const char*, const char*>, 20> names{
         {{"--voxel", "voxel_m"},
          {"--unit", "unit_m"},
          {"--up", "up"},
@@ -33,7 +33,11 @@ std::string with_own_names(std::string text) {
          {"--pga", "pga_m_s2"},
          {"--tolerable", "tolerable_J"},
          {"--grouping-time", "grouping_time_s"},
-         {"--octomap", "octomap"}}};
+         {"--octomap", "octomap"},
+         {"--mjcf", "mjcf"},
+         {"--urdf", "urdf"},
+         {"--sdf", "sdf"},
+         {"--usd", "usd"}}};
     const auto in_name = [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; };
     for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at + 1)) {
         if (at > 0 && text[at - 1] != ' ') continue;  // within a file's name
@@ -117,6 +121,7 @@ PYBIND11_MODULE(_topple, module) {
     bind_devices(module);
     bind_result(module);
     bind_parse(module);
+    bind_export(module);
     py::module_::import("atexit").attr("register")(py::cpp_function([] {
         const py::gil_scoped_release release;
         Busy::stop_all();

@@ -26,6 +26,7 @@ struct Parsed {
     ParseResult result;
 };
 
+void bind_export(py::module_& module);
 void bind_parse(py::module_& module);
 void bind_result(py::module_& module);
 

@@ -17,6 +17,7 @@
 #include "report/base64.h"
 #include "report/drawing.h"
 #include "report/page_parts.h"
+#include "report/script_safe.h"
 #include "report/view_data.h"
 
 namespace topple::report {
@@ -178,20 +179,6 @@ Json colours_json(const PackedView& view) {
     for (std::int32_t id = 0; id <= std::min(most, 65535); ++id)
         colours.push_back(io::colour_of(id));
     return colours;
-}
-
-// JSON that may stand inside <script>: nothing in it can end the element or start a comment.
-std::string script_safe(std::string json) {
-    std::string out;
-    out.reserve(json.size() + json.size() / 64);
-    for (const char c : json) {
-        if (c == '<') {
-            out += "\\u003c";
-        } else {
-            out += c;
-        }
-    }
-    return out;
 }
 
 std::string html_escaped(std::string_view text) {

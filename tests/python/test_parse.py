@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """topple.parse: what it takes, what it gives, and how it is stopped."""
 import gc
+import json
 import os
 import signal
 import subprocess
@@ -250,3 +251,27 @@ time.sleep({after_s})
 '''
     ended = subprocess.run([sys.executable, '-c', script], capture_output=True, text=True, timeout=60)
     assert ended.returncode == 0, ended.stderr
+
+
+def test_exports_to_simulators(result, tmp_path):
+    made = result.export(mjcf=tmp_path / 'mjcf')
+    assert [b.object for b in made.bodies[:len(result.objects)]] == [o.id for o in result.objects]
+    assert made.deepest_overlap_m < 0.001
+    for body, o in zip(made.bodies, result.objects):
+        assert body.name == f'object_{o.id}' and body.mass_kg == o.mass_kg and body.parts > 0
+        assert body.fixed == (o.grounded or body.held) and len(body.moved_m) == 3
+        assert body.parts_m3 > 0.9 * (body.solid_m3 - body.lost_m3)
+    written = json.loads((tmp_path / 'mjcf' / 'bodies.json').read_text())
+    assert [b['name'] for b in written['bodies']] == [b.name for b in made.bodies]
+    assert 'object_1' in (tmp_path / 'mjcf' / 'scene.xml').read_text()
+    assert result.export(mjcf=tmp_path / 'mjcf', threads=1) == made
+
+
+def test_exports_to_nothing_or_over_others_files_are_refused(result, tmp_path):
+    with pytest.raises(topple.Error, match='mjcf') as error:
+        result.export()
+    assert error.value.kind == 'usage'
+    (tmp_path / 'scene.xml').write_text('<mujoco/>')
+    with pytest.raises(topple.Error, match='scene.xml') as error:
+        result.export(mjcf=tmp_path)
+    assert error.value.kind == 'input' and (tmp_path / 'scene.xml').read_text() == '<mujoco/>'

@@ -11,7 +11,7 @@
 #include "export/write_usd.h"
 #include "host/export/shapes_scene.h"
 #include "host/io/files.h"
-#include "pipeline/read_sim_scene.h"
+#include "pipeline/make_sim_scene.h"
 #include "scenes/temporary_folder.h"
 #include "topple/parse.h"
 
@@ -76,8 +76,8 @@ SimScene parsed_scene(const std::filesystem::path& folder) {
     ParseOptions options;
     options.device = device::open_device("native");
     options.disturbances.clear();
-    write_outputs(parse(folder / "scan.xyz", options), folder / "parsed");
-    return read_sim_scene(folder / "parsed", {});
+    const ParseResult result = parse(folder / "scan.xyz", options);
+    return make_sim_scene(result.scene, *result.solids, {});
 }
 
 }  // namespace

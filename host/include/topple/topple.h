@@ -231,6 +231,14 @@ int topple_result_write(const topple_result* result, const char* folder, uint32_
 int topple_result_add_coordinates(topple_result* result, const topple_cloud* cloud,
                                   topple_status* status);
 
+/* Writes the scene for a simulator, and what became of each body as bodies.json beside it
+ * (docs/export.md). format and path: "mjcf", "urdf" or "sdf" and a folder, or "usd" and a file,
+ * NAME.usda. Folders are made where they are missing; an earlier export is replaced.
+ * TOPPLE_ERROR_USAGE: there is no such format; TOPPLE_ERROR_INPUT: a file there is no export of
+ * topple, or can't be written, or the cloud was parsed in blocks. */
+int topple_result_export(const topple_result* result, const char* format, const char* path,
+                         topple_status* status);
+
 /* --- Single stages: topple/stages.h says more ----------------------------------------------- */
 
 /* `device` must be one that was opened or adopted: here NULL is TOPPLE_ERROR_USAGE. */

@@ -18,8 +18,8 @@ import numpy as np
 from . import _topple
 from ._topple import Contact, Device, Error, Object, Primitive, Support, __version__, open_device
 
-__all__ = ['Contact', 'Device', 'DeviceInfo', 'Error', 'Object', 'Primitive', 'Result', 'Support', '__version__',
-           'devices', 'open_device', 'parse']
+__all__ = ['Contact', 'Device', 'DeviceInfo', 'Error', 'ExportSummary', 'ExportedBody', 'Object', 'Primitive', 'Result',
+           'Support', '__version__', 'devices', 'open_device', 'parse']
 
 
 class DeviceInfo(NamedTuple):
@@ -30,6 +30,28 @@ class DeviceInfo(NamedTuple):
     gpu: bool
     usable: bool
     problem: str
+
+
+class ExportedBody(NamedTuple):
+    """What became of an object in an export, or a pad that was made to carry one (docs/export.md)."""
+    name: str  # in the export: "object_3", "pad_28"
+    object: int  # id; -1 for a pad
+    fixed: bool  # part of the world, which nothing moves
+    on_pad: bool  # what carries it was not seen: it stands on a pad,
+    held: bool  # or is held where it is
+    struts: int  # of its parts: in the place of feet that were not seen
+    moved_m: list  # by which it was let down, z up
+    parts: int  # convex ones
+    mass_kg: float
+    solid_m3: float  # of the object as it was parsed
+    parts_m3: float  # of its parts: more by what their hulls add
+    lost_m3: float  # cut off its parts, so that no two bodies overlap
+
+
+class ExportSummary(NamedTuple):
+    """What Result.export() made."""
+    bodies: list  # of ExportedBody: those of the objects by id, then pads
+    deepest_overlap_m: float  # of any two bodies
 
 
 def devices():
@@ -147,6 +169,18 @@ class Result:
         with self._writing:
             _topple.write(self._parsed, os.fspath(folder), pictures, glb, octomap, self._points or [],
                           list(self._colours))
+
+    def export(self, *, mjcf=None, urdf=None, sdf=None, usd=None, visuals=True, threads=0):
+        """Writes the scene for simulators, in the formats whose paths are given, and what became of each body as
+        bodies.json beside it (docs/export.md); returns an ExportSummary. mjcf, urdf, sdf: the folders for scene.xml
+        (MuJoCo's format), scene.urdf and scene.sdf; usd: the file, NAME.usda. visuals: what bodies look like, in the
+        scan's colours, beside what collides. Folders are made where they are missing; an earlier export is replaced, a
+        file of others is an Error of kind "input". threads: 0 for all cores; the result is the same. Other threads of
+        Python run meanwhile."""
+        paths = {'mjcf': mjcf, 'urdf': urdf, 'sdf': sdf, 'usd': usd}
+        given = {name: os.fspath(path) for name, path in paths.items() if path is not None}
+        bodies, deepest = _topple.export_scene(self._parsed, given, visuals, threads)
+        return ExportSummary([ExportedBody(*body) for body in bodies], deepest)
 
 
 def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=('human', 'wind', 'earthquake'),

@@ -27,6 +27,24 @@ class DeviceInfo(NamedTuple):
     usable: bool
     problem: str
 
+class ExportedBody(NamedTuple):
+    name: str
+    object: int
+    fixed: bool
+    on_pad: bool
+    held: bool
+    struts: int
+    moved_m: list[float]
+    parts: int
+    mass_kg: float
+    solid_m3: float
+    parts_m3: float
+    lost_m3: float
+
+class ExportSummary(NamedTuple):
+    bodies: list[ExportedBody]
+    deepest_overlap_m: float
+
 class Device:
     @property
     def backend(self) -> str: ...
@@ -175,6 +193,7 @@ class Result:
     @property
     def fields(self) -> dict[str, dict[str, _Floats]]: ...  # x, y, z, vx, vy, vz, density
     def write(self, folder: Union[str, os.PathLike[str]], *, pictures: bool = ..., glb: bool = ..., octomap: bool = ...) -> None: ...
+    def export(self, *, mjcf: Union[str, os.PathLike[str], None] = ..., urdf: Union[str, os.PathLike[str], None] = ..., sdf: Union[str, os.PathLike[str], None] = ..., usd: Union[str, os.PathLike[str], None] = ..., visuals: bool = ..., threads: int = ...) -> ExportSummary: ...
 
 def devices() -> list[DeviceInfo]: ...
 def open_device(backend: str = ..., threads: int = ...) -> Device: ...

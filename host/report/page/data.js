@@ -21,6 +21,7 @@ function loadScene() {
   scene.coloured = !!(view.voxels.photo || surface.photo || view.points.photo);
   view.walks.shade = new Uint8Array(bytesOf(view.walks.shade));
   view.walks.floor_mm = new Int16Array(bytesOf(view.walks.floor_mm));
+  scene.verified = JSON.parse(document.getElementById('verified').textContent);
   scene.objectById = new Map(scene.objects.map(object => [object.id, object]));
   const reckoned = new Set(scene.objects.flatMap(object => Object.keys(object.risk_J)));
   scene.disturbances = [...new Set([...disturbanceNames, ...reckoned])].filter(name => reckoned.has(name));

@@ -9,6 +9,11 @@ function fillHeader(scene) {
   document.getElementById('summary').textContent =
     `${plural(loose, 'object')} that can move` + (loose < scene.objects.length ? ', and the ground with all that is fixed to it' : '') +
     `; ${plural(scene.primitives.length, 'part')} in all.`;
+  if (scene.verified) {
+    const line = document.getElementById('verification');
+    line.textContent = verifiedText(scene.verified);
+    line.hidden = false;
+  }
   const up = {
     given: 'given by the user', manhattan: 'from the room\u2019s three main directions',
     'dominant-plane': 'from the largest plane', 'upright-surfaces': 'along the walls', assumed: 'assumed', map: 'the map\'s z',

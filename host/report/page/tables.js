@@ -142,6 +142,8 @@ function showObject(panel, scene, id, choose) {
   if (fallKnown(object)) panel.append(element('p', {className: 'why', text: happensText(scene, object)}));
   if (object.advice && object.advice.sentence) panel.append(element('p', {className: 'advice', text: object.advice.sentence}));
   panel.append(element('p', {className: 'why', text: object.why.sentence}));
+  const settled = scene.verified ? verifiedObjectText(scene.verified, id) : '';
+  if (settled) panel.append(element('p', {className: 'why', text: settled}));
   const pairs = [['Mass', number(object.mass_kg, 'kg') + within(object.mass_error_kg) + (object.mass_model === 'closed' ? ', as boards around contents' : '')],
     ['Centre of mass', object.center_of_mass_m.map(v => v === null ? '\u2013' : v.toFixed(2)).join(', ') + ' m' + within(Math.hypot(...(object.center_of_mass_error_m || [])))]];
   if (!object.grounded) {

@@ -91,3 +91,18 @@ function happensText(scene, object) {
   const drop = fall.drop_m > 0 ? `${verb}, falls ${metres(fall.drop_m)} ${landsText(scene, fall)}` : `${verb}`;
   return drop + (fall.takes_along.length ? ` and takes ${objectList(fall.takes_along)} along.` : '.');
 }
+
+// What a simulator made of the scene (topple verify): how many stay, and which moved.
+function verifiedText(verified) {
+  const free = verified.objects.filter(object => object.free), moved = free.filter(object => !object.stays);
+  const text = `In ${verified.simulator}, ${free.length - moved.length} of ${plural(free.length, 'object')} stayed for ` +
+    `${number(verified.simulated_s, 's')}` + (verified.cut_short ? `, when ${verified.cut_short}` : '');
+  return text + (moved.length ? `; ${moved.length === 1 ? 'this' : 'these'} moved: ${objectList(moved.map(object => object.id))}.` : '.');
+}
+
+function verifiedObjectText(verified, id) {
+  const object = verified.objects.find(other => other.id === id);
+  if (!object || !object.free) return '';
+  if (object.stays) return `Stayed in ${verified.simulator}.`;
+  return `Moved in ${verified.simulator}: by ${metres(object.moved_m)}, turned by ${Math.round(object.turned_deg)}\u00b0.`;
+}

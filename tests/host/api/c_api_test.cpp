@@ -117,6 +117,19 @@ TEST_F(CApi, ParsesAsTheLibraryDoes) {
     EXPECT_EQ(topple_result_write(result, path("map").c_str(), 8, &status), TOPPLE_ERROR_USAGE);
     EXPECT_EQ(topple_result_write(result, path("out").c_str(), 0, &status), TOPPLE_OK);
     EXPECT_TRUE(std::filesystem::exists(path("out/scene.json")));
+    const std::string exported = path("mjcf").string();
+    EXPECT_EQ(topple_result_export(result, "mjcf", exported.c_str(), &status), TOPPLE_OK)
+        << status.message;
+    EXPECT_TRUE(std::filesystem::exists(path("mjcf/scene.xml")));
+    EXPECT_TRUE(std::filesystem::exists(path("mjcf/bodies.json")));
+    EXPECT_EQ(topple_result_export(result, "blend", exported.c_str(), &status), TOPPLE_ERROR_USAGE);
+    EXPECT_NE(std::string(status.message).find("\"blend\" is no format"), std::string::npos);
+    EXPECT_EQ(topple_result_export(result, "mjcf", "", &status), TOPPLE_ERROR_USAGE);
+    EXPECT_EQ(topple_result_export(result, nullptr, exported.c_str(), &status), TOPPLE_ERROR_USAGE);
+    EXPECT_EQ(topple_result_export(nullptr, "mjcf", exported.c_str(), &status), TOPPLE_ERROR_USAGE);
+    write("others/scene.xml", "<mujoco/>");
+    EXPECT_EQ(topple_result_export(result, "mjcf", path("others").c_str(), &status),
+              TOPPLE_ERROR_INPUT);
     // The caller's colours, interleaved.
     std::vector<std::uint8_t> rgb(3 * room.cloud.size(), 50);
     cloud.red = &rgb[0];

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "export/clumps.h"
 #include "export/merge_parts.h"
 #include "host/export/blocks.h"
 
@@ -11,8 +12,10 @@ namespace {
 
 std::vector<Decomposed> decomposed(const std::vector<Cells>& blocks, std::size_t primitives = 1) {
     ThreadPool threads(2);
-    const std::vector<double> slight(primitives, 0);
-    return decompose(solids_of(blocks, primitives), slight, threads);
+    std::vector<Clump> clumps;
+    for (std::size_t p = 0; p < primitives; ++p)
+        clumps.push_back({0, {static_cast<std::int32_t>(p)}, 0});
+    return decompose(solids_of(blocks, primitives), clumps, threads);
 }
 
 TEST(Decompose, ABoxIsOnePartOfItsVolume) {
@@ -50,20 +53,63 @@ TEST(Decompose, AnOpenCupKeepsItsHollow) {
     }
 }
 
-TEST(Decompose, WhatIsNotWantedHasNoParts) {
+TEST(Decompose, OnlyWhatIsOfAClumpHasPartsAndAClumpIsOneSolid) {
     ThreadPool threads(1);
-    const auto out = decompose(solids_of({{{0, 0, 0}, {5, 5, 5}, 0}, {{6, 0, 0}, {9, 5, 5}, 1}}, 2),
-                               std::vector<double>{-1, 0}, threads);
-    EXPECT_TRUE(out[0].parts.empty());
-    EXPECT_EQ(out[1].parts.size(), 1u);
+    const SolidScene solids = solids_of(
+        {{{0, 0, 0}, {5, 5, 5}, 0}, {{6, 0, 0}, {9, 5, 5}, 1}, {{9, 0, 0}, {12, 5, 5}, 2}}, 3);
+    const auto out = decompose(solids, std::vector<Clump>{{0, {1, 2}, 0}}, threads);
+    ASSERT_EQ(out.size(), 1u);
+    ASSERT_EQ(out[0].parts.size(), 1u);
+    EXPECT_NEAR(out[0].parts[0].volume_m3, 6 * 5 * 5e-6, 1e-9);
+}
+
+TEST(Clumps, CrumbsOfALargeObjectThatLieTogetherAreOne) {
+    Scene scene;
+    Object large;
+    large.id = 0;
+    for (int n = 0; n < 40; ++n) {
+        Primitive p;
+        p.id = n;
+        p.object = 0;
+        p.volume_m3 = n == 0 ? 1 : 1e-5;  // 10 voxels
+        p.center_of_mass_m = {n < 20 ? 0.02 : 2.02, 0.02, 0.02};
+        scene.primitives.push_back(p);
+        large.primitives.push_back(n);
+    }
+    scene.objects.push_back(large);
+    const auto clumps = clumps_of(scene, 0.01);
+    ASSERT_EQ(clumps.size(), 3u);
+    EXPECT_EQ(clumps[0].primitives.size(), 1u);
+    EXPECT_EQ(clumps[1].primitives.size(), 19u);
+    EXPECT_EQ(clumps[2].primitives.size(), 20u);
+    scene.objects[0].primitives.resize(16);
+    EXPECT_EQ(clumps_of(scene, 0.01).size(), 16u);
+}
+
+std::vector<Body> merged(std::vector<ConvexPart> parts, std::vector<ConvexPart> others) {
+    std::vector<Body> bodies(2);
+    bodies[0].parts = std::move(parts);
+    for (const ConvexPart& part : bodies[0].parts) bodies[0].solid_m3 += part.volume_m3;
+    bodies[1].parts = std::move(others);
+    ThreadPool threads(1);
+    merge_parts(bodies, 0.01, threads);
+    return bodies;
 }
 
 TEST(MergeParts, JoinsWhatIsConvexTogetherAndNothingElse) {
-    std::vector<ConvexPart> parts{block({0, 0, 0}, {1, 1, 1}), block({1, 0, 0}, {2, 1, 1}),
-                                  block({5, 0, 0}, {6, 1, 1}), block({0, 0, 1}, {0.2, 1, 3})};
-    merge_parts(parts, 0.1, 0.01);
-    ASSERT_EQ(parts.size(), 3u);
-    EXPECT_NEAR(parts.back().volume_m3, 2, 1e-9);
+    const auto out = merged({block({0, 0, 0}, {1, 1, 1}), block({1, 0, 0}, {2, 1, 1}),
+                             block({5, 0, 0}, {6, 1, 1}), block({0, 0, 1}, {0.2, 1, 3})},
+                            {});
+    ASSERT_EQ(out[0].parts.size(), 3u);
+    EXPECT_NEAR(out[0].parts.back().volume_m3, 2, 1e-9);
+}
+
+TEST(MergeParts, LeavesApartWhatOnlyAnotherBodyLiesBetween) {
+    // Two blocks a step apart in height: their hull would hold the corner where another one stands.
+    const std::vector<ConvexPart> steps{block({0, 0, 0}, {1, 1, 1}),
+                                        block({1, 0, 0}, {2, 1, 1.05})};
+    EXPECT_EQ(merged(steps, {})[0].parts.size(), 1u);
+    EXPECT_EQ(merged(steps, {block({0.6, 0.4, 1}, {0.9, 0.6, 1.4})})[0].parts.size(), 2u);
 }
 
 }  // namespace

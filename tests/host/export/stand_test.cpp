@@ -5,6 +5,9 @@
 
 #include <cmath>
 
+#include "export/brace.h"
+#include "export/floor.h"
+#include "export/footing.h"
 #include "export/separate.h"
 #include "host/export/blocks.h"
 
@@ -70,25 +73,100 @@ TEST(Settle, ClosesAGapThatNoiseLeft) {
     EXPECT_NEAR(bodies[1].center_m[2], 0.253 - 0.006, 1e-9);
 }
 
-TEST(Settle, WhatNothingCarriesGetsAPad) {
-    std::vector<Body> bodies{ground(), body_of(block({0, 0, 1}, {0.2, 0.2, 1.5}), 1, {})};
-    settle(bodies, 0.01);
+// A block that stands as firmly as it would on the whole of its underside.
+Body firm(ConvexPart part, int level, std::vector<std::int32_t> carried_by) {
+    Body out = body_of(std::move(part), level, std::move(carried_by));
+    out.solid_m3 = out.parts[0].volume_m3;
+    out.firm_m = 0.05;
+    return out;
+}
+
+TEST(Brace, WhatHangsInTheAirGetsAPad) {
+    std::vector<Body> bodies{ground(), firm(block({0, 0, 1}, {0.2, 0.2, 1.5}), 1, {})};
+    brace(bodies, 0.01);
     ASSERT_EQ(bodies.size(), 3u);
     EXPECT_TRUE(bodies[1].on_pad);
+    EXPECT_FALSE(bodies[1].fixed);
     EXPECT_TRUE(bodies[2].fixed);
     EXPECT_NEAR(bodies[2].parts[0].high[2], 1, 1e-9);
     EXPECT_EQ(bodies[1].carried_by, std::vector<std::int32_t>{2});
 }
 
-TEST(Settle, WhatWouldFallOffItsPadIsHeld) {
-    Body hook = body_of(block({0, 0, 1}, {0.02, 0.02, 1.2}), 1, {});
-    hook.parts.push_back(block({0.02, 0, 1.1}, {0.5, 0.02, 1.2}));
-    hook.center_m = {0.3, 0.01, 1.15};
-    std::vector<Body> bodies{ground(), hook};
-    settle(bodies, 0.01);
-    ASSERT_EQ(bodies.size(), 2u);
+TEST(Brace, WhatHangsOnAWallIsHeld) {
+    Body wall = ground();
+    wall.parts.push_back(block({-0.1, -1, 0}, {0, 1, 2.5}));
+    std::vector<Body> bodies{wall, firm(block({0, 0, 1.5}, {0.2, 0.2, 2}), 1, {})};
+    brace(bodies, 0.01);
     EXPECT_TRUE(bodies[1].held);
     EXPECT_TRUE(bodies[1].fixed);
+    EXPECT_EQ(bodies.size(), 2u);
+}
+
+TEST(Brace, ATableOfWhichOneLegWasSeenGetsStruts) {
+    Body table = firm(block({0, 0, 0.7}, {1, 0.6, 0.75}), 1, {0});
+    table.parts.push_back(block({0, 0, 0}, {0.05, 0.05, 0.7}));
+    table.solid_m3 += table.parts[1].volume_m3;
+    std::vector<Body> bodies{ground(), table};
+    brace(bodies, 0.02);
+    EXPECT_FALSE(bodies[1].held);
+    EXPECT_EQ(bodies[1].struts, 0);  // each would be a post of nearly its height
+    table.parts[0] = block({0, 0, 0.7}, {1, 0.6, 1.6});
+    table.center_m = {0.5, 0.3, 1.1};
+    bodies = {ground(), table};
+    brace(bodies, 0.02);
+    EXPECT_FALSE(bodies[1].held);
+    EXPECT_GE(bodies[1].struts, 2);
+    const std::vector<bool> stands{true, true};
+    EXPECT_GE(margin_m(footing_of(bodies, stands, bodies[1]), bodies[1]), 0.02);
+    EXPECT_LT(deepest_overlap_m(bodies), 1e-6);
+}
+
+TEST(Brace, WhatFallsByItselfIsLeftToFall) {
+    Body falls = firm(block({0, 0, 1}, {0.2, 0.2, 1.5}), 1, {});
+    falls.firm_m = 0;
+    std::vector<Body> bodies{ground(), falls};
+    brace(bodies, 0.01);
+    EXPECT_EQ(bodies.size(), 2u);
+    EXPECT_FALSE(bodies[1].fixed);
+}
+
+TEST(Brace, WhatOnlyLeansOnItsLikeDoesNotStand) {
+    std::vector<Body> bodies{firm(block({0, 0, 1}, {0.2, 0.2, 1.5}), 2, {1}),
+                             firm(block({0, 0, 0.8}, {0.2, 0.2, 1}), 1, {0})};
+    brace(bodies, 0.01);
+    EXPECT_TRUE(bodies[1].on_pad || bodies[1].held);
+    EXPECT_FALSE(bodies[0].on_pad || bodies[0].held);  // it stands on that
+}
+
+TEST(Footing, OfCrossedBarsIsWhereTheyCross) {
+    std::vector<Body> bodies{body_of(block({-1, -0.1, 0}, {1, 0.1, 0.2}), 0, {}),
+                             body_of(block({-0.1, -1, 0.2}, {0.1, 1, 0.4}), 1, {0})};
+    const std::vector<bool> stands{true, false};
+    EXPECT_NEAR(margin_m(footing_of(bodies, stands, bodies[1]), bodies[1]), 0.1, 1e-9);
+    EXPECT_TRUE(footing_of(bodies, {false, false}, bodies[1]).empty());
+}
+
+TEST(WidenFloor, ReachesUnderWhatBeginsAtItsHeight) {
+    ConvexPart floor = block({0, 0, -0.05}, {1, 1, 0});
+    const std::vector<Body> bodies{body_of(block({2, 0, 0.02}, {3, 1, 1}), 1, {}),
+                                   body_of(block({5, 0, 1}, {6, 1, 2}), 1, {})};
+    widen_floor(floor, bodies, 0.02);
+    EXPECT_NEAR(floor.high[0], 3, 1e-9);
+    EXPECT_NEAR(floor.high[2], 0, 1e-9);
+    EXPECT_NEAR(floor.volume_m3, 3 * 0.05, 1e-9);
+}
+
+TEST(Separate, WhatLiesWithinAnotherOnesHullIsCarvedOutOfIt) {
+    // A bench's hull, which holds what stands under its seat.
+    Body bench = body_of(block({0, 0, 0}, {2, 1, 1}), 1, {});
+    std::erase_if(bench.parts[0].solid,
+                  [](const Vec3& p) { return p[2] < 0.9 && p[0] > 0.3 && p[0] < 1.7; });
+    std::vector<Body> bodies{bench, body_of(block({0.8, 0.3, 0}, {1.2, 0.7, 0.5}), 1, {})};
+    for (Body& body : bodies) body.solid_m3 = body.parts[0].volume_m3;
+    separate(bodies);
+    EXPECT_LT(deepest_overlap_m(bodies), 1e-6);
+    EXPECT_NEAR(bodies[1].parts[0].volume_m3, 0.4 * 0.4 * 0.5, 1e-4);
+    EXPECT_GE(bodies[0].parts.size(), 2u);
 }
 
 TEST(FlattenFeet, ATiltedFootBecomesFlat) {

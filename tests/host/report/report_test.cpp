@@ -11,6 +11,7 @@
 #include <sstream>
 #include <string>
 
+#include "report/verified.h"
 #include "synthetic_scene.h"
 #include "topple/error.h"
 
@@ -141,6 +142,45 @@ TEST_F(Report, stays_below_15_megabytes) {
     p.object.resize(2000000, 0);
     write_report(folder_ / "report.html", scene);
     EXPECT_LT(fs::file_size(folder_ / "report.html"), 15000000u);
+}
+
+TEST_F(Report, takes_what_a_simulator_found) {
+    const fs::path file = folder_ / "report.html";
+    write_report(file, test::SyntheticScene(0.1).make());
+    const std::string before = read(file);
+    EXPECT_NE(before.find("id=\"verified\">null</script>"), std::string::npos);
+    EXPECT_TRUE(add_verification(file, R"({"simulator": "</script><b>"})"));
+    EXPECT_NE(read(file).find(R"(id="verified">{"simulator": "\u003c/script>\u003cb>"}</script>)"),
+              std::string::npos);
+    // A second time it is replaced.
+    EXPECT_TRUE(add_verification(file, "null"));
+    EXPECT_EQ(read(file), before);
+    std::ofstream(folder_ / "old.html") << "<html></html>";
+    EXPECT_FALSE(add_verification(folder_ / "old.html", "null"));
+    EXPECT_THROW(add_verification(folder_ / "missing.html", "null"), Error);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 2);
+}
+
+TEST_F(Report, shows_what_a_simulator_found) {
+    NEEDS_BROWSER();
+    const fs::path file = folder_ / "report.html";
+    write_report(file, test::SyntheticScene(0.1).make());
+    add_verification(file, R"({"simulator": "MuJoCo 2.2.2", "simulated_s": 5, "cut_short": "",
+        "objects": [{"id": 1, "free": true, "stays": true}, {"id": 2, "free": false},
+                    {"id": 3, "free": true, "stays": false, "moved_m": 0.4, "turned_deg": 80}]})");
+    const Opened page = open(file, R"(
+        const out = document.body.dataset, words = () => document.getElementById('detail').textContent;
+        out.line = document.getElementById('verification').textContent;
+        toppleChoose(3);
+        out.moved = words().includes('Moved in MuJoCo 2.2.2: by 40 cm, turned by 80');
+        toppleChoose(1);
+        out.stayed = words().includes('Stayed in MuJoCo 2.2.2.');
+    )");
+    EXPECT_EQ(text(page.data("line")),
+              "In MuJoCo 2.2.2, 1 of 2 objects stayed for 5\u00a0s; this moved: object 3.");
+    EXPECT_EQ(page.data("moved"), "true");
+    EXPECT_EQ(page.data("stayed"), "true");
+    EXPECT_EQ(page.data("error"), "(none)");
 }
 
 TEST_F(Report, can_not_be_written) {

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/read_sim_scene.h"
+#include "pipeline/make_sim_scene.h"
 
 #include <future>
 
 #include "core/thread_pool.h"
 #include "export/visual.h"
-#include "io/points_colours.h"
-#include "io/scene_json.h"
-#include "io/solids_file.h"
 #include "pipeline/object_surfaces.h"
-#include "topple/error.h"
 
 namespace topple {
 namespace {
@@ -39,20 +35,6 @@ exports::SimScene make_sim_scene(const Scene& scene, const SolidScene& solids,
     exports::SimScene out = exports::sim_scene(scene, solids, threads);
     exports::add_visuals(out, scene, surfaces.get());
     return out;
-}
-
-exports::SimScene read_sim_scene(const std::filesystem::path& parsed,
-                                 const SimSceneOptions& options) {
-    Scene scene = io::read_scene_json(parsed / "scene.json");
-    const std::filesystem::path solids = parsed / "solids.bin";
-    if (!std::filesystem::exists(solids)) {
-        throw Error(ErrorKind::input,
-                    solids.string() +
-                        ": is missing; parse the scan again (a cloud that was parsed in blocks "
-                        "has none and can't be exported)");
-    }
-    if (options.visuals) scene.points = io::read_points_colours(parsed / "points.ply");
-    return make_sim_scene(scene, *io::read_solids(solids), options);
 }
 
 }  // namespace topple

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
+
+#include "mujoco/settled.h"
 
 // A scene that MuJoCo runs. Its header is kept out of all others: it includes a "math.h" by that
 // name, which the kernels have, too.
@@ -22,12 +25,19 @@ class Running {
 
     double deepest_m();  // overlap at the start
 
-    // How many of the free bodies stay within a centimetre and two degrees for so long, and how
-    // many were ever faster than a metre a second.
+    // Runs for so long, or until that took `patience_s`. Does not return where MuJoCo finds that it
+    // can't go on: that ends the process, after `on_error` was called where it is set.
+    Settled settle(double seconds, double patience_s = std::numeric_limits<double>::infinity());
+
+    // How many of the free bodies stay for so long, and how many were ever faster than a metre a
+    // second.
     struct Stay {
         int free = 0, stay = 0, launched = 0;
     };
     Stay run(double seconds);
+
+    using OnError = void (*)(const char* what);
+    static void set_on_error(OnError on_error);
 
   private:
     struct State;

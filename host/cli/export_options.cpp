@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "cli/export_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "export/formats.h"
+
+namespace topple::cli {
+
+void add_export_options(CLI::App& app, ExportOptions& options) {
+    for (const exports::Format& format : exports::formats()) {
+        app.add_option_function<std::string>(
+            std::string("--") + format.name,
+            [&options, path = format.path](const std::string& value) { options.*path = value; },
+            format.help);
+    }
+    app.add_flag(
+        "--no-visuals", [&options](std::int64_t) { options.visuals = false; },
+        "Only what collides, not what is seen");
+}
+
+bool wants_export(const ExportOptions& options) {
+    return std::ranges::any_of(exports::formats(), [&](const exports::Format& format) {
+        return !(options.*format.path).empty();
+    });
+}
+
+void print_export(const ExportSummary& summary) {
+    std::uint64_t free = 0, pads = 0, held = 0, struts = 0, parts = 0;
+    double furthest_m = 0;
+    for (const ExportedBody& body : summary.bodies) {
+        parts += body.parts;
+        free += !body.fixed;
+        pads += body.on_pad;
+        held += body.held;
+        struts += body.struts;
+        furthest_m = std::max(furthest_m, std::abs(body.moved_m[2]));
+    }
+    std::printf(
+        "%llu free bodies, %llu convex parts in all, deepest overlap %.3f mm; let down by at most "
+        "%.1f mm\n",
+        static_cast<unsigned long long>(free), static_cast<unsigned long long>(parts),
+        1e3 * summary.deepest_overlap_m, 1e3 * furthest_m);
+    if (pads + held + struts > 0)
+        std::printf(
+            "What carries them was not seen: %llu stand on pads, %llu are held where they are; "
+            "%llu "
+            "struts stand for feet\n",
+            static_cast<unsigned long long>(pads), static_cast<unsigned long long>(held),
+            static_cast<unsigned long long>(struts));
+}
+
+}  // namespace topple::cli

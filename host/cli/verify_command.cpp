@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include <stdlib.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "io/output_folder.h"
+#include "io/replace_file.h"
+#include "io/scene_json.h"
+#include "io/text.h"
+#include "mujoco/settle_apart.h"
+#include "mujoco/verdict.h"
+#include "report/verified.h"
+#include "topple/export.h"
+
+namespace topple::cli {
+namespace {
+
+struct VerifyArguments {
+    std::string parsed;
+    double seconds = 5, time_limit_s = 600;
+    unsigned threads = 0;
+    bool json = false;
+};
+
+// A folder for what is needed meanwhile.
+class Scratch {
+  public:
+    Scratch() {
+        std::error_code error;
+        std::string name =
+            (std::filesystem::temp_directory_path(error) / "topple-verify-XXXXXX").string();
+        if (error || !::mkdtemp(name.data()))
+            throw Error(ErrorKind::input, name +
+                                              ": no such temporary folder can be made; name "
+                                              "another place in TMPDIR");
+        folder_ = name;
+    }
+    Scratch(const Scratch&) = delete;
+    Scratch& operator=(const Scratch&) = delete;
+    ~Scratch() {
+        std::error_code error;
+        std::filesystem::remove_all(folder_, error);
+    }
+    const std::filesystem::path& folder() const { return folder_; }
+
+  private:
+    std::filesystem::path folder_;
+};
+
+mujoco::Verdict verify(const VerifyArguments& a, Progress& progress) {
+    // What is missing is told before the work.
+    io::check_output(a.parsed);
+    const Scene scene = io::read_scene_json(std::filesystem::path(a.parsed) / "scene.json");
+    mujoco::find_simulator();
+    const Scratch scratch;
+    ExportOptions options;
+    options.mjcf = scratch.folder();
+    options.threads = a.threads;
+    options.cancelled = [] { return interrupted() != 0; };
+    progress("export", 0);
+    const ExportSummary exported = export_output(a.parsed, options);
+    progress("MuJoCo", 0);
+    mujoco::Settled run =
+        mujoco::settle_apart(scratch.folder() / "scene.xml", a.seconds, a.time_limit_s, [] {
+            if (interrupted() != 0) throw Error(ErrorKind::input, "cancelled");
+        });
+    return mujoco::judge(scene, exported, std::move(run), a.seconds);
+}
+
+// Into the folder of outputs, and its report where there is one that has a place for it.
+void keep(const std::filesystem::path& folder, const std::string& json) {
+    io::replace_file(folder / "verify.json", json);
+    const std::filesystem::path report = folder / "report.html";
+    std::error_code error;
+    if (std::filesystem::exists(report, error) && !report::add_verification(report, json))
+        std::fprintf(stderr, "%s: has no place for it; parse the scan again\n",
+                     io::path_text(report).c_str());
+}
+
+void check(const VerifyArguments& a) {
+    for (const auto& [name, value] :
+         {std::pair{"--seconds", a.seconds}, std::pair{"--time-limit", a.time_limit_s}}) {
+        if (!(value > 0) || value > 86400)
+            throw Error(ErrorKind::usage, std::string(name) +
+                                              ": expected seconds above 0, a day's "
+                                              "at most");
+    }
+}
+
+int run_verify(const VerifyArguments& a) {
+    check(a);
+    catch_interrupts();
+    Progress progress(a.json);
+    try {
+        const mujoco::Verdict verdict = verify(a, progress);
+        const std::string json = mujoco::verdict_json(verdict);
+        keep(a.parsed, json);
+        progress.finish();
+        std::fputs(a.json ? json.c_str() : mujoco::verdict_text(verdict).c_str(), stdout);
+    } catch (...) {
+        progress.finish();
+        if (interrupted() != 0) return interrupted_exit();
+        throw;
+    }
+    return 0;
+}
+
+}  // namespace
+
+Command add_verify(CLI::App& app) {
+    auto a = std::make_shared<VerifyArguments>();
+    app.add_option("OUT", a->parsed, "Output folder of a parse")->required();
+    app.add_option("--seconds", a->seconds, "How long all objects are left to themselves")
+        ->capture_default_str();
+    app.add_option("--time-limit", a->time_limit_s,
+                   "Seconds that this may take; what was simulated by then is told")
+        ->capture_default_str();
+    app.add_option("--threads", a->threads, "Threads; else all cores")->check(whole_number);
+    app.add_flag("--json", a->json, "Print verify.json, which is written into OUT, not a table");
+    return [a] { return run_verify(*a); };
+}
+
+}  // namespace topple::cli

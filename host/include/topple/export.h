@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "topple/error.h"
+#include "topple/input.h"
+#include "topple/parse.h"
+
+// Scenes for simulators: each object a rigid body of convex parts. docs/export.md says how they are
+// made, and how well they stand. Their frame has z up, in metres: that which
+// Scene::manhattan_from_input leads to.
+namespace topple {
+
+struct ExportOptions {
+    // What to write, by format, one at least: the folders for scene.xml (MuJoCo's MJCF), scene.urdf
+    // and scene.sdf, and the file, NAME.usda.
+    std::filesystem::path mjcf, urdf, sdf, usd;
+    bool visuals = true;   // what bodies look like, in the scan's colours, beside what collides
+    unsigned threads = 0;  // 0: all cores; the result is the same
+    // Polled between steps, which take seconds each; true ends the export with Error(input)
+    // "cancelled", before it has written anything.
+    std::function<bool()> cancelled;
+};
+
+// What became of an object, or a pad that was made to carry one.
+struct ExportedBody {
+    std::string name;          // in the exports: "object_3", "pad_28"
+    std::int32_t object = -1;  // id; -1 for a pad
+    bool fixed = false;  // part of the world, which nothing moves: the ground, pads, what is held
+    // What carries it was not seen: it stands on a pad made for it, or is held where it is.
+    bool on_pad = false, held = false;
+    std::uint64_t struts = 0;  // of its parts: in the place of feet that were not seen
+    Vec3 moved_m{};            // by which it was let down, so that it touches what carries it
+    std::uint64_t parts = 0;   // convex ones; a body without any is in no export
+    double mass_kg = 0;        // 0 for a pad
+    double solid_m3 = 0;       // of the object as it was parsed
+    double parts_m3 = 0;       // of its parts: more than solid_m3 by what their hulls add
+    double lost_m3 = 0;        // cut off its parts, so that no two bodies overlap
+};
+
+struct ExportSummary {
+    std::vector<ExportedBody> bodies;  // those of the objects by id, then pads
+    double deepest_overlap_m = 0;      // of any two bodies
+};
+
+// Writes the scene in each format that the options name, and what became of each body as
+// bodies.json in the same folder. Folders are made where they are missing; earlier exports are
+// replaced. Throws Error: usage (no format is named), input (a file there is no export of topple,
+// or can't be written: the path and why; the cloud was parsed in blocks, so that there are no
+// solids).
+ExportSummary export_scene(const ParseResult& result, const ExportOptions& options);
+
+// The same of a folder that write_outputs() has made: of its scene.json and solids.bin. Throws
+// Error(input), too, where they are missing or damaged.
+ExportSummary export_output(const std::filesystem::path& output, const ExportOptions& options);
+
+// Throws what can be known before a long parse: that no format is named, or that a file of another
+// program is where an export shall be written.
+void check_export(const ExportOptions& options);
+
+}  // namespace topple

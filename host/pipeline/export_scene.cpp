@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <string>
+#include <system_error>
+
+#include "export/bodies_json.h"
+#include "export/export_folder.h"
+#include "export/formats.h"
+#include "export/names.h"
+#include "export/separate.h"
+#include "export/sim_scene.h"
+#include "io/output_folder.h"
+#include "io/points_colours.h"
+#include "io/replace_file.h"
+#include "io/scene_json.h"
+#include "io/solids_file.h"
+#include "io/text.h"
+#include "pipeline/make_sim_scene.h"
+#include "topple/export.h"
+
+namespace topple {
+namespace {
+
+void stop_where_cancelled(const ExportOptions& options) {
+    if (options.cancelled && options.cancelled()) throw Error(ErrorKind::input, "cancelled");
+}
+
+ExportSummary summary_of(const exports::SimScene& scene) {
+    ExportSummary out;
+    for (std::size_t n = 0; n < scene.bodies.size(); ++n) {
+        const exports::Body& from = scene.bodies[n];
+        ExportedBody to;
+        to.name = exports::body_name(from, n);
+        to.object = from.object;
+        to.fixed = from.fixed;
+        to.on_pad = from.on_pad;
+        to.held = from.held;
+        to.struts = static_cast<std::uint64_t>(from.struts);
+        to.moved_m = from.moved_m;
+        to.parts = from.parts.size();
+        to.mass_kg = from.mass_kg;
+        to.solid_m3 = from.solid_m3;
+        for (const exports::ConvexPart& part : from.parts) to.parts_m3 += part.volume_m3;
+        to.lost_m3 = from.lost_m3;
+        out.bodies.push_back(std::move(to));
+    }
+    out.deepest_overlap_m = exports::deepest_overlap_m(scene.bodies);
+    return out;
+}
+
+ExportSummary write_formats(const Scene& scene, const SolidScene& solids,
+                            const ExportOptions& options) {
+    const exports::SimScene made =
+        make_sim_scene(scene, solids, {.visuals = options.visuals, .threads = options.threads});
+    stop_where_cancelled(options);
+    const ExportSummary summary = summary_of(made);
+    const std::string bodies = exports::bodies_json(summary);
+    stop_where_cancelled(options);
+    for (const exports::Format& format : exports::formats()) {
+        const std::filesystem::path& path = options.*format.path;
+        if (path.empty()) continue;
+        format.write(path, made);
+        io::replace_file(exports::bodies_file(format, path), bodies);
+    }
+    return summary;
+}
+
+// What a scene.json must keep to, so that exports can be made of it: a file says anything.
+void check_scene(const Scene& scene, const std::filesystem::path& file) {
+    const auto object = [&](std::int32_t id) {
+        return id >= 0 && static_cast<std::size_t>(id) < scene.objects.size();
+    };
+    const auto need = [&](bool holds, const std::string& what) {
+        if (!holds) io::fail(file, what + "; the file is damaged: parse the scan again");
+    };
+    for (std::size_t n = 0; n < scene.objects.size(); ++n) {
+        const Object& o = scene.objects[n];
+        const std::string name = "object " + std::to_string(n);
+        need(o.id == static_cast<std::int32_t>(n), name + " has another id");
+        for (const std::int32_t p : o.primitives)
+            need(p >= 0 && static_cast<std::size_t>(p) < scene.primitives.size(),
+                 name + " names a primitive that there is not");
+        bool known = o.grounded || (o.mass_kg > 0 && std::isfinite(o.mass_kg));
+        for (const double x : o.center_of_mass_m) known = known && std::isfinite(x);
+        for (const double x : o.inertia_kg_m2) known = known && (o.grounded || std::isfinite(x));
+        need(known, name + " has no mass, centre of mass or inertia");
+    }
+    for (const Primitive& p : scene.primitives)
+        need(p.object == -1 || object(p.object),
+             "primitive " + std::to_string(p.id) + " names an object that there is not");
+    for (const Support& s : scene.supports)
+        need(object(s.supporter) && object(s.supported),
+             "a support names an object that there is not");
+    for (const double x : scene.manhattan_from_input)
+        need(std::isfinite(x), "manhattan_from_input holds what is no number");
+}
+
+}  // namespace
+
+void check_export(const ExportOptions& options) {
+    bool any = false;
+    std::string known;
+    for (const exports::Format& format : exports::formats()) {
+        if (!known.empty()) known += ", ";
+        known += std::string("--") + format.name;
+        const std::filesystem::path& path = options.*format.path;
+        if (path.empty()) continue;
+        any = true;
+        exports::check_ours(exports::scene_file(format, path));
+        io::check_own_file(exports::bodies_file(format, path), exports::bodies_schema);
+    }
+    if (!any) throw Error(ErrorKind::usage, "export: say what to write, and where to: " + known);
+}
+
+ExportSummary export_scene(const ParseResult& result, const ExportOptions& options) {
+    check_export(options);
+    if (!result.solids)
+        throw Error(
+            ErrorKind::input,
+            result.scene.source +
+                ": was parsed in blocks, of which no solids are kept: it can't be exported");
+    return write_formats(result.scene, *result.solids, options);
+}
+
+ExportSummary export_output(const std::filesystem::path& output, const ExportOptions& options) {
+    check_export(options);
+    io::check_output(output);
+    const std::filesystem::path file = output / "scene.json", solids = output / "solids.bin";
+    Scene scene = io::read_scene_json(file);
+    check_scene(scene, file);
+    std::error_code error;
+    if (!std::filesystem::exists(solids, error))
+        io::fail(solids,
+                 "is missing; parse the scan again (a cloud that was parsed in blocks has none and "
+                 "can't be exported)");
+    if (options.visuals) scene.points = io::read_points_colours(output / "points.ply");
+    return write_formats(scene, *io::read_solids(solids), options);
+}
+
+}  // namespace topple

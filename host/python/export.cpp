@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "topple/export.h"
+
+#include <map>
+
+#include "busy.h"
+#include "python.h"
+
+namespace topple::python {
+namespace {
+
+py::tuple body_tuple(const ExportedBody& b) {
+    return py::make_tuple(b.name, b.object, b.fixed, b.on_pad, b.held, b.struts, b.moved_m, b.parts,
+                          b.mass_kg, b.solid_m3, b.parts_m3, b.lost_m3);
+}
+
+}  // namespace
+
+void bind_export(py::module_& module) {
+    // paths: by format. The bodies come in the order of ExportedBody's fields.
+    module.def(
+        "export_scene", [](const Parsed& parsed, const std::map<std::string, std::string>& paths,
+                           bool visuals, unsigned threads) {
+            static const std::map<std::string, std::filesystem::path ExportOptions::*> formats{
+                {"mjcf", &ExportOptions::mjcf},
+                {"urdf", &ExportOptions::urdf},
+                {"sdf", &ExportOptions::sdf},
+                {"usd", &ExportOptions::usd}};
+            ExportOptions options;
+            for (const auto& [format, path] : paths) options.*formats.at(format) = path;
+            options.visuals = visuals;
+            options.threads = threads;
+            options.cancelled = Busy::must_stop;
+            ExportSummary summary;
+            {
+                const Busy busy;
+                const py::gil_scoped_release release;
+                summary = export_scene(parsed.result, options);
+            }
+            py::list bodies;
+            for (const ExportedBody& body : summary.bodies) bodies.append(body_tuple(body));
+            return py::make_tuple(bodies, summary.deepest_overlap_m);
+        });
+}
+
+}  // namespace topple::python

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include "core/json.h"
+#include "export/bodies_json.h"
+#include "export/formats.h"
+#include "host/export/blocks.h"
+#include "host/io/files.h"
+#include "io/scene_json.h"
+#include "io/solids_file.h"
+#include "topple/export.h"
+
+namespace topple::exports::test {
+namespace {
+
+// A crate of 20 x 20 x 30 cm on a slab.
+class ExportScene : public topple::test::Files {
+  protected:
+    ExportScene() {
+        result_.solids = std::make_shared<const SolidScene>(
+            solids_of({{{0, 0, -10}, {100, 100, 0}, 0}, {{40, 40, 0}, {60, 60, 30}, 1}}, 2));
+        Scene& scene = result_.scene;
+        scene.source = "crate";
+        for (unsigned n = 0; n < 16; n += 5) scene.manhattan_from_input[n] = 1;
+        for (std::int32_t id = 0; id < 2; ++id) {
+            Primitive primitive;
+            primitive.id = primitive.object = id;
+            primitive.volume_m3 = id == 0 ? 0.1 : 0.012;
+            scene.primitives.push_back(primitive);
+            Object object;
+            object.id = id;
+            object.primitives = {id};
+            object.grounded = id == 0;
+            object.mass_kg = 700 * primitive.volume_m3;
+            object.center_of_mass_m = {0.5, 0.5, id == 0 ? -0.05 : 0.15};
+            for (unsigned a = 0; a < 9; a += 4) object.inertia_kg_m2[a] = 0.1;
+            scene.objects.push_back(object);
+        }
+        scene.supports.push_back({0, 1, 0.04, 1});
+    }
+
+    // As an output's folder holds it, which is what is read of it.
+    void put_output(const Scene& scene) const {
+        std::filesystem::create_directories(path("out"));
+        io::write_scene_json(path("out/scene.json"), scene);
+        io::write_solids(path("out/solids.bin"), *result_.solids);
+    }
+    ExportOptions to(const std::string& name) const {
+        ExportOptions options;
+        options.mjcf = path(name);
+        return options;
+    }
+    std::string refused(const ExportOptions& options, ErrorKind kind) const {
+        try {
+            export_output(path("out"), options);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), kind);
+            return error.what();
+        }
+        ADD_FAILURE() << "was not refused";
+        return "";
+    }
+
+    ParseResult result_;
+};
+
+TEST_F(ExportScene, SaysWhatBecameOfEachBody) {
+    const ExportSummary made = export_scene(result_, to("made"));
+    ASSERT_EQ(made.bodies.size(), 2u);
+    const ExportedBody& crate = made.bodies[1];
+    EXPECT_EQ(crate.name, "object_1");
+    EXPECT_EQ(crate.object, 1);
+    EXPECT_FALSE(crate.fixed);
+    EXPECT_TRUE(made.bodies[0].fixed);
+    EXPECT_EQ(crate.parts, 1u);
+    EXPECT_NEAR(crate.mass_kg, 8.4, 1e-9);
+    EXPECT_NEAR(crate.solid_m3, 0.012, 1e-9);
+    EXPECT_NEAR(crate.parts_m3, 0.012, 1e-6);
+    EXPECT_LT(made.deepest_overlap_m, 1e-6);
+
+    const auto json = Json::parse(topple::test::bytes_of_file(path("made/bodies.json")));
+    EXPECT_EQ(json.at("schema"), "topple.bodies/1");
+    EXPECT_EQ(json.at("bodies").at(1).at("name"), "object_1");
+    EXPECT_NEAR(json.at("bodies").at(1).at("excess_share").get<double>(), 0, 1e-3);
+}
+
+TEST_F(ExportScene, OfAFolderIsTheSameAsOfTheResult) {
+    put_output(result_.scene);
+    export_scene(result_, to("direct"));
+    ExportOptions options = to("read");
+    options.threads = 1;
+    export_output(path("out"), options);
+    for (const char* name : {"/scene.xml", "/bodies.json"})
+        EXPECT_EQ(topple::test::bytes_of_file(path("direct") += name),
+                  topple::test::bytes_of_file(path("read") += name));
+    // Over an earlier one.
+    EXPECT_EQ(export_output(path("out"), options).bodies.size(), 2u);
+}
+
+TEST_F(ExportScene, WithoutAFormatOrSolidsIsRefused) {
+    EXPECT_THROW(export_scene(result_, {}), Error);
+    result_.solids = nullptr;
+    try {
+        export_scene(result_, to("made"));
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("crate: was parsed in blocks"), std::string::npos);
+    }
+    EXPECT_FALSE(std::filesystem::exists(path("made")));
+}
+
+TEST_F(ExportScene, AnothersFilesStay) {
+    put_output(result_.scene);
+    write("a/scene.xml", "<mujoco/>");
+    write("b/bodies.json", "{}");
+    EXPECT_NE(refused(to("a"), ErrorKind::input).find("a/scene.xml: exists"), std::string::npos);
+    EXPECT_NE(refused(to("b"), ErrorKind::input).find("b/bodies.json: exists"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(path("b/scene.xml")));
+    write("c", "no folder");
+    EXPECT_NE(refused(to("c"), ErrorKind::input).find("c: can't be made"), std::string::npos);
+}
+
+TEST_F(ExportScene, OfADamagedFolderIsRefused) {
+    EXPECT_NE(refused(to("made"), ErrorKind::input).find("No such file"), std::string::npos);
+    std::filesystem::create_directories(path("out"));
+    EXPECT_NE(refused(to("made"), ErrorKind::input).find("no scene.json"), std::string::npos);
+    const auto damage = [&](auto change, const char* said) {
+        Scene scene = result_.scene;
+        change(scene);
+        put_output(scene);
+        EXPECT_NE(refused(to("made"), ErrorKind::input).find(said), std::string::npos) << said;
+    };
+    damage([](Scene& s) { s.supports[0].supporter = 7; }, "a support names an object");
+    damage([](Scene& s) { s.supports[0].supported = -1; }, "a support names an object");
+    damage([](Scene& s) { s.objects[1].primitives = {2}; }, "object 1 names a primitive");
+    damage([](Scene& s) { s.objects[1].id = 5; }, "object 1 has another id");
+    damage([](Scene& s) { s.primitives[1].object = 2; }, "primitive 1 names an object");
+    damage([](Scene& s) { s.objects[1].mass_kg = 0; }, "object 1 has no mass");
+    damage([](Scene& s) { s.objects[1].inertia_kg_m2[4] = NAN; }, "object 1 has no mass");
+    damage([](Scene& s) { s.manhattan_from_input[3] = NAN; }, "manhattan_from_input");
+    damage([](Scene& s) { s.primitives.pop_back(), s.objects.pop_back(), s.supports.clear(); },
+           "primitives");
+    put_output(result_.scene);
+    std::filesystem::resize_file(path("out/solids.bin"), 100);
+    EXPECT_NE(refused(to("made"), ErrorKind::input).find("solids.bin"), std::string::npos);
+    std::filesystem::remove(path("out/solids.bin"));
+    EXPECT_NE(refused(to("made"), ErrorKind::input).find("solids.bin: is missing"),
+              std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(path("made")));
+}
+
+TEST_F(ExportScene, EndsWhereItIsCancelled) {
+    ExportOptions options = to("made");
+    options.cancelled = [] { return true; };
+    EXPECT_THROW(export_scene(result_, options), Error);
+    EXPECT_FALSE(std::filesystem::exists(path("made")));
+}
+
+TEST(Formats, HaveFilesBesideThem) {
+    ExportOptions options;
+    for (const Format& format : formats()) {
+        set_path(options, format.name, "x.usda");
+        EXPECT_EQ(options.*format.path, "x.usda");
+    }
+    Format file{"usd", &ExportOptions::mjcf, nullptr, "", nullptr};
+    EXPECT_EQ(scene_file(file, "a/x.usda"), "a/x.usda");
+    EXPECT_EQ(bodies_file(file, "a/x.usda"), "a/x.bodies.json");
+    EXPECT_THROW(set_path(options, "obj", "x"), Error);
+    EXPECT_THROW(set_path(options, "mjcf", ""), Error);
+}
+
+}  // namespace
+}  // namespace topple::exports::test
