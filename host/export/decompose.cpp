@@ -38,15 +38,9 @@ struct Piece {
     std::int32_t id = 0;
     std::vector<std::size_t> cells;
     Voxel low{}, high{};
-    double hull = 0;          // its volume, in voxels
-    std::size_t surface = 0;  // cells that end a row along some axis
+    double hull = 0;    // its volume, in voxels
+    double excess = 0;  // what the hull holds beyond the solid, in voxels
     bool final = false;
-    // What the hull holds beyond the solid. The steps of slanted surfaces don't count: they are of
-    // the voxels, not of the solid.
-    double excess() const {
-        constexpr double steps = 0.7;
-        return hull - static_cast<double>(cells.size()) - steps * static_cast<double>(surface);
-    }
 };
 
 // Cuts are looked for on whole voxels, of which few are corners of a hull: those that end a row
@@ -100,17 +94,17 @@ class Decomposition {
     void run(double slight_m3) {
         const double h = solids_.voxel_m();
         const double slight = std::max(slight_voxels, slight_m3 / (h * h * h));
-        double excess = pieces_[0].excess();
+        double excess = pieces_[0].excess;
         const auto count = static_cast<double>(cells_.size());
         while (pieces_.size() < most_parts && excess > slight_share * count) {
             std::size_t worst = pieces_.size();
             for (std::size_t n = 0; n < pieces_.size(); ++n) {
                 if (!pieces_[n].final &&
-                    (worst == pieces_.size() || pieces_[n].excess() > pieces_[worst].excess()))
+                    (worst == pieces_.size() || pieces_[n].excess > pieces_[worst].excess))
                     worst = n;
             }
             if (worst == pieces_.size() ||
-                pieces_[worst].excess() <= std::max(slight, slight_piece * count))
+                pieces_[worst].excess <= std::max(slight, slight_piece * count))
                 return;
             const auto cut = best_cut(pieces_[worst]);
             if (!cut) {
@@ -120,7 +114,7 @@ class Decomposition {
             Piece below, above;
             for (const std::size_t n : pieces_[worst].cells)
                 (cells_[n].at[cut->axis] < cut->layer ? below : above).cells.push_back(n);
-            excess -= pieces_[worst].excess();
+            excess -= pieces_[worst].excess;
             below.id = pieces_[worst].id;
             bound(below);
             bound(above);
@@ -129,7 +123,7 @@ class Decomposition {
             mark(above);
             measure(below);
             measure(above);
-            excess += below.excess() + above.excess();
+            excess += below.excess + above.excess;
             pieces_[worst] = std::move(below);
             pieces_.push_back(std::move(above));
         }
@@ -329,18 +323,14 @@ class Decomposition {
     }
     void measure(Piece& piece) const {
         piece.hull = volume_of(corners(piece, 0, {})[0]);
-        piece.surface = static_cast<std::size_t>(std::ranges::count_if(
-            piece.cells, [&](std::size_t n) { return on_surface(piece.id, cells_[n].at); }));
-    }
-    bool on_surface(std::int32_t id, const Voxel& at) const {
-        for (std::size_t a = 0; a < 3; ++a) {
-            for (const std::int32_t step : {-1, 1}) {
-                Voxel next = at;
-                next[a] += step;
-                if (!is(id, next)) return true;
-            }
-        }
-        return false;
+        piece.excess = piece.hull - static_cast<double>(piece.cells.size());
+        if (piece.excess <= slight_voxels) return;
+        // Much of that may be the steps of slanted surfaces, which are of the voxels, not of the
+        // solid.
+        double solid_m3 = 0;
+        const auto part = solid_of(piece, solid_m3);
+        const double h = solids_.voxel_m();
+        piece.excess = part ? (part->volume_m3 - solid_m3) / (h * h * h) : 0;
     }
     static double volume_of(const std::vector<Vec3>& points) {
         const auto hull = hull_part(points);
@@ -390,7 +380,7 @@ class Decomposition {
     // The cut that leaves least. Where none takes much away, as of a box that is hollow, the one
     // that takes off most of what is convex.
     std::optional<Cut> best_cut(const Piece& piece) const {
-        double least = piece.hull - least_gain * piece.excess(), most = 0;
+        double least = piece.hull - least_gain * piece.excess, most = 0;
         std::optional<Cut> best, peel;
         for (std::size_t a = 0; a < 3; ++a) {
             const std::vector<std::size_t> at = places(piece, a);
