@@ -18,7 +18,7 @@ namespace {
 
 // A clump is convex enough where the hulls of its pieces are this share of it larger, and a piece
 // where its own is so many voxels larger, or this share of the clump.
-constexpr double slight_share = 0.15, slight_voxels = 16, slight_piece = 0.04;
+constexpr double slight_share = 0.15, slight_voxels = 24, slight_piece = 0.12;
 // A cut must take this share of a piece's excess away.
 constexpr double least_gain = 0.1;
 constexpr std::size_t most_parts = 8;
@@ -48,7 +48,7 @@ struct Piece {
 class Decomposition {
   public:
     Decomposition(const SolidScene& solids, std::vector<Cell> cells)
-        : solids_(solids), cells_(std::move(cells)) {
+        : solids_(solids), cells_(std::move(cells)), corner_(cells_.size()) {
         Piece all;
         for (std::size_t n = 0; n < cells_.size(); ++n) all.cells.push_back(n);
         bound(all);
@@ -155,7 +155,7 @@ class Decomposition {
             solid_m3 += cell.boundary == no_boundary
                             ? voxel_m3
                             : boundary.share[cell.boundary] * voxel_m3 / BoundaryCells::whole;
-            if (!between_alike(cell, piece.id)) add_corners(cell, points);
+            if (!between_alike(cell, piece.id)) add_corners(n, points);
         }
         constexpr double alike = 0.005;  // of a voxel
         auto part = hull_part(physics::welded(points, alike * h));
@@ -167,7 +167,7 @@ class Decomposition {
         constexpr std::size_t most = 100;
         const std::size_t step = (piece.cells.size() + most - 1) / most;
         for (std::size_t n = step / 2; n < piece.cells.size(); n += step)
-            add_corners(cells_[piece.cells[n]], part.solid);
+            add_corners(piece.cells[n], part.solid);
         part.solid_each_m3 = solid_m3 / static_cast<double>(part.solid.size());
     }
     // Cuts a hull along the flat patches beyond which hardly any of its solid lies: faces are as
@@ -214,16 +214,22 @@ class Decomposition {
         return {n, n[0] * patch.origin[0] + n[1] * patch.origin[1] + n[2] * patch.origin[2] -
                        patch.c[0] / length};
     }
-    void add_corners(const Cell& cell, std::vector<Vec3>& out) const {
+    void add_corners(std::size_t n, std::vector<Vec3>& out) const {
+        std::vector<Vec3>& corner = corner_[n];
+        if (corner.empty()) corner = corners_of(cells_[n]);
+        out.insert(out.end(), corner.begin(), corner.end());
+    }
+    std::vector<Vec3> corners_of(const Cell& cell) const {
         const double h = solids_.voxel_m();
         if (cell.boundary != no_boundary) {
             const auto corners = solids::corners_of(solids_.boundary(), cell.boundary, h);
-            out.insert(out.end(), corners.begin(), corners.end());
-            return;
+            return {corners.begin(), corners.end()};
         }
+        std::vector<Vec3> out;
         for (unsigned c = 0; c < 8; ++c)
             out.push_back({(cell.at[0] + int(c & 1)) * h, (cell.at[1] + int(c >> 1 & 1)) * h,
                            (cell.at[2] + int(c >> 2)) * h});
+        return out;
     }
     std::size_t place(const Voxel& at) const {
         return (static_cast<std::size_t>(at[0] - low_[0]) * size_[1] +
@@ -419,6 +425,7 @@ class Decomposition {
 
     const SolidScene& solids_;
     std::vector<Cell> cells_;
+    mutable std::vector<std::vector<Vec3>> corner_;  // of each cell's solid; found when first asked
     std::vector<Piece> pieces_;
     Voxel low_{};
     std::array<std::size_t, 3> size_{};

@@ -77,6 +77,7 @@ class Merging {
   private:
     void consider(std::size_t a, std::size_t b) {
         if (gone_[a] || gone_[b] || !near(parts_[a], parts_[b], touching_m_)) return;
+        if (apart(parts_[a], parts_[b]).gap_m > touching_m_) return;
         const auto both = joined(parts_[a], parts_[b]);
         if (!both) return;
         const double added = both->volume_m3 - parts_[a].volume_m3 - parts_[b].volume_m3;
