@@ -48,11 +48,16 @@ std::vector<Point2> common(std::vector<Point2> polygon, const std::vector<Point2
     return polygon;
 }
 
-// Where the plumb line through a point lies in a part.
-std::optional<Extent> plumb(const ConvexPart& part, const Point2& p) {
+// Where the plumb line through a point lies in a part, and how level the part is where it comes out
+// above: the cosine of the slope.
+struct Plumb {
+    double low = -physics::infinity, high = physics::infinity;
+    double level = 0;
+};
+std::optional<Plumb> plumb(const ConvexPart& part, const Point2& p) {
     if (p[0] < part.low[0] || p[0] > part.high[0] || p[1] < part.low[1] || p[1] > part.high[1])
         return std::nullopt;
-    Extent out{-physics::infinity, physics::infinity};
+    Plumb out;
     for (const HalfSpace& side : part.face) {
         const double flat = side.normal[0] * p[0] + side.normal[1] * p[1];
         if (std::abs(side.normal[2]) < 1e-9) {
@@ -61,7 +66,10 @@ std::optional<Extent> plumb(const ConvexPart& part, const Point2& p) {
         }
         const double z = (side.offset_m - flat) / side.normal[2];
         if (side.normal[2] > 0) {
-            out.high = std::min(out.high, z);
+            if (z < out.high) {
+                out.high = z;
+                out.level = side.normal[2];
+            }
         } else {
             out.low = std::max(out.low, z);
         }
@@ -103,7 +111,7 @@ double margin_m(const std::vector<Point2>& points, const Body& body) {
 
 std::optional<Gap> gap_below(const std::vector<Body>& bodies, const std::vector<bool>& stands,
                              const Body& body, const Point2& at) {
-    constexpr double same_m = 1e-6;
+    constexpr double same_m = 1e-5;
     Gap gap{physics::infinity, -physics::infinity};
     for (const ConvexPart& part : body.parts)
         if (const auto line = plumb(part, at)) gap.from_m = std::min(gap.from_m, line->low);
@@ -113,11 +121,10 @@ std::optional<Gap> gap_below(const std::vector<Body>& bodies, const std::vector<
         if (&bodies[n] == &body) continue;
         for (const ConvexPart& part : bodies[n].parts) {
             const auto line = plumb(part, at);
-            if (!line || line->low >= gap.from_m - same_m) continue;
-            const double top = std::min(line->high, gap.from_m);
-            if (top <= gap.to_m) continue;
-            gap.to_m = top;
-            carries = stands[n];
+            // What reaches higher is beside it.
+            if (!line || line->high > gap.from_m + same_m || line->high <= gap.to_m) continue;
+            gap.to_m = std::min(line->high, gap.from_m);
+            carries = stands[n] && line->level >= carries_cosine;
         }
     }
     if (!carries) return std::nullopt;

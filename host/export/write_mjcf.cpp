@@ -105,7 +105,7 @@ void write_mjcf(const std::filesystem::path& folder, const SimScene& scene) {
     if (visuals)
         append(out, attribute("meshdir", files.beside()), attribute("texturedir", files.beside()));
     append(out, "/>\n  <option", attribute("gravity", numbers({0, 0, -scene.gravity_m_s2})),
-           " timestep=\"0.002\" cone=\"elliptic\" impratio=\"10\">\n"
+           " timestep=\"0.004\" cone=\"elliptic\" impratio=\"10\">\n"
            "    <flag multiccd=\"enable\"/>\n"
            "  </option>\n"
            "  <visual>\n"
