@@ -186,6 +186,15 @@ std::optional<ConvexPart> cut(const ConvexPart& part, const HalfSpace& to) {
     return out;
 }
 
+ConvexPart shrunk(const ConvexPart& part, double by_m) {
+    std::optional<ConvexPart> out = part;
+    for (const HalfSpace& side : part.face) {
+        out = cut(*out, {side.normal, side.offset_m - by_m});
+        if (!out) return part;
+    }
+    return *std::move(out);
+}
+
 ConvexPart moved(ConvexPart part, const Vec3& by) {
     for (Vec3& c : part.corner) c = along(c, 1, by);
     for (Vec3& c : part.solid) c = along(c, 1, by);

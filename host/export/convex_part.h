@@ -43,6 +43,9 @@ std::optional<ConvexPart> reshaped(const ConvexPart& part, std::span<const Vec3>
 // volume.
 std::optional<ConvexPart> cut(const ConvexPart& part, const HalfSpace& to);
 
+// The part with each face moved inwards by so much; the part itself, where that leaves nothing.
+ConvexPart shrunk(const ConvexPart& part, double by_m);
+
 ConvexPart moved(ConvexPart part, const Vec3& by);
 
 // The interval of n . x over the part.

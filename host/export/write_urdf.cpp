@@ -6,18 +6,24 @@
 #include "export/export_folder.h"
 #include "export/text.h"
 #include "export/turned.h"
+#include "export/write_obj.h"
 #include "physics/vectors.h"
 
 namespace topple::exports {
 namespace {
 
-// Where a shape is, in the body's frame, and what it is. files: what leads to the meshes.
+// Bullet makes a hull so much thicker all around: its meshes are thinner by that.
+constexpr double bullet_margin_m = 0.001;
+constexpr std::string_view for_bullet = "_bullet";
+
+// Where a shape is, in the body's frame, and what it is. files: what leads to the meshes; kind: of
+// a hull's mesh, the end of its name.
 struct UrdfShape {
     const std::string& name;
     const Vec3& center_m;
-    std::string_view files;
+    std::string_view files, kind;
 
-    std::string operator()(std::monostate) const { return mesh(name); }
+    std::string operator()(std::monostate) const { return mesh(joined(name, kind)); }
     std::string operator()(const Box& box) const {
         const Vec3& h = box.half_m;
         return joined(origin(box.center, roll_pitch_yaw(box.axis)), "<geometry><box",
@@ -54,18 +60,19 @@ std::string urdf_inertial(double mass_kg, const Mat3& i) {
 }
 
 // <contact> is Bullet's; and what has no mass is fixed there.
-std::string urdf_link(const NamedBody& named, double friction, std::string_view files) {
+std::string urdf_link(const NamedBody& named, double friction, std::string_view files,
+                      std::string_view kind) {
     const Body& body = *named.body;
     std::string out = joined("  <link", attribute("name", named.name), ">\n");
     append(out, "    <contact><lateral_friction", attribute("value", number(friction)),
            "/></contact>\n",
            body.fixed ? urdf_inertial(0, {}) : urdf_inertial(body.mass_kg, body.inertia_kg_m2));
     if (!body.visual.triangle.empty())
-        append(out, "    <visual>", UrdfShape{named.name, body.center_m, files}.mesh(named.name),
-               "</visual>\n");
+        append(out, "    <visual>",
+               UrdfShape{named.name, body.center_m, files, kind}.mesh(named.name), "</visual>\n");
     for (const NamedPart& each : named.parts)
         append(out, "    <collision", attribute("name", each.name), ">",
-               std::visit(UrdfShape{each.name, body.center_m, files}, each.shape),
+               std::visit(UrdfShape{each.name, body.center_m, files, kind}, each.shape),
                "</collision>\n");
     out += "  </link>\n";
     return out;
@@ -82,6 +89,11 @@ void write_urdf(const std::filesystem::path& folder, const SimScene& scene) {
     ExportFolder files(folder, "urdf", "scene.urdf");
     files.add_visuals(bodies);
     files.add_parts(bodies);
+    for (const NamedBody& named : bodies)
+        for (const NamedPart& each : named.parts)
+            if (is_mesh(each.shape))
+                files.add(joined(each.name, for_bullet, ".obj"),
+                          part_obj(shrunk(*each.part, bullet_margin_m), named.body->center_m));
     // MuJoCo would leave folders out of the names of meshes.
     std::string all =
         "  <mujoco>\n    <compiler strippath=\"false\" discardvisual=\"false\" "
@@ -91,13 +103,13 @@ void write_urdf(const std::filesystem::path& folder, const SimScene& scene) {
     const std::string below = joined(files.beside(), "/");
     for (const NamedBody& named : bodies) {
         const bool fixed = named.body->fixed;
-        append(all, urdf_link(named, scene.friction, below), "  <joint",
+        append(all, urdf_link(named, scene.friction, below, ""), "  <joint",
                attribute("name", joined(named.name, "_joint")),
                attribute("type", fixed ? "fixed" : "floating"), "><parent link=\"world\"/><child",
                attribute("link", named.name), "/><origin",
                attribute("xyz", text(named.body->center_m)), " rpy=\"0 0 0\"/></joint>\n");
         files.add(joined(named.name, ".urdf"),
-                  robot(named.name, urdf_link(named, scene.friction, "")));
+                  robot(named.name, urdf_link(named, scene.friction, "", for_bullet)));
     }
     files.commit(robot("scan", all));
 }

@@ -10,7 +10,7 @@ from expected import Expected, matrix, near, near_inertia, needed
 pybullet = needed('pybullet')
 np = needed('numpy')
 
-# Bullet makes hulls so much thicker; two touch before they do.
+# Bullet makes hulls so much thicker, but their corners round: its meshes are thinner by that.
 MARGIN_M = 0.001
 
 
@@ -83,8 +83,5 @@ for _ in range(240):
     pybullet.stepSimulation()
 for name, body in expected.bodies.items():
     place = np.array(pybullet.getBasePositionAndOrientation(numbers[name])[0])
-    # A pile of two rises by four margins; what touches several things is pushed aside by as much from each.
-    moved = place - body['center']
-    near(f'{name} has risen after a second', moved[2], 0, 0.003 + 4 * MARGIN_M)
-    near(f'{name} has gone aside after a second', moved[:2], [0, 0], 0.02)
+    near(f'{name} after a second', place - body['center'], [0, 0, 0], 0.003)
 print('pybullet has read all')
