@@ -56,6 +56,12 @@ TEST(ConvexPart, ManyCutsAreTheHullOfWhatTheyLeave) {
     }
 }
 
+TEST(ConvexPart, ShrinksOnAllSidesUnlessNothingIsLeft) {
+    const ConvexPart part = block({0, 0, 0}, {1, 2, 3});
+    EXPECT_NEAR(shrunk(part, 0.1).volume_m3, 0.8 * 1.8 * 2.8, 1e-9);
+    EXPECT_EQ(shrunk(part, 0.6).volume_m3, part.volume_m3);
+}
+
 TEST(ConvexPart, WithoutVolumeIsNone) {
     EXPECT_FALSE(hull_part(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
     EXPECT_FALSE(hull_part(std::vector<Vec3>{}));
