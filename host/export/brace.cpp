@@ -30,6 +30,15 @@ std::optional<ConvexPart> bar(const Vec3& to, double z, double half_m) {
     return hull_part(points);
 }
 
+// Whether a part overlaps one of any body but its own; own: null where it is in none.
+bool meets(const std::vector<Body>& bodies, const Body* own, const ConvexPart& part) {
+    return std::ranges::any_of(bodies, [&](const Body& other) {
+        return &other != own && std::ranges::any_of(other.parts, [&](const ConvexPart& stays) {
+            return near(part, stays, 0) && overlap(part, stays);
+        });
+    });
+}
+
 struct Strut {
     ConvexPart part;
     double length_m = 0;
@@ -48,12 +57,7 @@ std::optional<Strut> strut_at(const std::vector<Body>& bodies, const std::vector
                 foot = std::max(foot, gap->to_m);
     if (foot > middle->from_m) return std::nullopt;
     auto strut = bar({at[0], at[1], middle->from_m + into_m}, foot, half_m);
-    if (!strut) return std::nullopt;
-    for (const Body& other : bodies) {
-        if (&other == &body) continue;
-        for (const ConvexPart& stays : other.parts)
-            if (near(*strut, stays, 0) && overlap(*strut, stays)) return std::nullopt;
-    }
+    if (!strut || meets(bodies, &body, *strut)) return std::nullopt;
     return Strut{*std::move(strut), middle->from_m - foot};
 }
 
@@ -171,14 +175,6 @@ Body pad_under(const Body& body, double within_m) {
     return pad;
 }
 
-bool clear(const std::vector<Body>& bodies, const Body& body) {
-    for (const Body& other : bodies)
-        for (const ConvexPart& stays : other.parts)
-            for (const ConvexPart& part : body.parts)
-                if (near(part, stays, 0) && overlap(part, stays)) return false;
-    return true;
-}
-
 }  // namespace
 
 void brace(std::vector<Body>& bodies, double thick_m) {
@@ -195,7 +191,7 @@ void brace(std::vector<Body>& bodies, double thick_m) {
             std::vector<Point2> points;
             for (const ConvexPart& part : pad.parts)
                 for (const Vec3& c : part.corner) points.push_back({c[0], c[1]});
-            if (margin_m(points, body) > 0 && clear(bodies, pad)) {
+            if (margin_m(points, body) > 0 && !meets(bodies, nullptr, pad.parts[0])) {
                 body.on_pad = true;
                 body.carried_by = {static_cast<std::int32_t>(bodies.size())};
                 bodies.push_back(std::move(pad));

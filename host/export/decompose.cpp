@@ -34,12 +34,19 @@ struct Cell {
     std::size_t boundary = no_boundary;
 };
 
+// The hull of what is solid of a piece, or nothing where that spans no volume, and how much it is.
+struct PieceSolid {
+    std::optional<ConvexPart> hull;
+    double m3 = 0;
+};
+
 struct Piece {
     std::int32_t id = 0;
     std::vector<std::size_t> cells;
     Voxel low{}, high{};
-    double hull = 0;    // its volume, in voxels
-    double excess = 0;  // what the hull holds beyond the solid, in voxels
+    double hull = 0;                  // its volume, in voxels
+    double excess = 0;                // what the hull holds beyond the solid, in voxels
+    std::optional<PieceSolid> solid;  // once it was asked for
     bool final = false;
 };
 
@@ -64,15 +71,17 @@ class Decomposition {
 
     // Of a floor that is level as it was seen, a slab below that from end to end: under what stands
     // on it, it was not seen.
-    std::optional<Decomposed> level_slab() const {
+    std::optional<Decomposed> level_slab() {
         constexpr double thick_m = 0.05, level = 0.999;
         const auto patches = flat_patches(pieces_[0], 1);
         if (patches.empty()) return std::nullopt;
         const HalfSpace top = half_space(solids_.boundary().patches[patches[0]]);
         if (top.normal[2] < level) return std::nullopt;
-        Decomposed out;
-        auto whole = solid_of(pieces_[0], out.solid_m3);
+        PieceSolid& whole_solid = solid_of(pieces_[0]);
+        auto& whole = whole_solid.hull;
         if (!whole) return std::nullopt;
+        Decomposed out;
+        out.solid_m3 = whole_solid.m3;
         const double x = (whole->low[0] + whole->high[0]) / 2;
         const double y = (whole->low[1] + whole->high[1]) / 2;
         const double z = (top.offset_m - top.normal[0] * x - top.normal[1] * y) / top.normal[2];
@@ -129,38 +138,40 @@ class Decomposition {
         }
     }
 
-    Decomposed result() const {
+    Decomposed result() {
         Decomposed out;
-        for (const Piece& piece : pieces_) {
-            double solid_m3 = 0;
-            auto part = solid_of(piece, solid_m3);
-            out.solid_m3 += solid_m3;
-            if (!part) continue;
-            trim(piece, *part);
-            out.excess_m3 += part->volume_m3 - solid_m3;
-            out.parts.push_back(*std::move(part));
+        for (Piece& piece : pieces_) {
+            PieceSolid& solid = solid_of(piece);
+            out.solid_m3 += solid.m3;
+            if (!solid.hull) continue;
+            trim(piece, *solid.hull);
+            out.excess_m3 += solid.hull->volume_m3 - solid.m3;
+            out.parts.push_back(*std::move(solid.hull));
         }
         return out;
     }
 
   private:
-    // The hull of a piece's solid, and how much that is.
-    std::optional<ConvexPart> solid_of(const Piece& piece, double& solid_m3) const {
+    PieceSolid& solid_of(Piece& piece) const {
+        if (!piece.solid) piece.solid = found_solid(piece);
+        return *piece.solid;
+    }
+    PieceSolid found_solid(const Piece& piece) const {
         const double h = solids_.voxel_m(), voxel_m3 = h * h * h;
         const BoundaryCells& boundary = solids_.boundary();
-        solid_m3 = 0;
+        PieceSolid out;
         std::vector<Vec3> points;
         for (const std::size_t n : piece.cells) {
             const Cell& cell = cells_[n];
-            solid_m3 += cell.boundary == no_boundary
-                            ? voxel_m3
-                            : boundary.share[cell.boundary] * voxel_m3 / BoundaryCells::whole;
+            out.m3 += cell.boundary == no_boundary
+                          ? voxel_m3
+                          : boundary.share[cell.boundary] * voxel_m3 / BoundaryCells::whole;
             if (!between_alike(cell, piece.id)) add_corners(n, points);
         }
         constexpr double alike = 0.005;  // of a voxel
-        auto part = hull_part(physics::welded(points, alike * h));
-        if (part) sample(piece, solid_m3, *part);
-        return part;
+        out.hull = hull_part(physics::welded(points, alike * h));
+        if (out.hull) sample(piece, out.m3, *out.hull);
+        return out;
     }
     // Corners of some of its cells.
     void sample(const Piece& piece, double solid_m3, ConvexPart& part) const {
@@ -333,10 +344,9 @@ class Decomposition {
         if (piece.excess <= slight_voxels) return;
         // Much of that may be the steps of slanted surfaces, which are of the voxels, not of the
         // solid.
-        double solid_m3 = 0;
-        const auto part = solid_of(piece, solid_m3);
+        const PieceSolid& solid = solid_of(piece);
         const double h = solids_.voxel_m();
-        piece.excess = part ? (part->volume_m3 - solid_m3) / (h * h * h) : 0;
+        piece.excess = solid.hull ? (solid.hull->volume_m3 - solid.m3) / (h * h * h) : 0;
     }
     static double volume_of(const std::vector<Vec3>& points) {
         const auto hull = hull_part(points);
