@@ -20,6 +20,25 @@ namespace topple::vdb {
 using StateTree = openvdb::Int32Tree;
 using StateLeaf = StateTree::LeafNodeType;
 
+// OpenVDB's own end of a tree gathers its nodes in an array first; where there is no memory for
+// that, it ends the program. The root's needs none.
+template <class Tree>
+void clear_tree(Tree& tree) noexcept {
+    tree.root().clear();
+}
+
+// A grid whose tree ends with it.
+template <class Grid>
+struct ShortLived {
+    explicit ShortLived(const typename Grid::ValueType& background)
+        : grid(Grid::create(background)) {}
+    ~ShortLived() { clear_tree(grid->tree()); }
+    ShortLived(const ShortLived&) = delete;
+    ShortLived& operator=(const ShortLived&) = delete;
+
+    typename Grid::Ptr grid;
+};
+
 inline openvdb::Coord origin_of(const LeafTable::Leaf& leaf) {
     return {leaf[0] * 8, leaf[1] * 8, leaf[2] * 8};
 }
@@ -71,6 +90,16 @@ struct Evidence {
 };
 
 struct VoxelScene::Grids {
+    Grids() = default;
+    ~Grids() {
+        if (state) clear_tree(state->tree());
+        if (primitive) clear_tree(primitive->tree());
+        clear_tree(points);
+        for (const auto& field : fields) clear_tree(field.second->tree());
+    }
+    Grids(const Grids&) = delete;
+    Grids& operator=(const Grids&) = delete;
+
     VoxelFrame frame;
     LeafTable leaves;
     // Values are State's; active voxels are the solid ones; background is invisible, so that only

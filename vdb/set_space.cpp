@@ -42,6 +42,10 @@ class Boxes {
         }
     }
 
+    ~Boxes() { clear_tree(within_); }
+    Boxes(const Boxes&) = delete;
+    Boxes& operator=(const Boxes&) = delete;
+
     // Calls set(leaf, voxels) for each leaf with voxels whose centre lies within.
     template <class Set>
     void each_leaf(const Set& set) const {

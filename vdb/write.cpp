@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <openvdb/io/Archive.h>
+#include <openvdb/io/GridDescriptor.h>
 
 #include <algorithm>
 #include <array>
@@ -28,9 +29,9 @@ namespace {
 }
 
 // What OpenVDB's own File writes, to a stream that throws at the first failure: File checks none,
-// and goes on with offsets that a failed write has left undefined. Blosc, OpenVDB's first choice,
-// crashes where memory is short. zlib doesn't; but a file with offsets gets a table of its leaves
-// as well, which is packed by Blosc always: so there are none, and all grids are read at once.
+// and goes on with offsets that a failed write has left undefined. Packed by zlib, and without the
+// table of leaves for delayed loading, which is always packed by Blosc: where memory is short,
+// Blosc ends the program.
 class CheckedArchive : public openvdb::io::Archive {
   public:
     CheckedArchive() {
@@ -39,7 +40,34 @@ class CheckedArchive : public openvdb::io::Archive {
 
     void write_to(std::ostream& out, const openvdb::GridPtrVec& grids,
                   const openvdb::MetaMap& meta) const {
-        Archive::write(out, grids, /*seekable=*/false, meta);
+        writeHeader(out, /*seekable=*/true);
+        meta.writeMeta(out);
+        const auto count = static_cast<std::int32_t>(grids.size());
+        out.write(reinterpret_cast<const char*>(&count), sizeof count);
+        for (const auto& grid : grids) write_grid(out, *grid);
+    }
+
+  private:
+    void write_grid(std::ostream& out, openvdb::GridBase& grid) const {
+        openvdb::io::setDataCompression(out, compression());
+        openvdb::io::GridDescriptor about(grid.getName(), grid.type(), grid.saveFloatAsHalf());
+        about.writeHeader(out);
+        const auto offsets = out.tellp();
+        about.writeStreamPos(out);
+        about.setGridPos(out.tellp());
+        setGridCompression(out, grid);
+        grid.addStatsMetadata();
+        grid.insertMeta(openvdb::GridBase::META_FILE_COMPRESSION,
+                        openvdb::StringMetadata(openvdb::io::compressionToString(compression())));
+        grid.writeMeta(out);
+        grid.writeTransform(out);
+        grid.writeTopology(out);
+        about.setBlockPos(out.tellp());
+        grid.writeBuffers(out);
+        about.setEndPos(out.tellp());
+        out.seekp(offsets);
+        about.writeStreamPos(out);
+        about.seekToEnd(out);
     }
 };
 
@@ -125,20 +153,19 @@ void VoxelScene::add_field(const std::string& name, std::span<const std::int32_t
         throw Error(ErrorKind::usage, "field \"" + name + "\": " + std::to_string(values.size()) +
                                           " values for " + std::to_string(i.size()) + " voxels");
     }
-    auto grid = openvdb::FloatGrid::create(0);
+    const auto& grid = grids_->fields.emplace_back(name, openvdb::FloatGrid::create(0)).second;
     auto to = grid->getAccessor();
     for (std::size_t n = 0; n < values.size(); ++n) {
         if (values[n] != 0) to.setValueOn({i[n], j[n], k[n]}, values[n]);
     }
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-    grids_->fields.emplace_back(name, grid);
 }
 
 void VoxelScene::write(const std::filesystem::path& path) const {
     const Grids& g = *grids_;
     // Labels count where the voxel is solid; elsewhere they are background.
-    auto primitive = openvdb::Int32Grid::create(-1);
-    auto object = openvdb::Int32Grid::create(-1);
+    const ShortLived<openvdb::Int32Grid> primitives(-1), objects(-1);
+    const auto &primitive = primitives.grid, &object = objects.grid;
     for (auto leaf = g.state->tree().cbeginLeaf(); leaf; ++leaf) {
         if (leaf->isEmpty()) continue;
         const auto* label = g.primitive->tree().probeConstLeaf(leaf->origin());

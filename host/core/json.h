@@ -12,7 +12,8 @@
 
 // JSON whose end needs no memory. nlohmann's destructor puts what a value holds on a stack that it
 // allocates; where there is no memory for that it would end the program. Here that stack, and with
-// it every array of values, is taken from a reserve then.
+// it every array of values, is taken from a reserve then. Begin with Json::object() what is to be
+// one: a null value that becomes one says so before it has the memory, and its end uses that.
 namespace topple {
 
 template <class T, class = void>

@@ -312,7 +312,7 @@ Scene scene_of(const Json& json) {
 }  // namespace
 
 std::string scene_json(const Scene& scene) {
-    Json json;
+    Json json = Json::object();
     json["schema"] = schema;
     json["source"] = scene.source;
     json["topple_version"] = scene.topple_version;

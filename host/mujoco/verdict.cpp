@@ -120,7 +120,7 @@ Verdict judge(const Scene& scene, const ExportSummary& exported, Settled run, do
 
 std::string verdict_json(const Verdict& verdict) {
     const Settled& run = verdict.run;
-    OrderedJson counts, objects = OrderedJson::array();
+    OrderedJson counts = OrderedJson::object(), objects = OrderedJson::array();
     for (const Says says : all_says) {
         const Verdict::Count of = verdict.count(says);
         counts[to_string(says)] = {{"free", of.free}, {"stay", of.stay}};
