@@ -29,14 +29,12 @@ namespace {
 }
 
 // What OpenVDB's own File writes, to a stream that throws at the first failure: File checks none,
-// and goes on with offsets that a failed write has left undefined. Packed by zlib, and without the
-// table of leaves for delayed loading, which is always packed by Blosc: where memory is short,
-// Blosc ends the program.
+// and goes on with offsets that a failed write has left undefined. Nothing is packed but the runs
+// of equal values, and there is no table of leaves for delayed loading: where memory is short,
+// Blosc ends the program and zlib's failure is passed over.
 class CheckedArchive : public openvdb::io::Archive {
   public:
-    CheckedArchive() {
-        setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
-    }
+    CheckedArchive() { setCompression(openvdb::io::COMPRESS_ACTIVE_MASK); }
 
     void write_to(std::ostream& out, const openvdb::GridPtrVec& grids,
                   const openvdb::MetaMap& meta) const {

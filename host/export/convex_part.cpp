@@ -160,6 +160,15 @@ std::optional<ConvexPart> hull_part(std::span<const Vec3> points) {
     return out;
 }
 
+std::vector<double> face_areas(const ConvexPart& part) {
+    std::vector<double> out;
+    for (const auto& outline : part.outline) {
+        const Vec3 n = newell(part.corner, outline);
+        out.push_back(std::sqrt(dot(n, n)) / 2);
+    }
+    return out;
+}
+
 std::optional<ConvexPart> reshaped(const ConvexPart& part, std::span<const Vec3> points) {
     auto out = hull_part(points);
     if (!out) return out;
@@ -226,11 +235,7 @@ std::array<Vec3, 8> Box::corners() const {
 
 std::optional<Box> as_box(const ConvexPart& part, double tolerance_m) {
     // The two largest faces that are about square to one another give the axes.
-    std::vector<double> area;
-    for (const auto& outline : part.outline) {
-        const Vec3 n = newell(part.corner, outline);
-        area.push_back(std::sqrt(dot(n, n)) / 2);
-    }
+    const std::vector<double> area = face_areas(part);
     if (area.size() < 6) return std::nullopt;
     const auto first = static_cast<std::size_t>(std::ranges::max_element(area) - area.begin());
     const Vec3 u = part.face[first].normal;

@@ -20,6 +20,9 @@ struct HalfSpace {
 // What is so close to a plane lies on neither side of it.
 inline constexpr double on_plane_m = 1e-4;
 
+// As many points tell where the solid of a part lies.
+inline constexpr std::size_t most_points = 512;
+
 // A convex polytope, metres.
 struct ConvexPart {
     std::vector<Vec3> corner;
@@ -35,6 +38,9 @@ struct ConvexPart {
 
 // The hull of points; nothing where they span no volume.
 std::optional<ConvexPart> hull_part(std::span<const Vec3> points);
+
+// In square metres.
+std::vector<double> face_areas(const ConvexPart& part);
 
 // Another form of the same solid: the hull of points, or nothing.
 std::optional<ConvexPart> reshaped(const ConvexPart& part, std::span<const Vec3> points);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "export/simplify.h"
 #include "physics/weld.h"
 #include "solids/cell_shape.h"
 
@@ -130,8 +131,8 @@ class Decomposition {
             above.id = static_cast<std::int32_t>(pieces_.size());
             mark(below);
             mark(above);
-            measure(below);
-            measure(above);
+            measure(below, cut->hull_below);
+            measure(above, cut->hull_above);
             excess += below.excess + above.excess;
             pieces_[worst] = std::move(below);
             pieces_.push_back(std::move(above));
@@ -175,7 +176,7 @@ class Decomposition {
     }
     // Corners of some of its cells.
     void sample(const Piece& piece, double solid_m3, ConvexPart& part) const {
-        constexpr std::size_t most = 100;
+        constexpr std::size_t most = most_points / 8;  // corners of a voxel
         const std::size_t step = (piece.cells.size() + most - 1) / most;
         for (std::size_t n = step / 2; n < piece.cells.size(); n += step)
             add_corners(piece.cells[n], part.solid);
@@ -273,7 +274,8 @@ class Decomposition {
     }
     void add(Piece piece) {
         mark(piece);
-        measure(piece);
+        std::vector<Vec3> points;
+        measure(piece, hull_with(points, corners(piece, 0, {})[0]));
         pieces_.push_back(std::move(piece));
     }
 
@@ -338,8 +340,9 @@ class Decomposition {
         }
         return out;
     }
-    void measure(Piece& piece) const {
-        piece.hull = volume_of(corners(piece, 0, {})[0]);
+    // hull: the volume of that of its voxels, in voxels.
+    void measure(Piece& piece, double hull) const {
+        piece.hull = hull;
         piece.excess = piece.hull - static_cast<double>(piece.cells.size());
         if (piece.excess <= slight_voxels) return;
         // Much of that may be the steps of slanted surfaces, which are of the voxels, not of the
@@ -348,26 +351,6 @@ class Decomposition {
         const double h = solids_.voxel_m();
         piece.excess = solid.hull ? (solid.hull->volume_m3 - solid.m3) / (h * h * h) : 0;
     }
-    static double volume_of(const std::vector<Vec3>& points) {
-        const auto hull = hull_part(points);
-        return hull ? hull->volume_m3 : 0;
-    }
-
-    // Volumes of the hulls of the first slab, the first two, and so on; or of the last ones.
-    static std::vector<double> volumes(const std::vector<std::vector<Vec3>>& slabs, bool last) {
-        std::vector<double> out(slabs.size(), 0);
-        std::vector<Vec3> points;
-        for (std::size_t n = 0; n < slabs.size(); ++n) {
-            const auto& slab = slabs[last ? slabs.size() - 1 - n : n];
-            points.insert(points.end(), slab.begin(), slab.end());
-            if (auto hull = hull_part(points)) {
-                out[n] = hull->volume_m3;
-                points = std::move(hull->corner);
-            }
-        }
-        return out;
-    }
-
     // Where to try cuts along an axis: the layers that begin where the section changes most, and
     // some in between. Ascending, in layers from the piece's lowest.
     std::vector<std::size_t> places(const Piece& piece, std::size_t axis) const {
@@ -391,46 +374,91 @@ class Decomposition {
 
     struct Cut {
         std::size_t axis;
-        std::int32_t layer;  // the first above it
+        std::int32_t layer;             // the first above it
+        double hull_below, hull_above;  // volumes, in voxels
     };
+    // A piece in slabs between the places for cuts along an axis. Volumes in voxels.
+    struct Slabs {
+        std::vector<std::size_t> first;          // layer of each but the lowest, from the piece's
+        std::vector<std::vector<Vec3>> corner;   // by slab
+        std::vector<double> solid_below, below;  // by cut: what lies below, and the hull of that
+    };
+    Slabs slabs_along(const Piece& piece, std::size_t axis) const {
+        Slabs out;
+        out.first = places(piece, axis);
+        const auto layers = static_cast<std::size_t>(piece.high[axis] - piece.low[axis]) + 1;
+        std::vector<std::size_t> slab_of_layer(layers, 0);
+        for (std::size_t n = 0; n < layers; ++n)
+            slab_of_layer[n] = static_cast<std::size_t>(std::ranges::upper_bound(out.first, n) -
+                                                        out.first.begin());
+        std::vector<double> solid(out.first.size() + 1, 0);
+        for (const std::size_t n : piece.cells)
+            ++solid[slab_of_layer[static_cast<std::size_t>(cells_[n].at[axis] - piece.low[axis])]];
+        out.corner = corners(piece, axis, slab_of_layer);
+        std::vector<Vec3> points;
+        double solid_below = 0;
+        for (std::size_t n = 0; n < out.first.size(); ++n) {
+            out.solid_below.push_back(solid_below += solid[n]);
+            out.below.push_back(hull_with(points, out.corner[n]));
+        }
+        return out;
+    }
+    // The volume of the hull of both; of the first the corners of that are left.
+    static double hull_with(std::vector<Vec3>& points, const std::vector<Vec3>& more) {
+        points.insert(points.end(), more.begin(), more.end());
+        auto hull = hull_part(points);
+        if (!hull) return 0;
+        points = std::move(hull->corner);
+        return hull->volume_m3;
+    }
     // The cut that leaves least. Where none takes much away, as of a box that is hollow, the one
     // that takes off most of what is convex.
     std::optional<Cut> best_cut(const Piece& piece) const {
-        double least = piece.hull - least_gain * piece.excess, most = 0;
-        std::optional<Cut> best, peel;
+        const auto all = static_cast<double>(piece.cells.size());
+        double least = piece.hull - least_gain * piece.excess;
+        std::optional<Cut> best;
+        std::array<Slabs, 3> along;
         for (std::size_t a = 0; a < 3; ++a) {
-            const std::vector<std::size_t> at = places(piece, a);
-            const auto layers = static_cast<std::size_t>(piece.high[a] - piece.low[a]) + 1;
-            std::vector<std::size_t> slab_of_layer(layers, 0);
-            std::vector<double> solid(at.size() + 1, 0);
-            for (std::size_t n = 0; n < layers; ++n)
-                slab_of_layer[n] =
-                    static_cast<std::size_t>(std::ranges::upper_bound(at, n) - at.begin());
-            for (const std::size_t n : piece.cells)
-                ++solid[slab_of_layer[static_cast<std::size_t>(cells_[n].at[a] - piece.low[a])]];
-            auto slabs = corners(piece, a, slab_of_layer);
-            for (auto& points : slabs)
-                if (auto hull = hull_part(points)) points = std::move(hull->corner);
-            const auto below = volumes(slabs, false), above = volumes(slabs, true);
-            double solid_below = 0;
-            for (std::size_t n = 1; n < slabs.size(); ++n) {
-                solid_below += solid[n - 1];
-                const double solid_above = static_cast<double>(piece.cells.size()) - solid_below;
-                const double hull_below = below[n - 1], hull_above = above[slabs.size() - 1 - n];
-                const Cut cut{a, piece.low[a] + static_cast<std::int32_t>(at[n - 1])};
-                if (hull_below + hull_above < least) {
-                    least = hull_below + hull_above;
-                    best = cut;
+            along[a] = slabs_along(piece, a);
+            const Slabs& slabs = along[a];
+            std::vector<Vec3> points;
+            for (std::size_t n = slabs.first.size(); n-- > 0;) {
+                const auto& next = slabs.corner[n + 1];
+                // A hull is no smaller than what is solid of it.
+                if (slabs.below[n] + all - slabs.solid_below[n] >= least) {
+                    points.insert(points.end(), next.begin(), next.end());
+                    continue;
                 }
-                for (const auto& [hull, inside] :
-                     {std::pair(hull_below, solid_below), std::pair(hull_above, solid_above)}) {
-                    if (hull - inside > slight_share * inside || inside <= most) continue;
-                    most = inside;
-                    peel = cut;
-                }
+                const double above = hull_with(points, next);
+                if (slabs.below[n] + above >= least) continue;
+                least = slabs.below[n] + above;
+                best = {a, piece.low[a] + static_cast<std::int32_t>(slabs.first[n]), slabs.below[n],
+                        above};
             }
         }
-        return best ? best : peel;
+        return best ? best : best_peel(piece, along);
+    }
+    std::optional<Cut> best_peel(const Piece& piece, const std::array<Slabs, 3>& along) const {
+        const auto all = static_cast<double>(piece.cells.size());
+        const auto convex = [](double hull, double solid) {
+            return hull - solid <= slight_share * solid;
+        };
+        double most = 0;
+        std::optional<Cut> peel;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const Slabs& slabs = along[a];
+            std::vector<Vec3> points;
+            for (std::size_t n = slabs.first.size(); n-- > 0;) {
+                const double below = slabs.below[n], above = hull_with(points, slabs.corner[n + 1]);
+                const double solid_below = slabs.solid_below[n], solid_above = all - solid_below;
+                const double off = std::max(convex(below, solid_below) ? solid_below : 0,
+                                            convex(above, solid_above) ? solid_above : 0);
+                if (off <= most) continue;
+                most = off;
+                peel = {a, piece.low[a] + static_cast<std::int32_t>(slabs.first[n]), below, above};
+            }
+        }
+        return peel;
     }
 
     const SolidScene& solids_;
@@ -483,6 +511,7 @@ std::vector<Decomposed> decompose(const SolidScene& solids, std::span<const Clum
         if (!slab) pieces.run(clumps[n].slight_m3);
         out[n] = slab ? *std::move(slab) : pieces.result();
         for (ConvexPart& part : out[n].parts) {
+            part = simplified(std::move(part), fine_voxels * solids.voxel_m());
             // A box is what solids are most often, and what simulators reckon best with.
             constexpr double alike = 0.1;  // of a voxel
             if (const auto box = as_box(part, alike * solids.voxel_m()))

@@ -10,7 +10,7 @@ namespace topple::exports {
 
 // Joins parts of each body two by two, cheapest first, while the hull of both is hardly larger than
 // they are and comes no closer to other bodies: simulators take time for each part that touches.
-// touching_m: parts that are further apart than that are not joined.
-void merge_parts(std::vector<Body>& bodies, double touching_m, ThreadPool& threads);
+// Parts that are further apart than a voxel are not joined.
+void merge_parts(std::vector<Body>& bodies, double voxel_m, ThreadPool& threads);
 
 }  // namespace topple::exports

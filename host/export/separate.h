@@ -32,6 +32,10 @@ bool near(const ConvexPart& a, const ConvexPart& b, double distance_m);
 // leave with nothing keeps what it has.
 void separate(std::vector<Body>& bodies);
 
+// Opens a gap, much less than what one sees, between the sides of bodies that touch without one
+// carrying the other: each contact costs a simulator time.
+void clear_sides(std::vector<Body>& bodies);
+
 // The deepest overlap of any two bodies, metres.
 double deepest_overlap_m(const std::vector<Body>& bodies);
 

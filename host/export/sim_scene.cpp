@@ -124,6 +124,7 @@ SimScene sim_scene(const Scene& scene, const SolidScene& solids, ThreadPool& thr
     settle(out.bodies, std::max(known_m, solids.voxel_m() / 2));
     separate(out.bodies);
     flatten_feet(out.bodies, solids.voxel_m());
+    clear_sides(out.bodies);
     brace(out.bodies, solids.voxel_m() / 2);
     return out;
 }
