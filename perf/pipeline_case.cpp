@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "perf/pipeline_case.h"
 
+#include <bit>
+
 #include "scenes/depth_camera.h"
 #include "scenes/furnished_room.h"
 #include "scenes/temporary_folder.h"
+#include "topple/export.h"
 #include "topple/parse.h"
 
 namespace topple::perf {
@@ -18,6 +21,28 @@ std::uint64_t hash_of(const Scene& scene) {
     for (const Object& object : scene.objects)
         hash.word(std::bit_cast<std::uint32_t>(static_cast<float>(object.barrier_J)));
     return hash.value();
+}
+
+// The room for MuJoCo, without surfaces.
+Result measure_export(const device::Device& device, const ParseResult& parsed, unsigned runs) {
+    const scenes::TemporaryFolder folder("topple-perf-export");
+    ExportOptions options;
+    options.mjcf = folder.path();
+    options.visuals = false;
+    Result result = named(device, "export", {0, "convex parts", 0, 0});
+    for (unsigned run = 0; run < runs; ++run) {
+        const Stopwatch watch;
+        const ExportSummary made = export_scene(parsed, options);
+        result.add(watch.elapsed());
+        Hash hash;
+        result.work.items = 0;
+        for (const ExportedBody& body : made.bodies) {
+            result.work.items += static_cast<double>(body.parts);
+            hash.word(std::bit_cast<std::uint32_t>(static_cast<float>(body.parts_m3)));
+        }
+        result.hash = hash.value();
+    }
+    return result;
 }
 
 }  // namespace
@@ -58,7 +83,9 @@ std::vector<Result> measure_pipeline(const std::shared_ptr<device::Device>& devi
             r.samples_s.push_back(seconds);
             r.work = {static_cast<double>(parsed.scene.points.x.size()), "points", 0, 0};
         }
-        if (run + 1 == options.runs) score = scenes::score(world, parsed.scene);
+        if (run + 1 < options.runs) continue;
+        score = scenes::score(world, parsed.scene);
+        results.push_back(measure_export(*device, parsed, options.runs));
     }
     return results;
 }

@@ -16,8 +16,9 @@ struct PipelineOptions {
 };
 
 // The whole parse of a generated room, read from a sequence folder: one result for each stage,
-// named "pipeline/<stage>", and "pipeline" for all. The score of the last parse goes to `score`.
-// The hash is of the labels of points and voxels, and of every object's barrier.
+// named "pipeline/<stage>", and "pipeline" for all; and "export", which makes a scene for
+// simulators of the last one. The score of the last parse goes to `score`. The hash is of the
+// labels of points and voxels, and of every object's barrier.
 std::vector<Result> measure_pipeline(const std::shared_ptr<device::Device>& device,
                                      const PipelineOptions& options, scenes::Score& score);
 

@@ -87,7 +87,7 @@ std::vector<Result> measure_backend(const std::shared_ptr<device::Device>& devic
     }
     apply_roofline(results);
     print_results(results);
-    if (wanted(a, "pipeline") && a.pipeline.runs > 0) {
+    if ((wanted(a, "pipeline") || wanted(a, "export")) && a.pipeline.runs > 0) {
         scenes::Score score;
         const auto whole = measure_pipeline(device, a.pipeline, score);
         print_results(whole);
@@ -105,6 +105,7 @@ std::vector<std::string> case_names() {
     for (const auto& names : {stage_names(), field_names(), landscape_names()})
         out.insert(out.end(), names.begin(), names.end());
     out.emplace_back("pipeline");
+    out.emplace_back("export");
     return out;
 }
 

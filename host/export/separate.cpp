@@ -156,21 +156,27 @@ Carved carved(const ConvexPart& part, const ConvexPart& by, double costs) {
     constexpr std::size_t most_pieces = 6;
     Carved out{{}, 0};
     std::optional<ConvexPart> rest = part;
+    // Each side is tried once: what lies beyond it may be too thin to be a piece.
+    std::vector<const HalfSpace*> sides;
+    for (const HalfSpace& side : by.face) sides.push_back(&side);
     while (rest && out.pieces.size() < most_pieces) {
         std::size_t most = 0;
-        const HalfSpace* best = nullptr;
-        for (const HalfSpace& side : by.face) {
+        auto best = sides.end();
+        for (auto at = sides.begin(); at != sides.end(); ++at) {
+            const HalfSpace& side = **at;
             const auto outside =
                 static_cast<std::size_t>(std::ranges::count_if(rest->solid, [&](const Vec3& p) {
                     return dot(side.normal, p) > side.offset_m + on_plane_m;
                 }));
             if (outside <= most) continue;
             most = outside;
-            best = &side;
+            best = at;
         }
-        if (!best) break;
-        auto piece = cut(*rest, {opposite(best->normal), -best->offset_m});
-        rest = cut(*rest, *best);
+        if (best == sides.end()) break;
+        const HalfSpace side = **best;
+        sides.erase(best);
+        auto piece = cut(*rest, {opposite(side.normal), -side.offset_m});
+        rest = cut(*rest, side);
         if (piece) out.pieces.push_back(*std::move(piece));
     }
     if (out.pieces.empty()) return {};

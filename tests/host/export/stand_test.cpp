@@ -9,6 +9,7 @@
 #include "export/floor.h"
 #include "export/footing.h"
 #include "export/separate.h"
+#include "export/simplify.h"
 #include "host/export/blocks.h"
 
 namespace topple::exports::test {
@@ -167,6 +168,62 @@ TEST(Separate, WhatLiesWithinAnotherOnesHullIsCarvedOutOfIt) {
     EXPECT_LT(deepest_overlap_m(bodies), 1e-6);
     EXPECT_NEAR(bodies[1].parts[0].volume_m3, 0.4 * 0.4 * 0.5, 1e-4);
     EXPECT_GE(bodies[0].parts.size(), 2u);
+}
+
+TEST(Separate, SolidThatASimplerHullLeftOutsideEndsNothing) {
+    // Beyond the block's end, where nothing of the bench's hull is left, most of its points lie.
+    Body bench = body_of(block({0, 0, 0}, {2, 1, 1}), 1, {});
+    std::erase_if(bench.parts[0].solid, [](const Vec3& p) { return p[2] < 0.9 && p[0] > 0.3; });
+    for (int n = 0; n < 200; ++n) bench.parts[0].solid.push_back({2 + 2 * on_plane_m, 0.5, 0.2});
+    std::vector<Body> bodies{bench, body_of(block({1.6, 0.3, 0}, {2, 0.7, 0.5}), 1, {})};
+    for (Body& body : bodies) body.solid_m3 = body.parts[0].volume_m3;
+    separate(bodies);
+    EXPECT_LT(deepest_overlap_m(bodies), 1e-6);
+}
+
+TEST(ClearSides, WhatStandsBesideSomethingTouchesOnlyWhatItStandsOn) {
+    std::vector<Body> bodies{ground(), body_of(block({0, 0, 0}, {0.5, 0.5, 0.5}), 1, {0}),
+                             body_of(block({0.5, 0, 0}, {1, 0.5, 0.5}), 1, {0})};
+    clear_sides(bodies);
+    const double gap = apart(bodies[1].parts[0], bodies[2].parts[0]).gap_m;
+    EXPECT_GT(gap, 1e-4);
+    EXPECT_LT(gap, 5e-4);
+    EXPECT_EQ(bodies[1].parts[0].low[2], 0);
+    EXPECT_EQ(bodies[2].parts[0].low[2], 0);
+}
+
+TEST(Simplified, ABallKeepsItsFormWithAsManyCornersAsEnginesTake) {
+    std::vector<Vec3> points;
+    for (int n = 0; n < 2000; ++n) {
+        const double z = -1 + (n + 0.5) / 1000, a = 2.399963 * n, r = std::sqrt(1 - z * z);
+        points.push_back({0.1 * r * std::cos(a), 0.1 * r * std::sin(a), 0.1 * z});
+    }
+    const ConvexPart ball = *hull_part(points), fine = simplified(ball, 0.001),
+                     coarse = simplified(ball, 1e-6);
+    EXPECT_LE(coarse.corner.size(), most_corners);
+    EXPECT_GT(coarse.volume_m3, 0.85 * ball.volume_m3);
+    EXPECT_LE(fine.corner.size(), most_corners);
+    for (std::size_t a = 0; a < 3; ++a) {
+        EXPECT_EQ(coarse.low[a], ball.low[a]);
+        EXPECT_EQ(coarse.high[a], ball.high[a]);
+    }
+}
+
+TEST(Simplified, NothingMoreThanTheToleranceIsLost) {
+    // A box with bevelled edges, some of them finer than the tolerance.
+    std::vector<Vec3> points;
+    for (const double bevel : {0.0004, 0.02})
+        for (unsigned c = 0; c < 24; ++c) {
+            Vec3 p{(c & 1) != 0 ? 0.1 : -0.1, (c & 2) != 0 ? 0.1 : -0.1, (c & 4) != 0 ? 0.1 : -0.1};
+            if (bevel > 0.01 && p[0] > 0) continue;
+            if (bevel < 0.01 && p[0] < 0) continue;
+            p[c / 8] *= 1 - bevel / 0.1;
+            points.push_back(p);
+        }
+    const ConvexPart part = *hull_part(points), left = simplified(part, 0.001);
+    EXPECT_LT(left.corner.size(), part.corner.size());
+    for (const HalfSpace& side : left.face)
+        EXPECT_LE(extent_along(part, side.normal).high, side.offset_m + 0.001);
 }
 
 TEST(FlattenFeet, ATiltedFootBecomesFlat) {
