@@ -3,16 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <functional>
+#include <cstdlib>
 #include <limits>
-#include <map>
 #include <optional>
 #include <utility>
 
+#include "export/piece_solid.h"
 #include "export/simplify.h"
-#include "physics/weld.h"
-#include "solids/cell_shape.h"
 
 namespace topple::exports {
 namespace {
@@ -25,21 +22,6 @@ constexpr double least_gain = 0.1;
 constexpr std::size_t most_parts = 8;
 // Of places for a cut along each axis: at changes of the section, and evenly spread ones.
 constexpr std::size_t most_changes = 3, even_places = 2;
-
-using Voxel = std::array<std::int32_t, 3>;
-constexpr std::size_t no_boundary = BoundaryCells::absent;
-
-// A voxel that is a clump's, wholly or in part.
-struct Cell {
-    Voxel at{};
-    std::size_t boundary = no_boundary;
-};
-
-// The hull of what is solid of a piece, or nothing where that spans no volume, and how much it is.
-struct PieceSolid {
-    std::optional<ConvexPart> hull;
-    double m3 = 0;
-};
 
 struct Piece {
     std::int32_t id = 0;
@@ -56,28 +38,23 @@ struct Piece {
 class Decomposition {
   public:
     Decomposition(const SolidScene& solids, std::vector<Cell> cells)
-        : solids_(solids), cells_(std::move(cells)), corner_(cells_.size()) {
+        : voxel_m_(solids.voxel_m()), grid_(std::move(cells)), exact_(solids, grid_) {
         Piece all;
-        for (std::size_t n = 0; n < cells_.size(); ++n) all.cells.push_back(n);
+        for (std::size_t n = 0; n < grid_.cells().size(); ++n) all.cells.push_back(n);
         bound(all);
-        low_ = all.low;
-        for (std::size_t a = 0; a < 3; ++a)
-            size_[a] = static_cast<std::size_t>(all.high[a] - all.low[a]) + 1;
-        piece_.assign(size_[0] * size_[1] * size_[2], -1);
-        index_.assign(piece_.size(), 0);
-        for (std::size_t n = 0; n < cells_.size(); ++n)
-            index_[place(cells_[n].at)] = static_cast<std::uint32_t>(n);
-        add(std::move(all));
+        mark(all);
+        std::vector<Vec3> points;
+        measure(all, hull_with(points, corners(all, 0, {})[0]));
+        pieces_.push_back(std::move(all));
     }
 
     // Of a floor that is level as it was seen, a slab below that from end to end: under what stands
     // on it, it was not seen.
     std::optional<Decomposed> level_slab() {
         constexpr double thick_m = 0.05, level = 0.999;
-        const auto patches = flat_patches(pieces_[0], 1);
-        if (patches.empty()) return std::nullopt;
-        const HalfSpace top = half_space(solids_.boundary().patches[patches[0]]);
-        if (top.normal[2] < level) return std::nullopt;
+        const auto sides = exact_.flat_sides(pieces_[0].cells, 1);
+        if (sides.empty() || sides[0].normal[2] < level) return std::nullopt;
+        const HalfSpace& top = sides[0];
         PieceSolid& whole_solid = solid_of(pieces_[0]);
         auto& whole = whole_solid.hull;
         if (!whole) return std::nullopt;
@@ -102,10 +79,10 @@ class Decomposition {
     }
 
     void run(double slight_m3) {
-        const double h = solids_.voxel_m();
+        const double h = voxel_m_;
         const double slight = std::max(slight_voxels, slight_m3 / (h * h * h));
         double excess = pieces_[0].excess;
-        const auto count = static_cast<double>(cells_.size());
+        const auto count = static_cast<double>(grid_.cells().size());
         while (pieces_.size() < most_parts && excess > slight_share * count) {
             std::size_t worst = pieces_.size();
             for (std::size_t n = 0; n < pieces_.size(); ++n) {
@@ -123,7 +100,7 @@ class Decomposition {
             }
             Piece below, above;
             for (const std::size_t n : pieces_[worst].cells)
-                (cells_[n].at[cut->axis] < cut->layer ? below : above).cells.push_back(n);
+                (grid_[n].at[cut->axis] < cut->layer ? below : above).cells.push_back(n);
             excess -= pieces_[worst].excess;
             below.id = pieces_[worst].id;
             bound(below);
@@ -145,7 +122,7 @@ class Decomposition {
             PieceSolid& solid = solid_of(piece);
             out.solid_m3 += solid.m3;
             if (!solid.hull) continue;
-            trim(piece, *solid.hull);
+            exact_.trim(piece.cells, *solid.hull);
             out.excess_m3 += solid.hull->volume_m3 - solid.m3;
             out.parts.push_back(*std::move(solid.hull));
         }
@@ -153,159 +130,23 @@ class Decomposition {
     }
 
   private:
-    PieceSolid& solid_of(Piece& piece) const {
-        if (!piece.solid) piece.solid = found_solid(piece);
+    PieceSolid& solid_of(Piece& piece) {
+        if (!piece.solid) piece.solid = exact_.of(piece.id, piece.cells);
         return *piece.solid;
     }
-    PieceSolid found_solid(const Piece& piece) const {
-        const double h = solids_.voxel_m(), voxel_m3 = h * h * h;
-        const BoundaryCells& boundary = solids_.boundary();
-        PieceSolid out;
-        std::vector<Vec3> points;
-        for (const std::size_t n : piece.cells) {
-            const Cell& cell = cells_[n];
-            out.m3 += cell.boundary == no_boundary
-                          ? voxel_m3
-                          : boundary.share[cell.boundary] * voxel_m3 / BoundaryCells::whole;
-            if (!between_alike(cell, piece.id)) add_corners(n, points);
-        }
-        constexpr double alike = 0.005;  // of a voxel
-        out.hull = hull_part(physics::welded(points, alike * h));
-        if (out.hull) sample(piece, out.m3, *out.hull);
-        return out;
-    }
-    // Corners of some of its cells.
-    void sample(const Piece& piece, double solid_m3, ConvexPart& part) const {
-        constexpr std::size_t most = most_points / 8;  // corners of a voxel
-        const std::size_t step = (piece.cells.size() + most - 1) / most;
-        for (std::size_t n = step / 2; n < piece.cells.size(); n += step)
-            add_corners(piece.cells[n], part.solid);
-        part.solid_each_m3 = solid_m3 / static_cast<double>(part.solid.size());
-    }
-    // Cuts a hull along the flat patches beyond which hardly any of its solid lies: faces are as
-    // flat as they were seen, whatever single voxels stick out.
-    void trim(const Piece& piece, ConvexPart& part) const {
-        constexpr std::size_t most_patches = 16;
-        constexpr double slight_loss = 0.002;
-        for (const std::uint32_t number : flat_patches(piece, most_patches)) {
-            auto left = cut(part, half_space(solids_.boundary().patches[number]));
-            if (!left || left->volume_m3 == part.volume_m3) continue;
-            const auto lost = static_cast<double>(part.solid.size() - left->solid.size());
-            if (lost <= slight_loss * static_cast<double>(part.solid.size()))
-                part = *std::move(left);
-        }
-    }
-    // Those that bound most of a piece's cells.
-    std::vector<std::uint32_t> flat_patches(const Piece& piece, std::size_t most) const {
-        const BoundaryCells& b = solids_.boundary();
-        std::map<std::uint32_t, std::size_t> cells;  // by patch
-        for (const std::size_t n : piece.cells) {
-            const std::size_t at = cells_[n].boundary;
-            if (at == no_boundary) continue;
-            for (std::size_t s = 0; s < b.slots_used(at); ++s)
-                if (!b.use(at, s).outside && b.patches[b.slot[s][at]].flat())
-                    ++cells[b.slot[s][at]];
-        }
-        std::vector<std::pair<std::size_t, std::uint32_t>> by_count;
-        for (const auto& [patch, count] : cells) by_count.emplace_back(count, patch);
-        std::ranges::sort(by_count, std::greater<>());
-        // A face of the piece, and no neighbour's that it touches.
-        constexpr std::size_t least_share = 50;
-        std::erase_if(by_count, [&](const auto& patch) {
-            return patch.first * least_share < piece.cells.size();
-        });
-        by_count.resize(std::min(by_count.size(), most));
-        std::vector<std::uint32_t> out;
-        for (const auto& [count, patch] : by_count) out.push_back(patch);
-        return out;
-    }
-    static HalfSpace half_space(const SurfacePatch& patch) {
-        const Vec3 g = patch.gradient(patch.origin);
-        const double length = std::hypot(g[0], g[1], g[2]);
-        const Vec3 n{g[0] / length, g[1] / length, g[2] / length};
-        return {n, n[0] * patch.origin[0] + n[1] * patch.origin[1] + n[2] * patch.origin[2] -
-                       patch.c[0] / length};
-    }
-    void add_corners(std::size_t n, std::vector<Vec3>& out) const {
-        std::vector<Vec3>& corner = corner_[n];
-        if (corner.empty()) corner = corners_of(cells_[n]);
-        out.insert(out.end(), corner.begin(), corner.end());
-    }
-    std::vector<Vec3> corners_of(const Cell& cell) const {
-        const double h = solids_.voxel_m();
-        if (cell.boundary != no_boundary) {
-            const auto corners = solids::corners_of(solids_.boundary(), cell.boundary, h);
-            return {corners.begin(), corners.end()};
-        }
-        std::vector<Vec3> out;
-        for (unsigned c = 0; c < 8; ++c)
-            out.push_back({(cell.at[0] + int(c & 1)) * h, (cell.at[1] + int(c >> 1 & 1)) * h,
-                           (cell.at[2] + int(c >> 2)) * h});
-        return out;
-    }
-    std::size_t place(const Voxel& at) const {
-        return (static_cast<std::size_t>(at[0] - low_[0]) * size_[1] +
-                static_cast<std::size_t>(at[1] - low_[1])) *
-                   size_[2] +
-               static_cast<std::size_t>(at[2] - low_[2]);
-    }
-    bool inside(const Voxel& at) const {
-        for (std::size_t a = 0; a < 3; ++a)
-            if (at[a] < low_[a] || at[a] >= low_[a] + static_cast<std::int32_t>(size_[a]))
-                return false;
-        return true;
-    }
-    bool is(std::int32_t id, const Voxel& at) const {
-        return inside(at) && piece_[place(at)] == id;
-    }
-
     void bound(Piece& piece) const {
         piece.low.fill(std::numeric_limits<std::int32_t>::max());
         piece.high.fill(std::numeric_limits<std::int32_t>::min());
         for (const std::size_t n : piece.cells) {
             for (std::size_t a = 0; a < 3; ++a) {
-                piece.low[a] = std::min(piece.low[a], cells_[n].at[a]);
-                piece.high[a] = std::max(piece.high[a], cells_[n].at[a]);
+                piece.low[a] = std::min(piece.low[a], grid_[n].at[a]);
+                piece.high[a] = std::max(piece.high[a], grid_[n].at[a]);
             }
         }
     }
     void mark(const Piece& piece) {
-        for (const std::size_t n : piece.cells) piece_[place(cells_[n].at)] = piece.id;
+        for (const std::size_t n : piece.cells) grid_.mark(n, piece.id);
     }
-    void add(Piece piece) {
-        mark(piece);
-        std::vector<Vec3> points;
-        measure(piece, hull_with(points, corners(piece, 0, {})[0]));
-        pieces_.push_back(std::move(piece));
-    }
-
-    // Whether a cell lies between two of its piece that are bounded as it is, so that no corner of
-    // the piece's hull is in it.
-    bool between_alike(const Cell& cell, std::int32_t id) const {
-        for (std::size_t a = 0; a < 3; ++a) {
-            Voxel before = cell.at, after = cell.at;
-            --before[a];
-            ++after[a];
-            if (!is(id, before) || !is(id, after)) continue;
-            if (alike(cell, cells_[index_[place(before)]]) &&
-                alike(cell, cells_[index_[place(after)]]))
-                return true;
-        }
-        return false;
-    }
-    bool alike(const Cell& one, const Cell& other) const {
-        if ((one.boundary == no_boundary) != (other.boundary == no_boundary)) return false;
-        if (one.boundary == no_boundary) return true;
-        const BoundaryCells& b = solids_.boundary();
-        if (b.form[one.boundary] != b.form[other.boundary]) return false;
-        for (std::size_t s = 0; s < b.slots_used(one.boundary); ++s) {
-            if (b.slot[s][one.boundary] != b.slot[s][other.boundary] ||
-                !b.patches[b.slot[s][one.boundary]].flat())
-                return false;
-        }
-        return true;
-    }
-
     // Corners of the piece's cells, in voxels, as far as they may be those of the hull of a slab of
     // it. slab: by layer from the piece's lowest along an axis; none: all is one slab.
     std::vector<std::vector<Vec3>> corners(const Piece& piece, std::size_t axis,
@@ -317,12 +158,12 @@ class Decomposition {
         };
         std::vector<std::vector<Vec3>> out(slab_of(piece.high) + 1);
         for (const std::size_t n : piece.cells) {
-            const Voxel& at = cells_[n].at;
+            const Voxel& at = grid_[n].at;
             const std::size_t slab = slab_of(at);
             const auto ends_at = [&](std::size_t a, std::int32_t step) {
                 Voxel next = at;
                 next[a] += step;
-                return !is(piece.id, next) || slab_of(next) != slab;
+                return !grid_.is(piece.id, next) || slab_of(next) != slab;
             };
             std::array<std::array<bool, 2>, 3> ends{};
             bool corner = true;
@@ -341,14 +182,14 @@ class Decomposition {
         return out;
     }
     // hull: the volume of that of its voxels, in voxels.
-    void measure(Piece& piece, double hull) const {
+    void measure(Piece& piece, double hull) {
         piece.hull = hull;
         piece.excess = piece.hull - static_cast<double>(piece.cells.size());
         if (piece.excess <= slight_voxels) return;
         // Much of that may be the steps of slanted surfaces, which are of the voxels, not of the
         // solid.
         const PieceSolid& solid = solid_of(piece);
-        const double h = solids_.voxel_m();
+        const double h = voxel_m_;
         piece.excess = solid.hull ? (solid.hull->volume_m3 - solid.m3) / (h * h * h) : 0;
     }
     // Where to try cuts along an axis: the layers that begin where the section changes most, and
@@ -357,7 +198,7 @@ class Decomposition {
         const auto layers = static_cast<std::size_t>(piece.high[axis] - piece.low[axis]) + 1;
         std::vector<std::int64_t> count(layers, 0);
         for (const std::size_t n : piece.cells)
-            ++count[static_cast<std::size_t>(cells_[n].at[axis] - piece.low[axis])];
+            ++count[static_cast<std::size_t>(grid_[n].at[axis] - piece.low[axis])];
         std::vector<std::pair<std::int64_t, std::size_t>> changes;
         for (std::size_t n = 1; n < layers; ++n)
             changes.emplace_back(-std::abs(count[n] - count[n - 1]), n);
@@ -393,7 +234,7 @@ class Decomposition {
                                                         out.first.begin());
         std::vector<double> solid(out.first.size() + 1, 0);
         for (const std::size_t n : piece.cells)
-            ++solid[slab_of_layer[static_cast<std::size_t>(cells_[n].at[axis] - piece.low[axis])]];
+            ++solid[slab_of_layer[static_cast<std::size_t>(grid_[n].at[axis] - piece.low[axis])]];
         out.corner = corners(piece, axis, slab_of_layer);
         std::vector<Vec3> points;
         double solid_below = 0;
@@ -461,14 +302,10 @@ class Decomposition {
         return peel;
     }
 
-    const SolidScene& solids_;
-    std::vector<Cell> cells_;
-    mutable std::vector<std::vector<Vec3>> corner_;  // of each cell's solid; found when first asked
+    double voxel_m_;
+    CellGrid grid_;
+    PieceSolids exact_;
     std::vector<Piece> pieces_;
-    Voxel low_{};
-    std::array<std::size_t, 3> size_{};
-    std::vector<std::int32_t> piece_;   // by voxel of the box around all
-    std::vector<std::uint32_t> index_;  // of the cell there
 };
 
 // By clump.

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: MIT
+# picture.py DIR PICTURE.png [--parts] [--seconds S]: what MuJoCo shows of an export, after S seconds. It needs PyPI's mujoco and
+# Pillow, and where there is no screen MUJOCO_GL=osmesa (libosmesa6) or egl. --parts: what collides, each part in a colour
+# of its own, instead of the surfaces.
+import argparse
+import os
+
+import mujoco
+import numpy as np
+from PIL import Image
+
+SURFACES, PARTS = 2, 3  # groups of geoms
+WIDTH, HEIGHT = 1200, 750
+
+
+def main():
+    options = argparse.ArgumentParser()
+    options.add_argument('dir')
+    options.add_argument('picture')
+    options.add_argument('--parts', action='store_true')
+    options.add_argument('--seconds', type=float, default=0)
+    options.add_argument('--azimuth', type=float, default=225)
+    options.add_argument('--elevation', type=float, default=-55)
+    options = options.parse_args()
+    model = mujoco.MjModel.from_xml_path(os.path.join(options.dir, 'scene.xml'))
+    model.vis.global_.offwidth, model.vis.global_.offheight = WIDTH, HEIGHT
+    if options.parts:
+        model.geom_rgba[:, :3] = 0.3 + 0.6 * np.random.default_rng(2).random((model.ngeom, 3))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    while data.time < options.seconds:
+        mujoco.mj_step(model, data)
+    camera = mujoco.MjvCamera()
+    camera.azimuth, camera.elevation = options.azimuth, options.elevation
+    camera.lookat = (data.geom_xpos.min(axis=0) + data.geom_xpos.max(axis=0)) / 2
+    camera.distance = 1.2 * np.linalg.norm(np.ptp(data.geom_xpos, axis=0))
+    shown = mujoco.MjvOption()
+    shown.geomgroup[:] = 0
+    shown.geomgroup[PARTS if options.parts else SURFACES] = 1
+    with mujoco.Renderer(model, HEIGHT, WIDTH) as renderer:
+        renderer.update_scene(data, camera, shown)
+        Image.fromarray(renderer.render()).save(options.picture, optimize=True)
+
+
+if __name__ == '__main__':
+    main()
