@@ -9,6 +9,7 @@
 #include "export/floor.h"
 #include "export/merge_parts.h"
 #include "export/separate.h"
+#include "export/simplify.h"
 #include "export/stand.h"
 #include "physics/vectors.h"
 #include "solids/cell_shape.h"
@@ -125,6 +126,11 @@ SimScene sim_scene(const Scene& scene, const SolidScene& solids, ThreadPool& thr
     separate(out.bodies);
     flatten_feet(out.bodies, solids.voxel_m());
     clear_sides(out.bodies);
+    // Cuts have added corners.
+    for (Body& body : out.bodies)
+        for (ConvexPart& part : body.parts)
+            if (part.corner.size() > most_corners)
+                part = simplified(std::move(part), fine_voxels * solids.voxel_m());
     brace(out.bodies, solids.voxel_m() / 2);
     return out;
 }
