@@ -106,6 +106,13 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         to.footprint_error_m = from.footprint_error_m;
         to.mass_model = from.mass_model.c_str();
         std::ranges::copy(from.inertia_kg_m2, to.inertia_kg_m2);
+        to.tilt_deg = from.overturning.tilt_deg;
+        to.tilt_error_deg = from.overturning.tilt_error_deg;
+        copy_vector(from.overturning.direction, to.overturning_direction);
+        to.push_N = from.overturning.push_N;
+        to.push_error_N = from.overturning.push_error_N;
+        to.slide_N = from.overturning.slide_N;
+        to.shake_g = from.overturning.shake_g;
         give(to, object, "object");
     });
 }

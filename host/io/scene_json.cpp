@@ -98,6 +98,16 @@ Json numbers_by_name(const std::map<std::string, double>& values) {
     return json;
 }
 
+Json to_json(const Overturning& o) {
+    return {{"tilt_deg", number(o.tilt_deg)},
+            {"tilt_error_deg", number(o.tilt_error_deg)},
+            {"direction", vector(o.direction)},
+            {"push_N", number(o.push_N)},
+            {"push_error_N", number(o.push_error_N)},
+            {"slide_N", number(o.slide_N)},
+            {"shake_g", number(o.shake_g)}};
+}
+
 Json to_json(const Object& o) {
     return {
         {"id", o.id},
@@ -114,6 +124,7 @@ Json to_json(const Object& o) {
         {"barrier_J", number(o.barrier_J)},
         {"barrier_error_J", number(o.barrier_error_J)},
         {"release_J", number(o.release_J)},
+        {"overturning", to_json(o.overturning)},
         {"mode", o.mode},
         {"direction", vector(o.direction)},
         {"instability", list(o.instability,
@@ -217,6 +228,18 @@ std::map<std::string, double> numbers_by_name(const Json& json) {
     return values;
 }
 
+Overturning overturning_of(const Json& json) {
+    Overturning o;
+    o.tilt_deg = number_at(json, "tilt_deg");
+    o.tilt_error_deg = number_at(json, "tilt_error_deg");
+    o.direction = vector_at(json, "direction");
+    o.push_N = number_at(json, "push_N");
+    o.push_error_N = number_at(json, "push_error_N");
+    o.slide_N = number_at(json, "slide_N");
+    o.shake_g = number_at(json, "shake_g");
+    return o;
+}
+
 Object object_of(const Json& json) {
     Object o;
     o.id = json.at("id").get<std::int32_t>();
@@ -239,6 +262,7 @@ Object object_of(const Json& json) {
             o.inertia_kg_m2[i] = number_of(json.at("inertia_kg_m2").at(i / 3).at(i % 3));
     }
     o.release_J = number_at(json, "release_J");
+    if (json.contains("overturning")) o.overturning = overturning_of(json.at("overturning"));
     o.mode = json.at("mode").get<std::string>();
     o.direction = vector_at(json, "direction");
     for (const auto& step : json.at("instability")) {

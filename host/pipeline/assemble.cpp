@@ -66,6 +66,8 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
             to.footprint_error_m = from.margin_error_m;
             to.barrier_error_J = from.barrier_error_J;
             to.release_J = from.instability.release_J;
+            if (from.seen_enough()) to.overturning = from.overturning;
+            to.overturning.direction = to_input(to.overturning.direction);
             to.mode = from.instability.mode;
             to.direction = to_input(from.instability.direction);
             to.instability = from.instability.curve;

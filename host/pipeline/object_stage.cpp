@@ -11,6 +11,7 @@
 #include "geometry/primitive_shapes.h"
 #include "physics/body_landscape.h"
 #include "physics/drop.h"
+#include "physics/overturning.h"
 #include "physics/solid_hulls.h"
 #include "pipeline/object_masses.h"
 #include "solids/cell_shape.h"
@@ -176,6 +177,9 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
         objects[o].barrier_error_J =
             physics::barrier_error_J(candidates[o], objects[o].body_error, tipping[o], how,
                                      objects[o].margin_error_m, friction);
+        objects[o].overturning =
+            physics::overturning(candidates[o], objects[o].body_error, tipping[o],
+                                 objects[o].highest_m, objects[o].margin_error_m, friction);
         objects[o].tipping = std::move(tipping[o]);
         objects[o].level_tipping = std::move(level[o]);
         objects[o].sliding = std::move(sliding[o]);

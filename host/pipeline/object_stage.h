@@ -31,6 +31,7 @@ struct StableObject {
     physics::Symmetric inertia{};
     physics::BodyError body_error;
     double barrier_error_J = 0;
+    Overturning overturning;
     // How it stands (graph/rest.h); its candidate is held up in that way.
     graph::RestKind rest = graph::RestKind::seen;
     double rest_probability = 1;

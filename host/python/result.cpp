@@ -34,6 +34,14 @@ void bind_items(py::module_& module) {
         .def_readonly("volume_m3", &Primitive::volume_m3)
         .def_readonly("mass_kg", &Primitive::mass_kg)
         .def_readonly("center_of_mass_m", &Primitive::center_of_mass_m);
+    py::class_<Overturning>(module, "Overturning")
+        .def_readonly("tilt_deg", &Overturning::tilt_deg)
+        .def_readonly("tilt_error_deg", &Overturning::tilt_error_deg)
+        .def_readonly("direction", &Overturning::direction)
+        .def_readonly("push_N", &Overturning::push_N)
+        .def_readonly("push_error_N", &Overturning::push_error_N)
+        .def_readonly("slide_N", &Overturning::slide_N)
+        .def_readonly("shake_g", &Overturning::shake_g);
     py::class_<Object>(module, "Object")
         .def_readonly("id", &Object::id)
         .def_readonly("primitives", &Object::primitives)
@@ -54,6 +62,7 @@ void bind_items(py::module_& module) {
                                    return out;
                                })
         .def_readonly("release_J", &Object::release_J)
+        .def_readonly("overturning", &Object::overturning)
         .def_readonly("mode", &Object::mode)
         .def_readonly("direction", &Object::direction)
         .def_readonly("risk_J", &Object::risk_J)

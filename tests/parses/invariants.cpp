@@ -82,6 +82,16 @@ void check_object(const Object& o, std::size_t objects) {
         expect_amount(v, "an object's mass, energy or error");
     for (const Vec3& v : {o.center_of_mass_m, o.direction, o.center_of_mass_error_m})
         for (const double c : v) expect(std::isfinite(c), "an object's vector is not finite");
+    const Overturning& tips = o.overturning;
+    expect(std::isnan(tips.tilt_deg) == std::isnan(tips.push_N) &&
+               std::isnan(tips.tilt_deg) == std::isnan(tips.shake_g),
+           "only a part of what overturns an object is known");
+    if (!std::isnan(tips.tilt_deg)) {
+        expect(tips.tilt_deg >= 0 && tips.tilt_deg <= 90, "a tilt is out of 0 to 90 degrees");
+        for (const double v :
+             {tips.tilt_error_deg, tips.push_N, tips.push_error_N, tips.slide_N, tips.shake_g})
+            expect_amount(v, "what overturns an object");
+    }
     expect_share(o.agreement, "an agreement");
     expect_share(o.rest_probability, "the probability of a rest");
     expect(std::isnan(o.unsafety) || (o.unsafety >= 1 && o.unsafety <= 10),

@@ -104,6 +104,21 @@ struct Advice {
     std::string sentence;
 };
 
+// What it takes to overturn an object slowly, on its easiest way to tip: the figures of statics.
+// One standard error each, of the mass, its centre and the border of the footing. NaN where it
+// can't tip: the ground, and what hangs or is held by nothing that was seen.
+struct Overturning {
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    double tilt_deg = none, tilt_error_deg = none;  // it goes over once it leans so much
+    Vec3 direction{};                               // towards there: horizontal, unit; zero: any
+    // Steady level push at its top that tips it; and one anywhere that slides it: the lesser of
+    // both comes first.
+    double push_N = none, push_error_N = none, slide_N = none;
+    // Level acceleration of what carries it, in g, at which it begins to rock or slide. To begin is
+    // not to fall: short shakes need several times as much.
+    double shake_g = none;
+};
+
 // A set of primitives fixed to one another: one rigid body.
 struct Object {
     std::int32_t id = -1;
@@ -125,7 +140,8 @@ struct Object {
     Vec3 center_of_mass_error_m{};
     double footprint_error_m = 0;
     double barrier_error_J = 0;
-    double release_J = 0;       // what it can release then
+    double release_J = 0;  // what it can release then
+    Overturning overturning;
     std::string mode = "none";  // "tip" | "slide" | "none"
     Vec3 direction{};           // weakest horizontal direction, unit, or zero for "none"
     std::vector<InstabilityStep> instability;

@@ -187,6 +187,9 @@ typedef struct topple_object {
     double mass_error_kg, center_of_mass_error_m[3], footprint_error_m;
     const char* mass_model;  /* "solid", or "closed": boards around contents */
     double inertia_kg_m2[9]; /* about its centre of mass, along the input's axes, row-major */
+    /* to overturn it slowly (struct Overturning of topple/scene.h); NaN where it can't tip */
+    double tilt_deg, tilt_error_deg, overturning_direction[3];
+    double push_N, push_error_N, slide_N, shake_g;
 } topple_object;
 typedef struct topple_contact {
     size_t size;

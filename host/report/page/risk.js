@@ -41,7 +41,10 @@ function riskItem(scene, object, choose) {
       unsafetyBadge(scene, object)]),
     line('from', isDoubtful(object) ? `As scanned a touch would upset it. ${happensText(scene, object)}` : upsetText(object)),
   ]);
-  if (!isDoubtful(object)) item.append(line('then', happensText(scene, object)));
+  if (!isDoubtful(object)) {
+    item.append(line('then', happensText(scene, object)));
+    if (overturningText(scene, object)) item.append(line('then', overturningText(scene, object)));
+  }
   if (object.agreement < 0.5) {
     item.append(line('then', `Only ${Math.round(100 * object.agreement)} % of the searches found it so: its parts may belong together otherwise.`));
   }

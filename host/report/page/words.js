@@ -55,6 +55,18 @@ function upsetText(object) {
   return `Upset by ${listed(chances, 'or')}.`;
 }
 
+// What overturns it slowly, in the figures of statics; '' where it can't tip.
+function overturningText(scene, object) {
+  const o = object.overturning;
+  if (!o || o.tilt_deg === null) return '';
+  const round = value => Number(value.toPrecision(2)), about = (value, error) => round(value) + (error > 0 ? ` \u00b1 ${round(error)}` : '');
+  const way = wayOf(scene, o.direction), slides = o.slide_N < o.push_N;
+  return `It goes over${way && ' to the ' + way} once it leans ${about(o.tilt_deg, o.tilt_error_deg)}\u00b0. ` +
+    (slides ? `A steady push of ${round(o.slide_N)} N slides it; at its top ${about(o.push_N, o.push_error_N)} N would tip it. `
+      : `A steady push of ${about(o.push_N, o.push_error_N)} N at its top tips it. `) +
+    `Shaken, it begins to ${slides && o.shake_g < Math.tan(o.tilt_deg * Math.PI / 180) ? 'slide' : 'rock'} at ${round(o.shake_g)} g.`;
+}
+
 function metres(length) {
   return length < 0.995 ? `${Math.max(1, Math.round(100 * length))} cm` : `${length.toFixed(1)} m`;
 }

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "physics/overturning.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace topple::physics {
+
+Overturning overturning(const Candidate& candidate, const BodyError& known,
+                        const Stability& tipping, double top_m, double border_error_m,
+                        double friction) {
+    const Body& body = candidate.body;
+    const double weight = body.mass_kg * gravity;
+    const double height = body.center[2] - candidate.support_height_m;
+    if (candidate.support_polygon.empty() || !(weight > 0) || !(height > 0)) return {};
+    constexpr double degrees = 180 / std::numbers::pi;
+    const double rise = tipping.barrier_J / weight;
+    const double beside = std::sqrt(rise * (rise + 2 * height));
+    Overturning out;
+    out.direction = tipping.easiest.direction;
+    out.tilt_deg = std::atan(beside / height) * degrees;
+    out.tilt_error_deg = std::hypot(height * border_error_m, beside * known.center_m[2]) /
+                         (height * height + beside * beside) * degrees;
+    const double arm = std::max(top_m - candidate.support_height_m, height);
+    out.push_N = weight * beside / arm;
+    out.push_error_N = std::hypot(weight * border_error_m, gravity * known.mass_kg * beside) / arm;
+    out.slide_N = friction * weight;
+    out.shake_g = std::min(beside / height, friction);
+    return out;
+}
+
+}  // namespace topple::physics
