@@ -64,7 +64,7 @@ function overturningText(scene, object) {
   return `It goes over${way && ' to the ' + way} once it leans ${about(o.tilt_deg, o.tilt_error_deg)}\u00b0. ` +
     (slides ? `A steady push of ${round(o.slide_N)} N slides it; at its top ${about(o.push_N, o.push_error_N)} N would tip it. `
       : `A steady push of ${about(o.push_N, o.push_error_N)} N at its top tips it. `) +
-    `Shaken, it begins to ${slides && o.shake_g < Math.tan(o.tilt_deg * Math.PI / 180) ? 'slide' : 'rock'} at ${round(o.shake_g)} g.`;
+    `Shaken, it begins to ${o.shake_g < 0.999 * Math.tan(o.tilt_deg * Math.PI / 180) ? 'slide' : 'rock'} at ${round(o.shake_g)} g.`;
 }
 
 function metres(length) {
