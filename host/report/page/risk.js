@@ -43,7 +43,7 @@ function riskItem(scene, object, choose) {
   ]);
   if (!isDoubtful(object)) {
     item.append(line('then', happensText(scene, object)));
-    if (overturningText(scene, object)) item.append(line('then', overturningText(scene, object)));
+    if (overturningText(object)) item.append(line('then', overturningText(object)));
   }
   if (object.agreement < 0.5) {
     item.append(line('then', `Only ${Math.round(100 * object.agreement)} % of the searches found it so: its parts may belong together otherwise.`));

@@ -138,7 +138,7 @@ function showObject(panel, scene, id, choose) {
   panel.append(element('button', {type: 'button', text: '\u2190 all that is at risk', onclick: () => choose(null)}));
   const heading = element('h2', {}, [element('span', {className: 'swatch', style: {background: css(colourOf(scene, id))}}), 'Object ' + id]);
   panel.append(heading);
-  const overturning = overturningText(scene, object);
+  const overturning = overturningText(object);
   if (overturning) panel.append(element('p', {className: 'why', text: overturning}));
   if (!object.grounded) panel.append(element('p', {className: 'why', text: upsetText(object)}));
   if (fallKnown(object)) panel.append(element('p', {className: 'why', text: happensText(scene, object)}));

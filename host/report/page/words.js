@@ -56,15 +56,19 @@ function upsetText(object) {
 }
 
 // What overturns it slowly, in the figures of statics; '' where it can't tip.
-function overturningText(scene, object) {
+function overturningText(object) {
   const o = object.overturning;
   if (!o || o.tilt_deg === null) return '';
-  const round = value => Number(value.toPrecision(2)), about = (value, error) => round(value) + (error > 0 ? ` \u00b1 ${round(error)}` : '');
-  const way = wayOf(scene, o.direction), slides = o.slide_N < o.push_N;
-  return `It goes over${way && ' to the ' + way} once it leans ${about(o.tilt_deg, o.tilt_error_deg)}\u00b0. ` +
-    (slides ? `A steady push of ${round(o.slide_N)} N slides it; at its top ${about(o.push_N, o.push_error_N)} N would tip it. `
-      : `A steady push of ${about(o.push_N, o.push_error_N)} N at its top tips it. `) +
-    `Shaken, it begins to ${o.shake_g < 0.999 * Math.tan(o.tilt_deg * Math.PI / 180) ? 'slide' : 'rock'} at ${round(o.shake_g)} g.`;
+  const round = value => Number(value.toPrecision(2));
+  const about = (value, error) => {
+    if (!(error > 0)) return round(value);
+    const digits = Math.min(3, Math.max(0, -Math.floor(Math.log10(error))));
+    return `${value.toFixed(digits)} \u00b1 ${error.toFixed(digits)}`;
+  };
+  const push = `a steady push of ${about(o.push_N, o.push_error_N)} N at its top`, slides = o.shake_g < 0.999 * Math.tan(o.tilt_deg * Math.PI / 180);
+  return `Goes over once it leans ${about(o.tilt_deg, o.tilt_error_deg)}\u00b0, or at ${push}` +
+    (o.slide_N < o.push_N ? `, if ${round(o.slide_N)} N don't slide it before` : '') +
+    `; begins to ${slides ? 'slide' : 'rock'} where the ground shakes with ${round(o.shake_g)} g.`;
 }
 
 function metres(length) {
