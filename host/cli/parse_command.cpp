@@ -253,8 +253,8 @@ Command add_parse(CLI::App& app, const Team& team) {
         "Peak ground acceleration of the earthquake in m/s^2; an accelerogram is scaled\n"
         "to it (default: the accelerogram's own, or 3)");
     app.add_option("--accelerogram", a->accelerogram,
-                   "Recorded earthquake instead of pulses: JSON (dT, accel_data), or lines of\n"
-                   "time in s and acceleration");
+                   "Recorded earthquake instead of pulses: JSON (dT, accel_data), PEER's .AT2, or\n"
+                   "lines of time in s and acceleration");
     app.add_option_function<std::string>(
            "--accelerogram-unit",
            [a](const std::string& unit) { a->accelerogram_unit_m_s2 = record_units.at(unit); },

@@ -4,9 +4,11 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/json.h"
+#include "io/at2.h"
 #include "io/json_text.h"
 #include "io/text.h"
 #include "topple/input.h"
@@ -135,10 +137,34 @@ void collect_units(std::string_view line, std::set<double>& units) {
     }
 }
 
+// What names the unit stands beside the word.
+Raw read_peer(const fs::path& file, io::At2Record record, bool unit_given) {
+    Raw raw;
+    raw.values = std::move(record.values);
+    raw.step_s = record.step_s;
+    std::set<double> units;
+    io::Lines lines(record.header);
+    for (std::string_view line; lines.next(line);) {
+        const std::string text = lower_case(line);
+        const auto at = text.find("units of");
+        if (at == std::string::npos) continue;
+        std::string_view rest = std::string_view(text).substr(at + 8);
+        std::string_view word = io::next_token(rest, true);
+        while (word.ends_with('.')) word.remove_suffix(1);
+        if (const auto unit = unit_of(word)) units.insert(*unit);
+    }
+    if (units.size() > 1 && !unit_given)
+        fail(file, std::string("its header names several units; ") + mend);
+    if (units.size() == 1) raw.unit_m_s2 = *units.begin();
+    return raw;
+}
+
 Raw read_text(const fs::path& file, std::string_view text, bool unit_given) {
     if (text.substr(0, 4096).find('\0') != std::string_view::npos) {
         fail(file, "is neither JSON nor text: it has zero bytes near its start");
     }
+    if (auto record = io::read_at2(file, text))
+        return read_peer(file, *std::move(record), unit_given);
     Raw raw;
     std::vector<double> times;
     std::vector<std::uint64_t> line_of;
@@ -213,8 +239,10 @@ Accelerogram read_accelerogram(const fs::path& file, std::optional<double> unit_
     const bool json = first != std::string_view::npos && (text[first] == '{' || text[first] == '[');
     const Raw raw = json ? read_json(file, text) : read_text(file, text, unit_m_s2.has_value());
     if (raw.values.size() < 2) {
-        fail(file, "has " + counted(raw.values.size(), "sample") +
-                       "; a record needs at least 2, as JSON or as lines of time and acceleration");
+        fail(file,
+             "has " + counted(raw.values.size(), "sample") +
+                 "; a record needs at least 2, as JSON, as lines of time and acceleration, or "
+                 "as PEER's .AT2");
     }
     if (raw.values.size() > most_samples)
         fail(file, "has " + counted(raw.values.size(), "sample") + ", more than the limit of " +

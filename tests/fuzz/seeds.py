@@ -146,6 +146,7 @@ def record_json():
 
 def record_text():
     yield b"# time s, acceleration m/s^2\n0 0.5\n0.01 -1\n0.02 0.25\n"
+    yield b"A RECORD\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS=  3, DT= .01 SEC\n .1E+00 -.2E+00\n .05\n"
 
 
 def scene():

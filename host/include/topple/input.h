@@ -77,8 +77,8 @@ struct Accelerogram {
 
 // Reads a record of an earthquake from
 //   - JSON: "dT" (or "dt"), seconds, and a list "accel_data" (or "data", "acceleration", "accel"),
-//     with "unit" and "factor", by which the values count, where there are any; at the top or as
-//     the one entry of "timeSeries";
+//     with "unit" and "factor", by which the values count, if any; at the top or in "timeSeries";
+//   - PEER's .AT2: header lines, the last with NPTS and DT, and then the samples;
 //   - text: a line of time in seconds and acceleration for each sample. Other columns are not
 //     looked at. The unit stands in its header: "# time s, acceleration m/s^2".
 // Units are g, m/s^2, cm/s^2 and gal; `unit_m_s2`, of which a value is so many, overrides them.

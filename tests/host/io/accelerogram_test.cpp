@@ -65,6 +65,40 @@ TEST_F(Accelerograms, TextWithFewDigitsOrMoreColumns) {
     EXPECT_DOUBLE_EQ(coarse.step_s, 0.01);
 }
 
+TEST_F(Accelerograms, PeersRecordsInBothForms) {
+    const Accelerogram now = read(
+        "PEER NGA STRONG MOTION DATABASE RECORD\n"
+        "Nowhere-01, 1/2/2003, Station #5, 140\n"
+        "ACCELERATION TIME SERIES IN UNITS OF G\n"
+        "NPTS=      7, DT=   .0050 SEC,\n"
+        "  .1000000E-02  -.2000000E-02   .3000000E-02   0   .5\r\n"
+        "  1.0E-01 -0.25\n");
+    EXPECT_EQ(now.step_s, 0.005);
+    ASSERT_EQ(now.m_s2.size(), 7u);
+    EXPECT_DOUBLE_EQ(now.m_s2[1], -0.002 * 9.80665);
+    EXPECT_DOUBLE_EQ(now.m_s2[6], -0.25 * 9.80665);
+    EXPECT_TRUE(now.notes.empty());
+    const Accelerogram before = read(
+        "PACIFIC ENGINEERING AND ANALYSIS STRONG-MOTION DATA\n"
+        "NOWHERE 01/02/03, STATION, 140\n"
+        "ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz LP=40.0 Hz\n"
+        "    3    0.0100    NPTS, DT\n"
+        " 0.1 0.2\n 0.3\n");
+    EXPECT_EQ(before.step_s, 0.01);
+    EXPECT_DOUBLE_EQ(before.m_s2[2], 0.3 * 9.80665);
+    EXPECT_DOUBLE_EQ(read("NPTS=2, DT=.01\n1 2\n", 1.0).m_s2[1], 2) << "the option's unit";
+    EXPECT_EQ(read("NPTS=2, DT=.01\n1 2\n").notes.size(), 1u) << "no unit";
+
+    refused("IN UNITS OF G\nNPTS= 3, DT= .01\n0.1 0.2\n", {"NPTS 3", "2 samples", "cut short"});
+    refused("IN UNITS OF G\nNPTS= 1, DT= .01\n0.1 0.2\n", {"line 3", "more samples", "1"});
+    refused("IN UNITS OF G\nNPTS= 2, DT= .01\n0.1 x\n", {"line 3", "\"x\"", "not a number"});
+    refused("IN UNITS OF G\nNPTS= 2, DT= .01\n0.1 inf\n", {"line 3", "finite"});
+    refused("IN UNITS OF G\nNPTS= -2, DT= .01\n", {"line 2", "NPTS is -2"});
+    refused("IN UNITS OF G\nNPTS= 1e30, DT= .01\n1\n", {"NPTS is 1e+30"});
+    refused("IN UNITS OF G\nNPTS= 2, DT= 5\n1 2\n", {"5 s apart"});
+    refused("IN UNITS OF CM/S2\nIN UNITS OF G\nNPTS= 2, DT= .01\n1 2\n", {"several units"});
+}
+
 TEST_F(Accelerograms, FaultsAreNamedWithTheirPlaceAndMend) {
     refused("", {"empty"});
     refused("hello\n", {"0 samples"});
