@@ -76,11 +76,9 @@ Json to_json(const Why& w) {
 }
 
 Json to_json(const Fall& f) {
-    return {{"falls", f.falls},
-            {"lands_m", vector(f.lands_m)},
-            {"drop_m", number(f.drop_m)},
-            {"lands_on", f.lands_on},
-            {"takes_along", f.takes_along}};
+    return {{"falls", f.falls},           {"lands_m", vector(f.lands_m)},
+            {"drop_m", number(f.drop_m)}, {"lands_on", f.lands_on},
+            {"leans_on", f.leans_on},     {"takes_along", f.takes_along}};
 }
 
 Json to_json(const Advice& a) {
@@ -207,6 +205,7 @@ Fall fall_of(const Json& json) {
     f.lands_m = vector_at(json, "lands_m");
     f.drop_m = number_at(json, "drop_m");
     f.lands_on = json.at("lands_on").get<std::int32_t>();
+    if (json.contains("leans_on")) f.leans_on = json.at("leans_on").get<std::int32_t>();
     f.takes_along = json.at("takes_along").get<std::vector<std::int32_t>>();
     return f;
 }

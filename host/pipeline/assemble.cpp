@@ -255,7 +255,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     note_uncertain_barriers(scene);
     scene.swc_energy = objects.grouping.energy_curve;
     explain(parts, objects, to_input, scene);
-    foretell(objects, safety.advice, to_input, scene);
+    foretell(parts, objects, safety.advice, to_input, scene);
 }
 
 void add_exposures(const SafetyStage& safety, const SolidCells& cells, vdb::VoxelScene& voxels) {

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <string>
 
+#include "physics/fall_sweep.h"
+
 namespace topple {
 namespace {
 
@@ -200,27 +202,30 @@ std::vector<std::int32_t> taken_along(const Scene& scene,
 }
 
 // Where its centre of mass comes to lie once it has gone its easiest way, grid frame: over an edge
-// about its own height away and as high as it was beside the edge; off a support's end at half of
-// its length beyond it.
-Vec3 landing(const StableObject& from) {
+// about its own height away and as high as it was beside the edge, unless it meets something
+// before; off a support's end at half of its length beyond it.
+physics::Swept landing(const SolidParts& parts, const StableObject& from) {
     const physics::Instability& how = from.instability;
     const Vec3& center = from.candidate.body.center;
     const Vec3& way = how.weakest;
     const double support =
         from.candidate.support_polygon.empty() ? from.lowest_m : from.candidate.support_height_m;
     const double height = std::max(center[2] - support, 0.0);
+    if (how.mode == "slide") {
+        const double on = from.sliding.distance_m + height;
+        return {{center[0] + on * way[0], center[1] + on * way[1], center[2] - how.drop_m}};
+    }
     double beside = 0;  // from the centre of mass to the edge
     if (how.edge) {
         const auto& [a, b] = *how.edge;
         for (std::size_t c = 0; c < 2; ++c) beside += ((a[c] + b[c]) / 2 - center[c]) * way[c];
     }
-    beside = std::max(beside, 0.0);
-    if (how.mode == "slide") {
-        const double on = from.sliding.distance_m + height;
-        return {center[0] + on * way[0], center[1] + on * way[1], center[2] - how.drop_m};
-    }
-    return {center[0] + (beside + height) * way[0], center[1] + (beside + height) * way[1],
-            support - how.drop_m + std::min(beside, height)};
+    physics::Candidate body = from.candidate;
+    body.support_height_m = support;
+    physics::Swept swept = physics::sweep_over_edge(parts.solids->cells(), parts.solids->columns(),
+                                                    body, way, beside, from.highest_m);
+    if (!swept.stopped) swept.center[2] -= how.drop_m;
+    return swept;
 }
 
 constexpr double light_kg = 5;  // one carries it away rather than fastens it
@@ -277,8 +282,8 @@ std::string advice_sentence(const Object& object, const Suggestion& what) {
 
 }  // namespace
 
-void foretell(const ObjectStage& objects, std::span<const Suggestion> advice,
-              const ToInput& to_input, Scene& scene) {
+void foretell(const SolidParts& parts, const ObjectStage& objects,
+              std::span<const Suggestion> advice, const ToInput& to_input, Scene& scene) {
     std::vector<std::vector<Support>> holders(scene.objects.size());  // of each object
     for (const Support& s : scene.supports)
         holders[static_cast<std::size_t>(s.supported)].push_back(s);
@@ -290,9 +295,12 @@ void foretell(const ObjectStage& objects, std::span<const Suggestion> advice,
         object.fall.takes_along = taken_along(scene, holders, o);
         for (const auto& [name, chance] : object.fall_chance)
             object.fall.falls = object.fall.falls || chance > 0;
-        object.fall.lands_m = to_input(landing(from));
-        object.fall.drop_m = object.why.drop_m;
-        object.fall.lands_on = object.why.lands_on;
+        const physics::Swept swept = landing(parts, from);
+        object.fall.lands_m = to_input(swept.center);
+        object.fall.drop_m = swept.stopped ? 0 : object.why.drop_m;
+        object.fall.lands_on = swept.stopped ? -1 : object.why.lands_on;
+        if (swept.by >= 0)
+            object.fall.leans_on = objects.object_of_primitive[static_cast<std::size_t>(swept.by)];
         const Suggestion& what = advice[o];
         static constexpr std::array kinds{"", "see", "check", "move", "fix"};
         object.advice.kind = kinds[static_cast<std::size_t>(what.kind)];

@@ -50,7 +50,7 @@ void explain(const SolidParts& parts, const ObjectStage& objects, const ToInput&
              Scene& scene);
 
 // Fills in each object's `fall` and `advice`, from `why` and the supports.
-void foretell(const ObjectStage& objects, std::span<const Suggestion> advice,
-              const ToInput& to_input, Scene& scene);
+void foretell(const SolidParts& parts, const ObjectStage& objects,
+              std::span<const Suggestion> advice, const ToInput& to_input, Scene& scene);
 
 }  // namespace topple

@@ -91,6 +91,7 @@ struct Fall {
     Vec3 lands_m{};                         // its centre of mass, about, at its first landing
     double drop_m = 0;                      // fallen from its support to there; 0: it stays on it
     std::int32_t lands_on = -1;             // object below that drop; -1: none, or unknown
+    std::int32_t leans_on = -1;             // object that stops it on its way; -1: none
     std::vector<std::int32_t> takes_along;  // what then loses half of its support, ascending
 };
 

@@ -298,6 +298,9 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
     for (const char* part :
          {"Object 3", "6.2\u00a0kg", "Upset by 1 walk in 40 or 1 earthquake in 40.",
           "It tips over to the north, falls 76 cm to the floor", "and takes object 2 along.",
+          "Goes over once it leans 15.2 \u00b1 0.4\u00b0, or at a steady push of 31 \u00b1 1 N at "
+          "its top",
+          "if 18 N don't slide it before; begins to rock where the ground shakes with 0.27 g.",
           "Fix it where it stands: 12 N"}) {
         EXPECT_NE(text(page.data("first")).find(part), std::string::npos)
             << part << " in " << page.data("first");

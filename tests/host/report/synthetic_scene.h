@@ -229,10 +229,11 @@ class SyntheticScene {
     // The monitor falls off the table with the cup, to its north; the cup should be moved.
     void falls() {
         Object& monitor = scene_.objects[3];
-        monitor.fall = {true, at(1.9, 3.2, 0.2), 0.76, 0, {2}};
+        monitor.fall = {true, at(1.9, 3.2, 0.2), 0.76, 0, -1, {2}};
+        monitor.overturning = {15.2, 0.4, {}, 31.4, 1.2, 18.3, 0.27};
         monitor.advice = {"fix", {}, 0.1, 12, 0.3, "Fix it where it stands: 12 N at 0.3 m."};
         Object& cup = scene_.objects[2];
-        cup.fall = {true, at(0.8, 2.26, 0.1), 0.76, 5, {}};
+        cup.fall = {true, at(0.8, 2.26, 0.1), 0.76, 5, -1, {}};
         cup.advice = {"move", at(0.2, 0, 0), 0.1, 0, 0, "Move it 20 cm to the east."};
     }
 
