@@ -230,7 +230,7 @@ class SyntheticScene {
     void falls() {
         Object& monitor = scene_.objects[3];
         monitor.fall = {true, at(1.9, 3.2, 0.2), 0.76, 0, -1, {2}};
-        monitor.overturning = {15.2, 0.4, {}, 31.4, 1.2, 18.3, 0.27};
+        monitor.overturning = {15.2, 0.4, {}, 31.4, 1.2, 18.3, 0.2717};
         monitor.advice = {"fix", {}, 0.1, 12, 0.3, "Fix it where it stands: 12 N at 0.3 m."};
         Object& cup = scene_.objects[2];
         cup.fall = {true, at(0.8, 2.26, 0.1), 0.76, 5, -1, {}};
