@@ -15,6 +15,25 @@ namespace topple::exports {
 
 using Voxel = std::array<std::int32_t, 3>;
 
+// The smallest box around voxels.
+struct VoxelBox {
+    Voxel low = filled(std::numeric_limits<std::int32_t>::max());
+    Voxel high = filled(std::numeric_limits<std::int32_t>::min());
+
+    void add(const Voxel& at) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            low[a] = std::min(low[a], at[a]);
+            high[a] = std::max(high[a], at[a]);
+        }
+    }
+    std::size_t layers(std::size_t axis) const {
+        return static_cast<std::size_t>(high[axis] - low[axis]) + 1;
+    }
+
+  private:
+    static Voxel filled(std::int32_t value) { return {value, value, value}; }
+};
+
 // A voxel that is a clump's, wholly or in part.
 struct Cell {
     Voxel at{};
@@ -27,17 +46,10 @@ struct Cell {
 class CellGrid {
   public:
     explicit CellGrid(std::vector<Cell> cells) : cells_(std::move(cells)) {
-        low_.fill(std::numeric_limits<std::int32_t>::max());
-        Voxel high;
-        high.fill(std::numeric_limits<std::int32_t>::min());
-        for (const Cell& cell : cells_) {
-            for (std::size_t a = 0; a < 3; ++a) {
-                low_[a] = std::min(low_[a], cell.at[a]);
-                high[a] = std::max(high[a], cell.at[a]);
-            }
-        }
-        for (std::size_t a = 0; a < 3; ++a)
-            size_[a] = static_cast<std::size_t>(high[a] - low_[a]) + 1;
+        VoxelBox box;
+        for (const Cell& cell : cells_) box.add(cell.at);
+        low_ = box.low;
+        for (std::size_t a = 0; a < 3; ++a) size_[a] = box.layers(a);
         piece_.assign(size_[0] * size_[1] * size_[2], -1);
         index_.assign(piece_.size(), 0);
         for (std::size_t n = 0; n < cells_.size(); ++n)

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -26,7 +25,7 @@ constexpr std::size_t most_changes = 3, even_places = 2;
 struct Piece {
     std::int32_t id = 0;
     std::vector<std::size_t> cells;
-    Voxel low{}, high{};
+    VoxelBox box;
     double hull = 0;                  // its volume, in voxels
     double excess = 0;                // what the hull holds beyond the solid, in voxels
     std::optional<PieceSolid> solid;  // once it was asked for
@@ -135,14 +134,7 @@ class Decomposition {
         return *piece.solid;
     }
     void bound(Piece& piece) const {
-        piece.low.fill(std::numeric_limits<std::int32_t>::max());
-        piece.high.fill(std::numeric_limits<std::int32_t>::min());
-        for (const std::size_t n : piece.cells) {
-            for (std::size_t a = 0; a < 3; ++a) {
-                piece.low[a] = std::min(piece.low[a], grid_[n].at[a]);
-                piece.high[a] = std::max(piece.high[a], grid_[n].at[a]);
-            }
-        }
+        for (const std::size_t n : piece.cells) piece.box.add(grid_[n].at);
     }
     void mark(const Piece& piece) {
         for (const std::size_t n : piece.cells) grid_.mark(n, piece.id);
@@ -154,9 +146,9 @@ class Decomposition {
         const auto slab_of = [&](const Voxel& at) {
             return slab_of_layer.empty()
                        ? 0
-                       : slab_of_layer[static_cast<std::size_t>(at[axis] - piece.low[axis])];
+                       : slab_of_layer[static_cast<std::size_t>(at[axis] - piece.box.low[axis])];
         };
-        std::vector<std::vector<Vec3>> out(slab_of(piece.high) + 1);
+        std::vector<std::vector<Vec3>> out(slab_of(piece.box.high) + 1);
         for (const std::size_t n : piece.cells) {
             const Voxel& at = grid_[n].at;
             const std::size_t slab = slab_of(at);
@@ -195,10 +187,10 @@ class Decomposition {
     // Where to try cuts along an axis: the layers that begin where the section changes most, and
     // some in between. Ascending, in layers from the piece's lowest.
     std::vector<std::size_t> places(const Piece& piece, std::size_t axis) const {
-        const auto layers = static_cast<std::size_t>(piece.high[axis] - piece.low[axis]) + 1;
+        const auto layers = piece.box.layers(axis);
         std::vector<std::int64_t> count(layers, 0);
         for (const std::size_t n : piece.cells)
-            ++count[static_cast<std::size_t>(grid_[n].at[axis] - piece.low[axis])];
+            ++count[static_cast<std::size_t>(grid_[n].at[axis] - piece.box.low[axis])];
         std::vector<std::pair<std::int64_t, std::size_t>> changes;
         for (std::size_t n = 1; n < layers; ++n)
             changes.emplace_back(-std::abs(count[n] - count[n - 1]), n);
@@ -227,14 +219,15 @@ class Decomposition {
     Slabs slabs_along(const Piece& piece, std::size_t axis) const {
         Slabs out;
         out.first = places(piece, axis);
-        const auto layers = static_cast<std::size_t>(piece.high[axis] - piece.low[axis]) + 1;
+        const auto layers = piece.box.layers(axis);
         std::vector<std::size_t> slab_of_layer(layers, 0);
         for (std::size_t n = 0; n < layers; ++n)
             slab_of_layer[n] = static_cast<std::size_t>(std::ranges::upper_bound(out.first, n) -
                                                         out.first.begin());
         std::vector<double> solid(out.first.size() + 1, 0);
         for (const std::size_t n : piece.cells)
-            ++solid[slab_of_layer[static_cast<std::size_t>(grid_[n].at[axis] - piece.low[axis])]];
+            ++solid[slab_of_layer[static_cast<std::size_t>(grid_[n].at[axis] -
+                                                           piece.box.low[axis])]];
         out.corner = corners(piece, axis, slab_of_layer);
         std::vector<Vec3> points;
         double solid_below = 0;
@@ -273,8 +266,8 @@ class Decomposition {
                 const double above = hull_with(points, next);
                 if (slabs.below[n] + above >= least) continue;
                 least = slabs.below[n] + above;
-                best = {a, piece.low[a] + static_cast<std::int32_t>(slabs.first[n]), slabs.below[n],
-                        above};
+                best = {a, piece.box.low[a] + static_cast<std::int32_t>(slabs.first[n]),
+                        slabs.below[n], above};
             }
         }
         return best ? best : best_peel(piece, along);
@@ -296,7 +289,8 @@ class Decomposition {
                                             convex(above, solid_above) ? solid_above : 0);
                 if (off <= most) continue;
                 most = off;
-                peel = {a, piece.low[a] + static_cast<std::int32_t>(slabs.first[n]), below, above};
+                peel = {a, piece.box.low[a] + static_cast<std::int32_t>(slabs.first[n]), below,
+                        above};
             }
         }
         return peel;

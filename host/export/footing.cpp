@@ -15,7 +15,6 @@ namespace {
 using physics::dot;
 
 constexpr double resting_m = 2e-4;
-constexpr double carries_cosine = 0.8;  // of a side that something can stand on
 
 std::vector<Point2> outline_of(const ConvexPart& part, const HalfSpace& plane) {
     std::vector<Point2> out;

@@ -306,14 +306,13 @@ void separate(std::vector<Body>& bodies) {
 
 void clear_sides(std::vector<Body>& bodies) {
     constexpr double clear_m = 3e-4;
-    constexpr double carries = 0.8;  // cosine of the steepest side that carries
     each_pair(bodies, [](const Body& below, Body& above) {
         for (ConvexPart& part : above.parts) {
             for (const ConvexPart& stays : below.parts) {
                 if (!near(part, stays, clear_m)) continue;
                 const Apart lie = apart(stays, part);
                 if (lie.gap_m < -touching_m || lie.gap_m >= clear_m) continue;
-                if (std::abs(lie.normal[2]) >= carries) continue;
+                if (std::abs(lie.normal[2]) >= carries_cosine) continue;
                 const double place = extent_along(stays, lie.normal).high + clear_m;
                 if (auto left = cut(part, {opposite(lie.normal), -place})) part = *std::move(left);
             }

@@ -8,6 +8,9 @@
 
 namespace topple::exports {
 
+// Of a side that something can stand on.
+inline constexpr double carries_cosine = 0.8;
+
 // How two parts lie to one another, along the face of either that tells them apart best.
 struct Apart {
     Vec3 normal{};     // unit, from the first to the second

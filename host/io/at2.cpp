@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "io/at2.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -14,12 +13,6 @@ constexpr std::uint64_t most_header_lines = 10;
 constexpr std::size_t longest_header_line = 1000;
 // Beyond what any record has; a count is no reason to allocate.
 constexpr double most_promised = 1e9;
-
-std::string upper_case(std::string_view text) {
-    std::string out(text);
-    for (char& c : out) c = static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
-    return out;
-}
 
 // The number behind a word and "="; none where there is no such.
 std::optional<double> number_behind(std::string_view line, std::string_view word) {
@@ -39,10 +32,10 @@ struct Promise {
 };
 std::optional<Promise> promise_of(std::string_view text) {
     if (text.size() > longest_header_line) return std::nullopt;
-    const std::string line = upper_case(text);
-    if (line.find("NPTS") == std::string::npos || line.find("DT") == std::string::npos)
+    const std::string line = lower_case(text);
+    if (line.find("npts") == std::string::npos || line.find("dt") == std::string::npos)
         return std::nullopt;
-    const auto samples = number_behind(line, "NPTS"), step = number_behind(line, "DT");
+    const auto samples = number_behind(line, "npts"), step = number_behind(line, "dt");
     if (samples && step) return Promise{*samples, *step};
     std::string_view rest = line;
     Promise out;

@@ -17,7 +17,7 @@ namespace topple {
 namespace {
 
 namespace fs = std::filesystem;
-using io::counted, io::fail, io::in_quotes, io::short_number;
+using io::counted, io::fail, io::in_quotes, io::lower_case, io::short_number;
 
 constexpr double g_m_s2 = 9.80665;
 // Strong motion lasts a minute or two, sampled 50 to 1000 times a second. More than an hour would
@@ -39,12 +39,6 @@ std::optional<double> unit_of(std::string_view name) {
          {"gal", "gals", "cm/s^2", "cm/s2", "cm/s/s", "cm/s\u00b2", "cm/sec^2", "cm/sec2"})
         if (name == gal) return 0.01;
     return std::nullopt;
-}
-
-std::string lower_case(std::string_view text) {
-    std::string out(text);
-    for (char& c : out) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-    return out;
 }
 
 // The samples as a file has them.
@@ -137,6 +131,15 @@ void collect_units(std::string_view line, std::set<double>& units) {
     }
 }
 
+// The one that a header names, or nothing.
+std::optional<double> only_unit(const fs::path& file, const std::set<double>& units,
+                                bool unit_given) {
+    if (units.size() > 1 && !unit_given)
+        fail(file, std::string("its header names several units; ") + mend);
+    if (units.size() != 1) return std::nullopt;
+    return *units.begin();
+}
+
 // What names the unit stands beside the word.
 Raw read_peer(const fs::path& file, io::At2Record record, bool unit_given) {
     Raw raw;
@@ -153,9 +156,7 @@ Raw read_peer(const fs::path& file, io::At2Record record, bool unit_given) {
         while (word.ends_with('.')) word.remove_suffix(1);
         if (const auto unit = unit_of(word)) units.insert(*unit);
     }
-    if (units.size() > 1 && !unit_given)
-        fail(file, std::string("its header names several units; ") + mend);
-    if (units.size() == 1) raw.unit_m_s2 = *units.begin();
+    raw.unit_m_s2 = only_unit(file, units, unit_given);
     return raw;
 }
 
@@ -223,9 +224,7 @@ Raw read_text(const fs::path& file, std::string_view text, bool unit_given) {
                 " s after the one before, but samples must be equally far apart, here " +
                 short_number(raw.step_s) + " s");
     }
-    if (units.size() > 1 && !unit_given)
-        fail(file, std::string("its header names several units; ") + mend);
-    if (units.size() == 1) raw.unit_m_s2 = *units.begin();
+    raw.unit_m_s2 = only_unit(file, units, unit_given);
     return raw;
 }
 

@@ -29,6 +29,12 @@ struct Descriptor {
 
 }  // namespace
 
+std::string lower_case(std::string_view text) {
+    std::string out(text);
+    for (char& c : out) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    return out;
+}
+
 std::string in_quotes(std::string_view text) {
     std::string out(1, '"');
     out += printable(text);

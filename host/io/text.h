@@ -43,6 +43,9 @@ struct FileBytes {
 // empty, larger than `limit` bytes, or where memory does not suffice.
 FileBytes read_file(const std::filesystem::path& file, std::uint64_t limit = UINT64_MAX);
 
+// Letters of ASCII alone, whatever the locale.
+std::string lower_case(std::string_view text);
+
 // The lines of a text, with or without \r, counted from 1.
 class Lines {
   public:

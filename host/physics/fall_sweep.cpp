@@ -29,16 +29,16 @@ std::optional<std::int32_t> other_at(const SolidCells& cells, const CellColumns&
 }  // namespace
 
 Swept sweep_over_edge(const SolidCells& cells, const CellColumns& columns, const Candidate& body,
-                      const Vec3& direction, double beside_m, double top_m) {
+                      double support_m, const Vec3& direction, double beside_m, double top_m) {
     const Vec3& c = body.body.center;
-    const double voxel = cells.voxel_m, support = body.support_height_m;
-    const double height = std::max(c[2] - support, 0.0), beside = std::max(beside_m, 0.0);
-    const double top = std::max(top_m - support, height);
+    const double voxel = cells.voxel_m;
+    const double height = std::max(c[2] - support_m, 0.0), beside = std::max(beside_m, 0.0);
+    const double top = std::max(top_m - support_m, height);
     // Turned by an angle, from the edge: a point ahead and above as the body stands.
     const auto turned = [&](double angle, double ahead, double above) -> Vec3 {
         const double u = ahead * std::cos(angle) + above * std::sin(angle);
         return {c[0] + (beside + u) * direction[0], c[1] + (beside + u) * direction[1],
-                support + above * std::cos(angle) - ahead * std::sin(angle)};
+                support_m + above * std::cos(angle) - ahead * std::sin(angle)};
     };
     // Points of the front, so close that no voxel is missed between them or between two angles. A
     // single voxel, or what is low, is no stop.
@@ -51,7 +51,7 @@ Swept sweep_over_edge(const SolidCells& cells, const CellColumns& columns, const
         for (int n = 0; n < points; ++n) {
             const double above = points > 1 ? height + (top - height) * n / (points - 1) : height;
             const Vec3 at = turned(angle, 0, above);
-            if (at[2] < support + 2 * voxel) continue;
+            if (at[2] < support_m + 2 * voxel) continue;
             const auto by = other_at(cells, columns, body, at);
             if (by && ++met == enough) return {turned(angle, -beside, height), true, *by};
         }

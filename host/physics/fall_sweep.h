@@ -14,10 +14,10 @@ struct Swept {
     bool stopped = false;
     std::int32_t by = -1;  // the primitive that stopped it
 };
-// direction: horizontal, unit; beside_m: how far the edge is from the centre of mass that way;
-// top_m: the body's highest point. A twentieth of the front must meet something; what reaches less
-// than two voxels above the support is no stop.
+// support_m: the height of what carries it; direction: horizontal, unit; beside_m: how far the edge
+// is from the centre of mass that way; top_m: the body's highest point. A twentieth of the front
+// must meet something; what reaches less than two voxels above the support is no stop.
 Swept sweep_over_edge(const SolidCells& cells, const CellColumns& columns, const Candidate& body,
-                      const Vec3& direction, double beside_m, double top_m);
+                      double support_m, const Vec3& direction, double beside_m, double top_m);
 
 }  // namespace topple::physics

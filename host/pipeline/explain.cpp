@@ -220,10 +220,9 @@ physics::Swept landing(const SolidParts& parts, const StableObject& from) {
         const auto& [a, b] = *how.edge;
         for (std::size_t c = 0; c < 2; ++c) beside += ((a[c] + b[c]) / 2 - center[c]) * way[c];
     }
-    physics::Candidate body = from.candidate;
-    body.support_height_m = support;
-    physics::Swept swept = physics::sweep_over_edge(parts.solids->cells(), parts.solids->columns(),
-                                                    body, way, beside, from.highest_m);
+    physics::Swept swept =
+        physics::sweep_over_edge(parts.solids->cells(), parts.solids->columns(), from.candidate,
+                                 support, way, beside, from.highest_m);
     if (!swept.stopped) swept.center[2] -= how.drop_m;
     return swept;
 }

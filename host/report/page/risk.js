@@ -43,7 +43,8 @@ function riskItem(scene, object, choose) {
   ]);
   if (!isDoubtful(object)) {
     item.append(line('then', happensText(scene, object)));
-    if (overturningText(object)) item.append(line('then', overturningText(object)));
+    const overturning = overturningText(object);
+    if (overturning) item.append(line('then', overturning));
   }
   if (object.agreement < 0.5) {
     item.append(line('then', `Only ${Math.round(100 * object.agreement)} % of the searches found it so: its parts may belong together otherwise.`));

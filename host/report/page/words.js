@@ -104,10 +104,10 @@ function happensText(scene, object) {
   const way = wayOf(scene, fall.lands_m.map((value, k) => value - (object.center_of_mass_m[k] || 0)));
   const to = way ? ` to the ${way}` : '';
   const verb = object.mode === 'tip' ? `It tips over${to}` : object.mode === 'slide' ? `It slides off${to}` : `It comes down${to}`;
+  const goes = fall.takes_along.length, end = goes ? ` and takes ${objectList(fall.takes_along)} along.` : '.';
   const against = scene.objectById.get(fall.leans_on);
-  if (against) return `${verb}, against ${against.grounded ? 'a wall or what is fixed to it' : 'object ' + against.id}` + (fall.takes_along.length ? `, and takes ${objectList(fall.takes_along)} along.` : '.');
-  const drop = fall.drop_m > 0 ? `${verb}, falls ${metres(fall.drop_m)} ${landsText(scene, fall)}` : `${verb}`;
-  return drop + (fall.takes_along.length ? ` and takes ${objectList(fall.takes_along)} along.` : '.');
+  if (against) return `${verb}, against ${against.grounded ? 'a wall or what is fixed to it' : 'object ' + against.id}${goes ? ',' : ''}${end}`;
+  return verb + (fall.drop_m > 0 ? `, falls ${metres(fall.drop_m)} ${landsText(scene, fall)}` : '') + end;
 }
 
 // What a simulator made of the scene (topple verify): how many stay, and which moved.
