@@ -28,6 +28,27 @@ bool wants_export(const ExportOptions& options) {
     });
 }
 
+namespace {
+
+// What a body became, where that is not what was parsed.
+void print_misfits(const ExportSummary& summary) {
+    constexpr double much = 0.5, most_named = 5;
+    std::string names;
+    std::size_t count = 0;
+    for (const ExportedBody& body : summary.bodies) {
+        const bool fits = body.fixed || body.lost_m3 <= much * body.solid_m3;
+        if (fits || ++count > most_named) continue;
+        if (!names.empty()) names += ", ";
+        names += body.name;
+    }
+    if (count > most_named) names += ", ...";
+    if (count > 0)
+        std::printf("%llu lay in others so deep that more than half of each was cut off: %s\n",
+                    static_cast<unsigned long long>(count), names.c_str());
+}
+
+}  // namespace
+
 void print_export(const ExportSummary& summary) {
     std::uint64_t free = 0, pads = 0, held = 0, struts = 0, parts = 0;
     double furthest_m = 0;
@@ -46,11 +67,17 @@ void print_export(const ExportSummary& summary) {
         1e3 * summary.deepest_overlap_m, 1e3 * furthest_m);
     if (pads + held + struts > 0)
         std::printf(
-            "What carries them was not seen: %llu stand on pads, %llu are held where they are; "
-            "%llu "
-            "struts stand for feet\n",
+            "Without a footing, which was not seen or lay in others: %llu stand on pads made for "
+            "them, %llu are held where they are; %llu struts stand for feet\n",
             static_cast<unsigned long long>(pads), static_cast<unsigned long long>(held),
             static_cast<unsigned long long>(struts));
+    print_misfits(summary);
+    if (std::isfinite(summary.floor_m))
+        std::printf("The floor lies at z = %.3f m", summary.floor_m);
+    if (summary.free_radius_m > 0)
+        std::printf("; within %.2f m of x = %.2f, y = %.2f nothing stands on it",
+                    summary.free_radius_m, summary.free_place_m[0], summary.free_place_m[1]);
+    if (std::isfinite(summary.floor_m)) std::printf("\n");
 }
 
 }  // namespace topple::cli

@@ -13,7 +13,7 @@ void add_export_options(CLI::App& app, ExportOptions& options);
 // Whether one was given.
 bool wants_export(const ExportOptions& options);
 
-// What was made, in two lines at most.
+// What was made, in a few lines.
 void print_export(const ExportSummary& summary);
 
 }  // namespace topple::cli

@@ -26,7 +26,8 @@ struct Body {
     // How far inside its footing its centre of mass stands, by its barrier; 0: it falls by itself.
     double firm_m = 0;
     int struts = 0;  // of its parts, the last ones: feet that were not seen
-    // What carries it was not seen: it stands on a pad made for it, or is held where it is.
+    // Its footing was not seen, or was cut away as it lay in others: it stands on a pad made for
+    // it, or is held where it is.
     bool on_pad = false, held = false;
     Visual visual;  // empty: it has no other look than its parts
 };

@@ -97,19 +97,52 @@ std::vector<Point2> with_foot(std::vector<Point2> points, const ConvexPart& stru
     return points;
 }
 
+// The centre of mass of a body, and that with all it carries: both must stand.
+struct Weights {
+    Vec3 bare_m{}, laden_m{};
+    double margin(const std::vector<Point2>& points) const {
+        return std::min(margin_m(points, bare_m), margin_m(points, laden_m));
+    }
+};
+
+// What several carry weighs on each alike.
+std::vector<Weights> weights_of(const std::vector<Body>& bodies) {
+    std::vector<double> mass_kg(bodies.size());
+    std::vector<Weights> out(bodies.size());
+    for (std::size_t n = 0; n < bodies.size(); ++n) {
+        mass_kg[n] = bodies[n].mass_kg;
+        out[n] = {bodies[n].center_m, bodies[n].center_m};
+    }
+    const std::vector<std::size_t> order = by_level(bodies);
+    for (auto at = order.rbegin(); at != order.rend(); ++at) {
+        const Body& above = bodies[*at];
+        const double each_kg = mass_kg[*at] / static_cast<double>(above.carried_by.size());
+        for (const std::int32_t c : above.carried_by) {
+            const auto below = static_cast<std::size_t>(c);
+            if (bodies[below].level >= above.level) continue;
+            mass_kg[below] += each_kg;
+            const double share = each_kg / mass_kg[below];
+            Vec3& center = out[below].laden_m;
+            for (std::size_t a = 0; a < 3; ++a)
+                center[a] += share * (out[*at].laden_m[a] - center[a]);
+        }
+    }
+    return out;
+}
+
 // Of struts, shortest first, as few and as short ones as make the footing firm, or as firm as all
 // make it; nothing where all don't hold the body up.
-std::vector<Strut> enough(const std::vector<Point2>& points, const Body& body,
+std::vector<Strut> enough(const std::vector<Point2>& points, const Weights& weights,
                           std::vector<Strut> struts, double firm_m) {
     const auto margin_with = [&](const std::vector<bool>& used, std::size_t count) {
         std::vector<Point2> all = points;
         for (std::size_t n = 0; n < count; ++n)
             if (used[n]) all = with_foot(std::move(all), struts[n].part);
-        return margin_m(all, body);
+        return weights.margin(all);
     };
     std::vector<bool> used(struts.size(), true);
     std::size_t count = 0;
-    double margin = margin_m(points, body);
+    double margin = weights.margin(points);
     while (margin < firm_m && count < struts.size()) {
         count = std::min(struts.size(), std::max<std::size_t>(4, 2 * count));
         margin = margin_with(used, count);
@@ -127,15 +160,15 @@ std::vector<Strut> enough(const std::vector<Point2>& points, const Body& body,
 }
 
 // Adds struts where the footing is not firm. Whether the body stands then.
-bool add_struts(const std::vector<Body>& bodies, const std::vector<bool>& stands, Body& body,
-                double half_m) {
+bool add_struts(const std::vector<Body>& bodies, const std::vector<bool>& stands,
+                const Weights& weights, Body& body, double half_m) {
     const std::vector<Point2> points = footing_of(bodies, stands, body);
-    const double firm = firm_share * body.firm_m, margin = margin_m(points, body);
+    const double firm = firm_share * body.firm_m, margin = weights.margin(points);
     if (margin >= firm) return true;
     const ConvexPart box = box_around(body.parts);
     const double longest_m = std::max(longest_share * (box.high[2] - box.low[2]), 8 * half_m);
     for (Strut& strut :
-         enough(points, body, struts_of(bodies, stands, body, half_m, longest_m), firm)) {
+         enough(points, weights, struts_of(bodies, stands, body, half_m, longest_m), firm)) {
         body.parts.push_back(std::move(strut.part));
         ++body.struts;
     }
@@ -180,18 +213,19 @@ Body pad_under(const Body& body, double within_m) {
 void brace(std::vector<Body>& bodies, double thick_m) {
     std::vector<bool> stands(bodies.size());
     for (std::size_t n = 0; n < bodies.size(); ++n) stands[n] = bodies[n].fixed;
+    const std::vector<Weights> weights = weights_of(bodies);
     for (const std::size_t n : by_level(bodies)) {
         // Of what falls by itself nothing is held up.
         if (bodies[n].fixed || bodies[n].parts.empty() || !(bodies[n].firm_m > 0)) continue;
         stands[n] = true;
-        if (add_struts(bodies, stands, bodies[n], thick_m / 2)) continue;
+        if (add_struts(bodies, stands, weights[n], bodies[n], thick_m / 2)) continue;
         Body& body = bodies[n];
         if (!leans_on_fixed(bodies, body, thick_m)) {
             Body pad = pad_under(body, thick_m);
             std::vector<Point2> points;
             for (const ConvexPart& part : pad.parts)
                 for (const Vec3& c : part.corner) points.push_back({c[0], c[1]});
-            if (margin_m(points, body) > 0 && !meets(bodies, nullptr, pad.parts[0])) {
+            if (weights[n].margin(points) > 0 && !meets(bodies, nullptr, pad.parts[0])) {
                 body.on_pad = true;
                 body.carried_by = {static_cast<std::int32_t>(bodies.size())};
                 bodies.push_back(std::move(pad));

@@ -48,7 +48,7 @@ std::vector<Clump> clumps_of(const Scene& scene, double voxel_m) {
                     continue;
                 }
             }
-            out.push_back({object.id, {p}, slight_m3});
+            out.push_back({object.id, {p}, slight_m3, object.grounded});
         }
     }
     return out;

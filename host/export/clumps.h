@@ -14,6 +14,7 @@ struct Clump {
     std::vector<std::int32_t> primitives;
     // What a part may hold beyond the solid.
     double slight_m3 = 0;
+    bool ground = false;  // of what is fixed to the floor
 };
 
 // Each primitive by itself, but of objects that have many, those of a few voxels that lie near one

@@ -50,10 +50,13 @@ class Decomposition {
     // Of a floor that is level as it was seen, a slab below that from end to end: under what stands
     // on it, it was not seen.
     std::optional<Decomposed> level_slab() {
-        constexpr double thick_m = 0.05, level = 0.999;
-        const auto sides = exact_.flat_sides(pieces_[0].cells, 1);
-        if (sides.empty() || sides[0].normal[2] < level) return std::nullopt;
-        const HalfSpace& top = sides[0];
+        constexpr double thick_m = 0.05, upwards = 0.5, level = 0.999;
+        constexpr std::size_t most_sides = 8;
+        const auto sides = exact_.flat_sides(pieces_[0].cells, most_sides);
+        const auto found = std::ranges::find_if(
+            sides, [](const HalfSpace& side) { return side.normal[2] > upwards; });
+        if (found == sides.end() || found->normal[2] < level) return std::nullopt;
+        const HalfSpace& top = *found;
         PieceSolid& whole_solid = solid_of(pieces_[0]);
         auto& whole = whole_solid.hull;
         if (!whole) return std::nullopt;
@@ -337,7 +340,8 @@ std::vector<Decomposed> decompose(const SolidScene& solids, std::span<const Clum
         if (cells[n].empty()) return;
         Decomposition pieces(solids, std::move(cells[n]));
         std::optional<Decomposed> slab;
-        if (clumps[n].primitives.size() == 1 && solids.role(clumps[n].primitives[0]) == Role::floor)
+        if (clumps[n].ground && clumps[n].primitives.size() == 1 &&
+            solids.role(clumps[n].primitives[0]) == Role::floor)
             slab = pieces.level_slab();
         if (!slab) pieces.run(clumps[n].slight_m3);
         out[n] = slab ? *std::move(slab) : pieces.result();

@@ -102,10 +102,9 @@ std::vector<Point2> footing_of(const std::vector<Body>& bodies, const std::vecto
     return out;
 }
 
-double margin_m(const std::vector<Point2>& points, const Body& body) {
+double margin_m(const std::vector<Point2>& points, const Vec3& center_m) {
     if (points.empty()) return -physics::infinity;
-    return physics::footing(physics::convex_polygon(points), body.center_m[0], body.center_m[1])
-        .margin_m;
+    return physics::footing(physics::convex_polygon(points), center_m[0], center_m[1]).margin_m;
 }
 
 std::optional<Gap> gap_below(const std::vector<Body>& bodies, const std::vector<bool>& stands,

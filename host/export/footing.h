@@ -16,9 +16,9 @@ using Point2 = std::array<double, 2>;
 std::vector<Point2> footing_of(const std::vector<Body>& bodies, const std::vector<bool>& stands,
                                const Body& body);
 
-// How far the plumb line of a body's centre of mass lies inside the hull of points; below 0:
-// outside; -infinity without points.
-double margin_m(const std::vector<Point2>& points, const Body& body);
+// How far the plumb line of a centre of mass lies inside the hull of points; below 0: outside;
+// -infinity without points.
+double margin_m(const std::vector<Point2>& points, const Vec3& center_m);
 
 // The gap below a body along a plumb line: from its lowest point there down to what is below.
 struct Gap {

@@ -49,7 +49,29 @@ double firm_m(const Object& object, const Body& body, double gravity_m_s2) {
     return std::min(most_m, std::sqrt(rise * (rise + 2 * height)));
 }
 
-std::vector<Body> bodies_of(const Scene& scene, const SolidScene& solids, ThreadPool& threads) {
+// The lowest of the level floors that are not much smaller than the largest: what else was taken
+// for a floor are steps and rugs. Its place, which is that of none where there is none.
+std::size_t main_floor(std::span<const Decomposed> solid) {
+    constexpr double main_share = 0.25;
+    double largest_m3 = 0;
+    for (const Decomposed& each : solid)
+        if (each.floor) largest_m3 = std::max(largest_m3, each.solid_m3);
+    std::size_t found = solid.size();
+    for (std::size_t n = 0; n < solid.size(); ++n) {
+        if (!solid[n].floor || solid[n].solid_m3 < main_share * largest_m3) continue;
+        if (found == solid.size() || solid[n].parts[0].high[2] < solid[found].parts[0].high[2])
+            found = n;
+    }
+    return found;
+}
+
+// The bodies, and the main floor as it was seen, where there is one.
+struct Bodies {
+    std::vector<Body> all;
+    std::optional<ConvexPart> floor;
+};
+
+Bodies bodies_of(const Scene& scene, const SolidScene& solids, ThreadPool& threads) {
     if (scene.primitives.size() != solids.primitives())
         throw Error(ErrorKind::input, "the scene has " + std::to_string(scene.primitives.size()) +
                                           " primitives, but its solids are of " +
@@ -57,7 +79,8 @@ std::vector<Body> bodies_of(const Scene& scene, const SolidScene& solids, Thread
     const std::vector<Clump> clumps = clumps_of(scene, solids.voxel_m());
     const std::vector<Decomposed> solid = decompose(solids, clumps, threads);
     const Rotation rotation = world_from_input(scene);
-    std::vector<Body> out;
+    Bodies made;
+    std::vector<Body>& out = made.all;
     for (const Object& object : scene.objects) {
         Body body;
         body.object = object.id;
@@ -67,27 +90,22 @@ std::vector<Body> bodies_of(const Scene& scene, const SolidScene& solids, Thread
         body.inertia_kg_m2 = turned(rotation, object.inertia_kg_m2);
         out.push_back(std::move(body));
     }
-    // The lowest floor reaches under everything that stands on it.
-    const Decomposed* lowest = nullptr;
-    std::size_t floor_body = 0, floor_part = 0;
+    const std::size_t floor = main_floor(solid);
     for (std::size_t n = 0; n < clumps.size(); ++n) {
-        const auto place = static_cast<std::size_t>(clumps[n].object);
-        Body& body = out.at(place);
-        if (solid[n].floor && (!lowest || solid[n].parts[0].high[2] < lowest->parts[0].high[2])) {
-            lowest = &solid[n];
-            floor_body = place;
-            floor_part = body.parts.size();
-        }
+        Body& body = out.at(static_cast<std::size_t>(clumps[n].object));
         body.solid_m3 += solid[n].solid_m3;
-        body.parts.insert(body.parts.end(), solid[n].parts.begin(), solid[n].parts.end());
+        if (n != floor)
+            body.parts.insert(body.parts.end(), solid[n].parts.begin(), solid[n].parts.end());
     }
-    if (lowest) {
-        ConvexPart floor = lowest->parts[0];
-        widen_floor(floor, out, solids.voxel_m());
-        out[floor_body].parts[floor_part] = std::move(floor);
+    if (floor < solid.size()) {
+        made.floor = solid[floor].parts[0];
+        ConvexPart wide = *made.floor;
+        widen_floor(wide, out, solids.voxel_m());
+        auto& parts = out.at(static_cast<std::size_t>(clumps[floor].object)).parts;
+        parts.insert(parts.begin(), std::move(wide));
     }
     merge_parts(out, solids.voxel_m(), threads);
-    return out;
+    return made;
 }
 
 // What carries each body, and how far up that makes it; rings end where no level changes.
@@ -116,7 +134,8 @@ void add_supports(const Scene& scene, std::vector<Body>& bodies) {
 SimScene sim_scene(const Scene& scene, const SolidScene& solids, ThreadPool& threads) {
     SimScene out;
     out.friction = scene.friction;
-    out.bodies = bodies_of(scene, solids, threads);
+    Bodies made = bodies_of(scene, solids, threads);
+    out.bodies = std::move(made.all);
     for (std::size_t n = 0; n < out.bodies.size(); ++n)
         out.bodies[n].firm_m = firm_m(scene.objects[n], out.bodies[n], out.gravity_m_s2);
     add_supports(scene, out.bodies);
@@ -132,6 +151,10 @@ SimScene sim_scene(const Scene& scene, const SolidScene& solids, ThreadPool& thr
             if (part.corner.size() > most_corners)
                 part = simplified(std::move(part), fine_voxels * solids.voxel_m());
     brace(out.bodies, solids.voxel_m() / 2);
+    if (made.floor) {
+        out.floor_m = made.floor->high[2];
+        out.free_place = free_place(*made.floor, out.bodies);
+    }
     return out;
 }
 

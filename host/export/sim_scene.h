@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/solid_scene.h"
 #include "core/thread_pool.h"
 #include "export/body.h"
+#include "export/free_place.h"
 #include "topple/scene.h"
 
 namespace topple::exports {
@@ -14,6 +16,9 @@ namespace topple::exports {
 // Scene::manhattan_from_input, z up, metres.
 struct SimScene {
     std::vector<Body> bodies;  // those of the scene's objects first, in their order; then pads
+    // Height of the lowest level floor, and where on it nothing stands.
+    std::optional<double> floor_m;
+    std::optional<FreePlace> free_place;
     double friction = 0.3;
     double gravity_m_s2 = 9.81;
 };

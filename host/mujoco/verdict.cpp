@@ -172,7 +172,7 @@ std::string verdict_text(const Verdict& verdict) {
         if (o.motion && (!o.stays() || o.agrees() == false)) rows += row_text(o);
     }
     if (held > 0)
-        out += printed("%-11s %7llu      (what carries them was not seen)\n", "held",
+        out += printed("%-11s %7llu      (without a footing that was seen and kept)\n", "held",
                        static_cast<Count>(held));
     if (!rows.empty())
         out += printed("\n%6s  %-7s %10s %10s %9s %11s %12s\n", "object", "says", "barrier J",

@@ -45,6 +45,11 @@ ExportSummary summary_of(const exports::SimScene& scene) {
         out.bodies.push_back(std::move(to));
     }
     out.deepest_overlap_m = exports::deepest_overlap_m(scene.bodies);
+    if (scene.floor_m) out.floor_m = *scene.floor_m;
+    if (scene.free_place) {
+        out.free_place_m = scene.free_place->at;
+        out.free_radius_m = scene.free_place->radius_m;
+    }
     return out;
 }
 

@@ -39,7 +39,8 @@ void bind_export(py::module_& module) {
             }
             py::list bodies;
             for (const ExportedBody& body : summary.bodies) bodies.append(body_tuple(body));
-            return py::make_tuple(bodies, summary.deepest_overlap_m);
+            return py::make_tuple(bodies, summary.deepest_overlap_m, summary.floor_m,
+                                  summary.free_place_m, summary.free_radius_m);
         });
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,8 @@ struct ExportedBody {
     std::string name;          // in the exports: "object_3", "pad_28"
     std::int32_t object = -1;  // id; -1 for a pad
     bool fixed = false;  // part of the world, which nothing moves: the ground, pads, what is held
-    // What carries it was not seen: it stands on a pad made for it, or is held where it is.
+    // Its footing was not seen, or was cut away as it lay in others: it stands on a pad made for
+    // it, or is held where it is.
     bool on_pad = false, held = false;
     std::uint64_t struts = 0;  // of its parts: in the place of feet that were not seen
     Vec3 moved_m{};            // by which it was let down, so that it touches what carries it
@@ -46,6 +48,11 @@ struct ExportedBody {
 struct ExportSummary {
     std::vector<ExportedBody> bodies;  // those of the objects by id, then pads
     double deepest_overlap_m = 0;      // of any two bodies
+    // Height of the lowest level floor, and the middle of the widest place on it where nothing
+    // stands, with its radius: NaN and 0 where there is none.
+    double floor_m = std::numeric_limits<double>::quiet_NaN();
+    Vec3 free_place_m{floor_m, floor_m, floor_m};
+    double free_radius_m = 0;
 };
 
 // Writes the scene in each format that the options name, and what became of each body as

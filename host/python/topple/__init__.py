@@ -37,7 +37,7 @@ class ExportedBody(NamedTuple):
     name: str  # in the export: "object_3", "pad_28"
     object: int  # id; -1 for a pad
     fixed: bool  # part of the world, which nothing moves
-    on_pad: bool  # what carries it was not seen: it stands on a pad,
+    on_pad: bool  # its footing was not seen, or was cut away as it lay in others: it stands on a pad,
     held: bool  # or is held where it is
     struts: int  # of its parts: in the place of feet that were not seen
     moved_m: list  # by which it was let down, z up
@@ -52,6 +52,9 @@ class ExportSummary(NamedTuple):
     """What Result.export() made."""
     bodies: list  # of ExportedBody: those of the objects by id, then pads
     deepest_overlap_m: float  # of any two bodies
+    floor_m: float  # height of the lowest level floor; nan: there is none
+    free_place_m: list  # the middle of the widest place on it where nothing stands, x, y, z; nan: there is none
+    free_radius_m: float  # of that place
 
 
 def devices():
@@ -179,8 +182,8 @@ class Result:
         Python run meanwhile."""
         paths = {'mjcf': mjcf, 'urdf': urdf, 'sdf': sdf, 'usd': usd}
         given = {name: os.fspath(path) for name, path in paths.items() if path is not None}
-        bodies, deepest = _topple.export_scene(self._parsed, given, visuals, threads)
-        return ExportSummary([ExportedBody(*body) for body in bodies], deepest)
+        bodies, *rest = _topple.export_scene(self._parsed, given, visuals, threads)
+        return ExportSummary([ExportedBody(*body) for body in bodies], *rest)
 
 
 def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=('human', 'wind', 'earthquake'),

@@ -63,6 +63,47 @@ TEST(Decompose, OnlyWhatIsOfAClumpHasPartsAndAClumpIsOneSolid) {
     EXPECT_NEAR(out[0].parts[0].volume_m3, 6 * 5 * 5e-6, 1e-9);
 }
 
+// A floor of 40 x 40 x 4 voxels that ends half-way up its top layer, on which one side was seen
+// fallen in; below, it was seen whole, from a cellar.
+SolidScene floor_seen_from_both_sides(Role role) {
+    const SolidScene whole = solids_of({{{0, 0, 0}, {40, 40, 4}}}, 1);
+    BoundaryCells boundary;
+    SurfacePatch top, underside;
+    top.c = {-0.035, 0, 0, 1};  // z = 3.5 cm
+    underside.c = {0.005, 0, 0, -1};
+    boundary.patches = {underside, top};
+    const std::uint32_t form = make_form(true, {SlotUse{false, true, false}}, 1);
+    for (int i = 0; i < 40; ++i) {
+        for (int j = 0; j < 40; ++j) {
+            for (const int k : {0, 3}) {
+                if (k == 3 && i < 10) continue;
+                boundary.i.push_back(i);
+                boundary.j.push_back(j);
+                boundary.k.push_back(k);
+                boundary.primitive.push_back(0);
+                boundary.form.push_back(form);
+                boundary.share.push_back(BoundaryCells::whole / 2);
+                boundary.slot[0].push_back(k == 0 ? 0 : 1);
+            }
+        }
+    }
+    for (std::size_t s = 1; s < BoundaryCells::slots; ++s) boundary.slot[s].resize(boundary.size());
+    for (auto& axis : boundary.moment) axis.resize(boundary.size());
+    return {whole.cells(), {role}, {}, std::move(boundary)};
+}
+
+TEST(Decompose, AFloorIsALevelSlabBelowItsTop) {
+    ThreadPool threads(1);
+    const SolidScene solids = floor_seen_from_both_sides(Role::floor);
+    const auto out = decompose(solids, std::vector<Clump>{{0, {0}, 0, true}}, threads);
+    ASSERT_TRUE(out[0].floor);
+    ASSERT_EQ(out[0].parts.size(), 1u);
+    EXPECT_NEAR(out[0].parts[0].high[2], 0.035, 1e-9);
+    EXPECT_NEAR(out[0].parts[0].volume_m3, 0.4 * 0.4 * 0.05, 1e-6);
+    // What can be moved is none.
+    EXPECT_FALSE(decompose(solids, std::vector<Clump>{{0, {0}, 0, false}}, threads)[0].floor);
+}
+
 TEST(Clumps, CrumbsOfALargeObjectThatLieTogetherAreOne) {
     Scene scene;
     Object large;

@@ -8,6 +8,7 @@
 #include "export/brace.h"
 #include "export/floor.h"
 #include "export/footing.h"
+#include "export/free_place.h"
 #include "export/separate.h"
 #include "export/simplify.h"
 #include "host/export/blocks.h"
@@ -118,8 +119,46 @@ TEST(Brace, ATableOfWhichOneLegWasSeenGetsStruts) {
     EXPECT_FALSE(bodies[1].held);
     EXPECT_GE(bodies[1].struts, 2);
     const std::vector<bool> stands{true, true};
-    EXPECT_GE(margin_m(footing_of(bodies, stands, bodies[1]), bodies[1]), 0.02);
+    EXPECT_GE(margin_m(footing_of(bodies, stands, bodies[1]), bodies[1].center_m), 0.02);
     EXPECT_LT(deepest_overlap_m(bodies), 1e-6);
+}
+
+TEST(Brace, WhatCarriesALoadStandsWithItToo) {
+    Body bench = firm(block({0, 0, 0.1}, {1, 0.2, 0.5}), 1, {0});
+    bench.parts.push_back(block({0.3, 0, 0}, {0.7, 0.2, 0.1}));
+    Body load = firm(block({0.9, 0, 0.5}, {1, 0.2, 0.9}), 2, {1});
+    std::vector<Body> bodies{ground(), bench};
+    brace(bodies, 0.02);
+    EXPECT_EQ(bodies[1].struts, 0);
+    load.mass_kg = 10 * bench.mass_kg;
+    bodies = {ground(), bench, load};
+    brace(bodies, 0.02);
+    EXPECT_FALSE(bodies[1].held);
+    ASSERT_GE(bodies[1].struts, 1);
+    EXPECT_EQ(bodies[2].struts, 0);
+    EXPECT_GT(margin_m(footing_of(bodies, {true, false, false}, bodies[1]),
+                       {(0.5 + 10 * 0.95) / 11, 0.1, 0.6}),
+              0.02);
+}
+
+TEST(FreePlace, IsTheMiddleOfTheWidestOne) {
+    ConvexPart floor = block({0, 0, -0.05}, {4, 2, 0});
+    std::vector<Body> bodies{body_of(floor, 0, {}), body_of(block({0, 0, 0}, {1.5, 2, 1}), 1, {0}),
+                             body_of(block({3.5, 0, 1.7}, {4, 2, 2}), 1, {})};
+    const auto place = free_place(floor, bodies);
+    ASSERT_TRUE(place);
+    EXPECT_NEAR(place->at[0], 2.5, 0.1);
+    EXPECT_NEAR(place->at[1], 1, 0.1);
+    EXPECT_EQ(place->at[2], 0);
+    EXPECT_NEAR(place->radius_m, 1, 0.1);
+    // Nobody walks where the floor is only thought to go on.
+    std::erase_if(floor.solid, [](const Vec3& p) { return p[0] > 2; });
+    bodies.push_back(body_of(block({0, 0, 2}, {4, 2, 2.1}), 1, {}));
+    const auto seen = free_place(floor, bodies);
+    ASSERT_TRUE(seen);
+    EXPECT_LE(seen->at[0], 2.9);
+    bodies.push_back(body_of(block({0, 0, 1}, {4, 2, 1.1}), 1, {}));
+    EXPECT_FALSE(free_place(floor, bodies));
 }
 
 TEST(Brace, WhatFallsByItselfIsLeftToFall) {
@@ -143,7 +182,7 @@ TEST(Footing, OfCrossedBarsIsWhereTheyCross) {
     std::vector<Body> bodies{body_of(block({-1, -0.1, 0}, {1, 0.1, 0.2}), 0, {}),
                              body_of(block({-0.1, -1, 0.2}, {0.1, 1, 0.4}), 1, {0})};
     const std::vector<bool> stands{true, false};
-    EXPECT_NEAR(margin_m(footing_of(bodies, stands, bodies[1]), bodies[1]), 0.1, 1e-9);
+    EXPECT_NEAR(margin_m(footing_of(bodies, stands, bodies[1]), bodies[1].center_m), 0.1, 1e-9);
     EXPECT_TRUE(footing_of(bodies, {false, false}, bodies[1]).empty());
 }
 
