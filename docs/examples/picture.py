@@ -28,7 +28,7 @@ def main():
         model.geom_rgba[:, :3] = 0.3 + 0.6 * np.random.default_rng(2).random((model.ngeom, 3))
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    while data.time < options.seconds:
+    for _ in range(round(options.seconds / model.opt.timestep)):
         mujoco.mj_step(model, data)
     camera = mujoco.MjvCamera()
     camera.azimuth, camera.elevation = options.azimuth, options.elevation

@@ -14,6 +14,7 @@
 import argparse
 import json
 import os
+import sys
 
 import mujoco
 import numpy as np
@@ -28,10 +29,13 @@ class Room:
     def __init__(self, folder):
         self.model = mujoco.MjModel.from_xml_path(os.path.join(folder, 'scene.xml'))
         self.data = mujoco.MjData(self.model)
-        while self.data.time < SETTLING_S:
-            mujoco.mj_step(self.model, self.data)
+        self.step(SETTLING_S)
         self.state = np.empty(mujoco.mj_stateSize(self.model, STATE))
         mujoco.mj_getState(self.model, self.data, self.state, STATE)
+
+    def step(self, seconds):
+        for _ in range(round(seconds / self.model.opt.timestep)):
+            mujoco.mj_step(self.model, self.data)
 
     def body(self, o):
         return mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, f"object_{o['id']}")
@@ -47,17 +51,18 @@ class Room:
         mujoco.mj_forward(model, data)
         start, up = data.xpos[body].copy(), data.xmat[body].reshape(3, 3)[2].copy()
         data.qvel[its] += motion
-        begin = data.time
-        while True:
+        # By steps: where numbers overflow, MuJoCo sets its clock back.
+        steps, some = round(WATCHED_S / model.opt.timestep), round(0.3 / model.opt.timestep)
+        for step in range(steps):
             mujoco.mj_step(model, data)
             # The world's z in the body's axes: where it no longer points as it did, the body has tilted.
             tilt_deg = np.degrees(np.arccos(np.clip(data.xmat[body].reshape(3, 3)[2] @ up, -1, 1)))
             away = data.xpos[body] - start
             if tilt_deg > 60 or away[2] < -0.3:
                 return True
-            at_rest = data.time > begin + 0.3 and np.abs(data.qvel[its]).max() < 1e-3
-            if at_rest or data.time > begin + WATCHED_S:
-                return bool(tilt_deg > 20 or away[2] < -0.05 or np.hypot(*away[:2]) > 1)
+            if step > some and np.abs(data.qvel[its]).max() < 1e-3:
+                break
+        return bool(tilt_deg > 20 or away[2] < -0.05 or np.hypot(*away[:2]) > 1)
 
     def least(self, body, unit, best):
         """The least energy below `best` with which this motion, of a joule, upsets the body; `best` where none does."""
@@ -72,7 +77,8 @@ class Room:
     def push(self, o):
         """The least energy of a push at the centre of mass, or None above MOST barriers."""
         body, best = self.body(o), MOST * o['barrier_J']
-        for angle in 2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS:
+        for tried, angle in enumerate(2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS):
+            print(f"\robject {o['id']}: direction {tried + 1} of {DIRECTIONS}", end="", file=sys.stderr, flush=True)
             unit = np.zeros(6)
             unit[:2] = np.sqrt(2 / self.model.body_mass[body]) * np.array([np.cos(angle), np.sin(angle)])
             best = self.least(body, unit, best)
@@ -136,6 +142,7 @@ def main():
     print(f"{'object':>6} {'mass kg':>8} {'barrier J':>18} {'turn J':>8} ratio {'':8} {'push J':>8} ratio {'':8} {'S(W) J':>7} {'cut':>5}")
     for o in chosen(scene, arguments.objects):
         turn, push = room.turn(o, world_from_input), room.push(o)
+        print('\r' + 40 * ' ' + '\r', end='', file=sys.stderr, flush=True)
         sets_free = max((s['S_J'] for s in o['instability'] if push and s['W_J'] <= push), default=0)
         cut = bodies[o['id']]['lost_m3'] / bodies[o['id']]['solid_m3']
         print(f"{o['id']:6} {o['mass_kg']:8.3g} {o['barrier_J']:9.3g} \u00b1 {o['barrier_error_J']:<6.2g} {against(o, turn)} "

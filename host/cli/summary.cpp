@@ -99,6 +99,11 @@ void print_objects(const Scene& scene) {
     }
     if (movable.size() > rows_shown)
         std::printf("   ... and %zu more in scene.json\n", movable.size() - rows_shown);
+    if (!movable.empty())
+        std::printf(
+            "   Barrier, release and mode are those of the easiest way out of its place; human, "
+            "wind "
+            "and quake are risks:\n   what it sets free per event, over all ways.\n");
     print_sentences(movable);
 }
 
