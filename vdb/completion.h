@@ -16,7 +16,8 @@
 
 // From what was seen to what is solid. Each rule looks at the volume and proposes a list of voxels;
 // none changes anything but by commit(). Rules that build on one another run in rounds, in this
-// order: filling, settling, extending, backing, bridging, and what a map tells.
+// order: filling, settling, extending, backing, bridging, dropping what is detached, and what a map
+// tells.
 namespace topple::vdb {
 
 // A voxel, and what a rule takes it for. Lists of them are sorted by voxel, each but once.
@@ -44,6 +45,9 @@ class VolumeView {
         return primitive >= 0 && !is_sheet(role_of(roles_, primitive));
     }
 
+    bool in_shell(std::int32_t primitive) const {
+        return topple::in_shell(role_of(roles_, primitive));
+    }
     bool is_upright_sheet(std::int32_t primitive) const {
         return role_of(roles_, primitive) == Role::wall;
     }
@@ -104,6 +108,12 @@ std::vector<Claim> backed(const VolumeView& view);
 // of the two. Legs meet their table top where the edge above hides it. A gap with a voxel that
 // was seen to be empty stays; so does one beside, not below or above, a wall or ceiling.
 std::vector<Claim> bridged(const VolumeView& view, std::int32_t longest_gap);
+
+// What was completed of a primitive but hangs together with nothing that was seen of it, not even
+// across a hidden gap of `longest_gap` voxels up or down: rays went on past space that was seen to
+// be empty. It is taken by what it touches most, if that is not the room's, and else is not solid
+// after all. Of the room's own primitives nothing is asked.
+std::vector<Claim> detached(const VolumeView& view, std::int32_t longest_gap);
 
 // What a map says to be solid within its surfaces: from here on as if it was seen. Such voxels
 // belong to the primitive that they were completed to, if any. Throws as VoxelScene::set_free().

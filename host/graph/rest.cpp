@@ -18,6 +18,9 @@ using Points = std::vector<std::array<double, 2>>;
 
 // How often a scan misses so much of what holds a thing, of all that stand.
 constexpr double often_near = 0.3, often_leaning = 0.1, often_hidden = 0.03;
+// How often a scan shows some of a foot, and misses more of it where nobody saw in. On generated
+// rooms the tilt of things is the better for it from 0.2 on, and the worse from 0.6 on.
+constexpr double often_partly = 0.3;
 // How often what is seen to hold a thing holds it above its foot only.
 constexpr double often_hung = 0.05;
 constexpr std::int32_t uneven_foot = 2;  // voxels
@@ -131,7 +134,8 @@ std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
             continue;
         columns.push_back({cells.i[n], cells.j[n], cells.k[n],
                            below ? cells.k[n] - cells.k[n - 1] - 1 : -1,
-                           below ? cells.primitive[n - 1] : -1, cells.primitive[n]});
+                           below ? cells.primitive[n - 1] : -1, cells.primitive[n],
+                           cells.unseen_below.empty() ? 0 : cells.unseen_below[n]});
     }
     return out;
 }
@@ -164,6 +168,14 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
     const double low_m = foot.or_else(lowest * h);
     double near_height = met.or_else(held ? c.support_height_m : low_m);
     if (held) near_height = std::min(near_height, c.support_height_m);
+    // The foot that was seen may go on where nobody saw in, down to what carries it.
+    std::vector<BorderPoint> partly = near;
+    bool goes_on = false;
+    for (const Underside& u : columns) {
+        if (!held || u.unseen == 0 || u.k * h - near_height > (u.unseen + noise_gap) * h) continue;
+        add_corners(u, h, boundary, partly);
+        goes_on = true;
+    }
     std::vector<BorderPoint> leaning = near;
     for (const std::int32_t p : c.primitives) {
         for (const Leaning& l : contacts.leanings_of(p)) {
@@ -201,6 +213,7 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
         if (!way.points.empty()) weigh(way.kind, outline_of(way.points), way.height, way.often);
     // Even its foot is too small: all that is above may rest on something.
     weigh(RestKind::hidden, std::move(whole), low_m, 0.3 * often_hidden);
+    if (goes_on) weigh(RestKind::near, outline_of(partly), near_height, often_partly);
     best.probability = sum > 0 ? most / sum : 1;
     take_for_standing(c, noise_m, best);
     return best;

@@ -23,6 +23,7 @@ struct Underside {
     std::int32_t gap;        // empty cells down to the next solid of another object; -1: none
     std::int32_t primitive;  // of that solid; -1: of none
     std::int32_t own;        // primitive of the lowest cell
+    std::int32_t unseen;     // cells right below it that nobody saw into
 };
 // By object, sorted by (i, j, k).
 std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
@@ -32,7 +33,7 @@ std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
 // How an object is held up.
 enum class RestKind : std::uint8_t {
     seen,     // by contacts that were seen, or that nobody saw into
-    near,     // by those, and where noise leaves a small gap
+    near,     // by those, and where noise leaves a small gap, or by more of its underside
     leaning,  // by those, and by what it touches beside it
     hidden,   // by what was not seen: taken to be where the object is lowest
     none,     // by nothing: it has no solid cells

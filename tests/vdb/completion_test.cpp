@@ -185,6 +185,42 @@ TEST(Completion, AFrontBeforeAWallReachesToItUnlessOneSawBehind) {
     EXPECT_LT(backing(0.5, 1.6), 0.05) << "what lies behind was seen from the sides";
 }
 
+// A column of cells of one primitive, sorted among others by where it stands.
+void add_column(SolidCells& cells, std::int32_t i, std::int32_t k, std::int32_t end,
+                std::int32_t primitive, Basis basis) {
+    for (; k < end; ++k) {
+        cells.i.push_back(i);
+        cells.j.push_back(0);
+        cells.k.push_back(k);
+        cells.primitive.push_back(primitive);
+        cells.basis.push_back(basis);
+    }
+}
+
+TEST(Completion, WhatHangsTogetherWithNothingSeenIsOfWhatItTouchesOrNotSolid) {
+    constexpr std::int32_t floor = 0, bottle = 1, table = 2;
+    SolidCells cells;
+    cells.voxel_m = h;
+    // A bottle above a table's edge; rays went on to below the table.
+    add_column(cells, 0, 0, 1, floor, Basis::surface);
+    add_column(cells, 0, 1, 4, bottle, Basis::two_votes);
+    add_column(cells, 0, 30, 33, bottle, Basis::two_votes);
+    add_column(cells, 0, 36, 40, bottle, Basis::surface);
+    add_column(cells, 5, 10, 12, bottle, Basis::two_votes);
+    add_column(cells, 6, 11, 20, bottle, Basis::two_votes);
+    add_column(cells, 7, 19, 21, table, Basis::surface);
+    const VoxelScene scene(VoxelFrame{.voxel_m = h});
+    const std::vector<Role> roles{Role::floor};
+    const auto claims = detached(VolumeView(scene, cells, roles), 3);
+    ASSERT_EQ(claims.size(), 3u + 2 + 9);
+    for (const Claim& c : claims) {
+        EXPECT_EQ(c.solid, c.at[0] > 0);
+        EXPECT_EQ(c.primitive, c.at[0] > 0 ? table : -1);
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(claims, {}, &Claim::at));
+    EXPECT_EQ(detached(VolumeView(scene, cells, roles), 2).size(), 3u + 3 + 2 + 9);
+}
+
 TEST(Completion, WhatIsTooLargeToFillIsRefused) {
     const auto device = device::open_device("native", 2);
     const auto memory = static_cast<double>(device->info().limits.memory_bytes);

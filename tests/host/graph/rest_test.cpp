@@ -21,8 +21,11 @@ using test::FloorScene;
 class RestOf : public test::EachBackend {
   protected:
     // Of one primitive, an object by itself as each other is; the floor and `walls` are the room's.
-    Rest rest(FloorScene& scene, std::int32_t of, std::vector<std::int32_t> walls = {}) {
+    // unseen_below: cells below each that nobody saw into, which contacts don't know of.
+    Rest rest(FloorScene& scene, std::int32_t of, std::vector<std::int32_t> walls = {},
+              std::uint8_t unseen_below = 0) {
         const ContactGraph contacts = scene.contacts(*device);
+        scene.cells.unseen_below.assign(scene.cells.size(), unseen_below);
         std::vector<bool> ground(static_cast<std::size_t>(scene.count));
         std::vector<std::int32_t> object(static_cast<std::size_t>(scene.count));
         ground[0] = true;
@@ -145,6 +148,19 @@ TEST_P(RestOf, AFootThatIsTooSmallIsNotAllOfIt) {
     EXPECT_EQ(out.kind, RestKind::hidden);
     EXPECT_THAT(bounds(out), near({0, 0, 0.4, 0.4}));
     EXPECT_GT(out.probability, 0.9);
+}
+
+// One side of its foot was seen; below the rest of it nobody saw in.
+TEST_P(RestOf, AFootOfWhichOneSideWasSeenGoesOnWhereNobodySaw) {
+    FloorScene scene;
+    const auto thing = scene.add([](double x, double y, double z) {
+        return x > 0 && x < 0.4 && y > 0 && y < 0.2 && z < 0.5 && z > (x < 0.18 ? 0.0 : 0.2);
+    });
+    EXPECT_EQ(rest(scene, thing).kind, RestKind::seen);
+    const Rest out = rest(scene, thing, {}, 10);
+    EXPECT_EQ(out.kind, RestKind::near);
+    EXPECT_THAT(bounds(out), near({0, 0, 0.4, 0.2}));
+    EXPECT_NEAR(out.support_height_m, 0, 1e-9);
 }
 
 TEST_P(RestOf, WhatHasNoSolidCellsRestsOnNothing) {
