@@ -20,11 +20,12 @@ Overturning overturning(const Candidate& candidate, const BodyError& known,
     Overturning out;
     out.direction = tipping.easiest.direction;
     out.tilt_deg = std::atan(beside / height) * degrees;
-    out.tilt_error_deg = std::hypot(height * border_error_m, beside * known.center_m[2]) /
+    const double foot_error_m = std::hypot(border_error_m, foot_off_share * beside);
+    out.tilt_error_deg = std::hypot(height * foot_error_m, beside * known.center_m[2]) /
                          (height * height + beside * beside) * degrees;
     const double arm = std::max(top_m - candidate.support_height_m, height);
     out.push_N = weight * beside / arm;
-    out.push_error_N = std::hypot(weight * border_error_m, gravity * known.mass_kg * beside) / arm;
+    out.push_error_N = std::hypot(weight * foot_error_m, gravity * known.mass_kg * beside) / arm;
     out.slide_N = friction * weight;
     out.shake_g = std::min(beside / height, friction);
     return out;

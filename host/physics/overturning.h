@@ -8,11 +8,17 @@
 
 namespace topple::physics {
 
+// What a foot is off as a share of b, below, beyond what noise explains: parts of it that nobody
+// saw, or that were taken for another thing's. Fitted: with it the truth lies within one standard
+// error for 70 % of the things of plain generated rooms, and 58 % of varied ones.
+inline constexpr double foot_off_share = 0.3;
+
 // What overturns a body slowly: the easiest way to tip of `tipping`, in the figures of statics. It
 // lifts the centre of mass, at height h above the support, by r = barrier_J / (M g), so that it
 // acts like an edge at b = sqrt(r (r + 2 h)) beside it: tilt = atan(b / h), push = M g b / height
 // of the push, start of rocking at b / h times gravity. Errors are of first order in those of b, h
-// and M. top_m: the body's highest point; border_error_m: of where its support ends. NaN and none
+// and M. top_m: the body's highest point; border_error_m: of where its support ends, by
+// noise. NaN and none
 // where the centre of mass is not above the support. Grid frame.
 Overturning overturning(const Candidate& candidate, const BodyError& known,
                         const Stability& tipping, double top_m, double border_error_m,
