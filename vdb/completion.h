@@ -109,10 +109,9 @@ std::vector<Claim> backed(const VolumeView& view);
 // was seen to be empty stays; so does one beside, not below or above, a wall or ceiling.
 std::vector<Claim> bridged(const VolumeView& view, std::int32_t longest_gap);
 
-// What was completed of a primitive but hangs together with nothing that was seen of it, not even
-// across a hidden gap of `longest_gap` voxels up or down: rays went on past space that was seen to
-// be empty. It is taken by what it touches most, if that is not the room's, and else is not solid
-// after all. Of the room's own primitives nothing is asked.
+// What was completed of a thing but hangs together with nothing that was seen of it or of others,
+// not even across a hidden gap of `longest_gap` voxels up or down, is not solid after all: rays
+// went on past space that was seen to be empty. What is the room's is left as it is.
 std::vector<Claim> detached(const VolumeView& view, std::int32_t longest_gap);
 
 // What a map says to be solid within its surfaces: from here on as if it was seen. Such voxels
