@@ -33,6 +33,7 @@ const std::map<std::string, double> record_units{{"g", 9.80665}, {"m/s2", 1}, {"
 struct Arguments {
     std::optional<std::string> accelerogram;
     std::optional<double> accelerogram_unit_m_s2;
+    std::optional<std::string> hazard;
     std::string input, backend = "auto", up, disturbance = "human,wind,earthquake";
     ParseOptions options;
     std::optional<std::string> out;
@@ -129,6 +130,7 @@ void read_options(Arguments& a) {
     }
     if (a.accelerogram)
         a.options.accelerogram = read_accelerogram(*a.accelerogram, a.accelerogram_unit_m_s2);
+    if (a.hazard) a.options.hazard = read_hazard_curve(*a.hazard);
 }
 
 // What all processes of a team do before their part of the parse.
@@ -252,14 +254,22 @@ Command add_parse(CLI::App& app, const Team& team) {
         "--pga", a->options.pga_m_s2,
         "Peak ground acceleration of the earthquake in m/s^2; an accelerogram is scaled\n"
         "to it (default: the accelerogram's own, or 3)");
-    app.add_option("--accelerogram", a->accelerogram,
-                   "Recorded earthquake instead of pulses: JSON (dT, accel_data), PEER's .AT2, or\n"
-                   "lines of time in s and acceleration");
+    app.add_option(
+        "--accelerogram", a->accelerogram,
+        "Recorded earthquake instead of made-up ones: JSON (dT, accel_data), PEER's .AT2, or\n"
+        "lines of time in s and acceleration");
     app.add_option_function<std::string>(
            "--accelerogram-unit",
            [a](const std::string& unit) { a->accelerogram_unit_m_s2 = record_units.at(unit); },
            "Its unit: g, m/s2 or cm/s2 (default: what the file says, else g)")
         ->check(one_of({"g", "m/s2", "cm/s2"}));
+    app.add_option("--floor-amplification", a->options.floor_amplification,
+                   "How many times as strongly as the ground shakes what things stand on, as on\n"
+                   "upper floors")
+        ->capture_default_str();
+    app.add_option("--hazard", a->hazard,
+                   "How often the ground shakes there: JSON (pga_g, per_year), or lines of peak\n"
+                   "acceleration in g and annual rate; gives how often each object falls");
     app.add_option("--tolerable", a->options.tolerable_J,
                    "Risk in joules per event up to which an object may stay as it is; for others\n"
                    "the report says where to move them, or what a fixing must hold")
