@@ -18,7 +18,7 @@ namespace {
 
 using physics::gravity;
 
-constexpr std::size_t made_up_count = 12;  // two of each soil and size
+constexpr std::size_t made_up_count = 15;  // three of each ground type
 
 // Peaks are log-normal about the median, as ground motions are; two standard deviations bound them.
 // Made-up records have peaks of 1 m/s^2.

@@ -14,13 +14,11 @@ namespace topple::safety {
 // out what is too slow for ground that comes to rest (Kanai 1957; Tajimi 1960; Clough and Penzien
 // 1975). With noise n(t), ground frequency f, damping d, and those of the slow filter, f' and d':
 //     x'' + 2 d f x' + f^2 x = -n,  y'' + 2 d' f' y' + f'^2 y = 2 d f x' + f^2 x,  a = y''
-// Soils in turn: firm (f 15 /s, d 0.6, f' 1.5 /s), medium (10, 0.4, 1), soft (5, 0.2, 0.5), d' 0.6
-// (Der Kiureghian and Neuenhofer 1992). Sizes in turn, by how they swell (Jennings, Housner and
-// Tsai 1968): like magnitude 7, which is strong from 4 to 15 s and then fades as exp(-0.0992 t), in
-// all 60 s; and like 5.5 to 6, strong from 2 to 4 s, then exp(-0.268 t), in all 30 s. Both level
-// components are of independent noise, with peaks of 1 m/s^2; so is the vertical one, with
+// The five ground types of Eurocode 8 (EN 1998-1, table 3.1) in turn, A to E, with f, d, f', d' and
+// the swell t exp(-b t / 2) of its type 1 spectra as Giaralis and Spanos (2009) fitted them. Both
+// level components are of independent noise, with peaks of 1 m/s^2; so is the vertical one, with
 // frequencies half as high again and a peak of two thirds (Newmark, Blume and Kapur 1973).
-// Steps are 0.01 s. The first records don't depend on the count.
+// They last 30 s in steps of 0.01 s. The first records don't depend on the count.
 std::vector<Accelerogram> made_up_records(std::size_t count, std::uint64_t seed);
 
 // Peak velocity, m/s, of the integral of the acceleration from rest: of two level components the
