@@ -64,6 +64,17 @@ def floor(half):
             for j in range(steps + 1)]
 
 
+def room(half, height=3):
+    """A floor and walls: without them a lone cabinet as tall as a door is taken for a part of the room."""
+    points = floor(half)
+    columns, rows = round(2 * half / SPACING_M), round(height / SPACING_M)
+    for i in range(columns + 1):
+        for j in range(1, rows + 1):
+            along, up = -half + 2 * half * i / columns, height * j / rows
+            points += [[along, -half, up], [along, half, up], [-half, along, up], [half, along, up]]
+    return points
+
+
 def parse(topple, folder, name, points, friction):
     path = os.path.join(folder, name.replace(' ', '-').replace(',', '') + '.xyz')
     with open(path, 'w') as file:
@@ -110,7 +121,7 @@ def main():
         medians, wanted = [], []
         for name, depth, height, median, dispersion in RACKS:
             low, high = (-depth / 2, -WIDTH_M / 2, 0), (depth / 2, WIDTH_M / 2, height)
-            scene = parse(options.topple, folder, name, floor(2) + box(low, high), FRICTION)
+            scene = parse(options.topple, folder, name, room(2) + box(low, high), FRICTION)
             found = thing_at(scene, height / 2)
             f = found and found['fragility']
             if not f or f['pgv_m_s'] is None:
@@ -135,7 +146,7 @@ def main():
             top = 0.75
             table = box((-depth / 2, -0.6, 0), (depth / 2, 0.6, top))
             thing = box((-edge / 2, -edge / 2, top), (edge / 2, edge / 2, top + height))
-            scene = parse(options.topple, folder, name, floor(1.5) + table + thing, friction)
+            scene = parse(options.topple, folder, name, room(1.5) + table + thing, friction)
             found = thing_at(scene, top + height / 2)
             f = found and found['fragility']
             if not f or f['pga_g'] is None:
