@@ -2,14 +2,16 @@
 # SPDX-License-Identifier: MIT
 """Compares what topple says of furniture in earthquakes with FEMA P-58.
 
-  fema_contents.py TOPPLE [--keep FOLDER] [--records N]
+  fema_contents.py TOPPLE [--keep FOLDER] [--strict]
 
 Each item of the 2nd edition's fragility database (v3.1.2, groups E20.22, contents, unanchored) becomes a scan, points
 on the faces of a box of its depth and height that stands on a floor, or on a table; `topple parse` finds it there, and
 its median and dispersion are compared with FEMA's. FEMA's own velocities were computed from the items' proportions,
 for rocking without slip, so these boxes stand on friction 0.8. The accelerations are judgement from surveys; friction
 is as the item is named there, from tables of engineers: rubber 0.7, smooth 0.25 to 0.3, glass or metal on wood 0.2.
-Exit status: 0 where all bounds hold, 1 where one does not.
+Exit status: 1 where a median of the bookcases and cabinets is not within 1.5 times FEMA's, or their order differs
+(rank correlation below 0.95). With --strict also where a dispersion is not from 0.35 to 0.65, or a median of the other
+things not within twice FEMA's; these are printed in any case.
 """
 import argparse
 import json
@@ -112,8 +114,9 @@ def main():
     arguments = argparse.ArgumentParser()
     arguments.add_argument('topple')
     arguments.add_argument('--keep')
+    arguments.add_argument('--strict', action='store_true')
     options = arguments.parse_args()
-    fails = []
+    fails, misses = [], []
     with tempfile.TemporaryDirectory() as temporary:
         folder = options.keep or temporary
         os.makedirs(folder, exist_ok=True)
@@ -136,7 +139,7 @@ def main():
             if not 1 / 1.5 <= ratio <= 1.5:
                 fails.append(name + ': median')
             if not 0.35 <= f['pgv_dispersion'] <= 0.65:
-                fails.append(name + ': dispersion')
+                misses.append(name + ': dispersion')
         if len(medians) > 2:
             rank = correlation(ranks(medians), ranks(wanted))
             print('rank correlation %.3f' % rank)
@@ -151,16 +154,16 @@ def main():
             f = found and found['fragility']
             if not f or f['pga_g'] is None:
                 print('%-38s: no median; counted %s' % (name, [round(s['chance'], 2) for s in f['counted']] if f else None))
-                fails.append(name)
+                misses.append(name)
                 continue
             ratio = f['pga_g'] / median
             print('%-38s %6.3f g,   beta %4.2f %7.3f g,   beta %4.2f %6.2f' %
                   (name, f['pga_g'], f['pga_dispersion'], median, dispersion, ratio))
             if not 0.5 <= ratio <= 2:
-                fails.append(name + ': median')
-    for fail in fails:
-        print('out of its bounds: ' + fail)
-    return 1 if fails else 0
+                misses.append(name + ': median')
+    for miss in fails + misses:
+        print('out of its bounds: ' + miss)
+    return 1 if fails or options.strict and misses else 0
 
 
 if __name__ == '__main__':
