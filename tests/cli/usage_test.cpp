@@ -121,6 +121,13 @@ TEST_F(Usage, a_bad_accelerogram_is_refused_before_the_parse) {
     put("quake.txt", "0 313\n0.02 0\n");
     expect_failure(1, {"parse", "plane.xyz", "--accelerogram", "quake.txt"},
                    {"quake.txt", "313 g", "--accelerogram-unit"});
+    put("along.txt", "0 0.1\n0.02 0\n");
+    put("up.txt", "0 0.1\n0.01 0\n");
+    expect_failure(
+        1, {"parse", "plane.xyz", "--accelerogram", "along.txt", "--accelerogram-up", "up.txt"},
+        {"up.txt", "0.01", "0.02", "one record"});
+    expect_failure(2, {"parse", "plane.xyz", "--accelerogram-across", "along.txt"},
+                   {"--accelerogram"});
 }
 
 TEST_F(Usage, a_bad_hazard_curve_is_refused_before_the_parse) {
