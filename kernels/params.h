@@ -121,6 +121,15 @@ STRUCT(DescentParams) {
     uint padded_directions;  // row length, a multiple of the items per work-item
 } STRUCT_END(DescentParams)
 
+// rocking
+STRUCT(RockingParams) {
+    uint event_count;  // a multiple of 64
+    uint body_count;
+    uint chunk_count;  // of all records
+    float gravity;     // m/s^2
+    float longest_s;   // after a record's end, until a motion has to have come to its own
+} STRUCT_END(RockingParams)
+
 // dialect_probe
 STRUCT(DialectProbeParams) {
     uint count;  // elements

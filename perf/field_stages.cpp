@@ -17,7 +17,7 @@ struct Field {
     const char* of;
 };
 constexpr Field fields[]{
-    {"human", 500, "walks"}, {"wind", 16, "gales"}, {"earthquake", 64, "pulses"}};
+    {"human", 500, "walks"}, {"wind", 16, "gales"}, {"earthquake", 64, "events"}};
 
 }  // namespace
 

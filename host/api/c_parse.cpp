@@ -27,6 +27,7 @@ topple_options defaults() {
     o.tolerable_J = from.tolerable_J;
     o.grouping_time_s = none;
     o.contents_kg_m3 = from.contents_kg_m3.value_or(none);
+    o.floor_amplification = from.floor_amplification;
     return o;
 }
 
@@ -61,6 +62,15 @@ ParseOptions parse_options(const topple_options& o, bool& cancelled) {
     to.tolerable_J = o.tolerable_J;
     to.grouping_time_s = given(o.grouping_time_s);
     to.contents_kg_m3 = given(o.contents_kg_m3);
+    to.floor_amplification = o.floor_amplification;
+    if (o.hazard_points > 0) {
+        if (!o.hazard_pga_g || !o.hazard_per_year)
+            throw Error(ErrorKind::usage, "hazard_points: " + std::to_string(o.hazard_points) +
+                                              ", but hazard_pga_g or hazard_per_year is NULL");
+        to.hazard = HazardCurve{{o.hazard_pga_g, o.hazard_pga_g + o.hazard_points},
+                                {o.hazard_per_year, o.hazard_per_year + o.hazard_points},
+                                "hazard_pga_g"};
+    }
     to.coordinates = !o.without_coordinates;
     to.isolate = !o.without_isolation;
     if (o.progress || o.log) {

@@ -113,6 +113,12 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         to.push_error_N = from.overturning.push_error_N;
         to.slide_N = from.overturning.slide_N;
         to.shake_g = from.overturning.shake_g;
+        to.fragility_pga_g = from.fragility.pga_g;
+        to.fragility_pga_dispersion = from.fragility.pga_dispersion;
+        to.fragility_pgv_m_s = from.fragility.pgv_m_s;
+        to.fragility_pgv_dispersion = from.fragility.pgv_dispersion;
+        to.falls_per_year = from.fragility.falls_per_year;
+        to.return_years = from.fragility.return_years;
         give(to, object, "object");
     });
 }

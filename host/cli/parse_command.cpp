@@ -31,8 +31,9 @@ namespace {
 const std::map<std::string, double> record_units{{"g", 9.80665}, {"m/s2", 1}, {"cm/s2", 0.01}};
 
 struct Arguments {
-    std::optional<std::string> accelerogram;
+    std::optional<std::string> accelerogram, accelerogram_across, accelerogram_up;
     std::optional<double> accelerogram_unit_m_s2;
+    std::optional<std::string> hazard;
     std::string input, backend = "auto", up, disturbance = "human,wind,earthquake";
     ParseOptions options;
     std::optional<std::string> out;
@@ -94,6 +95,20 @@ std::filesystem::path default_output(const std::filesystem::path& input) {
     return name.string() + "-parsed";
 }
 
+// A further component of a record, which starts with it; where it is longer or shorter, its end is
+// cut off or 0.
+std::vector<double> component_beside(const Accelerogram& record, const std::string& file,
+                                     std::optional<double> unit_m_s2) {
+    Accelerogram other = read_accelerogram(file, unit_m_s2);
+    if (std::abs(other.step_s - record.step_s) > 1e-3 * record.step_s)
+        throw Error(ErrorKind::input, file + ": its samples are " + std::to_string(other.step_s) +
+                                          " s apart, but those of " + record.source + " " +
+                                          std::to_string(record.step_s) +
+                                          " s; give components of one record");
+    other.m_s2.resize(record.m_s2.size(), 0.0);
+    return std::move(other.m_s2);
+}
+
 // Everything that can be wrong with the options is told before a long parse.
 void read_options(Arguments& a) {
     if (a.voxel_m) {
@@ -129,6 +144,13 @@ void read_options(Arguments& a) {
     }
     if (a.accelerogram)
         a.options.accelerogram = read_accelerogram(*a.accelerogram, a.accelerogram_unit_m_s2);
+    if (a.accelerogram_across)
+        a.options.accelerogram->across_m_s2 = component_beside(
+            *a.options.accelerogram, *a.accelerogram_across, a.accelerogram_unit_m_s2);
+    if (a.accelerogram_up)
+        a.options.accelerogram->up_m_s2 =
+            component_beside(*a.options.accelerogram, *a.accelerogram_up, a.accelerogram_unit_m_s2);
+    if (a.hazard) a.options.hazard = read_hazard_curve(*a.hazard);
 }
 
 // What all processes of a team do before their part of the parse.
@@ -252,14 +274,27 @@ Command add_parse(CLI::App& app, const Team& team) {
         "--pga", a->options.pga_m_s2,
         "Peak ground acceleration of the earthquake in m/s^2; an accelerogram is scaled\n"
         "to it (default: the accelerogram's own, or 3)");
-    app.add_option("--accelerogram", a->accelerogram,
-                   "Recorded earthquake instead of pulses: JSON (dT, accel_data), PEER's .AT2, or\n"
-                   "lines of time in s and acceleration");
+    CLI::Option* const record = app.add_option(
+        "--accelerogram", a->accelerogram,
+        "Recorded earthquake instead of made-up ones: JSON (dT, accel_data), PEER's .AT2, or\n"
+        "lines of time in s and acceleration");
+    app.add_option("--accelerogram-across", a->accelerogram_across,
+                   "Its level component a quarter turn to the left, in a file of its own")
+        ->needs(record);
+    app.add_option("--accelerogram-up", a->accelerogram_up, "Its vertical component, upwards")
+        ->needs(record);
     app.add_option_function<std::string>(
            "--accelerogram-unit",
            [a](const std::string& unit) { a->accelerogram_unit_m_s2 = record_units.at(unit); },
            "Its unit: g, m/s2 or cm/s2 (default: what the file says, else g)")
         ->check(one_of({"g", "m/s2", "cm/s2"}));
+    app.add_option("--floor-amplification", a->options.floor_amplification,
+                   "How many times as strongly as the ground shakes what things stand on, as on\n"
+                   "upper floors")
+        ->capture_default_str();
+    app.add_option("--hazard", a->hazard,
+                   "How often the ground shakes there: JSON (pga_g, per_year), or lines of peak\n"
+                   "acceleration in g and annual rate; gives how often each object falls");
     app.add_option("--tolerable", a->options.tolerable_J,
                    "Risk in joules per event up to which an object may stay as it is; for others\n"
                    "the report says where to move them, or what a fixing must hold")

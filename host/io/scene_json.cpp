@@ -106,6 +106,20 @@ Json to_json(const Overturning& o) {
             {"shake_g", number(o.shake_g)}};
 }
 
+Json to_json(const Fragility& f) {
+    return {{"pga_g", number(f.pga_g)},
+            {"pga_dispersion", number(f.pga_dispersion)},
+            {"pgv_m_s", number(f.pgv_m_s)},
+            {"pgv_dispersion", number(f.pgv_dispersion)},
+            {"counted",
+             list(f.counted,
+                  [](const Fragility::Step& step) {
+                      return Json{{"pga_g", number(step.pga_g)}, {"chance", number(step.chance)}};
+                  })},
+            {"falls_per_year", number(f.falls_per_year)},
+            {"return_years", number(f.return_years)}};
+}
+
 Json to_json(const Object& o) {
     return {
         {"id", o.id},
@@ -123,6 +137,7 @@ Json to_json(const Object& o) {
         {"barrier_error_J", number(o.barrier_error_J)},
         {"release_J", number(o.release_J)},
         {"overturning", to_json(o.overturning)},
+        {"fragility", to_json(o.fragility)},
         {"mode", o.mode},
         {"direction", vector(o.direction)},
         {"instability", list(o.instability,
@@ -239,6 +254,19 @@ Overturning overturning_of(const Json& json) {
     return o;
 }
 
+Fragility fragility_of(const Json& json) {
+    Fragility f;
+    f.pga_g = number_at(json, "pga_g");
+    f.pga_dispersion = number_at(json, "pga_dispersion");
+    f.pgv_m_s = number_at(json, "pgv_m_s");
+    f.pgv_dispersion = number_at(json, "pgv_dispersion");
+    for (const Json& step : json.at("counted"))
+        f.counted.push_back({number_at(step, "pga_g"), number_at(step, "chance")});
+    f.falls_per_year = number_at(json, "falls_per_year");
+    f.return_years = number_at(json, "return_years");
+    return f;
+}
+
 Object object_of(const Json& json) {
     Object o;
     o.id = json.at("id").get<std::int32_t>();
@@ -262,6 +290,7 @@ Object object_of(const Json& json) {
     }
     o.release_J = number_at(json, "release_J");
     if (json.contains("overturning")) o.overturning = overturning_of(json.at("overturning"));
+    if (json.contains("fragility")) o.fragility = fragility_of(json.at("fragility"));
     o.mode = json.at("mode").get<std::string>();
     o.direction = vector_at(json, "direction");
     for (const auto& step : json.at("instability")) {

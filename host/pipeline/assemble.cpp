@@ -79,6 +79,8 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
             to.risk_J[name] = risk.mean_J;
             to.risk_spread_J[name] = risk.spread_J;
             to.fall_chance[name] = risk.chance;
+            if (o < safety.disturbances[d].fragility.size())
+                to.fragility = safety.disturbances[d].fragility[o];
         }
         to.seen_enough = from.grounded || from.seen_enough();
         to.rests_by = from.grounded ? "ground" : graph::to_string(from.rest);
@@ -231,6 +233,8 @@ void record_run(const device::Device& device, const ParseOptions& options, doubl
             scene.events["pga_m_s2"] = options.pga_m_s2.value_or(
                 options.accelerogram ? options.accelerogram->peak_m_s2()
                                      : safety::EarthquakeOptions{}.pga_m_s2);
+            if (options.floor_amplification != 1)
+                scene.events["floor_amplification"] = options.floor_amplification;
         }
     }
 }

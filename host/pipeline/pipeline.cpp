@@ -137,9 +137,20 @@ void check_options(const ParseOptions& o) {
     if (o.accelerogram) {
         check_range("accelerogram: step_s", o.accelerogram->step_s, 1e-5, 0.5);
         double sum = 0;  // not finite if one of them isn't
-        for (const double a : o.accelerogram->m_s2) sum += std::abs(a);
+        for (const auto* component :
+             {&o.accelerogram->m_s2, &o.accelerogram->across_m_s2, &o.accelerogram->up_m_s2}) {
+            if (!component->empty() && component->size() != o.accelerogram->m_s2.size())
+                throw Error(ErrorKind::usage,
+                            "accelerogram: its components have different numbers of samples");
+            for (const double a : *component) sum += std::abs(a);
+        }
         check_range("accelerogram: its peak in m/s^2,",
                     std::isfinite(sum) ? o.accelerogram->peak_m_s2() : NAN, 0, 100);
+    }
+    check_range("--floor-amplification", o.floor_amplification, 0, 20);
+    if (o.hazard) {
+        if (const auto wrong = o.hazard->fault())
+            throw Error(ErrorKind::usage, "--hazard: " + *wrong);
     }
     check_range("--tolerable", o.tolerable_J, 0, 1e9);
     if (o.tile_m != 0) check_range("--tile", o.tile_m, least_tile_m, 1000);

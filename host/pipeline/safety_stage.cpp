@@ -48,7 +48,8 @@ std::optional<Accelerogram> scaled_record(const ParseOptions& options) {
     std::optional<Accelerogram> record = options.accelerogram;
     if (record && options.pga_m_s2) {
         const double scale = *options.pga_m_s2 / record->peak_m_s2();
-        for (double& a : record->m_s2) a *= scale;
+        for (auto* component : {&record->m_s2, &record->across_m_s2, &record->up_m_s2})
+            for (double& a : *component) a *= scale;
     }
     return record;
 }
@@ -106,6 +107,8 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
             earthquake.seed = options.seed;
             earthquake.pga_m_s2 = options.pga_m_s2.value_or(earthquake.pga_m_s2);
             earthquake.record = scaled_record(options);
+            earthquake.floor_amplification = options.floor_amplification;
+            earthquake.hazard = options.hazard;
             return safety::earthquake_field(device, around, at_risk, options.friction, earthquake);
         }));
     }

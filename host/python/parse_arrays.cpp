@@ -147,15 +147,19 @@ void bind_parse(py::module_& module) {
         .def_readwrite("wind_m_s", &ParseOptions::wind_m_s)
         .def_readwrite("wind_from_deg", &ParseOptions::wind_from_deg)
         .def_readwrite("pga_m_s2", &ParseOptions::pga_m_s2)
+        .def_readwrite("floor_amplification", &ParseOptions::floor_amplification)
         .def_readwrite("tolerable_J", &ParseOptions::tolerable_J)
         .def_readwrite("grouping_time_s", &ParseOptions::grouping_time_s)
         .def("read_motion",
              [](ParseOptions& o, const std::string& file) {
                  o.motion = std::make_shared<BodyMotion>(read_motion(file));
              })
-        .def("read_accelerogram", [](ParseOptions& o, const std::string& file) {
-            o.accelerogram = read_accelerogram(file);
-        });
+        .def("read_accelerogram",
+             [](ParseOptions& o, const std::string& file) {
+                 o.accelerogram = read_accelerogram(file);
+             })
+        .def("read_hazard_curve",
+             [](ParseOptions& o, const std::string& file) { o.hazard = read_hazard_curve(file); });
     module.def(
         "parse_path", [](const std::string& path, const std::shared_ptr<SharedDevice>& device,
                          const ParseOptions& options, py::object progress, py::object cancelled) {

@@ -42,6 +42,22 @@ void bind_items(py::module_& module) {
         .def_readonly("push_error_N", &Overturning::push_error_N)
         .def_readonly("slide_N", &Overturning::slide_N)
         .def_readonly("shake_g", &Overturning::shake_g);
+    py::class_<Fragility>(module, "Fragility")
+        .def_readonly("pga_g", &Fragility::pga_g)
+        .def_readonly("pga_dispersion", &Fragility::pga_dispersion)
+        .def_readonly("pgv_m_s", &Fragility::pgv_m_s)
+        .def_readonly("pgv_dispersion", &Fragility::pgv_dispersion)
+        .def_property_readonly(
+            "counted",
+            [](const py::object& self) {
+                const auto& steps = self.cast<const Fragility&>().counted;
+                return py::array_t<double>(
+                    {static_cast<py::ssize_t>(steps.size()), py::ssize_t{2}},
+                    {py::ssize_t{sizeof(Fragility::Step)}, py::ssize_t{sizeof(double)}},
+                    reinterpret_cast<const double*>(steps.data()), self);
+            })
+        .def_readonly("falls_per_year", &Fragility::falls_per_year)
+        .def_readonly("return_years", &Fragility::return_years);
     py::class_<Object>(module, "Object")
         .def_readonly("id", &Object::id)
         .def_readonly("primitives", &Object::primitives)
@@ -63,6 +79,7 @@ void bind_items(py::module_& module) {
                                })
         .def_readonly("release_J", &Object::release_J)
         .def_readonly("overturning", &Object::overturning)
+        .def_readonly("fragility", &Object::fragility)
         .def_readonly("mode", &Object::mode)
         .def_readonly("direction", &Object::direction)
         .def_readonly("risk_J", &Object::risk_J)

@@ -8,6 +8,8 @@
 #include "core/thread_pool.h"
 #include "physics/landscape.h"
 #include "safety/columns.h"
+#include "safety/earthquake/ground_motion.h"
+#include "safety/earthquake/made_up_records.h"
 #include "safety/fields.h"
 #include "safety/objects.h"
 
@@ -16,116 +18,123 @@ namespace {
 
 using physics::gravity;
 
-struct Event {
-    double peak = 0;  // m/s^2
-    double dx = 1, dy = 0;
-};
+constexpr std::size_t made_up_count = 15;  // three of each ground type
 
 // Peaks are log-normal about the median, as ground motions are; two standard deviations bound them.
-std::vector<Event> random_pulses(const EarthquakeOptions& options) {
+// Made-up records have peaks of 1 m/s^2.
+std::vector<GroundEvent> random_events(const EarthquakeOptions& options) {
     Random random(options.seed);
-    std::vector<Event> pulses(options.events);
-    for (Event& pulse : pulses) {
-        const double angle = random.uniform(0, 2 * std::numbers::pi);
+    std::vector<GroundEvent> events(options.events);
+    for (GroundEvent& event : events) {
+        const auto [dx, dy] = direction(static_cast<unsigned>(random.below(direction_count)));
         const double radius = std::sqrt(-2 * std::log(1 - random.uniform()));  // Box-Muller
         const double normal = radius * std::cos(random.uniform(0, 2 * std::numbers::pi));
-        pulse.peak = options.pga_m_s2 * std::exp(options.spread * std::clamp(normal, -2.0, 2.0));
-        pulse.dx = std::cos(angle);
-        pulse.dy = std::sin(angle);
-    }
-    return pulses;
-}
-
-std::vector<Event> all_ways(const Accelerogram& record) {
-    std::vector<Event> events;
-    for (unsigned d = 0; d < direction_count; ++d) {
-        const auto [dx, dy] = direction(d);
-        events.push_back({record.peak_m_s2(), dx, dy});
+        const double peak =
+            options.pga_m_s2 * std::exp(options.spread * std::clamp(normal, -2.0, 2.0));
+        event = {static_cast<std::uint32_t>(random.below(made_up_count)), dx, dy,
+                 options.floor_amplification * peak};
     }
     return events;
 }
 
-// Work of the pulse on a body that rocks about its edge ahead (linearised: Housner 1963).
-double rocking_work(double mass_kg, const Profile& body, double acceleration, double duration_s) {
-    const double eta = acceleration * body.height_m / (gravity * body.ahead_m);
-    if (eta <= 1) return 0;
-    const double radius = std::hypot(body.ahead_m, body.height_m);
-    const double p =
-        std::sqrt(gravity * radius / (body.gyration_m * body.gyration_m + radius * radius));
-    const double growth = std::cosh(std::min(p * duration_s, 50.0)) - 1;
-    return tipping_energy(mass_kg, body.height_m, body.ahead_m) * 2 * eta * (eta - 1) * growth;
+std::vector<GroundEvent> all_ways(const EarthquakeOptions& options) {
+    std::vector<GroundEvent> events;
+    for (unsigned d = 0; d < direction_count; ++d) {
+        const auto [dx, dy] = direction(d);
+        events.push_back({0, dx, dy, options.floor_amplification});
+    }
+    return events;
 }
 
-// What an event does to a body, wherever it stands.
+// What an event does to an object, wherever it stands.
 struct Shaken {
     double energy_J = 0;
     bool overturns = false;
-    Sliding slid{};
-    // How far the support goes on, at least, that way and the other.
-    double support_ahead_m = 0, support_behind_m = 0;
+    // How far it slid in each plane, each way, and how far its support goes on there, at least.
+    struct Slip {
+        double way_m = 0, support_m = 0;
+    };
+    std::array<Slip, 4> slips{};
 };
+
+Shaken shaken_by(const ShakenObject& object, double mass_kg, double friction,
+                 const std::array<Motion, 2>& motions) {
+    if (!object.held) return {0, true};
+    Shaken out;
+    for (std::size_t p = 0; p < 2; ++p) {
+        const Motion& m = motions[p];
+        const Profile& body = object.body[p];
+        out.slips[2 * p] = {m.slid_ahead_m, body.support_ahead_m};
+        out.slips[2 * p + 1] = {m.slid_behind_m, body.support_behind_m};
+        out.overturns = out.overturns || m.overturned();
+        const double slid = std::max(m.slid_ahead_m, m.slid_behind_m);
+        out.energy_J = std::max(out.energy_J,
+                                mass_kg * std::max(m.raised_J_kg(body), friction * gravity * slid));
+    }
+    return out;
+}
 
 // What the ideal body needs to fall and what the landscape says differ by the voxels; and a motion
 // may hold more energy than the weakest way takes, and yet not go that way.
 double work_of(const RiskObject& object, const Shaken& shaken) {
     if (object.barrier_J <= 0) return shaken.energy_J;
-    const auto beyond = [&](double way_m, double support_m) {
-        return way_m > 0 && way_m >= std::max(object.slide_distance_m, support_m);
-    };
     const bool slides_off =
-        object.slide_distance_m >= 0 && (beyond(shaken.slid.ahead_m, shaken.support_ahead_m) ||
-                                         beyond(shaken.slid.behind_m, shaken.support_behind_m));
+        object.slide_distance_m >= 0 &&
+        std::any_of(shaken.slips.begin(), shaken.slips.end(), [&](const Shaken::Slip& slip) {
+            return slip.way_m > 0 &&
+                   slip.way_m >= std::max(object.slide_distance_m, slip.support_m);
+        });
     return shaken.overturns || slides_off
                ? std::max(shaken.energy_J, object.barrier_J)
                : std::min(shaken.energy_J, std::nextafter(object.barrier_J, 0.0));
 }
 
-Shaken shaken_by_pulse(double mass_kg, const Profile& body, double acceleration, double friction,
-                       double duration_s) {
-    if (!(mass_kg > 0) || !(body.height_m > 0)) return {};
-    if (body.ahead_m <= 0) return {0, true};  // nothing holds it that way: any push tips it
-    if (body.rocks_ahead(friction)) {
-        const double work = rocking_work(mass_kg, body, acceleration, duration_s);
-        return {work, work >= tipping_energy(mass_kg, body.height_m, body.ahead_m)};
+// Slips on supports that end nowhere near go on for ever.
+ShakenObject where_it_stands(const RiskObject& object, ShakenObject shaken) {
+    for (Profile& body : shaken.body) {
+        for (double* support : {&body.support_ahead_m, &body.support_behind_m}) {
+            *support = object.slide_distance_m < 0 ? INFINITY
+                                                   : std::max(object.slide_distance_m, *support);
+        }
     }
-    // It lags behind, then comes to rest by friction.
-    const double force = friction * mass_kg * gravity;
-    const double excess = acceleration - friction * gravity;
-    if (excess <= 0) return {};
-    const double work = 0.5 * mass_kg * excess * acceleration * duration_s * duration_s;
-    return {work, false, {work / force, 0}, body.support_ahead_m};
+    return shaken;
 }
 
-Shaken shaken_by_record(double mass_kg, const Profile& body, const Accelerogram& record,
-                        double friction) {
-    if (!(mass_kg > 0) || !(body.height_m > 0)) return {};
-    if (body.ahead_m <= 0 || body.behind_m <= 0) return {0, true};
-    const Rocking rocking = rock(body, record, friction);
-    const Sliding sliding = slide(body, record, friction);
-    const double way = std::max(sliding.ahead_m, sliding.behind_m);
-    return {mass_kg * std::max(rocking.energy_J_kg, friction * gravity * way), rocking.overturns,
-            sliding, body.support_ahead_m, body.support_behind_m};
+void note_record(const Accelerogram& record, std::vector<std::string>& notes) {
+    notes = record.notes;
+    char figures[80];
+    std::snprintf(figures, sizeof(figures), "%.3g s with a peak of %.3g m/s^2.",
+                  record.duration_s(), record.peak_m_s2());
+    notes.push_back("The earthquake is the accelerogram " + record.source + ", " + figures);
+}
+
+// Arrows at the contact surface: the objects' lowest cells.
+FieldSamples arrows_below(const SolidCells& solid, std::span<const std::size_t> which,
+                          std::span<const std::vector<std::uint32_t>> cells,
+                          std::span<const Stance> stances, std::span<const GroundEvent> events,
+                          std::span<const double> peaks) {
+    ArrowSample arrows;
+    for (const std::size_t o : which) {
+        const double bottom_m = stances[o].bottom_m;
+        for (const std::uint32_t c : cells[o]) {
+            if ((solid.k[c] + 0.5) * solid.voxel_m > bottom_m + solid.voxel_m) continue;
+            const std::size_t e = c % events.size();
+            arrows.offer(
+                {(solid.i[c] + 0.5) * solid.voxel_m, (solid.j[c] + 0.5) * solid.voxel_m, bottom_m},
+                {peaks[e] * events[e].dx, peaks[e] * events[e].dy, 0}, 1);
+        }
+    }
+    return arrows.take();
 }
 
 }  // namespace
-
-double pulse_work(const RiskObject& object, const Profile& body, double acceleration,
-                  double friction, double duration_s) {
-    return work_of(object,
-                   shaken_by_pulse(object.mass_kg, body, acceleration, friction, duration_s));
-}
-
-double record_work(const RiskObject& object, const Profile& body, const Accelerogram& record,
-                   double friction) {
-    return work_of(object, shaken_by_record(object.mass_kg, body, record, friction));
-}
 
 Disturbance earthquake_field(device::Device& device, const Surroundings& surroundings,
                              std::span<const RiskObject> objects, double friction,
                              const EarthquakeOptions& options) {
     check_option("pga_m_s2", options.pga_m_s2, 0);
     check_option("spread", options.spread, 0);
-    check_option("dominant_period_s", options.dominant_period_s, 0);
+    check_option("floor_amplification", options.floor_amplification, 0);
     check_option("friction", friction, 0);
     if (options.record) check_option("record.step_s", options.record->step_s, 1e-6);
     Disturbance out;
@@ -136,61 +145,57 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
     const auto object_of_cell = movable_object_of_cells(surroundings, objects);
     const auto cells = cells_of_objects(object_of_cell, objects.size());
     out.exposure.assign(object_of_cell.size(), 0.0f);
-    const std::vector<Event> events =
-        options.record ? all_ways(*options.record) : random_pulses(options);
+    for (std::size_t c = 0; c < object_of_cell.size(); ++c)
+        if (object_of_cell[c] >= 0) out.exposure[c] = 1;
+    const std::vector<Accelerogram> records = options.record
+                                                  ? std::vector{*options.record}
+                                                  : made_up_records(made_up_count, options.seed);
+    const std::vector<GroundEvent> events =
+        options.record ? all_ways(options) : random_events(options);
     out.draws = events.size();
-    if (options.record) {
-        out.notes = options.record->notes;
-        char figures[80];
-        std::snprintf(figures, sizeof(figures), "%.3g s with a peak of %.3g m/s^2.",
-                      options.record->duration_s(), options.record->peak_m_s2());
-        out.notes.push_back("The earthquake is the accelerogram " + options.record->source + ", " +
-                            figures);
-    }
-    const SolidCells& solid = *surroundings.cells;
+    if (options.record) note_record(*options.record, out.notes);
 
-    const Columns columns(solid);
+    const Columns columns(*surroundings.cells);
     std::vector<Stance> stances(objects.size());
+    std::vector<ShakenObject> bodies(objects.size()), standing(objects.size());
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (cells[o].empty() || objects[o].grounded) return;
         stances[o] = stance(surroundings, cells[o]);
-        std::vector<std::pair<Shaken, Vec3>> shaken;
-        for (const Event& event : events) {
-            const Profile body = profile(objects[o], stances[o], columns, event.dx, event.dy);
-            const double mass = objects[o].mass_kg;
-            shaken.emplace_back(options.record
-                                    ? shaken_by_record(mass, body, *options.record, friction)
-                                    : shaken_by_pulse(mass, body, event.peak, friction,
-                                                      options.dominant_period_s / 2),
-                                Vec3{event.dx, event.dy, 0});
-            const double force = mass * event.peak;
-            if (force > out.strongest[o].force_N) out.strongest[o] = {force, body.height_m};
+        bodies[o] = shaken_object(objects[o], stances[o], columns);
+        standing[o] = where_it_stands(objects[o], bodies[o]);
+    });
+    std::vector<std::size_t> which;
+    for (std::size_t o = 0; o < objects.size(); ++o)
+        if (!cells[o].empty() && !objects[o].grounded) which.push_back(o);
+    std::vector<double> peaks;  // of what they stand on
+    for (const GroundEvent& event : events)
+        peaks.push_back(event.scale * records[event.record].peak_m_s2());
+
+    const Motions motions = shake_objects(device, bodies, which, records, events, friction, true);
+    for (const std::size_t o : which) {
+        std::vector<Shaken> shaken;
+        for (std::size_t e = 0; e < events.size(); ++e) {
+            shaken.push_back(shaken_by(bodies[o], objects[o].mass_kg, friction, motions[o][e]));
+            const double force = objects[o].mass_kg * peaks[e];
+            if (force > out.strongest[o].force_N)
+                out.strongest[o] = {force, bodies[o].body[0].height_m};
         }
-        out.response[o] = [shaken = std::move(shaken)](const RiskObject& object) {
+        out.response[o] = [shaken = std::move(shaken), events](const RiskObject& object) {
             std::vector<WorkSample> work;
             // Also where it is 0: what has no barrier falls at any shaking.
-            for (const auto& [motion, way] : shaken)
-                work.push_back(
-                    {work_of(object, motion), 1.0 / static_cast<double>(shaken.size()), way});
+            for (std::size_t e = 0; e < events.size(); ++e) {
+                work.push_back({work_of(object, shaken[e]),
+                                1.0 / static_cast<double>(events.size()),
+                                Vec3{events[e].dx, events[e].dy, 0}});
+            }
             return work;
         };
         out.work[o] = out.response[o](objects[o]);
-    });
-    ArrowSample arrows;
-    for (std::size_t o = 0; o < objects.size(); ++o) {
-        if (out.work[o].empty()) continue;
-        // Arrows at the contact surface: the object's lowest cells.
-        const double bottom_m = stances[o].bottom_m;
-        for (const std::uint32_t c : cells[o]) {
-            out.exposure[c] = 1;
-            if ((solid.k[c] + 0.5) * solid.voxel_m > bottom_m + solid.voxel_m) continue;
-            const Event& event = events[c % events.size()];
-            arrows.offer(
-                {(solid.i[c] + 0.5) * solid.voxel_m, (solid.j[c] + 0.5) * solid.voxel_m, bottom_m},
-                {event.peak * event.dx, event.peak * event.dy, 0}, 1);
-        }
     }
-    out.samples = arrows.take();
+    out.fragility =
+        fragilities(device, standing, which, records, friction, options.floor_amplification,
+                    options.hazard ? &*options.hazard : nullptr);
+    out.samples = arrows_below(*surroundings.cells, which, cells, stances, events, peaks);
     if (out.samples.x.empty())
         out.notes.push_back("No object of the scene can be moved by an earthquake.");
     return out;

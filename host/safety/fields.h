@@ -72,12 +72,14 @@ struct WindOptions {
 };
 struct EarthquakeOptions {
     std::uint64_t seed = 1;
-    double pga_m_s2 = 3.0;           // median over the events
-    double spread = 0.5;             // standard deviation of the logarithm of an event's peak
-    double dominant_period_s = 0.5;  // a half-cycle is a rectangular pulse of half this length
+    double pga_m_s2 = 3.0;  // median over the events
+    double spread = 0.5;    // standard deviation of the logarithm of an event's peak
     unsigned events = 64;
-    // A recorded ground motion, instead of pulses; it is the same for every seed.
+    // A recorded ground motion, instead of made-up ones; it is the same for every seed.
     std::optional<Accelerogram> record;
+    // What things stand on shakes so many times as strongly as the ground, whose peaks these are.
+    double floor_amplification = 1;
+    std::optional<HazardCurve> hazard;
 };
 
 // One field: samples for the report, and each object's distribution of work: p(W) as weighted
@@ -105,8 +107,9 @@ struct Disturbance {
     // just as exposed. Empty for the human field, whose exposure is another there
     // (HumanField::work_at).
     std::vector<std::function<std::vector<WorkSample>(const RiskObject&)>> response;
-    std::vector<Push> strongest;     // by object: of all its events
-    std::vector<std::string> notes;  // e.g. no walkable floor was found
+    std::vector<Push> strongest;       // by object: of all its events
+    std::vector<Fragility> fragility;  // by object, of an earthquake
+    std::vector<std::string> notes;    // e.g. no walkable floor was found
 };
 
 inline constexpr std::size_t max_samples = 4000;     // arrows per field, for the report
@@ -129,21 +132,14 @@ Disturbance human_field(device::Device& device, const Surroundings& surroundings
 // One event is one gale, from one of its directions at random.
 Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
                        std::span<const RiskObject> objects, const WindOptions& options);
-// Ground motion that throws objects in a horizontal direction (5.1.1): rectangular pulses of random
-// direction and peak a, lasting t = period / 2, or a record, once in each of the 16 directions. One
-// event is one pulse, or the record in one direction.
+// Ground motion (5.1.1): made-up records (made_up_records.h) of random direction and peak, or a
+// record, once from each of the 16 directions. One event is one of these.
 //
-// With half base b(dir) and height h of the centre of mass, an object with b / h < mu rocks once
-// a > g b / h; one with b / h >= mu slides once a > mu g. W is the largest energy of that motion:
-//   - rocking about an edge, of a record: potential and kinetic (shaking.h); of a pulse,
-//   linearised,
-//         W = E_tip 2 eta (eta - 1) (cosh(p t) - 1),  eta = a h / (g b),  p^2 = g R / (k^2 + R^2),
-//     R^2 = b^2 + h^2, k the radius of gyration: for a block, W >= E_tip is Housner's (1963)
-//     condition for overturning;
-//   - sliding by s relative to the support: W = mu m g s; of a pulse, s = (a - mu g) a t^2 / (2 mu
-//   g).
-// So that risk counts what falls, W is at least the barrier if the object overturns, or slides as
-// far as the end of its support that way (slide_distance_m at least), and else stays below it.
+// Each object is a rigid body that rocks, slides, or both, in two planes (ground_motion.h,
+// kernel rocking). W is the larger of m g times the rise of its centre in its largest turn, and of
+// mu m g times its largest slip. So that risk counts what falls, W is at least the barrier if the
+// object overturns, or slides as far as the end of its support that way (slide_distance_m at
+// least), and else stays below it. What nothing holds falls in any.
 Disturbance earthquake_field(device::Device& device, const Surroundings& surroundings,
                              std::span<const RiskObject> objects, double friction,
                              const EarthquakeOptions& options);
@@ -168,13 +164,6 @@ struct Frontage {
 Frontage wind_frontage(const SolidCells& solid, const Columns& columns,
                        std::span<const std::uint32_t> cells, const std::array<double, 2>& way,
                        double shelter_m);
-
-// The work of one pulse of `acceleration` m/s^2 and `duration_s`, or of a record, on one object.
-struct Profile;
-double pulse_work(const RiskObject& object, const Profile& body, double acceleration,
-                  double friction, double duration_s);
-double record_work(const RiskObject& object, const Profile& body, const Accelerogram& record,
-                   double friction);
 
 // S(W): the last step of the curve whose W_J is at most W; 0 below the first.
 double instability(std::span<const InstabilityStep> curve, double W_J);

@@ -21,6 +21,7 @@ std::span<const Case> all_cases() {
         {"steepest_descent", steepest_descent},
         {"disturbance_reach", disturbance_reach},
         {"disturbance", disturbance},
+        {"rocking", rocking},
     };
     return cases;
 }

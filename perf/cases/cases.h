@@ -22,5 +22,6 @@ Prepared group_landscape(device::Device& device);
 Prepared steepest_descent(device::Device& device);
 Prepared disturbance_reach(device::Device& device);
 Prepared disturbance(device::Device& device);
+Prepared rocking(device::Device& device);
 
 }  // namespace topple::perf

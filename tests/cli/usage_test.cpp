@@ -66,6 +66,8 @@ TEST_F(Usage, refuses_values_before_it_parses) {
                                                     {"--wind-from", "nan"},
                                                     {"--wind-from", "400"},
                                                     {"--pga", "0"},
+                                                    {"--floor-amplification", "0"},
+                                                    {"--floor-amplification", "nan"},
                                                     {"--tile", "0"},
                                                     {"--tile", "0.5"},
                                                     {"--tile", "nan"},
@@ -119,6 +121,20 @@ TEST_F(Usage, a_bad_accelerogram_is_refused_before_the_parse) {
     put("quake.txt", "0 313\n0.02 0\n");
     expect_failure(1, {"parse", "plane.xyz", "--accelerogram", "quake.txt"},
                    {"quake.txt", "313 g", "--accelerogram-unit"});
+    put("along.txt", "0 0.1\n0.02 0\n");
+    put("up.txt", "0 0.1\n0.01 0\n");
+    expect_failure(
+        1, {"parse", "plane.xyz", "--accelerogram", "along.txt", "--accelerogram-up", "up.txt"},
+        {"up.txt", "0.01", "0.02", "one record"});
+    expect_failure(2, {"parse", "plane.xyz", "--accelerogram-across", "along.txt"},
+                   {"--accelerogram"});
+}
+
+TEST_F(Usage, a_bad_hazard_curve_is_refused_before_the_parse) {
+    put_plane("plane.xyz");
+    expect_failure(1, {"parse", "plane.xyz", "--hazard", "none.txt"}, {"none.txt"});
+    put("hazard.txt", "0.2 0.01\n0.1 0.02\n");
+    expect_failure(1, {"parse", "plane.xyz", "--hazard", "hazard.txt"}, {"hazard.txt", "rise"});
 }
 
 TEST_F(Usage, help_names_every_command_and_option) {

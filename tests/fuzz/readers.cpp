@@ -76,6 +76,11 @@ void read_as_record(const fs::path& file) {
     expect(std::isfinite(record.peak_m_s2()), "a record without a finite peak");
 }
 
+void read_as_hazard(const fs::path& file) {
+    const HazardCurve curve = read_hazard_curve(file);
+    expect(curve.pga_g.size() >= 2 && !curve.fault(), "a hazard curve with a fault");
+}
+
 constexpr Reader all[] = {
     {"ply", "in.ply", read_as_cloud},
     {"pcd", "in.pcd", read_as_cloud},
@@ -103,6 +108,7 @@ constexpr Reader all[] = {
     {"joints", "in.csv", read_as_motion},
     {"record_json", "in.json", read_as_record},
     {"record_text", "in.txt", read_as_record},
+    {"hazard", "in.txt", read_as_hazard},
     {"scene", "in.json", [](const fs::path& file) { io::read_scene_json(file); }},
     {"landscapes", "in.json",
      [](const fs::path& file) {

@@ -92,6 +92,18 @@ void check_object(const Object& o, std::size_t objects) {
              {tips.tilt_error_deg, tips.push_N, tips.push_error_N, tips.slide_N, tips.shake_g})
             expect_amount(v, "what overturns an object");
     }
+    const Fragility& breaks = o.fragility;
+    for (std::size_t n = 0; n < breaks.counted.size(); ++n) {
+        expect_share(breaks.counted[n].chance, "a chance of falling");
+        expect(n == 0 || breaks.counted[n].pga_g > breaks.counted[n - 1].pga_g,
+               "peaks of earthquakes don't rise");
+    }
+    expect(std::isnan(breaks.pga_g) == std::isnan(breaks.pga_dispersion) &&
+               std::isnan(breaks.pgv_m_s) == std::isnan(breaks.pgv_dispersion),
+           "a median without its dispersion");
+    for (const double v : {breaks.pga_g, breaks.pga_dispersion, breaks.pgv_m_s,
+                           breaks.pgv_dispersion, breaks.falls_per_year, breaks.return_years})
+        if (!std::isnan(v)) expect_amount(v, "how an earthquake upsets an object");
     expect_share(o.agreement, "an agreement");
     expect_share(o.rest_probability, "the probability of a rest");
     expect(std::isnan(o.unsafety) || (o.unsafety >= 1 && o.unsafety <= 10),

@@ -28,6 +28,7 @@ def test_finds_what_is_there(result, points):
     assert not upper.grounded and upper.barrier_J > 0 and upper.risk_J['wind'] >= 0
     tips = upper.overturning
     assert 0 < tips.tilt_deg < 90 and tips.tilt_error_deg > 0 and tips.push_N > 0 and 0 < tips.shake_g <= 0.3
+    assert np.isnan(upper.fragility.pga_g) and upper.fragility.counted.shape == (0, 2)  # no earthquake was asked for
     assert np.isnan(result.objects[0].overturning.tilt_deg) or not result.objects[0].grounded
     assert upper.why.endswith('.') and upper.instability.shape[1] == 2
     assert {(s.supporter, s.supported) for s in result.supports} == {

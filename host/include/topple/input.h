@@ -57,18 +57,25 @@ struct DepthFrame {
     std::vector<std::uint8_t> rgb{};
 };
 
-// Horizontal acceleration of the ground in one direction, at equal steps of time and straight
-// between them; before and after, 0.
+// Acceleration of the ground in one level direction, and in others where they are known, at equal
+// steps of time and straight between them; before and after, 0.
 struct Accelerogram {
     std::vector<double> m_s2;
     double step_s = 0;
     std::string source;              // path, for messages
     std::vector<std::string> notes;  // what was taken for granted, in sentences
+    // Level and a quarter turn to the left of m_s2, and upwards: as many samples, or none.
+    std::vector<double> across_m_s2{}, up_m_s2{};
 
+    // Of the level components: of two the geometric mean, as earthquakes are mostly described.
     double peak_m_s2() const {
-        double peak = 0;
-        for (const double a : m_s2) peak = std::max(peak, std::fabs(a));
-        return peak;
+        const auto peak_of = [](const std::vector<double>& values) {
+            double peak = 0;
+            for (const double a : values) peak = std::max(peak, std::fabs(a));
+            return peak;
+        };
+        const double along = peak_of(m_s2);
+        return across_m_s2.empty() ? along : std::sqrt(along * peak_of(across_m_s2));
     }
     double duration_s() const {
         return m_s2.empty() ? 0 : step_s * static_cast<double>(m_s2.size() - 1);
@@ -86,5 +93,19 @@ struct Accelerogram {
 // beyond 10 g are one, or beyond 3 g where no unit was named.
 Accelerogram read_accelerogram(const std::filesystem::path& file,
                                std::optional<double> unit_m_s2 = std::nullopt);
+
+// How often the ground at a place shakes: annual rates at which peak ground accelerations are
+// exceeded, by rising peaks and falling rates, straight between them in logarithms of both.
+struct HazardCurve {
+    std::vector<double> pga_g, per_year;
+    std::string source;  // path, for messages
+
+    std::optional<std::string> fault() const;  // what keeps it from being such a curve
+};
+
+// Reads a hazard curve: JSON with lists "pga_g" and "per_year", or text with a line of peak ground
+// acceleration in g and annual rate for each point; lines that begin with a letter or # are
+// headers. Throws Error(input) naming the file and the fault.
+HazardCurve read_hazard_curve(const std::filesystem::path& file);
 
 }  // namespace topple

@@ -51,8 +51,13 @@ struct ParseOptions {
     std::optional<double> wind_from_deg;
     // Peak ground acceleration; none: the accelerogram's own, or 3 without one.
     std::optional<double> pga_m_s2;
-    // A recorded earthquake (read_accelerogram), instead of pulses about that peak.
+    // A recorded earthquake (read_accelerogram), instead of made-up ones about that peak.
     std::optional<Accelerogram> accelerogram;
+    // What things stand on shakes so many times as strongly as the ground, as upper floors do;
+    // peaks are those of the ground.
+    double floor_amplification = 1;
+    // How often the ground shakes there (read_hazard_curve), for how often each object falls.
+    std::optional<HazardCurve> hazard;
     double tolerable_J = 0.1;  // risk per event below which nothing needs to be done
     // Meshes, OctoMaps and OpenVDB files are read by libraries of others. They read in a process of
     // their own, the program topple-reader, with limits of memory and time by the file's size: what

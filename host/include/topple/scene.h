@@ -120,6 +120,22 @@ struct Overturning {
     double shake_g = none;
 };
 
+// How likely an object is to fall in an earthquake, over how strong that is: counted over records
+// scaled to rising peaks, each from 16 directions, and fitted by a lognormal distribution, so that
+// half of the earthquakes of the median upset it. NaN where fewer than that fall at the strongest
+// that is tried, and for what has no risk.
+struct Fragility {
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    struct Step {
+        double pga_g = 0;
+        double chance = 0;  // share of the records and directions in which it fell
+    };
+    double pga_g = none, pga_dispersion = none;         // of peak ground acceleration, over g
+    double pgv_m_s = none, pgv_dispersion = none;       // of peak ground velocity
+    std::vector<Step> counted;                          // by rising peaks; empty: not asked for
+    double falls_per_year = none, return_years = none;  // with a hazard curve
+};
+
 // A set of primitives fixed to one another: one rigid body.
 struct Object {
     std::int32_t id = -1;
@@ -143,6 +159,7 @@ struct Object {
     double barrier_error_J = 0;
     double release_J = 0;  // what it can release then
     Overturning overturning;
+    Fragility fragility;
     std::string mode = "none";  // "tip" | "slide" | "none"
     Vec3 direction{};           // weakest horizontal direction, unit, or zero for "none"
     std::vector<InstabilityStep> instability;

@@ -135,7 +135,12 @@ typedef struct topple_options {
      * library's own working memory, handles and strings do not come from it. NULL: the library's
      * memory, which saves a copy of them. */
     const topple_allocator* allocator;
-    double contents_kg_m3; /* of closed furniture; 68. NaN: all is solid */
+    double contents_kg_m3;      /* of closed furniture; 68. NaN: all is solid */
+    double floor_amplification; /* of the ground's shaking by the building; 1 */
+    /* How often the ground shakes: hazard_points rising peaks, and falling annual rates at which
+     * they are exceeded; 0: not known. Read during the parse alone. */
+    const double *hazard_pga_g, *hazard_per_year;
+    uint64_t hazard_points;
 } topple_options;
 void topple_options_init(topple_options* options, size_t size);
 
@@ -190,6 +195,10 @@ typedef struct topple_object {
     /* to overturn it slowly (struct Overturning of topple/scene.h); NaN where it can't tip */
     double tilt_deg, tilt_error_deg, overturning_direction[3];
     double push_N, push_error_N, slide_N, shake_g;
+    /* earthquakes half of which upset it (struct Fragility of topple/scene.h); NaN: none of those
+     * that were tried. The rates are NaN without a hazard curve. */
+    double fragility_pga_g, fragility_pga_dispersion, fragility_pgv_m_s, fragility_pgv_dispersion;
+    double falls_per_year, return_years;
 } topple_object;
 typedef struct topple_contact {
     size_t size;

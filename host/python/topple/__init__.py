@@ -188,7 +188,7 @@ class Result:
 
 def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=('human', 'wind', 'earthquake'),
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, wind_m_s=12.0,
-          wind_from_deg=None, pga_m_s2=None, accelerogram=None, tolerable_J=0.1, grouping_time_s=None, normals=None,
+          wind_from_deg=None, pga_m_s2=None, accelerogram=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, grouping_time_s=None, normals=None,
           viewpoint=None, colours=None, isolate=True, progress=None, cancelled=None):
     """Parses a scan into a Result.
 
@@ -200,7 +200,7 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
 
     disturbances: a list of "human", "wind", "earthquake", which may be empty; or one of these names.
 
-    device: a Device of open_device(), or a backend's name. motion, accelerogram: files. normals, viewpoint: of
+    device: a Device of open_device(), or a backend's name. motion, accelerogram, hazard: files. normals, viewpoint: of
     points, as they are given; where the sensor was. colours: of points, sRGB as uint8, an array of shape (N, 3),
     records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. progress(stage, done) is called as stages start and go on;
     contents_kg_m3: of closed furniture, or None where all is solid.
@@ -221,6 +221,9 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
         options.read_motion(os.fspath(motion))
     if accelerogram is not None:
         options.read_accelerogram(os.fspath(accelerogram))
+    options.floor_amplification = floor_amplification
+    if hazard is not None:
+        options.read_hazard_curve(os.fspath(hazard))
     if isinstance(device, str):
         device = open_device(device)
     if isinstance(source, (str, os.PathLike)):

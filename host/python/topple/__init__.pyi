@@ -87,6 +87,22 @@ class Overturning:  # all NaN where it can't tip
     @property
     def shake_g(self) -> float: ...
 
+class Fragility:  # of earthquakes; NaN: few fall at the strongest that is tried
+    @property
+    def pga_g(self) -> float: ...
+    @property
+    def pga_dispersion(self) -> float: ...
+    @property
+    def pgv_m_s(self) -> float: ...
+    @property
+    def pgv_dispersion(self) -> float: ...
+    @property
+    def counted(self) -> NDArray[np.float64]: ...  # (steps, 2): pga_g, chance
+    @property
+    def falls_per_year(self) -> float: ...  # NaN without a hazard curve
+    @property
+    def return_years(self) -> float: ...
+
 class Object:
     @property
     def id(self) -> int: ...
@@ -118,6 +134,8 @@ class Object:
     def release_J(self) -> float: ...
     @property
     def overturning(self) -> Overturning: ...
+    @property
+    def fragility(self) -> Fragility: ...
     @property
     def mode(self) -> Literal["tip", "slide", "none"]: ...
     @property
@@ -234,6 +252,8 @@ def parse(
     wind_from_deg: Optional[float] = ...,
     pga_m_s2: Optional[float] = ...,
     accelerogram: Union[str, os.PathLike[str], None] = ...,
+    floor_amplification: float = ...,
+    hazard: Union[str, os.PathLike[str], None] = ...,
     tolerable_J: float = ...,
     grouping_time_s: Optional[float] = ...,
     normals: Optional[_Points] = ...,

@@ -141,6 +141,8 @@ function showObject(panel, scene, id, choose) {
   const overturning = overturningText(object);
   if (overturning) panel.append(element('p', {className: 'why', text: overturning}));
   if (!object.grounded) panel.append(element('p', {className: 'why', text: upsetText(object)}));
+  const fragility = fragilityText(object), curve = fragilityChart(object);
+  if (fragility) panel.append(element('p', {className: 'why', text: fragility}));
   if (fallKnown(object)) panel.append(element('p', {className: 'why', text: happensText(scene, object)}));
   if (object.advice && object.advice.sentence) panel.append(element('p', {className: 'advice', text: object.advice.sentence}));
   panel.append(element('p', {className: 'why', text: object.why.sentence}));
@@ -160,6 +162,10 @@ function showObject(panel, scene, id, choose) {
   pairs.push(['Unsafety, 1 to 10', object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
   panel.append(numberList(pairs));
 
+  if (curve) {
+    panel.append(element('h3', {text: 'Chance of falling, over an earthquake\u2019s peak'}),
+      element('figure', {className: 'fragility'}, [curve]));
+  }
   const contacts = contactGraph(scene, id, choose);
   if (contacts) panel.append(contacts);
   panel.append(...drawingsOf(scene, id));

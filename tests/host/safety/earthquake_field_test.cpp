@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "device/devices.h"
 #include "physics/landscape.h"
 #include "room.h"
 #include "safety/columns.h"
+#include "safety/earthquake/rocking.h"
 #include "safety/fields.h"
 #include "safety/objects.h"
 #include "topple/error.h"
@@ -17,83 +19,35 @@ namespace {
 using physics::gravity;
 constexpr double mu = 0.3;
 
-RiskObject block(double mass = 1) {
-    RiskObject object;
-    object.mass_kg = mass;
-    return object;
+// Of acceleration `a` and length t along one axis, in steps of a hundredth of it.
+Accelerogram square_pulse(double a, double t) {
+    Accelerogram record;
+    record.step_s = t / 100;
+    record.m_s2.assign(200, 0.0);
+    std::fill_n(record.m_s2.begin(), 100, a);
+    return record;
 }
 
-// A rectangle of half base b and half height h.
-Profile rectangle(double b, double h) {
-    return {b, b, h, std::sqrt((b * b + h * h) / 3)};
-}
-
-TEST(Earthquake, RockingStartsWhereWestSaysAndOnlyBelowTheFrictionAngle) {
-    const double b = 0.05, h = 0.25, west = gravity * b / h;
-    const auto work = [](double base, double height, double a) {
-        return pulse_work(block(), rectangle(base, height), a, mu, 0.25);
+TEST(Earthquake, RiseOfATurn) {
+    const Profile body{0.1, 0.15, 0.25, 0.2};
+    const auto raised = [&](float ahead, float behind) {
+        return Motion{ahead, behind, 0, 0}.raised_J_kg(body);
     };
-    EXPECT_EQ(work(b, h, 0.999 * west), 0);
-    EXPECT_GT(work(b, h, 1.001 * west), 0);
-    // b / h >= mu: it slides instead, and only beyond mu g, however small the work to tip it is.
-    EXPECT_EQ(work(0.31 * h, h, 0.999 * mu * gravity), 0);
-    const double sliding = work(0.31 * h, h, 1.2 * mu * gravity);
-    EXPECT_EQ(sliding, work(10 * h, h, 1.2 * mu * gravity));
-    EXPECT_GT(sliding, 0);
+    EXPECT_EQ(raised(0, 0), 0);
+    EXPECT_NEAR(21 * raised(std::atan(0.1f / 0.25f), 0), 3.96604, 1e-4);
+    EXPECT_NEAR(21 * raised(1.5f, 0), 3.96604, 1e-4) << "beyond balance it comes down";
+    EXPECT_NEAR(21 * raised(0, 1.5f), 8.55630, 1e-4);
+    EXPECT_LT(raised(0.1f, 0), raised(0.2f, 0));
 }
 
-// The pulse that just overturns: p t = ln(eta / (eta - 1)) (Housner 1963), at small slenderness
-// angles.
-TEST(Earthquake, OverturnsAtHousnersPulse) {
-    const double alpha = 0.05, h = 1.0, b = h * std::tan(alpha);
-    const double p = std::sqrt(3 * gravity / (4 * std::hypot(b, h)));
-    for (const double eta : {1.1, 1.5, 2.0, 4.0}) {
-        double low = 0, high = 10;
-        for (int n = 0; n < 100; ++n) {
-            const double t = (low + high) / 2;
-            const bool falls = pulse_work(block(), rectangle(b, h), eta * gravity * b / h, mu, t) >=
-                               tipping_energy(1, h, b);
-            (falls ? high : low) = t;
-        }
-        EXPECT_NEAR(p * high, std::log(eta / (eta - 1)), 1e-3 * std::log(eta / (eta - 1)))
-            << "eta " << eta;
-    }
-}
-
-TEST(Earthquake, SlidingWorkMatchesIntegration) {
-    const double a = 5, t1 = 0.25, dt = 1e-6;
-    double v = 0, ground = 0, slip = 0;  // velocities, relative distance
-    for (double t = 0; t < 3; t += dt) {
-        ground += (t < t1 ? a : 0) * dt;
-        v = std::min(ground, v + mu * gravity * dt);
-        slip += (ground - v) * dt;
-    }
-    const double work = pulse_work(block(2), rectangle(1, 0.1), a, mu, t1);
-    EXPECT_NEAR(work, mu * 2 * gravity * slip, 1e-3 * work);
-}
-
-// A motion that does not go over an edge, or off the support, stays below the barrier, however much
-// energy it has.
-TEST(Earthquake, WorkReachesTheBarrierExactlyWhereItFalls) {
-    RiskObject object = block(2);
-    object.barrier_J = 0.01;
-    const Profile tall = rectangle(0.05, 0.5);
-    Profile squat = rectangle(1, 0.1);
-    EXPECT_LT(pulse_work(object, squat, 8, mu, 0.25), 0.01) << "slides on a floor without an edge";
-    const double way = pulse_work(block(2), squat, 8, mu, 0.25) / (mu * 2 * gravity);
-    object.slide_distance_m = 0.99 * way;
-    EXPECT_GE(pulse_work(object, squat, 8, mu, 0.25), 0.01);
-    object.slide_distance_m = 1.01 * way;
-    EXPECT_LT(pulse_work(object, squat, 8, mu, 0.25), 0.01);
-    object.slide_distance_m = 0.1 * way;
-    squat.support_ahead_m = 1.01 * way;
-    EXPECT_LT(pulse_work(object, squat, 8, mu, 0.25), 0.01) << "the near edge is another";
-    squat.support_ahead_m = 0.99 * way;
-    EXPECT_GE(pulse_work(object, squat, 8, mu, 0.25), 0.01);
-    object.slide_distance_m = -1;
-    EXPECT_LT(pulse_work(object, tall, 1.2, mu, 0.25), 0.01) << "rocks";
-    object.barrier_J = 1e9;
-    EXPECT_EQ(pulse_work(object, tall, 9, mu, 2), 1e9) << "overturns";
+TEST(Earthquake, UnknownBodiesAndRecordsAreRefused) {
+    const auto device = device::open_native(1);
+    const std::vector bodies{Profile{0.1, 0.1, 0.3, 0.2, 1, 1}};
+    const std::vector records{square_pulse(1, 0.2)};
+    EXPECT_EQ(shake(*device, bodies, records, std::vector{Shaking{0, 0, 1, 0, 0}}, mu).size(), 1u);
+    EXPECT_TRUE(shake(*device, bodies, records, {}, mu).empty());
+    for (const Shaking& wrong : {Shaking{1, 0, 1, 0, 0}, Shaking{0, 1, 1, 0, 0}})
+        EXPECT_THROW(shake(*device, bodies, records, std::vector{wrong}, mu), Error);
 }
 
 TEST(Earthquake, TippingEnergyOfTheBox) {
@@ -113,12 +67,42 @@ class EarthquakeField : public ::testing::Test {
         object.curve = {{object.barrier_J, 10}};
         EarthquakeOptions options;
         options.pga_m_s2 = pga;
+        options.events = 200;  // rocking is not monotone event by event
         return risk(earthquake_field(*device, room.surroundings(), room.objects, mu, options),
                     room.objects)[id]
             .mean_J;
     }
     std::unique_ptr<device::Device> device = device::open_native(1);
 };
+
+// A motion that does not go over an edge, or off the support, stays below the barrier, however much
+// energy it has.
+TEST_F(EarthquakeField, WorkReachesTheBarrierExactlyWhereItFalls) {
+    test::Room room(0.02);
+    room.floor(0, 2, 0, 2);
+    const auto id = static_cast<std::size_t>(room.box(0.8, 1.2, 0.8, 1.2, 0, 0.2, false));
+    RiskObject& object = room.objects[id];
+    object.barrier_J = 0.01;
+    EarthquakeOptions options;
+    options.record = square_pulse(8, 0.25);
+    const auto surroundings = room.surroundings();
+    const Disturbance field = earthquake_field(*device, surroundings, room.objects, mu, options);
+    const auto work = [&](double barrier_J, double slide_m) {
+        RiskObject elsewhere = object;
+        elsewhere.barrier_J = barrier_J;
+        elsewhere.slide_distance_m = slide_m;
+        return field.response[id](elsewhere)[0].W_J;  // along +x
+    };
+    // Newmark's s = (a - mu g) a t^2 / (2 mu g); the last sample falls to 0 within a step.
+    const double t = 0.25 * 99.5 / 100;
+    const double way = (8 - mu * gravity) * 8 * t * t / (2 * mu * gravity);
+    EXPECT_NEAR(work(0, -1), mu * object.mass_kg * gravity * way, 0.02 * work(0, -1));
+    EXPECT_LT(work(0.01, -1), 0.01) << "slides on a floor without an edge";
+    // Its support goes on for a metre each way.
+    EXPECT_GE(work(0.01, 0.3), way >= 1.0 ? 0.01 : 0.0);
+    EXPECT_LT(work(0.01, 1.02 * way), 0.01);
+    EXPECT_GE(work(1e9, -1), 0);
+}
 
 TEST_F(EarthquakeField, TallerNarrowerStrongerIsNotSafer) {
     double last = 0;

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "safety/earthquake/fragility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace topple::safety {
+namespace {
+
+double normal_cdf(double z) {
+    return 0.5 * std::erfc(-z / std::numbers::sqrt2);
+}
+double normal_density(double z) {
+    return std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
+}
+
+// Of the log-likelihood in (a, b): its slopes, and Fisher's information.
+struct Score {
+    double a = 0, b = 0, aa = 0, ab = 0, bb = 0;
+};
+Score score(std::span<const Trials> trials, double a, double b) {
+    Score s;
+    for (const Trials& t : trials) {
+        const double x = std::log(t.strength), z = std::clamp(a + b * x, -8.0, 8.0);
+        const double p = normal_cdf(z), d = normal_density(z), spread = p * normal_cdf(-z);
+        const double slope = d / spread * (t.falls - t.of * p), weight = t.of * d * d / spread;
+        s.a += slope;
+        s.b += slope * x;
+        s.aa += weight;
+        s.ab += weight * x;
+        s.bb += weight * x * x;
+    }
+    return s;
+}
+
+double counted_chance(const Fragility& f, double pga_g) {
+    if (f.counted.empty() || pga_g < f.counted.front().pga_g) return 0;
+    for (std::size_t n = 0; n + 1 < f.counted.size(); ++n) {
+        const auto &low = f.counted[n], &high = f.counted[n + 1];
+        if (pga_g >= high.pga_g) continue;
+        const double way = std::log(pga_g / low.pga_g) / std::log(high.pga_g / low.pga_g);
+        return low.chance + way * (high.chance - low.chance);
+    }
+    return f.counted.back().chance;
+}
+
+}  // namespace
+
+double Lognormal::chance(double strength) const {
+    return strength > 0 ? normal_cdf(std::log(strength / median) / dispersion) : 0;
+}
+
+std::optional<Lognormal> fit_lognormal(std::span<const Trials> trials) {
+    double strongest = 0;
+    for (const Trials& t : trials) strongest = std::max(strongest, t.strength);
+    double falls = 0, of = 0, weighted = 0, all = 0;
+    for (const Trials& t : trials) {
+        // Near the strongest: peaks of velocity differ between records of one acceleration.
+        if (t.strength > 0.999 * strongest) {
+            falls += t.falls;
+            of += t.of;
+        }
+        weighted += t.falls * std::log(t.strength);
+        all += t.falls;
+    }
+    if (of == 0 || 2 * falls < of) return std::nullopt;
+    double b = 2, a = -b * weighted / all;
+    for (int round = 0; round < 200; ++round) {
+        const Score s = score(trials, a, b);
+        const double det = s.aa * s.bb - s.ab * s.ab;
+        if (!(s.aa > 0)) break;
+        double da = s.a / s.aa, db = 0;
+        if (det > 1e-12 * s.aa * s.bb) {
+            da = (s.bb * s.a - s.ab * s.b) / det;
+            db = (s.aa * s.b - s.ab * s.a) / det;
+        }
+        const double next =
+            std::clamp(b + std::clamp(db, -1.0, 1.0), 1 / most_dispersion, 1 / least_dispersion);
+        if (next != b + db) {  // at a bound, or a step cut short: the best a for that b
+            db = next - b;
+            da = (s.a - s.ab * db) / s.aa;
+        }
+        da = std::clamp(da, -2.0, 2.0);
+        a += da;
+        b = next;
+        if (std::fabs(da) + std::fabs(db) < 1e-10) break;
+    }
+    return Lognormal{std::exp(-a / b), 1 / b};
+}
+
+double falls_per_year(const HazardCurve& hazard, const Fragility& fragility) {
+    const auto chance = [&](double pga_g) {
+        return std::isfinite(fragility.pga_g)
+                   ? Lognormal{fragility.pga_g, fragility.pga_dispersion}.chance(pga_g)
+                   : counted_chance(fragility, pga_g);
+    };
+    constexpr int parts = 64;
+    double rate = 0;
+    for (std::size_t n = 0; n + 1 < hazard.pga_g.size(); ++n) {
+        const auto at = [](double from, double to, double way) {
+            return std::exp(std::log(from) + way * (std::log(to) - std::log(from)));
+        };
+        for (int k = 0; k < parts; ++k) {
+            const double low = static_cast<double>(k) / parts, high = (k + 1.0) / parts;
+            const auto rate_at = [&](double way) {
+                return at(hazard.per_year[n], hazard.per_year[n + 1], way);
+            };
+            rate += chance(at(hazard.pga_g[n], hazard.pga_g[n + 1], (low + high) / 2)) *
+                    (rate_at(low) - rate_at(high));
+        }
+    }
+    return rate + chance(hazard.pga_g.back()) * hazard.per_year.back();
+}
+
+}  // namespace topple::safety

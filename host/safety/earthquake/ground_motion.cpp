@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "safety/earthquake/ground_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "physics/landscape.h"
+#include "safety/columns.h"
+#include "safety/directions.h"
+#include "safety/earthquake/fragility.h"
+#include "safety/earthquake/made_up_records.h"
+
+namespace topple::safety {
+namespace {
+
+constexpr double weakest_g = 0.05, next_g = 1.4, strongest_g = 4;
+
+// Outward normal of the edge of the support nearest to below the centre.
+std::array<double, 2> weakest_way(const RiskObject& object, const Stance& stance) {
+    std::array<double, 2> way{1, 0};
+    double least = std::numeric_limits<double>::infinity();
+    const auto& polygon = object.support_polygon;
+    for (std::size_t e = 0; polygon.size() >= 3 && e < polygon.size(); ++e) {
+        const auto& a = polygon[e];
+        const auto& b = polygon[(e + 1) % polygon.size()];
+        const double nx = b[1] - a[1], ny = a[0] - b[0], length = std::hypot(nx, ny);
+        if (length <= 0) continue;
+        const double inside =
+            ((a[0] - stance.center[0]) * nx + (a[1] - stance.center[1]) * ny) / length;
+        if (inside >= least) continue;
+        least = inside;
+        way = {nx / length, ny / length};
+    }
+    return way;
+}
+
+std::vector<GroundEvent> from_all_ways(std::uint32_t record, double scale) {
+    std::vector<GroundEvent> out;
+    for (unsigned d = 0; d < direction_count; ++d) {
+        const auto [dx, dy] = direction(d);
+        out.push_back({record, dx, dy, scale});
+    }
+    return out;
+}
+
+}  // namespace
+
+ShakenObject shaken_object(const RiskObject& object, const Stance& stance, const Columns& columns) {
+    ShakenObject out;
+    const auto [x, y] = weakest_way(object, stance);
+    out.way = {{{x, y}, {-y, x}}};
+    out.held = object.mass_kg > 0;
+    for (std::size_t p = 0; p < 2; ++p) {
+        out.body[p] = profile(object, stance, columns, out.way[p][0], out.way[p][1]);
+        out.held = out.held && out.body[p].least_base_m() > 0;
+    }
+    return out;
+}
+
+Motions shake_objects(device::Device& device, std::span<const ShakenObject> objects,
+                      std::span<const std::size_t> which, std::span<const Accelerogram> records,
+                      std::span<const GroundEvent> events, double friction, bool endless) {
+    std::vector<Profile> bodies;
+    std::vector<Shaking> shakings;
+    for (const std::size_t o : which) {
+        for (std::size_t p = 0; p < 2; ++p) {
+            Profile body = objects[o].body[p];
+            if (endless) body.support_ahead_m = body.support_behind_m = INFINITY;
+            bodies.push_back(body);
+            const auto [wx, wy] = objects[o].way[p];
+            for (const GroundEvent& e : events) {
+                shakings.push_back({static_cast<std::uint32_t>(bodies.size() - 1), e.record,
+                                    e.scale * (wx * e.dx + wy * e.dy),
+                                    e.scale * (wy * e.dx - wx * e.dy), e.scale});
+            }
+        }
+    }
+    const std::vector<Motion> found = shake(device, bodies, records, shakings, friction);
+    Motions out(objects.size());
+    for (std::size_t w = 0; w < which.size(); ++w) {
+        for (std::size_t e = 0; e < events.size(); ++e) {
+            const std::size_t at = 2 * w * events.size() + e;
+            out[which[w]].push_back({found[at], found[at + events.size()]});
+        }
+    }
+    return out;
+}
+
+std::vector<Fragility> fragilities(device::Device& device, std::span<const ShakenObject> objects,
+                                   std::span<const std::size_t> which,
+                                   std::span<const Accelerogram> records, double friction,
+                                   double floor_amplification, const HazardCurve* hazard) {
+    std::vector<Fragility> out(objects.size());
+    std::vector<GroundEvent> events;
+    std::vector<double> levels_g, velocity;
+    for (double g = weakest_g; g < strongest_g; g *= next_g) levels_g.push_back(g);
+    for (std::size_t r = 0; r < records.size(); ++r) {
+        const double peak = records[r].peak_m_s2();
+        if (!(peak > 0)) return out;
+        velocity.push_back(peak_velocity_m_s(records[r]) / peak * physics::gravity);
+        for (const double g : levels_g) {
+            const auto ways = from_all_ways(static_cast<std::uint32_t>(r),
+                                            floor_amplification * g * physics::gravity / peak);
+            events.insert(events.end(), ways.begin(), ways.end());
+        }
+    }
+    const Motions motions = shake_objects(device, objects, which, records, events, friction, false);
+    for (const std::size_t o : which) {
+        std::vector<Trials> by_acceleration, by_velocity;
+        for (const double g : levels_g) by_acceleration.push_back({g, 0, 0});
+        for (std::size_t e = 0; e < events.size(); e += direction_count) {
+            const std::size_t level = e / direction_count % levels_g.size();
+            unsigned falls = 0;
+            for (unsigned d = 0; d < direction_count; ++d) {
+                const auto& [weak, across] = motions[o][e + d];
+                falls += !objects[o].held || weak.fell(objects[o].body[0]) ||
+                         across.fell(objects[o].body[1]);
+            }
+            by_acceleration[level].falls += falls;
+            by_acceleration[level].of += direction_count;
+            by_velocity.push_back(
+                {levels_g[level] * velocity[events[e].record], falls, direction_count});
+        }
+        Fragility& f = out[o];
+        for (const Trials& t : by_acceleration)
+            f.counted.push_back({t.strength, static_cast<double>(t.falls) / t.of});
+        if (const auto fitted = fit_lognormal(by_acceleration)) {
+            f.pga_g = fitted->median;
+            f.pga_dispersion = fitted->dispersion;
+            if (const auto by_speed = fit_lognormal(by_velocity)) {
+                f.pgv_m_s = by_speed->median;
+                f.pgv_dispersion = by_speed->dispersion;
+            }
+        }
+        if (hazard) {
+            f.falls_per_year = falls_per_year(*hazard, f);
+            f.return_years = f.falls_per_year > 0 ? 1 / f.falls_per_year : Fragility::none;
+        }
+    }
+    return out;
+}
+
+}  // namespace topple::safety

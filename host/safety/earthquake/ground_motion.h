@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "safety/earthquake/rocking.h"
+#include "safety/fields.h"
+#include "safety/objects.h"
+
+// Earthquakes and the objects that they shake.
+namespace topple::safety {
+
+// A record that comes from one direction: its first component counts along (dx, dy), its second a
+// quarter turn to the left of that.
+struct GroundEvent {
+    std::uint32_t record = 0;
+    double dx = 1, dy = 0;
+    double scale = 1;  // of the record
+};
+
+// An object, seen from the side in the plane in which its support ends nearest to below its centre,
+// and in the one across that. It is taken to move in each of them by itself: what stands on a
+// rectangle rocks over the edges of it. Friction counts in full in both.
+struct ShakenObject {
+    std::array<std::array<double, 2>, 2> way{};  // unit, which is ahead
+    std::array<Profile, 2> body{};
+    bool held = false;  // its centre is above its support, not beyond the end of it
+};
+ShakenObject shaken_object(const RiskObject& object, const Stance& stance, const Columns& columns);
+
+// How each object moves in each event, in its two planes: by object, then event. Where an object's
+// index is not in `which`, there is none. endless: supports go on for ever, so that slips tell how
+// far it would have gone.
+using Motions = std::vector<std::vector<std::array<Motion, 2>>>;
+Motions shake_objects(device::Device& device, std::span<const ShakenObject> objects,
+                      std::span<const std::size_t> which, std::span<const Accelerogram> records,
+                      std::span<const GroundEvent> events, double friction, bool endless);
+
+// Chances of falling over the strength of shaking: each record scaled to peaks of 0.05 g and so on
+// by factors of 1.4 up to 4 g, on the ground, from 16 directions; what the objects stand on shakes
+// floor_amplification times as strongly. By object, empty for those not in `which`, and for all
+// where a record has no peak.
+std::vector<Fragility> fragilities(device::Device& device, std::span<const ShakenObject> objects,
+                                   std::span<const std::size_t> which,
+                                   std::span<const Accelerogram> records, double friction,
+                                   double floor_amplification, const HazardCurve* hazard);
+
+}  // namespace topple::safety

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "device/device.h"
+#include "topple/input.h"
+
+// What ground motion does to rigid bodies, seen from the side (kernel rocking). Everything is
+// relative to the ground, which throws a body `ahead` while its acceleration is positive: it moves
+// the other way itself.
+namespace topple::safety {
+
+// The body: how far its base reaches from under the centre of mass each way, how high that is, and
+// its radius of gyration about the centre. Metres.
+struct Profile {
+    double ahead_m = 0, behind_m = 0, height_m = 0, gyration_m = 0;
+    // How far the support goes on under the centre each way, at least.
+    double support_ahead_m = 0, support_behind_m = 0;
+    double least_base_m() const { return ahead_m < behind_m ? ahead_m : behind_m; }
+};
+
+// A record acts on a body: its components, of which the level two add up, are multiplied.
+struct Shaking {
+    std::uint32_t body = 0, record = 0;  // indices
+    double along = 0, across = 0, up = 0;
+};
+
+// How far it came, each way: the largest turn about an edge, and the largest slip over the ground.
+struct Motion {
+    float turned_ahead = 0, turned_behind = 0;  // radians
+    float slid_ahead_m = 0, slid_behind_m = 0;
+    bool overturned() const;                   // a turn came to 90 degrees
+    bool slid_off(const Profile& body) const;  // a slip came to where its support ends
+    bool fell(const Profile& body) const { return overturned() || slid_off(body); }
+    // Largest rise of its centre times g, J/kg: of the edge that it turned about.
+    double raised_J_kg(const Profile& body) const;
+};
+
+// Everything is integrated in steps of the record's own, or so many times shorter that they are at
+// most 0.05 / p of the quickest of its class of bodies, p^2 = g R / (k^2 + R^2), R^2 = b^2 + h^2.
+// Motions are sensitive, as in nature: tests/kernels says of how many the end differs from that of
+// finer steps. Bodies without a height stay as they are. Throws Error(usage) where an index is
+// none.
+std::vector<Motion> shake(device::Device& device, std::span<const Profile> bodies,
+                          std::span<const Accelerogram> records, std::span<const Shaking> shakings,
+                          double friction);
+
+}  // namespace topple::safety
