@@ -132,8 +132,11 @@ static_assert(sizeof(topple_step) == sizeof(InstabilityStep) &&
 topple_result::topple_result(ParseResult parsed, const topple_allocator* allocator)
     : result(std::move(parsed)), arrays(allocator) {
     for (const Object& o : result.scene.objects) {
+        const DirectedBarrier& directed = o.barrier_by_direction;
         objects.push_back({arrays.hand(o.primitives),
-                           reinterpret_cast<const topple_step*>(arrays.hand(o.instability))});
+                           reinterpret_cast<const topple_step*>(arrays.hand(o.instability)),
+                           arrays.hand(directed.height_m), arrays.hand(directed.push_J),
+                           arrays.hand(directed.blow_J)});
     }
     const ScenePoints& points = result.scene.points;
     primitive = arrays.hand(points.primitive);

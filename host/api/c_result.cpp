@@ -113,6 +113,15 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         to.push_error_N = from.overturning.push_error_N;
         to.slide_N = from.overturning.slide_N;
         to.shake_g = from.overturning.shake_g;
+        to.blow_height_m = result->objects[index].blow_height_m;
+        to.push_barrier_J = result->objects[index].push_barrier_J;
+        to.blow_barrier_J = result->objects[index].blow_barrier_J;
+        to.blow_heights = from.barrier_by_direction.height_m.size();
+        to.hand_push_N = from.overturning.hand_push_N;
+        to.hand_push_error_N = from.overturning.hand_push_error_N;
+        to.hand_height_m = from.overturning.hand_height_m;
+        to.gust_m_s = from.overturning.gust_m_s;
+        to.gust_error_m_s = from.overturning.gust_error_m_s;
         give(to, object, "object");
     });
 }

@@ -12,6 +12,7 @@
 
 #include "io/text.h"
 #include "pipeline/explain.h"
+#include "safety/directions.h"
 #include "topple/version.h"
 
 namespace topple {
@@ -46,6 +47,23 @@ Landscape turned(const StableObject& from, const ToInput& to_input) {
     return out;
 }
 
+// By azimuth, which is clockwise from north, +y of the grid.
+DirectedBarrier directed(const physics::Toppling& toppling) {
+    static_assert(DirectedBarrier::directions == safety::direction_count);
+    DirectedBarrier out;
+    for (std::size_t h = 0; h < physics::Toppling::heights; ++h)
+        out.height_m.push_back(toppling.height_m(h));
+    for (unsigned n = 0; n < safety::direction_count; ++n) {
+        const auto [x, y] = safety::direction(
+            (safety::direction_count + safety::direction_count / 4 - n) % safety::direction_count);
+        const Vec3 way{x, y, 0};
+        out.push_J.push_back(toppling.push_barrier_J(way));
+        for (const double height : out.height_m)
+            out.blow_J.push_back(toppling.blow_barrier_J(way, height));
+    }
+    return out;
+}
+
 void add_objects(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,
                  Scene& scene) {
     for (std::size_t o = 0; o < objects.objects.size(); ++o) {
@@ -71,6 +89,8 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
             to.mode = from.instability.mode;
             to.direction = to_input(from.instability.direction);
             to.instability = from.instability.curve;
+            if (from.seen_enough() && from.toppling)
+                to.barrier_by_direction = directed(*from.toppling);
             to.landscape = turned(from, to_input);
         }
         for (std::size_t d = 0; d < safety.disturbances.size(); ++d) {

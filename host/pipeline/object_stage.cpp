@@ -14,6 +14,7 @@
 #include "physics/overturning.h"
 #include "physics/solid_hulls.h"
 #include "pipeline/object_masses.h"
+#include "safety/directions.h"
 #include "solids/cell_shape.h"
 
 namespace topple {
@@ -129,6 +130,12 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
             shell_odds(parts.shell_log_odds)};
 }
 
+physics::Toppling toppling_of(const StableObject& object, const physics::Stability& tipping,
+                              double friction) {
+    return {object.candidate, {object.inertia, object.highest_m}, tipping,
+            safety::directions(), object.sliding, friction};
+}
+
 void find_barriers(device::Device& device, const physics::SupportTable& table,
                    const SolidScene& solids, std::span<const std::int32_t> object_of_primitive,
                    double friction, std::vector<StableObject>& objects) {
@@ -166,7 +173,10 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
     const std::vector<double> all_friction(candidates.size(), friction);
     std::vector<physics::SlideResult> sliding =
         physics::slide_all(cells, object_of_primitive, bodies, all_friction,
-                           {.places = true, .stances = stances, .threads = &device.threads()});
+                           {.places = true,
+                            .stances = stances,
+                            .ways = safety::directions(),
+                            .threads = &device.threads()});
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (objects[o].grounded) return;
         physics::Instability& how = objects[o].instability;
@@ -183,6 +193,9 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
         objects[o].tipping = std::move(tipping[o]);
         objects[o].level_tipping = std::move(level[o]);
         objects[o].sliding = std::move(sliding[o]);
+        if (!candidates[o].support_polygon.empty())
+            objects[o].toppling = std::make_shared<physics::Toppling>(
+                toppling_of(objects[o], objects[o].tipping, friction));
         objects[o].poses = physics::body_landscape(table, candidates[o]);
     });
 }

@@ -72,6 +72,7 @@ std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objec
             r.drop_m = o.sliding.drop_m;
         }
         r.curve = o.instability.curve;
+        r.toppling = o.toppling;
         r.support_polygon = o.candidate.support_polygon;
         out.push_back(std::move(r));
     }

@@ -67,17 +67,27 @@ struct Shaken {
 
 // What the ideal body needs to fall and what the landscape says differ by the voxels; and a motion
 // may hold more energy than the weakest way takes, and yet not go that way.
-double work_of(const RiskObject& object, const Shaken& shaken) {
-    if (object.barrier_J <= 0) return shaken.energy_J;
-    const auto beyond = [&](double way_m, double support_m) {
-        return way_m > 0 && way_m >= std::max(object.slide_distance_m, support_m);
+// `towards`: where the object then falls.
+double work_of(const RiskObject& object, const Shaken& shaken, const Vec3& way,
+               const Vec3& towards) {
+    const double barrier = push_barrier_J(object, towards);
+    // Where it can't fall, its energy brings nothing.
+    if (barrier <= 0 || !std::isfinite(barrier)) return shaken.energy_J;
+    const auto beyond = [&](double way_m, const Vec3& along, double support_m) {
+        return way_m > 0 && way_m >= slide_towards_m(object, along, support_m);
     };
     const bool slides_off =
-        object.slide_distance_m >= 0 && (beyond(shaken.slid.ahead_m, shaken.support_ahead_m) ||
-                                         beyond(shaken.slid.behind_m, shaken.support_behind_m));
+        beyond(shaken.slid.ahead_m, way, shaken.support_ahead_m) ||
+        beyond(shaken.slid.behind_m, {-way[0], -way[1], 0}, shaken.support_behind_m);
     return shaken.overturns || slides_off
-               ? std::max(shaken.energy_J, object.barrier_J)
-               : std::min(shaken.energy_J, std::nextafter(object.barrier_J, 0.0));
+               ? std::max(shaken.energy_J, barrier)
+               : std::min(shaken.energy_J, std::nextafter(barrier, 0.0));
+}
+
+// A record shakes both ways: that of the two in which it falls more easily.
+Vec3 easier(const RiskObject& object, const Vec3& way) {
+    const Vec3 back{-way[0], -way[1], 0};
+    return push_barrier_J(object, back) < push_barrier_J(object, way) ? back : way;
 }
 
 Shaken shaken_by_pulse(double mass_kg, const Profile& body, double acceleration, double friction,
@@ -112,12 +122,12 @@ Shaken shaken_by_record(double mass_kg, const Profile& body, const Accelerogram&
 double pulse_work(const RiskObject& object, const Profile& body, double acceleration,
                   double friction, double duration_s) {
     return work_of(object,
-                   shaken_by_pulse(object.mass_kg, body, acceleration, friction, duration_s));
+                   shaken_by_pulse(object.mass_kg, body, acceleration, friction, duration_s), {}, {});
 }
 
 double record_work(const RiskObject& object, const Profile& body, const Accelerogram& record,
                    double friction) {
-    return work_of(object, shaken_by_record(object.mass_kg, body, record, friction));
+    return work_of(object, shaken_by_record(object.mass_kg, body, record, friction), {}, {});
 }
 
 Disturbance earthquake_field(device::Device& device, const Surroundings& surroundings,
@@ -166,12 +176,15 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
             const double force = mass * event.peak;
             if (force > out.strongest[o].force_N) out.strongest[o] = {force, body.height_m};
         }
-        out.response[o] = [shaken = std::move(shaken)](const RiskObject& object) {
+        out.response[o] = [shaken = std::move(shaken),
+                           both = options.record.has_value()](const RiskObject& object) {
             std::vector<WorkSample> work;
             // Also where it is 0: what has no barrier falls at any shaking.
-            for (const auto& [motion, way] : shaken)
-                work.push_back(
-                    {work_of(object, motion), 1.0 / static_cast<double>(shaken.size()), way});
+            for (const auto& [motion, way] : shaken) {
+                const Vec3 towards = both ? easier(object, way) : way;
+                work.push_back({work_of(object, motion, way, towards),
+                                1.0 / static_cast<double>(shaken.size()), towards});
+            }
             return work;
         };
         out.work[o] = out.response[o](objects[o]);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,6 +13,7 @@
 
 #include "device/device.h"
 #include "physics/bodies.h"
+#include "physics/toppling.h"
 #include "safety/directions.h"
 #include "topple/input.h"
 #include "topple/motion.h"
@@ -31,6 +33,8 @@ struct RiskObject {
     double slide_distance_m = -1;        // shortest way to where its support ends; -1: no edge
     double drop_m = 0;                   // fall from there
     std::vector<InstabilityStep> curve;  // S(W)
+    // S(W) by direction and height; null: the curve, whatever the way.
+    std::shared_ptr<const physics::Toppling> toppling;
     // The points that hold it up, as their convex hull (metres, counter-clockwise). Where given, it
     // tells how far the object reaches each way; else base_width_m stands for all ways.
     std::vector<std::array<double, 2>> support_polygon;
@@ -85,8 +89,9 @@ struct EarthquakeOptions {
 struct WorkSample {
     double W_J = 0, probability = 0;  // per event
     Vec3 direction{};
+    // Of a blow, above the object's base; NaN: a steady push, or shaking.
+    double height_m = std::numeric_limits<double>::quiet_NaN();
 };
-// A horizontal force, and how high above the object's base it acts.
 // A horizontal force, and how high above the object's base it acts.
 struct Push {
     double force_N = 0, height_m = 0;
@@ -111,7 +116,6 @@ struct Disturbance {
 
 inline constexpr std::size_t max_samples = 4000;     // arrows per field, for the report
 inline constexpr unsigned max_shown_paths = 100;     // walks whose way the report draws
-inline constexpr std::size_t max_work_samples = 64;  // per object and human field
 
 // People who walk between random places (5.1.2): 500 shortest paths give the primary motion, a
 // table of body parts (body_parts.h) the secondary; their convolution (kernels disturbance_reach,
@@ -124,8 +128,10 @@ Disturbance human_field(device::Device& device, const Surroundings& surroundings
 // F = rho C_d A v^2 / 2 acts on the exposed frontal area A at the height h of its centre. With m g
 // b(dir) / h the force that tips the object and mu m g the force that slides it,
 //     W = F D,  D = E / F_threshold
-// where E is the barrier below the threshold (so W rises as v^2 and reaches the barrier at the
-// threshold, where the object moves), and above it the energy of that very motion, if larger.
+// where E is the barrier that way below the threshold (so W rises as v^2 and reaches the barrier at
+// the threshold, where the object moves), and above it the energy of that very motion, if larger.
+// What slides before it tips, b > mu h_p, tips on the way where F (h_p - h) > m g (b - mu h), which
+// is the balance about its edge as it speeds up; else it falls where its support ends that way.
 // One event is one gale, from one of its directions at random.
 Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
                        std::span<const RiskObject> objects, const WindOptions& options);
@@ -153,6 +159,7 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
 struct WindLoad {
     double area_m2 = 0, pressure_height_m = 0;
     double half_base_m = 0, height_m = 0;
+    Vec3 way{};  // that it blows
 };
 double wind_force(const WindLoad& load, const WindOptions& options);  // newtons
 double wind_work(const RiskObject& object, const WindLoad& load, const WindOptions& options);
@@ -179,15 +186,22 @@ double record_work(const RiskObject& object, const Profile& body, const Accelero
 // S(W): the last step of the curve whose W_J is at most W; 0 below the first.
 double instability(std::span<const InstabilityStep> curve, double W_J);
 
+// The same of what comes from one side, at one height.
+double instability(const RiskObject& object, const WorkSample& event);
+// Least work of a steady push towards `way` from which that is above 0; infinite where there is
+// none; barrier_J where no directions are known.
+double push_barrier_J(const RiskObject& object, const Vec3& way);
+// Straight on to where its support ends; infinite where it does not. Where no directions are known,
+// slide_distance_m, and `support_m` at least.
+double slide_towards_m(const RiskObject& object, const Vec3& way, double support_m);
+
 // What one disturbance means to one object.
 struct Risk {
-    double mean_J = 0;    // R = sum over p(W) S(W) (Eq. 7), joules per event
+    double mean_J = 0;    // R = sum over p(W, way, z) S(W, way, z) (Eq. 7), joules per event
     double spread_J = 0;  // its standard error: sqrt((sum p S^2 - R^2) / draws)
-    double chance = 0;    // per event, that it falls: sum of p over W >= barrier, where S(W) > 0
+    double chance = 0;    // per event, that it falls: sum of p where S > 0
 };
-// Of one list of work, and one curve.
-Risk risk_of(std::span<const WorkSample> work, std::span<const InstabilityStep> curve,
-             std::size_t draws);
+Risk risk_of(std::span<const WorkSample> work, const RiskObject& object, std::size_t draws);
 // For each object; all 0 for grounded ones.
 std::vector<Risk> risk(const Disturbance& disturbance, std::span<const RiskObject> objects);
 

@@ -11,6 +11,7 @@ namespace topple::safety {
 struct Placement {
     std::size_t object = 0;
     std::int32_t di = 0, dj = 0;
+    RiskObject there;  // how it falls from there
 };
 
 // The field of people who walk, kept for more than one question. Holds references to all that it
@@ -22,9 +23,9 @@ class HumanField {
     ~HumanField();
 
     Disturbance disturbance();
-    // p(W) of an object that stood elsewhere, by placement: walkers keep to their paths, and
+    // The risk of an object that stood elsewhere, by placement: walkers keep to their paths, and
     // everything else, the object where it stood included, stays in their way.
-    std::vector<std::vector<WorkSample>> work_at(std::span<const Placement> placements);
+    std::vector<Risk> risk_at(std::span<const Placement> placements);
 
   private:
     struct Parts;

@@ -151,6 +151,15 @@ std::vector<std::array<double, 2>> ways(const WindOptions& options) {
     return all;
 }
 
+// The force from which wind tips a body, over its weight; infinite where it slides away instead.
+double tipping_force(const WindLoad& load, double friction) {
+    const double b = load.half_base_m, h = load.height_m, p = load.pressure_height_m;
+    if (p > 0 && b <= friction * p) return b / p;
+    if (b <= friction * h) return friction;
+    if (p > h) return std::max(friction, (b - friction * h) / (p - h));
+    return std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 Frontage wind_frontage(const SolidCells& solid, const Columns& columns,
@@ -185,21 +194,22 @@ double wind_force(const WindLoad& load, const WindOptions& options) {
 double wind_work(const RiskObject& object, const WindLoad& load, const WindOptions& options) {
     const double force = wind_force(load, options), weight = object.mass_kg * physics::gravity;
     if (!(force > 0) || !(weight > 0)) return 0;
+    // That way it can't fall: its energy alone counts, and brings nothing.
+    const double towards = push_barrier_J(object, load.way);
+    const double barrier = std::isfinite(towards) ? towards : 0;
     const auto work = [&](double threshold, double own_energy) {
-        if (threshold <= 0) return std::max(object.barrier_J, own_energy);
+        if (threshold <= 0) return std::max(barrier, own_energy);
         const double ratio = force / threshold;
-        return ratio * (ratio < 1 ? object.barrier_J : std::max(object.barrier_J, own_energy));
+        return ratio * (ratio < 1 ? barrier : std::max(barrier, own_energy));
     };
+    const double rubs = options.friction * weight;
     double most = 0;
-    if (load.pressure_height_m > 0) {
-        most = work(weight * load.half_base_m / load.pressure_height_m,
-                    tipping_energy(object.mass_kg, load.height_m, load.half_base_m));
-    }
+    const double tips = tipping_force(load, options.friction) * weight;
+    if (std::isfinite(tips))
+        most = work(tips, tipping_energy(object.mass_kg, load.height_m, load.half_base_m));
     // Sliding matters where there is an edge to slide off.
-    if (object.slide_distance_m >= 0) {
-        const double threshold = options.friction * weight;
-        most = std::max(most, work(threshold, threshold * object.slide_distance_m));
-    }
+    const double distance = slide_towards_m(object, load.way, 0);
+    if (std::isfinite(distance)) most = std::max(most, work(rubs, rubs * distance));
     return most;
 }
 
@@ -253,7 +263,8 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
                 out.exposure[c] += 1.0f / directions;
             }
             const WindLoad load{front.area_m2, front.center_m - stands.bottom_m,
-                                half_base(objects[o], stands, dx, dy), stands.height()};
+                                half_base(objects[o], stands, dx, dy), stands.height(),
+                                {dx, dy, 0}};
             gales.emplace_back(load, Vec3{dx, dy, 0});
             const double force = wind_force(load, options);
             if (force > out.strongest[o].force_N)

@@ -92,6 +92,13 @@ void check_object(const Object& o, std::size_t objects) {
              {tips.tilt_error_deg, tips.push_N, tips.push_error_N, tips.slide_N, tips.shake_g})
             expect_amount(v, "what overturns an object");
     }
+    const DirectedBarrier& directed = o.barrier_by_direction;
+    expect(directed.blow_J.size() == directed.push_J.size() * directed.height_m.size(),
+           "a table of barriers has another size than its sides say");
+    for (const auto* barriers : {&directed.push_J, &directed.blow_J})
+        for (const double joules : *barriers)
+            expect(joules >= 0 && joules > o.barrier_J * (1 - 1e-9) - 1e-9,
+                   "a push or a blow takes less than the barrier");
     expect_share(o.agreement, "an agreement");
     expect_share(o.rest_probability, "the probability of a rest");
     expect(std::isnan(o.unsafety) || (o.unsafety >= 1 && o.unsafety <= 10),

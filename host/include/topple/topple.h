@@ -190,6 +190,12 @@ typedef struct topple_object {
     /* to overturn it slowly (struct Overturning of topple/scene.h); NaN where it can't tip */
     double tilt_deg, tilt_error_deg, overturning_direction[3];
     double push_N, push_error_N, slide_N, shake_g;
+    /* S(W) by direction and height (struct DirectedBarrier of topple/scene.h): blow_heights numbers
+     * in blow_height_m, 16 in push_barrier_J, 16 rows of blow_heights in blow_barrier_J; infinity:
+     * it does not fall so. NULL and 0 where nothing is known. */
+    const double *blow_height_m, *push_barrier_J, *blow_barrier_J;
+    uint64_t blow_heights;
+    double hand_push_N, hand_push_error_N, hand_height_m, gust_m_s, gust_error_m_s;
 } topple_object;
 typedef struct topple_contact {
     size_t size;
