@@ -153,9 +153,10 @@ Turning struck_high(const Upright& body, const Pivot& ahead, double z, double fr
     return {rate, std::abs(1 - s * friction * rate * b - rate * h), s};
 }
 
-// Rate at which a blow below the centre turns the body backwards, per v.
-double turned_back(const Upright& body, const Pivot& behind, double z) {
-    return (body.height_m - z) / behind.slipping2(-1);
+// Of a blow below the centre: it turns the body backwards, over an edge that slips forwards.
+Turning struck_back(const Upright& body, const Pivot& behind, double z, double friction) {
+    const double rate = (body.height_m - z) / behind.slipping2(-1);
+    return {rate, 1 - friction * rate * body.behind_m + rate * body.height_m, -1};
 }
 
 // Of a blow below the centre: what is left when the body has come down from turning backwards.
@@ -163,12 +164,13 @@ Turning struck_low(const Upright& body, const Pivot& ahead, const Pivot& behind,
                    double friction) {
     const double b = body.ahead_m, c = body.behind_m, h = body.height_m, mu = friction;
     const double k2 = square(body.gyration_m);
-    const double back = turned_back(body, behind, z);
+    const Turning start = struck_back(body, behind, z, friction);
+    const double back = start.rate;
     double speed = 1 - mu * back * c;
     // Its turning slows by `slowing`, as long as the base slips, which it does less by `braking`.
     const double slowing = (c + mu * h) * gravity / behind.slipping2(-1);
     const double lifted = mu * (gravity - c * slowing);  // loss of speed meanwhile
-    const double slips_s = (speed + back * h) / (lifted + h * slowing);
+    const double slips_s = start.slip / (lifted + h * slowing);
     const double down_s = 2 * back / slowing;
     if (slips_s < down_s) {
         // The edge behind comes to rest: it swings back about that, and on about the one ahead, with
@@ -216,19 +218,24 @@ double tips_behind_m_s(const Upright& body, double z_m, double friction) {
         return tips_ahead_m_s(body, z_m, friction) * std::sqrt(needed);
     }
     const Pivot behind(body.behind_m, body.height_m, body.gyration_m, friction);
-    const double rate = turned_back(body, behind, z_m);
-    const double slip = 1 - friction * rate * body.behind_m + rate * body.height_m;
-    return behind.least_speed({rate, slip, -1}, free_share(body, z_m));
+    return behind.least_speed(struck_back(body, behind, z_m, friction), free_share(body, z_m));
 }
 
 double sliding_share(const Upright& body, double z_m, double friction) {
-    if (z_m >= body.height_m) {
-        const Pivot ahead(body.ahead_m, body.height_m, body.gyration_m, friction);
-        const Turning start = struck_high(body, ahead, z_m, friction);
-        return start.slip_sign > 0 ? 1 - friction * start.rate * body.ahead_m : 0;
-    }
-    const Pivot behind(body.behind_m, body.height_m, body.gyration_m, friction);
-    return std::max(0.0, 1 - friction * turned_back(body, behind, z_m) * body.behind_m);
+    const bool high = z_m >= body.height_m;
+    const double b = high ? body.ahead_m : body.behind_m, h = body.height_m;
+    const Pivot edge(b, h, body.gyration_m, friction);
+    const Turning start = high ? struck_high(body, edge, z_m, friction)
+                               : struck_back(body, edge, z_m, friction);
+    // The base slips forwards with the edge ahead, and against the turning over the one behind.
+    if (start.slip_sign != (high ? 1 : -1)) return 0;
+    const int s = start.slip_sign;
+    const double slowing = (b - s * friction * h) * gravity / edge.slipping2(s);
+    const double braking = friction * (gravity - b * slowing) - s * h * slowing;
+    if (!(braking > 0)) return 1;
+    const double ends_s = start.slip / braking;
+    if (slowing > 0 && ends_s >= 2 * start.rate / slowing) return 1;
+    return std::min(1.0, std::sqrt(friction * gravity * start.slip * ends_s));
 }
 
 }  // namespace topple::physics

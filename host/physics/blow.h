@@ -29,8 +29,11 @@ double free_share(const Upright& body, double z_m);
 double tips_ahead_m_s(const Upright& body, double z_m, double friction);
 double tips_behind_m_s(const Upright& body, double z_m, double friction);
 
-// The speed, as a share of v, that the centre of mass keeps of such a blow where the body then
-// slides on: what friction takes during the impact is off. 0 where the base does not slip forwards.
+// How far the body slides that such a blow does not upset: as far as one that gets this share of v
+// and does not turn, share^2 v^2 / (2 mu g). While its base slips until it has come down again, that
+// is 1: what it presses more as it is lifted, it presses less in the air. Where the edge comes to
+// rest before, it went half of what it slipped at first times that time. 0 where the base does not
+// slip forwards.
 double sliding_share(const Upright& body, double z_m, double friction);
 
 }  // namespace topple::physics

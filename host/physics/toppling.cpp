@@ -54,7 +54,7 @@ Toppling::Toppling(const Candidate& candidate, const Body& body, const Stability
         // The edge at which it would climb so high.
         Tip tip{way.direction, std::sqrt(way.climb_m * std::max(way.climb_m + 2 * center_m_, 0.0)),
                 weight * way.climb_m, weight * way.release_m, {}, {}};
-        const bool turns = way.direction != Vec3{} && way.climb_m > 0 && way.release_m > 0;
+        const bool turns = way.direction != Vec3{} && way.climb_m > 0;
         // What hangs below its support swings: nothing but its energy tells.
         for (std::size_t n = 0; turns && center_m_ > 0 && n < heights; ++n) {
             const Upright side = upright(tip.way, tip.beside_m);
@@ -129,8 +129,10 @@ template <class Visit>
 void Toppling::of_blow(const Vec3& way, double height, const Visit& visit) const {
     const std::size_t n = part(height);
     const double energy = mass_kg_ * free_share(way, height_m(n)) / 2;  // of the square of P / M
+    const Slide& off = slide(way);
+    const double distance = slide_distance_m(way), rubs = friction_ * mass_kg_ * gravity;
+    const double falls = mass_kg_ * gravity * off.to.drop_m;
     for (const Tip& tip : tips_) {
-        if (!(tip.release_J > 0)) continue;
         const double cosine = dot(way, tip.way);
         // Any push, any way.
         if (tip.way == Vec3{} || !(tip.climb_J > 0)) {
@@ -139,13 +141,17 @@ void Toppling::of_blow(const Vec3& way, double height, const Visit& visit) const
         }
         if (std::abs(cosine) < 1e-6) continue;
         const double speed = (cosine > 0 ? tip.ahead_m_s[n] : tip.behind_m_s[n]) / cosine;
-        visit(std::max(tip.climb_J, energy * speed * speed), tip.release_J);
+        const double W = std::max(tip.climb_J, energy * speed * speed);
+        if (tip.release_J > 0) visit(W, tip.release_J);
+        // It lies down as far ahead as it was high, and slides on with what it has left, of the
+        // share of the blow that turns it.
+        if (cosine <= 0 || !std::isfinite(distance)) continue;
+        const double on = rubs * std::max(0.0, distance - tip.beside_m - center_m_);
+        visit(std::max(rubs * distance, W * (1 + on / tip.climb_J)), falls);
     }
-    const Slide& off = slide(way);
-    const double distance = slide_distance_m(way);
     if (std::isfinite(distance) && off.share[n] > 0) {
         const double squared = 2 * friction_ * gravity * distance / (off.share[n] * off.share[n]);
-        visit(energy * squared, mass_kg_ * gravity * off.to.drop_m);
+        visit(std::max(rubs * distance, energy * squared), falls);
     }
 }
 
