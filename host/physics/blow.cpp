@@ -90,8 +90,9 @@ class Pivot {
         const bool passes = slip.rate >= slip.l * slip.c;
         if (!passes && slip.rate <= 0) return false;
         // Until it turns back, or is over.
-        double end = passes ? over(slip) : std::sqrt((slip.l * slip.c + slip.rate) /
-                                                     (slip.l * slip.c - slip.rate));
+        double end = passes
+                         ? over(slip)
+                         : std::sqrt((slip.l * slip.c + slip.rate) / (slip.l * slip.c - slip.rate));
         double low = 1, left_low = slip.speed, left = slip.left(end);
         if (left > 0) return passes;
         // Regula falsi, with the end that stays weighed less (Illinois).
@@ -124,8 +125,7 @@ class Pivot {
             const double stiff = h_ + mu_ * b_, over = (b_ - mu_ * h_) / stiff - angle;
             return turn >= std::sqrt(gravity * stiff / slipping2(1)) * over;
         }
-        return pinned2_ * square(turn) / 2 >=
-               gravity * radius_ * (1 - std::cos(top_ - angle));
+        return pinned2_ * square(turn) / 2 >= gravity * radius_ * (1 - std::cos(top_ - angle));
     }
     // exp(l t) at which the angle is that of the edge's top.
     double over(const Slip& slip) const {
@@ -140,6 +140,22 @@ class Pivot {
     double b_, h_, k2_, mu_;
     double radius_ = 0, top_ = 0, pinned2_ = 0, rise_J_kg_ = 0;
 };
+
+// Friction across an edge that slips forwards and along itself, too, `aside` per v: the share of it
+// that the slip across the edge has of all slip. That slip itself depends on it.
+double friction_across(const Upright& body, const Pivot& ahead, double z, double friction,
+                       double aside) {
+    const double b = body.ahead_m, h = body.height_m;
+    if (aside <= 0 || ahead.pinned2() - z * h <= friction * z * b) return friction;
+    double across = friction;
+    for (int n = 0; n < 4; ++n) {
+        const double turns = square(body.gyration_m) + b * (b - across * h);
+        const double rate = turns > 0 ? (z - h) / turns : 0;
+        const double slip = std::abs(1 - across * rate * b - rate * h);
+        across = friction * slip / std::hypot(slip, aside);
+    }
+    return across;
+}
 
 // Of a blow above the centre: it presses the edge ahead down.
 Turning struck_high(const Upright& body, const Pivot& ahead, double z, double friction) {
@@ -173,8 +189,8 @@ Turning struck_low(const Upright& body, const Pivot& ahead, const Pivot& behind,
     const double slips_s = start.slip / (lifted + h * slowing);
     const double down_s = 2 * back / slowing;
     if (slips_s < down_s) {
-        // The edge behind comes to rest: it swings back about that, and on about the one ahead, with
-        // the angular momentum about it (Housner 1963).
+        // The edge behind comes to rest: it swings back about that, and on about the one ahead,
+        // with the angular momentum about it (Housner 1963).
         const double turning = back - slowing * slips_s;
         const double angle = slips_s * (back + turning) / 2;
         const double lands =
@@ -197,13 +213,16 @@ double free_share(const Upright& body, double z_m) {
     return 1 + square((z_m - body.height_m) / body.gyration_m);
 }
 
-double tips_ahead_m_s(const Upright& body, double z_m, double friction) {
+double tips_ahead_m_s(const Upright& body, double z_m, double friction, double aside) {
     const Pivot ahead(body.ahead_m, body.height_m, body.gyration_m, friction);
-    if (z_m >= body.height_m)
-        return ahead.least_speed(struck_high(body, ahead, z_m, friction), free_share(body, z_m));
+    if (z_m >= body.height_m) {
+        const double across = friction_across(body, ahead, z_m, friction, aside);
+        const Pivot slipping(body.ahead_m, body.height_m, body.gyration_m, across);
+        return slipping.least_speed(struck_high(body, slipping, z_m, across),
+                                    free_share(body, z_m));
+    }
     const Pivot behind(body.behind_m, body.height_m, body.gyration_m, friction);
-    return ahead.least_speed(struck_low(body, ahead, behind, z_m, friction),
-                             free_share(body, z_m));
+    return ahead.least_speed(struck_low(body, ahead, behind, z_m, friction), free_share(body, z_m));
 }
 
 double tips_behind_m_s(const Upright& body, double z_m, double friction) {
@@ -225,8 +244,8 @@ double sliding_share(const Upright& body, double z_m, double friction) {
     const bool high = z_m >= body.height_m;
     const double b = high ? body.ahead_m : body.behind_m, h = body.height_m;
     const Pivot edge(b, h, body.gyration_m, friction);
-    const Turning start = high ? struck_high(body, edge, z_m, friction)
-                               : struck_back(body, edge, z_m, friction);
+    const Turning start =
+        high ? struck_high(body, edge, z_m, friction) : struck_back(body, edge, z_m, friction);
     // The base slips forwards with the edge ahead, and against the turning over the one behind.
     if (start.slip_sign != (high ? 1 : -1)) return 0;
     const int s = start.slip_sign;

@@ -25,15 +25,18 @@ double free_share(const Upright& body, double z_m);
 //   - a blow below the centre (z < h) first turns it backwards about the edge behind, over which it
 //     may go; else it comes down and goes on about the edge ahead, over which friction may take it;
 //   - a body that does not go over a far edge ahead may come back over a near one behind.
-// Angles of the first part are small, those of the rest any; edges are rigid.
-double tips_ahead_m_s(const Upright& body, double z_m, double friction);
+// Angles of the first part are small, those of the rest any; edges are rigid. A blow that does not
+// meet an edge squarely has v across it, and `aside` times as much along it, where the base slips
+// as well: friction acts against both together, so that less of it acts across. (Of blows above the
+// centre from which the edge slips forwards.)
+double tips_ahead_m_s(const Upright& body, double z_m, double friction, double aside = 0);
 double tips_behind_m_s(const Upright& body, double z_m, double friction);
 
 // How far the body slides that such a blow does not upset: as far as one that gets this share of v
-// and does not turn, share^2 v^2 / (2 mu g). While its base slips until it has come down again, that
-// is 1: what it presses more as it is lifted, it presses less in the air. Where the edge comes to
-// rest before, it went half of what it slipped at first times that time. 0 where the base does not
-// slip forwards.
+// and does not turn, share^2 v^2 / (2 mu g). While its base slips until it has come down again,
+// that is 1: what it presses more as it is lifted, it presses less in the air. Where the edge comes
+// to rest before, it went half of what it slipped at first times that time. 0 where the base does
+// not slip forwards.
 double sliding_share(const Upright& body, double z_m, double friction);
 
 }  // namespace topple::physics

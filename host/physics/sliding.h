@@ -53,7 +53,7 @@ struct SlideOptions {
     bool places = false;                   // whether to look at all places around the object
     std::span<const Stance> stances = {};  // by object; empty: none of any
     std::span<const std::array<double, 2>> ways = {};  // unit, horizontal: to look straight along
-    ThreadPool* threads = nullptr;         // to share the objects out among; none: one by one
+    ThreadPool* threads = nullptr;  // to share the objects out among; none: one by one
 };
 
 // For every object, on the voxel columns of its support. The support is the level that most of the

@@ -19,6 +19,12 @@ Eigen::Matrix3d full_matrix(const Symmetric& m) {
     return out;
 }
 
+// Of the angle between a blow and the way square across an edge.
+double cosine_of_slant(std::size_t slant) {
+    constexpr std::array cosines{1.0, 0.9, 0.7, 0.4};
+    return cosines[slant];
+}
+
 // How far the support reaches from under the centre of mass: to a line across the way.
 double footing_reach(const Candidate& candidate, const Vec3& way) {
     double most = 0;
@@ -31,6 +37,17 @@ double footing_reach(const Candidate& candidate, const Vec3& way) {
 
 }  // namespace
 
+// Between the slants by the inverse of the energy, which is 0 where no blow suffices.
+double Toppling::Tip::across_m_s(std::size_t part, double cosine) const {
+    const auto& row = ahead_m_s[part];
+    const auto energy = [](double speed) { return 1 / (speed * speed); };
+    std::size_t a = 1;
+    while (a + 1 < slants && cosine < cosine_of_slant(a)) ++a;
+    const double low = cosine_of_slant(a), high = cosine_of_slant(a - 1);
+    const double share = std::clamp((cosine - low) / (high - low), 0.0, 1.0);
+    return 1 / std::sqrt(share * energy(row[a - 1]) + (1 - share) * energy(row[a]));
+}
+
 Toppling::Toppling(const Candidate& candidate, const Body& body, const Stability& tipping,
                    std::span<const std::array<double, 2>> ways, const SlideResult& sliding,
                    double friction)
@@ -39,9 +56,9 @@ Toppling::Toppling(const Candidate& candidate, const Body& body, const Stability
       top_m_(std::max(body.top_m - candidate.support_height_m, 1e-3)),
       friction_(friction),
       ways_(ways.begin(), ways.end()) {
-    const Eigen::Matrix3d inertia = full_matrix(body.inertia_kg_m2) / mass_kg_ +
-                                    least_gyration_m * least_gyration_m *
-                                        Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d inertia =
+        full_matrix(body.inertia_kg_m2) / mass_kg_ +
+        least_gyration_m * least_gyration_m * Eigen::Matrix3d::Identity();
     const Eigen::Matrix3d inverse = inertia.inverse();
     turns_m2_ = {inverse(0, 0), inverse(0, 1), inverse(1, 1)};
     const auto upright = [&](const Vec3& way, double ahead) {
@@ -52,13 +69,22 @@ Toppling::Toppling(const Candidate& candidate, const Body& body, const Stability
     const double weight = mass_kg_ * gravity;
     for (const TippingWay& way : tipping.ways) {
         // The edge at which it would climb so high.
-        Tip tip{way.direction, std::sqrt(way.climb_m * std::max(way.climb_m + 2 * center_m_, 0.0)),
-                weight * way.climb_m, weight * way.release_m, {}, {}};
+        Tip tip{way.direction,
+                std::sqrt(way.climb_m * std::max(way.climb_m + 2 * center_m_, 0.0)),
+                weight * way.climb_m,
+                weight * way.release_m,
+                {},
+                {}};
         const bool turns = way.direction != Vec3{} && way.climb_m > 0;
         // What hangs below its support swings: nothing but its energy tells.
         for (std::size_t n = 0; turns && center_m_ > 0 && n < heights; ++n) {
             const Upright side = upright(tip.way, tip.beside_m);
-            tip.ahead_m_s[n] = tips_ahead_m_s(side, height_m(n), friction);
+            for (std::size_t a = 0; a < slants; ++a) {
+                const double c = cosine_of_slant(a), aside = std::sqrt(1 - c * c) / c;
+                tip.ahead_m_s[n][a] = a > 0 && height_m(n) < center_m_
+                                          ? tip.ahead_m_s[n][0]
+                                          : tips_ahead_m_s(side, height_m(n), friction, aside);
+            }
             const Upright other{side.behind_m, side.ahead_m, side.height_m, side.gyration_m};
             tip.behind_m_s[n] = tips_behind_m_s(other, height_m(n), friction);
         }
@@ -68,9 +94,10 @@ Toppling::Toppling(const Candidate& candidate, const Body& body, const Stability
         const Vec3 way{x, y, 0};
         Slide slide;
         for (std::size_t n = 0; n < heights; ++n) {
-            slide.share[n] = center_m_ > 0 ? sliding_share(upright(way, footing_reach(candidate, way)),
-                                                           height_m(n), friction)
-                                           : 1;
+            slide.share[n] = center_m_ > 0
+                                 ? sliding_share(upright(way, footing_reach(candidate, way)),
+                                                 height_m(n), friction)
+                                 : 1;
         }
         slides_.push_back(slide);
     }
@@ -140,7 +167,7 @@ void Toppling::of_blow(const Vec3& way, double height, const Visit& visit) const
             continue;
         }
         if (std::abs(cosine) < 1e-6) continue;
-        const double speed = (cosine > 0 ? tip.ahead_m_s[n] : tip.behind_m_s[n]) / cosine;
+        const double speed = (cosine > 0 ? tip.across_m_s(n, cosine) : tip.behind_m_s[n]) / cosine;
         const double W = std::max(tip.climb_J, energy * speed * speed);
         if (tip.release_J > 0) visit(W, tip.release_J);
         // It lies down as far ahead as it was high, and slides on with what it has left, of the
@@ -173,8 +200,7 @@ void Toppling::of_push(const Vec3& way, const Visit& visit) const {
     }
     const double distance = slide_distance_m(way);
     if (std::isfinite(distance))
-        visit(friction_ * mass_kg_ * gravity * distance,
-              mass_kg_ * gravity * slide(way).to.drop_m);
+        visit(friction_ * mass_kg_ * gravity * distance, mass_kg_ * gravity * slide(way).to.drop_m);
 }
 
 double Toppling::struck_J(double W_J, const Vec3& way, double height) const {

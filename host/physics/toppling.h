@@ -45,11 +45,15 @@ class Toppling {
     double height_m(std::size_t n) const;  // the middle of the n-th part of its height
 
   private:
+    static constexpr std::size_t slants = 4;
     struct Tip {
         Vec3 way{};
         double beside_m = 0, climb_J = 0, release_J = 0;
-        // Least P / M of a blow along its way, and of one against it, by height.
-        std::array<double, heights> ahead_m_s{}, behind_m_s{};
+        // Least P / M across its edge of a blow ahead, by height and for `slants` of it, and of one
+        // against it.
+        std::array<std::array<double, slants>, heights> ahead_m_s{};
+        std::array<double, heights> behind_m_s{};
+        double across_m_s(std::size_t part, double cosine) const;
     };
     struct Slide {
         StraightSlide to;

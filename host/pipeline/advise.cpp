@@ -56,9 +56,8 @@ class Mover {
                     static_cast<int>(safety::nearest_direction(place.di, place.dj))};
                 const auto known = nearest.find(key);
                 if (known != nearest.end() && known->second.way_m <= place.way_m) continue;
-                const auto slide =
-                    physics::slide_elsewhere(around, a, b, at_risk_[o].mass_kg, friction_,
-                                             safety::directions());
+                const auto slide = physics::slide_elsewhere(around, a, b, at_risk_[o].mass_kg,
+                                                            friction_, safety::directions());
                 if (!slide.reachable || !weigh(o, slide.slide, level, place)) continue;
                 nearest.insert_or_assign(key, std::move(place));
             }

@@ -132,8 +132,9 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
 
 physics::Toppling toppling_of(const StableObject& object, const physics::Stability& tipping,
                               double friction) {
-    return {object.candidate, {object.inertia, object.highest_m}, tipping,
-            safety::directions(), object.sliding, friction};
+    return {object.candidate, {object.inertia, object.highest_m},
+            tipping,          safety::directions(),
+            object.sliding,   friction};
 }
 
 void find_barriers(device::Device& device, const physics::SupportTable& table,

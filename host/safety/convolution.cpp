@@ -245,8 +245,8 @@ void Convolution::collect_strikes(Tile& tile, std::span<Strikes> strikes) const 
                         most, tile.density[tile.output_first[n] + plane * tile.cells + place]);
                 }
                 target.exposure += most;
-                double& strike = strikes[static_cast<std::size_t>(target.object)][layer.level][d]
-                                        [target.part];
+                double& strike =
+                    strikes[static_cast<std::size_t>(target.object)][layer.level][d][target.part];
                 strike = std::max(strike, double{most});
             }
         }

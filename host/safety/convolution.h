@@ -79,8 +79,8 @@ class Convolution {
     std::vector<float> primary(const std::vector<bool>& component) const;  // a plane per direction
     std::vector<std::uint32_t> solid_bands(double floor_m) const;
     std::vector<std::uint32_t> active_blocks(const std::vector<bool>& component) const;
-    // Of a voxel moved by (di, dj), as one of `number`; false: none, outside of the map or above the
-    // body.
+    // Of a voxel moved by (di, dj), as one of `number`; false: none, outside of the map or above
+    // the body.
     bool target_of(std::size_t voxel, std::int32_t number, double floor_m, Target& target,
                    std::int32_t di = 0, std::int32_t dj = 0) const;
     static void sort_unique(std::vector<Target>& targets);

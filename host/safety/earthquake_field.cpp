@@ -79,9 +79,8 @@ double work_of(const RiskObject& object, const Shaken& shaken, const Vec3& way,
     const bool slides_off =
         beyond(shaken.slid.ahead_m, way, shaken.support_ahead_m) ||
         beyond(shaken.slid.behind_m, {-way[0], -way[1], 0}, shaken.support_behind_m);
-    return shaken.overturns || slides_off
-               ? std::max(shaken.energy_J, barrier)
-               : std::min(shaken.energy_J, std::nextafter(barrier, 0.0));
+    return shaken.overturns || slides_off ? std::max(shaken.energy_J, barrier)
+                                          : std::min(shaken.energy_J, std::nextafter(barrier, 0.0));
 }
 
 // A record shakes both ways: that of the two in which it falls more easily.
@@ -121,8 +120,8 @@ Shaken shaken_by_record(double mass_kg, const Profile& body, const Accelerogram&
 
 double pulse_work(const RiskObject& object, const Profile& body, double acceleration,
                   double friction, double duration_s) {
-    return work_of(object,
-                   shaken_by_pulse(object.mass_kg, body, acceleration, friction, duration_s), {}, {});
+    return work_of(
+        object, shaken_by_pulse(object.mass_kg, body, acceleration, friction, duration_s), {}, {});
 }
 
 double record_work(const RiskObject& object, const Profile& body, const Accelerogram& record,

@@ -114,8 +114,8 @@ struct Disturbance {
     std::vector<std::string> notes;  // e.g. no walkable floor was found
 };
 
-inline constexpr std::size_t max_samples = 4000;     // arrows per field, for the report
-inline constexpr unsigned max_shown_paths = 100;     // walks whose way the report draws
+inline constexpr std::size_t max_samples = 4000;  // arrows per field, for the report
+inline constexpr unsigned max_shown_paths = 100;  // walks whose way the report draws
 
 // People who walk between random places (5.1.2): 500 shortest paths give the primary motion, a
 // table of body parts (body_parts.h) the secondary; their convolution (kernels disturbance_reach,

@@ -100,7 +100,8 @@ std::vector<Strike> all_strikes(const Strikes& strikes, const SecondaryMotion& m
                                      ? object.toppling->met_mass_kg(strike.sample.direction,
                                                                     strike.sample.height_m)
                                      : object.mass_kg;
-                const double share = m + M > 0 ? m * M * std::pow((1 + restitution) / (m + M), 2) : 0;
+                const double share =
+                    m + M > 0 ? m * M * std::pow((1 + restitution) / (m + M), 2) : 0;
                 strike.sample.W_J = motion.energy_J[level] * share;
                 strike.does_J = instability(object, strike.sample);
                 out.push_back(strike);
@@ -179,9 +180,8 @@ HumanField::HumanField(device::Device& device, const Surroundings& surroundings,
     if (p.map.walkable.empty()) return;
     p.primary = primary_motion(p.map, p.options);
     if (p.primary.paths == 0) return;
-    p.convolution = std::make_unique<Convolution>(device, p.map, p.primary, p.secondary,
-                                                  surroundings, p.object_of_cell, p.extent,
-                                                  p.options);
+    p.convolution = std::make_unique<Convolution>(
+        device, p.map, p.primary, p.secondary, surroundings, p.object_of_cell, p.extent, p.options);
     p.levels = levels(p.map, 2 * p.convolution->band_m());
 }
 
@@ -225,9 +225,8 @@ std::vector<Risk> HumanField::risk_at(std::span<const Placement> placements) {
     for (const Level& level : p.levels)
         p.convolution->add_placements(level.floor_m, level.component, cells, placements, strikes);
     for (std::size_t n = 0; n < out.size(); ++n) {
-        const auto work =
-            strongest_strikes(strikes[n], p.secondary, placements[n].there,
-                              p.extent[placements[n].object], p.options.restitution);
+        const auto work = strongest_strikes(strikes[n], p.secondary, placements[n].there,
+                                            p.extent[placements[n].object], p.options.restitution);
         out[n] = risk_of(work, placements[n].there, p.primary.paths);
     }
     return out;

@@ -262,8 +262,10 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
                        sum[2] + 1};
                 out.exposure[c] += 1.0f / directions;
             }
-            const WindLoad load{front.area_m2, front.center_m - stands.bottom_m,
-                                half_base(objects[o], stands, dx, dy), stands.height(),
+            const WindLoad load{front.area_m2,
+                                front.center_m - stands.bottom_m,
+                                half_base(objects[o], stands, dx, dy),
+                                stands.height(),
                                 {dx, dy, 0}};
             gales.emplace_back(load, Vec3{dx, dy, 0});
             const double force = wind_force(load, options);

@@ -165,10 +165,6 @@ class SlowDisturbances : public ::testing::Test {
                         simulation.reset();
                         const bool own = safety::instability(object, event) > 0;
                         const bool theirs = falls(simulation, scene, o, event, seed);
-                        if (own != theirs && getenv("DBG") && layout.name[o].find(getenv("DBG")) != std::string::npos && object.toppling) {
-                            const Vec3 m = simulation.moved_m();
-                            std::printf("DBG %llu own %d W %.3f way %.2f %.2f z %.3f/%.3f barrier blow %.3f push %.3f slide %.2f first %.3f (S %.3f) moved %.2f %.2f %.3f p %.4f\n", (unsigned long long)seed, own, event.W_J, event.direction[0], event.direction[1], event.height_m, object.height_m, object.toppling->blow_barrier_J(event.direction, std::isnan(event.height_m) ? 0.1 : event.height_m), object.toppling->push_barrier_J(event.direction), object.toppling->slide_distance_m(event.direction), object.barrier_J, object.curve.empty() ? 0 : object.curve.front().S_J, m[0], m[1], m[2], event.probability);
-                        }
                         all.add(own, theirs);
                         by_name[layout.name[o]].add(own, theirs);
                         own_ever = own_ever || own;
@@ -260,8 +256,7 @@ TEST_F(SlowDisturbances, Human) {
         [&](Simulation& simulation, const test::AssessedRoom& scene, std::size_t o,
             const safety::WorkSample& event, std::uint64_t) {
             const StableObject& struck = scene.objects[o];
-            const Vec3 at{
-                0, 0, struck.lowest_m + event.height_m - struck.candidate.body.center[2]};
+            const Vec3 at{0, 0, struck.lowest_m + event.height_m - struck.candidate.body.center[2]};
             const double scale = std::sqrt(event.W_J / simulation.energy_J(event.direction, at));
             simulation.push({scale * event.direction[0], scale * event.direction[1], 0}, at);
             return simulation.falls(4, voxel_m, far(scene.objects[o]), {});

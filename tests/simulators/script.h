@@ -12,7 +12,8 @@ inline constexpr int script_missing = 77;  // a library of the script's is not i
 
 // What a script of this folder prints, and how it ends; not installed is missing only where nothing
 // requires it.
-inline std::pair<std::string, int> run_script(const std::string& name, const std::string& argument) {
+inline std::pair<std::string, int> run_script(const std::string& name,
+                                              const std::string& argument) {
     std::string command = TOPPLE_TEST_PYTHON " -B " TOPPLE_SOURCE_DIR "/tests/simulators/";
     command += name + " " + argument + " 2>&1";
     FILE* pipe = popen(command.c_str(), "r");

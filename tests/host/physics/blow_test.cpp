@@ -78,9 +78,9 @@ class PlaneBody {
                 speed_[2] -= press * x[f] / k2_;
                 const double along = speed_[0] + speed_[2] * y[f];
                 const double most = mu_ * pressed[f];
-                const double rub = std::clamp(rubbed[f] - along / (1 + y[f] * y[f] / k2_), -most,
-                                              most) -
-                                   rubbed[f];
+                const double rub =
+                    std::clamp(rubbed[f] - along / (1 + y[f] * y[f] / k2_), -most, most) -
+                    rubbed[f];
                 rubbed[f] += rub;
                 speed_[0] += rub;
                 speed_[2] += rub * y[f] / k2_;
@@ -91,8 +91,8 @@ class PlaneBody {
         // What of the step went into the ground is taken back.
         double deepest = 0;
         for (const auto& foot : foot_)
-            deepest = std::min(deepest, z_ - foot[0] * std::sin(angle_) +
-                                            foot[1] * std::cos(angle_));
+            deepest =
+                std::min(deepest, z_ - foot[0] * std::sin(angle_) + foot[1] * std::cos(angle_));
         z_ -= deepest;
     }
 
@@ -120,8 +120,7 @@ TEST(Blow, OnRoughGroundTurnsAboutTheEdge) {
     const Upright body = block(0.05, 0.15);
     const double k2 = body.gyration_m * body.gyration_m, z = 0.22, R2 = 0.05 * 0.05 + 0.15 * 0.15;
     const double W = energy(body, z, tips_ahead_m_s(body, z, 0.6));
-    EXPECT_NEAR(W, rise(body) * (k2 + R2) * (k2 + (z - 0.15) * (z - 0.15)) / (k2 * z * z),
-                1e-12);
+    EXPECT_NEAR(W, rise(body) * (k2 + R2) * (k2 + (z - 0.15) * (z - 0.15)) / (k2 * z * z), 1e-12);
     // The best height, on ground that is rough enough at each, is h + k^2 / h, and takes the
     // barrier times 1 + b^2 / (h^2 + k^2).
     const double best = 0.15 + k2 / 0.15;
@@ -173,7 +172,7 @@ TEST(Blow, NoneTakesLessThanTheBarrier) {
 TEST(Blow, AgreesWithABodyInSmallSteps) {
     Random random(1);
     int above = 0, above_near = 0, below = 0, below_near = 0;
-    for (int n = 0; n < 240; ++n) {
+    for (int n = 0; n < 120; ++n) {
         Upright body = block(random.uniform(0.02, 0.12), random.uniform(0.06, 0.3));
         if (body.ahead_m > 0.8 * body.height_m) continue;
         body.gyration_m *= random.uniform(0.85, 1.15);
@@ -196,10 +195,10 @@ TEST(Blow, AgreesWithABodyInSmallSteps) {
     }
     std::printf("within 25 %% of the energy: %d of %d struck above the centre, %d of %d below\n",
                 above_near, above, below_near, below);
-    EXPECT_GE(above, 60);
-    EXPECT_GE(above_near, 0.95 * above);
-    EXPECT_GE(below, 40);
-    EXPECT_GE(below_near, 0.6 * below);
+    EXPECT_GE(above, 40);
+    EXPECT_GE(above_near, 0.9 * above);
+    EXPECT_GE(below, 30);
+    EXPECT_GE(below_near, 0.75 * below);
 }
 
 }  // namespace

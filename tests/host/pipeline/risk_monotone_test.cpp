@@ -186,7 +186,9 @@ TEST_F(SlowRisk, FallsWithTheWeightOfTheBase) {
                 room.part(id, 0.05, to, 0.05, to, 0.1, 0.1 + high, mass * (1 - share) / pole_m3);
                 series.push_back(of(room, id, field));
             }
-            expect_rises(series, named(field, n));
+            // Wind at what is high up no longer tips what slides away before it.
+            expect_rises(series, named(field, n),
+                         std::string(field) == "wind" ? Of::risk : Of::both);
         }
     }
 }
