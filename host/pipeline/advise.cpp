@@ -18,7 +18,7 @@ constexpr double look_around_m = 1.5, see_edges_m = 0.7;
 struct Place {
     std::int32_t di = 0, dj = 0;  // voxels
     double way_m = 0;
-    double risk_J = 0;  // of all disturbances but the walkers
+    double risk_J = 0;  // of the disturbances whose response tells it
     safety::RiskObject there;
 };
 
@@ -35,7 +35,7 @@ class Mover {
           tolerable_J_(tolerable_J),
           columns_(solids.columns()) {}
 
-    // The nearest places of the object that are tolerable but for the walkers: the nearest of each
+    // The nearest places of the object that are tolerable to those: the nearest of each
     // of 16 directions and 12 ranges of distance, by distance.
     std::vector<Place> places(std::size_t o, const Landscape::Places& around) const {
         const physics::Toppling level =
@@ -148,7 +148,8 @@ std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const safety::RiskObject> at_risk,
                                std::span<const safety::Disturbance> disturbances,
                                std::span<const std::vector<safety::Risk>> risk,
-                               safety::HumanField* human, double friction, double tolerable_J) {
+                               std::span<const std::unique_ptr<safety::DisturbanceField>> fields,
+                               double friction, double tolerable_J) {
     const SolidCells& cells = solids.cells();
     std::vector<Suggestion> out(at_risk.size());
     std::vector<double> worst(at_risk.size(), 0.0);
@@ -180,25 +181,27 @@ std::vector<Suggestion> advise(const SolidScene& solids,
                                            look_around_m + see_edges_m);
     const Mover mover(solids, objects, at_risk, disturbances, friction, tolerable_J);
     std::vector<safety::Placement> placements;
-    std::vector<double> other_J;  // risk there of all but the walkers
+    std::vector<double> all_J;  // the largest risk there
     for (std::size_t n = 0; n < chosen.size(); ++n) {
         out[chosen[n]].places =
             leaves_room(around[n]) ? Suggestion::Places::unsafe : Suggestion::Places::none;
         for (Place& place : mover.places(chosen[n], around[n])) {
-            other_J.push_back(place.risk_J);
+            all_J.push_back(place.risk_J);
             placements.push_back({chosen[n], place.di, place.dj, std::move(place.there)});
         }
     }
-    const auto walked =
-        human ? human->risk_at(placements) : std::vector<safety::Risk>(placements.size());
+    for (const auto& field : fields) {
+        const std::vector<safety::Risk> there = field->risk_at(placements);
+        for (std::size_t n = 0; n < there.size(); ++n)
+            all_J[n] = std::max(all_J[n], there[n].mean_J);
+    }
     for (std::size_t n = 0; n < placements.size(); ++n) {
         Suggestion& to = out[placements[n].object];
         if (to.kind == Suggestion::Kind::move) continue;  // nearer ones come first
-        const double all = std::max(other_J[n], walked[n].mean_J);
-        if (all > tolerable_J) continue;
+        if (all_J[n] > tolerable_J) continue;
         to.kind = Suggestion::Kind::move;
         to.move_m = {placements[n].di * cells.voxel_m, placements[n].dj * cells.voxel_m, 0};
-        to.risk_J = all;
+        to.risk_J = all_J[n];
         to.hold = {};
     }
     return out;

@@ -13,6 +13,7 @@
 #include "io/text.h"
 #include "pipeline/explain.h"
 #include "safety/directions.h"
+#include "safety/disturbances.h"
 #include "topple/version.h"
 
 namespace topple {
@@ -86,6 +87,14 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
             to.release_J = from.instability.release_J;
             if (from.seen_enough()) to.overturning = from.overturning;
             to.overturning.direction = to_input(to.overturning.direction);
+            if (from.seen_enough()) {
+                // Its force is the push times what its area is to its top's height: errors are as
+                // those of the push, and halved by the root.
+                to.overturning.gust_m_s = safety.gust_m_s[o];
+                to.overturning.gust_error_m_s = to.overturning.gust_m_s *
+                                                to.overturning.push_error_N /
+                                                to.overturning.push_N / 2;
+            }
             to.mode = from.instability.mode;
             to.direction = to_input(from.instability.direction);
             to.instability = from.instability.curve;
@@ -242,17 +251,8 @@ void record_run(const device::Device& device, const ParseOptions& options, doubl
     scene.density_kg_m3 = options.density_kg_m3;
     scene.friction = options.friction;
     scene.events["tolerable_J"] = options.tolerable_J;
-    for (const std::string& name : options.disturbances) {
-        if (name == "human") scene.events["walks"] = options.walks;
-        if (name == "wind") scene.events["wind_m_s"] = options.wind_m_s;
-        if (name == "wind" && options.wind_from_deg)
-            scene.events["wind_from_deg"] = *options.wind_from_deg;
-        if (name == "earthquake") {
-            scene.events["pga_m_s2"] = options.pga_m_s2.value_or(
-                options.accelerogram ? options.accelerogram->peak_m_s2()
-                                     : safety::EarthquakeOptions{}.pga_m_s2);
-        }
-    }
+    for (const std::string& name : options.disturbances)
+        scene.events.merge(safety::disturbance_kind(name).events(options));
 }
 
 void assemble_objects(const SolidParts& parts, const ObjectStage& objects,

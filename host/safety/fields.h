@@ -49,41 +49,6 @@ struct Surroundings {
     std::vector<double> density_kg_m3 = {};
 };
 
-struct HumanOptions {
-    std::uint64_t seed = 1;
-    unsigned paths = 500;
-    double cell_m = 0.05;  // of the walkable map and of the field
-    double body_radius_m = 0.20;
-    double body_height_m = 1.8;
-    double step_height_m = 0.05;   // obstacles up to this height don't stop a walker
-    double largest_hole_m = 0.30;  // holes in the scanned floor up to this width are bridged
-    double body_mass_kg = 70;
-    double walking_speed_m_s = 1.3;
-    double wander_m = 0.20;    // how far walkers stray sideways from their path, at most
-    double restitution = 0.5;  // of a body's part that strikes a thing
-    // How the bodies of walkers move; none: as in the table of body_parts.h.
-    std::shared_ptr<const BodyMotion> motion;
-};
-struct WindOptions {
-    double speed_m_s = 12;
-    double air_density_kg_m3 = 1.2, drag_coefficient = 1.3;
-    double friction = 0.3;
-    double shelter_m =
-        1.0;  // length of an obstacle's lee: what stands closer behind it gets no wind
-    // Where it comes from, degrees from +y towards +x, which is clockwise from north seen from
-    // above; none: from each of the 16 directions.
-    std::optional<double> from_deg;
-};
-struct EarthquakeOptions {
-    std::uint64_t seed = 1;
-    double pga_m_s2 = 3.0;           // median over the events
-    double spread = 0.5;             // standard deviation of the logarithm of an event's peak
-    double dominant_period_s = 0.5;  // a half-cycle is a rectangular pulse of half this length
-    unsigned events = 64;
-    // A recorded ground motion, instead of pulses; it is the same for every seed.
-    std::optional<Accelerogram> record;
-};
-
 // One field: samples for the report, and each object's distribution of work: p(W) as weighted
 // samples.
 struct WorkSample {
@@ -98,7 +63,7 @@ struct Push {
 };
 
 struct Disturbance {
-    std::string name;                           // "human" | "wind" | "earthquake"
+    std::string name;                           // of its kind (disturbances.h)
     FieldSamples samples;                       // grid frame, at most max_samples
     std::vector<std::vector<WorkSample>> work;  // by object, as in `objects`; none if grounded
     std::size_t draws = 1;                      // independent events that `work` was found from
@@ -107,81 +72,13 @@ struct Disturbance {
                                                 // 1 (earthquake); 0 for grounded objects
     Walks walks;                                // of the human field
     // By object: its work if its barrier, curve and edges were others, as where it stood elsewhere,
-    // just as exposed. Empty for the human field, whose exposure is another there
-    // (HumanField::work_at).
+    // just as exposed. Empty where exposure is another there (DisturbanceField::risk_at).
     std::vector<std::function<std::vector<WorkSample>(const RiskObject&)>> response;
     std::vector<Push> strongest;     // by object: of all its events
     std::vector<std::string> notes;  // e.g. no walkable floor was found
 };
 
 inline constexpr std::size_t max_samples = 4000;  // arrows per field, for the report
-inline constexpr unsigned max_shown_paths = 100;  // walks whose way the report draws
-
-// People who walk between random places (5.1.2): 500 shortest paths give the primary motion, a
-// table of body parts (body_parts.h) the secondary; their convolution (kernels disturbance_reach,
-// disturbance) the passes of each part through each cell per walk. W is what a thing of mass M
-// takes over of m v^2 / 2 of the part (5.2): (1 + e)^2 m M / (m + M)^2 of it. One event is one
-// walk. Nothing walkable, no object: an empty field, and a note that says why.
-Disturbance human_field(device::Device& device, const Surroundings& surroundings,
-                        std::span<const RiskObject> objects, const HumanOptions& options);
-// A gale of one speed, from one direction or from each of 16, alike in all of the space (5.1.1).
-// F = rho C_d A v^2 / 2 acts on the exposed frontal area A at the height h of its centre. With m g
-// b(dir) / h the force that tips the object and mu m g the force that slides it,
-//     W = F D,  D = E / F_threshold
-// where E is the barrier that way below the threshold (so W rises as v^2 and reaches the barrier at
-// the threshold, where the object moves), and above it the energy of that very motion, if larger.
-// What slides before it tips, b > mu h_p, tips on the way where F (h_p - h) > m g (b - mu h), which
-// is the balance about its edge as it speeds up; else it falls where its support ends that way.
-// One event is one gale, from one of its directions at random.
-Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
-                       std::span<const RiskObject> objects, const WindOptions& options);
-// Ground motion that throws objects in a horizontal direction (5.1.1): rectangular pulses of random
-// direction and peak a, lasting t = period / 2, or a record, once in each of the 16 directions. One
-// event is one pulse, or the record in one direction.
-//
-// With half base b(dir) and height h of the centre of mass, an object with b / h < mu rocks once
-// a > g b / h; one with b / h >= mu slides once a > mu g. W is the largest energy of that motion:
-//   - rocking about an edge, of a record: potential and kinetic (shaking.h); of a pulse,
-//   linearised,
-//         W = E_tip 2 eta (eta - 1) (cosh(p t) - 1),  eta = a h / (g b),  p^2 = g R / (k^2 + R^2),
-//     R^2 = b^2 + h^2, k the radius of gyration: for a block, W >= E_tip is Housner's (1963)
-//     condition for overturning;
-//   - sliding by s relative to the support: W = mu m g s; of a pulse, s = (a - mu g) a t^2 / (2 mu
-//   g).
-// So that risk counts what falls, W is at least the barrier if the object overturns, or slides as
-// far as the end of its support that way (slide_distance_m at least), and else stays below it.
-Disturbance earthquake_field(device::Device& device, const Surroundings& surroundings,
-                             std::span<const RiskObject> objects, double friction,
-                             const EarthquakeOptions& options);
-
-// The work of one gale on one object (see above): area_m2 of it is exposed, centred at
-// pressure_height_m above its base; its centre of mass is height_m above it.
-struct WindLoad {
-    double area_m2 = 0, pressure_height_m = 0;
-    double half_base_m = 0, height_m = 0;
-    Vec3 way{};  // that it blows
-};
-double wind_force(const WindLoad& load, const WindOptions& options);  // newtons
-double wind_work(const RiskObject& object, const WindLoad& load, const WindOptions& options);
-
-// The exposed frontal area of one object in wind that blows along the unit vector `way` (x, y): by
-// layers of voxels, what the wind's lines meet first of the object, unless another solid stands
-// less than shelter_m in front of it. `cells`: the object's, ascending.
-class Columns;
-struct Frontage {
-    double area_m2 = 0, center_m = 0;  // centre: height in the grid frame
-    std::vector<std::uint32_t> cells;  // exposed, ascending
-};
-Frontage wind_frontage(const SolidCells& solid, const Columns& columns,
-                       std::span<const std::uint32_t> cells, const std::array<double, 2>& way,
-                       double shelter_m);
-
-// The work of one pulse of `acceleration` m/s^2 and `duration_s`, or of a record, on one object.
-struct Profile;
-double pulse_work(const RiskObject& object, const Profile& body, double acceleration,
-                  double friction, double duration_s);
-double record_work(const RiskObject& object, const Profile& body, const Accelerogram& record,
-                   double friction);
 
 // S(W): the last step of the curve whose W_J is at most W; 0 below the first.
 double instability(std::span<const InstabilityStep> curve, double W_J);
@@ -202,6 +99,24 @@ struct Risk {
     double chance = 0;    // per event, that it falls: sum of p where S > 0
 };
 Risk risk_of(std::span<const WorkSample> work, const RiskObject& object, std::size_t draws);
+// Where else an object might stand: its cells moved by whole voxels.
+struct Placement {
+    std::size_t object = 0;
+    std::int32_t di = 0, dj = 0;
+    RiskObject there;  // how it falls from there
+};
+
+// A field of one kind, kept for more than one question. Holds references to all that it is made
+// from.
+class DisturbanceField {
+  public:
+    virtual ~DisturbanceField() = default;
+    virtual Disturbance disturbance() = 0;
+    // The risk of an object that stood elsewhere, by placement; nothing: Disturbance::response
+    // tells it.
+    virtual std::vector<Risk> risk_at(std::span<const Placement>) { return {}; }
+};
+
 // For each object; all 0 for grounded ones.
 std::vector<Risk> risk(const Disturbance& disturbance, std::span<const RiskObject> objects);
 

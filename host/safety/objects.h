@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "safety/earthquake/shaking.h"
 #include "safety/fields.h"
-#include "safety/shaking.h"
 
 // What the three fields ask of the objects' cells.
 namespace topple::safety {

@@ -13,7 +13,10 @@
 #include "host/pipeline/assessed_room.h"
 #include "host/safety/random_shaking.h"
 #include "safety/columns.h"
+#include "safety/earthquake/earthquake_field.h"
+#include "safety/human/human_field.h"
 #include "safety/objects.h"
+#include "safety/wind/wind_field.h"
 #include "simulation/simulation.h"
 
 // Which things fall under which disturbance (the paper's Fig. 18): topple's fields and S(W), and a

@@ -128,14 +128,14 @@ struct Overturning {
     // Steady level push at its top that tips it; and one anywhere that slides it: the lesser of
     // both comes first.
     double push_N = none, push_error_N = none, slide_N = none;
+    // Level acceleration of what carries it, in g, at which it begins to rock or slide. To begin is
+    // not to fall: short shakes need several times as much.
+    double shake_g = none;
     // The push that tips it at the height of a hand: a metre above the floor, at its top where that
     // is lower, and at its centre of mass where it stands higher than that.
     double hand_push_N = none, hand_push_error_N = none, hand_height_m = none;
     // Gust, as fast as makes it as likely to tip as not, from where it takes least.
     double gust_m_s = none, gust_error_m_s = none;
-    // Level acceleration of what carries it, in g, at which it begins to rock or slide. To begin is
-    // not to fall: short shakes need several times as much.
-    double shake_g = none;
 };
 
 // A set of primitives fixed to one another: one rigid body.

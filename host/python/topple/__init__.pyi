@@ -242,7 +242,7 @@ def parse(
     voxel_m: float = ...,
     unit_m: float = ...,
     up: Optional[_Vec3] = ...,
-    disturbances: Union[str, Sequence[str]] = ...,
+    disturbances: Optional[Union[str, Sequence[str]]] = ...,
     seed: int = ...,
     max_memory_bytes: int = ...,
     density_kg_m3: float = ...,

@@ -10,6 +10,9 @@
 #include "core/random.h"
 #include "device/devices.h"
 #include "host/safety/random_shaking.h"
+#include "safety/earthquake/earthquake_field.h"
+#include "safety/human/human_field.h"
+#include "safety/wind/wind_field.h"
 #include "topple/input.h"
 
 // What makes a thing less safe raises its risk, from voxels to joules: barriers and S(W) of the

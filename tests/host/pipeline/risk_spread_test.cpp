@@ -7,6 +7,8 @@
 
 #include "assessed_room.h"
 #include "device/devices.h"
+#include "safety/earthquake/earthquake_field.h"
+#include "safety/human/human_field.h"
 
 namespace topple::test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "safety/human_field.h"
+#include "safety/human/human_field.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include "kernels/device_harness.h"
 #include "oracle/disturbance_oracle.h"
 #include "room.h"
-#include "safety/body_parts.h"
-#include "safety/convolution.h"
 #include "safety/fields.h"
-#include "safety/walkable_map.h"
+#include "safety/human/body_parts.h"
+#include "safety/human/convolution.h"
+#include "safety/human/walkable_map.h"
 #include "topple/error.h"
 
 namespace topple::safety {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "safety/convolution.h"
 #include "safety/fields.h"
+#include "safety/human/convolution.h"
 #include "topple/error.h"
 
 namespace topple::safety {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "safety/shaking.h"
+#include "safety/earthquake/shaking.h"
 
 #include <gtest/gtest.h>
 
@@ -14,6 +14,7 @@
 #include "device/devices.h"
 #include "physics/landscape.h"
 #include "room.h"
+#include "safety/earthquake/earthquake_field.h"
 #include "safety/fields.h"
 #include "safety/objects.h"
 

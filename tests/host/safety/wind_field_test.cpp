@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "safety/wind/wind_field.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -76,6 +78,21 @@ TEST_F(WindField, ClosedFormsOfTheBox) {
     const double lagging = critical_speed(box, high, options);
     EXPECT_NEAR(lagging, std::sqrt(2 * std::max(force, 0.3 * 21 * 9.80665) / (1.225 * 1.3 * 0.15)),
                 1e-6);
+}
+
+// A box that friction holds tips at sqrt(2 m g (d / 2) / (h / 2) / (rho C_d w h)), over its long
+// side.
+TEST_F(WindField, GustThatTipsTheBox) {
+    test::Room room(0.01);
+    room.floor(-1, 1, -1, 1);
+    const auto id = static_cast<std::size_t>(room.box(0, 0.2, 0, 0.3, 0, 0.5, false));
+    RiskObject& box = room.objects[id];
+    box.support_polygon = {{0, 0}, {0.2, 0}, {0.2, 0.3}, {0, 0.3}};
+    WindOptions options;
+    options.friction = 0.5;
+    const auto gusts = tipping_gusts(*device, room.surroundings(), room.objects, options);
+    EXPECT_TRUE(std::isnan(gusts[0]));
+    EXPECT_NEAR(gusts[id], std::sqrt(2 * 21 * 9.80665 * 0.4 / (1.2 * 1.3 * 0.15)), 1e-3);
 }
 
 TEST_F(WindField, FrontageFromAllSides) {

@@ -9,11 +9,11 @@
 
 #include "device/buffer.h"
 #include "physics/toppling.h"
-#include "safety/footprint.h"
-#include "safety/human_field.h"
+#include "safety/human/footprint.h"
+#include "safety/human/human_field.h"
+#include "safety/human/secondary_motion.h"
+#include "safety/human/walkable_map.h"
 #include "safety/objects.h"
-#include "safety/secondary_motion.h"
-#include "safety/walkable_map.h"
 
 namespace topple::safety {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "safety/shaking.h"
+#include "safety/earthquake/shaking.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "safety/human_field.h"
+#include "safety/human/human_field.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "safety/convolution.h"
 #include "safety/fields.h"
+#include "safety/human/convolution.h"
+#include "safety/human/walkable_map.h"
 #include "safety/objects.h"
-#include "safety/walkable_map.h"
 
 namespace topple::safety {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "safety/convolution.h"
+#include "safety/human/convolution.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "device/queue.h"
 #include "disturbance.hpp"
 #include "disturbance_reach.hpp"
+#include "safety/human/human_field.h"
 
 namespace topple::safety {
 namespace {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "safety/wind/wind_field.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -211,6 +213,34 @@ double wind_work(const RiskObject& object, const WindLoad& load, const WindOptio
     const double distance = slide_towards_m(object, load.way, 0);
     if (std::isfinite(distance)) most = std::max(most, work(rubs, rubs * distance));
     return most;
+}
+
+std::vector<double> tipping_gusts(device::Device& device, const Surroundings& surroundings,
+                                  std::span<const RiskObject> objects, const WindOptions& options) {
+    const auto cells =
+        cells_of_objects(movable_object_of_cells(surroundings, objects), objects.size());
+    const Columns columns(*surroundings.cells);
+    std::vector<double> out(objects.size(), std::numeric_limits<double>::quiet_NaN());
+    device.threads().each(objects.size(), 1, [&](std::size_t o) {
+        if (cells[o].empty() || objects[o].grounded) return;
+        const Stance stands = stance(surroundings, cells[o]);
+        for (const auto& way : directions()) {
+            const Frontage front =
+                wind_frontage(*surroundings.cells, columns, cells[o], way, options.shelter_m);
+            if (!(front.area_m2 > 0)) continue;
+            const WindLoad load{front.area_m2,
+                                front.center_m - stands.bottom_m,
+                                half_base(objects[o], stands, way[0], way[1]),
+                                stands.height(),
+                                {way[0], way[1], 0}};
+            const double force =
+                tipping_force(load, options.friction) * objects[o].mass_kg * physics::gravity;
+            const double speed = std::sqrt(
+                2 * force / (options.air_density_kg_m3 * options.drag_coefficient * front.area_m2));
+            if (std::isfinite(speed) && !(out[o] <= speed)) out[o] = speed;
+        }
+    });
+    return out;
 }
 
 Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
