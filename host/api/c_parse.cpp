@@ -43,14 +43,16 @@ ParseOptions parse_options(const topple_options& o, bool& cancelled) {
     to.unit_m = o.unit_m;
     if (o.up[0] != 0 || o.up[1] != 0 || o.up[2] != 0) to.up = Vec3{o.up[0], o.up[1], o.up[2]};
     to.disturbances.clear();
-    if (o.disturbances & ~7u) {
-        throw Error(ErrorKind::usage, "disturbances: " + std::to_string(o.disturbances) +
-                                          " has bits beyond TOPPLE_HUMAN, TOPPLE_WIND and "
-                                          "TOPPLE_EARTHQUAKE");
+    // A bit for each, in their order.
+    std::uint32_t bit = 1;
+    for (const std::string& name : known_disturbances()) {
+        if (o.disturbances & bit) to.disturbances.push_back(name);
+        bit <<= 1;
     }
-    if (o.disturbances & TOPPLE_HUMAN) to.disturbances.push_back("human");
-    if (o.disturbances & TOPPLE_WIND) to.disturbances.push_back("wind");
-    if (o.disturbances & TOPPLE_EARTHQUAKE) to.disturbances.push_back("earthquake");
+    if (o.disturbances >= bit) {
+        throw Error(ErrorKind::usage, "disturbances: " + std::to_string(o.disturbances) +
+                                          " has bits beyond those of topple_disturbance_name()");
+    }
     to.walks = o.walks;
     to.seed = o.seed;
     to.max_memory_bytes = o.max_memory_bytes;
@@ -142,8 +144,11 @@ static_assert(sizeof(topple_step) == sizeof(InstabilityStep) &&
 topple_result::topple_result(ParseResult parsed, const topple_allocator* allocator)
     : result(std::move(parsed)), arrays(allocator) {
     for (const Object& o : result.scene.objects) {
+        const DirectedBarrier& directed = o.barrier_by_direction;
         objects.push_back({arrays.hand(o.primitives),
-                           reinterpret_cast<const topple_step*>(arrays.hand(o.instability))});
+                           reinterpret_cast<const topple_step*>(arrays.hand(o.instability)),
+                           arrays.hand(directed.height_m), arrays.hand(directed.push_J),
+                           arrays.hand(directed.blow_J)});
     }
     const ScenePoints& points = result.scene.points;
     primitive = arrays.hand(points.primitive);

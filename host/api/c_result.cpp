@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "api/c_support.h"
+#include "safety/disturbances.h"
 
 using namespace topple;
 using namespace topple::c_api;
@@ -119,6 +120,15 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         to.fragility_pgv_dispersion = from.fragility.pgv_dispersion;
         to.falls_per_year = from.fragility.falls_per_year;
         to.return_years = from.fragility.return_years;
+        to.blow_height_m = result->objects[index].blow_height_m;
+        to.push_barrier_J = result->objects[index].push_barrier_J;
+        to.blow_barrier_J = result->objects[index].blow_barrier_J;
+        to.blow_heights = from.barrier_by_direction.height_m.size();
+        to.hand_push_N = from.overturning.hand_push_N;
+        to.hand_push_error_N = from.overturning.hand_push_error_N;
+        to.hand_height_m = from.overturning.hand_height_m;
+        to.gust_m_s = from.overturning.gust_m_s;
+        to.gust_error_m_s = from.overturning.gust_error_m_s;
         give(to, object, "object");
     });
 }
@@ -145,6 +155,27 @@ int topple_result_support(const topple_result* result, uint64_t index, topple_su
         give(topple_support{sizeof(topple_support), from.supporter, from.supported, from.area_m2},
              support, "support");
     });
+}
+
+int topple_result_risk(const topple_result* result, uint64_t index, const char* disturbance,
+                       double* risk_J, double* fall_chance, topple_status* status) {
+    return guarded(status, [&] {
+        const Object& from = item(scene_of(result).objects, index, "object");
+        const std::string name = disturbance ? disturbance : "";
+        safety::disturbance_kind(name);
+        const auto of = [&](const std::map<std::string, double>& figures) {
+            const auto found = figures.find(name);
+            return found == figures.end() ? std::numeric_limits<double>::quiet_NaN()
+                                          : found->second;
+        };
+        if (risk_J) *risk_J = of(from.risk_J);
+        if (fall_chance) *fall_chance = of(from.fall_chance);
+    });
+}
+
+const char* topple_disturbance_name(uint32_t index) {
+    const auto kinds = safety::disturbance_kinds();
+    return index < kinds.size() ? kinds[index]->name : nullptr;
 }
 
 const char* topple_result_note(const topple_result* result, uint64_t index) {

@@ -48,6 +48,7 @@ struct topple_result {
     struct OfObject {
         const std::int32_t* primitives;
         const topple_step* instability;
+        const double *blow_height_m, *push_barrier_J, *blow_barrier_J;
     };
     std::vector<OfObject> objects;
     const std::int32_t *primitive = nullptr, *object = nullptr;  // by point

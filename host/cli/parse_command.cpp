@@ -30,11 +30,17 @@ namespace {
 
 const std::map<std::string, double> record_units{{"g", 9.80665}, {"m/s2", 1}, {"cm/s2", 0.01}};
 
+std::string joined(const std::vector<std::string>& names, const char* between) {
+    std::string out;
+    for (const std::string& name : names) out.append(out.empty() ? "" : between).append(name);
+    return out;
+}
+
 struct Arguments {
     std::optional<std::string> accelerogram, accelerogram_across, accelerogram_up;
     std::optional<double> accelerogram_unit_m_s2;
     std::optional<std::string> hazard;
-    std::string input, backend = "auto", up, disturbance = "human,wind,earthquake";
+    std::string input, backend = "auto", up, disturbance = joined(known_disturbances(), ",");
     ParseOptions options;
     std::optional<std::string> out;
     std::optional<double> voxel_m, tile_m;
@@ -245,8 +251,9 @@ Command add_parse(CLI::App& app, const Team& team) {
     add_isolate_option(app, a->options.isolate);
     app.add_option("--up", a->up,
                    "Up in the input's frame, X,Y,Z, as from an IMU (default: found from the scan)");
-    app.add_option("--disturbance", a->disturbance,
-                   "Which to reckon with: human, wind, earthquake, separated by commas")
+    app.add_option(
+           "--disturbance", a->disturbance,
+           "Which to reckon with: " + joined(known_disturbances(), ", ") + ", separated by commas")
         ->capture_default_str();
     app.add_option("--walks", a->options.walks, "Walks of people that are sampled")
         ->check(whole_number)

@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "safety/disturbances.h"
+
 namespace topple::cli {
 namespace {
 
@@ -38,13 +40,13 @@ const char* what_it_does(const std::string& stage) {
          {"borders", "finding what carries what"},
          {"supports", "measuring how far the objects reach"},
          {"barriers", "what it takes to upset each object"},
-         {"field human", "walking people through the room"},
-         {"field wind", "blowing from all sides"},
-         {"field earthquake", "shaking the ground"},
+         {"gusts", "blowing harder and harder"},
          {"risk", "weighing disturbances by what they release"},
          {"advice", "looking for places where things are safer"},
          {"assembly", "collecting the results"},
          {"output", "writing the files"}}};
+    for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
+        if (stage == std::string("field ") + kind->name) return kind->words.doing;
     for (const auto& [name, what] : stages) {
         if (stage == name) return what;
     }

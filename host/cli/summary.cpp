@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/text.h"
+#include "safety/disturbances.h"
 
 namespace topple::cli {
 namespace {
@@ -82,8 +83,11 @@ void print_objects(const Scene& scene) {
     }
     std::stable_sort(movable.begin(), movable.end(),
                      [](const Object* a, const Object* b) { return rank_of(*a) > rank_of(*b); });
-    std::printf("\n%6s %8s %8s %9s %9s %6s %10s %10s %10s  %s\n", "object", "unsafety", "mass kg",
-                "barrier J", "release J", "mode", "human J", "wind J", "quake J", "rests on");
+    std::printf("\n%6s %8s %8s %9s %9s %6s ", "object", "unsafety", "mass kg", "barrier J",
+                "release J", "mode");
+    for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
+        std::printf("%8s J ", kind->words.column);
+    std::printf(" rests on\n");
     for (std::size_t i = 0; i < std::min(rows_shown, movable.size()); ++i) {
         const Object& o = *movable[i];
         char barrier[32], unsafety[32] = "-";
@@ -92,10 +96,11 @@ void print_objects(const Scene& scene) {
             std::snprintf(barrier, sizeof(barrier), "0-%.2g", o.barrier_J + o.barrier_error_J);
         else
             std::snprintf(barrier, sizeof(barrier), "%.3g", o.barrier_J);
-        std::printf("%6d %8s %8.3g %9s %9.3g %6s %10.3g %10.3g %10.3g  %s\n", o.id, unsafety,
-                    o.mass_kg, barrier, o.release_J, o.mode.c_str(), risk_of(o, "human"),
-                    risk_of(o, "wind"), risk_of(o, "earthquake"),
-                    rests_on.contains(o.id) ? rests_on[o.id].c_str() : "-");
+        std::printf("%6d %8s %8.3g %9s %9.3g %6s ", o.id, unsafety, o.mass_kg, barrier, o.release_J,
+                    o.mode.c_str());
+        for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
+            std::printf("%10.3g ", risk_of(o, kind->name));
+        std::printf(" %s\n", rests_on.contains(o.id) ? rests_on[o.id].c_str() : "-");
     }
     if (movable.size() > rows_shown)
         std::printf("   ... and %zu more in scene.json\n", movable.size() - rows_shown);

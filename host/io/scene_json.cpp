@@ -103,6 +103,11 @@ Json to_json(const Overturning& o) {
             {"push_N", number(o.push_N)},
             {"push_error_N", number(o.push_error_N)},
             {"slide_N", number(o.slide_N)},
+            {"hand_push_N", number(o.hand_push_N)},
+            {"hand_push_error_N", number(o.hand_push_error_N)},
+            {"hand_height_m", number(o.hand_height_m)},
+            {"gust_m_s", number(o.gust_m_s)},
+            {"gust_error_m_s", number(o.gust_error_m_s)},
             {"shake_g", number(o.shake_g)}};
 }
 
@@ -118,6 +123,19 @@ Json to_json(const Fragility& f) {
                   })},
             {"falls_per_year", number(f.falls_per_year)},
             {"return_years", number(f.return_years)}};
+}
+
+Json to_json(const DirectedBarrier& b) {
+    auto blows = Json::array();
+    for (std::size_t n = 0; n < b.push_J.size(); ++n) {
+        auto row = Json::array();
+        for (std::size_t h = 0; h < b.height_m.size(); ++h)
+            row.push_back(number(b.blow_J[n * b.height_m.size() + h]));
+        blows.push_back(std::move(row));
+    }
+    return {{"height_m", numbers(b.height_m)},
+            {"push_J", numbers(b.push_J)},
+            {"blow_J", std::move(blows)}};
 }
 
 Json to_json(const Object& o) {
@@ -144,6 +162,7 @@ Json to_json(const Object& o) {
                              [](const InstabilityStep& step) {
                                  return Json{{"W_J", number(step.W_J)}, {"S_J", number(step.S_J)}};
                              })},
+        {"barrier_by_direction", to_json(o.barrier_by_direction)},
         {"why", to_json(o.why)},
         {"risk_J", numbers_by_name(o.risk_J)},
         {"risk_spread_J", numbers_by_name(o.risk_spread_J)},
@@ -251,6 +270,12 @@ Overturning overturning_of(const Json& json) {
     o.push_error_N = number_at(json, "push_error_N");
     o.slide_N = number_at(json, "slide_N");
     o.shake_g = number_at(json, "shake_g");
+    if (!json.contains("gust_m_s")) return o;
+    o.hand_push_N = number_at(json, "hand_push_N");
+    o.hand_push_error_N = number_at(json, "hand_push_error_N");
+    o.hand_height_m = number_at(json, "hand_height_m");
+    o.gust_m_s = number_at(json, "gust_m_s");
+    o.gust_error_m_s = number_at(json, "gust_error_m_s");
     return o;
 }
 
@@ -265,6 +290,21 @@ Fragility fragility_of(const Json& json) {
     f.falls_per_year = number_at(json, "falls_per_year");
     f.return_years = number_at(json, "return_years");
     return f;
+}
+
+// Null: it does not fall.
+double barrier_of(const Json& json) {
+    return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
+}
+
+DirectedBarrier directed_of(const Json& json) {
+    DirectedBarrier b;
+    b.height_m = json.at("height_m").get<std::vector<double>>();
+    for (const Json& value : json.at("push_J")) b.push_J.push_back(barrier_of(value));
+    for (const Json& row : json.at("blow_J")) {
+        for (const Json& value : row) b.blow_J.push_back(barrier_of(value));
+    }
+    return b;
 }
 
 Object object_of(const Json& json) {
@@ -296,6 +336,8 @@ Object object_of(const Json& json) {
     for (const auto& step : json.at("instability")) {
         o.instability.push_back({number_at(step, "W_J"), number_at(step, "S_J")});
     }
+    if (json.contains("barrier_by_direction"))
+        o.barrier_by_direction = directed_of(json.at("barrier_by_direction"));
     if (json.contains("why")) o.why = why_of(json.at("why"));  // nor this
     o.risk_J = numbers_by_name(json.at("risk_J"));
     if (json.contains("fall")) {  // nor these

@@ -370,6 +370,7 @@ Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
     result.release_J = weight_N * taken->release_m;
     result.easiest = *taken;
     result.releasing = releasing(ways);
+    if (passes == Passes::exact) result.ways = ways;
     result.curve = curve_of(std::move(ways), weight_N);
     return result;
 }

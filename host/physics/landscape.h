@@ -78,6 +78,7 @@ struct Stability {
     TippingWay easiest;                   // the way with that barrier and release
     std::optional<TippingWay> releasing;  // the easiest that releases anything: the first step
     std::vector<InstabilityStep> curve;   // S(W), ascending in W
+    std::vector<TippingWay> ways;         // all that the curve is of; of exact passes alone
 };
 
 // One candidate rigid body: its primitives, its mass properties, and the hull of the points on

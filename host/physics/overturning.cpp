@@ -9,7 +9,7 @@ namespace topple::physics {
 
 Overturning overturning(const Candidate& candidate, const BodyError& known,
                         const Stability& tipping, double top_m, double border_error_m,
-                        double friction) {
+                        double friction, double floor_m) {
     const Body& body = candidate.body;
     const double weight = body.mass_kg * gravity;
     const double height = body.center[2] - candidate.support_height_m;
@@ -26,6 +26,12 @@ Overturning overturning(const Candidate& candidate, const BodyError& known,
     const double arm = std::max(top_m - candidate.support_height_m, height);
     out.push_N = weight * beside / arm;
     out.push_error_N = std::hypot(weight * foot_error_m, gravity * known.mass_kg * beside) / arm;
+    // What stands higher than a hand's height is reached for.
+    constexpr double hand_m = 1;
+    const double hand = floor_m + hand_m - candidate.support_height_m;
+    out.hand_height_m = hand > 0 ? std::min(hand, arm) : height;
+    out.hand_push_N = out.push_N * arm / out.hand_height_m;
+    out.hand_push_error_N = out.push_error_N * arm / out.hand_height_m;
     out.slide_N = friction * weight;
     out.shake_g = std::min(beside / height, friction);
     return out;

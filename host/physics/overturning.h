@@ -16,12 +16,12 @@ inline constexpr double foot_off_share = 0.4;
 // What overturns a body slowly: the easiest way to tip of `tipping`, in the figures of statics. It
 // lifts the centre of mass, at height h above the support, by r = barrier_J / (M g), so that it
 // acts like an edge at b = sqrt(r (r + 2 h)) beside it: tilt = atan(b / h), push = M g b / height
-// of the push, start of rocking at b / h times gravity. Errors are of first order in those of b, h
-// and M. top_m: the body's highest point; border_error_m: of where its support ends, by
-// noise. NaN and none
-// where the centre of mass is not above the support. Grid frame.
+// of the push (its top, or where a hand reaches), start of rocking at b / h times gravity. Errors
+// are of first order in those of b, h and M. top_m: the body's highest point; border_error_m: of
+// where its support ends, by noise; floor_m: what people stand on. NaN and none where the centre of
+// mass is not above the support. Grid frame.
 Overturning overturning(const Candidate& candidate, const BodyError& known,
                         const Stability& tipping, double top_m, double border_error_m,
-                        double friction);
+                        double friction, double floor_m);
 
 }  // namespace topple::physics

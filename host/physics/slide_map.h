@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -48,6 +49,7 @@ class SlideMap {
     // Below column (i, j); 0: unknown, or less than 2 voxels.
     std::int32_t drop_voxels(std::int32_t i, std::int32_t j) { return ground(i, j).below; }
     double drop_m(std::int32_t i, std::int32_t j) { return drop_voxels(i, j) * cells_.voxel_m; }
+    double voxel_m() const { return cells_.voxel_m; }
 
   private:
     struct Ground {
@@ -69,5 +71,9 @@ class SlideMap {
     std::vector<std::size_t> outline_;           // columns of the footprint that touch its outside
     Ground outside_;
 };
+
+// From the position of the centre of mass, voxels, straight along each of the ways.
+std::vector<StraightSlide> straight_slides(SlideMap& map, const std::array<double, 2>& center,
+                                           std::span<const std::array<double, 2>> ways);
 
 }  // namespace topple::physics

@@ -336,6 +336,7 @@ SlideResult slide_one(const SolidCells& cells, const CellColumns& columns,
         result.places = places_around(
             map, body, std::clamp(1.3 * (found ? way.length * cells.voxel_m : 0), 0.3, 1.5),
             friction, cells.voxel_m);
+    result.straight = straight_slides(map, {x, y}, options.ways);
     if (!found) return result;
     const double weight = body.mass_kg * gravity;
     result.found = true;
@@ -436,35 +437,6 @@ std::vector<Landscape::Places> places_of(const SolidCells& cells,
         SlideMap map(cells, columns, object, self, feet[o], objects[o].center, reach_m);
         out.back() = places_around(map, objects[o], reach_m, friction, cells.voxel_m);
     }
-    return out;
-}
-
-SlideElsewhere slide_elsewhere(const Landscape::Places& places, std::int32_t a, std::int32_t b,
-                               double mass_kg, double friction) {
-    const auto energy = [&](std::int32_t x, std::int32_t y) {
-        return places.energy_J[static_cast<std::size_t>(y * places.side + x)];
-    };
-    SlideElsewhere out;
-    const float here = energy(a, b);
-    out.reachable = std::isfinite(here) && here >= 0;
-    if (!out.reachable) return out;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::int32_t y = 0; y < places.side; ++y) {
-        for (std::int32_t x = 0; x < places.side; ++x) {
-            if (!(energy(x, y) < 0)) continue;
-            const double way = places.step_m * std::hypot(x - a, y - b);
-            if (way >= nearest) continue;
-            nearest = way;
-            out.slide.released_J = -double{energy(x, y)};
-            out.slide.direction = {places.step_m * (x - a) / way, places.step_m * (y - b) / way, 0};
-        }
-    }
-    const double weight = mass_kg * gravity;
-    if (!std::isfinite(nearest) || !(weight > 0)) return out;
-    out.slide.found = true;
-    out.slide.distance_m = nearest;
-    out.slide.drop_m = out.slide.released_J / weight;
-    out.slide.absorbed_J = friction * weight * nearest;
     return out;
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +19,13 @@ namespace topple::physics {
 
 // absorbed = mu m g * (shortest way on the support to where it stops holding the object)
 // released = m g * (drop from the support to the next surface below)
+// A way straight on to where the support ends: infinite where something stands in the way, or
+// nobody knows what is below.
+struct StraightSlide {
+    double distance_m = std::numeric_limits<double>::infinity();
+    double drop_m = 0;
+};
+
 struct SlideResult {
     double absorbed_J = 0, released_J = 0;
     double distance_m = 0, drop_m = 0;
@@ -25,6 +34,7 @@ struct SlideResult {
     std::int32_t onto = -1;    // primitive below, -1 for other solid
     bool found = false;        // false: nothing holds it from below, or no way leads to an edge
     Landscape::Places places;  // the position landscape around it, if asked for
+    std::vector<StraightSlide> straight;  // along each of the ways asked for
 };
 
 using Polygon = std::vector<std::array<double, 2>>;  // convex, counter-clockwise, metres
@@ -42,7 +52,8 @@ struct SlideOptions {
     double reach_m = 3;                    // ways longer than this are no longer one push
     bool places = false;                   // whether to look at all places around the object
     std::span<const Stance> stances = {};  // by object; empty: none of any
-    ThreadPool* threads = nullptr;         // to share the objects out among; none: one by one
+    std::span<const std::array<double, 2>> ways = {};  // unit, horizontal: to look straight along
+    ThreadPool* threads = nullptr;  // to share the objects out among; none: one by one
 };
 
 // For every object, on the voxel columns of its support. The support is the level that most of the
@@ -73,10 +84,11 @@ std::vector<Landscape::Places> places_of(const SolidCells& cells,
 // be slid to.
 struct SlideElsewhere {
     bool reachable = false;
-    SlideResult slide;
+    SlideResult slide;  // its straight ways are those asked for
 };
 SlideElsewhere slide_elsewhere(const Landscape::Places& places, std::int32_t a, std::int32_t b,
-                               double mass_kg, double friction);
+                               double mass_kg, double friction,
+                               std::span<const std::array<double, 2>> ways = {});
 
 // Tipping and sliding taken together.
 struct Instability {

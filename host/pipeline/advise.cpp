@@ -18,8 +18,8 @@ constexpr double look_around_m = 1.5, see_edges_m = 0.7;
 struct Place {
     std::int32_t di = 0, dj = 0;  // voxels
     double way_m = 0;
-    double risk_J = 0;  // of all disturbances but the walkers
-    std::vector<InstabilityStep> curve;
+    double risk_J = 0;  // of the disturbances whose response tells it
+    safety::RiskObject there;
 };
 
 class Mover {
@@ -35,9 +35,11 @@ class Mover {
           tolerable_J_(tolerable_J),
           columns_(solids.columns()) {}
 
-    // The nearest places of the object that are tolerable but for the walkers: the nearest of each
+    // The nearest places of the object that are tolerable to those: the nearest of each
     // of 16 directions and 12 ranges of distance, by distance.
     std::vector<Place> places(std::size_t o, const Landscape::Places& around) const {
+        const physics::Toppling level =
+            toppling_of(objects_[o], objects_[o].level_tipping, friction_);
         std::map<std::pair<int, int>, Place> nearest;
         const std::int32_t half = around.side / 2;
         const double voxel_m = cells_.voxel_m;
@@ -54,9 +56,9 @@ class Mover {
                     static_cast<int>(safety::nearest_direction(place.di, place.dj))};
                 const auto known = nearest.find(key);
                 if (known != nearest.end() && known->second.way_m <= place.way_m) continue;
-                const auto slide =
-                    physics::slide_elsewhere(around, a, b, at_risk_[o].mass_kg, friction_);
-                if (!slide.reachable || !weigh(o, slide.slide, place)) continue;
+                const auto slide = physics::slide_elsewhere(around, a, b, at_risk_[o].mass_kg,
+                                                            friction_, safety::directions());
+                if (!slide.reachable || !weigh(o, slide.slide, level, place)) continue;
                 nearest.insert_or_assign(key, std::move(place));
             }
         }
@@ -69,7 +71,8 @@ class Mover {
 
   private:
     // Its curve and risk there; false where that is more than is tolerated.
-    bool weigh(std::size_t o, const physics::SlideResult& slide, Place& place) const {
+    bool weigh(std::size_t o, const physics::SlideResult& slide, const physics::Toppling& level,
+               Place& place) const {
         const StableObject& object = objects_[o];
         physics::Candidate there = object.candidate;
         const double dx = place.di * cells_.voxel_m, dy = place.dj * cells_.voxel_m;
@@ -86,13 +89,15 @@ class Mover {
         changed.curve = how.curve;
         changed.slide_distance_m = slide.found ? slide.distance_m : -1;
         changed.drop_m = slide.drop_m;
+        changed.toppling = std::make_shared<physics::Toppling>(
+            (falls ? *object.toppling : level).elsewhere(slide));
         for (const safety::Disturbance& d : disturbances_) {
             if (d.response.empty()) continue;
             if (!d.response[o]) continue;
-            place.risk_J = std::max(
-                place.risk_J, safety::risk_of(d.response[o](changed), changed.curve, 1).mean_J);
+            place.risk_J =
+                std::max(place.risk_J, safety::risk_of(d.response[o](changed), changed, 1).mean_J);
         }
-        place.curve = how.curve;
+        place.there = std::move(changed);
         return place.risk_J <= tolerable_J_;
     }
 
@@ -143,7 +148,8 @@ std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const safety::RiskObject> at_risk,
                                std::span<const safety::Disturbance> disturbances,
                                std::span<const std::vector<safety::Risk>> risk,
-                               safety::HumanField* human, double friction, double tolerable_J) {
+                               std::span<const std::unique_ptr<safety::DisturbanceField>> fields,
+                               double friction, double tolerable_J) {
     const SolidCells& cells = solids.cells();
     std::vector<Suggestion> out(at_risk.size());
     std::vector<double> worst(at_risk.size(), 0.0);
@@ -175,26 +181,27 @@ std::vector<Suggestion> advise(const SolidScene& solids,
                                            look_around_m + see_edges_m);
     const Mover mover(solids, objects, at_risk, disturbances, friction, tolerable_J);
     std::vector<safety::Placement> placements;
-    std::vector<Place> places;
+    std::vector<double> all_J;  // the largest risk there
     for (std::size_t n = 0; n < chosen.size(); ++n) {
         out[chosen[n]].places =
             leaves_room(around[n]) ? Suggestion::Places::unsafe : Suggestion::Places::none;
         for (Place& place : mover.places(chosen[n], around[n])) {
-            placements.push_back({chosen[n], place.di, place.dj});
-            places.push_back(std::move(place));
+            all_J.push_back(place.risk_J);
+            placements.push_back({chosen[n], place.di, place.dj, std::move(place.there)});
         }
     }
-    const auto work = human ? human->work_at(placements)
-                            : std::vector<std::vector<safety::WorkSample>>(placements.size());
+    for (const auto& field : fields) {
+        const std::vector<safety::Risk> there = field->risk_at(placements);
+        for (std::size_t n = 0; n < there.size(); ++n)
+            all_J[n] = std::max(all_J[n], there[n].mean_J);
+    }
     for (std::size_t n = 0; n < placements.size(); ++n) {
         Suggestion& to = out[placements[n].object];
         if (to.kind == Suggestion::Kind::move) continue;  // nearer ones come first
-        const double all =
-            std::max(places[n].risk_J, safety::risk_of(work[n], places[n].curve, 1).mean_J);
-        if (all > tolerable_J) continue;
+        if (all_J[n] > tolerable_J) continue;
         to.kind = Suggestion::Kind::move;
         to.move_m = {placements[n].di * cells.voxel_m, placements[n].dj * cells.voxel_m, 0};
-        to.risk_J = all;
+        to.risk_J = all_J[n];
         to.hold = {};
     }
     return out;

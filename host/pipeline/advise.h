@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "pipeline/object_stage.h"
 #include "safety/fields.h"
-#include "safety/human_field.h"
 
 // What would lower the risk of each object to what is tolerated. Grid frame.
 namespace topple {
@@ -29,7 +30,7 @@ struct Suggestion {
 // off, out of the reach of walkers. What it carries is taken to move along. Places up to 1.5 m away
 // are looked at, for the `most_moved` riskiest. Else `fix`: the moment of the strongest push less
 // what its own weight holds, over its height, or the push less friction, if that is more.
-// human: null where that disturbance is not reckoned with.
+// fields: those that the disturbances are of.
 inline constexpr std::size_t most_moved = 16;
 std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const std::int32_t> object_of_primitive,
@@ -37,6 +38,7 @@ std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const safety::RiskObject> at_risk,
                                std::span<const safety::Disturbance> disturbances,
                                std::span<const std::vector<safety::Risk>> risk,
-                               safety::HumanField* human, double friction, double tolerable_J);
+                               std::span<const std::unique_ptr<safety::DisturbanceField>> fields,
+                               double friction, double tolerable_J);
 
 }  // namespace topple

@@ -12,6 +12,8 @@
 
 #include "io/text.h"
 #include "pipeline/explain.h"
+#include "safety/directions.h"
+#include "safety/disturbances.h"
 #include "topple/version.h"
 
 namespace topple {
@@ -46,6 +48,23 @@ Landscape turned(const StableObject& from, const ToInput& to_input) {
     return out;
 }
 
+// By azimuth, which is clockwise from north, +y of the grid.
+DirectedBarrier directed(const physics::Toppling& toppling) {
+    static_assert(DirectedBarrier::directions == safety::direction_count);
+    DirectedBarrier out;
+    for (std::size_t h = 0; h < physics::Toppling::heights; ++h)
+        out.height_m.push_back(toppling.height_m(h));
+    for (unsigned n = 0; n < safety::direction_count; ++n) {
+        const auto [x, y] = safety::direction(
+            (safety::direction_count + safety::direction_count / 4 - n) % safety::direction_count);
+        const Vec3 way{x, y, 0};
+        out.push_J.push_back(toppling.push_barrier_J(way));
+        for (const double height : out.height_m)
+            out.blow_J.push_back(toppling.blow_barrier_J(way, height));
+    }
+    return out;
+}
+
 void add_objects(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,
                  Scene& scene) {
     for (std::size_t o = 0; o < objects.objects.size(); ++o) {
@@ -68,9 +87,19 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
             to.release_J = from.instability.release_J;
             if (from.seen_enough()) to.overturning = from.overturning;
             to.overturning.direction = to_input(to.overturning.direction);
+            if (from.seen_enough()) {
+                // Its force is the push times what its area is to its top's height: errors are as
+                // those of the push, and halved by the root.
+                to.overturning.gust_m_s = safety.gust_m_s[o];
+                to.overturning.gust_error_m_s = to.overturning.gust_m_s *
+                                                to.overturning.push_error_N /
+                                                to.overturning.push_N / 2;
+            }
             to.mode = from.instability.mode;
             to.direction = to_input(from.instability.direction);
             to.instability = from.instability.curve;
+            if (from.seen_enough() && from.toppling)
+                to.barrier_by_direction = directed(*from.toppling);
             to.landscape = turned(from, to_input);
         }
         for (std::size_t d = 0; d < safety.disturbances.size(); ++d) {
@@ -224,19 +253,8 @@ void record_run(const device::Device& device, const ParseOptions& options, doubl
     scene.density_kg_m3 = options.density_kg_m3;
     scene.friction = options.friction;
     scene.events["tolerable_J"] = options.tolerable_J;
-    for (const std::string& name : options.disturbances) {
-        if (name == "human") scene.events["walks"] = options.walks;
-        if (name == "wind") scene.events["wind_m_s"] = options.wind_m_s;
-        if (name == "wind" && options.wind_from_deg)
-            scene.events["wind_from_deg"] = *options.wind_from_deg;
-        if (name == "earthquake") {
-            scene.events["pga_m_s2"] = options.pga_m_s2.value_or(
-                options.accelerogram ? options.accelerogram->peak_m_s2()
-                                     : safety::EarthquakeOptions{}.pga_m_s2);
-            if (options.floor_amplification != 1)
-                scene.events["floor_amplification"] = options.floor_amplification;
-        }
-    }
+    for (const std::string& name : options.disturbances)
+        scene.events.merge(safety::disturbance_kind(name).events(options));
 }
 
 void assemble_objects(const SolidParts& parts, const ObjectStage& objects,

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "physics/fall_sweep.h"
+#include "safety/disturbances.h"
 
 namespace topple {
 namespace {
@@ -233,11 +234,17 @@ std::string joules(double value) {
     return value < 0.0005 ? "nothing" : energy(value) + " per event";
 }
 
-std::string fix_sentence(const Object& object, const Suggestion& what) {
-    const auto of = [&](const char* name) {
-        const auto at = object.risk_J.find(name);
+// Against what brings it the most risk, the first of equals.
+std::string mend_of(const Object& object) {
+    const auto kinds = safety::disturbance_kinds();
+    const auto risk = [&](const safety::DisturbanceKind* kind) {
+        const auto at = object.risk_J.find(kind->name);
         return at == object.risk_J.end() ? 0.0 : at->second;
     };
+    return (*std::ranges::max_element(kinds, {}, risk))->words.mend;
+}
+
+std::string fix_sentence(const Object& object, const Suggestion& what) {
     std::string text;
     if (what.places == Suggestion::Places::none)
         text = "What stands around it leaves no room to move it. ";
@@ -245,10 +252,8 @@ std::string fix_sentence(const Object& object, const Suggestion& what) {
         text = "No place nearby on what carries it is safe enough. ";
     if (object.mass_kg < light_kg) {
         text += "Put it elsewhere, or fasten it";
-    } else if (of("human") >= std::max(of("wind"), of("earthquake"))) {
-        text += "Keep the way past it clear, or fasten it";
     } else {
-        text += "Fasten it to the wall or to what carries it";
+        text += mend_of(object);
     }
     if (!(what.hold.force_N > 0)) return text + ".";
     return text + ": the fixing must hold " + number(what.hold.force_N) + " N at " +

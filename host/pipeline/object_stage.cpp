@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "core/thread_pool.h"
@@ -14,6 +15,7 @@
 #include "physics/overturning.h"
 #include "physics/solid_hulls.h"
 #include "pipeline/object_masses.h"
+#include "safety/directions.h"
 #include "solids/cell_shape.h"
 
 namespace topple {
@@ -112,6 +114,29 @@ void collect_objects(const SolidScene& solids, const std::vector<bool>& shell,
                                         carried, columns);
 }
 
+// The heights of the floors, ascending: levels with a hundredth of what is floor.
+std::vector<double> floor_levels(const SolidScene& solids) {
+    const SolidCells& cells = solids.cells();
+    std::map<std::int32_t, std::size_t> count;
+    std::size_t all = 0;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        if (cells.primitive[c] < 0 || solids.role(cells.primitive[c]) != Role::floor) continue;
+        ++count[cells.k[c]];
+        ++all;
+    }
+    std::vector<double> out;
+    for (const auto& [k, n] : count)
+        if (100 * n >= all) out.push_back((k + 1) * cells.voxel_m);
+    return out;
+}
+
+// The highest of them that is not above the height; where there is none, the height itself.
+double floor_below(const std::vector<double>& floors, double height_m) {
+    constexpr double slack_m = 0.05;
+    const auto above = std::ranges::upper_bound(floors, height_m + slack_m);
+    return above == floors.begin() ? height_m : std::min(*std::prev(above), height_m);
+}
+
 }  // namespace
 
 PartStage weigh_parts(device::Device& device, const SolidParts& parts, const ParseOptions& options,
@@ -127,6 +152,13 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
         stage("joints", [&] { return find_joints(parts, contacts, bodies); });
     return {std::move(bodies), std::move(contacts), std::move(joints),
             shell_odds(parts.shell_log_odds)};
+}
+
+physics::Toppling toppling_of(const StableObject& object, const physics::Stability& tipping,
+                              double friction) {
+    return {object.candidate, {object.inertia, object.highest_m},
+            tipping,          safety::directions(),
+            object.sliding,   friction};
 }
 
 void find_barriers(device::Device& device, const physics::SupportTable& table,
@@ -166,7 +198,11 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
     const std::vector<double> all_friction(candidates.size(), friction);
     std::vector<physics::SlideResult> sliding =
         physics::slide_all(cells, object_of_primitive, bodies, all_friction,
-                           {.places = true, .stances = stances, .threads = &device.threads()});
+                           {.places = true,
+                            .stances = stances,
+                            .ways = safety::directions(),
+                            .threads = &device.threads()});
+    const std::vector<double> floors = floor_levels(solids);
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (objects[o].grounded) return;
         physics::Instability& how = objects[o].instability;
@@ -179,10 +215,14 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
                                      objects[o].margin_error_m, friction);
         objects[o].overturning =
             physics::overturning(candidates[o], objects[o].body_error, tipping[o],
-                                 objects[o].highest_m, objects[o].margin_error_m, friction);
+                                 objects[o].highest_m, objects[o].margin_error_m, friction,
+                                 floor_below(floors, candidates[o].support_height_m));
         objects[o].tipping = std::move(tipping[o]);
         objects[o].level_tipping = std::move(level[o]);
         objects[o].sliding = std::move(sliding[o]);
+        if (!candidates[o].support_polygon.empty())
+            objects[o].toppling = std::make_shared<physics::Toppling>(
+                toppling_of(objects[o], objects[o].tipping, friction));
         objects[o].poses = physics::body_landscape(table, candidates[o]);
     });
 }

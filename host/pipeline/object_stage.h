@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "physics/inertia.h"
 #include "physics/landscape.h"
 #include "physics/sliding.h"
+#include "physics/toppling.h"
 #include "pipeline/solid_parts.h"
 #include "pipeline/stage_clock.h"
 
@@ -32,6 +34,7 @@ struct StableObject {
     physics::BodyError body_error;
     double barrier_error_J = 0;
     Overturning overturning;
+    std::shared_ptr<const physics::Toppling> toppling;  // none: nothing holds it, or it is grounded
     // How it stands (graph/rest.h); its candidate is held up in that way.
     graph::RestKind rest = graph::RestKind::seen;
     double rest_probability = 1;
@@ -44,6 +47,10 @@ struct StableObject {
     Landscape poses;       // grid frame; its places are those of `sliding`
     double lowest_m = 0, highest_m = 0;
 };
+
+// S(W) by direction and height of an object that tips so, as it stands.
+physics::Toppling toppling_of(const StableObject& object, const physics::Stability& tipping,
+                              double friction);
 
 struct ObjectStage {
     std::vector<physics::Body> bodies;  // by primitive

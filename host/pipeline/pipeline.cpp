@@ -21,6 +21,7 @@
 #include "pipeline/tiled_parse.h"
 #include "pipeline/voxel_size.h"
 #include "pipeline/voxel_stage.h"
+#include "safety/disturbances.h"
 #include "topple/parse.h"
 #include "vdb/read_volume.h"
 
@@ -155,12 +156,14 @@ void check_options(const ParseOptions& o) {
     check_range("--tolerable", o.tolerable_J, 0, 1e9);
     if (o.tile_m != 0) check_range("--tile", o.tile_m, least_tile_m, 1000);
     if (o.grouping_time_s) check_range("--grouping-time", *o.grouping_time_s, 0, 86400);
-    for (const std::string& d : o.disturbances) {
-        if (d != "human" && d != "wind" && d != "earthquake") {
-            throw Error(ErrorKind::usage,
-                        "--disturbance " + d + ": expected human, wind or earthquake");
-        }
-    }
+    for (const std::string& name : o.disturbances) safety::disturbance_kind(name);
+}
+
+std::vector<std::string> known_disturbances() {
+    std::vector<std::string> names;
+    for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
+        names.emplace_back(kind->name);
+    return names;
 }
 
 ParseResult parse(const std::filesystem::path& input, const ParseOptions& options) {

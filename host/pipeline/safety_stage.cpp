@@ -6,6 +6,9 @@
 #include <limits>
 #include <memory>
 
+#include "safety/disturbances.h"
+#include "safety/wind/wind_field.h"
+
 namespace topple {
 namespace {
 
@@ -43,17 +46,6 @@ safety::Surroundings surroundings(const SolidParts& parts, const ObjectStage& ob
     return s;
 }
 
-// To the peak that is asked for.
-std::optional<Accelerogram> scaled_record(const ParseOptions& options) {
-    std::optional<Accelerogram> record = options.accelerogram;
-    if (record && options.pga_m_s2) {
-        const double scale = *options.pga_m_s2 / record->peak_m_s2();
-        for (auto* component : {&record->m_s2, &record->across_m_s2, &record->up_m_s2})
-            for (double& a : *component) a *= scale;
-    }
-    return record;
-}
-
 }  // namespace
 
 std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objects) {
@@ -73,6 +65,7 @@ std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objec
             r.drop_m = o.sliding.drop_m;
         }
         r.curve = o.instability.curve;
+        r.toppling = o.toppling;
         r.support_polygon = o.candidate.support_polygon;
         out.push_back(std::move(r));
     }
@@ -85,33 +78,19 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
     SafetyStage out;
     const std::vector<safety::RiskObject> at_risk = risk_objects(objects.objects);
     const safety::Surroundings around = surroundings(parts, objects);
-    std::unique_ptr<safety::HumanField> walkers;
+    std::vector<std::unique_ptr<safety::DisturbanceField>> fields;
     for (const std::string& name : options.disturbances) {
+        const safety::DisturbanceKind& kind = safety::disturbance_kind(name);
         out.disturbances.push_back(stage("field " + name, [&] {
-            if (name == "human") {
-                safety::HumanOptions human;
-                human.seed = options.seed;
-                human.paths = options.walks;
-                human.motion = options.motion;
-                walkers = std::make_unique<safety::HumanField>(device, around, at_risk, human);
-                return walkers->disturbance();
-            }
-            if (name == "wind") {
-                safety::WindOptions wind;
-                wind.speed_m_s = options.wind_m_s;
-                wind.from_deg = options.wind_from_deg;
-                wind.friction = options.friction;
-                return safety::wind_field(device, around, at_risk, wind);
-            }
-            safety::EarthquakeOptions earthquake;
-            earthquake.seed = options.seed;
-            earthquake.pga_m_s2 = options.pga_m_s2.value_or(earthquake.pga_m_s2);
-            earthquake.record = scaled_record(options);
-            earthquake.floor_amplification = options.floor_amplification;
-            earthquake.hazard = options.hazard;
-            return safety::earthquake_field(device, around, at_risk, options.friction, earthquake);
+            fields.push_back(kind.field(device, around, at_risk, options));
+            return fields.back()->disturbance();
         }));
     }
+    out.gust_m_s = stage("gusts", [&] {
+        safety::WindOptions wind;
+        wind.friction = options.friction;
+        return safety::tipping_gusts(device, around, at_risk, wind);
+    });
     stage("risk", [&] {
         for (const safety::Disturbance& d : out.disturbances)
             out.risk.push_back(safety::risk(d, at_risk));
@@ -119,9 +98,9 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
         out.unsafety.resize(at_risk.size(), 1.0);
     });
     stage("advice", [&] {
-        out.advice = advise(*parts.solids, objects.object_of_primitive, objects.objects, at_risk,
-                            out.disturbances, out.risk, walkers.get(), options.friction,
-                            options.tolerable_J);
+        out.advice =
+            advise(*parts.solids, objects.object_of_primitive, objects.objects, at_risk,
+                   out.disturbances, out.risk, fields, options.friction, options.tolerable_J);
     });
     return out;
 }

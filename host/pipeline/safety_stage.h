@@ -18,6 +18,7 @@ struct SafetyStage {
     std::vector<std::vector<safety::Risk>> risk;  // by disturbance, then by object
     std::vector<Suggestion> advice;               // by object
     std::vector<double> unsafety;                 // by object, 1 to 10
+    std::vector<double> gust_m_s;                 // by object: that tips it; NaN: none does
 };
 
 // The objects as the fields and the risk see them; ids are their places in the list.

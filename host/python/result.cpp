@@ -41,7 +41,31 @@ void bind_items(py::module_& module) {
         .def_readonly("push_N", &Overturning::push_N)
         .def_readonly("push_error_N", &Overturning::push_error_N)
         .def_readonly("slide_N", &Overturning::slide_N)
-        .def_readonly("shake_g", &Overturning::shake_g);
+        .def_readonly("shake_g", &Overturning::shake_g)
+        .def_readonly("hand_push_N", &Overturning::hand_push_N)
+        .def_readonly("hand_push_error_N", &Overturning::hand_push_error_N)
+        .def_readonly("hand_height_m", &Overturning::hand_height_m)
+        .def_readonly("gust_m_s", &Overturning::gust_m_s)
+        .def_readonly("gust_error_m_s", &Overturning::gust_error_m_s);
+    py::class_<DirectedBarrier>(module, "DirectedBarrier")
+        .def_property_readonly("height_m",
+                               [](const py::object& self) {
+                                   return borrowed(self.cast<const DirectedBarrier&>().height_m,
+                                                   self);
+                               })
+        .def_property_readonly("push_J",
+                               [](const py::object& self) {
+                                   return borrowed(self.cast<const DirectedBarrier&>().push_J,
+                                                   self);
+                               })
+        .def_property_readonly("blow_J", [](const py::object& self) {
+            const auto& from = self.cast<const DirectedBarrier&>();
+            const auto rows = static_cast<py::ssize_t>(from.push_J.size());
+            const auto heights = static_cast<py::ssize_t>(from.height_m.size());
+            const auto width = static_cast<py::ssize_t>(sizeof(double));
+            return py::array_t<double>({rows, heights}, {heights * width, width},
+                                       from.blow_J.data(), self);
+        });
     py::class_<Fragility>(module, "Fragility")
         .def_readonly("pga_g", &Fragility::pga_g)
         .def_readonly("pga_dispersion", &Fragility::pga_dispersion)
@@ -80,6 +104,7 @@ void bind_items(py::module_& module) {
         .def_readonly("release_J", &Object::release_J)
         .def_readonly("overturning", &Object::overturning)
         .def_readonly("fragility", &Object::fragility)
+        .def_readonly("barrier_by_direction", &Object::barrier_by_direction)
         .def_readonly("mode", &Object::mode)
         .def_readonly("direction", &Object::direction)
         .def_readonly("risk_J", &Object::risk_J)

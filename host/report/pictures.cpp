@@ -11,6 +11,7 @@
 
 #include "io/palette.h"
 #include "report/scene_image.h"
+#include "safety/disturbances.h"
 
 namespace topple::report {
 namespace {
@@ -186,34 +187,27 @@ class Pictures {
     }
 
     void write_field(const std::string& name, const std::vector<std::array<float, 7>>& arrows) {
-        // As on the page: people's by how often they pass, wind by its mean over all gales.
-        const bool people = name == "human", wind = name == "wind";
+        const auto* kind = safety::find_disturbance_kind(name);
+        if (!kind) return;  // of another version of topple
+        using Arrows = safety::DisturbanceWords::Arrows;
+        const Arrows& style = kind->words.arrows;
         std::vector<double> strength;
         for (const auto& a : arrows) {
             const double length = length_of({a[3], a[4], a[5]});
-            strength.push_back(people ? a[6] : wind ? length * a[6] : length);
+            strength.push_back(style.strength == Arrows::Strength::visits ? a[6]
+                               : style.strength == Arrows::Strength::mean ? length * a[6]
+                                                                          : length);
         }
         std::vector<double> sorted = strength;
         std::ranges::sort(sorted);
         const double strongest = sorted[(sorted.size() - 1) * 95 / 100];
-        // The earth shakes below things, where they would hide it. The wind blows onto its place.
-        Overlay overlay(image_, !people && !wind);
+        Overlay overlay(image_, style.below_things);
         for (std::size_t n = 0; n < arrows.size(); ++n) {
             const double share = strongest > 0 ? std::min(strength[n] / strongest, 1.0) : 1.0;
-            add_arrow(overlay, arrows[n], share, wind ? 1 : 0);
+            add_arrow(overlay, arrows[n], share, style.at_tip ? 1 : 0);
         }
-        const auto [title, says, unit] =
-            people ? std::array{"People walking by",
-                                "Which way their bodies pass, and how often: this is what knocks "
-                                "things over.",
-                                "%.3g times in 100 walks"}
-            : wind
-                ? std::array{"Wind",
-                             "Where gales reach things, and which way they push on average.",
-                             "%.3g m/s"}
-                : std::array{"Earthquake", "How the ground shakes below things.", "%.3g m/s\u00b2"};
-        Canvas canvas = page(name, colours(false, 0.6), overlay, title, says);
-        legend(canvas, ramp, "0", text(unit, people ? 100 * strongest : strongest));
+        Canvas canvas = page(name, colours(false, 0.6), overlay, style.title, style.says);
+        legend(canvas, ramp, "0", text("%.3g ", style.scale * strongest) + style.unit);
         canvas.save();
     }
 

@@ -19,6 +19,7 @@
 #include "report/page_parts.h"
 #include "report/script_safe.h"
 #include "report/view_data.h"
+#include "safety/disturbances.h"
 
 namespace topple::report {
 namespace {
@@ -204,6 +205,31 @@ std::string html_escaped(std::string_view text) {
     return out;
 }
 
+// What the page is to say of disturbances and how it draws them.
+Json disturbances_json() {
+    static constexpr std::array strengths{"visits", "mean", "speed"};
+    auto kinds = Json::array();
+    for (const safety::DisturbanceKind* kind : safety::disturbance_kinds()) {
+        const auto& [cause, event, one_event, column, doing, mend, arrows, figure] = kind->words;
+        kinds.push_back({{"name", kind->name},
+                         {"cause", cause},
+                         {"event", event},
+                         {"one_event", one_event},
+                         {"strength", strengths[static_cast<std::size_t>(arrows.strength)]},
+                         {"at_tip", arrows.at_tip},
+                         {"below_things", arrows.below_things},
+                         {"legend", arrows.legend},
+                         {"scale", arrows.scale},
+                         {"unit", arrows.unit},
+                         {"figure",
+                          {{"key", figure.key},
+                           {"follows", figure.follows},
+                           {"name", figure.name},
+                           {"unit", figure.unit}}}});
+    }
+    return kinds;
+}
+
 std::string data_json(const Scene& scene, std::span<const ObjectSurface> surfaces) {
     Json json = Json::parse(io::scene_json(scene));
     const auto view = pack_view(scene, {}, surfaces);
@@ -211,6 +237,7 @@ std::string data_json(const Scene& scene, std::span<const ObjectSurface> surface
     json["view"] = view_json(view);
     json["drawings"] = landscapes_json(scene);
     json["ramp"] = {{"colours", ramp}, {"bands", bands}};
+    json["disturbance_kinds"] = disturbances_json();
     json["unsafety_ramp"] = unsafety_ramp;
     json["unranked_colour"] = unranked_colour;
     return script_safe(json.dump());

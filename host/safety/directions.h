@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 // The horizontal directions that fields are sampled in.
 namespace topple::safety {
@@ -25,6 +26,16 @@ inline std::array<double, 2> direction(unsigned d) {
         default:
             return {s, 0.0 - c};
     }
+}
+
+// All of them.
+inline std::span<const std::array<double, 2>> directions() {
+    static const auto all = [] {
+        std::array<std::array<double, 2>, direction_count> out{};
+        for (unsigned d = 0; d < direction_count; ++d) out[d] = direction(d);
+        return out;
+    }();
+    return all;
 }
 
 // The direction nearest to (x, y), not both 0; the lowest of equals.

@@ -17,11 +17,26 @@ double instability(std::span<const InstabilityStep> curve, double W_J) {
     return release;
 }
 
-Risk risk_of(std::span<const WorkSample> work, std::span<const InstabilityStep> curve,
-             std::size_t draws) {
+double instability(const RiskObject& object, const WorkSample& event) {
+    if (!object.toppling) return instability(object.curve, event.W_J);
+    if (std::isnan(event.height_m)) return object.toppling->pushed_J(event.W_J, event.direction);
+    return object.toppling->struck_J(event.W_J, event.direction, event.height_m);
+}
+
+double push_barrier_J(const RiskObject& object, const Vec3& way) {
+    return object.toppling ? object.toppling->push_barrier_J(way) : object.barrier_J;
+}
+
+double slide_towards_m(const RiskObject& object, const Vec3& way, double support_m) {
+    if (object.toppling) return object.toppling->slide_distance_m(way);
+    if (object.slide_distance_m < 0) return std::numeric_limits<double>::infinity();
+    return std::max(object.slide_distance_m, support_m);
+}
+
+Risk risk_of(std::span<const WorkSample> work, const RiskObject& object, std::size_t draws) {
     double mean = 0, square = 0, chance = 0;
     for (const WorkSample& sample : work) {
-        const double release = instability(curve, sample.W_J);
+        const double release = instability(object, sample);
         mean += sample.probability * release;
         square += sample.probability * release * release;
         if (release > 0) chance += sample.probability;
@@ -41,7 +56,7 @@ std::vector<Risk> risk(const Disturbance& disturbance, std::span<const RiskObjec
     std::vector<Risk> out(objects.size());
     for (std::size_t o = 0; o < objects.size(); ++o) {
         if (objects[o].grounded) continue;
-        out[o] = risk_of(disturbance.work[o], objects[o].curve, disturbance.draws);
+        out[o] = risk_of(disturbance.work[o], objects[o], disturbance.draws);
     }
     return out;
 }

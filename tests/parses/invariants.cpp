@@ -104,6 +104,13 @@ void check_object(const Object& o, std::size_t objects) {
     for (const double v : {breaks.pga_g, breaks.pga_dispersion, breaks.pgv_m_s,
                            breaks.pgv_dispersion, breaks.falls_per_year, breaks.return_years})
         if (!std::isnan(v)) expect_amount(v, "how an earthquake upsets an object");
+    const DirectedBarrier& directed = o.barrier_by_direction;
+    expect(directed.blow_J.size() == directed.push_J.size() * directed.height_m.size(),
+           "a table of barriers has another size than its sides say");
+    for (const auto* barriers : {&directed.push_J, &directed.blow_J})
+        for (const double joules : *barriers)
+            expect(joules >= 0 && joules > o.barrier_J * (1 - 1e-9) - 1e-9,
+                   "a push or a blow takes less than the barrier");
     expect_share(o.agreement, "an agreement");
     expect_share(o.rest_probability, "the probability of a rest");
     expect(std::isnan(o.unsafety) || (o.unsafety >= 1 && o.unsafety <= 10),

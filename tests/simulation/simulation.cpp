@@ -300,7 +300,6 @@ bool Simulation::sinks(double seconds, double by_m) {
 bool Simulation::falls(double seconds, double by_m, double far_m, const Load& load) {
     btRigidBody& body = *world_->loose;
     const btTransform start = body.getCenterOfMassTransform();
-    const btVector3 up = start.getBasis().transpose() * btVector3(0, 0, 1);
     const btVector3 at =
         start.getBasis().transpose() * btVector3(load.at_m[0], load.at_m[1], load.at_m[2]);
     const btVector3 force(load.force_N[0], load.force_N[1], load.force_N[2]);
@@ -313,7 +312,7 @@ bool Simulation::falls(double seconds, double by_m, double far_m, const Load& lo
         body.applyForce(force, body.getWorldTransform().getBasis() * at);
         world_->dynamics.stepSimulation(step_s, 0);
         const btVector3& p = body.getCenterOfMassPosition();
-        fell = p.z() < -by_m || (body.getWorldTransform().getBasis() * up).z() < std::sqrt(0.5);
+        fell = p.z() < -by_m;
         if (std::hypot(p.x(), p.y()) > far_m) break;
     }
     body.setGravity({0, 0, -gravity});

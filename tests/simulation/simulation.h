@@ -53,8 +53,8 @@ class Simulation {
         std::function<Vec3(double seconds)> thrown_m_s2;
         Vec3 force_N{}, at_m{};
     };
-    // Whether it falls within that time: its centre of mass comes to be lower by more than `by_m`,
-    // or it leans by more than 45 degrees. What has gone `far_m` on its level does not, nor what
+    // Whether it falls within that time: its centre of mass comes to be lower by more than `by_m`.
+    // What has gone `far_m` on its level does not, nor what
     // comes to rest where nothing shakes.
     bool falls(double seconds, double by_m, double far_m, const Load& load);
     Vec3 moved_m() const;  // of the centre of mass, since the beginning

@@ -26,6 +26,9 @@ class Crew;
 class SolidScene;
 class TiledResult;
 
+// The names of all disturbances that there are.
+std::vector<std::string> known_disturbances();
+
 struct ParseOptions {
     // What to compute on, from topple/device.h or topple/embed.h; one parse at a time uses it.
     // Null: what open_device("auto") gives, opened for this parse alone.
@@ -33,7 +36,7 @@ struct ParseOptions {
     double voxel_m = 0;      // edge of a solid voxel, metres; 0: found from the data
     double unit_m = 1;       // metres in the unit of a cloud file's coordinates: 0.001 for mm
     std::optional<Vec3> up;  // up in the input's frame (from an IMU, say); else found
-    std::vector<std::string> disturbances{"human", "wind", "earthquake"};
+    std::vector<std::string> disturbances = known_disturbances();
     std::uint64_t seed = 1;
     std::uint64_t max_memory_bytes =
         0;  // to keep to, about; inputs that would need more are refused. 0: no limit

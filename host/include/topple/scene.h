@@ -33,6 +33,19 @@ struct InstabilityStep {
     double S_J = 0;  // the largest release that this much energy can set free
 };
 
+// What it takes to make an object fall by a push or a blow from where it comes: S(W) by direction
+// and height. `instability` is its envelope: no push and no blow takes less. Index n of the
+// directions is towards the azimuth n * 22.5 degrees (Why::azimuth_deg). Joules; infinity: that way
+// it does not fall. Empty for the ground, and what is held by nothing that was seen.
+struct DirectedBarrier {
+    static constexpr std::size_t directions = 16;
+    std::vector<double> height_m;  // of blows, above what the object stands on: ascending
+    std::vector<double> push_J;    // done by a slow push, by direction
+    // That the impulse of a level blow would give to the object if nothing held it, motion and
+    // turning together: by direction, then by height.
+    std::vector<double> blow_J;
+};
+
 // Why an object is as safe as it is: its easiest step out of its pose, which is the one of its
 // barrier and release.
 struct Why {
@@ -118,6 +131,11 @@ struct Overturning {
     // Level acceleration of what carries it, in g, at which it begins to rock or slide. To begin is
     // not to fall: short shakes need several times as much.
     double shake_g = none;
+    // The push that tips it at the height of a hand: a metre above the floor, at its top where that
+    // is lower, and at its centre of mass where it stands higher than that.
+    double hand_push_N = none, hand_push_error_N = none, hand_height_m = none;
+    // Gust, as fast as makes it as likely to tip as not, from where it takes least.
+    double gust_m_s = none, gust_error_m_s = none;
 };
 
 // How likely an object is to fall in an earthquake, over how strong that is: counted over records
@@ -163,6 +181,7 @@ struct Object {
     std::string mode = "none";  // "tip" | "slide" | "none"
     Vec3 direction{};           // weakest horizontal direction, unit, or zero for "none"
     std::vector<InstabilityStep> instability;
+    DirectedBarrier barrier_by_direction;
     Why why;
     Landscape landscape;
     // By disturbance: joules per event; their standard error from the sampling of events; and the

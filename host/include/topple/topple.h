@@ -111,7 +111,8 @@ typedef struct topple_options {
     double voxel_m;            /* edge of a solid voxel; 0: found */
     double unit_m;             /* metres in a cloud file's unit; 1 */
     double up[3];              /* in the input's frame; 0, 0, 0: found */
-    uint32_t disturbances;     /* TOPPLE_HUMAN | TOPPLE_WIND | TOPPLE_EARTHQUAKE */
+    uint32_t disturbances;     /* TOPPLE_HUMAN | TOPPLE_WIND | ..: 1 << n is that of
+                                  topple_disturbance_name(n) */
     uint32_t walks;            /* 500 */
     uint64_t seed;             /* 1 */
     uint64_t max_memory_bytes; /* 0: no limit */
@@ -199,6 +200,12 @@ typedef struct topple_object {
      * that were tried. The rates are NaN without a hazard curve. */
     double fragility_pga_g, fragility_pga_dispersion, fragility_pgv_m_s, fragility_pgv_dispersion;
     double falls_per_year, return_years;
+    /* S(W) by direction and height (struct DirectedBarrier of topple/scene.h): blow_heights numbers
+     * in blow_height_m, 16 in push_barrier_J, 16 rows of blow_heights in blow_barrier_J; infinity:
+     * it does not fall so. NULL and 0 where nothing is known. */
+    const double *blow_height_m, *push_barrier_J, *blow_barrier_J;
+    uint64_t blow_heights;
+    double hand_push_N, hand_push_error_N, hand_height_m, gust_m_s, gust_error_m_s;
 } topple_object;
 typedef struct topple_contact {
     size_t size;
@@ -224,6 +231,10 @@ int topple_result_contact(const topple_result* result, uint64_t index, topple_co
                           topple_status* status);
 int topple_result_support(const topple_result* result, uint64_t index, topple_support* support,
                           topple_status* status);
+/* Risk per event and chance of falling by one of the disturbances, either of which may be NULL;
+ * NaN: it was not asked for. */
+int topple_result_risk(const topple_result* result, uint64_t index, const char* disturbance,
+                       double* risk_J, double* fall_chance, topple_status* status);
 const char* topple_result_note(const topple_result* result, uint64_t index); /* NULL: no such */
 
 /* Arrays over the points, `points` of the topple_scene long, in the input's order. */

@@ -16,9 +16,9 @@ from typing import NamedTuple
 import numpy as np
 
 from . import _topple
-from ._topple import Contact, Device, Error, Object, Overturning, Primitive, Support, __version__, open_device
+from ._topple import Contact, Device, DirectedBarrier, Error, Object, Overturning, Primitive, Support, __version__, open_device
 
-__all__ = ['Contact', 'Device', 'DeviceInfo', 'Error', 'ExportSummary', 'ExportedBody', 'Object', 'Overturning', 'Primitive', 'Result',
+__all__ = ['Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Object', 'Overturning', 'Primitive', 'Result',
            'Support', '__version__', 'devices', 'open_device', 'parse']
 
 
@@ -186,7 +186,7 @@ class Result:
         return ExportSummary([ExportedBody(*body) for body in bodies], *rest)
 
 
-def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=('human', 'wind', 'earthquake'),
+def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=None,
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, wind_m_s=12.0,
           wind_from_deg=None, pga_m_s2=None, accelerogram=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, grouping_time_s=None, normals=None,
           viewpoint=None, colours=None, isolate=True, progress=None, cancelled=None):
@@ -198,7 +198,8 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     refused: hardly ever are they metres. Points that are not finite are left out: Result.point_index then says
     where the others are.
 
-    disturbances: a list of "human", "wind", "earthquake", which may be empty; or one of these names.
+    disturbances: a list of "human", "wind", "earthquake", which may be empty; or one of these names; or None for
+    all that there are.
 
     device: a Device of open_device(), or a backend's name. motion, accelerogram, hazard: files. normals, viewpoint: of
     points, as they are given; where the sensor was. colours: of points, sRGB as uint8, an array of shape (N, 3),
@@ -211,7 +212,8 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     """
     options = _topple.Options()
     options.voxel_m, options.unit_m, options.up = voxel_m, unit_m, up
-    options.disturbances = [disturbances] if isinstance(disturbances, str) else list(disturbances)
+    if disturbances is not None:
+        options.disturbances = [disturbances] if isinstance(disturbances, str) else list(disturbances)
     options.seed, options.isolate = seed, isolate
     options.max_memory_bytes, options.density_kg_m3, options.friction = max_memory_bytes, density_kg_m3, friction
     options.contents_kg_m3 = contents_kg_m3

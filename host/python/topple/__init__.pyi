@@ -86,6 +86,24 @@ class Overturning:  # all NaN where it can't tip
     def slide_N(self) -> float: ...
     @property
     def shake_g(self) -> float: ...
+    @property
+    def hand_push_N(self) -> float: ...
+    @property
+    def hand_push_error_N(self) -> float: ...
+    @property
+    def hand_height_m(self) -> float: ...
+    @property
+    def gust_m_s(self) -> float: ...
+    @property
+    def gust_error_m_s(self) -> float: ...
+
+class DirectedBarrier:  # direction n is towards the azimuth n * 22.5 degrees; inf: it does not fall
+    @property
+    def height_m(self) -> NDArray[np.float64]: ...
+    @property
+    def push_J(self) -> NDArray[np.float64]: ...  # (16,)
+    @property
+    def blow_J(self) -> NDArray[np.float64]: ...  # (16, heights)
 
 class Fragility:  # of earthquakes; NaN: few fall at the strongest that is tried
     @property
@@ -136,6 +154,8 @@ class Object:
     def overturning(self) -> Overturning: ...
     @property
     def fragility(self) -> Fragility: ...
+    @property
+    def barrier_by_direction(self) -> DirectedBarrier: ...
     @property
     def mode(self) -> Literal["tip", "slide", "none"]: ...
     @property
@@ -240,7 +260,7 @@ def parse(
     voxel_m: float = ...,
     unit_m: float = ...,
     up: Optional[_Vec3] = ...,
-    disturbances: Union[str, Sequence[str]] = ...,
+    disturbances: Optional[Union[str, Sequence[str]]] = ...,
     seed: int = ...,
     max_memory_bytes: int = ...,
     density_kg_m3: float = ...,

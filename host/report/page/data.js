@@ -24,7 +24,8 @@ function loadScene() {
   scene.verified = JSON.parse(document.getElementById('verified').textContent);
   scene.objectById = new Map(scene.objects.map(object => [object.id, object]));
   const reckoned = new Set(scene.objects.flatMap(object => Object.keys(object.risk_J)));
-  scene.disturbances = [...new Set([...disturbanceNames, ...reckoned])].filter(name => reckoned.has(name));
+  disturbanceKinds.push(...scene.disturbance_kinds);
+  scene.disturbances = [...new Set([...disturbanceNames(), ...reckoned])].filter(name => reckoned.has(name));
   return scene;
 }
 

@@ -36,7 +36,7 @@ function fillHeader(scene) {
 
 // What was reckoned with, as far as this run asked for it.
 function eventFacts(scene) {
-  const known = [['walks', 'walks', ''], ['wind_m_s', 'wind', 'm/s'], ['pga_m_s2', 'ground acceleration', 'm/s\u00b2'],
+  const known = [...disturbanceKinds.map(({figure}) => [figure.key, figure.name, figure.unit]),
     ['tolerable_J', 'tolerated risk', 'J per event']];
   const events = scene.events || {};
   return known.filter(([key]) => events[key] !== undefined).map(([key, name, unit]) => [name, number(events[key], unit)]);
@@ -90,12 +90,8 @@ function legend(scene, state, view) {
   const arrows = state.fieldsOn.filter(name => name !== 'walks');
   for (const name of arrows) {
     const strongest = view.fields[name].userData.strongest;
-    const [text, most] = {
-      human: ['Arrows: how often people\u2019s bodies pass there', `${number(100 * strongest)} times in 100 walks`],
-      wind: ['Arrows: wind, mean over all gales', number(strongest, 'm/s')],
-      earthquake: ['Arrows: shaking below things', number(strongest, 'm/s\u00b2')],
-    }[name] || [`Arrows: ${name}`, number(strongest)];
-    box.append(element('div', {text}), bar(scene.ramp.colours), ends('0', most));
+    const {legend: text, scale, unit} = kindOf(name);
+    box.append(element('div', {text: `Arrows: ${text}`}), bar(scene.ramp.colours), ends('0', number(scale * strongest, unit)));
   }
   for (const part of view.marker.parts()) {
     box.append(element('div', {className: 'part'}, [
@@ -107,7 +103,7 @@ function legend(scene, state, view) {
 // A box for each disturbance's arrows and for the floor that people walk on; one that has nothing to show says why.
 function fieldBoxes(scene, view, state) {
   const fields = document.getElementById('fields');
-  const entries = disturbanceNames.map(name => [name, `${capital(causeOf(name))}`, !!view.fields[name],
+  const entries = disturbanceNames().map(name => [name, `${capital(causeOf(name))}`, !!view.fields[name],
     scene.disturbances.includes(name) ? 'it reaches nothing here' : 'this run left it out']);
   entries.push(['walks', 'Walked floor', view.walks.children.length > 0,
     scene.disturbances.includes('human') ? 'no floor was found that people could walk on' : 'this run left people out']);

@@ -8,11 +8,10 @@ function rampUniform(scene) {
   return {value: scene.ramp.colours.map(colour => new THREE.Vector3(...colour.map(value => value / 255)))};
 }
 
-// What colours a field's arrows and makes them long. Of people it is how often their bodies pass per walk: where as
-// many come as go, the mean of their speeds is small. Of wind it is the mean over gales from all sides.
+// What colours a field's arrows and makes them long.
 function strengthOf(name, arrow) {
   const length = Math.hypot(arrow[3], arrow[4], arrow[5]);
-  return name === 'human' ? arrow[6] : name === 'wind' ? length * arrow[6] : length;
+  return {visits: arrow[6], mean: length * arrow[6], speed: length}[kindOf(name).strength];
 }
 
 function fieldMesh(scene, name, reach) {
@@ -37,11 +36,10 @@ function fieldMesh(scene, name, reach) {
   geometry.maxInstancedCount = field.count;
   const longest = Math.min(Math.max(0.035 * reach, 0.05), 0.35);
   const mesh = new THREE.Mesh(geometry, new THREE.ShaderMaterial({
-    // The wind blows onto its place, with the arrow's tip.
-    uniforms: {longest: {value: longest}, thickness: {value: 0.17 * longest}, tip: {value: name === 'wind' ? 1 : 0}, ramp: rampUniform(scene)},
+    uniforms: {longest: {value: longest}, thickness: {value: 0.17 * longest}, tip: {value: kindOf(name).at_tip ? 1 : 0}, ramp: rampUniform(scene)},
     vertexShader: arrowVertexShader, fragmentShader: recordFragmentShader, side: THREE.DoubleSide,
-    // The earth shakes below things, where they would hide it.
-    depthTest: name !== 'earthquake', transparent: name === 'earthquake',
+    // What is below things they would hide.
+    depthTest: !kindOf(name).below_things, transparent: !!kindOf(name).below_things,
   }));
   mesh.frustumCulled = false;
   mesh.userData.strongest = strongest;

@@ -17,10 +17,10 @@ function riskiest(scene) {
 
 // Which disturbances the run left out, and which of them found nothing to act on.
 function missingText(scene) {
-  const lines = [], left = disturbanceNames.filter(name => !scene.disturbances.includes(name));
+  const lines = [], left = disturbanceNames().filter(name => !scene.disturbances.includes(name));
   if (scene.objects.length && left.length) {
     lines.push(`This run left out ${listed(left.map(causeOf))}: risks from there are not known. ` +
-      `Parse with the disturbances ${listed(disturbanceNames)} to have them.`);
+      `Parse with the disturbances ${listed(disturbanceNames())} to have them.`);
   }
   if (scene.disturbances.includes('human') && !scene.view.walks.shade.some(shade => shade > 0)) {
     lines.push('No floor was found on which people could walk, so their walks put nothing at risk here.');
@@ -76,9 +76,12 @@ function fillRisk(panel, scene, choose) {
 }
 
 function eventsText(scene) {
-  const events = scene.events || {}, wind = events.wind_m_s, ground = events.pga_m_s2;
-  return 'An event is one person walking through the room, one gale' + (wind === undefined ? '' : ` of ${number(wind, 'm/s')}`) +
-    ' or one earthquake' + (ground === undefined ? '' : ` of about ${number(ground, 'm/s\u00b2')}`) + '.' +
+  const events = scene.events || {};
+  const all = disturbanceKinds.map(kind => {
+    const {key, follows, unit} = kind.figure, value = events[key];
+    return kind.one_event + (follows && value !== undefined ? follows + number(value, unit) : '');
+  });
+  return `An event is ${listed(all, 'or')}.` +
     (events.tolerable_J === undefined ? '' : ` What has no advice is below ${number(events.tolerable_J, 'J')} per event, which is tolerated.`);
 }
 

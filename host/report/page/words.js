@@ -3,14 +3,19 @@
 
 // What happens to objects, in words for someone who has read nothing about it.
 
-const disturbanceNames = ['human', 'wind', 'earthquake'];
-const causes = {human: 'people walking by', wind: 'wind', earthquake: 'earthquake'};
-const events = {human: 'walk', wind: 'gale', earthquake: 'earthquake'};
+// What there is to say of each disturbance, in their order; of the page's data.
+const disturbanceKinds = [];
+const disturbanceNames = () => disturbanceKinds.map(kind => kind.name);
+
+function kindOf(name) {
+  return disturbanceKinds.find(kind => kind.name === name) ||
+    {name, cause: name, event: 'event', strength: 'speed', legend: name, scale: 1, unit: ''};
+}
 
 const capital = text => text.charAt(0).toUpperCase() + text.slice(1);
 
 function causeOf(name) {
-  return causes[name] || name;
+  return kindOf(name).cause;
 }
 
 // "a", "a and b", "a, b and c"
@@ -26,7 +31,7 @@ function objectList(ids) {
 
 // A chance per event as "1 walk in 40".
 function chanceText(name, chance) {
-  const event = events[name] || 'event';
+  const {event} = kindOf(name);
   if (chance === null || chance === undefined) return '';
   if (chance <= 0) return `no ${event}`;
   if (chance >= 0.95) return `nearly every ${event}`;
@@ -65,7 +70,10 @@ function overturningText(object) {
     const digits = Math.min(3, Math.max(0, -Math.floor(Math.log10(error))));
     return `${value.toFixed(digits)} \u00b1 ${error.toFixed(digits)}`;
   };
-  const push = `a steady push of ${about(o.push_N, o.push_error_N)} N at its top`, slides = o.shake_g < 0.999 * Math.tan(o.tilt_deg * Math.PI / 180);
+  const hand = typeof o.hand_push_N === 'number' && o.hand_push_N > 1.05 * o.push_N ?
+    `, of ${about(o.hand_push_N, o.hand_push_error_N)} N ${metres(o.hand_height_m)} up` : '';
+  const gust = typeof o.gust_m_s === 'number' ? `, or in gusts of ${about(o.gust_m_s, o.gust_error_m_s)} m/s` : '';
+  const push = `a steady push of ${about(o.push_N, o.push_error_N)} N at its top${hand}${gust}`, slides = o.shake_g < 0.999 * Math.tan(o.tilt_deg * Math.PI / 180);
   return `Goes over once it leans ${about(o.tilt_deg, o.tilt_error_deg)}\u00b0, or at ${push}` +
     (o.slide_N < o.push_N ? `, if ${round(o.slide_N)} N don't slide it before` : '') +
     `; begins to ${slides ? 'slide' : 'rock'} where the ground shakes with ${round(o.shake_g)} g.`;

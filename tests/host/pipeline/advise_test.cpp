@@ -7,6 +7,9 @@
 
 #include "assessed_room.h"
 #include "device/devices.h"
+#include "safety/earthquake/earthquake_field.h"
+#include "safety/human/human_field.h"
+#include "safety/wind/wind_field.h"
 
 namespace topple::test {
 namespace {
@@ -20,16 +23,18 @@ class Advice : public ::testing::Test {
         scene = std::make_unique<AssessedRoom>(*device, room, advice_friction);
         safety::HumanOptions walking;
         walking.paths = 200;
-        safety::HumanField walkers(*device, scene->around, scene->at_risk, walking);
+        std::vector<std::unique_ptr<safety::DisturbanceField>> walkers;
+        walkers.push_back(
+            std::make_unique<safety::HumanField>(*device, scene->around, scene->at_risk, walking));
         std::vector<safety::Disturbance> fields;
-        fields.push_back(walkers.disturbance());
+        fields.push_back(walkers.front()->disturbance());
         fields.push_back(safety::wind_field(*device, scene->around, scene->at_risk, {}));
         fields.push_back(
             safety::earthquake_field(*device, scene->around, scene->at_risk, advice_friction, {}));
         risk.clear();
         for (const auto& field : fields) risk.push_back(safety::risk(field, scene->at_risk));
         return advise(scene->solids, room.object_of_primitive, scene->objects, scene->at_risk,
-                      fields, risk, &walkers, advice_friction, advice_tolerable_J);
+                      fields, risk, walkers, advice_friction, advice_tolerable_J);
     }
     double worst(std::int32_t id) const {
         double most = 0;

@@ -29,6 +29,12 @@ struct AssessedRoom {
         const auto bodies = physics::mass_properties(device, cells, primitives, room.density_kg_m3);
         const graph::ContactGraph contacts = graph::build_contact_graph(device, cells, primitives);
         const physics::SupportTable table(device, cells, primitives, physics::geodesic_sphere(16));
+        std::vector<double> density(room.objects.size(), 0.0);  // by object
+        for (std::size_t p = room.object_of_primitive.size(); p-- > 0;)
+            density[static_cast<std::size_t>(room.object_of_primitive[p])] = room.density_kg_m3[p];
+        const auto inertia =
+            physics::inertia_of_objects(physics::second_moments(cells, primitives, {}), bodies,
+                                        room.object_of_primitive, density);
         for (std::size_t o = 0; o < room.objects.size(); ++o) {
             std::vector<std::int32_t> members;
             for (std::int32_t p = 0; p < primitives; ++p) {
@@ -48,6 +54,7 @@ struct AssessedRoom {
             }
             object.candidate =
                 graph::candidate_of(contacts, bodies, around.is_floor_primitive, members);
+            object.inertia = inertia[o];
             objects.push_back(std::move(object));
         }
         find_barriers(device, table, solids, room.object_of_primitive, friction, objects);

@@ -10,6 +10,9 @@
 #include "core/random.h"
 #include "device/devices.h"
 #include "host/safety/random_shaking.h"
+#include "safety/earthquake/earthquake_field.h"
+#include "safety/human/human_field.h"
+#include "safety/wind/wind_field.h"
 #include "topple/input.h"
 
 // What makes a thing less safe raises its risk, from voxels to joules: barriers and S(W) of the
@@ -186,7 +189,9 @@ TEST_F(SlowRisk, FallsWithTheWeightOfTheBase) {
                 room.part(id, 0.05, to, 0.05, to, 0.1, 0.1 + high, mass * (1 - share) / pole_m3);
                 series.push_back(of(room, id, field));
             }
-            expect_rises(series, named(field, n));
+            // Wind at what is high up no longer tips what slides away before it.
+            expect_rises(series, named(field, n),
+                         std::string(field) == "wind" ? Of::risk : Of::both);
         }
     }
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "safety/earthquake/earthquake_field.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -7,10 +7,11 @@
 #include "core/random.h"
 #include "kernels/device_harness.h"
 #include "room.h"
-#include "safety/body_parts.h"
-#include "safety/footprint.h"
-#include "safety/secondary_motion.h"
-#include "safety/walkable_map.h"
+#include "safety/human/body_parts.h"
+#include "safety/human/footprint.h"
+#include "safety/human/human_field.h"
+#include "safety/human/secondary_motion.h"
+#include "safety/human/walkable_map.h"
 #include "topple/error.h"
 
 namespace topple::safety {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "safety/walkable_map.h"
+#include "safety/human/walkable_map.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,10 @@
 #include <set>
 
 #include "room.h"
-#include "safety/body_parts.h"
 #include "safety/directions.h"
-#include "safety/footprint.h"
+#include "safety/human/body_parts.h"
+#include "safety/human/footprint.h"
+#include "safety/human/human_field.h"
 
 namespace topple::safety {
 namespace {

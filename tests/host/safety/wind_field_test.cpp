@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "safety/wind/wind_field.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -56,14 +58,41 @@ TEST_F(WindField, ClosedFormsOfTheBox) {
         options.air_density_kg_m3 = air;
         box.base_width_m = 0.2;
         box.slide_distance_m = -1;
+        options.friction = 0.5;
         const double tips = critical_speed(box, across, options);
         EXPECT_NEAR(tips, std::sqrt(2 * 700 * 9.80665 * 0.04 / (air * 1.3 * 0.5)), 1e-6);
         EXPECT_NEAR(tips, 26.26, 0.02 * 26.26);
         box.slide_distance_m = 0.3;
+        options.friction = 0.3;
         const double slides = critical_speed(box, across, options);
         EXPECT_NEAR(slides, std::sqrt(2 * 0.3 * 21 * 9.80665 / (air * 1.3 * 0.15)), 1e-6);
         EXPECT_NEAR(slides, 22.74, 0.02 * 22.74);
     }
+    // On a smooth floor it slides before it tips. Blown at above its centre it tips on the way once
+    // F (p - h) > m g (b - mu h), which is where its inertia lags behind.
+    box.slide_distance_m = -1;
+    WindLoad high = across;
+    EXPECT_EQ(wind_work(box, high, options), 0) << "it glides away";
+    high.pressure_height_m = 0.4;
+    const double force = 21 * 9.80665 * (0.1 - 0.3 * 0.25) / 0.15;
+    const double lagging = critical_speed(box, high, options);
+    EXPECT_NEAR(lagging, std::sqrt(2 * std::max(force, 0.3 * 21 * 9.80665) / (1.225 * 1.3 * 0.15)),
+                1e-6);
+}
+
+// A box that friction holds tips at sqrt(2 m g (d / 2) / (h / 2) / (rho C_d w h)), over its long
+// side.
+TEST_F(WindField, GustThatTipsTheBox) {
+    test::Room room(0.01);
+    room.floor(-1, 1, -1, 1);
+    const auto id = static_cast<std::size_t>(room.box(0, 0.2, 0, 0.3, 0, 0.5, false));
+    RiskObject& box = room.objects[id];
+    box.support_polygon = {{0, 0}, {0.2, 0}, {0.2, 0.3}, {0, 0.3}};
+    WindOptions options;
+    options.friction = 0.5;
+    const auto gusts = tipping_gusts(*device, room.surroundings(), room.objects, options);
+    EXPECT_TRUE(std::isnan(gusts[0]));
+    EXPECT_NEAR(gusts[id], std::sqrt(2 * 21 * 9.80665 * 0.4 / (1.2 * 1.3 * 0.15)), 1e-3);
 }
 
 TEST_F(WindField, FrontageFromAllSides) {

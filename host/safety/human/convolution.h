@@ -8,24 +8,37 @@
 #include <vector>
 
 #include "device/buffer.h"
-#include "safety/footprint.h"
-#include "safety/human_field.h"
+#include "physics/toppling.h"
+#include "safety/human/footprint.h"
+#include "safety/human/human_field.h"
+#include "safety/human/secondary_motion.h"
+#include "safety/human/walkable_map.h"
 #include "safety/objects.h"
-#include "safety/secondary_motion.h"
-#include "safety/walkable_map.h"
 
 namespace topple::safety {
 
-// Passes at each level of energy over an object, per walk, by direction: the most that any of its
-// cells gets.
-using Strikes = std::vector<std::array<double, direction_count>>;
+// Passes at each level of energy over an object, per walk, by direction and by the part of its
+// height that they meet: the most that any of its cells there gets.
+inline constexpr std::size_t strike_heights = physics::Toppling::heights;
+using Strikes = std::vector<std::array<std::array<double, strike_heights>, direction_count>>;
+
+// Where an object's cells begin and end, grid frame.
+struct Extent {
+    double bottom_m = 0, top_m = 0;
+    double height_m(std::size_t part) const {  // of that part's middle, above the bottom
+        return (static_cast<double>(part) + 0.5) / strike_heights * (top_m - bottom_m);
+    }
+};
+std::vector<Extent> extents(const SolidCells& cells, std::span<const std::int32_t> object_of_cell,
+                            std::size_t objects);
 
 Strikes no_strikes(const SecondaryMotion& motion);
 
-// The probabilities and directions of the strongest strike of one walk; `energy` in joules by
-// level.
-// At most max_work_samples, of total probability at most 1.
-std::vector<WorkSample> strongest_strikes(const Strikes& strikes, std::span<const double> energy);
+// Of all strikes of one walk the one that does most: of the largest S, then of the largest W. Their
+// total probability is at most 1.
+std::vector<WorkSample> strongest_strikes(const Strikes& strikes, const SecondaryMotion& motion,
+                                          const RiskObject& object, const Extent& extent,
+                                          double restitution);
 
 // Primary motion convolved with the secondary, on the device (kernels disturbance_reach,
 // disturbance). Sparse: blocks of 64 map cells near places that are walked on, in tiles whose
@@ -37,7 +50,8 @@ class Convolution {
   public:
     Convolution(device::Device& device, const WalkableMap& map, const PrimaryMotion& motion,
                 const SecondaryMotion& secondary, const Surroundings& surroundings,
-                std::span<const std::int32_t> object_of_cell, const HumanOptions& options);
+                std::span<const std::int32_t> object_of_cell, std::span<const Extent> extents,
+                const HumanOptions& options);
 
     double band_m() const { return band_m_; }
 
@@ -51,13 +65,13 @@ class Convolution {
                         std::span<const Placement> placements, std::span<Strikes> strikes);
 
   private:
-    // A movable object's presence in a map cell and height band.
+    // A movable object's presence in a map cell and height band, with a part of its own height.
     struct Target {
         std::uint32_t cell;  // of the padded map
-        std::uint8_t band;
+        std::uint8_t band, part;
         std::int32_t object;
         float exposure = 0;
-        auto key() const { return std::tuple(cell, band, object); }
+        auto key() const { return std::tuple(cell, band, object, part); }
     };
     struct Tile;
 
@@ -65,8 +79,9 @@ class Convolution {
     std::vector<float> primary(const std::vector<bool>& component) const;  // a plane per direction
     std::vector<std::uint32_t> solid_bands(double floor_m) const;
     std::vector<std::uint32_t> active_blocks(const std::vector<bool>& component) const;
-    // Of a voxel moved by (di, dj); false: none, outside of the map or above the body.
-    bool target_of(std::size_t voxel, std::int32_t object, double floor_m, Target& target,
+    // Of a voxel moved by (di, dj), as one of `number`; false: none, outside of the map or above
+    // the body.
+    bool target_of(std::size_t voxel, std::int32_t number, double floor_m, Target& target,
                    std::int32_t di = 0, std::int32_t dj = 0) const;
     static void sort_unique(std::vector<Target>& targets);
     // Runs all blocks, in tiles; adds the targets' strikes; shows each tile to `visit`.
@@ -85,6 +100,7 @@ class Convolution {
     const SecondaryMotion& secondary_;
     const Surroundings& surroundings_;
     std::span<const std::int32_t> object_of_cell_;
+    std::span<const Extent> extents_;  // by object
     HumanOptions options_;
     double band_m_;
     Footprint footprint_;

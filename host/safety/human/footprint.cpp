@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "safety/footprint.h"
+#include "safety/human/footprint.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,8 @@
 
 #include "core/random.h"
 #include "safety/directions.h"
-#include "safety/walkable_map.h"
+#include "safety/human/human_field.h"
+#include "safety/human/walkable_map.h"
 
 namespace topple::safety {
 namespace {

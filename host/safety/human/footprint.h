@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "safety/directions.h"
-#include "safety/secondary_motion.h"
+#include "safety/human/secondary_motion.h"
 
 namespace topple::safety {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "safety/fields.h"
+#include "safety/human/human_field.h"
 
 // Secondary motion (paper, 5.1.2 and Fig. 10): what strikes, and how hard, around a body that
 // walks.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "safety/fields.h"
+#include "safety/human/human_field.h"
 
 // Where people can walk and where they do (paper, 5.1.2, primary motion). Grid frame.
 namespace topple::safety {

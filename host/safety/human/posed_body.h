@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "safety/fields.h"
+#include "safety/human/human_field.h"
 
 namespace topple::safety {
 

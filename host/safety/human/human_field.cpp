@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "safety/human_field.h"
+#include "safety/human/human_field.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
-#include "safety/convolution.h"
 #include "safety/fields.h"
+#include "safety/human/convolution.h"
+#include "safety/human/walkable_map.h"
 #include "safety/objects.h"
-#include "safety/walkable_map.h"
 
 namespace topple::safety {
 namespace {
@@ -25,19 +26,6 @@ void check(const HumanOptions& options) {
     check_option("walking_speed_m_s", options.walking_speed_m_s, 0);
     check_option("wander_m", options.wander_m, 0);
     check_option("restitution", options.restitution, 0);
-}
-
-// Of the energies of what strikes, what a free thing of mass M takes over: by conservation of
-// momentum, (1 + e)^2 m M / (m + M)^2 of m v^2 / 2, e the restitution. A hand hardly moves a
-// wardrobe, a hip does.
-std::vector<double> taken_over(const SecondaryMotion& motion, double thing_kg, double restitution) {
-    std::vector<double> out;
-    for (std::size_t n = 0; n < motion.energy_J.size(); ++n) {
-        const double m = motion.mass_kg[n], both = m + thing_kg;
-        const double share = both > 0 ? m * thing_kg * std::pow((1 + restitution) / both, 2) : 0;
-        out.push_back(motion.energy_J[n] * share);
-    }
-    return out;
 }
 
 // Floors at different heights are fields of their own: parts are at heights above the walker's
@@ -76,45 +64,48 @@ std::vector<Level> levels(const WalkableMap& map, double apart_m) {
     return out;
 }
 
-// The 16 directions merged by twos until at most max_work_samples are left; probabilities add up.
-std::vector<WorkSample> compact(std::vector<std::vector<double>> by_direction,
-                                std::span<const double> energy) {
-    unsigned merged = 1;
-    const auto count = [&] {
-        std::size_t n = 0;
-        for (const auto& row : by_direction)
-            n += static_cast<std::size_t>(
-                std::count_if(row.begin(), row.end(), [](double p) { return p > 0; }));
-        return n;
-    };
-    std::vector<std::vector<std::array<double, 2>>> way(
-        by_direction.size());  // sums of p * direction
-    for (std::size_t w = 0; w < by_direction.size(); ++w) {
-        for (unsigned d = 0; d < by_direction[w].size(); ++d) {
+// One of the strikes of a walk: of a pass of one level in one direction.
+struct Strike {
+    WorkSample sample;  // its probability: that this pass meets the object, and there
+    double does_J = 0;
+    std::size_t pass = 0;
+};
+
+bool does_more(const Strike& a, const Strike& b) {
+    return a.does_J != b.does_J ? a.does_J > b.does_J : a.sample.W_J > b.sample.W_J;
+}
+
+// A pass meets the object in one part of its height, by the share that each has of what passes.
+std::vector<Strike> all_strikes(const Strikes& strikes, const SecondaryMotion& motion,
+                                const RiskObject& object, const Extent& extent,
+                                double restitution) {
+    std::vector<Strike> out;
+    for (std::size_t level = 0; level < strikes.size(); ++level) {
+        const double m = motion.mass_kg[level];
+        for (unsigned d = 0; d < direction_count; ++d) {
+            const auto& row = strikes[level][d];
+            const double most = *std::ranges::max_element(row);
+            const double all = std::accumulate(row.begin(), row.end(), 0.0);
             const auto [dx, dy] = direction(d);
-            way[w].push_back({by_direction[w][d] * dx, by_direction[w][d] * dy});
-        }
-    }
-    for (; count() > max_work_samples && merged < direction_count; merged *= 2) {
-        for (std::size_t w = 0; w < by_direction.size(); ++w) {
-            const std::size_t half = by_direction[w].size() / 2;
-            for (std::size_t d = 0; d < half; ++d) {
-                by_direction[w][d] = by_direction[w][2 * d] + by_direction[w][2 * d + 1];
-                way[w][d] = {way[w][2 * d][0] + way[w][2 * d + 1][0],
-                             way[w][2 * d][1] + way[w][2 * d + 1][1]};
+            for (std::size_t h = 0; h < row.size(); ++h) {
+                if (!(row[h] > 0)) continue;
+                Strike strike;
+                strike.pass = level * direction_count + d;
+                strike.sample.direction = {dx, dy, 0};
+                strike.sample.height_m = extent.height_m(h);
+                strike.sample.probability = std::min(most, 1.0) * row[h] / all;
+                // By conservation of momentum, (1 + e)^2 m M / (m + M)^2 of m v^2 / 2 goes over to
+                // the mass M that is met there. A hand hardly moves a wardrobe, a hip does.
+                const double M = object.toppling
+                                     ? object.toppling->met_mass_kg(strike.sample.direction,
+                                                                    strike.sample.height_m)
+                                     : object.mass_kg;
+                const double share =
+                    m + M > 0 ? m * M * std::pow((1 + restitution) / (m + M), 2) : 0;
+                strike.sample.W_J = motion.energy_J[level] * share;
+                strike.does_J = instability(object, strike.sample);
+                out.push_back(strike);
             }
-            by_direction[w].resize(half);
-            way[w].resize(half);
-        }
-    }
-    std::vector<WorkSample> out;
-    for (std::size_t w = 0; w < by_direction.size(); ++w) {
-        for (std::size_t d = 0; d < by_direction[w].size(); ++d) {
-            if (by_direction[w][d] <= 0) continue;
-            const double length = std::hypot(way[w][d][0], way[w][d][1]);
-            const Vec3 along =
-                length > 0 ? Vec3{way[w][d][0] / length, way[w][d][1] / length, 0} : Vec3{};
-            out.push_back({energy[w], by_direction[w][d], along});
         }
     }
     return out;
@@ -122,32 +113,35 @@ std::vector<WorkSample> compact(std::vector<std::vector<double>> by_direction,
 
 }  // namespace
 
-// Of all strikes of one walk the strongest counts: an object falls once. Strikes of parts and
-// directions are taken as independent, so P(strongest >= W) = 1 - prod (1 - p) over those of energy
-// >= W.
-std::vector<WorkSample> strongest_strikes(const Strikes& strikes, std::span<const double> energy) {
-    std::vector<std::size_t> parts(energy.size());
-    for (std::size_t n = 0; n < parts.size(); ++n) parts[n] = n;
-    std::stable_sort(parts.begin(), parts.end(),
-                     [&](auto a, auto b) { return energy[a] > energy[b]; });
-    std::vector<std::vector<double>> share;
-    std::vector<double> work;
-    double missed = 1;  // by all parts so far
-    for (const std::size_t part : parts) {
-        double all = 0, miss = 1;
-        for (const double p : strikes[part]) {
-            all += p;
-            miss *= 1 - std::clamp(p, 0.0, 1.0);
+// An object falls once, so that one strike of a walk counts. Passes are taken as independent, and
+// each meets the object in one of its places: the chance that none of those from the first on has
+// come is the product, over the passes, of what is left of each.
+std::vector<WorkSample> strongest_strikes(const Strikes& strikes, const SecondaryMotion& motion,
+                                          const RiskObject& object, const Extent& extent,
+                                          double restitution) {
+    std::vector<Strike> all = all_strikes(strikes, motion, object, extent, restitution);
+    std::stable_sort(all.begin(), all.end(), does_more);
+    std::vector<double> left(strikes.size() * direction_count, 1.0);
+    std::vector<WorkSample> out;
+    double missed = 1;
+    for (std::size_t first = 0; first < all.size();) {
+        std::size_t last = first;
+        double sum = 0, before = missed;
+        // Those that do the same share their probability.
+        for (; last < all.size() && !does_more(all[first], all[last]); ++last) {
+            double& rest = left[all[last].pass];
+            const double p = all[last].sample.probability;
+            missed *= rest > p ? (rest - p) / rest : 0.0;
+            rest = std::max(rest - p, 0.0);
+            sum += p;
         }
-        std::vector<double> row(direction_count, 0.0);
-        for (unsigned d = 0; d < direction_count && all > 0; ++d) {
-            row[d] = missed * (1 - miss) * strikes[part][d] / all;
+        for (; first < last; ++first) {
+            WorkSample sample = all[first].sample;
+            sample.probability *= (before - missed) / sum;
+            if (sample.probability > 0) out.push_back(sample);
         }
-        missed *= miss;
-        share.push_back(std::move(row));
-        work.push_back(energy[part]);
     }
-    return compact(std::move(share), work);
+    return out;
 }
 
 struct HumanField::Parts {
@@ -156,6 +150,7 @@ struct HumanField::Parts {
     std::span<const RiskObject> objects;
     HumanOptions options;
     std::vector<std::int32_t> object_of_cell;
+    std::vector<Extent> extent;  // by object
     WalkableMap map;
     PrimaryMotion primary;
     SecondaryMotion secondary;
@@ -174,17 +169,19 @@ HumanField::HumanField(device::Device& device, const Surroundings& surroundings,
                        {},
                        {},
                        {},
+                       {},
                        {}}) {
     check(options);
     Parts& p = *parts_;
+    p.extent = extents(*surroundings.cells, p.object_of_cell, objects.size());
     p.secondary =
         p.options.motion ? recorded_motion(*p.options.motion, p.options) : table_motion(p.options);
     p.map = walkable_map(surroundings, p.options);
     if (p.map.walkable.empty()) return;
     p.primary = primary_motion(p.map, p.options);
     if (p.primary.paths == 0) return;
-    p.convolution = std::make_unique<Convolution>(device, p.map, p.primary, p.secondary,
-                                                  surroundings, p.object_of_cell, p.options);
+    p.convolution = std::make_unique<Convolution>(
+        device, p.map, p.primary, p.secondary, surroundings, p.object_of_cell, p.extent, p.options);
     p.levels = levels(p.map, 2 * p.convolution->band_m());
 }
 
@@ -208,29 +205,29 @@ Disturbance HumanField::disturbance() {
         p.convolution->add_level(level.floor_m, level.component, strikes, out.exposure, arrows);
     out.strongest.resize(p.objects.size());
     for (std::size_t o = 0; o < p.objects.size(); ++o) {
-        out.work[o] = strongest_strikes(
-            strikes[o], taken_over(p.secondary, p.objects[o].mass_kg, p.options.restitution));
+        out.work[o] = strongest_strikes(strikes[o], p.secondary, p.objects[o], p.extent[o],
+                                        p.options.restitution);
         for (const WorkSample& strike : out.work[o]) {
             const double force = strike.W_J / stopping_way_m;
-            if (force > out.strongest[o].force_N) out.strongest[o] = {force, p.objects[o].height_m};
+            if (force > out.strongest[o].force_N) out.strongest[o] = {force, strike.height_m};
         }
     }
     out.samples = arrows.take();
     return out;
 }
 
-std::vector<std::vector<WorkSample>> HumanField::work_at(std::span<const Placement> placements) {
+std::vector<Risk> HumanField::risk_at(std::span<const Placement> placements) {
     Parts& p = *parts_;
-    std::vector<std::vector<WorkSample>> out(placements.size());
+    std::vector<Risk> out(placements.size());
     if (!p.convolution) return out;
     const auto cells = cells_of_objects(p.object_of_cell, p.objects.size());
     std::vector<Strikes> strikes(placements.size(), no_strikes(p.secondary));
     for (const Level& level : p.levels)
         p.convolution->add_placements(level.floor_m, level.component, cells, placements, strikes);
     for (std::size_t n = 0; n < out.size(); ++n) {
-        const double mass = p.objects[placements[n].object].mass_kg;
-        out[n] =
-            strongest_strikes(strikes[n], taken_over(p.secondary, mass, p.options.restitution));
+        const auto work = strongest_strikes(strikes[n], p.secondary, placements[n].there,
+                                            p.extent[placements[n].object], p.options.restitution);
+        out[n] = risk_of(work, placements[n].there, p.primary.paths);
     }
     return out;
 }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include "safety/earthquake/earthquake_field.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 
 #include "core/random.h"
@@ -52,6 +55,7 @@ struct Shaken {
     bool overturns = false;
     // How far it slid in each plane, each way, and how far its support goes on there, at least.
     struct Slip {
+        Vec3 way{};
         double way_m = 0, support_m = 0;
     };
     std::array<Slip, 4> slips{};
@@ -59,13 +63,21 @@ struct Shaken {
 
 Shaken shaken_by(const ShakenObject& object, double mass_kg, double friction,
                  const std::array<Motion, 2>& motions) {
-    if (!object.held) return {0, true};
     Shaken out;
+    for (std::size_t p = 0; p < 2; ++p) {
+        const auto [dx, dy] = object.way[p];
+        out.slips[2 * p].way = {dx, dy, 0};
+        out.slips[2 * p + 1].way = {-dx, -dy, 0};
+    }
+    out.overturns = !object.held;
+    if (!object.held) return out;
     for (std::size_t p = 0; p < 2; ++p) {
         const Motion& m = motions[p];
         const Profile& body = object.body[p];
-        out.slips[2 * p] = {m.slid_ahead_m, body.support_ahead_m};
-        out.slips[2 * p + 1] = {m.slid_behind_m, body.support_behind_m};
+        out.slips[2 * p].way_m = m.slid_ahead_m;
+        out.slips[2 * p].support_m = body.support_ahead_m;
+        out.slips[2 * p + 1].way_m = m.slid_behind_m;
+        out.slips[2 * p + 1].support_m = body.support_behind_m;
         out.overturns = out.overturns || m.overturned();
         const double slid = std::max(m.slid_ahead_m, m.slid_behind_m);
         out.energy_J = std::max(out.energy_J,
@@ -76,17 +88,31 @@ Shaken shaken_by(const ShakenObject& object, double mass_kg, double friction,
 
 // What the ideal body needs to fall and what the landscape says differ by the voxels; and a motion
 // may hold more energy than the weakest way takes, and yet not go that way.
-double work_of(const RiskObject& object, const Shaken& shaken) {
-    if (object.barrier_J <= 0) return shaken.energy_J;
+// `towards`: where the object then falls.
+double work_of(const RiskObject& object, const Shaken& shaken, const Vec3& towards) {
+    const double barrier = push_barrier_J(object, towards);
+    // Where it can't fall, its energy brings nothing.
+    if (barrier <= 0 || !std::isfinite(barrier)) return shaken.energy_J;
     const bool slides_off =
-        object.slide_distance_m >= 0 &&
         std::any_of(shaken.slips.begin(), shaken.slips.end(), [&](const Shaken::Slip& slip) {
             return slip.way_m > 0 &&
-                   slip.way_m >= std::max(object.slide_distance_m, slip.support_m);
+                   slip.way_m >= slide_towards_m(object, slip.way, slip.support_m);
         });
-    return shaken.overturns || slides_off
-               ? std::max(shaken.energy_J, object.barrier_J)
-               : std::min(shaken.energy_J, std::nextafter(object.barrier_J, 0.0));
+    return shaken.overturns || slides_off ? std::max(shaken.energy_J, barrier)
+                                          : std::min(shaken.energy_J, std::nextafter(barrier, 0.0));
+}
+
+// A record shakes to and fro: of the four ways that it moves the one in which it falls most easily.
+Vec3 easiest(const RiskObject& object, const Shaken& shaken) {
+    Vec3 best{};
+    double least = std::numeric_limits<double>::infinity();
+    for (const Shaken::Slip& slip : shaken.slips) {
+        const double barrier = push_barrier_J(object, slip.way);
+        if (barrier >= least) continue;
+        least = barrier;
+        best = slip.way;
+    }
+    return best;
 }
 
 // Slips on supports that end nowhere near go on for ever.
@@ -180,13 +206,13 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
             if (force > out.strongest[o].force_N)
                 out.strongest[o] = {force, bodies[o].body[0].height_m};
         }
-        out.response[o] = [shaken = std::move(shaken), events](const RiskObject& object) {
+        out.response[o] = [shaken = std::move(shaken)](const RiskObject& object) {
             std::vector<WorkSample> work;
             // Also where it is 0: what has no barrier falls at any shaking.
-            for (std::size_t e = 0; e < events.size(); ++e) {
-                work.push_back({work_of(object, shaken[e]),
-                                1.0 / static_cast<double>(events.size()),
-                                Vec3{events[e].dx, events[e].dy, 0}});
+            for (const Shaken& each : shaken) {
+                const Vec3 towards = easiest(object, each);
+                work.push_back({work_of(object, each, towards),
+                                1.0 / static_cast<double>(shaken.size()), towards});
             }
             return work;
         };

@@ -8,8 +8,9 @@
 #include <tuple>
 
 #include "safety/directions.h"
-#include "safety/posed_body.h"
-#include "safety/secondary_motion.h"
+#include "safety/human/human_field.h"
+#include "safety/human/posed_body.h"
+#include "safety/human/secondary_motion.h"
 #include "topple/error.h"
 
 namespace topple::safety {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "safety/posed_body.h"
+#include "safety/human/posed_body.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "safety/human/human_field.h"
 #include "topple/error.h"
 
 namespace topple::safety {

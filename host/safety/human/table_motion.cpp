@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "safety/body_parts.h"
-#include "safety/secondary_motion.h"
+#include "safety/human/body_parts.h"
+#include "safety/human/human_field.h"
+#include "safety/human/secondary_motion.h"
 
 namespace topple::safety {
 namespace {

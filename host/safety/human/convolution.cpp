@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "safety/convolution.h"
+#include "safety/human/convolution.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "device/queue.h"
 #include "disturbance.hpp"
 #include "disturbance_reach.hpp"
+#include "safety/human/human_field.h"
 
 namespace topple::safety {
 namespace {
@@ -27,6 +28,18 @@ Strikes no_strikes(const SecondaryMotion& motion) {
     return Strikes(motion.energy_J.size());
 }
 
+std::vector<Extent> extents(const SolidCells& cells, std::span<const std::int32_t> object_of_cell,
+                            std::size_t objects) {
+    std::vector<Extent> out(objects, {INFINITY, -INFINITY});
+    for (std::size_t c = 0; c < object_of_cell.size(); ++c) {
+        if (object_of_cell[c] < 0) continue;
+        Extent& extent = out[static_cast<std::size_t>(object_of_cell[c])];
+        extent.bottom_m = std::min(extent.bottom_m, cells.k[c] * cells.voxel_m);
+        extent.top_m = std::max(extent.top_m, (cells.k[c] + 1) * cells.voxel_m);
+    }
+    return out;
+}
+
 // A run of active blocks, and what the device made of it.
 struct Convolution::Tile {
     std::span<const std::uint32_t> starts;  // padded index of each block's first cell
@@ -39,13 +52,15 @@ struct Convolution::Tile {
 Convolution::Convolution(device::Device& device, const WalkableMap& map,
                          const PrimaryMotion& motion, const SecondaryMotion& secondary,
                          const Surroundings& surroundings,
-                         std::span<const std::int32_t> object_of_cell, const HumanOptions& options)
+                         std::span<const std::int32_t> object_of_cell,
+                         std::span<const Extent> extents, const HumanOptions& options)
     : device_(device),
       map_(map),
       motion_(motion),
       secondary_(secondary),
       surroundings_(surroundings),
       object_of_cell_(object_of_cell),
+      extents_(extents),
       options_(options),
       band_m_(options.body_height_m / band_count),
       footprint_(make_footprint(map.cell_m, secondary)) {
@@ -140,15 +155,20 @@ std::vector<std::uint32_t> Convolution::active_blocks(const std::vector<bool>& c
     return starts;
 }
 
-bool Convolution::target_of(std::size_t voxel, std::int32_t object, double floor_m, Target& target,
+bool Convolution::target_of(std::size_t voxel, std::int32_t number, double floor_m, Target& target,
                             std::int32_t di, std::int32_t dj) const {
-    if (object < 0) return false;
+    if (number < 0) return false;
     const SolidCells& cells = *surroundings_.cells;
-    const double band = std::floor(((cells.k[voxel] + 0.5) * cells.voxel_m - floor_m) / band_m_);
+    const double height = (cells.k[voxel] + 0.5) * cells.voxel_m;
+    const double band = std::floor((height - floor_m) / band_m_);
     if (band < 0 || band >= band_count) return false;
     const std::int32_t i = cells.i[voxel] + di, j = cells.j[voxel] + dj;
     if (!map_.holds(i, j)) return false;
-    target = {padded(map_.cell_of(i, j)), static_cast<std::uint8_t>(band), object, 0};
+    const Extent& extent = extents_[static_cast<std::size_t>(object_of_cell_[voxel])];
+    const double part =
+        (height - extent.bottom_m) / (extent.top_m - extent.bottom_m) * strike_heights;
+    target = {padded(map_.cell_of(i, j)), static_cast<std::uint8_t>(band),
+              static_cast<std::uint8_t>(part), number, 0};
     return true;
 }
 
@@ -226,7 +246,8 @@ void Convolution::collect_strikes(Tile& tile, std::span<Strikes> strikes) const 
                         most, tile.density[tile.output_first[n] + plane * tile.cells + place]);
                 }
                 target.exposure += most;
-                double& strike = strikes[static_cast<std::size_t>(target.object)][layer.level][d];
+                double& strike =
+                    strikes[static_cast<std::size_t>(target.object)][layer.level][d][target.part];
                 strike = std::max(strike, double{most});
             }
         }
@@ -300,7 +321,10 @@ void Convolution::sweep(double floor_m, const std::vector<bool>& component,
     // Walks at different levels are different events.
     for (std::size_t o = 0; o < strikes.size(); ++o) {
         for (std::size_t n = 0; n < strikes[o].size(); ++n) {
-            for (unsigned d = 0; d < direction_count; ++d) strikes[o][n][d] += here[o][n][d];
+            for (unsigned d = 0; d < direction_count; ++d) {
+                for (std::size_t h = 0; h < strike_heights; ++h)
+                    strikes[o][n][d][h] += here[o][n][d][h];
+            }
         }
     }
 }

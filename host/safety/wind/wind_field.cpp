@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "safety/wind/wind_field.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -151,6 +153,15 @@ std::vector<std::array<double, 2>> ways(const WindOptions& options) {
     return all;
 }
 
+// The force from which wind tips a body, over its weight; infinite where it slides away instead.
+double tipping_force(const WindLoad& load, double friction) {
+    const double b = load.half_base_m, h = load.height_m, p = load.pressure_height_m;
+    if (p > 0 && b <= friction * p) return b / p;
+    if (b <= friction * h) return friction;
+    if (p > h) return std::max(friction, (b - friction * h) / (p - h));
+    return std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 Frontage wind_frontage(const SolidCells& solid, const Columns& columns,
@@ -185,22 +196,51 @@ double wind_force(const WindLoad& load, const WindOptions& options) {
 double wind_work(const RiskObject& object, const WindLoad& load, const WindOptions& options) {
     const double force = wind_force(load, options), weight = object.mass_kg * physics::gravity;
     if (!(force > 0) || !(weight > 0)) return 0;
+    // That way it can't fall: its energy alone counts, and brings nothing.
+    const double towards = push_barrier_J(object, load.way);
+    const double barrier = std::isfinite(towards) ? towards : 0;
     const auto work = [&](double threshold, double own_energy) {
-        if (threshold <= 0) return std::max(object.barrier_J, own_energy);
+        if (threshold <= 0) return std::max(barrier, own_energy);
         const double ratio = force / threshold;
-        return ratio * (ratio < 1 ? object.barrier_J : std::max(object.barrier_J, own_energy));
+        return ratio * (ratio < 1 ? barrier : std::max(barrier, own_energy));
     };
+    const double rubs = options.friction * weight;
     double most = 0;
-    if (load.pressure_height_m > 0) {
-        most = work(weight * load.half_base_m / load.pressure_height_m,
-                    tipping_energy(object.mass_kg, load.height_m, load.half_base_m));
-    }
+    const double tips = tipping_force(load, options.friction) * weight;
+    if (std::isfinite(tips))
+        most = work(tips, tipping_energy(object.mass_kg, load.height_m, load.half_base_m));
     // Sliding matters where there is an edge to slide off.
-    if (object.slide_distance_m >= 0) {
-        const double threshold = options.friction * weight;
-        most = std::max(most, work(threshold, threshold * object.slide_distance_m));
-    }
+    const double distance = slide_towards_m(object, load.way, 0);
+    if (std::isfinite(distance)) most = std::max(most, work(rubs, rubs * distance));
     return most;
+}
+
+std::vector<double> tipping_gusts(device::Device& device, const Surroundings& surroundings,
+                                  std::span<const RiskObject> objects, const WindOptions& options) {
+    const auto cells =
+        cells_of_objects(movable_object_of_cells(surroundings, objects), objects.size());
+    const Columns columns(*surroundings.cells);
+    std::vector<double> out(objects.size(), std::numeric_limits<double>::quiet_NaN());
+    device.threads().each(objects.size(), 1, [&](std::size_t o) {
+        if (cells[o].empty() || objects[o].grounded) return;
+        const Stance stands = stance(surroundings, cells[o]);
+        for (const auto& way : directions()) {
+            const Frontage front =
+                wind_frontage(*surroundings.cells, columns, cells[o], way, options.shelter_m);
+            if (!(front.area_m2 > 0)) continue;
+            const WindLoad load{front.area_m2,
+                                front.center_m - stands.bottom_m,
+                                half_base(objects[o], stands, way[0], way[1]),
+                                stands.height(),
+                                {way[0], way[1], 0}};
+            const double force =
+                tipping_force(load, options.friction) * objects[o].mass_kg * physics::gravity;
+            const double speed = std::sqrt(
+                2 * force / (options.air_density_kg_m3 * options.drag_coefficient * front.area_m2));
+            if (std::isfinite(speed) && !(out[o] <= speed)) out[o] = speed;
+        }
+    });
+    return out;
 }
 
 Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
@@ -252,8 +292,11 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
                        sum[2] + 1};
                 out.exposure[c] += 1.0f / directions;
             }
-            const WindLoad load{front.area_m2, front.center_m - stands.bottom_m,
-                                half_base(objects[o], stands, dx, dy), stands.height()};
+            const WindLoad load{front.area_m2,
+                                front.center_m - stands.bottom_m,
+                                half_base(objects[o], stands, dx, dy),
+                                stands.height(),
+                                {dx, dy, 0}};
             gales.emplace_back(load, Vec3{dx, dy, 0});
             const double force = wind_force(load, options);
             if (force > out.strongest[o].force_N)

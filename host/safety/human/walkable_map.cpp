@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "safety/walkable_map.h"
+#include "safety/human/walkable_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "safety/human/human_field.h"
 #include "safety/objects.h"
 
 namespace topple::safety {

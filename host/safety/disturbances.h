@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "safety/fields.h"
+#include "topple/parse.h"
+
+// What may disturb the objects. Each kind has a folder of its own, with its options, its field and
+// what is said of it; disturbances.cpp lists them. To add one takes a folder and a line there.
+namespace topple::safety {
+
+// What people are told of a kind, in words that follow on others.
+struct DisturbanceWords {
+    const char* cause;      // "people walking by"
+    const char* event;      // "walk", of which there may be several
+    const char* one_event;  // "one person walking through the room"
+    const char* column;     // its short name above a column of risks
+    const char* doing;      // what goes on while its field is made
+    const char* mend;       // for what it endangers most and nobody carries away
+
+    // How its arrows are drawn.
+    struct Arrows {
+        enum class Strength { visits, mean, speed };
+        Strength strength;  // visits: how often; mean: speed times how often; speed
+        bool at_tip;        // they point onto their place, and do not begin there
+        bool below_things;  // which would hide them: they are drawn through these
+        const char *title, *says, *legend;
+        double scale;  // of the strongest arrow's strength, in the unit
+        const char* unit;
+    } arrows;
+
+    // One of the figures that it is reckoned with: its key among scene.json's events, how it
+    // follows on one_event ("" if it does not), its name and unit.
+    struct Figure {
+        const char *key, *follows, *name, *unit;
+    } figure;
+};
+
+struct DisturbanceKind {
+    const char* name;
+    DisturbanceWords words;
+    std::unique_ptr<DisturbanceField> (*field)(device::Device& device,
+                                               const Surroundings& surroundings,
+                                               std::span<const RiskObject> objects,
+                                               const ParseOptions& options);
+    // What it reckons with, by names.
+    std::map<std::string, double> (*events)(const ParseOptions& options);
+};
+
+// In the order in which they are reckoned and shown.
+std::span<const DisturbanceKind* const> disturbance_kinds();
+// Null: none has that name.
+const DisturbanceKind* find_disturbance_kind(std::string_view name);
+// Throws Error(usage) that names those that there are.
+const DisturbanceKind& disturbance_kind(std::string_view name);
+
+// A field that has been made, and is asked nothing more.
+std::unique_ptr<DisturbanceField> made_field(Disturbance disturbance);
+
+}  // namespace topple::safety

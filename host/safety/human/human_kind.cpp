@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include "safety/human/human_field.h"
+
+namespace topple::safety {
+
+const DisturbanceKind& human_kind() {
+    static const DisturbanceKind kind{
+        .name = "human",
+        .words = {.cause = "people walking by",
+                  .event = "walk",
+                  .one_event = "one person walking through the room",
+                  .column = "human",
+                  .doing = "walking people through the room",
+                  .mend = "Keep the way past it clear, or fasten it",
+                  // Where as many come as go, the mean of their speeds is small.
+                  .arrows = {.strength = DisturbanceWords::Arrows::Strength::visits,
+                             .at_tip = false,
+                             .below_things = false,
+                             .title = "People walking by",
+                             .says = "Which way their bodies pass, and how often: this is what "
+                                     "knocks things over.",
+                             .legend = "how often people\u2019s bodies pass there",
+                             .scale = 100,
+                             .unit = "times in 100 walks"},
+                  .figure = {"walks", "", "walks", ""}},
+        .field = [](device::Device& device, const Surroundings& surroundings,
+                    std::span<const RiskObject> objects,
+                    const ParseOptions& options) -> std::unique_ptr<DisturbanceField> {
+            HumanOptions human;
+            human.seed = options.seed;
+            human.paths = options.walks;
+            human.motion = options.motion;
+            return std::make_unique<HumanField>(device, surroundings, objects, human);
+        },
+        .events =
+            [](const ParseOptions& options) {
+                return std::map<std::string, double>{{"walks", options.walks}};
+            }};
+    return kind;
+}
+
+}  // namespace topple::safety

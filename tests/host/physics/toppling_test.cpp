@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#include "physics/toppling.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <optional>
+
+#include "core/random.h"
+#include "device/devices.h"
+#include "physics/blow.h"
+
+namespace topple::physics {
+namespace {
+
+constexpr double brick_density = 700, brick_friction = 0.3;
+
+std::vector<std::array<double, 2>> sixteen() {
+    std::vector<std::array<double, 2>> out;
+    for (int n = 0; n < 16; ++n)
+        out.push_back({std::cos(n * std::numbers::pi / 8), std::sin(n * std::numbers::pi / 8)});
+    return out;
+}
+
+// A box that stands in the middle of nothing: where its support ends is said by `slides`.
+struct Brick {
+    Candidate candidate;
+    Toppling::Body body;
+    Stability tipping;
+
+    Brick(double x, double y, double z) {
+        candidate.primitives = {0};
+        candidate.body.mass_kg = brick_density * x * y * z;
+        candidate.body.center = {0, 0, z / 2};
+        candidate.support_polygon = {
+            {-x / 2, -y / 2}, {x / 2, -y / 2}, {x / 2, y / 2}, {-x / 2, y / 2}};
+        candidate.stood = true;
+        const double m = candidate.body.mass_kg / 12;
+        body = {{m * (y * y + z * z), m * (x * x + z * z), m * (x * x + y * y), 0, 0, 0}, z};
+        std::vector<std::vector<Vec3>> vertices(1);
+        for (unsigned c = 0; c < 8; ++c)
+            vertices[0].push_back(
+                {(c & 1 ? 0.5 : -0.5) * x, (c & 2 ? 0.5 : -0.5) * y, c & 4 ? z : 0});
+        const auto device = device::open_native(1);
+        const SupportTable table(*device, vertices, 0, geodesic_sphere(8));
+        tipping = evaluate(*device, table, std::span(&candidate, 1), Passes::exact)[0];
+    }
+    Toppling toppling(const SlideResult& sliding = {}) const {
+        return {candidate, body, tipping, sixteen(), sliding, brick_friction};
+    }
+};
+
+double brick_rise_J(const Brick& brick, double half) {
+    const double h = brick.candidate.body.center[2];
+    return brick.candidate.body.mass_kg * gravity * (std::hypot(half, h) - h);
+}
+
+TEST(Toppling, AboutEachEdgeIsTheClosedFormOfTheBlow) {
+    const Brick brick(0.1, 0.16, 0.4);
+    const Toppling toppling = brick.toppling();
+    const double mass = brick.candidate.body.mass_kg;
+    for (const auto& [way, half] : {std::pair{Vec3{1, 0, 0}, 0.05}, {Vec3{0, -1, 0}, 0.08}}) {
+        const Upright side{half, half, 0.2, std::sqrt((half * half + 0.04) / 3)};
+        for (std::size_t n = 0; n < Toppling::heights; ++n) {
+            const double z = toppling.height_m(n);
+            EXPECT_DOUBLE_EQ(z, 0.05 * (static_cast<double>(n) + 0.5));
+            const double v = std::min(tips_ahead_m_s(side, z, brick_friction),
+                                      tips_behind_m_s(side, z, brick_friction));
+            EXPECT_NEAR(toppling.blow_barrier_J(way, z) / (mass * v * v / 2 * free_share(side, z)),
+                        1, 2e-3)
+                << z;
+        }
+        EXPECT_NEAR(toppling.push_barrier_J(way), brick_rise_J(brick, half), 1e-6);
+    }
+}
+
+TEST(Toppling, ABookSlidesOffItsShelfAndTipsNowhere) {
+    const Brick book(0.15, 0.22, 0.03);
+    SlideResult sliding;
+    sliding.straight.assign(16, {});
+    sliding.straight[0] = {0.1, 0.5};  // towards +x, half a metre down
+    sliding.found = true;
+    sliding.distance_m = 0.1;
+    const Toppling toppling = book.toppling(sliding);
+    const double mass = book.candidate.body.mass_kg;
+    const double work = brick_friction * mass * gravity * 0.1;
+    EXPECT_NEAR(toppling.push_barrier_J({1, 0, 0}), work, 1e-9);
+    // At its middle a blow does nothing but slide it, and turns it on its way at its top.
+    EXPECT_NEAR(toppling.blow_barrier_J({1, 0, 0}, 0.015), work, 0.02 * work);
+    EXPECT_GT(toppling.blow_barrier_J({1, 0, 0}, 0.03), work);
+    EXPECT_EQ(toppling.struck_J(2 * work, {1, 0, 0}, 0.015), mass * gravity * 0.5);
+    for (const Vec3& way : {Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}}) {
+        EXPECT_TRUE(std::isinf(toppling.push_barrier_J(way)));
+        EXPECT_EQ(toppling.struck_J(100 * work, way, 0.015), 0);
+    }
+    EXPECT_DOUBLE_EQ(toppling.slide_distance_m({1, 0, 0}), 0.1);
+    EXPECT_TRUE(std::isinf(toppling.slide_distance_m({0, 1, 0})));
+}
+
+// On its long edge the same book tips over its face, and hardly over its spine.
+TEST(Toppling, ABookOnItsEdgeFallsOverItsFace) {
+    const Brick book(0.03, 0.15, 0.22);
+    const Toppling toppling = book.toppling();
+    const double face = toppling.blow_barrier_J({1, 0, 0}, 0.18);
+    EXPECT_LT(face, 1.3 * brick_rise_J(book, 0.015));
+    EXPECT_GT(toppling.blow_barrier_J({0, 1, 0}, 0.18), 15 * face);
+}
+
+TEST(Toppling, NoPushAndNoBlowTakesLessThanTheCurveSays) {
+    Random random(4);
+    for (int n = 0; n < 20; ++n) {
+        const Brick brick(random.uniform(0.03, 0.2), random.uniform(0.03, 0.2),
+                          random.uniform(0.1, 0.5));
+        SlideResult sliding;
+        for (int w = 0; w < 16; ++w)
+            sliding.straight.push_back({random.uniform(0.2, 1), random.uniform(0.1, 0.8)});
+        sliding.found = true;
+        sliding.distance_m = 0.2;
+        sliding.drop_m = 0.8;
+        const double weight = brick.candidate.body.mass_kg * gravity;
+        sliding.absorbed_J = brick_friction * weight * 0.2;
+        sliding.released_J = weight * 0.8;
+        const Instability all = combine_curves(brick.tipping, sliding);
+        const Toppling toppling = brick.toppling(sliding);
+        const auto envelope = [&](double W) {
+            double most = 0;
+            for (const InstabilityStep& step : all.curve)
+                if (step.W_J <= W * (1 + 1e-9)) most = std::max(most, step.S_J);
+            return most * (1 + 1e-9);
+        };
+        double least = INFINITY;
+        for (const auto& [x, y] : sixteen()) {
+            const Vec3 way{x, y, 0};
+            least = std::min(least, toppling.push_barrier_J(way));
+            for (const double W : {0.5, 1.0, 2.0, 8.0, 100.0}) {
+                const double joules = W * all.curve.front().W_J;
+                EXPECT_LE(toppling.pushed_J(joules, way), envelope(joules)) << n;
+                for (std::size_t h = 0; h < Toppling::heights; ++h)
+                    EXPECT_LE(toppling.struck_J(joules, way, toppling.height_m(h)),
+                              envelope(joules))
+                        << n;
+            }
+        }
+        // One of the directions is the easiest one, that of an edge.
+        EXPECT_NEAR(least, all.curve.front().W_J, 1e-6 * least) << n;
+    }
+}
+
+TEST(Toppling, ATableOfAThousandIsQuick) {
+    Random random(2);
+    std::vector<Brick> bricks;
+    for (int n = 0; n < 20; ++n)
+        bricks.emplace_back(random.uniform(0.03, 0.2), random.uniform(0.03, 0.2),
+                            random.uniform(0.1, 0.5));
+    const auto start = std::chrono::steady_clock::now();
+    double sum = 0;
+    for (int n = 0; n < 1000; ++n) {
+        const Toppling toppling = bricks[static_cast<std::size_t>(n % 20)].toppling();
+        for (const auto& [x, y] : sixteen()) {
+            for (std::size_t h = 0; h < Toppling::heights; ++h)
+                sum += std::min(toppling.blow_barrier_J({x, y, 0}, toppling.height_m(h)), 1e9);
+        }
+    }
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    std::printf("1,000 objects x 16 directions x 8 heights: %.0f ms (%g)\n", 1000 * seconds, sum);
+    EXPECT_LT(seconds, 2);
+}
+
+}  // namespace
+}  // namespace topple::physics
