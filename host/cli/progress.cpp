@@ -15,7 +15,7 @@ namespace {
 
 // What a stage does, short enough that the line fits on a terminal of 80 columns.
 const char* what_it_does(const std::string& stage) {
-    static constexpr std::array<std::pair<const char*, const char*>, 31> stages{
+    static constexpr std::array<std::pair<const char*, const char*>, 29> stages{
         {{"ingest", "reading the scan"},
          {"estimate", "measuring the scan"},
          {"sorting", "sorting the points into cubes on disk"},

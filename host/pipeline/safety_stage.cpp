@@ -86,11 +86,8 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
             return fields.back()->disturbance();
         }));
     }
-    out.gust_m_s = stage("gusts", [&] {
-        safety::WindOptions wind;
-        wind.friction = options.friction;
-        return safety::tipping_gusts(device, around, at_risk, wind);
-    });
+    out.gust_m_s =
+        stage("gusts", [&] { return safety::tipping_gusts(device, around, at_risk, {}); });
     stage("risk", [&] {
         for (const safety::Disturbance& d : out.disturbances)
             out.risk.push_back(safety::risk(d, at_risk));

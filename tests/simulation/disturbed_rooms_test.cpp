@@ -152,7 +152,7 @@ class SlowDisturbances : public ::testing::Test {
     // Each event of each object: what topple says of it, and the simulator.
     template <typename Fields, typename Falls>
     Tally compare(const char* what, const Fields& fields, const Falls& falls) {
-        Tally all, objects;
+        Tally all, objects, whatever_way;
         std::map<std::string, Tally> by_name;
         for (std::uint64_t seed = 1; seed <= layouts; ++seed) {
             Layout layout(seed);
@@ -169,6 +169,10 @@ class SlowDisturbances : public ::testing::Test {
                         const bool own = safety::instability(object, event) > 0;
                         const bool theirs = falls(simulation, scene, o, event, seed);
                         all.add(own, theirs);
+                        // Work of pushes and shaking is relative to the barrier of their way.
+                        if (std::isfinite(event.height_m))
+                            whatever_way.add(safety::instability(object.curve, event.W_J) > 0,
+                                             theirs);
                         by_name[layout.name[o]].add(own, theirs);
                         own_ever = own_ever || own;
                         theirs_ever = theirs_ever || theirs;
@@ -179,6 +183,7 @@ class SlowDisturbances : public ::testing::Test {
         }
         for (const auto& [name, tally] : by_name) tally.print(name.c_str());
         objects.print("objects, in any event");
+        if (whatever_way.all() > 0) whatever_way.print("by S(W) whatever the way");
         all.print(what);
         std::printf("of those that fall in either: %.1f %%\n",
                     100.0 * all.both / (all.all() - all.neither));

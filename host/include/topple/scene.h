@@ -134,7 +134,7 @@ struct Overturning {
     // The push that tips it at the height of a hand: a metre above the floor, at its top where that
     // is lower, and at its centre of mass where it stands higher than that.
     double hand_push_N = none, hand_push_error_N = none, hand_height_m = none;
-    // Gust, as fast as makes it as likely to tip as not, from where it takes least.
+    // Gust that is as likely to tip it as not, from where it takes least, if it does not slide.
     double gust_m_s = none, gust_error_m_s = none;
 };
 

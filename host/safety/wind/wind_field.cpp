@@ -233,8 +233,9 @@ std::vector<double> tipping_gusts(device::Device& device, const Surroundings& su
                                 half_base(objects[o], stands, way[0], way[1]),
                                 stands.height(),
                                 {way[0], way[1], 0}};
+            if (!(load.pressure_height_m > 0)) continue;
             const double force =
-                tipping_force(load, options.friction) * objects[o].mass_kg * physics::gravity;
+                objects[o].mass_kg * physics::gravity * load.half_base_m / load.pressure_height_m;
             const double speed = std::sqrt(
                 2 * force / (options.air_density_kg_m3 * options.drag_coefficient * front.area_m2));
             if (std::isfinite(speed) && !(out[o] <= speed)) out[o] = speed;

@@ -46,8 +46,9 @@ struct WindLoad {
 double wind_force(const WindLoad& load, const WindOptions& options);  // newtons
 double wind_work(const RiskObject& object, const WindLoad& load, const WindOptions& options);
 
-// By object, the least speed of a gust that tips it, m/s, over all directions; NaN: none does, or
-// it is grounded. options: its speed is not asked for.
+// By object, the least speed of a gust that tips it, m/s, over all directions, if it does not slide
+// before; NaN: nothing of it stands in the wind, or it is grounded. options: their speed and
+// friction are not asked for.
 std::vector<double> tipping_gusts(device::Device& device, const Surroundings& surroundings,
                                   std::span<const RiskObject> objects, const WindOptions& options);
 
