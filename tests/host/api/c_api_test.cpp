@@ -64,6 +64,13 @@ TEST_F(CApi, TellsItsVersionAndDevices) {
     EXPECT_TRUE(first.usable);
 }
 
+TEST_F(CApi, NamesItsDisturbances) {
+    const auto known = topple::known_disturbances();
+    for (std::uint32_t n = 0; n < known.size(); ++n)
+        EXPECT_EQ(topple_disturbance_name(n), known[n]);
+    EXPECT_EQ(topple_disturbance_name(static_cast<std::uint32_t>(known.size())), nullptr);
+}
+
 TEST_F(CApi, ParsesAsTheLibraryDoes) {
     ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK) << status.message;
     EXPECT_STREQ(status.message, "");
