@@ -231,6 +231,8 @@ int topple_result_contact(const topple_result* result, uint64_t index, topple_co
                           topple_status* status);
 int topple_result_support(const topple_result* result, uint64_t index, topple_support* support,
                           topple_status* status);
+/* The names of disturbances, from 0 on; NULL: there are no more. */
+const char* topple_disturbance_name(uint32_t index);
 /* Risk per event and chance of falling by one of the disturbances, either of which may be NULL;
  * NaN: it was not asked for. */
 int topple_result_risk(const topple_result* result, uint64_t index, const char* disturbance,

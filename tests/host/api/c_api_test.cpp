@@ -64,6 +64,13 @@ TEST_F(CApi, TellsItsVersionAndDevices) {
     EXPECT_TRUE(first.usable);
 }
 
+TEST_F(CApi, NamesItsDisturbances) {
+    const auto known = topple::known_disturbances();
+    for (std::uint32_t n = 0; n < known.size(); ++n)
+        EXPECT_EQ(topple_disturbance_name(n), known[n]);
+    EXPECT_EQ(topple_disturbance_name(static_cast<std::uint32_t>(known.size())), nullptr);
+}
+
 TEST_F(CApi, ParsesAsTheLibraryDoes) {
     ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK) << status.message;
     EXPECT_STREQ(status.message, "");
@@ -90,6 +97,19 @@ TEST_F(CApi, ParsesAsTheLibraryDoes) {
         const Object& o = expected.objects[n];
         EXPECT_EQ(object.barrier_J, o.barrier_J);
         EXPECT_EQ(object.risk_wind_J, o.risk_J.at("wind"));
+        double risk = 0, chance = 0;
+        EXPECT_EQ(topple_result_risk(result, n, "wind", &risk, &chance, &status), TOPPLE_OK);
+        EXPECT_EQ(risk, object.risk_wind_J);
+        EXPECT_EQ(chance, o.fall_chance.at("wind"));
+        EXPECT_EQ(topple_result_risk(result, n, "flood", &risk, nullptr, &status),
+                  TOPPLE_ERROR_USAGE);
+        EXPECT_NE(std::string(status.message).find("earthquake"), std::string::npos);
+        const topple::DirectedBarrier& directed = o.barrier_by_direction;
+        ASSERT_EQ(object.blow_heights, directed.height_m.size());
+        for (std::size_t b = 0; b < directed.blow_J.size(); ++b)
+            EXPECT_EQ(object.blow_barrier_J[b], directed.blow_J[b]);
+        for (std::size_t b = 0; b < directed.push_J.size(); ++b)
+            EXPECT_EQ(object.push_barrier_J[b], directed.push_J[b]);
         EXPECT_TRUE(std::isnan(object.risk_human_J));
         EXPECT_EQ(object.why, o.why.sentence);
         ASSERT_EQ(object.instability_count, o.instability.size());
