@@ -80,7 +80,8 @@ std::vector<Landscape::Places> places_of(const SolidCells& cells,
                                          double reach_m);
 
 // What sliding would be if the object stood at another of its places, column a and row b of them:
-// the nearest place among them that falls, in a straight line. `reachable` is false where it can't
+// the nearest place among them that falls, in a straight line. It may fall as soon as it has left
+// the place before, so ways are a step shorter than to there. `reachable` is false where it can't
 // be slid to.
 struct SlideElsewhere {
     bool reachable = false;

@@ -47,7 +47,8 @@ StraightSlide straight_from(const Landscape::Places& places, std::int32_t a, std
         if (x < 0 || y < 0 || x >= places.side || y >= places.side) return {};
         const float energy = places.energy_J[static_cast<std::size_t>(y * places.side + x)];
         if (!std::isfinite(energy)) return {};
-        if (energy < 0) return {at * places.step_m, weight_N > 0 ? -energy / weight_N : 0};
+        if (energy < 0)
+            return {std::max(0.0, at - 1) * places.step_m, weight_N > 0 ? -energy / weight_N : 0};
     }
 }
 
@@ -86,6 +87,7 @@ SlideElsewhere slide_elsewhere(const Landscape::Places& places, std::int32_t a, 
     }
     if (!std::isfinite(nearest) || !(weight > 0)) return out;
     out.slide.found = true;
+    nearest = std::max(0.0, nearest - places.step_m);
     out.slide.distance_m = nearest;
     out.slide.drop_m = out.slide.released_J / weight;
     out.slide.absorbed_J = friction * weight * nearest;

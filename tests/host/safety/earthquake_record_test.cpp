@@ -83,7 +83,7 @@ TEST(EarthquakeRecord, SixteenDirectionsOfTheSameRecord) {
     const Disturbance again = earthquake_field(*device, surroundings, room.objects, slip, options);
     for (unsigned d = 0; d < direction_count; ++d) {
         EXPECT_EQ(again.work[id][d].W_J, field.work[id][d].W_J);
-        EXPECT_NEAR(field.work[id][d].direction[0], direction(d)[0], 1e-12);
+        EXPECT_NEAR(std::abs(field.work[id][d].direction[0]), 1, 1e-12) << "over its long edges";
     }
 }
 
