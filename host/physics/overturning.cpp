@@ -37,4 +37,10 @@ Overturning overturning(const Candidate& candidate, const BodyError& known,
     return out;
 }
 
+double slope_error_share(const Overturning& overturning) {
+    const double radians = std::numbers::pi / 180, tilt = overturning.tilt_deg * radians;
+    const double share = overturning.tilt_error_deg * radians / (std::sin(tilt) * std::cos(tilt));
+    return std::isfinite(share) ? share : 0;
+}
+
 }  // namespace topple::physics

@@ -24,4 +24,7 @@ Overturning overturning(const Candidate& candidate, const BodyError& known,
                         const Stability& tipping, double top_m, double border_error_m,
                         double friction, double floor_m);
 
+// One standard error of b / h, the tangent of its tilt, as a share of it; 0 where it can't tip.
+double slope_error_share(const Overturning& overturning);
+
 }  // namespace topple::physics

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 
+#include "physics/overturning.h"
 #include "safety/disturbances.h"
 #include "safety/wind/wind_field.h"
 
@@ -60,6 +61,7 @@ std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objec
         r.barrier_J = o.instability.barrier_J;
         r.height_m = o.highest_m - o.lowest_m;
         r.base_width_m = least_width(o.candidate.support_polygon);
+        r.base_error_share = physics::slope_error_share(o.overturning);
         if (o.sliding.found) {
             r.slide_distance_m = o.sliding.distance_m;
             r.drop_m = o.sliding.drop_m;

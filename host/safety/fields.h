@@ -30,6 +30,7 @@ struct RiskObject {
     double barrier_J = 0;
     double height_m = 0;                 // of the object itself
     double base_width_m = 0;             // least width of its support polygon
+    double base_error_share = 0;         // one standard error of b / h, as a share of it
     double slide_distance_m = -1;        // shortest way to where its support ends; -1: no edge
     double drop_m = 0;                   // fall from there
     std::vector<InstabilityStep> curve;  // S(W)

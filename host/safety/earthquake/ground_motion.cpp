@@ -52,6 +52,7 @@ ShakenObject shaken_object(const RiskObject& object, const Stance& stance, const
     const auto [x, y] = weakest_way(object, stance);
     out.way = {{{x, y}, {-y, x}}};
     out.held = object.mass_kg > 0;
+    out.base_error_share = object.base_error_share;
     for (std::size_t p = 0; p < 2; ++p) {
         out.body[p] = profile(object, stance, columns, out.way[p][0], out.way[p][1]);
         out.held = out.held && out.body[p].least_base_m() > 0;
@@ -123,15 +124,18 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
             by_velocity.push_back(
                 {levels_g[level] * velocity[events[e].record], falls, direction_count});
         }
+        const auto with_error = [&](double dispersion) {
+            return std::min(most_dispersion, std::hypot(dispersion, objects[o].base_error_share));
+        };
         Fragility& f = out[o];
         for (const Trials& t : by_acceleration)
             f.counted.push_back({t.strength, static_cast<double>(t.falls) / t.of});
         if (const auto fitted = fit_lognormal(by_acceleration)) {
             f.pga_g = fitted->median;
-            f.pga_dispersion = fitted->dispersion;
+            f.pga_dispersion = with_error(fitted->dispersion);
             if (const auto by_speed = fit_lognormal(by_velocity)) {
                 f.pgv_m_s = by_speed->median;
-                f.pgv_dispersion = by_speed->dispersion;
+                f.pgv_dispersion = with_error(by_speed->dispersion);
             }
         }
         if (hazard) {

@@ -26,7 +26,8 @@ struct GroundEvent {
 struct ShakenObject {
     std::array<std::array<double, 2>, 2> way{};  // unit, which is ahead
     std::array<Profile, 2> body{};
-    bool held = false;  // its centre is above its support, not beyond the end of it
+    bool held = false;            // its centre is above its support, not beyond the end of it
+    double base_error_share = 0;  // of b / h, by what is not known of the object
 };
 ShakenObject shaken_object(const RiskObject& object, const Stance& stance, const Columns& columns);
 
@@ -40,8 +41,9 @@ Motions shake_objects(device::Device& device, std::span<const ShakenObject> obje
 
 // Chances of falling over the strength of shaking: each record scaled to peaks of 0.05 g and so on
 // by factors of 1.4 up to 4 g, on the ground, from 16 directions; what the objects stand on shakes
-// floor_amplification times as strongly. By object, empty for those not in `which`, and for all
-// where a record has no peak.
+// floor_amplification times as strongly. What upsets a body goes with b / h, so that the error of
+// that adds to the dispersion that records and directions make. By object, empty for those not in
+// `which`, and for all where a record has no peak.
 std::vector<Fragility> fragilities(device::Device& device, std::span<const ShakenObject> objects,
                                    std::span<const std::size_t> which,
                                    std::span<const Accelerogram> records, double friction,
