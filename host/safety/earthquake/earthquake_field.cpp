@@ -86,33 +86,54 @@ Shaken shaken_by(const ShakenObject& object, double mass_kg, double friction,
     return out;
 }
 
-// What the ideal body needs to fall and what the landscape says differ by the voxels; and a motion
-// may hold more energy than the weakest way takes, and yet not go that way.
-// `towards`: where the object then falls.
-double work_of(const RiskObject& object, const Shaken& shaken, const Vec3& towards) {
-    const double barrier = push_barrier_J(object, towards);
-    // Where it can't fall, its energy brings nothing.
-    if (barrier <= 0 || !std::isfinite(barrier)) return shaken.energy_J;
-    const bool slides_off =
-        std::any_of(shaken.slips.begin(), shaken.slips.end(), [&](const Shaken::Slip& slip) {
-            return slip.way_m > 0 &&
-                   slip.way_m >= slide_towards_m(object, slip.way, slip.support_m);
-        });
-    return shaken.overturns || slides_off ? std::max(shaken.energy_J, barrier)
-                                          : std::min(shaken.energy_J, std::nextafter(barrier, 0.0));
+// How far it slid along a level way at most, by the furthest that it was in both planes.
+double slid_towards_m(const Shaken& shaken, const Vec3& way) {
+    double out = 0;
+    for (std::size_t p = 0; p < 2; ++p) {
+        const Shaken::Slip &ahead = shaken.slips[2 * p], &behind = shaken.slips[2 * p + 1];
+        const double along = ahead.way[0] * way[0] + ahead.way[1] * way[1];
+        out += along > 0 ? ahead.way_m * along : behind.way_m * -along;
+    }
+    return out;
 }
 
-// A record shakes to and fro: of the four ways that it moves the one in which it falls most easily.
-Vec3 easiest(const RiskObject& object, const Shaken& shaken) {
-    Vec3 best{};
-    double least = std::numeric_limits<double>::infinity();
+// Where it goes, of all ways in which it falls the one that takes least; or, where it does not
+// fall, of all ways that it was shaken.
+struct Outcome {
+    bool falls = false;
+    Vec3 towards{};
+    double barrier_J = std::numeric_limits<double>::infinity();
+};
+Outcome outcome_of(const RiskObject& object, const Shaken& shaken) {
+    Outcome fallen{true}, shaken_only;
+    const auto weigh = [&](const Vec3& way, Outcome& outcome) {
+        const double barrier = push_barrier_J(object, way);
+        if (barrier >= outcome.barrier_J) return;
+        outcome.barrier_J = barrier;
+        outcome.towards = way;
+    };
     for (const Shaken::Slip& slip : shaken.slips) {
-        const double barrier = push_barrier_J(object, slip.way);
-        if (barrier >= least) continue;
-        least = barrier;
-        best = slip.way;
+        weigh(slip.way, shaken.overturns ? fallen : shaken_only);
+        const bool off = !object.toppling && slip.way_m > 0 &&
+                         slip.way_m >= slide_towards_m(object, slip.way, slip.support_m);
+        if (off) weigh(slip.way, fallen);
     }
-    return best;
+    for (unsigned d = 0; object.toppling && d < direction_count; ++d) {
+        const auto [x, y] = direction(d);
+        const double slid = slid_towards_m(shaken, {x, y, 0});
+        if (slid > 0 && slid >= slide_towards_m(object, {x, y, 0}, 0)) weigh({x, y, 0}, fallen);
+    }
+    return std::isfinite(fallen.barrier_J) ? fallen : shaken_only;
+}
+
+// What the ideal body needs to fall and what the landscape says differ by the voxels; and a motion
+// may hold more energy than the weakest way takes, and yet not go that way. Where it can't fall,
+// its energy brings nothing.
+double work_of(const Shaken& shaken, const Outcome& outcome) {
+    const double barrier = outcome.barrier_J;
+    if (barrier <= 0 || !std::isfinite(barrier)) return shaken.energy_J;
+    return outcome.falls ? std::max(shaken.energy_J, barrier)
+                         : std::min(shaken.energy_J, std::nextafter(barrier, 0.0));
 }
 
 // Slips on supports that end nowhere near go on for ever.
@@ -210,9 +231,9 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
             std::vector<WorkSample> work;
             // Also where it is 0: what has no barrier falls at any shaking.
             for (const Shaken& each : shaken) {
-                const Vec3 towards = easiest(object, each);
-                work.push_back({work_of(object, each, towards),
-                                1.0 / static_cast<double>(shaken.size()), towards});
+                const Outcome outcome = outcome_of(object, each);
+                work.push_back({work_of(each, outcome), 1.0 / static_cast<double>(shaken.size()),
+                                outcome.towards});
             }
             return work;
         };
