@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 #include <vector>
 
+#include "core/union_find.h"
 #include "vdb/completion.h"
 
 namespace topple::vdb {
@@ -16,12 +16,11 @@ namespace {
 class Pieces {
   public:
     Pieces(const VolumeView& view, std::int32_t longest_gap)
-        : view_(view), cells_(view.cells()), parent_(cells_.size()), seen_(cells_.size(), false) {
-        std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+        : view_(view), cells_(view.cells()), sets_(cells_.size()), seen_(cells_.size(), false) {
         join_neighbours();
         join_across_gaps(longest_gap);
         for (std::size_t n = 0; n < cells_.size(); ++n)
-            if (cells_.basis[n] == Basis::surface) seen_[root(n)] = true;
+            if (cells_.basis[n] == Basis::surface) seen_[sets_.root(n)] = true;
     }
 
     bool is_thing(std::size_t cell) const {
@@ -29,7 +28,7 @@ class Pieces {
         return p >= 0 && !view_.in_shell(p);
     }
     // Whether a cell hangs together with one that was seen.
-    bool seen(std::size_t cell) { return seen_[root(cell)]; }
+    bool seen(std::size_t cell) { return seen_[sets_.root(cell)]; }
 
   private:
     Voxel place(std::size_t n) const { return {cells_.i[n], cells_.j[n], cells_.k[n]}; }
@@ -64,23 +63,13 @@ class Pieces {
         }
     }
 
-    std::size_t root(std::size_t cell) {
-        while (parent_[cell] != cell) {
-            parent_[cell] = parent_[parent_[cell]];
-            cell = parent_[cell];
-        }
-        return cell;
-    }
     void join(std::size_t a, std::size_t b) {
-        if (!is_thing(a) || !is_thing(b)) return;
-        a = root(a);
-        b = root(b);
-        parent_[std::max(a, b)] = std::min(a, b);
+        if (is_thing(a) && is_thing(b)) sets_.join(a, b);
     }
 
     const VolumeView& view_;
     const SolidCells& cells_;
-    std::vector<std::size_t> parent_;
+    UnionFind sets_;
     std::vector<bool> seen_;
 };
 

@@ -2,6 +2,8 @@
 #include "api/c_result.h"
 
 #include <limits>
+#include <map>
+#include <string>
 
 #include "api/c_support.h"
 #include "safety/disturbances.h"
@@ -28,9 +30,10 @@ const Item& item(const std::vector<Item>& items, std::uint64_t index, const char
     return items[index];
 }
 
-double risk(const Object& object, const char* disturbance) {
-    const auto found = object.risk_J.find(disturbance);
-    return found == object.risk_J.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
+// NaN: that disturbance was not reckoned with.
+double figure(const std::map<std::string, double>& by_disturbance, const std::string& name) {
+    const auto found = by_disturbance.find(name);
+    return found == by_disturbance.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
 }
 
 }  // namespace
@@ -95,9 +98,9 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         copy_vector(from.direction, to.direction);
         to.instability = result->objects[index].instability;
         to.instability_count = from.instability.size();
-        to.risk_human_J = risk(from, "human");
-        to.risk_wind_J = risk(from, "wind");
-        to.risk_earthquake_J = risk(from, "earthquake");
+        to.risk_human_J = figure(from.risk_J, "human");
+        to.risk_wind_J = figure(from.risk_J, "wind");
+        to.risk_earthquake_J = figure(from.risk_J, "earthquake");
         to.unsafety = from.unsafety;
         to.agreement = from.agreement;
         to.why = from.why.sentence.c_str();
@@ -163,13 +166,8 @@ int topple_result_risk(const topple_result* result, uint64_t index, const char* 
         const Object& from = item(scene_of(result).objects, index, "object");
         const std::string name = disturbance ? disturbance : "";
         safety::disturbance_kind(name);
-        const auto of = [&](const std::map<std::string, double>& figures) {
-            const auto found = figures.find(name);
-            return found == figures.end() ? std::numeric_limits<double>::quiet_NaN()
-                                          : found->second;
-        };
-        if (risk_J) *risk_J = of(from.risk_J);
-        if (fall_chance) *fall_chance = of(from.fall_chance);
+        if (risk_J) *risk_J = figure(from.risk_J, name);
+        if (fall_chance) *fall_chance = figure(from.fall_chance, name);
     });
 }
 

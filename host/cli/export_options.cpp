@@ -72,12 +72,12 @@ void print_export(const ExportSummary& summary) {
             static_cast<unsigned long long>(pads), static_cast<unsigned long long>(held),
             static_cast<unsigned long long>(struts));
     print_misfits(summary);
-    if (std::isfinite(summary.floor_m))
-        std::printf("The floor lies at z = %.3f m", summary.floor_m);
+    if (!std::isfinite(summary.floor_m)) return;
+    std::printf("The floor lies at z = %.3f m", summary.floor_m);
     if (summary.free_radius_m > 0)
         std::printf("; within %.2f m of x = %.2f, y = %.2f nothing stands on it",
                     summary.free_radius_m, summary.free_place_m[0], summary.free_place_m[1]);
-    if (std::isfinite(summary.floor_m)) std::printf("\n");
+    std::printf("\n");
 }
 
 }  // namespace topple::cli

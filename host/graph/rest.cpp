@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/normal.h"
 #include "graph/outline.h"
 #include "physics/tipping.h"
 #include "solids/cell_shape.h"
@@ -49,19 +50,12 @@ double margin_of(const physics::Candidate& c, const Points& polygon) {
     return physics::footing(polygon, c.body.center[0], c.body.center[1]).margin_m;
 }
 
-double density(double z) {
-    return std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
-}
-double below(double z) {
-    return 0.5 * std::erfc(-z / std::numbers::sqrt2);
-}
-
 // How likely a thing is to stand so: little stands near the edge of what holds it, so that a margin
 // is as probable as it is wide, up to `widest`; that is what is to be expected of it beyond 0.
 double stands(const physics::Candidate& c, const Points& polygon, double noise_m, double widest_m) {
     if (polygon.empty()) return 0;
     const double z = margin_of(c, polygon) / noise_m;
-    return std::min(1.0, noise_m * (density(z) + z * below(z)) / widest_m);
+    return std::min(1.0, noise_m * (normal_density(z) + z * normal_cdf(z)) / widest_m);
 }
 
 // A polygon whose border is so much farther out.
@@ -89,7 +83,7 @@ Stood given_it_stood(double z) {
     z = std::max(z, -far);
     double all = 0, first = 0, second = 0;
     for (double m = std::max(z - far, 0.0) + step / 2; m < std::max(z, 0.0) + far; m += step) {
-        const double weight = m / (m + 2) * density(m - z);
+        const double weight = m / (m + 2) * normal_density(m - z);
         all += weight;
         first += weight * m;
         second += weight * m * m;

@@ -2,8 +2,8 @@
 #include "solids/coherence.h"
 
 #include <algorithm>
-#include <numeric>
 
+#include "core/union_find.h"
 #include "solids/boundary.h"
 
 namespace topple::solids {
@@ -31,20 +31,14 @@ std::vector<bool> air_by_patches(const SolidCells& cells, std::span<const Border
 }
 
 std::vector<BorderVoxel> cut_off(const SolidCells& cells, std::vector<bool>& air) {
-    std::vector<std::size_t> parent(cells.size());
-    std::iota(parent.begin(), parent.end(), std::size_t{0});
-    const auto root = [&](std::size_t k) {
-        while (parent[k] != k) k = parent[k] = parent[parent[k]];
-        return k;
-    };
+    UnionFind pieces(cells.size());
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::vector<std::size_t> next = next_cells(cells, axis, 1);
         for (std::size_t k = 0; k < cells.size(); ++k) {
             const std::size_t m = next[k];
             if (m == no_cell || air[k] || air[m] || cells.primitive[k] != cells.primitive[m])
                 continue;
-            const std::size_t a = root(k), b = root(m);
-            parent[std::max(a, b)] = std::min(a, b);
+            pieces.join(k, m);
         }
     }
     std::vector<bool> seen(cells.size(), false);
@@ -52,14 +46,15 @@ std::vector<BorderVoxel> cut_off(const SolidCells& cells, std::vector<bool>& air
     for (std::size_t k = 0; k < cells.size(); ++k) {
         const std::int32_t p = cells.primitive[k];
         if (p < 0 || cells.basis[k] != Basis::surface || air[k]) continue;
-        seen[root(k)] = true;
+        seen[pieces.root(k)] = true;
         any.resize(std::max(any.size(), static_cast<std::size_t>(p) + 1), false);
         any[static_cast<std::size_t>(p)] = true;
     }
     std::vector<BorderVoxel> out;
     for (std::size_t k = 0; k < cells.size(); ++k) {
         const std::int32_t p = cells.primitive[k];
-        if (p < 0 || static_cast<std::size_t>(p) >= any.size() || air[k] || seen[root(k)]) continue;
+        if (p < 0 || static_cast<std::size_t>(p) >= any.size() || air[k] || seen[pieces.root(k)])
+            continue;
         if (!any[static_cast<std::size_t>(p)]) continue;
         out.push_back({cells.i[k], cells.j[k], cells.k[k], p, true});
         air[k] = true;

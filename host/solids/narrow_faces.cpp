@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/union_find.h"
 #include "solids/explaining.h"
 #include "solids/grid_points.h"
 #include "solids/patch_map.h"
@@ -39,23 +40,18 @@ std::array<Key, 27> around(const Key& key) {
 // Sorted by order(): of each the number of the piece that hangs together over cells.
 std::vector<std::size_t> pieces_of(std::span<const Left> left) {
     std::map<Key, std::size_t> first;
-    std::vector<std::size_t> parent(left.size());
+    UnionFind pieces(left.size());
     for (std::size_t n = 0; n < left.size(); ++n)
-        parent[n] = first.try_emplace({left[n].primitive, left[n].cell}, n).first->second;
-    const auto root = [&](std::size_t n) {
-        while (parent[n] != n) n = parent[n] = parent[parent[n]];
-        return n;
-    };
+        pieces.join(n, first.try_emplace({left[n].primitive, left[n].cell}, n).first->second);
     for (const auto& [key, n] : first) {
         for (const Key& beside : around(key)) {
             const auto found = first.find(beside);
-            if (found == first.end()) continue;
-            const std::size_t a = root(n), b = root(found->second);
-            parent[std::max(a, b)] = std::min(a, b);
+            if (found != first.end()) pieces.join(n, found->second);
         }
     }
-    for (std::size_t n = 0; n < left.size(); ++n) parent[n] = root(n);
-    return parent;
+    std::vector<std::size_t> out(left.size());
+    for (std::size_t n = 0; n < left.size(); ++n) out[n] = pieces.root(n);
+    return out;
 }
 
 // The plane through a piece's points, which faces nowhere yet.

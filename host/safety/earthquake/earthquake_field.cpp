@@ -40,15 +40,6 @@ std::vector<GroundEvent> random_events(const EarthquakeOptions& options) {
     return events;
 }
 
-std::vector<GroundEvent> all_ways(const EarthquakeOptions& options) {
-    std::vector<GroundEvent> events;
-    for (unsigned d = 0; d < direction_count; ++d) {
-        const auto [dx, dy] = direction(d);
-        events.push_back({0, dx, dy, options.floor_amplification});
-    }
-    return events;
-}
-
 // What an event does to an object, wherever it stands.
 struct Shaken {
     double energy_J = 0;
@@ -64,20 +55,17 @@ struct Shaken {
 Shaken shaken_by(const ShakenObject& object, double mass_kg, double friction,
                  const std::array<Motion, 2>& motions) {
     Shaken out;
-    for (std::size_t p = 0; p < 2; ++p) {
-        const auto [dx, dy] = object.way[p];
-        out.slips[2 * p].way = {dx, dy, 0};
-        out.slips[2 * p + 1].way = {-dx, -dy, 0};
-    }
     out.overturns = !object.held;
-    if (!object.held) return out;
     for (std::size_t p = 0; p < 2; ++p) {
         const Motion& m = motions[p];
         const Profile& body = object.body[p];
-        out.slips[2 * p].way_m = m.slid_ahead_m;
-        out.slips[2 * p].support_m = body.support_ahead_m;
-        out.slips[2 * p + 1].way_m = m.slid_behind_m;
-        out.slips[2 * p + 1].support_m = body.support_behind_m;
+        const auto [dx, dy] = object.way[p];
+        Shaken::Slip &ahead = out.slips[2 * p], &behind = out.slips[2 * p + 1];
+        ahead.way = {dx, dy, 0};
+        behind.way = {-dx, -dy, 0};
+        if (!object.held) continue;
+        ahead = {ahead.way, m.slid_ahead_m, body.support_ahead_m};
+        behind = {behind.way, m.slid_behind_m, body.support_behind_m};
         out.overturns = out.overturns || m.overturned();
         const double slid = std::max(m.slid_ahead_m, m.slid_behind_m);
         out.energy_J = std::max(out.energy_J,
@@ -198,7 +186,7 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
                                                   ? std::vector{*options.record}
                                                   : made_up_records(made_up_count, options.seed);
     const std::vector<GroundEvent> events =
-        options.record ? all_ways(options) : random_events(options);
+        options.record ? from_all_ways(0, options.floor_amplification) : random_events(options);
     out.draws = events.size();
     if (options.record) note_record(*options.record, out.notes);
 

@@ -3,17 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "core/normal.h"
 
 namespace topple::safety {
 namespace {
-
-double normal_cdf(double z) {
-    return 0.5 * std::erfc(-z / std::numbers::sqrt2);
-}
-double normal_density(double z) {
-    return std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
-}
 
 // Of the log-likelihood in (a, b): its slopes, and Fisher's information.
 struct Score {

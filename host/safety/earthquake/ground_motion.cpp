@@ -36,6 +36,8 @@ std::array<double, 2> weakest_way(const RiskObject& object, const Stance& stance
     return way;
 }
 
+}  // namespace
+
 std::vector<GroundEvent> from_all_ways(std::uint32_t record, double scale) {
     std::vector<GroundEvent> out;
     for (unsigned d = 0; d < direction_count; ++d) {
@@ -44,8 +46,6 @@ std::vector<GroundEvent> from_all_ways(std::uint32_t record, double scale) {
     }
     return out;
 }
-
-}  // namespace
 
 ShakenObject shaken_object(const RiskObject& object, const Stance& stance, const Columns& columns) {
     ShakenObject out;

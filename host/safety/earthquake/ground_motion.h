@@ -20,6 +20,9 @@ struct GroundEvent {
     double scale = 1;  // of the record
 };
 
+// A record from each of the 16 directions.
+std::vector<GroundEvent> from_all_ways(std::uint32_t record, double scale);
+
 // An object, seen from the side in the plane in which its support ends nearest to below its centre,
 // and in the one across that. It is taken to move in each of them by itself: what stands on a
 // rectangle rocks over the edges of it. Friction counts in full in both.

@@ -153,6 +153,16 @@ std::vector<std::array<double, 2>> ways(const WindOptions& options) {
     return all;
 }
 
+// Of wind that blows along `way`, onto an object's front.
+WindLoad load_on(const RiskObject& object, const Stance& stands, const Frontage& front,
+                 const std::array<double, 2>& way) {
+    return {front.area_m2,
+            front.center_m - stands.bottom_m,
+            half_base(object, stands, way[0], way[1]),
+            stands.height(),
+            {way[0], way[1], 0}};
+}
+
 // The force from which wind tips a body, over its weight; infinite where it slides away instead.
 double tipping_force(const WindLoad& load, double friction) {
     const double b = load.half_base_m, h = load.height_m, p = load.pressure_height_m;
@@ -228,11 +238,7 @@ std::vector<double> tipping_gusts(device::Device& device, const Surroundings& su
             const Frontage front =
                 wind_frontage(*surroundings.cells, columns, cells[o], way, options.shelter_m);
             if (!(front.area_m2 > 0)) continue;
-            const WindLoad load{front.area_m2,
-                                front.center_m - stands.bottom_m,
-                                half_base(objects[o], stands, way[0], way[1]),
-                                stands.height(),
-                                {way[0], way[1], 0}};
+            const WindLoad load = load_on(objects[o], stands, front, way);
             if (!(load.pressure_height_m > 0)) continue;
             const double force =
                 objects[o].mass_kg * physics::gravity * load.half_base_m / load.pressure_height_m;
@@ -280,7 +286,7 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
         const Stance stands = stance(surroundings, cells[o]);
         std::vector<std::array<float, 3>> wind(cells[o].size(),
                                                {0, 0, 0});  // sum of directions, count
-        std::vector<std::pair<WindLoad, Vec3>> gales;
+        std::vector<WindLoad> gales;
         for (std::size_t w = 0; w < blown.size(); ++w) {
             const Frontage& front = fronts[o * blown.size() + w];
             if (front.area_m2 <= 0) continue;
@@ -293,12 +299,8 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
                        sum[2] + 1};
                 out.exposure[c] += 1.0f / directions;
             }
-            const WindLoad load{front.area_m2,
-                                front.center_m - stands.bottom_m,
-                                half_base(objects[o], stands, dx, dy),
-                                stands.height(),
-                                {dx, dy, 0}};
-            gales.emplace_back(load, Vec3{dx, dy, 0});
+            const WindLoad load = load_on(objects[o], stands, front, blown[w]);
+            gales.push_back(load);
             const double force = wind_force(load, options);
             if (force > out.strongest[o].force_N)
                 out.strongest[o] = {force, load.pressure_height_m};
@@ -306,8 +308,8 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
         out.response[o] = [gales = std::move(gales), options,
                            probability = 1.0 / double{directions}](const RiskObject& object) {
             std::vector<WorkSample> work;
-            for (const auto& [load, way] : gales)
-                work.push_back({wind_work(object, load, options), probability, way});
+            for (const WindLoad& load : gales)
+                work.push_back({wind_work(object, load, options), probability, load.way});
             return work;
         };
         out.work[o] = out.response[o](objects[o]);
