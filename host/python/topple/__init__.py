@@ -52,9 +52,9 @@ class ExportSummary(NamedTuple):
     """What Result.export() made."""
     bodies: list  # of ExportedBody: those of the objects by id, then pads
     deepest_overlap_m: float  # of any two bodies
-    floor_m: float  # height of the lowest level floor; nan: there is none
-    free_place_m: list  # the middle of the widest place on it where nothing stands, x, y, z; nan: there is none
-    free_radius_m: float  # of that place
+    floor_m: float  # height of the main level floor; None: there is none
+    free_place_m: list  # the middle of the widest place on it where nothing stands, x, y, z; None: there is none
+    free_radius_m: float  # of that place; 0: there is none
 
 
 def devices():
