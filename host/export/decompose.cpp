@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -55,8 +56,10 @@ class Decomposition {
         const auto sides = exact_.flat_sides(pieces_[0].cells, most_sides);
         const auto found = std::ranges::find_if(
             sides, [](const HalfSpace& side) { return side.normal[2] > upwards; });
-        if (found == sides.end() || found->normal[2] < level) return std::nullopt;
-        const HalfSpace& top = *found;
+        const std::optional<HalfSpace> seen =
+            found != sides.end() ? std::optional(*found) : layer_top();
+        if (!seen || seen->normal[2] < level) return std::nullopt;
+        const HalfSpace& top = *seen;
         PieceSolid& whole_solid = solid_of(pieces_[0]);
         auto& whole = whole_solid.hull;
         if (!whole) return std::nullopt;
@@ -132,6 +135,21 @@ class Decomposition {
     }
 
   private:
+    // Where a side lies on a border of voxels, it cuts none of them and no patch tells of it: the top
+    // of the layer that holds most.
+    std::optional<HalfSpace> layer_top() const {
+        constexpr double most = 0.5;
+        std::map<std::int32_t, std::size_t> count;
+        for (const std::size_t n : pieces_[0].cells)
+            if (grid_[n].whole()) ++count[grid_[n].at[2]];
+        const auto fullest =
+            std::ranges::max_element(count, {}, [](const auto& layer) { return layer.second; });
+        if (fullest == count.end() ||
+            static_cast<double>(fullest->second) <
+                most * static_cast<double>(pieces_[0].cells.size()))
+            return std::nullopt;
+        return HalfSpace{{0, 0, 1}, (fullest->first + 1) * voxel_m_};
+    }
     PieceSolid& solid_of(Piece& piece) {
         if (!piece.solid) piece.solid = exact_.of(piece.id, piece.cells);
         return *piece.solid;

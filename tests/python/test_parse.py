@@ -268,9 +268,9 @@ def test_exports_to_simulators(result, tmp_path):
     written = json.loads((tmp_path / 'mjcf' / 'bodies.json').read_text())
     assert [b['name'] for b in written['bodies']] == [b.name for b in made.bodies]
     assert 'object_1' in (tmp_path / 'mjcf' / 'scene.xml').read_text()
-    # A table's top is no floor that goes through under what stands.
-    assert (made.floor_m, made.free_place_m, made.free_radius_m) == (None, None, 0)
-    assert (written['floor_m'], written['free_place_m']) == (None, None)
+    # Its floor lies on a border of voxels, so that no fitted plane cuts one.
+    assert made.floor_m == written['floor_m'] == pytest.approx(0, abs=0.021)
+    assert made.free_place_m == written['free_place_m'] and 0.4 < made.free_radius_m < 0.7
     assert result.export(mjcf=tmp_path / 'mjcf', threads=1) == made
 
 
