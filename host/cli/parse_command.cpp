@@ -44,7 +44,8 @@ struct Arguments {
     ParseOptions options;
     std::optional<std::string> out;
     std::optional<double> voxel_m, tile_m;
-    std::string motion, motion_up;
+    std::vector<std::string> motions;
+    std::string motion_up;
     MotionFileOptions motion_file;
     unsigned threads = 0;
     bool quiet = false;
@@ -138,9 +139,9 @@ void read_options(Arguments& a) {
         throw Error(ErrorKind::usage,
                     "--accelerogram-unit: there is no --accelerogram whose unit it could be");
     check_options(a.options);
-    if (!a.motion.empty()) {
-        a.options.motion = std::make_shared<const BodyMotion>(read_motion(a.motion, a.motion_file));
-    }
+    for (const std::string& file : a.motions)
+        a.options.motions.push_back(
+            std::make_shared<const BodyMotion>(read_motion(file, a.motion_file)));
     if (wants_export(a.exported)) {
         if (a.tile_m)
             throw Error(
@@ -259,9 +260,10 @@ Command add_parse(CLI::App& app, const Team& team) {
         ->check(whole_number)
         ->capture_default_str();
     CLI::Option* const motion = app.add_option(
-        "--motion", a->motion,
-        "How a walker's body moves: a recording, .bvh or a table of joint positions\n"
-        "(default: published figures of gait)");
+        "--motion", a->motions,
+        "How walkers' bodies move: a recording, .bvh or a table of joint positions; given again\n"
+        "for more, each as often as the others (default: published figures of gait)");
+    motion->allow_extra_args(false);
     app.add_option("--motion-unit", a->motion_file.unit_m,
                    "Metres in the recording's unit (default: from the size of the body)")
         ->check(CLI::PositiveNumber)

@@ -135,8 +135,8 @@ class Decomposition {
     }
 
   private:
-    // Where a side lies on a border of voxels, it cuts none of them and no patch tells of it: the top
-    // of the layer that holds most.
+    // Where a side lies on a border of voxels, it cuts none of them and no patch tells of it: the
+    // top of the layer that holds most.
     std::optional<HalfSpace> layer_top() const {
         constexpr double most = 0.5;
         std::map<std::int32_t, std::size_t> count;
@@ -144,9 +144,8 @@ class Decomposition {
             if (grid_[n].whole()) ++count[grid_[n].at[2]];
         const auto fullest =
             std::ranges::max_element(count, {}, [](const auto& layer) { return layer.second; });
-        if (fullest == count.end() ||
-            static_cast<double>(fullest->second) <
-                most * static_cast<double>(pieces_[0].cells.size()))
+        if (fullest == count.end() || static_cast<double>(fullest->second) <
+                                          most * static_cast<double>(pieces_[0].cells.size()))
             return std::nullopt;
         return HalfSpace{{0, 0, 1}, (fullest->first + 1) * voxel_m_};
     }

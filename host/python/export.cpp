@@ -41,10 +41,12 @@ void bind_export(py::module_& module) {
             py::list bodies;
             for (const ExportedBody& body : summary.bodies) bodies.append(body_tuple(body));
             // None, not NaN: it equals itself, and `if` tells it.
-            const bool floor = !std::isnan(summary.floor_m), place = floor && !std::isnan(summary.free_place_m[0]);
+            const bool floor = !std::isnan(summary.floor_m),
+                       place = floor && !std::isnan(summary.free_place_m[0]);
             return py::make_tuple(bodies, summary.deepest_overlap_m,
                                   floor ? py::object(py::float_(summary.floor_m)) : py::none(),
-                                  place ? py::cast(summary.free_place_m) : py::none(), summary.free_radius_m);
+                                  place ? py::cast(summary.free_place_m) : py::none(),
+                                  summary.free_radius_m);
         });
 }
 

@@ -152,7 +152,7 @@ void bind_parse(py::module_& module) {
         .def_readwrite("grouping_time_s", &ParseOptions::grouping_time_s)
         .def("read_motion",
              [](ParseOptions& o, const std::string& file) {
-                 o.motion = std::make_shared<BodyMotion>(read_motion(file));
+                 o.motions.push_back(std::make_shared<BodyMotion>(read_motion(file)));
              })
         .def("read_accelerogram",
              [](ParseOptions& o, const std::string& file) {

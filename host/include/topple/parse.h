@@ -47,7 +47,7 @@ struct ParseOptions {
     // People who walk by: walks that are sampled, and how a body moves meanwhile, from
     // read_motion() or your own recording; none: a table of published figures of gait.
     unsigned walks = 500;
-    std::shared_ptr<const BodyMotion> motion;
+    std::vector<std::shared_ptr<const BodyMotion>> motions;
     double wind_m_s = 12;
     // Where the wind comes from, degrees clockwise from the scene's north, as Why::azimuth_deg;
     // none: from each of 16 directions.

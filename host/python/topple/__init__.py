@@ -186,6 +186,13 @@ class Result:
         return ExportSummary([ExportedBody(*body) for body in bodies], *rest)
 
 
+def _files(given):
+    """The paths of one file, of several, or of None."""
+    if given is None:
+        return []
+    return [os.fspath(given)] if isinstance(given, (str, os.PathLike)) else [os.fspath(file) for file in given]
+
+
 def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=None,
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, wind_m_s=12.0,
           wind_from_deg=None, pga_m_s2=None, accelerogram=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, grouping_time_s=None, normals=None,
@@ -201,7 +208,7 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     disturbances: a list of "human", "wind", "earthquake", which may be empty; or one of these names; or None for
     all that there are.
 
-    device: a Device of open_device(), or a backend's name. motion, accelerogram, hazard: files. normals, viewpoint: of
+    device: a Device of open_device(), or a backend's name. motion: a file, or a list of files; accelerogram, hazard: files. normals, viewpoint: of
     points, as they are given; where the sensor was. colours: of points, sRGB as uint8, an array of shape (N, 3),
     records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. progress(stage, done) is called as stages start and go on;
     contents_kg_m3: of closed furniture, or None where all is solid.
@@ -219,8 +226,8 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     options.contents_kg_m3 = contents_kg_m3
     options.walks, options.wind_m_s, options.wind_from_deg = walks, wind_m_s, wind_from_deg
     options.pga_m_s2, options.tolerable_J, options.grouping_time_s = pga_m_s2, tolerable_J, grouping_time_s
-    if motion is not None:
-        options.read_motion(os.fspath(motion))
+    for file in _files(motion):
+        options.read_motion(file)
     if accelerogram is not None:
         options.read_accelerogram(os.fspath(accelerogram))
     options.floor_amplification = floor_amplification

@@ -21,8 +21,9 @@ struct HumanOptions {
     double walking_speed_m_s = 1.3;
     double wander_m = 0.20;    // how far walkers stray sideways from their path, at most
     double restitution = 0.5;  // of a body's part that strikes a thing
-    // How the bodies of walkers move; none: as in the table of body_parts.h.
-    std::shared_ptr<const BodyMotion> motion;
+    // How the bodies of walkers move, each as often as the others; none: as in the table of
+    // body_parts.h.
+    std::vector<std::shared_ptr<const BodyMotion>> motions;
 };
 
 inline constexpr unsigned max_shown_paths = 100;  // walks whose way the report draws

@@ -29,7 +29,7 @@ const DisturbanceKind& human_kind() {
             HumanOptions human;
             human.seed = options.seed;
             human.paths = options.walks;
-            human.motion = options.motion;
+            human.motions = options.motions;
             return std::make_unique<HumanField>(device, surroundings, objects, human);
         },
         .events =

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "safety/directions.h"
+#include "safety/human/body_parts.h"
 #include "safety/human/human_field.h"
 #include "safety/human/posed_body.h"
 #include "safety/human/secondary_motion.h"
@@ -24,51 +25,86 @@ constexpr unsigned group_bands = 4;      // bands that share a layer: as many as
 constexpr double bin_m = 0.05;           // of the offsets around the body
 constexpr int half_bins = 24;            // of them to each side
 constexpr int bins = 2 * half_bins + 1;
-constexpr double fastest_m_s = 15;  // no hand is faster in a room: noise
-constexpr double sample_m = 0.025;  // along a segment
+// No hand is faster, but by noise: that of Olympic boxers (Walilko, Viano and Bir 2005,
+// Biomechanics of the head for Olympic boxer punches to the face).
+constexpr double fastest_m_s = 9.1;
+// A recording has hands that reach out where they are beyond the table's other ones for this share
+// of the time.
+constexpr double reaches_share = 0.01, reaches_m = 0.25;  // of the body's height
+constexpr double sample_m = 0.025;                        // along a segment
 
 struct Segment {
     BodyJoint from, to;
-    double mass;  // share of the body's that strikes with it
+    double mass;    // share of the body's that strikes with it
+    double radius;  // share of the body's height: it is so wide across its way
 };
 // Winter 2009, Table 4.1: hand .006, forearm .016, upper arm .028, foot .0145, leg .0465, thigh
-// .100, head and neck .081; to each limb half of the one that it hangs on.
+// .100, head and neck .081; to each limb half of the one that it hangs on. Radii: girths over 2 pi,
+// else half of breadths, over a stature of 1.756 m (Gordon et al., 2012 Anthropometric Survey of
+// U.S. Army Personnel, means of men): head .154, biceps .358, forearm .310, hand .088, thigh .625,
+// calf .392, foot .102 m.
 constexpr std::array<Segment, 13> segments{{
-    {neck, head, 0.081},
-    {left_shoulder, left_elbow, 0.028},
-    {left_elbow, left_wrist, 0.030},
-    {left_wrist, left_fingers, 0.014},
-    {right_shoulder, right_elbow, 0.028},
-    {right_elbow, right_wrist, 0.030},
-    {right_wrist, right_fingers, 0.014},
-    {left_hip, left_knee, 0.100},
-    {left_knee, left_ankle, 0.0965},
-    {left_ankle, left_toes, 0.03775},
-    {right_hip, right_knee, 0.100},
-    {right_knee, right_ankle, 0.0965},
-    {right_ankle, right_toes, 0.03775},
+    {neck, head, 0.081, 0.044},
+    {left_shoulder, left_elbow, 0.028, 0.032},
+    {left_elbow, left_wrist, 0.030, 0.028},
+    {left_wrist, left_fingers, 0.014, 0.025},
+    {right_shoulder, right_elbow, 0.028, 0.032},
+    {right_elbow, right_wrist, 0.030, 0.028},
+    {right_wrist, right_fingers, 0.014, 0.025},
+    {left_hip, left_knee, 0.100, 0.057},
+    {left_knee, left_ankle, 0.0965, 0.036},
+    {left_ankle, left_toes, 0.03775, 0.029},
+    {right_hip, right_knee, 0.100, 0.057},
+    {right_knee, right_ankle, 0.0965, 0.036},
+    {right_ankle, right_toes, 0.03775, 0.029},
 }};
 constexpr double trunk_mass = 0.142;  // the pelvis, as in body_parts.h
 
+// The trunk comes after them.
+constexpr std::size_t segment_count = segments.size() + 1;
+using Segments = std::array<bool, segment_count>;
+
+Segments recorded(const PosedBody& body) {
+    Segments out{};
+    for (std::size_t n = 0; n < segments.size(); ++n)
+        out[n] = body.has(segments[n].from) && body.has(segments[n].to);
+    out.back() = body.has(left_shoulder) && body.has(right_shoulder);
+    return out;
+}
+
 // One place that a segment covers in one frame, with its speed there.
 struct Visit {
+    std::size_t segment;
     int band, ahead, aside;  // bins
     double vx, vy, mass_kg;
+    double speed() const { return std::hypot(vx, vy); }
+    double energy_J() const { return 0.5 * mass_kg * (vx * vx + vy * vy); }
 };
 
-// Calls visit() for the places that each segment covers in a frame, once for each bin and band.
+// Calls visit() for the places that each segment covers in a frame, once for each bin and band:
+// what it passes is as wide as it is across its way, and passes once, however long it is along it.
 template <class Visitor>
 void visit_frame(const PosedBody& body, std::size_t f, const HumanOptions& options, Visitor visit) {
     const double band_m = options.body_height_m / band_count;
     std::set<std::tuple<int, int, int>> covered;
-    const auto mark = [&](const Vec3& p, const Vec3& v, double mass) {
-        const int band = static_cast<int>(std::floor(p[2] / band_m));
-        const int ahead = static_cast<int>(std::lround(p[0] / bin_m)),
-                  aside = static_cast<int>(std::lround(p[1] / bin_m));
+    const auto mark_at = [&](std::size_t segment, double x, double y, double z, const Vec3& v) {
+        const int band = static_cast<int>(std::floor(z / band_m));
+        const int ahead = static_cast<int>(std::lround(x / bin_m)),
+                  aside = static_cast<int>(std::lround(y / bin_m));
         if (band < 0 || band >= static_cast<int>(band_count)) return;
         if (std::abs(ahead) > half_bins || std::abs(aside) > half_bins) return;
         if (!covered.emplace(band, ahead, aside).second) return;
-        visit(Visit{band, ahead, aside, v[0], v[1], mass * options.body_mass_kg});
+        const double mass = segment < segments.size() ? segments[segment].mass : trunk_mass;
+        visit(Visit{segment, band, ahead, aside, v[0], v[1], mass * options.body_mass_kg});
+    };
+    // All across its way, to its radius on both sides.
+    const auto mark = [&](std::size_t segment, const Vec3& p, const Vec3& v, double radius_m) {
+        const double speed = std::hypot(v[0], v[1]);
+        const int n = speed > 0 ? static_cast<int>(std::ceil(radius_m / sample_m)) : 0;
+        for (int k = -n; k <= n; ++k) {
+            const double off = n > 0 ? k * radius_m / n / speed : 0;
+            mark_at(segment, p[0] - off * v[1], p[1] + off * v[0], p[2], v);
+        }
     };
     const auto between = [](const Vec3& a, const Vec3& b, double t) {
         return Vec3{a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
@@ -77,18 +113,21 @@ void visit_frame(const PosedBody& body, std::size_t f, const HumanOptions& optio
         const double length = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
         return std::clamp(static_cast<int>(std::ceil(length / sample_m)), 1, 100);
     };
-    for (const Segment& s : segments) {
-        if (!body.has(s.from) || !body.has(s.to)) continue;
+    const Segments has = recorded(body);
+    for (std::size_t n = 0; n < segments.size(); ++n) {
+        if (!has[n]) continue;
+        const Segment& s = segments[n];
         covered.clear();
         const Vec3 &a = body.at(s.from, f), &b = body.at(s.to, f);
-        const int n = steps(a, b);
-        for (int k = 0; k <= n; ++k) {
-            const double t = static_cast<double>(k) / n;
-            mark(between(a, b, t), between(body.moves(s.from, f), body.moves(s.to, f), t), s.mass);
+        const int count = steps(a, b);
+        for (int k = 0; k <= count; ++k) {
+            const double t = static_cast<double>(k) / count;
+            mark(n, between(a, b, t), between(body.moves(s.from, f), body.moves(s.to, f), t),
+                 s.radius * options.body_height_m);
         }
     }
     // The trunk between hips and shoulders.
-    if (!body.has(left_shoulder) || !body.has(right_shoulder)) return;
+    if (!has.back()) return;
     covered.clear();
     const bool hips = body.has(left_hip) && body.has(right_hip);
     const auto low = [&](BodyJoint hip, BodyJoint shoulder) { return hips ? hip : shoulder; };
@@ -103,7 +142,7 @@ void visit_frame(const PosedBody& body, std::size_t f, const HumanOptions& optio
                    vb = between(body.moves(lr, f), body.moves(right_shoulder, f), t);
         for (int k = 0; k <= across; ++k) {
             const double w = static_cast<double>(k) / across;
-            mark(between(a, b, w), between(va, vb, w), trunk_mass);
+            mark(segments.size(), between(a, b, w), between(va, vb, w), 0);
         }
     }
 }
@@ -164,57 +203,93 @@ struct LayerSums {
     double passes = 0, speed = 0;
 };
 
+// Whether a hand is out of the way of the body for some of the time, as that of someone who takes
+// or puts something.
+bool reaches_out(const PosedBody& body, const HumanOptions& options) {
+    std::size_t out = 0;
+    for (std::size_t f = 0; f < body.frames; ++f) {
+        bool far = false;
+        for (const BodyJoint hand : {left_wrist, left_fingers, right_wrist, right_fingers}) {
+            if (!body.has(hand)) continue;
+            const Vec3& p = body.at(hand, f);
+            far = far || std::hypot(p[0], p[1]) > reaches_m * options.body_height_m;
+        }
+        out += far;
+    }
+    return static_cast<double>(out) >= reaches_share * static_cast<double>(body.frames);
+}
+
+// The bodies, and what they have been recorded of together.
+struct Recordings {
+    std::vector<PosedBody> bodies;
+    std::array<unsigned, segment_count> with{};  // recordings that have a segment
+    // A visit's share of the time.
+    double weight(const Visit& v, const PosedBody& body) const {
+        return 1.0 / static_cast<double>(body.frames) / with[v.segment];
+    }
+    template <class Use>
+    void each(const HumanOptions& options, const Use& use) const {
+        for (const PosedBody& body : bodies)
+            for (std::size_t f = 0; f < body.frames; ++f)
+                visit_frame(body, f, options, [&](const Visit& v) { use(v, weight(v, body)); });
+    }
+};
+
+Recordings recordings_of(const HumanOptions& options, std::vector<std::string>& notes) {
+    Recordings out;
+    for (const auto& motion : options.motions) {
+        out.bodies.push_back(posed_body(*motion, options));
+        const PosedBody& body = out.bodies.back();
+        const Segments has = recorded(body);
+        for (std::size_t n = 0; n < segment_count; ++n) out.with[n] += has[n];
+        std::uint64_t visits = 0, noise = 0;
+        for (std::size_t f = 0; f < body.frames; ++f) {
+            visit_frame(body, f, options, [&](const Visit& v) {
+                ++visits;
+                noise += v.speed() > fastest_m_s;
+            });
+        }
+        if (visits == 0) {
+            refuse_motion(*motion,
+                          "no limb was recorded with both of its ends, between the floor and " +
+                              std::to_string(options.body_height_m) + " m above it");
+        }
+        notes.insert(notes.end(), motion->notes.begin(), motion->notes.end());
+        if (noise > 0) {
+            notes.push_back("Of the recorded motion " +
+                            std::to_string(std::max<std::uint64_t>(1, 100 * noise / visits)) +
+                            " % is faster than 9.1 m/s, as fast as boxers strike, and was left "
+                            "out as noise.");
+        }
+    }
+    return out;
+}
+
 }  // namespace
 
-SecondaryMotion recorded_motion(const BodyMotion& motion, const HumanOptions& options) {
+SecondaryMotion recorded_motion(const HumanOptions& options) {
     if (!(options.walking_speed_m_s > 0)) {
         throw Error(ErrorKind::usage,
                     "a recorded motion is one of walkers: walking_speed_m_s must be above 0");
     }
-    const PosedBody body = posed_body(motion, options);
-    const auto energy = [](const Visit& v) {
-        return 0.5 * v.mass_kg * (v.vx * v.vx + v.vy * v.vy);
-    };
-    double most = least_energy_J;
-    std::uint64_t visits = 0, noise = 0;
-    const auto each = [&](auto use) {
-        for (std::size_t f = 0; f < body.frames; ++f) {
-            visit_frame(body, f, options, [&](const Visit& v) { use(v, std::hypot(v.vx, v.vy)); });
-        }
-    };
-    each([&](const Visit& v, double speed) {
-        ++visits;
-        if (speed > fastest_m_s) {
-            ++noise;
-        } else {
-            most = std::max(most, energy(v));
-        }
-    });
-    if (visits == 0) {
-        refuse_motion(motion, "no limb was recorded with both of its ends, between the floor and " +
-                                  std::to_string(options.body_height_m) + " m above it");
-    }
-
     SecondaryMotion out;
-    out.notes = motion.notes;
-    if (noise > 0) {
-        out.notes.push_back("Of the recorded motion " +
-                            std::to_string(std::max<std::uint64_t>(1, 100 * noise / visits)) +
-                            " % is faster than 15 m/s and was left out as noise.");
-    }
+    const Recordings recordings = recordings_of(options, out.notes);
+    double most = least_energy_J;
+    recordings.each(options, [&](const Visit& v, double) {
+        if (v.speed() <= fastest_m_s) most = std::max(most, v.energy_J());
+    });
     const double range = std::log(most / least_energy_J);
     std::vector<double> weight(energy_levels, 0.0), energies(energy_levels, 0.0),
         masses(energy_levels, 0.0);
     std::map<std::pair<unsigned, unsigned>, LayerSums> layers;  // by level and group of bands
-    each([&](const Visit& v, double speed) {
-        const double W = energy(v);
+    recordings.each(options, [&](const Visit& v, double share) {
+        const double W = v.energy_J(), speed = v.speed();
         if (speed > fastest_m_s || W < least_energy_J) return;
         const auto level = static_cast<unsigned>(
             std::min(energy_levels - 1.0,
                      range > 0 ? energy_levels * std::log(W / least_energy_J) / range : 0.0));
         // Half as seen, half in the mirror; alike over the bands of the group.
-        const double passes =
-            speed / options.walking_speed_m_s / static_cast<double>(body.frames) / group_bands / 2;
+        const double passes = speed / options.walking_speed_m_s * share / group_bands / 2;
         weight[level] += passes;
         energies[level] += passes * W;
         masses[level] += passes * v.mass_kg;
@@ -247,6 +322,13 @@ SecondaryMotion recorded_motion(const BodyMotion& motion, const HumanOptions& op
                                   }});
         }
         out.layers.push_back(std::move(layer));
+    }
+    if (std::ranges::none_of(recordings.bodies,
+                             [&](const PosedBody& body) { return reaches_out(body, options); })) {
+        add_part(out, reaching_hand, options);
+        out.notes.push_back(
+            "Nobody reaches out in the recorded motion: hands that do, in one of 20 walks, are "
+            "taken from the table of gait.");
     }
     return out;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "safety/fields.h"
+#include "safety/human/body_parts.h"
 #include "safety/human/human_field.h"
 
 // Secondary motion (paper, 5.1.2 and Fig. 10): what strikes, and how hard, around a body that
@@ -49,14 +50,18 @@ struct SecondaryMotion {
 // wander_m further out, since walkers stray from their path. One walk past a place is `share`
 // passes.
 SecondaryMotion table_motion(const HumanOptions& options);
+// Adds one part, as a level of its own.
+void add_part(SecondaryMotion& motion, const BodyPart& part, const HumanOptions& options);
 
-// From a recording. Its walk as a whole is taken out, and that of the options put in: what the
-// joints do relative to the body's centre is the secondary motion. Limbs are lines between joints,
-// the trunk a plate. What covers a place in band b for the share p of the time, at a speed v,
-// passes it p v / v_walk times per walk. The body is as likely seen in a mirror, and strays by up
-// to wander_m to either side. Levels are 8 ranges of energy, logarithmic; segments have the masses
-// of Winter 2009, Table 4.1, and half of what they hang on moves along. Throws Error(input) naming
-// the source where no segment, or no heading, can be found.
-SecondaryMotion recorded_motion(const BodyMotion& motion, const HumanOptions& options);
+// From the recordings of the options. The walk as a whole is taken out, and that of the options put
+// in: what the joints do relative to the body's centre is the secondary motion. Limbs are as wide
+// as limbs are across the way that they move, the trunk is a plate. What covers a place in band b
+// for the share p of the time, at a speed v, passes it p v / v_walk times per walk. The body is as
+// likely seen in a mirror, and strays by up to wander_m to either side. Levels are 8 ranges of
+// energy, logarithmic; segments have the masses of Winter 2009, Table 4.1, and half of what they
+// hang on moves along. A segment moves in each recording that has it as often as in the others.
+// Where no hand reaches out, as in a short walk, that of the table is added. Throws Error(input)
+// naming the source where no segment, or no heading, can be found.
+SecondaryMotion recorded_motion(const HumanOptions& options);
 
 }  // namespace topple::safety

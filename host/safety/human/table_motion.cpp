@@ -33,24 +33,26 @@ Bands bands_of(const BodyPart& part) {
 
 }  // namespace
 
+void add_part(SecondaryMotion& motion, const BodyPart& part, const HumanOptions& options) {
+    const double speed = part.speed * options.walking_speed_m_s;
+    MotionLayer layer;
+    layer.level = motion.energy_J.size();
+    layer.bands = bands_of(part);
+    layer.speed_m_s = speed;
+    layer.ways.push_back({0, [part, options](double ahead, double aside, double spacing) {
+                              return part_weight(part, options, ahead, aside, spacing);
+                          }});
+    motion.mass_kg.push_back(part.mass * options.body_mass_kg);
+    motion.energy_J.push_back(0.5 * motion.mass_kg.back() * speed * speed);
+    motion.layers.push_back(std::move(layer));
+    motion.reach_m = std::max(motion.reach_m,
+                              std::hypot(part.reach * options.body_height_m + options.wander_m,
+                                         std::max(part.back, part.front) * options.body_height_m));
+}
+
 SecondaryMotion table_motion(const HumanOptions& options) {
     SecondaryMotion out;
-    for (const BodyPart& part : body_parts) {
-        const double speed = part.speed * options.walking_speed_m_s;
-        MotionLayer layer;
-        layer.level = out.energy_J.size();
-        layer.bands = bands_of(part);
-        layer.speed_m_s = speed;
-        layer.ways.push_back({0, [&part, options](double ahead, double aside, double spacing) {
-                                  return part_weight(part, options, ahead, aside, spacing);
-                              }});
-        out.mass_kg.push_back(part.mass * options.body_mass_kg);
-        out.energy_J.push_back(0.5 * out.mass_kg.back() * speed * speed);
-        out.layers.push_back(std::move(layer));
-        out.reach_m = std::max(out.reach_m,
-                               std::hypot(part.reach * options.body_height_m + options.wander_m,
-                                          std::max(part.back, part.front) * options.body_height_m));
-    }
+    for (const BodyPart& part : body_parts) add_part(out, part, options);
     return out;
 }
 
