@@ -6,46 +6,12 @@
 #include <optional>
 
 #include "export/separate.h"
+#include "export/touching.h"
 #include "physics/tipping.h"
 #include "physics/vectors.h"
 
 namespace topple::exports {
 namespace {
-
-using physics::dot;
-
-constexpr double resting_m = 2e-4;
-
-std::vector<Point2> outline_of(const ConvexPart& part, const HalfSpace& plane) {
-    std::vector<Point2> out;
-    for (const Vec3& c : part.corner)
-        if (std::abs(dot(plane.normal, c) - plane.offset_m) <= resting_m)
-            out.push_back({c[0], c[1]});
-    return out.empty() ? out : physics::convex_polygon(std::move(out));
-}
-
-// What of a convex polygon lies in another one, both counter-clockwise.
-std::vector<Point2> common(std::vector<Point2> polygon, const std::vector<Point2>& other) {
-    if (other.size() < 3) return {};
-    for (std::size_t n = 0; n < other.size() && !polygon.empty(); ++n) {
-        const Point2 &a = other[n], &b = other[(n + 1) % other.size()];
-        const auto inside = [&](const Point2& p) {
-            return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
-        };
-        std::vector<Point2> left;
-        for (std::size_t k = 0; k < polygon.size(); ++k) {
-            const Point2 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
-            const double at_p = inside(p), at_q = inside(q);
-            if (at_p >= 0) left.push_back(p);
-            if ((at_p >= 0) != (at_q >= 0)) {
-                const double t = at_p / (at_p - at_q);
-                left.push_back({p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])});
-            }
-        }
-        polygon = std::move(left);
-    }
-    return polygon;
-}
 
 // Where the plumb line through a point lies in a part, and how level the part is where it comes out
 // above: the cosine of the slope.
@@ -88,14 +54,9 @@ std::vector<Point2> footing_of(const std::vector<Body>& bodies, const std::vecto
         for (const ConvexPart& below : bodies[n].parts) {
             if (!near(box, below, resting_m)) continue;
             for (const ConvexPart& part : body.parts) {
-                if (!near(part, below, resting_m)) continue;
-                const Apart lie = apart(below, part);
-                if (lie.normal[2] < carries_cosine || lie.gap_m > resting_m) continue;
-                const double top = extent_along(below, lie.normal).high;
-                auto under = outline_of(below, {lie.normal, top});
-                auto over = outline_of(part, {lie.normal, top + lie.gap_m});
-                if (under.size() < 3) std::swap(under, over);
-                for (const Point2& p : common(std::move(over), under)) out.push_back(p);
+                const Touch touch = touch_of(below, part);
+                if (touch.normal[2] < carries_cosine) continue;
+                for (const Vec3& p : touch.point) out.push_back({p[0], p[1]});
             }
         }
     }

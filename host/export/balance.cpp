@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "export/balance.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include "export/separate.h"
+#include "export/touching.h"
+
+namespace topple::exports {
+namespace {
+
+// What moves with less than this share of gravity stands: sums are not exact.
+constexpr double at_rest_share = 0.01;
+
+Eigen::Vector3d eigen(const Vec3& v) {
+    return {v[0], v[1], v[2]};
+}
+
+// A force of one contact along an edge of its cone of friction, on the body above; its opposite
+// acts on the one below.
+struct Force {
+    std::size_t above = 0, below = 0;
+    Eigen::Vector3d along;                     // unit normal + friction
+    Eigen::Vector3d turns_above, turns_below;  // moments about the centres of mass
+    Eigen::Vector3d spins_above, spins_below;  // angular acceleration that 1 N gives
+    double yields = 0;                         // acceleration along itself that 1 N gives
+    double newtons = 0;
+};
+
+// Accelerations of rigid bodies that push against one another.
+class Statics {
+  public:
+    Statics(const std::vector<Body>& bodies, double friction, double gravity_m_s2)
+        : bodies_(bodies),
+          gravity_m_s2_(gravity_m_s2),
+          light_(bodies.size(), 0.0),
+          supple_(bodies.size(), Eigen::Matrix3d::Zero()),
+          reach_m_(bodies.size(), 0.0) {
+        for (std::size_t n = 0; n < bodies.size(); ++n) release(n);
+        for (const Touch& touch : touches_of(bodies)) add(touch, friction);
+    }
+    // It does not move from now on.
+    void hold(std::size_t body) {
+        light_[body] = 0;
+        supple_[body].setZero();
+        for (Force& force : forces_)
+            if (force.above == body || force.below == body) weigh(force);
+    }
+    // By Gauss's principle of least constraint, contacts leave the accelerations that are least,
+    // each weighed with its mass: a sum of squares over forces >= 0, one after another
+    // (Gauss-Seidel).
+    void solve() {
+        constexpr int most_rounds = 2000;
+        const double small = 1e-4 * gravity_m_s2_;
+        move_.assign(bodies_.size(), Eigen::Vector3d::Zero());
+        turn_.assign(bodies_.size(), Eigen::Vector3d::Zero());
+        for (std::size_t n = 0; n < bodies_.size(); ++n)
+            if (light_[n] > 0) move_[n][2] = -gravity_m_s2_;
+        for (const Force& force : forces_) apply(force, force.newtons);
+        for (int round = 0; round < most_rounds; ++round) {
+            double most = 0;
+            for (Force& force : forces_) {
+                if (!(force.yields > 0)) continue;
+                const double apart = force.along.dot(move_[force.above] - move_[force.below]) +
+                                     force.turns_above.dot(turn_[force.above]) -
+                                     force.turns_below.dot(turn_[force.below]);
+                const double newtons = std::max(0.0, force.newtons - apart / force.yields);
+                const double more = newtons - force.newtons;
+                if (more == 0) continue;
+                apply(force, more);
+                force.newtons = newtons;
+                most = std::max(most, std::abs(more) * force.yields);
+            }
+            if (most < small) break;
+        }
+    }
+    // Of its fastest end.
+    double acceleration_m_s2(std::size_t body) const {
+        return move_[body].norm() + turn_[body].norm() * reach_m_[body];
+    }
+
+  private:
+    void release(std::size_t n) {
+        const Body& body = bodies_[n];
+        if (body.fixed || !(body.mass_kg > 0) || body.parts.empty()) return;
+        // Symmetric: the order of its rows doesn't matter.
+        const Eigen::Map<const Eigen::Matrix3d> inertia(body.inertia_kg_m2.data());
+        light_[n] = 1 / body.mass_kg;
+        supple_[n] = inertia.inverse();
+        const ConvexPart box = box_around(body.parts);
+        reach_m_[n] = (eigen(box.high) - eigen(box.low)).norm() / 2;
+    }
+    void add(const Touch& touch, double friction) {
+        const Eigen::Vector3d n = eigen(touch.normal);
+        // One edge of the cone lies along the slope, on which things slide.
+        Eigen::Vector3d down = n[2] * n - Eigen::Vector3d::UnitZ();
+        if (down.norm() < 1e-6) down = n.cross(Eigen::Vector3d::UnitY());
+        down.normalize();
+        const Eigen::Vector3d level = n.cross(down);
+        for (const Vec3& p : touch.point) {
+            for (const Eigen::Vector3d& t :
+                 {down, Eigen::Vector3d(-down), level, Eigen::Vector3d(-level)}) {
+                Force force;
+                force.above = touch.above;
+                force.below = touch.below;
+                force.along = n + friction * t;
+                force.turns_above =
+                    (eigen(p) - eigen(bodies_[touch.above].center_m)).cross(force.along);
+                force.turns_below =
+                    (eigen(p) - eigen(bodies_[touch.below].center_m)).cross(force.along);
+                weigh(force);
+                forces_.push_back(force);
+            }
+        }
+    }
+    void weigh(Force& force) const {
+        force.spins_above = supple_[force.above] * force.turns_above;
+        force.spins_below = supple_[force.below] * force.turns_below;
+        force.yields = (light_[force.above] + light_[force.below]) * force.along.squaredNorm() +
+                       force.turns_above.dot(force.spins_above) +
+                       force.turns_below.dot(force.spins_below);
+    }
+    void apply(const Force& force, double newtons) {
+        move_[force.above] += newtons * light_[force.above] * force.along;
+        move_[force.below] -= newtons * light_[force.below] * force.along;
+        turn_[force.above] += newtons * force.spins_above;
+        turn_[force.below] -= newtons * force.spins_below;
+    }
+
+    const std::vector<Body>& bodies_;
+    double gravity_m_s2_;
+    std::vector<double> light_;            // 1 / mass; 0: it does not move
+    std::vector<Eigen::Matrix3d> supple_;  // inverse of the inertia
+    std::vector<double> reach_m_;
+    std::vector<Force> forces_;
+    std::vector<Eigen::Vector3d> move_, turn_;  // accelerations
+};
+
+}  // namespace
+
+void hold_unbalanced(std::vector<Body>& bodies, double friction, double gravity_m_s2) {
+    Statics statics(bodies, friction, gravity_m_s2);
+    while (true) {
+        statics.solve();
+        // What carries the others is the cause; of several the one that moves most.
+        std::optional<std::size_t> worst;
+        double most = 0;
+        for (std::size_t n = 0; n < bodies.size(); ++n) {
+            if (bodies[n].fixed || bodies[n].parts.empty() || !(bodies[n].firm_m > 0)) continue;
+            const double a = statics.acceleration_m_s2(n);
+            if (!(a > at_rest_share * gravity_m_s2)) continue;
+            if (worst && (bodies[n].level > bodies[*worst].level ||
+                          (bodies[n].level == bodies[*worst].level && a <= most)))
+                continue;
+            worst = n;
+            most = a;
+        }
+        if (!worst) return;
+        bodies[*worst].fixed = bodies[*worst].held = true;
+        statics.hold(*worst);
+    }
+}
+
+}  // namespace topple::exports
