@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -39,8 +40,10 @@ bool meets(const std::vector<Body>& bodies, const Body* own, const ConvexPart& p
     });
 }
 
+// A bar under a body, of its own or of the world.
 struct Strut {
     ConvexPart part;
+    std::vector<Point2> foot;  // where it adds to the footing
     double length_m = 0;
 };
 
@@ -58,7 +61,47 @@ std::optional<Strut> strut_at(const std::vector<Body>& bodies, const std::vector
     if (foot > middle->from_m) return std::nullopt;
     auto strut = bar({at[0], at[1], middle->from_m + into_m}, foot, half_m);
     if (!strut || meets(bodies, &body, *strut)) return std::nullopt;
-    return Strut{*std::move(strut), middle->from_m - foot};
+    std::vector<Point2> feet;
+    for (const Vec3& c : strut->corner)
+        if (c[2] < strut->low[2] + 1e-9) feet.push_back({c[0], c[1]});
+    return Strut{*std::move(strut), std::move(feet), middle->from_m - foot};
+}
+
+// One corner for each cell of a grid: the lowest.
+std::vector<Vec3> spread_low(const Body& body, double cell_m) {
+    std::map<std::array<std::int64_t, 2>, Vec3> lowest;
+    for (const ConvexPart& part : body.parts) {
+        for (const Vec3& c : part.corner) {
+            const std::array cell{static_cast<std::int64_t>(std::floor(c[0] / cell_m)),
+                                  static_cast<std::int64_t>(std::floor(c[1] / cell_m))};
+            const auto [at, fresh] = lowest.try_emplace(cell, c);
+            if (!fresh && c[2] < at->second[2]) at->second = c;
+        }
+    }
+    std::vector<Vec3> out;
+    for (const auto& [cell, corner] : lowest) out.push_back(corner);
+    return out;
+}
+
+// Slabs of the world under low corners of a body, the lowest first, where no body is in their way,
+// itself included.
+std::vector<Strut> posts_of(const std::vector<Body>& bodies, const Body& body, double half_m,
+                            double highest_m) {
+    constexpr double thick_m = 0.002;
+    const double lowest = box_around(body.parts).low[2];
+    std::vector<Strut> out;
+    for (const Vec3& c : spread_low(body, 2 * half_m)) {
+        if (c[2] > lowest + highest_m) continue;
+        auto slab = bar({c[0], c[1], c[2]}, c[2] - thick_m, half_m);
+        const bool in_way = !slab || std::ranges::any_of(bodies, [&](const Body& other) {
+            return !other.fixed && std::ranges::any_of(other.parts, [&](const ConvexPart& part) {
+                return near(*slab, part, 0) && overlap(*slab, part);
+            });
+        });
+        if (!in_way) out.push_back({*std::move(slab), {{c[0], c[1]}}, c[2] - lowest});
+    }
+    std::ranges::stable_sort(out, {}, &Strut::length_m);
+    return out;
 }
 
 // The shortest first. They are tried a little inwards of corners, where the body is widest.
@@ -89,12 +132,6 @@ std::vector<Strut> struts_of(const std::vector<Body>& bodies, const std::vector<
     }
     std::ranges::stable_sort(out, {}, &Strut::length_m);
     return out;
-}
-
-std::vector<Point2> with_foot(std::vector<Point2> points, const ConvexPart& strut) {
-    for (const Vec3& c : strut.corner)
-        if (c[2] < strut.low[2] + 1e-9) points.push_back({c[0], c[1]});
-    return points;
 }
 
 // The centre of mass of a body, and that with all it carries: both must stand.
@@ -137,7 +174,7 @@ std::vector<Strut> enough(const std::vector<Point2>& points, const Weights& weig
     const auto margin_with = [&](const std::vector<bool>& used, std::size_t count) {
         std::vector<Point2> all = points;
         for (std::size_t n = 0; n < count; ++n)
-            if (used[n]) all = with_foot(std::move(all), struts[n].part);
+            if (used[n]) all.insert(all.end(), struts[n].foot.begin(), struts[n].foot.end());
         return weights.margin(all);
     };
     std::vector<bool> used(struts.size(), true);
@@ -190,21 +227,30 @@ bool leans_on_fixed(const std::vector<Body>& bodies, const Body& body, double wi
     return false;
 }
 
-// A slab under the lowest corners of a body.
-Body pad_under(const Body& body, double within_m) {
-    constexpr double thick_m = 0.01;
-    const double lowest = box_around(body.parts).low[2];
-    std::vector<Vec3> points;
-    for (const ConvexPart& part : body.parts) {
-        for (const Vec3& c : part.corner) {
-            if (c[2] > lowest + within_m) continue;
-            points.push_back({c[0], c[1], lowest});
-            points.push_back({c[0], c[1], lowest - thick_m});
-        }
-    }
+// Whether anything is close below it, so that it was set down there and does not hang.
+bool near_below(const std::vector<Body>& bodies, const Body& body) {
+    constexpr double close_m = 0.1;
+    ConvexPart below = box_around(body.parts);
+    below.high[2] = below.low[2];
+    below.low[2] -= close_m;
+    return std::ranges::any_of(bodies, [&](const Body& other) {
+        return &other != &body && std::ranges::any_of(other.parts, [&](const ConvexPart& part) {
+            return part.high[2] <= below.high[2] + close_m && near(below, part, 0);
+        });
+    });
+}
+
+// A fixed pad that holds a body up: slabs under corners of it. No parts where none do.
+Body pad_under(const std::vector<Body>& bodies, const std::vector<bool>& stands,
+               const Weights& weights, const Body& body, double half_m) {
+    const ConvexPart box = box_around(body.parts);
+    const double firm = firm_share * body.firm_m;
     Body pad;
     pad.fixed = true;
-    if (auto slab = hull_part(points)) pad.parts.push_back(*std::move(slab));
+    for (Strut& post :
+         enough(footing_of(bodies, stands, body), weights,
+                posts_of(bodies, body, half_m, longest_share * (box.high[2] - box.low[2])), firm))
+        pad.parts.push_back(std::move(post.part));
     return pad;
 }
 
@@ -220,14 +266,11 @@ void brace(std::vector<Body>& bodies, double thick_m) {
         stands[n] = true;
         if (add_struts(bodies, stands, weights[n], bodies[n], thick_m / 2)) continue;
         Body& body = bodies[n];
-        if (!leans_on_fixed(bodies, body, thick_m)) {
-            Body pad = pad_under(body, thick_m);
-            std::vector<Point2> points;
-            for (const ConvexPart& part : pad.parts)
-                for (const Vec3& c : part.corner) points.push_back({c[0], c[1]});
-            if (weights[n].margin(points) > 0 && !meets(bodies, nullptr, pad.parts[0])) {
+        if (near_below(bodies, body) || !leans_on_fixed(bodies, body, thick_m)) {
+            Body pad = pad_under(bodies, stands, weights[n], body, thick_m / 2);
+            if (!pad.parts.empty()) {
                 body.on_pad = true;
-                body.carried_by = {static_cast<std::int32_t>(bodies.size())};
+                body.carried_by.push_back(static_cast<std::int32_t>(bodies.size()));
                 bodies.push_back(std::move(pad));
                 stands.push_back(true);
                 continue;

@@ -9,8 +9,9 @@ namespace topple::exports {
 
 // Gives each body a footing as firm as its parse says (Body::firm_m), by struts: upright bars from
 // its underside down to what is below, in the place of feet that were not seen. What struts can't
-// hold, as it hangs on a wall, say, is held; what hangs in the air gets a fixed pad under its
-// lowest corners, a body of its own at the end of the list. thick_m: of a strut.
+// hold gets a fixed pad, slabs under low corners of it, as a body of its own at the end of the list;
+// what hangs on a wall with nothing close below, and what no pad can hold, is held. thick_m: of a
+// strut.
 void brace(std::vector<Body>& bodies, double thick_m);
 
 }  // namespace topple::exports
