@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "export/brace.h"
 #include "export/separate.h"
 #include "export/touching.h"
 
@@ -35,13 +36,17 @@ struct Force {
 class Statics {
   public:
     Statics(const std::vector<Body>& bodies, double friction, double gravity_m_s2)
-        : bodies_(bodies),
-          gravity_m_s2_(gravity_m_s2),
-          light_(bodies.size(), 0.0),
-          supple_(bodies.size(), Eigen::Matrix3d::Zero()),
-          reach_m_(bodies.size(), 0.0) {
-        for (std::size_t n = 0; n < bodies.size(); ++n) release(n);
-        for (const Touch& touch : touches_of(bodies)) add(touch, friction);
+        : bodies_(bodies), friction_(friction), gravity_m_s2_(gravity_m_s2) {
+        extend();
+    }
+    // Takes in what has been added to the bodies.
+    void extend() {
+        const std::size_t first = light_.size();
+        light_.resize(bodies_.size(), 0.0);
+        supple_.resize(bodies_.size(), Eigen::Matrix3d::Zero());
+        reach_m_.resize(bodies_.size(), 0.0);
+        for (std::size_t n = first; n < bodies_.size(); ++n) release(n);
+        for (const Touch& touch : touches_of(bodies_, first)) add(touch);
     }
     // It does not move from now on.
     void hold(std::size_t body) {
@@ -94,7 +99,7 @@ class Statics {
         const ConvexPart box = box_around(body.parts);
         reach_m_[n] = (eigen(box.high) - eigen(box.low)).norm() / 2;
     }
-    void add(const Touch& touch, double friction) {
+    void add(const Touch& touch) {
         const Eigen::Vector3d n = eigen(touch.normal);
         // One edge of the cone lies along the slope, on which things slide.
         Eigen::Vector3d down = n[2] * n - Eigen::Vector3d::UnitZ();
@@ -107,7 +112,7 @@ class Statics {
                 Force force;
                 force.above = touch.above;
                 force.below = touch.below;
-                force.along = n + friction * t;
+                force.along = n + friction_ * t;
                 force.turns_above =
                     (eigen(p) - eigen(bodies_[touch.above].center_m)).cross(force.along);
                 force.turns_below =
@@ -132,7 +137,7 @@ class Statics {
     }
 
     const std::vector<Body>& bodies_;
-    double gravity_m_s2_;
+    double friction_, gravity_m_s2_;
     std::vector<double> light_;            // 1 / mass; 0: it does not move
     std::vector<Eigen::Matrix3d> supple_;  // inverse of the inertia
     std::vector<double> reach_m_;
@@ -142,8 +147,8 @@ class Statics {
 
 }  // namespace
 
-void hold_unbalanced(std::vector<Body>& bodies, double friction, double gravity_m_s2) {
-    Statics statics(bodies, friction, gravity_m_s2);
+void keep_balance(std::vector<Body>& bodies, const Scenery& scenery) {
+    Statics statics(bodies, scenery.friction, scenery.gravity_m_s2);
     while (true) {
         statics.solve();
         // What carries the others is the cause; of several the one that moves most.
@@ -152,7 +157,7 @@ void hold_unbalanced(std::vector<Body>& bodies, double friction, double gravity_
         for (std::size_t n = 0; n < bodies.size(); ++n) {
             if (bodies[n].fixed || bodies[n].parts.empty() || !(bodies[n].firm_m > 0)) continue;
             const double a = statics.acceleration_m_s2(n);
-            if (!(a > at_rest_share * gravity_m_s2)) continue;
+            if (!(a > at_rest_share * scenery.gravity_m_s2)) continue;
             if (worst && (bodies[n].level > bodies[*worst].level ||
                           (bodies[n].level == bodies[*worst].level && a <= most)))
                 continue;
@@ -160,6 +165,10 @@ void hold_unbalanced(std::vector<Body>& bodies, double friction, double gravity_
             most = a;
         }
         if (!worst) return;
+        if (!bodies[*worst].on_pad && put_on_pad(bodies, *worst, scenery.thick_m)) {
+            statics.extend();
+            continue;
+        }
         bodies[*worst].fixed = bodies[*worst].held = true;
         statics.hold(*worst);
     }

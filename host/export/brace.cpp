@@ -85,13 +85,11 @@ std::vector<Vec3> spread_low(const Body& body, double cell_m) {
 
 // Slabs of the world under low corners of a body, the lowest first, where no body is in their way,
 // itself included.
-std::vector<Strut> posts_of(const std::vector<Body>& bodies, const Body& body, double half_m,
-                            double highest_m) {
+std::vector<Strut> posts_of(const std::vector<Body>& bodies, const Body& body, double half_m) {
     constexpr double thick_m = 0.002;
     const double lowest = box_around(body.parts).low[2];
     std::vector<Strut> out;
     for (const Vec3& c : spread_low(body, 2 * half_m)) {
-        if (c[2] > lowest + highest_m) continue;
         auto slab = bar({c[0], c[1], c[2]}, c[2] - thick_m, half_m);
         const bool in_way = !slab || std::ranges::any_of(bodies, [&](const Body& other) {
             return !other.fixed && std::ranges::any_of(other.parts, [&](const ConvexPart& part) {
@@ -240,18 +238,21 @@ bool near_below(const std::vector<Body>& bodies, const Body& body) {
     });
 }
 
-// A fixed pad that holds a body up: slabs under corners of it. No parts where none do.
-Body pad_under(const std::vector<Body>& bodies, const std::vector<bool>& stands,
-               const Weights& weights, const Body& body, double half_m) {
-    const ConvexPart box = box_around(body.parts);
-    const double firm = firm_share * body.firm_m;
+// Puts a body on a fixed pad, which together with a footing that it has makes it stand firmly:
+// slabs under low corners of it. False where none do.
+bool pad_up(std::vector<Body>& bodies, std::size_t n, const std::vector<Point2>& footing,
+            const Weights& weights, double half_m) {
+    Body& body = bodies[n];
     Body pad;
     pad.fixed = true;
     for (Strut& post :
-         enough(footing_of(bodies, stands, body), weights,
-                posts_of(bodies, body, half_m, longest_share * (box.high[2] - box.low[2])), firm))
+         enough(footing, weights, posts_of(bodies, body, half_m), firm_share * body.firm_m))
         pad.parts.push_back(std::move(post.part));
-    return pad;
+    if (pad.parts.empty()) return false;
+    body.on_pad = true;
+    body.carried_by.push_back(static_cast<std::int32_t>(bodies.size()));
+    bodies.push_back(std::move(pad));
+    return true;
 }
 
 }  // namespace
@@ -265,19 +266,19 @@ void brace(std::vector<Body>& bodies, double thick_m) {
         if (bodies[n].fixed || bodies[n].parts.empty() || !(bodies[n].firm_m > 0)) continue;
         stands[n] = true;
         if (add_struts(bodies, stands, weights[n], bodies[n], thick_m / 2)) continue;
-        Body& body = bodies[n];
-        if (near_below(bodies, body) || !leans_on_fixed(bodies, body, thick_m)) {
-            Body pad = pad_under(bodies, stands, weights[n], body, thick_m / 2);
-            if (!pad.parts.empty()) {
-                body.on_pad = true;
-                body.carried_by.push_back(static_cast<std::int32_t>(bodies.size()));
-                bodies.push_back(std::move(pad));
-                stands.push_back(true);
-                continue;
-            }
+        if ((near_below(bodies, bodies[n]) || !leans_on_fixed(bodies, bodies[n], thick_m)) &&
+            pad_up(bodies, n, footing_of(bodies, stands, bodies[n]), weights[n], thick_m / 2)) {
+            stands.push_back(true);
+            continue;
         }
-        body.fixed = body.held = true;
+        bodies[n].fixed = bodies[n].held = true;
     }
+}
+
+bool put_on_pad(std::vector<Body>& bodies, std::size_t body, double thick_m) {
+    const std::vector<bool> all(bodies.size(), true);
+    return pad_up(bodies, body, footing_of(bodies, all, bodies[body]), weights_of(bodies)[body],
+                  thick_m / 2);
 }
 
 }  // namespace topple::exports

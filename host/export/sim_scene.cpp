@@ -152,7 +152,7 @@ SimScene sim_scene(const Scene& scene, const SolidScene& solids, ThreadPool& thr
             if (part.corner.size() > most_corners)
                 part = simplified(std::move(part), fine_voxels * solids.voxel_m());
     brace(out.bodies, solids.voxel_m() / 2);
-    hold_unbalanced(out.bodies, out.friction, out.gravity_m_s2);
+    keep_balance(out.bodies, {out.friction, out.gravity_m_s2, solids.voxel_m() / 2});
     if (made.floor) {
         out.floor_m = made.floor->high[2];
         out.free_place = free_place(*made.floor, out.bodies);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "export/touching.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -80,12 +81,12 @@ Touch touch_of(const ConvexPart& below, const ConvexPart& above) {
     return out;
 }
 
-std::vector<Touch> touches_of(const std::vector<Body>& bodies) {
+std::vector<Touch> touches_of(const std::vector<Body>& bodies, std::size_t first) {
     std::vector<ConvexPart> box;
     for (const Body& body : bodies) box.push_back(box_around(body.parts));
     std::vector<Touch> out;
     for (std::size_t a = 0; a < bodies.size(); ++a) {
-        for (std::size_t b = a + 1; b < bodies.size(); ++b) {
+        for (std::size_t b = std::max(a + 1, first); b < bodies.size(); ++b) {
             if (bodies[a].fixed && bodies[b].fixed) continue;
             if (bodies[a].parts.empty() || bodies[b].parts.empty()) continue;
             if (!near(box[a], box[b], resting_m)) continue;

@@ -22,7 +22,7 @@ struct Touch {
 // Where two parts touch, with normals from the first to the second; no points where they don't.
 Touch touch_of(const ConvexPart& below, const ConvexPart& above);
 
-// All, but those of two fixed bodies.
-std::vector<Touch> touches_of(const std::vector<Body>& bodies);
+// All, but those of two fixed bodies; or those of bodies from `first` on with any.
+std::vector<Touch> touches_of(const std::vector<Body>& bodies, std::size_t first = 0);
 
 }  // namespace topple::exports

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "blocks.h"
 #include "export/touching.h"
@@ -13,8 +15,8 @@ namespace {
 
 constexpr double friction = 0.3, gravity = 9.81;
 
-Body standing(ConvexPart part, int level) {
-    Body out = test::body_of(std::move(part), level, {});
+Body standing(ConvexPart part, int level, std::vector<std::int32_t> carried_by = {}) {
+    Body out = test::body_of(std::move(part), level, std::move(carried_by));
     out.firm_m = 0.01;
     return out;
 }
@@ -27,39 +29,41 @@ std::vector<Body> board_with_load(double post_x, double load_m) {
     std::vector<Body> out{floor()};
     out.push_back(standing(test::block({-0.5, -0.2, 0}, {-0.4, 0.2, 0.7}), 1));
     out.push_back(standing(test::block({post_x - 0.1, -0.2, 0}, {post_x, 0.2, 0.7}), 1));
-    out.push_back(standing(test::block({-0.5, -0.2, 0.7}, {0.5, 0.2, 0.72}), 2));
-    out.push_back(standing(test::block({0.4, -0.1, 0.72}, {0.5, 0.1, 0.72 + load_m}), 3));
+    out.push_back(standing(test::block({-0.5, -0.2, 0.7}, {0.5, 0.2, 0.72}), 2, {1, 2}));
+    out.push_back(standing(test::block({0.4, -0.1, 0.72}, {0.5, 0.1, 0.72 + load_m}), 3, {3}));
     return out;
 }
 
-std::vector<bool> held(std::vector<Body> bodies) {
-    hold_unbalanced(bodies, friction, gravity);
-    std::vector<bool> out;
-    for (const Body& body : bodies) out.push_back(body.held);
+// By body: free, on a pad, held.
+std::string kept(std::vector<Body> bodies) {
+    const std::size_t count = bodies.size();
+    keep_balance(bodies, {friction, gravity});
+    std::string out;
+    for (std::size_t n = 0; n < count; ++n)
+        out += bodies[n].held ? 'h' : bodies[n].on_pad ? 'p' : '.';
     return out;
 }
 
 TEST(Balance, WhatStandsIsLeftFree) {
-    EXPECT_EQ(held(board_with_load(0.5, 0.4)), std::vector<bool>(5, false));
+    EXPECT_EQ(kept(board_with_load(0.5, 0.4)), ".....");
     std::vector<Body> stack{floor()};
     for (int n = 0; n < 10; ++n)
         stack.push_back(standing(test::block({0, 0, 0.1 * n}, {0.3, 0.3, 0.1 * (n + 1)}), n + 1));
-    EXPECT_EQ(held(stack), std::vector<bool>(11, false));
+    EXPECT_EQ(kept(stack), "...........");
 }
 
-TEST(Balance, WhatGoesOverWithItsLoadIsHeldAndTheLoadIsNot) {
+TEST(Balance, WhatGoesOverWithItsLoadGetsAPadAndTheLoadDoesNot) {
     // Torques about the inner post's edge at x = 0.1: board 5.6 kg at 0, load 7 kg a litre at 0.45.
     const double balance_m = 5.6 * 0.1 / (0.35 * 14);  // height of the load that tips it: 0.114 m
-    EXPECT_EQ(held(board_with_load(0.1, 0.9 * balance_m)), std::vector<bool>(5, false));
-    EXPECT_EQ(held(board_with_load(0.1, 1.1 * balance_m)),
-              (std::vector<bool>{false, false, false, true, false}));
+    EXPECT_EQ(kept(board_with_load(0.1, 0.9 * balance_m)), ".....");
+    EXPECT_EQ(kept(board_with_load(0.1, 1.1 * balance_m)), "...p.");
 }
 
 TEST(Balance, WhatFallsByItselfMayDoSo) {
     std::vector<Body> bodies = board_with_load(0.1, 0.4);
     bodies[3].firm_m = 0;
     // The load stands on it and goes down with it: only what is said to stand is held.
-    EXPECT_EQ(held(bodies), (std::vector<bool>{false, false, false, false, true}));
+    EXPECT_EQ(kept(bodies), "....h");
 }
 
 TEST(Balance, FrictionHoldsOnASlopeUpToItsAngle) {
@@ -78,13 +82,16 @@ TEST(Balance, FrictionHoldsOnASlopeUpToItsAngle) {
         }
         bodies.push_back(standing(*hull_part(corners), 1));
         bodies[1].center_m = {1.05 * c - 0.025 * s, 0.45, 1.05 * s + 0.025 * c};
-        EXPECT_EQ(held(bodies)[1], slope > friction) << slope;
+        EXPECT_EQ(kept(bodies), slope > friction ? ".h" : "..") << slope;
     }
 }
 
-TEST(Balance, WhatLeansOnTheFloorAloneIsHeld) {
+TEST(Balance, WhatNothingCarriesGetsAPadOrIsHeld) {
     std::vector<Body> bodies{floor(), standing(test::block({0, 0, 0.2}, {0.3, 0.3, 0.5}), 1)};
-    EXPECT_TRUE(held(bodies)[1]) << "in the air";
+    EXPECT_EQ(kept(bodies), ".p") << "in the air";
+    // Its centre of mass lies beyond all of it.
+    bodies[1].center_m[0] = 1;
+    EXPECT_EQ(kept(bodies), ".h");
 }
 
 TEST(Touching, FacesEdgesAndCornersShareWhatLiesInBoth) {

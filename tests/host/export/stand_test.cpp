@@ -110,7 +110,7 @@ TEST(Brace, ATableOfWhichOneLegWasSeenGetsStruts) {
     table.solid_m3 += table.parts[1].volume_m3;
     std::vector<Body> bodies{ground(), table};
     brace(bodies, 0.02);
-    EXPECT_TRUE(bodies[1].held);
+    EXPECT_TRUE(bodies[1].on_pad);
     EXPECT_EQ(bodies[1].struts, 0);  // each would be a post of nearly its height
     table.parts[0] = block({0, 0, 0.7}, {1, 0.6, 1.6});
     table.center_m = {0.5, 0.3, 1.1};
