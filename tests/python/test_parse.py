@@ -39,6 +39,41 @@ def test_finds_what_is_there(result, points):
     assert result.timings_s['normals'] > 0 and result.notes
 
 
+@pytest.fixture
+def record(tmp_path):
+    def write(name, step_s, *values):
+        lines = [f'{n * step_s} {value}' for n, value in enumerate(values)]
+        (tmp_path / name).write_text('\n'.join(['# m/s2', *lines]))
+        return tmp_path / name
+    return write
+
+
+def test_takes_the_components_of_a_record(points, device, record):
+    shaken = [record(name, 0.1, 0, *values, 0) for name, values in
+              [('along', [4, -4] * 8), ('across', [3, -3] * 8), ('up', [2, -2] * 8)]]
+
+    def by(accelerogram):
+        parsed = topple.parse(points, device=device, disturbances='earthquake', accelerogram=accelerogram)
+        return [note for note in parsed.notes if 'accelerogram' in note], [o.fall_chance['earthquake'] for o in parsed.objects]
+
+    one, two, three = by(str(shaken[0])), by(shaken[:2]), by(tuple(shaken))
+    assert by((shaken[0],)) == one == by((shaken[0], None, None))
+    assert '4 m/s^2' in one[0][0] and '3.46 m/s^2' in two[0][0] and '3.46 m/s^2' in three[0][0]  # the level ones' mean
+    assert by((shaken[0], None, shaken[2]))[0] == one[0]
+
+
+@pytest.mark.parametrize('wrong', [(), ('a', 'b', 'c', 'd'), (None, 'b')])
+def test_a_record_has_one_to_three_components(points, device, wrong):
+    with pytest.raises(topple.Error, match='along, across and up') as error:
+        topple.parse(points, device=device, accelerogram=wrong)
+    assert error.value.kind == 'usage'
+
+
+def test_components_of_different_steps_are_refused(points, device, record):
+    with pytest.raises(topple.Error, match='components of one record'):
+        topple.parse(points, device=device, accelerogram=(record('a', 0.01, 1, -1, 1), record('b', 0.02, 1, -1, 1)))
+
+
 def test_arrays_are_the_results_own(result, points):
     for name in ('point_object', 'point_primitive', 'point_region'):
         array = getattr(result, name)

@@ -271,7 +271,7 @@ def parse(
     wind_m_s: float = ...,
     wind_from_deg: Optional[float] = ...,
     pga_m_s2: Optional[float] = ...,
-    accelerogram: Union[str, os.PathLike[str], None] = ...,
+    accelerogram: Union[str, os.PathLike[str], Sequence[Union[str, os.PathLike[str], None]], None] = ...,
     floor_amplification: float = ...,
     hazard: Union[str, os.PathLike[str], None] = ...,
     tolerable_J: float = ...,
