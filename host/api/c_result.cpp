@@ -98,9 +98,6 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         copy_vector(from.direction, to.direction);
         to.instability = result->objects[index].instability;
         to.instability_count = from.instability.size();
-        to.risk_human_J = figure(from.risk_J, "human");
-        to.risk_wind_J = figure(from.risk_J, "wind");
-        to.risk_earthquake_J = figure(from.risk_J, "earthquake");
         to.unsafety = from.unsafety;
         to.agreement = from.agreement;
         to.why = from.why.sentence.c_str();

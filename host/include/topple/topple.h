@@ -185,7 +185,6 @@ typedef struct topple_object {
     double direction[3];
     const topple_step* instability;
     uint64_t instability_count;
-    double risk_human_J, risk_wind_J, risk_earthquake_J; /* per event; NaN: not asked for */
     double unsafety; /* 1 to 10; NaN: not seen enough to be ranked */
     double agreement;
     const char *why, *advice; /* sentences */
