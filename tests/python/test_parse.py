@@ -30,6 +30,9 @@ def test_finds_what_is_there(result, points):
     assert 0 < tips.tilt_deg < 90 and tips.tilt_error_deg > 0 and tips.push_N > 0 and 0 < tips.shake_g <= 0.3
     assert np.isnan(upper.fragility.pga_g) and upper.fragility.counted.shape == (0, 2)  # no earthquake was asked for
     assert np.isnan(result.objects[0].overturning.tilt_deg) or not result.objects[0].grounded
+    assert set(upper.risk_error_J) == {'wind'} and upper.risk_error_J['wind'] >= upper.risk_spread_J['wind'] >= 0
+    assert upper.unsafety_category in ('none', 'low', 'medium', 'high') and upper.unsafety_certain in (True, False)
+    assert upper.fall.hits_J > 0 and upper.fall.people_share is None and len(upper.fall.lands_m) == 3  # no walks were asked for
     assert upper.why.endswith('.') and upper.instability.shape[1] == 2
     assert {(s.supporter, s.supported) for s in result.supports} == {
         (lower, o.id) for o in result.objects for lower in o.stands_on}
@@ -37,6 +40,13 @@ def test_finds_what_is_there(result, points):
     assert sum(p.points for p in result.primitives) == np.count_nonzero(result.point_primitive >= 0)
     assert set(result.fields) == {'wind'} and len(result.solid['state']) > 1000
     assert result.timings_s['normals'] > 0 and result.notes
+
+
+def test_says_who_passes_where_things_land(points, device):
+    parsed = topple.parse(points, device=device, disturbances='human', walks=50)
+    shares = [o.fall.people_share for o in parsed.objects if not o.grounded]
+    assert shares and all(0 <= share <= 1 for share in shares)
+    assert all(o.fall.people_share is None for o in parsed.objects if o.grounded)
 
 
 @pytest.fixture

@@ -16,9 +16,9 @@ from typing import NamedTuple
 import numpy as np
 
 from . import _topple
-from ._topple import Contact, Device, DirectedBarrier, Error, Object, Overturning, Primitive, Support, __version__, open_device
+from ._topple import Contact, Device, DirectedBarrier, Error, Fall, Object, Overturning, Primitive, Support, __version__, open_device
 
-__all__ = ['Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Object', 'Overturning', 'Primitive', 'Result',
+__all__ = ['Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Object', 'Overturning', 'Primitive', 'Result',
            'Support', '__version__', 'devices', 'open_device', 'parse']
 
 
