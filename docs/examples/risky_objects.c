@@ -19,8 +19,10 @@ static uint64_t print_objects(const topple_result* result) {
     for (uint64_t n = 0; n < scene.objects; ++n) {
         topple_object object = {.size = sizeof(object)};
         topple_result_object(result, n, &object, NULL);
-        if (object.unsafety > 7)
-            printf("object %d: %.2f J per storm. %s\n", object.id, object.risk_wind_J, object.why);
+        if (!(object.unsafety > 7)) continue;
+        double risk_J = 0;
+        topple_result_risk(result, n, "wind", &risk_J, NULL, NULL);
+        printf("object %d: %.2f J per storm. %s\n", object.id, risk_J, object.why);
     }
     printf("%llu objects of %llu points on %s\n", (unsigned long long)scene.objects,
            (unsigned long long)scene.points, scene.backend);

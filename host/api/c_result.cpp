@@ -98,9 +98,6 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         copy_vector(from.direction, to.direction);
         to.instability = result->objects[index].instability;
         to.instability_count = from.instability.size();
-        to.risk_human_J = figure(from.risk_J, "human");
-        to.risk_wind_J = figure(from.risk_J, "wind");
-        to.risk_earthquake_J = figure(from.risk_J, "earthquake");
         to.unsafety = from.unsafety;
         to.agreement = from.agreement;
         to.why = from.why.sentence.c_str();
@@ -132,6 +129,13 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         to.hand_height_m = from.overturning.hand_height_m;
         to.gust_m_s = from.overturning.gust_m_s;
         to.gust_error_m_s = from.overturning.gust_error_m_s;
+        copy_vector(from.fall.lands_m, to.lands_m);
+        to.hits_J = from.fall.hits_J;
+        to.people_share = from.fall.people_share;
+        to.falls = from.fall.falls;
+        to.lands_on = from.fall.lands_on;
+        to.unsafety_category = from.unsafety_category.c_str();
+        to.unsafety_certain = from.unsafety_certain;
         give(to, object, "object");
     });
 }
@@ -168,6 +172,17 @@ int topple_result_risk(const topple_result* result, uint64_t index, const char* 
         safety::disturbance_kind(name);
         if (risk_J) *risk_J = figure(from.risk_J, name);
         if (fall_chance) *fall_chance = figure(from.fall_chance, name);
+    });
+}
+
+int topple_result_risk_error(const topple_result* result, uint64_t index, const char* disturbance,
+                             double* error_J, double* spread_J, topple_status* status) {
+    return guarded(status, [&] {
+        const Object& from = item(scene_of(result).objects, index, "object");
+        const std::string name = disturbance ? disturbance : "";
+        safety::disturbance_kind(name);
+        if (error_J) *error_J = figure(from.risk_error_J, name);
+        if (spread_J) *spread_J = figure(from.risk_spread_J, name);
     });
 }
 

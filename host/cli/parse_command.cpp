@@ -102,20 +102,6 @@ std::filesystem::path default_output(const std::filesystem::path& input) {
     return name.string() + "-parsed";
 }
 
-// A further component of a record, which starts with it; where it is longer or shorter, its end is
-// cut off or 0.
-std::vector<double> component_beside(const Accelerogram& record, const std::string& file,
-                                     std::optional<double> unit_m_s2) {
-    Accelerogram other = read_accelerogram(file, unit_m_s2);
-    if (std::abs(other.step_s - record.step_s) > 1e-3 * record.step_s)
-        throw Error(ErrorKind::input, file + ": its samples are " + std::to_string(other.step_s) +
-                                          " s apart, but those of " + record.source + " " +
-                                          std::to_string(record.step_s) +
-                                          " s; give components of one record");
-    other.m_s2.resize(record.m_s2.size(), 0.0);
-    return std::move(other.m_s2);
-}
-
 // Everything that can be wrong with the options is told before a long parse.
 void read_options(Arguments& a) {
     if (a.voxel_m) {
@@ -150,13 +136,8 @@ void read_options(Arguments& a) {
         check_export(a.exported);
     }
     if (a.accelerogram)
-        a.options.accelerogram = read_accelerogram(*a.accelerogram, a.accelerogram_unit_m_s2);
-    if (a.accelerogram_across)
-        a.options.accelerogram->across_m_s2 = component_beside(
-            *a.options.accelerogram, *a.accelerogram_across, a.accelerogram_unit_m_s2);
-    if (a.accelerogram_up)
-        a.options.accelerogram->up_m_s2 =
-            component_beside(*a.options.accelerogram, *a.accelerogram_up, a.accelerogram_unit_m_s2);
+        a.options.accelerogram = read_accelerogram(*a.accelerogram, a.accelerogram_across,
+                                                   a.accelerogram_up, a.accelerogram_unit_m_s2);
     if (a.hazard) a.options.hazard = read_hazard_curve(*a.hazard);
 }
 

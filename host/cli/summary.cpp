@@ -20,6 +20,11 @@ double risk_of(const Object& o, const std::string& disturbance) {
     return at == o.risk_J.end() ? 0 : at->second;
 }
 
+std::string category_text(const Object& o) {
+    return o.unsafety_category.empty() ? "-"
+                                       : o.unsafety_category + (o.unsafety_certain ? "" : "?");
+}
+
 // The lowest unsafety is no risk worth a sentence, where there are others.
 bool at_risk(const Object* o) {
     constexpr double printed_as_lowest = 1.05;
@@ -83,8 +88,8 @@ void print_objects(const Scene& scene) {
     }
     std::stable_sort(movable.begin(), movable.end(),
                      [](const Object* a, const Object* b) { return rank_of(*a) > rank_of(*b); });
-    std::printf("\n%6s %8s %8s %9s %9s %6s ", "object", "unsafety", "mass kg", "barrier J",
-                "release J", "mode");
+    std::printf("\n%6s %8s %8s %8s %9s %9s %6s ", "object", "unsafety", "category", "mass kg",
+                "barrier J", "release J", "mode");
     for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
         std::printf("%8s J ", kind->words.column);
     std::printf(" rests on\n");
@@ -96,8 +101,8 @@ void print_objects(const Scene& scene) {
             std::snprintf(barrier, sizeof(barrier), "0-%.2g", o.barrier_J + o.barrier_error_J);
         else
             std::snprintf(barrier, sizeof(barrier), "%.3g", o.barrier_J);
-        std::printf("%6d %8s %8.3g %9s %9.3g %6s ", o.id, unsafety, o.mass_kg, barrier, o.release_J,
-                    o.mode.c_str());
+        std::printf("%6d %8s %8s %8.3g %9s %9.3g %6s ", o.id, unsafety, category_text(o).c_str(),
+                    o.mass_kg, barrier, o.release_J, o.mode.c_str());
         for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
             std::printf("%10.3g ", risk_of(o, kind->name));
         std::printf(" %s\n", rests_on.contains(o.id) ? rests_on[o.id].c_str() : "-");
@@ -106,9 +111,11 @@ void print_objects(const Scene& scene) {
         std::printf("   ... and %zu more in scene.json\n", movable.size() - rows_shown);
     if (!movable.empty())
         std::printf(
-            "   Barrier, release and mode are those of the easiest way out of its place; human, "
-            "wind "
-            "and quake are risks:\n   what it sets free per event, over all ways.\n");
+            "   Unsafety ranks the things of this scene, 10 the worst; category is by itself: how "
+            "often it falls, and how hard,\n   at the worse end of its error; ? where the better "
+            "end says less. Barrier, release and mode are those of the\n   easiest way out of its "
+            "place; human, wind and quake are risks: what it sets free per event, over all "
+            "ways.\n");
     print_sentences(movable);
 }
 

@@ -278,4 +278,21 @@ Accelerogram read_accelerogram(const fs::path& file, std::optional<double> unit_
     return record;
 }
 
+Accelerogram read_accelerogram(const fs::path& along, const std::optional<fs::path>& across,
+                               const std::optional<fs::path>& up, std::optional<double> unit_m_s2) {
+    Accelerogram record = read_accelerogram(along, unit_m_s2);
+    const auto component = [&](const fs::path& file) {
+        Accelerogram other = read_accelerogram(file, unit_m_s2);
+        if (std::abs(other.step_s - record.step_s) > 1e-3 * record.step_s)
+            fail(file, "its samples are " + std::to_string(other.step_s) +
+                           " s apart, but those of " + record.source + " " +
+                           std::to_string(record.step_s) + " s; give components of one record");
+        other.m_s2.resize(record.m_s2.size(), 0.0);
+        return std::move(other.m_s2);
+    };
+    if (across) record.across_m_s2 = component(*across);
+    if (up) record.up_m_s2 = component(*up);
+    return record;
+}
+
 }  // namespace topple

@@ -78,7 +78,8 @@ Json to_json(const Why& w) {
 Json to_json(const Fall& f) {
     return {{"falls", f.falls},           {"lands_m", vector(f.lands_m)},
             {"drop_m", number(f.drop_m)}, {"lands_on", f.lands_on},
-            {"leans_on", f.leans_on},     {"takes_along", f.takes_along}};
+            {"leans_on", f.leans_on},     {"takes_along", f.takes_along},
+            {"hits_J", number(f.hits_J)}, {"people_share", number(f.people_share)}};
 }
 
 Json to_json(const Advice& a) {
@@ -166,8 +167,12 @@ Json to_json(const Object& o) {
         {"why", to_json(o.why)},
         {"risk_J", numbers_by_name(o.risk_J)},
         {"risk_spread_J", numbers_by_name(o.risk_spread_J)},
+        {"risk_error_J", numbers_by_name(o.risk_error_J)},
         {"fall_chance", numbers_by_name(o.fall_chance)},
         {"unsafety", number(o.unsafety)},
+        {"unsafety_category",
+         o.unsafety_category.empty() ? Json(nullptr) : Json(o.unsafety_category)},
+        {"unsafety_certain", o.unsafety_certain},
         {"seen_enough", o.seen_enough},
         {"rests_by", o.rests_by},
         {"rest_probability", number(o.rest_probability)},
@@ -241,6 +246,10 @@ Fall fall_of(const Json& json) {
     f.lands_on = json.at("lands_on").get<std::int32_t>();
     if (json.contains("leans_on")) f.leans_on = json.at("leans_on").get<std::int32_t>();
     f.takes_along = json.at("takes_along").get<std::vector<std::int32_t>>();
+    if (json.contains("hits_J")) {
+        f.hits_J = number_at(json, "hits_J");
+        f.people_share = number_at(json, "people_share");
+    }
     return f;
 }
 
@@ -347,6 +356,14 @@ Object object_of(const Json& json) {
         o.advice = advice_of(json.at("advice"));
     }
     o.unsafety = number_at(json, "unsafety");
+    o.unsafety_category.clear();
+    o.unsafety_certain = false;
+    if (json.contains("unsafety_category")) {  // nor these
+        const Json& category = json.at("unsafety_category");
+        o.unsafety_category = category.is_null() ? "" : category.get<std::string>();
+        o.unsafety_certain = json.at("unsafety_certain").get<bool>();
+        o.risk_error_J = numbers_by_name(json.at("risk_error_J"));
+    }
     if (json.contains("seen_enough")) {  // nor these
         o.seen_enough = json.at("seen_enough").get<bool>();
         o.rests_by = json.at("rests_by").get<std::string>();

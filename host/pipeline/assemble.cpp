@@ -107,6 +107,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
             const safety::Risk& risk = safety.risk[d][o];
             to.risk_J[name] = risk.mean_J;
             to.risk_spread_J[name] = risk.spread_J;
+            to.risk_error_J[name] = safety.risk_error_J[d][o];
             to.fall_chance[name] = risk.chance;
             if (o < safety.disturbances[d].fragility.size())
                 to.fragility = safety.disturbances[d].fragility[o];
@@ -117,6 +118,9 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
         to.unsafety = from.grounded    ? 1
                       : to.seen_enough ? safety.unsafety[o]
                                        : std::numeric_limits<double>::quiet_NaN();
+        const safety::CategoryEnds& category = safety.category[o];
+        to.unsafety_category = to.seen_enough ? safety::to_string(category.lower) : "";
+        to.unsafety_certain = to.seen_enough && category.lower == category.higher;
         scene.objects.push_back(std::move(to));
     }
 }
@@ -277,7 +281,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     note_uncertain_barriers(scene);
     scene.swc_energy = objects.grouping.energy_curve;
     explain(parts, objects, to_input, scene);
-    foretell(parts, objects, safety.advice, to_input, scene);
+    foretell(objects, safety, to_input, scene);
 }
 
 void add_exposures(const SafetyStage& safety, const SolidCells& cells, vdb::VoxelScene& voxels) {

@@ -202,32 +202,6 @@ std::vector<std::int32_t> taken_along(const Scene& scene,
     return out;
 }
 
-// Where its centre of mass comes to lie once it has gone its easiest way, grid frame: over an edge
-// about its own height away and as high as it was beside the edge, unless it meets something
-// before; off a support's end at half of its length beyond it.
-physics::Swept landing(const SolidParts& parts, const StableObject& from) {
-    const physics::Instability& how = from.instability;
-    const Vec3& center = from.candidate.body.center;
-    const Vec3& way = how.weakest;
-    const double support =
-        from.candidate.support_polygon.empty() ? from.lowest_m : from.candidate.support_height_m;
-    const double height = std::max(center[2] - support, 0.0);
-    if (how.mode == "slide") {
-        const double on = from.sliding.distance_m + height;
-        return {{center[0] + on * way[0], center[1] + on * way[1], center[2] - how.drop_m}};
-    }
-    double beside = 0;  // from the centre of mass to the edge
-    if (how.edge) {
-        const auto& [a, b] = *how.edge;
-        for (std::size_t c = 0; c < 2; ++c) beside += ((a[c] + b[c]) / 2 - center[c]) * way[c];
-    }
-    physics::Swept swept =
-        physics::sweep_over_edge(parts.solids->cells(), parts.solids->columns(), from.candidate,
-                                 support, way, beside, from.highest_m);
-    if (!swept.stopped) swept.center[2] -= how.drop_m;
-    return swept;
-}
-
 constexpr double light_kg = 5;  // one carries it away rather than fastens it
 
 std::string joules(double value) {
@@ -286,8 +260,8 @@ std::string advice_sentence(const Object& object, const Suggestion& what) {
 
 }  // namespace
 
-void foretell(const SolidParts& parts, const ObjectStage& objects,
-              std::span<const Suggestion> advice, const ToInput& to_input, Scene& scene) {
+void foretell(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,
+              Scene& scene) {
     std::vector<std::vector<Support>> holders(scene.objects.size());  // of each object
     for (const Support& s : scene.supports)
         holders[static_cast<std::size_t>(s.supported)].push_back(s);
@@ -299,13 +273,15 @@ void foretell(const SolidParts& parts, const ObjectStage& objects,
         object.fall.takes_along = taken_along(scene, holders, o);
         for (const auto& [name, chance] : object.fall_chance)
             object.fall.falls = object.fall.falls || chance > 0;
-        const physics::Swept swept = landing(parts, from);
+        const physics::Swept& swept = safety.landings[o].swept;
+        object.fall.hits_J = safety.landings[o].hits_J;
+        if (o < safety.people_share.size()) object.fall.people_share = safety.people_share[o];
         object.fall.lands_m = to_input(swept.center);
         object.fall.drop_m = swept.stopped ? 0 : object.why.drop_m;
         object.fall.lands_on = swept.stopped ? -1 : object.why.lands_on;
         if (swept.by >= 0)
             object.fall.leans_on = objects.object_of_primitive[static_cast<std::size_t>(swept.by)];
-        const Suggestion& what = advice[o];
+        const Suggestion& what = safety.advice[o];
         static constexpr std::array kinds{"", "see", "check", "move", "fix"};
         object.advice.kind = kinds[static_cast<std::size_t>(what.kind)];
         object.advice.move_m = to_input(what.move_m);

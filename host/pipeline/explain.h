@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "pipeline/advise.h"
 #include "pipeline/object_stage.h"
+#include "pipeline/safety_stage.h"
 #include "pipeline/solid_parts.h"
 #include "topple/scene.h"
 
@@ -50,7 +50,7 @@ void explain(const SolidParts& parts, const ObjectStage& objects, const ToInput&
              Scene& scene);
 
 // Fills in each object's `fall` and `advice`, from `why` and the supports.
-void foretell(const SolidParts& parts, const ObjectStage& objects,
-              std::span<const Suggestion> advice, const ToInput& to_input, Scene& scene);
+void foretell(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,
+              Scene& scene);
 
 }  // namespace topple

@@ -8,6 +8,7 @@
 
 #include "physics/overturning.h"
 #include "safety/disturbances.h"
+#include "safety/risk_error.h"
 #include "safety/wind/wind_field.h"
 
 namespace topple {
@@ -59,6 +60,10 @@ std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objec
         r.grounded = o.grounded || !o.seen_enough() || o.candidate.support_polygon.empty();
         r.mass_kg = o.candidate.body.mass_kg;
         r.barrier_J = o.instability.barrier_J;
+        r.barrier_error_J = o.barrier_error_J;
+        r.mass_error_share = r.mass_kg > 0 ? o.body_error.mass_kg / r.mass_kg : 0;
+        r.center_height_m = o.candidate.body.center[2] - o.candidate.support_height_m;
+        r.slides = o.instability.mode == "slide" && o.sliding.found;
         r.height_m = o.highest_m - o.lowest_m;
         r.base_width_m = least_width(o.candidate.support_polygon);
         r.base_error_share = physics::slope_error_share(o.overturning);
@@ -74,6 +79,34 @@ std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objec
     return out;
 }
 
+namespace {
+
+// Risks, and what the errors of barriers and masses make of them and of the categories.
+void weigh_risks(std::span<const safety::RiskObject> at_risk, SafetyStage& out) {
+    const auto weaker = safety::at_end(at_risk, -1), firmer = safety::at_end(at_risk, 1);
+    out.category.resize(at_risk.size());
+    for (safety::Disturbance& d : out.disturbances) {
+        out.risk.push_back(safety::risk(d, at_risk));
+        const auto lower = safety::risk_if(d, weaker), higher = safety::risk_if(d, firmer);
+        d.work_if = {};  // it refers to the field
+        std::vector<double> error_J;
+        for (std::size_t o = 0; o < at_risk.size(); ++o) {
+            const double share = at_risk[o].mass_error_share;
+            error_J.push_back(
+                safety::risk_error_J(out.risk.back()[o], {lower[o], higher[o]}, share));
+            safety::CategoryEnds& ends = out.category[o];
+            ends.lower = std::max(ends.lower, safety::category(lower[o], 1 + share));
+            ends.higher =
+                std::max(ends.higher, safety::category(higher[o], std::max(0.0, 1 - share)));
+        }
+        out.risk_error_J.push_back(std::move(error_J));
+    }
+    out.unsafety = safety::unsafety(out.risk);
+    out.unsafety.resize(at_risk.size(), 1.0);
+}
+
+}  // namespace
+
 SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
                           const ObjectStage& objects, const ParseOptions& options,
                           StageClock& stage) {
@@ -88,14 +121,18 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
             return fields.back()->disturbance();
         }));
     }
+    stage("falls", [&] {
+        out.landings = landings(parts, objects);
+        std::vector<safety::FallZone> zones;
+        for (const Landing& landing : out.landings) zones.push_back(landing.zone);
+        for (const auto& field : fields) {
+            const std::vector<double> shares = field->passing_shares(zones);
+            if (!shares.empty()) out.people_share = shares;
+        }
+    });
     out.gust_m_s =
         stage("gusts", [&] { return safety::tipping_gusts(device, around, at_risk, {}); });
-    stage("risk", [&] {
-        for (const safety::Disturbance& d : out.disturbances)
-            out.risk.push_back(safety::risk(d, at_risk));
-        out.unsafety = safety::unsafety(out.risk);
-        out.unsafety.resize(at_risk.size(), 1.0);
-    });
+    stage("risk", [&] { weigh_risks(at_risk, out); });
     stage("advice", [&] {
         out.advice =
             advise(*parts.solids, objects.object_of_primitive, objects.objects, at_risk,

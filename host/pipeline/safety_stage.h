@@ -6,9 +6,11 @@
 
 #include "device/device.h"
 #include "pipeline/advise.h"
+#include "pipeline/landing.h"
 #include "pipeline/object_stage.h"
 #include "pipeline/stage_clock.h"
 #include "safety/fields.h"
+#include "safety/unsafety_category.h"
 
 // Section 5 of the paper: what may disturb the objects, and what that risks. Grid frame.
 namespace topple {
@@ -17,8 +19,12 @@ struct SafetyStage {
     std::vector<safety::Disturbance> disturbances;
     std::vector<std::vector<safety::Risk>> risk;  // by disturbance, then by object
     std::vector<Suggestion> advice;               // by object
-    std::vector<double> unsafety;                 // by object, 1 to 10
-    std::vector<double> gust_m_s;                 // by object: that tips it; NaN: none does
+    std::vector<Landing> landings;                // by object
+    std::vector<double> people_share;             // by object: of walks past its landing; or empty
+    std::vector<std::vector<double>> risk_error_J;  // as `risk`: one standard error of it
+    std::vector<double> unsafety;                   // by object, 1 to 10
+    std::vector<safety::CategoryEnds> category;     // by object
+    std::vector<double> gust_m_s;                   // by object: that tips it; NaN: none does
 };
 
 // The objects as the fields and the risk see them; ids are their places in the list.

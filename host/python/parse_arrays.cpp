@@ -155,8 +155,9 @@ void bind_parse(py::module_& module) {
                  o.motions.push_back(std::make_shared<BodyMotion>(read_motion(file)));
              })
         .def("read_accelerogram",
-             [](ParseOptions& o, const std::string& file) {
-                 o.accelerogram = read_accelerogram(file);
+             [](ParseOptions& o, const std::string& along, const std::optional<std::string>& across,
+                const std::optional<std::string>& up) {
+                 o.accelerogram = read_accelerogram(along, across, up);
              })
         .def("read_hazard_curve",
              [](ParseOptions& o, const std::string& file) { o.hazard = read_hazard_curve(file); });

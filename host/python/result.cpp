@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
+#include <optional>
+#include <string>
+
 #include "python.h"
 
 namespace topple::python {
@@ -82,6 +86,18 @@ void bind_items(py::module_& module) {
             })
         .def_readonly("falls_per_year", &Fragility::falls_per_year)
         .def_readonly("return_years", &Fragility::return_years);
+    py::class_<Fall>(module, "Fall")
+        .def_readonly("falls", &Fall::falls)
+        .def_readonly("lands_m", &Fall::lands_m)
+        .def_readonly("drop_m", &Fall::drop_m)
+        .def_readonly("lands_on", &Fall::lands_on)
+        .def_readonly("leans_on", &Fall::leans_on)
+        .def_readonly("takes_along", &Fall::takes_along)
+        .def_readonly("hits_J", &Fall::hits_J)
+        .def_property_readonly("people_share", [](const Fall& fall) -> std::optional<double> {
+            if (std::isnan(fall.people_share)) return std::nullopt;
+            return fall.people_share;
+        });
     py::class_<Object>(module, "Object")
         .def_readonly("id", &Object::id)
         .def_readonly("primitives", &Object::primitives)
@@ -109,8 +125,15 @@ void bind_items(py::module_& module) {
         .def_readonly("direction", &Object::direction)
         .def_readonly("risk_J", &Object::risk_J)
         .def_readonly("risk_spread_J", &Object::risk_spread_J)
+        .def_readonly("risk_error_J", &Object::risk_error_J)
         .def_readonly("fall_chance", &Object::fall_chance)
         .def_readonly("unsafety", &Object::unsafety)
+        .def_property_readonly("unsafety_category",
+                               [](const Object& o) -> std::optional<std::string> {
+                                   if (o.unsafety_category.empty()) return std::nullopt;
+                                   return o.unsafety_category;
+                               })
+        .def_readonly("unsafety_certain", &Object::unsafety_certain)
         .def_property_readonly(
             "instability",
             [](const py::object& self) {
@@ -121,6 +144,7 @@ void bind_items(py::module_& module) {
                     reinterpret_cast<const double*>(curve.data()), self);
             })
         .def_property_readonly("why", [](const Object& o) { return o.why.sentence; })
+        .def_readonly("fall", &Object::fall)
         .def_property_readonly("stands_on", [](const Object& o) { return o.why.stands_on; })
         .def_property_readonly("advice", [](const Object& o) { return o.advice.sentence; })
         .def("__repr__", [](const Object& o) {

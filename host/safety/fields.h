@@ -15,6 +15,7 @@
 #include "physics/bodies.h"
 #include "physics/toppling.h"
 #include "safety/directions.h"
+#include "safety/fall_zone.h"
 #include "topple/input.h"
 #include "topple/motion.h"
 #include "topple/scene.h"
@@ -36,6 +37,14 @@ struct RiskObject {
     std::vector<InstabilityStep> curve;  // S(W)
     // S(W) by direction and height; null: the curve, whatever the way.
     std::shared_ptr<const physics::Toppling> toppling;
+    // One standard error of its barrier, and of its mass as a share of it; and what they take: how
+    // high its centre of mass is above its support, and whether it slides rather than tips.
+    double barrier_error_J = 0, mass_error_share = 0;
+    double center_height_m = 0;
+    bool slides = false;
+    // Not as measured, but as at an end of that error (risk_error.h): the border of its support
+    // lies so much further out, and the roots of its barriers are larger by so much.
+    double border_shift_m = 0, root_shift = 0;
     // The points that hold it up, as their convex hull (metres, counter-clockwise). Where given, it
     // tells how far the object reaches each way; else base_width_m stands for all ways.
     std::vector<std::array<double, 2>> support_polygon;
@@ -75,6 +84,9 @@ struct Disturbance {
     // By object: its work if its barrier, curve and edges were others, as where it stood elsewhere,
     // just as exposed. Empty where exposure is another there (DisturbanceField::risk_at).
     std::vector<std::function<std::vector<WorkSample>(const RiskObject&)>> response;
+    // Its work if objects stood more or less firmly, exposed as they are; empty: `response` tells
+    // it. Holds references to what the field was made from.
+    std::function<std::vector<std::vector<WorkSample>>(std::span<const RiskObject>)> work_if;
     std::vector<Push> strongest;       // by object: of all its events
     std::vector<Fragility> fragility;  // by object, of an earthquake
     std::vector<std::string> notes;    // e.g. no walkable floor was found
@@ -117,10 +129,15 @@ class DisturbanceField {
     // The risk of an object that stood elsewhere, by placement; nothing: Disturbance::response
     // tells it.
     virtual std::vector<Risk> risk_at(std::span<const Placement>) { return {}; }
+    // By zone, the share of events in which somebody passes it; nothing: it knows of nobody.
+    virtual std::vector<double> passing_shares(std::span<const FallZone>) { return {}; }
 };
 
 // For each object; all 0 for grounded ones.
 std::vector<Risk> risk(const Disturbance& disturbance, std::span<const RiskObject> objects);
+
+// The same if they stood as `changed` says.
+std::vector<Risk> risk_if(const Disturbance& disturbance, std::span<const RiskObject> changed);
 
 // 1 (safest) to 10 over the scene's objects, by their largest risk r over the disturbances (one
 // vector of risks per disturbance): 1 + 9 log(1 + 999 r / r_max) / log(1000). Risks spread over

@@ -106,7 +106,7 @@ Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> o
 
 double half_base(const RiskObject& object, const Stance& stance, double dx, double dy) {
     const auto& polygon = object.support_polygon;
-    if (polygon.size() < 3) return std::max(0.0, object.base_width_m / 2);
+    if (polygon.size() < 3) return std::max(0.0, object.base_width_m / 2 + object.border_shift_m);
     // The nearest edge that the ray leaves through; inside a convex polygon that is the way out.
     double reach = INFINITY;
     for (std::size_t e = 0; e < polygon.size(); ++e) {
@@ -118,7 +118,7 @@ double half_base(const RiskObject& object, const Stance& stance, double dx, doub
         const double inside = (a[0] - stance.center[0]) * nx + (a[1] - stance.center[1]) * ny;
         if (along > 0) reach = std::min(reach, inside / along);
     }
-    return std::isfinite(reach) ? std::max(0.0, reach) : 0.0;
+    return std::isfinite(reach) ? std::max(0.0, reach + object.border_shift_m) : 0.0;
 }
 
 double support_reach(const Stance& stance, const Columns& columns, double dx, double dy) {

@@ -17,20 +17,39 @@ double instability(std::span<const InstabilityStep> curve, double W_J) {
     return release;
 }
 
+namespace {
+
+// What does to the object as it was measured what W does to it; below 0: nothing does. What reaches
+// its barrier does so in spite of rounding.
+double measured_W_J(const RiskObject& object, double W_J) {
+    if (object.root_shift == 0) return W_J;
+    const double root = std::sqrt(W_J) * (1 + 1e-9) - object.root_shift;
+    return root < 0 ? -1 : root * root;
+}
+
+}  // namespace
+
 double instability(const RiskObject& object, const WorkSample& event) {
-    if (!object.toppling) return instability(object.curve, event.W_J);
-    if (std::isnan(event.height_m)) return object.toppling->pushed_J(event.W_J, event.direction);
-    return object.toppling->struck_J(event.W_J, event.direction, event.height_m);
+    const double W_J = measured_W_J(object, event.W_J);
+    if (!object.toppling) return instability(object.curve, W_J);
+    if (std::isnan(event.height_m)) return object.toppling->pushed_J(W_J, event.direction);
+    return object.toppling->struck_J(W_J, event.direction, event.height_m);
 }
 
 double push_barrier_J(const RiskObject& object, const Vec3& way) {
-    return object.toppling ? object.toppling->push_barrier_J(way) : object.barrier_J;
+    const double measured =
+        object.toppling ? object.toppling->push_barrier_J(way) : object.barrier_J;
+    if (object.root_shift == 0) return measured;
+    const double root = std::max(0.0, std::sqrt(measured) + object.root_shift);
+    return root * root;
 }
 
 double slide_towards_m(const RiskObject& object, const Vec3& way, double support_m) {
-    if (object.toppling) return object.toppling->slide_distance_m(way);
-    if (object.slide_distance_m < 0) return std::numeric_limits<double>::infinity();
-    return std::max(object.slide_distance_m, support_m);
+    if (!object.toppling && object.slide_distance_m < 0)
+        return std::numeric_limits<double>::infinity();
+    const double measured = object.toppling ? object.toppling->slide_distance_m(way)
+                                            : std::max(object.slide_distance_m, support_m);
+    return std::max(0.0, measured + object.border_shift_m);
 }
 
 Risk risk_of(std::span<const WorkSample> work, const RiskObject& object, std::size_t draws) {
@@ -59,6 +78,20 @@ std::vector<Risk> risk(const Disturbance& disturbance, std::span<const RiskObjec
         out[o] = risk_of(disturbance.work[o], objects[o], disturbance.draws);
     }
     return out;
+}
+
+std::vector<Risk> risk_if(const Disturbance& disturbance, std::span<const RiskObject> changed) {
+    Disturbance there;
+    there.name = disturbance.name;
+    there.draws = disturbance.draws;
+    if (disturbance.work_if) {
+        there.work = disturbance.work_if(changed);
+    } else {
+        there.work = disturbance.work;
+        for (std::size_t o = 0; o < disturbance.response.size() && o < changed.size(); ++o)
+            if (disturbance.response[o]) there.work[o] = disturbance.response[o](changed[o]);
+    }
+    return risk(there, changed);
 }
 
 std::vector<double> unsafety(std::span<const std::vector<Risk>> risks) {

@@ -30,6 +30,9 @@ def test_finds_what_is_there(result, points):
     assert 0 < tips.tilt_deg < 90 and tips.tilt_error_deg > 0 and tips.push_N > 0 and 0 < tips.shake_g <= 0.3
     assert np.isnan(upper.fragility.pga_g) and upper.fragility.counted.shape == (0, 2)  # no earthquake was asked for
     assert np.isnan(result.objects[0].overturning.tilt_deg) or not result.objects[0].grounded
+    assert set(upper.risk_error_J) == {'wind'} and upper.risk_error_J['wind'] >= upper.risk_spread_J['wind'] >= 0
+    assert upper.unsafety_category in ('none', 'low', 'medium', 'high') and upper.unsafety_certain in (True, False)
+    assert upper.fall.hits_J > 0 and upper.fall.people_share is None and len(upper.fall.lands_m) == 3  # no walks were asked for
     assert upper.why.endswith('.') and upper.instability.shape[1] == 2
     assert {(s.supporter, s.supported) for s in result.supports} == {
         (lower, o.id) for o in result.objects for lower in o.stands_on}
@@ -37,6 +40,48 @@ def test_finds_what_is_there(result, points):
     assert sum(p.points for p in result.primitives) == np.count_nonzero(result.point_primitive >= 0)
     assert set(result.fields) == {'wind'} and len(result.solid['state']) > 1000
     assert result.timings_s['normals'] > 0 and result.notes
+
+
+def test_says_who_passes_where_things_land(points, device):
+    parsed = topple.parse(points, device=device, disturbances='human', walks=50)
+    shares = [o.fall.people_share for o in parsed.objects if not o.grounded]
+    assert shares and all(0 <= share <= 1 for share in shares)
+    assert all(o.fall.people_share is None for o in parsed.objects if o.grounded)
+
+
+@pytest.fixture
+def record(tmp_path):
+    def write(name, step_s, *values):
+        lines = [f'{n * step_s} {value}' for n, value in enumerate(values)]
+        (tmp_path / name).write_text('\n'.join(['# m/s2', *lines]))
+        return tmp_path / name
+    return write
+
+
+def test_takes_the_components_of_a_record(points, device, record):
+    shaken = [record(name, 0.1, 0, *values, 0) for name, values in
+              [('along', [4, -4] * 8), ('across', [3, -3] * 8), ('up', [2, -2] * 8)]]
+
+    def by(accelerogram):
+        parsed = topple.parse(points, device=device, disturbances='earthquake', accelerogram=accelerogram)
+        return [note for note in parsed.notes if 'accelerogram' in note], [o.fall_chance['earthquake'] for o in parsed.objects]
+
+    one, two, three = by(str(shaken[0])), by(shaken[:2]), by(tuple(shaken))
+    assert by((shaken[0],)) == one == by((shaken[0], None, None))
+    assert '4 m/s^2' in one[0][0] and '3.46 m/s^2' in two[0][0] and '3.46 m/s^2' in three[0][0]  # the level ones' mean
+    assert by((shaken[0], None, shaken[2]))[0] == one[0]
+
+
+@pytest.mark.parametrize('wrong', [(), ('a', 'b', 'c', 'd'), (None, 'b')])
+def test_a_record_has_one_to_three_components(points, device, wrong):
+    with pytest.raises(topple.Error, match='along, across and up') as error:
+        topple.parse(points, device=device, accelerogram=wrong)
+    assert error.value.kind == 'usage'
+
+
+def test_components_of_different_steps_are_refused(points, device, record):
+    with pytest.raises(topple.Error, match='components of one record'):
+        topple.parse(points, device=device, accelerogram=(record('a', 0.01, 1, -1, 1), record('b', 0.02, 1, -1, 1)))
 
 
 def test_arrays_are_the_results_own(result, points):

@@ -94,6 +94,14 @@ struct Accelerogram {
 Accelerogram read_accelerogram(const std::filesystem::path& file,
                                std::optional<double> unit_m_s2 = std::nullopt);
 
+// Reads the components of one record, each from a file of its own, so many seconds apart as the
+// first one's samples, with which they begin: what is longer is cut off, what is shorter ends in 0.
+// No path: that component is not known. Throws Error(input) as above, and where steps differ.
+Accelerogram read_accelerogram(const std::filesystem::path& along,
+                               const std::optional<std::filesystem::path>& across,
+                               const std::optional<std::filesystem::path>& up,
+                               std::optional<double> unit_m_s2 = std::nullopt);
+
 // How often the ground at a place shakes: annual rates at which peak ground accelerations are
 // exceeded, by rising peaks and falling rates, straight between them in logarithms of both.
 struct HazardCurve {

@@ -106,6 +106,10 @@ struct Fall {
     std::int32_t lands_on = -1;             // object below that drop; -1: none, or unknown
     std::int32_t leans_on = -1;             // object that stops it on its way; -1: none
     std::vector<std::int32_t> takes_along;  // what then loses half of its support, ascending
+    double hits_J = 0;                      // energy that it has gathered where it lands
+    // Share of the walks that pass within reach of its fall; NaN: nobody walks here, or nobody was
+    // asked for.
+    double people_share = std::numeric_limits<double>::quiet_NaN();
 };
 
 // What would lower an object's risk to what is tolerated.
@@ -187,8 +191,16 @@ struct Object {
     // By disturbance: joules per event; their standard error from the sampling of events; and the
     // chance per event that it falls, which is that it absorbs its barrier or more.
     std::map<std::string, double> risk_J, risk_spread_J, fall_chance;
+    // One standard error of that risk, by disturbance: of the sampling, and of what is not known of
+    // the barrier and the mass.
+    std::map<std::string, double> risk_error_J;
     // 1 (safest) to 10, by risk, over the scene's objects; NaN: not seen enough to be ranked.
     double unsafety = 1;
+    // "none" | "low" | "medium" | "high", by how likely one event makes it fall and how hard it
+    // then falls, whatever else is in the scene, at the worse end of one standard error; "": not
+    // seen enough. Certain where the better end says the same.
+    std::string unsafety_category = "none";
+    bool unsafety_certain = true;
     // Whether what holds it up was seen; else it is taken to stand where it is lowest, and has no
     // rank. By what it stands: "seen" contacts, "near" (across gaps that noise leaves), "leaning"
     // on what is beside it, "hidden", "none", or "ground"; and how probable that is.

@@ -185,7 +185,6 @@ typedef struct topple_object {
     double direction[3];
     const topple_step* instability;
     uint64_t instability_count;
-    double risk_human_J, risk_wind_J, risk_earthquake_J; /* per event; NaN: not asked for */
     double unsafety; /* 1 to 10; NaN: not seen enough to be ranked */
     double agreement;
     const char *why, *advice; /* sentences */
@@ -206,6 +205,15 @@ typedef struct topple_object {
     const double *blow_height_m, *push_barrier_J, *blow_barrier_J;
     uint64_t blow_heights;
     double hand_push_N, hand_push_error_N, hand_height_m, gust_m_s, gust_error_m_s;
+    /* where it would go (struct Fall of topple/scene.h): its centre of mass there, the object that
+     * it falls to or -1, the energy that it has there, and the share of walks that pass within its
+     * reach; NaN: nobody walks, or nobody was asked for */
+    double lands_m[3], hits_J, people_share;
+    int32_t falls, lands_on;
+    /* "none", "low", "medium" or "high", at the worse end of one standard error, and whether the
+     * better end says the same; "": not seen enough */
+    const char* unsafety_category;
+    int32_t unsafety_certain;
 } topple_object;
 typedef struct topple_contact {
     size_t size;
@@ -237,6 +245,9 @@ const char* topple_disturbance_name(uint32_t index);
  * NaN: it was not asked for. */
 int topple_result_risk(const topple_result* result, uint64_t index, const char* disturbance,
                        double* risk_J, double* fall_chance, topple_status* status);
+/* One standard error of that risk, and its part that more events would lessen. As above. */
+int topple_result_risk_error(const topple_result* result, uint64_t index, const char* disturbance,
+                             double* error_J, double* spread_J, topple_status* status);
 const char* topple_result_note(const topple_result* result, uint64_t index); /* NULL: no such */
 
 /* Arrays over the points, `points` of the topple_scene long, in the input's order. */

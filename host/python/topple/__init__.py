@@ -16,9 +16,9 @@ from typing import NamedTuple
 import numpy as np
 
 from . import _topple
-from ._topple import Contact, Device, DirectedBarrier, Error, Object, Overturning, Primitive, Support, __version__, open_device
+from ._topple import Contact, Device, DirectedBarrier, Error, Fall, Object, Overturning, Primitive, Support, __version__, open_device
 
-__all__ = ['Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Object', 'Overturning', 'Primitive', 'Result',
+__all__ = ['Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Object', 'Overturning', 'Primitive', 'Result',
            'Support', '__version__', 'devices', 'open_device', 'parse']
 
 
@@ -193,6 +193,14 @@ def _files(given):
     return [os.fspath(given)] if isinstance(given, (str, os.PathLike)) else [os.fspath(file) for file in given]
 
 
+def _components(accelerogram):
+    """The paths of a record's components along, across and up, None where one is not known."""
+    given = [accelerogram] if isinstance(accelerogram, (str, os.PathLike)) else list(accelerogram)
+    if not 1 <= len(given) <= 3 or given[0] is None:
+        raise _usage(f'accelerogram: expected a file, or up to three: along, across and up, not {accelerogram!r}')
+    return [None if file is None else os.fspath(file) for file in given + [None] * (3 - len(given))]
+
+
 def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=None,
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, wind_m_s=12.0,
           wind_from_deg=None, pga_m_s2=None, accelerogram=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, grouping_time_s=None, normals=None,
@@ -208,7 +216,8 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     disturbances: a list of "human", "wind", "earthquake", which may be empty; or one of these names; or None for
     all that there are.
 
-    device: a Device of open_device(), or a backend's name. motion: a file, or a list of files; accelerogram, hazard: files. normals, viewpoint: of
+    device: a Device of open_device(), or a backend's name. motion: a file, or a list of files; accelerogram: a file, or
+    a tuple of up to three with a record's components along, across and up, None for one that is not known; hazard: a file. normals, viewpoint: of
     points, as they are given; where the sensor was. colours: of points, sRGB as uint8, an array of shape (N, 3),
     records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. progress(stage, done) is called as stages start and go on;
     contents_kg_m3: of closed furniture, or None where all is solid.
@@ -229,7 +238,7 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     for file in _files(motion):
         options.read_motion(file)
     if accelerogram is not None:
-        options.read_accelerogram(os.fspath(accelerogram))
+        options.read_accelerogram(*_components(accelerogram))
     options.floor_amplification = floor_amplification
     if hazard is not None:
         options.read_hazard_curve(os.fspath(hazard))

@@ -121,6 +121,24 @@ class Fragility:  # of earthquakes; NaN: few fall at the strongest that is tried
     @property
     def return_years(self) -> float: ...
 
+class Fall:
+    @property
+    def falls(self) -> bool: ...
+    @property
+    def lands_m(self) -> list[float]: ...
+    @property
+    def drop_m(self) -> float: ...
+    @property
+    def lands_on(self) -> int: ...
+    @property
+    def leans_on(self) -> int: ...
+    @property
+    def takes_along(self) -> list[int]: ...
+    @property
+    def hits_J(self) -> float: ...
+    @property
+    def people_share(self) -> Optional[float]: ...  # of walks; None: nobody walks, or nobody was asked for
+
 class Object:
     @property
     def id(self) -> int: ...
@@ -165,13 +183,21 @@ class Object:
     @property
     def risk_spread_J(self) -> dict[str, float]: ...
     @property
+    def risk_error_J(self) -> dict[str, float]: ...
+    @property
     def fall_chance(self) -> dict[str, float]: ...
     @property
     def unsafety(self) -> float: ...  # NaN: not seen enough to be ranked
     @property
+    def unsafety_category(self) -> Optional[Literal["none", "low", "medium", "high"]]: ...  # None: not seen enough
+    @property
+    def unsafety_certain(self) -> bool: ...
+    @property
     def instability(self) -> NDArray[np.float64]: ...  # (steps, 2): W_J, S_J
     @property
     def why(self) -> str: ...
+    @property
+    def fall(self) -> Fall: ...
     @property
     def stands_on(self) -> list[int]: ...
     @property
@@ -271,7 +297,7 @@ def parse(
     wind_m_s: float = ...,
     wind_from_deg: Optional[float] = ...,
     pga_m_s2: Optional[float] = ...,
-    accelerogram: Union[str, os.PathLike[str], None] = ...,
+    accelerogram: Union[str, os.PathLike[str], Sequence[Union[str, os.PathLike[str], None]], None] = ...,
     floor_amplification: float = ...,
     hazard: Union[str, os.PathLike[str], None] = ...,
     tolerable_J: float = ...,

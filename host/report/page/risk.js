@@ -109,7 +109,7 @@ function rankedText(scene, shown, movable) {
 
 function fillRiskiest(panel, scene, worst, movable, choose) {
   panel.append(element('p', {className: 'hint', text:
-    rankedText(scene, worst.length, movable) + ' ' + eventsText(scene) + ' The badge is unsafety: 10 is the worst of this scene, whatever it is. ' +
+    rankedText(scene, worst.length, movable) + ' ' + eventsText(scene) + ' The badge is unsafety: 10 is the worst of this scene, whatever it is; the category in the table is by itself. ' +
     'Choose one to see it in the room.'}));
   if (worst.every(object => !(object.advice && object.advice.kind))) {
     panel.append(element('p', {className: 'hint', text: 'All of these risks are tolerated: nothing needs to be done.'}));

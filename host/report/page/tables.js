@@ -29,6 +29,9 @@ function objectColumns(scene) {
   if (scene.objects.some(object => object.advice && object.advice.kind)) {
     columns.push({name: 'Advice', text: true, value: adviceText, cell: object => [adviceText(object)]});
   }
+  const order = ['none', 'low', 'medium', 'high'];
+  columns.push({name: 'Category', text: true, value: object => object.grounded || !object.unsafety_category ? null : order.indexOf(object.unsafety_category),
+    cell: object => [object.grounded ? '\u2013' : categoryText(object)]});
   columns.push({name: 'Unsafety', value: object => object.unsafety, cell: object => [unsafetyBadge(scene, object)]});
   return columns;
 }
@@ -41,13 +44,23 @@ function adviceText(object) {
   return (object.advice || {}).kind || '\u2013';
 }
 
-// Joules per event, the sampling error of the events, and the chance per event that it falls.
+// One standard error of a risk; scenes of earlier versions know that of the sampling alone.
+function riskError(object, name) {
+  return (object.risk_error_J || object.risk_spread_J || {})[name];
+}
+
+// The category, with a question mark where the errors leave it open.
+function categoryText(object) {
+  return object.unsafety_category ? object.unsafety_category + (object.unsafety_certain ? '' : '?') : '\u2013';
+}
+
+// Joules per event, their error, and the chance per event that it falls.
 function riskCell(object, name) {
   const risk = object.risk_J[name];
   if (!(risk > 0)) return [number(risk)];
-  const spread = (object.risk_spread_J || {})[name], chance = (object.fall_chance || {})[name];
+  const error = riskError(object, name), chance = (object.fall_chance || {})[name];
   const cell = [number(risk)];
-  if (spread !== undefined && spread !== null) cell.push(element('span', {className: 'pm', text: ` \u00b1 ${spread < risk / 1000 ? '0' : Number(spread.toPrecision(2))}`}));
+  if (error !== undefined && error !== null) cell.push(element('span', {className: 'pm', text: ` \u00b1 ${error < risk / 1000 ? '0' : Number(error.toPrecision(2))}`}));
   if (chance !== undefined && chance !== null) cell.push(element('small', {text: chanceText(name, chance)}));
   return cell;
 }
@@ -160,6 +173,9 @@ function showObject(panel, scene, id, choose) {
     pairs.push([`Risk from ${causeOf(name)}`, riskText(object, name)]);
   }
   pairs.push(['Unsafety, 1 to 10', object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
+  if (!object.grounded && object.unsafety_category) {
+    pairs.push(['Category', object.unsafety_category + (object.unsafety_certain ? '' : ', or lower: its errors leave it open')]);
+  }
   panel.append(numberList(pairs));
 
   if (curve) {
@@ -177,8 +193,8 @@ function showObject(panel, scene, id, choose) {
 }
 
 function riskText(object, name) {
-  const spread = (object.risk_spread_J || {})[name], risk = object.risk_J[name];
-  return number(risk, 'J') + (risk > 0 ? within(spread) : '');
+  const risk = object.risk_J[name];
+  return number(risk, 'J') + (risk > 0 ? within(riskError(object, name)) : '');
 }
 
 function azimuthText(degrees) {

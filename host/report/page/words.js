@@ -105,6 +105,15 @@ function fallKnown(object) {
   return !!object.fall && object.fall.falls && object.fall.lands_m.every(value => value !== null);
 }
 
+// Who passes where it lands, and how hard it lands: a sentence of its own; '' where it lands softly.
+function hitsText(fall) {
+  if (!(fall.hits_J > 0)) return '';
+  const people = 100 * fall.people_share, energy = number(Number(fall.hits_J.toPrecision(2)), 'J');
+  if (typeof fall.people_share !== 'number') return ` It would land with ${energy}.`;
+  const who = people <= 0 ? 'nobody passes who walks' : `${people < 0.5 ? 'less than 1' : Math.round(people)} of 100 people pass who walk`;
+  return ` It would land where ${who} through the room, with ${energy}.`;
+}
+
 // What happens then. Why it stands as it does where nothing is known of its fall.
 function happensText(scene, object) {
   if (!fallKnown(object)) return object.why.sentence;
@@ -114,8 +123,9 @@ function happensText(scene, object) {
   const verb = object.mode === 'tip' ? `It tips over${to}` : object.mode === 'slide' ? `It slides off${to}` : `It comes down${to}`;
   const goes = fall.takes_along.length, end = goes ? ` and takes ${objectList(fall.takes_along)} along.` : '.';
   const against = scene.objectById.get(fall.leans_on);
-  if (against) return `${verb}, against ${against.grounded ? 'a wall or what is fixed to it' : 'object ' + against.id}${goes ? ',' : ''}${end}`;
-  return verb + (fall.drop_m > 0 ? `, falls ${metres(fall.drop_m)} ${landsText(scene, fall)}` : '') + end;
+  const how = against ? `, against ${against.grounded ? 'a wall or what is fixed to it' : 'object ' + against.id}${goes ? ',' : ''}` :
+    fall.drop_m > 0 ? `, falls ${metres(fall.drop_m)} ${landsText(scene, fall)}` : '';
+  return verb + how + end + hitsText(fall);
 }
 
 // What a simulator made of the scene (topple verify): how many stay, and which moved.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <memory>
 #include <numbers>
 
 #include "core/random.h"
@@ -120,8 +121,28 @@ Outcome outcome_of(const RiskObject& object, const Shaken& shaken) {
 double work_of(const Shaken& shaken, const Outcome& outcome) {
     const double barrier = outcome.barrier_J;
     if (barrier <= 0 || !std::isfinite(barrier)) return shaken.energy_J;
+    constexpr double just_below = 1 - 1e-6;
     return outcome.falls ? std::max(shaken.energy_J, barrier)
-                         : std::min(shaken.energy_J, std::nextafter(barrier, 0.0));
+                         : std::min(shaken.energy_J, just_below * barrier);
+}
+
+// Work of all events, from the motions that they make; also where it is 0: what has no barrier
+// falls at any shaking.
+std::vector<WorkSample> work_of(const std::vector<Shaken>& shaken, const RiskObject& object) {
+    std::vector<WorkSample> work;
+    for (const Shaken& each : shaken) {
+        const Outcome outcome = outcome_of(object, each);
+        work.push_back(
+            {work_of(each, outcome), 1.0 / static_cast<double>(shaken.size()), outcome.towards});
+    }
+    return work;
+}
+
+std::vector<Shaken> shaken_by_all(const ShakenObject& body, double mass_kg, double friction,
+                                  const std::vector<std::array<Motion, 2>>& motions) {
+    std::vector<Shaken> out;
+    for (const auto& motion : motions) out.push_back(shaken_by(body, mass_kg, friction, motion));
+    return out;
 }
 
 // Slips on supports that end nowhere near go on for ever.
@@ -190,7 +211,8 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
     out.draws = events.size();
     if (options.record) note_record(*options.record, out.notes);
 
-    const Columns columns(*surroundings.cells);
+    const auto solid_columns = std::make_shared<const Columns>(*surroundings.cells);
+    const Columns& columns = *solid_columns;
     std::vector<Stance> stances(objects.size());
     std::vector<ShakenObject> bodies(objects.size()), standing(objects.size());
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
@@ -208,25 +230,29 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
 
     const Motions motions = shake_objects(device, bodies, which, records, events, friction, true);
     for (const std::size_t o : which) {
-        std::vector<Shaken> shaken;
         for (std::size_t e = 0; e < events.size(); ++e) {
-            shaken.push_back(shaken_by(bodies[o], objects[o].mass_kg, friction, motions[o][e]));
             const double force = objects[o].mass_kg * peaks[e];
             if (force > out.strongest[o].force_N)
                 out.strongest[o] = {force, bodies[o].body[0].height_m};
         }
-        out.response[o] = [shaken = std::move(shaken)](const RiskObject& object) {
-            std::vector<WorkSample> work;
-            // Also where it is 0: what has no barrier falls at any shaking.
-            for (const Shaken& each : shaken) {
-                const Outcome outcome = outcome_of(object, each);
-                work.push_back({work_of(each, outcome), 1.0 / static_cast<double>(shaken.size()),
-                                outcome.towards});
-            }
-            return work;
-        };
+        out.response[o] = [shaken =
+                               shaken_by_all(bodies[o], objects[o].mass_kg, friction, motions[o])](
+                              const RiskObject& object) { return work_of(shaken, object); };
         out.work[o] = out.response[o](objects[o]);
     }
+    // What stands on a wider or narrower base moves in another way.
+    out.work_if = [&device, solid_columns, stances, which, records, events,
+                   friction](std::span<const RiskObject> changed) {
+        std::vector<ShakenObject> shaken(changed.size());
+        for (const std::size_t o : which)
+            shaken[o] = shaken_object(changed[o], stances[o], *solid_columns);
+        const Motions moved = shake_objects(device, shaken, which, records, events, friction, true);
+        std::vector<std::vector<WorkSample>> work(changed.size());
+        for (const std::size_t o : which)
+            work[o] = work_of(shaken_by_all(shaken[o], changed[o].mass_kg, friction, moved[o]),
+                              changed[o]);
+        return work;
+    };
     out.fragility =
         fragilities(device, standing, which, records, friction, options.floor_amplification,
                     options.hazard ? &*options.hazard : nullptr);

@@ -7,6 +7,7 @@
 
 #include "safety/fields.h"
 #include "safety/human/convolution.h"
+#include "safety/human/passers_by.h"
 #include "safety/human/walkable_map.h"
 #include "safety/objects.h"
 
@@ -211,6 +212,17 @@ Disturbance HumanField::disturbance() {
             if (force > out.strongest[o].force_N) out.strongest[o] = {force, strike.height_m};
         }
     }
+    SecondaryMotion strength;  // what of it tells the work
+    strength.mass_kg = p.secondary.mass_kg;
+    strength.energy_J = p.secondary.energy_J;
+    out.work_if = [strikes = std::move(strikes), strength, extent = p.extent,
+                   restitution = p.options.restitution](std::span<const RiskObject> changed) {
+        std::vector<std::vector<WorkSample>> work;
+        for (std::size_t o = 0; o < changed.size(); ++o)
+            work.push_back(
+                strongest_strikes(strikes[o], strength, changed[o], extent[o], restitution));
+        return work;
+    };
     out.samples = arrows.take();
     return out;
 }
@@ -229,6 +241,13 @@ std::vector<Risk> HumanField::risk_at(std::span<const Placement> placements) {
         out[n] = risk_of(work, placements[n].there, p.primary.paths);
     }
     return out;
+}
+
+std::vector<double> HumanField::passing_shares(std::span<const FallZone> zones) {
+    const Parts& p = *parts_;
+    if (p.map.walkable.empty()) return {};
+    return safety::passing_shares(p.map, p.primary, Columns(*p.surroundings.cells), p.options,
+                                  zones);
 }
 
 Disturbance human_field(device::Device& device, const Surroundings& surroundings,

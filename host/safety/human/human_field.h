@@ -43,6 +43,7 @@ class HumanField : public DisturbanceField {
     // Walkers keep to their paths, and everything else, the object where it stood included, stays
     // in their way.
     std::vector<Risk> risk_at(std::span<const Placement> placements) override;
+    std::vector<double> passing_shares(std::span<const FallZone> zones) override;
 
   private:
     struct Parts;

@@ -6,6 +6,7 @@
 
 #include "core/random.h"
 #include "safety/directions.h"
+#include "safety/human/grid_line.h"
 #include "safety/human/human_field.h"
 #include "safety/human/walkable_map.h"
 
@@ -13,30 +14,6 @@ namespace topple::safety {
 namespace {
 
 constexpr std::uint32_t straight = 10000, diagonal = 14142;  // costs; sqrt 2 to 1e-5
-
-struct Place {
-    std::int64_t x, y;
-    bool operator==(const Place&) const = default;
-};
-
-Place place(const WalkableMap& map, std::uint32_t cell) {
-    return {cell % map.nx, cell / map.nx};
-}
-
-// Calls visit(cell) for the cells of the straight line from a to b, both included.
-template <class Visit>
-bool along_line(const WalkableMap& map, Place a, Place b, Visit visit) {
-    const std::int64_t dx = b.x - a.x, dy = b.y - a.y;
-    const std::int64_t n = std::max(std::abs(dx), std::abs(dy));
-    const auto rounded = [n](std::int64_t v) {  // v / n to the nearest, halves away from 0
-        return (2 * std::abs(v) + n) / (2 * n) * (v < 0 ? -1 : 1);
-    };
-    for (std::int64_t s = 0; s <= n; ++s) {
-        const std::int64_t x = a.x + (n ? rounded(dx * s) : 0), y = a.y + (n ? rounded(dy * s) : 0);
-        if (!visit(static_cast<std::uint32_t>(y * map.nx + x))) return false;
-    }
-    return true;
-}
 
 bool can_step(const WalkableMap& map, std::uint32_t from, std::uint32_t to, float step_m) {
     return map.component[to] == map.component[from] &&
@@ -177,7 +154,7 @@ PrimaryMotion primary_motion(const WalkableMap& map, const HumanOptions& options
                 return true;
             });
         }
-        if (motion.corners.size() < max_shown_paths) motion.corners.push_back(std::move(corners));
+        motion.corners.push_back(std::move(corners));
     }
     return motion;
 }
@@ -197,9 +174,10 @@ Walks drawn_walks(const WalkableMap& map, const PrimaryMotion& motion) {
             sum += motion.frequency(d, c, map.size());
         out.visits[c] = static_cast<float>(sum);
     }
-    for (const auto& corners : motion.corners) {
+    const std::size_t shown = std::min<std::size_t>(motion.corners.size(), max_shown_paths);
+    for (std::size_t walk = 0; walk < shown; ++walk) {
         std::vector<Vec3> path;
-        for (const std::uint32_t c : corners) {
+        for (const std::uint32_t c : motion.corners[walk]) {
             const Place at = place(map, c);
             path.push_back({map.x0 + (static_cast<double>(at.x) + 0.5) * map.cell_m,
                             map.y0 + (static_cast<double>(at.y) + 0.5) * map.cell_m,

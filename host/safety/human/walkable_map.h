@@ -45,7 +45,7 @@ struct PrimaryMotion {
     // of places is as likely in either order, so each path counts for both ways with half its
     // weight.
     std::vector<std::uint32_t> visits;
-    // The first max_shown_paths of the walks, as the cells of their corners.
+    // Each of the walks, as the cells of its corners.
     std::vector<std::vector<std::uint32_t>> corners;
     // Walks per event through cell c heading d.
     double frequency(unsigned d, std::size_t c, std::size_t cells) const {

@@ -308,8 +308,10 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
         out.response[o] = [gales = std::move(gales), options,
                            probability = 1.0 / double{directions}](const RiskObject& object) {
             std::vector<WorkSample> work;
-            for (const WindLoad& load : gales)
+            for (WindLoad load : gales) {
+                load.half_base_m = std::max(0.0, load.half_base_m + object.border_shift_m);
                 work.push_back({wind_work(object, load, options), probability, load.way});
+            }
             return work;
         };
         out.work[o] = out.response[o](objects[o]);

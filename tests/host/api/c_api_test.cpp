@@ -96,10 +96,24 @@ TEST_F(CApi, ParsesAsTheLibraryDoes) {
         ASSERT_EQ(topple_result_object(result, n, &object, nullptr), TOPPLE_OK);
         const Object& o = expected.objects[n];
         EXPECT_EQ(object.barrier_J, o.barrier_J);
-        EXPECT_EQ(object.risk_wind_J, o.risk_J.at("wind"));
         double risk = 0, chance = 0;
         EXPECT_EQ(topple_result_risk(result, n, "wind", &risk, &chance, &status), TOPPLE_OK);
-        EXPECT_EQ(risk, object.risk_wind_J);
+        EXPECT_EQ(risk, o.risk_J.at("wind"));
+        double error = 0, spread = 0;
+        EXPECT_EQ(topple_result_risk_error(result, n, "wind", &error, &spread, &status), TOPPLE_OK);
+        EXPECT_EQ(error, o.risk_error_J.at("wind"));
+        EXPECT_EQ(spread, o.risk_spread_J.at("wind"));
+        EXPECT_EQ(topple_result_risk_error(result, n, "flood", &error, nullptr, &status),
+                  TOPPLE_ERROR_USAGE);
+        EXPECT_EQ(topple_result_risk(result, n, "human", &risk, nullptr, &status), TOPPLE_OK);
+        EXPECT_TRUE(std::isnan(risk)) << "not asked for";
+        EXPECT_EQ(object.unsafety_category, o.unsafety_category);
+        EXPECT_EQ(object.unsafety_certain != 0, o.unsafety_certain);
+        EXPECT_EQ(object.hits_J, o.fall.hits_J);
+        EXPECT_EQ(object.lands_m[0], o.fall.lands_m[0]);
+        EXPECT_EQ(object.lands_on, o.fall.lands_on);
+        EXPECT_EQ(object.falls != 0, o.fall.falls);
+        EXPECT_TRUE(std::isnan(object.people_share)) << "nobody was asked for";
         EXPECT_EQ(chance, o.fall_chance.at("wind"));
         EXPECT_EQ(topple_result_risk(result, n, "flood", &risk, nullptr, &status),
                   TOPPLE_ERROR_USAGE);
@@ -110,7 +124,6 @@ TEST_F(CApi, ParsesAsTheLibraryDoes) {
             EXPECT_EQ(object.blow_barrier_J[b], directed.blow_J[b]);
         for (std::size_t b = 0; b < directed.push_J.size(); ++b)
             EXPECT_EQ(object.push_barrier_J[b], directed.push_J[b]);
-        EXPECT_TRUE(std::isnan(object.risk_human_J));
         EXPECT_EQ(object.why, o.why.sentence);
         ASSERT_EQ(object.instability_count, o.instability.size());
         if (!o.instability.empty()) {

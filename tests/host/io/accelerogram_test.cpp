@@ -38,6 +38,23 @@ TEST_F(Accelerograms, JsonAsSimulationToolsWriteIt) {
     EXPECT_TRUE(nested.notes.empty());
 }
 
+TEST_F(Accelerograms, ComponentsOfOneRecordBeginTogether) {
+    const auto along = write("along", "# m/s2\n0 1\n0.01 2\n0.02 3\n");
+    const auto across = write("across", "# m/s2\n0 4\n0.01 5\n");
+    const auto up = write("up", "# m/s2\n0 6\n0.01 7\n0.02 8\n0.03 9\n");
+    const auto slow = write("slow", "# m/s2\n0 6\n0.02 7\n");
+    const Accelerogram record = read_accelerogram(along, across, up);
+    EXPECT_EQ(record.m_s2, (std::vector<double>{1, 2, 3}));
+    EXPECT_EQ(record.across_m_s2, (std::vector<double>{4, 5, 0})) << "shorter";
+    EXPECT_EQ(record.up_m_s2, (std::vector<double>{6, 7, 8})) << "longer";
+    EXPECT_DOUBLE_EQ(record.peak_m_s2(), std::sqrt(15.0));
+    EXPECT_TRUE(read_accelerogram(along, {}, up).across_m_s2.empty());
+    EXPECT_TRUE(read_accelerogram(along, std::nullopt, std::nullopt).up_m_s2.empty());
+    EXPECT_EQ(read_accelerogram(along, across, {}, 0.5).across_m_s2[0], 2);
+    expect_input_error([&] { read_accelerogram(along, {}, slow); },
+                       {slow.native(), along.native(), "components of one record"});
+}
+
 TEST_F(Accelerograms, UnitsOfTheHeaderAndOfTheOption) {
     const std::string rows = "0 0.1\n0.01 -0.2\n0.02 0\n";
     for (const auto& [header, scale] :

@@ -47,7 +47,12 @@ Scene some_scene() {
     object.instability = {{0.1, 5}, {7, 9}};
     object.why = {45, {{1, 2, 3}, {4, 5, 6}}, 0.1, 5, 0.2, 0.75, 3, {0, 2}, "It \"tips\"."};
     object.risk_J = {{"human", 0.5}, {"wind", 0}};
+    object.risk_error_J = {{"human", 0.25}, {"wind", 0}};
     object.unsafety = 10;
+    object.unsafety_category = "medium";
+    object.unsafety_certain = false;
+    object.fall.hits_J = 5.25;
+    object.fall.people_share = 0.125;
     scene.objects = {object};
     scene.contacts = {{0, 1, 0.25, {0, 0, 1}, "fixed", 0.97}};
     scene.supports = {{0, 1, 0.125, 0.875}};
@@ -67,6 +72,11 @@ TEST_F(Write, scene_json_reads_back_the_same) {
     EXPECT_EQ(back.objects[0].mass_kg, scene.objects[0].mass_kg);
     EXPECT_EQ(back.objects[0].risk_J, scene.objects[0].risk_J);
     EXPECT_EQ(back.objects[0].barrier_error_J, 0.02);
+    EXPECT_EQ(back.objects[0].risk_error_J, scene.objects[0].risk_error_J);
+    EXPECT_EQ(back.objects[0].unsafety_category, "medium");
+    EXPECT_FALSE(back.objects[0].unsafety_certain);
+    EXPECT_EQ(back.objects[0].fall.hits_J, 5.25);
+    EXPECT_EQ(back.objects[0].fall.people_share, 0.125);
     EXPECT_EQ(back.objects[0].instability[1].S_J, 9);
     EXPECT_EQ(back.objects[0].why.azimuth_deg, 45);
     EXPECT_EQ(back.objects[0].why.edge_m, scene.objects[0].why.edge_m);
@@ -141,9 +151,10 @@ TEST_F(Write, scene_json_has_the_fixed_members) {
                             "mass_kg", "center_of_mass_m"}) {
         EXPECT_TRUE(json["primitives"][0].contains(key)) << key;
     }
-    for (const char* key : {"id", "primitives", "grounded", "mass_kg", "center_of_mass_m",
-                            "barrier_J", "barrier_error_J", "release_J", "mode", "direction",
-                            "instability", "why", "risk_J", "unsafety"}) {
+    for (const char* key :
+         {"id", "primitives", "grounded", "mass_kg", "center_of_mass_m", "barrier_J",
+          "barrier_error_J", "release_J", "mode", "direction", "instability", "why", "risk_J",
+          "unsafety", "unsafety_category", "unsafety_certain", "risk_error_J", "fall"}) {
         EXPECT_TRUE(json["objects"][0].contains(key)) << key;
     }
     EXPECT_EQ(json["objects"][0]["instability"][0]["W_J"], 0.1);
@@ -159,6 +170,8 @@ TEST_F(Write, no_number_that_json_lacks_reaches_scene_json) {
     const double nan = std::numeric_limits<double>::quiet_NaN(),
                  inf = std::numeric_limits<double>::infinity();
     scene.objects[0].barrier_J = inf;
+    scene.objects[0].fall.people_share = nan;
+    scene.objects[0].unsafety_category.clear();
     scene.objects[0].risk_J["wind"] = nan;
     scene.objects[0].instability[0].S_J = -inf;
     scene.objects[0].direction[1] = nan;
@@ -169,6 +182,8 @@ TEST_F(Write, no_number_that_json_lacks_reaches_scene_json) {
     scene.notes.push_back("no UTF-8: \xff");
     const auto json = nlohmann::json::parse(scene_json(scene));
     EXPECT_TRUE(json["objects"][0]["barrier_J"].is_null());
+    EXPECT_TRUE(json["objects"][0]["fall"]["people_share"].is_null());
+    EXPECT_TRUE(json["objects"][0]["unsafety_category"].is_null());
     EXPECT_TRUE(json["objects"][0]["risk_J"]["wind"].is_null());
     EXPECT_TRUE(json["up"][0].is_null());
     EXPECT_TRUE(json["timings_s"]["ingest"].is_null());

@@ -79,6 +79,7 @@ void check_prospects(const Json& o) {
     for (const auto& [name, risk] : o.at("risk_J").items()) {
         const double spread = o.at("risk_spread_J").at(name), chance = o.at("fall_chance").at(name);
         EXPECT_GE(spread, 0);
+        EXPECT_GE(o.at("risk_error_J").at(name).get<double>(), spread);
         EXPECT_GE(chance, 0);
         EXPECT_LE(chance, 1 + 1e-9);
         EXPECT_EQ(chance > 0, risk.get<double>() > 0) << name << " of " << o.at("id");
@@ -89,6 +90,21 @@ void check_prospects(const Json& o) {
     EXPECT_EQ(fall.at("falls"), falls);
     EXPECT_TRUE(std::isfinite(length(fall.at("lands_m"))));
     for (const Json& along : fall.at("takes_along")) EXPECT_NE(along, o.at("id"));
+    expect_number(fall, "hits_J", 0);
+    EXPECT_EQ(fall.at("people_share").is_null(),
+              o.at("grounded").get<bool>() || !o.at("risk_J").contains("human"));
+    if (!fall.at("people_share").is_null()) {
+        expect_number(fall, "people_share", 0);
+        EXPECT_LE(fall.at("people_share").get<double>(), 1);
+    }
+    const Json& category = o.at("unsafety_category");
+    EXPECT_EQ(category.is_null(), !o.at("seen_enough").get<bool>());
+    if (!category.is_null()) {
+        EXPECT_TRUE(std::set<std::string>({"none", "low", "medium", "high"}).contains(category));
+    }
+    if (category.is_null()) {
+        EXPECT_FALSE(o.at("unsafety_certain").get<bool>());
+    }
     const std::string kind = advice.at("kind");
     EXPECT_EQ(advice.at("sentence").get<std::string>().empty(), kind.empty()) << o;
     EXPECT_EQ(kind == "check" || kind == "move" || kind == "fix", worst > 0.1) << o;

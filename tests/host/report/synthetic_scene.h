@@ -82,9 +82,12 @@ class SyntheticScene {
             object.release_J = o.release;
             object.mode = o.mode;
             object.unsafety = o.unsafety;
+            object.unsafety_category = o.unsafety > 8 ? "high" : o.unsafety > 2 ? "low" : "none";
+            object.unsafety_certain = id != 3;
             object.risk_J = {{"human", o.human}, {"wind", o.wind}, {"earthquake", o.earthquake}};
             for (const auto& [name, risk] : object.risk_J) {
                 object.risk_spread_J[name] = 0.1 * risk;
+                object.risk_error_J[name] = 0.2 * risk;
                 object.fall_chance[name] = risk > 0 ? 0.025 : 0;
             }
             if (object.mode != "none") object.direction = at(1, 0, 0);
@@ -229,13 +232,13 @@ class SyntheticScene {
     // The monitor falls off the table with the cup, to its north; the cup should be moved.
     void falls() {
         Object& monitor = scene_.objects[3];
-        monitor.fall = {true, at(1.9, 3.2, 0.2), 0.76, 0, -1, {2}};
+        monitor.fall = {true, at(1.9, 3.2, 0.2), 0.76, 0, -1, {2}, 44, 0.12};
         monitor.overturning = {15.2, 0.4, {}, 31.4, 1.2, 18.3, 0.2717};
         monitor.fragility = {0.41,  0.3, 0.52, 0.28, {{0.2, 0.01}, {0.4, 0.45}, {0.8, 0.98}},
                              0.002, 500};
         monitor.advice = {"fix", {}, 0.1, 12, 0.3, "Fix it where it stands: 12 N at 0.3 m."};
         Object& cup = scene_.objects[2];
-        cup.fall = {true, at(0.8, 2.26, 0.1), 0.76, 5, -1, {}};
+        cup.fall = {true, at(0.8, 2.26, 0.1), 0.76, 5, -1, {}, 2.9, 0};
         cup.advice = {"move", at(0.2, 0, 0), 0.1, 0, 0, "Move it 20 cm to the east."};
     }
 

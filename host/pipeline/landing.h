@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "physics/fall_sweep.h"
+#include "pipeline/object_stage.h"
+#include "pipeline/solid_parts.h"
+#include "safety/fall_zone.h"
+
+namespace topple {
+
+// What an object does on the easiest way out of its pose: where its centre of mass then is, at its
+// first landing, what it sweeps until then, and the energy that it has there. Grid frame.
+struct Landing {
+    physics::Swept swept;
+    // What it has given up since the top of the barrier, with the lowest push over it.
+    double hits_J = 0;
+    safety::FallZone zone;
+};
+
+// By object. Over an edge an object lands about its own height away, as high as its centre was
+// beside the edge, unless it meets something before; off a support's end by its height beyond it.
+// What does not stay on its support tumbles, and reaches as far around its centre as it is long or
+// high.
+std::vector<Landing> landings(const SolidParts& parts, const ObjectStage& objects);
+
+}  // namespace topple
