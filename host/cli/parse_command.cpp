@@ -280,7 +280,7 @@ Command add_parse(CLI::App& app, const Team& team) {
         ->check(one_of({"g", "m/s2", "cm/s2"}));
     app.add_option("--floor-amplification", a->options.floor_amplification,
                    "How many times as strongly as the ground shakes what things stand on, as on\n"
-                   "upper floors")
+                   "upper floors, and shelves and desks do (about 2.5)")
         ->capture_default_str();
     app.add_option("--hazard", a->hazard,
                    "How often the ground shakes there: JSON (pga_g, per_year), or lines of peak\n"
