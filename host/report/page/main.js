@@ -54,7 +54,7 @@ function fillBottom(scene) {
   if (!scene.notes.length) document.getElementById('notes-panel').hidden = true;
   document.getElementById('table-note').textContent =
     'Click a heading to sort. Barrier: the least energy that moves an object; release: what it then can set free. ' +
-    'For each disturbance: joules expected per event, \u00b1 what the sampling of events leaves open (not what the scan or the grouping may have got wrong), and how often an event upsets the object.';
+    'For each disturbance: joules expected per event, \u00b1 one standard error, of the sampling of events and of what is not known of barrier and mass (not of what the grouping may have got wrong), and how often an event upsets the object.';
 }
 
 // One button of a group is pressed at a time.
