@@ -31,12 +31,13 @@ std::optional<ConvexPart> bar(const Vec3& to, double z, double half_m) {
     return hull_part(points);
 }
 
-// Whether a part overlaps one of any body but its own; own: null where it is in none.
-bool meets(const std::vector<Body>& bodies, const Body* own, const ConvexPart& part) {
+// Whether a part overlaps one of any body that counts.
+template <class Counts>
+bool meets(const std::vector<Body>& bodies, const ConvexPart& part, const Counts& counts) {
     return std::ranges::any_of(bodies, [&](const Body& other) {
-        return &other != own && std::ranges::any_of(other.parts, [&](const ConvexPart& stays) {
-            return near(part, stays, 0) && overlap(part, stays);
-        });
+        return counts(other) && std::ranges::any_of(other.parts, [&](const ConvexPart& stays) {
+                   return near(part, stays, 0) && overlap(part, stays);
+               });
     });
 }
 
@@ -60,11 +61,18 @@ std::optional<Strut> strut_at(const std::vector<Body>& bodies, const std::vector
                 foot = std::max(foot, gap->to_m);
     if (foot > middle->from_m) return std::nullopt;
     auto strut = bar({at[0], at[1], middle->from_m + into_m}, foot, half_m);
-    if (!strut || meets(bodies, &body, *strut)) return std::nullopt;
+    const auto another = [&](const Body& other) { return &other != &body; };
+    if (!strut || meets(bodies, *strut, another)) return std::nullopt;
     std::vector<Point2> feet;
     for (const Vec3& c : strut->corner)
         if (c[2] < strut->low[2] + 1e-9) feet.push_back({c[0], c[1]});
     return Strut{*std::move(strut), std::move(feet), middle->from_m - foot};
+}
+
+// Of a level grid.
+std::array<std::int64_t, 2> cell_of(double x, double y, double edge_m) {
+    return {static_cast<std::int64_t>(std::floor(x / edge_m)),
+            static_cast<std::int64_t>(std::floor(y / edge_m))};
 }
 
 // One corner for each cell of a grid: the lowest.
@@ -72,9 +80,7 @@ std::vector<Vec3> spread_low(const Body& body, double cell_m) {
     std::map<std::array<std::int64_t, 2>, Vec3> lowest;
     for (const ConvexPart& part : body.parts) {
         for (const Vec3& c : part.corner) {
-            const std::array cell{static_cast<std::int64_t>(std::floor(c[0] / cell_m)),
-                                  static_cast<std::int64_t>(std::floor(c[1] / cell_m))};
-            const auto [at, fresh] = lowest.try_emplace(cell, c);
+            const auto [at, fresh] = lowest.try_emplace(cell_of(c[0], c[1], cell_m), c);
             if (!fresh && c[2] < at->second[2]) at->second = c;
         }
     }
@@ -91,12 +97,9 @@ std::vector<Strut> posts_of(const std::vector<Body>& bodies, const Body& body, d
     std::vector<Strut> out;
     for (const Vec3& c : spread_low(body, 2 * half_m)) {
         auto slab = bar({c[0], c[1], c[2]}, c[2] - thick_m, half_m);
-        const bool in_way = !slab || std::ranges::any_of(bodies, [&](const Body& other) {
-            return !other.fixed && std::ranges::any_of(other.parts, [&](const ConvexPart& part) {
-                return near(*slab, part, 0) && overlap(*slab, part);
-            });
-        });
-        if (!in_way) out.push_back({*std::move(slab), {{c[0], c[1]}}, c[2] - lowest});
+        const auto moves = [](const Body& other) { return !other.fixed; };
+        if (slab && !meets(bodies, *slab, moves))
+            out.push_back({*std::move(slab), {{c[0], c[1]}}, c[2] - lowest});
     }
     std::ranges::stable_sort(out, {}, &Strut::length_m);
     return out;
@@ -121,10 +124,7 @@ std::vector<Strut> struts_of(const std::vector<Body>& bodies, const std::vector<
     std::set<std::array<std::int64_t, 2>> taken;
     std::vector<Strut> out;
     for (const Point2& at : places) {
-        const auto cell = [&](double x) {
-            return static_cast<std::int64_t>(std::floor(x / (2 * half_m)));
-        };
-        if (!taken.insert({cell(at[0]), cell(at[1])}).second) continue;
+        if (!taken.insert(cell_of(at[0], at[1], 2 * half_m)).second) continue;
         auto strut = strut_at(bodies, stands, body, at, half_m);
         if (strut && strut->length_m <= longest_m) out.push_back(*std::move(strut));
     }

@@ -12,6 +12,7 @@
 #include "export/separate.h"
 #include "export/simplify.h"
 #include "export/stand.h"
+#include "physics/tipping.h"
 #include "physics/vectors.h"
 #include "solids/cell_shape.h"
 #include "topple/error.h"
@@ -40,14 +41,13 @@ Mat3 turned(const Rotation& r, const Mat3& inertia) {
     return out;
 }
 
-// Energy takes the centre of mass, at a height over an edge of the footing and at a distance inside
-// it, up to above that edge: m g (sqrt(height^2 + distance^2) - height). The distance of a barrier.
+// How far inside its footing the centre of mass is that has such a barrier.
 double firm_m(const Object& object, const Body& body, double gravity_m_s2) {
     constexpr double most_m = 0.05;
     if (!(object.barrier_J > 0) || !(object.mass_kg > 0)) return 0;
     const double height = std::max(0.0, body.center_m[2] - box_around(body.parts).low[2]);
     const double rise = object.barrier_J / (object.mass_kg * gravity_m_s2);
-    return std::min(most_m, std::sqrt(rise * (rise + 2 * height)));
+    return std::min(most_m, physics::edge_distance_m(rise, height));
 }
 
 // The lowest of the level floors that are not much smaller than the largest: what else was taken

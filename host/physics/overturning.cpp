@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/tipping.h"
+
 namespace topple::physics {
 
 Overturning overturning(const Candidate& candidate, const BodyError& known,
@@ -16,7 +18,7 @@ Overturning overturning(const Candidate& candidate, const BodyError& known,
     if (candidate.support_polygon.empty() || !(weight > 0) || !(height > 0)) return {};
     constexpr double degrees = 180 / std::numbers::pi;
     const double rise = tipping.barrier_J / weight;
-    const double beside = std::sqrt(rise * (rise + 2 * height));
+    const double beside = edge_distance_m(rise, height);
     Overturning out;
     out.direction = tipping.easiest.direction;
     out.tilt_deg = std::atan(beside / height) * degrees;

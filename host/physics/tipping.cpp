@@ -56,6 +56,10 @@ Footing footing(std::span<const Point> polygon, double x, double y) {
     return result;
 }
 
+double edge_distance_m(double rise_m, double height_m) {
+    return std::sqrt(rise_m * std::max(rise_m + 2 * height_m, 0.0));
+}
+
 std::vector<Point> convex_polygon(std::vector<Point> points) {
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());

@@ -26,6 +26,10 @@ struct Footing {
 // give a footing without an inside.
 Footing footing(std::span<const std::array<double, 2>> polygon, double x, double y);
 
+// How far under it, level, an edge is from a centre of mass `height_m` above it that rises by so
+// much until it stands over the edge: the inverse of sqrt(height^2 + distance^2) - height.
+double edge_distance_m(double rise_m, double height_m);
+
 // Convex hull of points, counter-clockwise, strict corners only, from the lowest (x, y) on.
 std::vector<std::array<double, 2>> convex_polygon(std::vector<std::array<double, 2>> points);
 

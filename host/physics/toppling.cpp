@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "physics/blow.h"
+#include "physics/tipping.h"
 #include "physics/vectors.h"
 
 namespace topple::physics {
@@ -70,7 +71,7 @@ Toppling::Toppling(const Candidate& candidate, const Body& body, const Stability
     for (const TippingWay& way : tipping.ways) {
         // The edge at which it would climb so high.
         Tip tip{way.direction,
-                std::sqrt(way.climb_m * std::max(way.climb_m + 2 * center_m_, 0.0)),
+                edge_distance_m(way.climb_m, center_m_),
                 weight * way.climb_m,
                 weight * way.release_m,
                 {},

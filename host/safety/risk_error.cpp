@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "physics/landscape.h"
+#include "physics/tipping.h"
 
 namespace topple::safety {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 double border_m(const RiskObject& object, double barrier_J) {
     const double weight = object.mass_kg * physics::gravity;
     const double rise = weight > 0 ? barrier_J / weight : 0;
-    return std::sqrt(rise * (rise + 2 * std::max(object.center_height_m, 0.0)));
+    return physics::edge_distance_m(rise, std::max(object.center_height_m, 0.0));
 }
 
 RiskObject at_end(const RiskObject& object, double errors) {

@@ -18,32 +18,28 @@ import json
 import math
 import multiprocessing
 import os
-import subprocess
 import tempfile
 from collections import Counter
 
 import mujoco
 import numpy as np
 
-KINDS = ('plain varied kitchen bathroom bedroom living office shop storage corridor precarious tabletop library meeting '
-         'lounge laundry depot').split()
+from rooms import UNSTABLE, add_options, chosen, generate, run
+
 SETTLING_S, WATCHED_S = 0.5, 3.0
 MOVED_M, MOVED_DEG = 0.01, 2.0
 FELL_DEG, LIES_DEG, FELL_M, SINKS_M_S = 5.0, 20.0, 0.02, 0.1
 WITHIN_M = 0.3
 TIMES = (1.05, 1.4, 2, 3, 4.5, 7, 10, 15, 25, 40)  # what the table says
-UNSTABLE = [mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC]
 STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 
 
 def made(topple, kind, seed, folder):
     """The folders of a room's output and export."""
-    scan, out, mjcf = (os.path.join(folder, name) for name in ('scan', 'out', 'mjcf'))
+    out, mjcf = (os.path.join(folder, name) for name in ('out', 'mjcf'))
     if not os.path.exists(os.path.join(mjcf, 'bodies.json')):
-        kinds = ['--furniture', 'varied'] if kind == 'varied' else ['--kind', kind]
-        subprocess.run([topple, 'generate', scan, '--seed', str(seed), *kinds], check=True, capture_output=True)
-        subprocess.run([topple, 'parse', scan, '-o', out], check=True, capture_output=True)
-        subprocess.run([topple, 'export', out, '--mjcf', mjcf], check=True, capture_output=True)
+        run(topple, 'parse', generate(topple, kind, seed, folder), '-o', out)
+        run(topple, 'export', out, '--mjcf', mjcf)
     return out, mjcf
 
 
@@ -245,16 +241,12 @@ def line(rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n', maxsplit=1)[0])
-    parser.add_argument('topple')
-    parser.add_argument('--rooms', type=int, default=2, help='of each kind (2)')
-    parser.add_argument('--first-seed', type=int, default=501)
-    parser.add_argument('--kinds', default=','.join(KINDS), help='comma-separated')
+    add_options(parser, rooms=2)
     parser.add_argument('--keep', help='folder for scans, outputs and exports')
     parser.add_argument('--turn', action='store_true', help='set off turning over their edge, not by blows')
-    parser.add_argument('--jobs', type=int, default=1, help='rooms at a time (1)')
     parser.add_argument('--json', help='file for all of them')
     a = parser.parse_args()
-    rooms = [(kind, seed) for seed in range(a.first_seed, a.first_seed + a.rooms) for kind in a.kinds.split(',')]
+    rooms = chosen(a)
     rows, none = [], Counter()
     with multiprocessing.Pool(a.jobs, maxtasksperchild=1) as pool:
         waiting = [pool.apply_async(judged, (a.topple, kind, seed, a.keep, a.turn)) for kind, seed in rooms]

@@ -24,12 +24,11 @@ from collections import Counter
 import mujoco
 import numpy as np
 
-KINDS = ('plain varied kitchen bathroom bedroom living office shop storage corridor precarious tabletop library meeting '
-         'lounge laundry depot').split()
+from rooms import UNSTABLE, add_options, chosen, generate, run
+
 SECONDS = 5
 STAYS_M, STAYS_DEG, FAST_M_S = 0.01, 2.0, 1.0
 BULLET_LIMIT_S = 150
-UNSTABLE = [mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC]
 
 
 def turned_deg(one, other):
@@ -157,14 +156,11 @@ def judged(topple, name, scan, bullet, drop):
     work = tempfile.mkdtemp(prefix='topple-simulators-', dir=os.environ.get('TMPDIR'))
     try:
         if isinstance(scan, tuple):
-            kind, seed = scan
-            scan = os.path.join(work, 'scan')
-            kinds = ['--furniture', 'varied'] if kind == 'varied' else ['--kind', kind]
-            subprocess.run([topple, 'generate', scan, '--seed', str(seed), *kinds], check=True, capture_output=True)
+            scan = generate(topple, *scan, work)
         out, mjcf, urdf = (os.path.join(work, folder) for folder in ('out', 'mjcf', 'urdf'))
-        subprocess.run([topple, 'parse', scan, '-o', out], check=True, capture_output=True)
+        run(topple, 'parse', scan, '-o', out)
         began = time.monotonic()
-        subprocess.run([topple, 'export', out, '--mjcf', mjcf], check=True, capture_output=True)
+        run(topple, 'export', out, '--mjcf', mjcf)
         exported_s = time.monotonic() - began
         with open(os.path.join(out, 'scene.json'), encoding='utf-8') as file:
             objects = json.load(file)['objects']
@@ -181,7 +177,7 @@ def judged(topple, name, scan, bullet, drop):
                         fast=sum(ends[n][2] > FAST_M_S for n in names))
         bad = [f'{n}: {ends[n][0]:.3f} m, {ends[n][1]:.0f} deg' for n in names if stands[n] and not stays(ends[n])]
         if bullet:
-            subprocess.run([topple, 'export', out, '--urdf', urdf, '--no-visuals'], check=True, capture_output=True)
+            run(topple, 'export', out, '--urdf', urdf, '--no-visuals')
             ends = in_bullet(urdf, names)
             if ends is None:
                 count['bullet_unfinished'] += 1
@@ -218,17 +214,12 @@ def line(c):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n', maxsplit=1)[0])
-    parser.add_argument('topple')
-    parser.add_argument('--rooms', type=int, default=12, help='of each kind (12)')
-    parser.add_argument('--first-seed', type=int, default=501)
-    parser.add_argument('--kinds', default=','.join(KINDS), help='comma-separated; empty: none')
+    add_options(parser, rooms=12)
     parser.add_argument('--scans', nargs='*', default=[], help='to be judged, too: what `topple parse` takes')
     parser.add_argument('--bullet', action='store_true')
     parser.add_argument('--drop', action='store_true')
-    parser.add_argument('--jobs', type=int, default=1, help='rooms at a time (1)')
     a = parser.parse_args()
-    rooms = [(kind, f'{kind} {seed}', (kind, seed)) for seed in range(a.first_seed, a.first_seed + a.rooms)
-             for kind in a.kinds.split(',') if kind]
+    rooms = [(kind, f'{kind} {seed}', (kind, seed)) for kind, seed in chosen(a)]
     rooms += [('scans', os.path.relpath(path), path) for path in a.scans]
     total, deepest_m, slowest, longest_s = {}, 0, math.inf, 0
     with multiprocessing.Pool(a.jobs, maxtasksperchild=1) as pool:

@@ -3,9 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -109,15 +106,10 @@ void judge_blows(int count) {
                           {"barrier_J", scene.at_risk[static_cast<std::size_t>(id)].barrier_J},
                           {"blows", blows}});
     }
-    const auto file = std::filesystem::temp_directory_path() / "topple-blows.json";
-    std::ofstream(file) << nlohmann::json{{"friction", blow_friction},
-                                          {"voxel_m", blow_voxel_m},
-                                          {"density_kg_m3", 700},
-                                          {"things", things}};
-    const auto [text, code] = run_script("blows_check.py", file.string());
-    if (code == script_missing) GTEST_SKIP() << text << "run ./dev setup";
-    std::printf("%s", text.c_str());
-    EXPECT_EQ(code, 0) << text;
+    judge_by_script("blows", nlohmann::json{{"friction", blow_friction},
+                                            {"voxel_m", blow_voxel_m},
+                                            {"density_kg_m3", 700},
+                                            {"things", things}});
 }
 
 TEST(Blows, TakeWhatTheTableSays) {

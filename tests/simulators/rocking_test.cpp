@@ -5,9 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
@@ -89,16 +86,11 @@ void judge_rocking(std::size_t count, double least_alike, double least_both) {
     auto shaken = nlohmann::json::array();
     for (const Accelerogram& r : records)
         shaken.push_back({{"step_s", r.step_s}, {"m_s2", {r.m_s2, r.across_m_s2, r.up_m_s2}}});
-    const auto file = std::filesystem::temp_directory_path() / "topple-rocking.json";
-    std::ofstream(file) << nlohmann::json{{"gravity", physics::gravity},
-                                          {"records", shaken},
-                                          {"cases", cases},
-                                          {"least_alike", least_alike},
-                                          {"least_both", least_both}};
-    const auto [text, code] = run_script("rocking_check.py", file.string());
-    if (code == script_missing) GTEST_SKIP() << text << "run ./dev setup";
-    std::printf("%s", text.c_str());
-    EXPECT_EQ(code, 0) << text;
+    judge_by_script("rocking", nlohmann::json{{"gravity", physics::gravity},
+                                              {"records", shaken},
+                                              {"cases", cases},
+                                              {"least_alike", least_alike},
+                                              {"least_both", least_both}});
 }
 
 // So few that three or four otherwise are chance.

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
@@ -26,6 +31,16 @@ inline std::pair<std::string, int> run_script(const std::string& name,
     const bool needed = required && std::string(required) == "1";
     if (code == 127) return {out, needed ? code : script_missing};
     return {out, code == script_missing && needed ? -1 : code};
+}
+
+// Has the script NAME_check.py judge cases: prints what it says, and fails where it does.
+inline void judge_by_script(const std::string& name, const nlohmann::json& cases) {
+    const auto file = std::filesystem::temp_directory_path() / ("topple-" + name + ".json");
+    std::ofstream(file) << cases;
+    const auto [text, code] = run_script(name + "_check.py", file.string());
+    if (code == script_missing) GTEST_SKIP() << text << "run ./dev setup";
+    std::printf("%s", text.c_str());
+    EXPECT_EQ(code, 0) << text;
 }
 
 }  // namespace topple::exports::test

@@ -221,6 +221,7 @@ bool reaches_out(const PosedBody& body, const HumanOptions& options) {
 
 // The bodies, and what they have been recorded of together.
 struct Recordings {
+    double most_J = least_energy_J;  // of all that is no noise
     std::vector<PosedBody> bodies;
     std::array<unsigned, segment_count> with{};  // recordings that have a segment
     // A visit's share of the time.
@@ -246,7 +247,10 @@ Recordings recordings_of(const HumanOptions& options, std::vector<std::string>& 
         for (std::size_t f = 0; f < body.frames; ++f) {
             visit_frame(body, f, options, [&](const Visit& v) {
                 ++visits;
-                noise += v.speed() > fastest_m_s;
+                if (v.speed() > fastest_m_s)
+                    ++noise;
+                else
+                    out.most_J = std::max(out.most_J, v.energy_J());
             });
         }
         if (visits == 0) {
@@ -274,11 +278,7 @@ SecondaryMotion recorded_motion(const HumanOptions& options) {
     }
     SecondaryMotion out;
     const Recordings recordings = recordings_of(options, out.notes);
-    double most = least_energy_J;
-    recordings.each(options, [&](const Visit& v, double) {
-        if (v.speed() <= fastest_m_s) most = std::max(most, v.energy_J());
-    });
-    const double range = std::log(most / least_energy_J);
+    const double range = std::log(recordings.most_J / least_energy_J);
     std::vector<double> weight(energy_levels, 0.0), energies(energy_levels, 0.0),
         masses(energy_levels, 0.0);
     std::map<std::pair<unsigned, unsigned>, LayerSums> layers;  // by level and group of bands
