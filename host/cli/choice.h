@@ -6,15 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace topple::cli {
+#include "core/listed.h"
 
-// "m, cm or in".
-inline std::string listed(const std::vector<std::string>& words) {
-    std::string text;
-    for (std::size_t n = 0; n < words.size(); ++n)
-        text += (n == 0 ? "" : n + 1 < words.size() ? ", " : " or ") + words[n];
-    return text;
-}
+namespace topple::cli {
 
 // An option's value is one of these words. The parser's own checks show how they are stored, in the
 // help and in what they say of other words.

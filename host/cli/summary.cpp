@@ -2,11 +2,13 @@
 #include "cli/summary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "core/listed.h"
 #include "io/text.h"
 #include "safety/disturbances.h"
 
@@ -29,6 +31,34 @@ std::string category_text(const Object& o) {
 bool at_risk(const Object* o) {
     constexpr double printed_as_lowest = 1.05;
     return rank_of(*o) >= printed_as_lowest;
+}
+
+// What stands above the columns of risks: no harm to people, but what comes of one event.
+std::string risks_text(const Scene& scene) {
+    std::vector<std::string> columns, events;
+    for (const safety::DisturbanceKind* kind : safety::disturbance_kinds()) {
+        columns.emplace_back(kind->words.column);
+        std::string event = kind->words.one_event;
+        const auto& [key, follows, name, unit] = kind->words.figure;
+        const auto figure = scene.events.find(key);
+        if (*follows != 0 && figure != scene.events.end())
+            event += follows + io::short_number(figure->second) + " " + unit;
+        events.push_back(std::move(event));
+    }
+    return listed(columns, "and") +
+           " are risks: the energy\n   that it sets free, over all ways, "
+           "per event: " +
+           listed(events) + ".";
+}
+
+// Who passes where it lands; "" where that is not known, or it lands softly.
+std::string people_text(const Fall& fall) {
+    if (!fall.falls || std::isnan(fall.people_share) || !(fall.hits_J > 0)) return "";
+    char text[96];
+    std::snprintf(text, sizeof(text),
+                  " It lands with %.2g J; of 100 people who walk through, %.0f pass there.",
+                  fall.hits_J, 100 * fall.people_share);
+    return text;
 }
 
 // "The 3 riskiest of the 5 objects whose barrier is ...", or of fewer without an order among one.
@@ -70,8 +100,9 @@ void print_sentences(const std::vector<const Object*>& riskiest_first) {
     std::printf(":\n");
     for (std::size_t i = 0; i < shown; ++i) {
         const Object& o = *told[i];
-        std::printf("Object %d: %s%s%s\n", o.id, o.why.sentence.c_str(),
-                    o.advice.sentence.empty() ? "" : " ", o.advice.sentence.c_str());
+        std::printf("Object %d: %s%s%s%s\n", o.id, o.why.sentence.c_str(),
+                    people_text(o.fall).c_str(), o.advice.sentence.empty() ? "" : " ",
+                    o.advice.sentence.c_str());
     }
 }
 
@@ -114,8 +145,8 @@ void print_objects(const Scene& scene) {
             "   Unsafety ranks the things of this scene, 10 the worst; category is by itself: how "
             "often it falls, and how hard,\n   at the worse end of its error; ? where the better "
             "end says less. Barrier, release and mode are those of the\n   easiest way out of its "
-            "place; human, wind and quake are risks: what it sets free per event, over all "
-            "ways.\n");
+            "place. %s\n",
+            risks_text(scene).c_str());
     print_sentences(movable);
 }
 

@@ -24,6 +24,9 @@ constexpr double often_near = 0.3, often_leaning = 0.1, often_hidden = 0.03;
 constexpr double often_partly = 0.3;
 // How often what is seen to hold a thing holds it above its foot only.
 constexpr double often_hung = 0.05;
+// What is not seen between a thing and what carries it, of the height that is: with more of it
+// nobody knows what its foot is like, or whether it hangs.
+constexpr double most_unseen_foot = 0.5;
 constexpr std::int32_t uneven_foot = 2;  // voxels
 constexpr double least_error_m = 1e-4;   // no border is known better
 
@@ -44,6 +47,13 @@ void add_corners(const Underside& u, double h, const BoundaryCells& boundary,
         points.push_back({{c.at[0], c.at[1]}, c.error_m});
         if (height) height->add(c.at[2]);
     }
+}
+
+double highest_of(const physics::Candidate& c, const ContactGraph& contacts) {
+    double most = -std::numeric_limits<double>::infinity();
+    for (const std::int32_t p : c.primitives)
+        most = std::max(most, contacts.highest_m[static_cast<std::size_t>(p)]);
+    return most;
 }
 
 double margin_of(const physics::Candidate& c, const Points& polygon) {
@@ -209,6 +219,9 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
     weigh(RestKind::hidden, std::move(whole), low_m, 0.3 * often_hidden);
     if (goes_on) weigh(RestKind::near, outline_of(partly), near_height, often_partly);
     best.probability = sum > 0 ? most / sum : 1;
+    const double unseen_m = low_m - best.support_height_m;
+    if (unseen_m > noise_gap * h && unseen_m > most_unseen_foot * (highest_of(c, contacts) - low_m))
+        best.kind = RestKind::hidden;
     take_for_standing(c, noise_m, best);
     return best;
 }

@@ -35,8 +35,9 @@ enum class RestKind : std::uint8_t {
     seen,     // by contacts that were seen, or that nobody saw into
     near,     // by those, and where noise leaves a small gap, or by more of its underside
     leaning,  // by those, and by what it touches beside it
-    hidden,   // by what was not seen: taken to be where the object is lowest
-    none,     // by nothing: it has no solid cells
+    hidden,  // by what was not seen: taken to be where the object is lowest, or to go straight down
+             // from there where nobody saw in
+    none,    // by nothing: it has no solid cells
 };
 const char* to_string(RestKind kind);
 

@@ -66,8 +66,8 @@ class Sentence {
     std::string text() const {
         if (object_.grounded) return "It is the ground, or fixed to it: it can't fall.";
         if (!from_.seen_enough()) {
-            return "The scan does not show what holds it up: it is taken to stand where it is "
-                   "lowest, and is not ranked.";
+            return "The scan does not show what holds it up: it is taken to stand there, and is "
+                   "not ranked.";
         }
         if (object_.mode == "slide") return slides();
         return tips();
@@ -231,7 +231,7 @@ std::string fix_sentence(const Object& object, const Suggestion& what) {
     }
     if (!(what.hold.force_N > 0)) return text + ".";
     return text + ": the fixing must hold " + number(what.hold.force_N) + " N at " +
-           length(what.hold.height_m) + " above its base.";
+           length(what.hold.height_m) + " above what it stands on.";
 }
 
 std::string advice_sentence(const Object& object, const Suggestion& what) {

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <utility>
+#include <vector>
 
+#include "core/listed.h"
 #include "safety/earthquake/earthquake_field.h"
 #include "safety/human/human_field.h"
 #include "safety/wind/wind_field.h"
@@ -36,13 +38,10 @@ const DisturbanceKind* find_disturbance_kind(std::string_view name) {
 
 const DisturbanceKind& disturbance_kind(std::string_view name) {
     if (const DisturbanceKind* kind = find_disturbance_kind(name)) return *kind;
-    std::string known;
-    const auto kinds = disturbance_kinds();
-    for (std::size_t n = 0; n < kinds.size(); ++n) {
-        if (n > 0) known += n + 1 < kinds.size() ? ", " : " or ";
-        known += kinds[n]->name;
-    }
-    throw Error(ErrorKind::usage, "--disturbance " + std::string(name) + ": expected " + known);
+    std::vector<std::string> known;
+    for (const DisturbanceKind* kind : disturbance_kinds()) known.emplace_back(kind->name);
+    throw Error(ErrorKind::usage,
+                "--disturbance " + std::string(name) + ": expected " + listed(known));
 }
 
 std::unique_ptr<DisturbanceField> made_field(Disturbance disturbance) {

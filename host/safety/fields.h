@@ -29,7 +29,10 @@ struct RiskObject {
     bool grounded = false;  // or held by what was not seen: no risk is reckoned
     double mass_kg = 0;
     double barrier_J = 0;
-    double height_m = 0;                 // of the object itself
+    // Of what carries it, grid frame, or of its lowest voxel where that is lower; NaN: of that.
+    // Heights of pushes and blows count from there.
+    double base_m = std::numeric_limits<double>::quiet_NaN();
+    double height_m = 0;                 // of its top
     double base_width_m = 0;             // least width of its support polygon
     double base_error_share = 0;         // one standard error of b / h, as a share of it
     double slide_distance_m = -1;        // shortest way to where its support ends; -1: no edge

@@ -62,7 +62,8 @@ std::vector<std::vector<std::uint32_t>> cells_of_objects(
     return out;
 }
 
-Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> of_object) {
+Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> of_object,
+              const RiskObject& object) {
     const SolidCells& cells = *surroundings.cells;
     Stance out;
     if (of_object.empty()) return out;
@@ -97,7 +98,7 @@ Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> o
     }
     const double voxel = cells.voxel_m, voxel2 = voxel * voxel, own = 1.0 / 12;  // of a unit cube
     out.center = {x * voxel, y * voxel, z * voxel};
-    out.bottom_m = low * voxel;
+    out.bottom_m = std::isnan(object.base_m) ? low * voxel : object.base_m;
     out.top_m = (high + 1.0) * voxel;
     out.spread_m2 = {(xx / all + own) * voxel2, xy / all * voxel2, (yy / all + own) * voxel2,
                      (zz / all + own) * voxel2};
@@ -124,7 +125,7 @@ double half_base(const RiskObject& object, const Stance& stance, double dx, doub
 double support_reach(const Stance& stance, const Columns& columns, double dx, double dy) {
     constexpr double furthest_m = 3;
     const double voxel = columns.voxel_m();
-    // The two layers below its lowest voxels: contacts may have a gap of one.
+    // The two layers below its base: contacts may have a gap of one.
     const auto below = static_cast<std::int64_t>(std::lround(stance.bottom_m / voxel)) - 2;
     double way = 0;
     for (; way < furthest_m; way += voxel / 2) {

@@ -26,7 +26,7 @@ std::vector<std::vector<std::uint32_t>> cells_of_objects(
 // How an object stands, metres.
 struct Stance {
     Vec3 center{};                   // of mass
-    double bottom_m = 0, top_m = 0;  // underside of its lowest cell, top of its highest
+    double bottom_m = 0, top_m = 0;  // its base, and the top of its highest cell
     // Mean of (x - center)^2, of (x - center_x)(y - center_y) and so on over its mass: xx, xy, yy,
     // zz.
     std::array<double, 4> spread_m2{};
@@ -37,7 +37,8 @@ struct Stance {
         return dx * dx * xx + 2 * dx * dy * xy + dy * dy * yy + zz;
     }
 };
-Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> of_object);
+Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> of_object,
+              const RiskObject& object);
 
 // Half base b in horizontal direction (dx, dy): from below the centre of mass to where the support
 // ends that way, 0 where it has ended already. From the support polygon, or half of base_width_m.

@@ -240,7 +240,7 @@ TEST_F(SlowDisturbances, Wind) {
             const Vec3 d = event.direction;
             const auto front = safety::wind_frontage(*scene.around.cells, columns, cells[o],
                                                      {d[0], d[1]}, options.shelter_m);
-            const auto stands = safety::stance(scene.around, cells[o]);
+            const auto stands = safety::stance(scene.around, cells[o], scene.at_risk[o]);
             const double force = safety::wind_force({front.area_m2, 0, 0, 0}, options);
             return simulation.falls(
                 4, voxel_m, far(scene.objects[o]),

@@ -26,7 +26,7 @@ function missingText(scene) {
     lines.push('No floor was found on which people could walk, so their walks put nothing at risk here.');
   }
   // What the list below stands or falls with.
-  lines.push(...scene.notes.filter(note => /^(People walk|Object)/.test(note)));
+  lines.push(...scene.notes.filter(note => /^(People walk|Object|A ceiling)/.test(note)));
   return lines.join(' ');
 }
 
@@ -38,6 +38,7 @@ function riskItem(scene, object, choose) {
       element('span', {className: 'swatch', style: {background: css(colourOf(scene, object.id))}}),
       element('strong', {text: `Object ${object.id}`}),
       line('mass', `${number(object.mass_kg, 'kg')}`),
+      line('category', object.unsafety_category ? `category ${categoryText(object)}` : ''),
       unsafetyBadge(scene, object)]),
     line('from', isDoubtful(object) ? `As scanned a touch would upset it. ${happensText(scene, object)}` : upsetText(object)),
   ]);
@@ -97,7 +98,7 @@ function rankedText(scene, shown, movable) {
   const doubtful = scene.objects.filter(isDoubtful);
   const unseen = scene.objects.filter(object => !object.grounded && !isDoubtful(object) && object.seen_enough === false).length;
   const uncertain = doubtful.length + unseen;
-  const of = riskiestOf(shown, movable - uncertain, uncertain ? 'whose barrier is above its error' : 'that can fall');
+  const of = riskiestOf(shown, movable - uncertain, uncertain ? 'whose barrier is above its error' : 'that can move');
   const one = shown === 1;
   const listed = `${of}: by the chance that one event upsets ${one ? 'it' : 'them'}, times the energy that ${one ? 'it then sets' : 'they then set'} free.` +
     (unseen ? ` ${unseen} more ${unseen === 1 ? 'has' : 'have'} no rank, since nothing was seen to hold ${unseen === 1 ? 'it' : 'them'}.` : '');
@@ -109,7 +110,7 @@ function rankedText(scene, shown, movable) {
 
 function fillRiskiest(panel, scene, worst, movable, choose) {
   panel.append(element('p', {className: 'hint', text:
-    rankedText(scene, worst.length, movable) + ' ' + eventsText(scene) + ' The badge is unsafety: 10 is the worst of this scene, whatever it is; the category in the table is by itself. ' +
+    rankedText(scene, worst.length, movable) + ' ' + eventsText(scene) + ' The badge is unsafety: 10 is the worst of this scene, whatever it is; the category is by itself, by how often it falls and how hard; ? where its error leaves a lower one open. ' +
     'Choose one to see it in the room.'}));
   if (worst.every(object => !(object.advice && object.advice.kind))) {
     panel.append(element('p', {className: 'hint', text: 'All of these risks are tolerated: nothing needs to be done.'}));

@@ -70,7 +70,7 @@ function unsafetyBadge(scene, object) {
   const colour = object.grounded ? noColour : riskColour(scene, object.unsafety);
   const dark = 0.3 * colour[0] + 0.59 * colour[1] + 0.11 * colour[2] < 140;
   return element('span', {
-    className: 'unsafety', text: object.unsafety.toFixed(1), style: {background: css(colour), color: dark ? '#fff' : '#1d2126'},
+    className: 'unsafety', title: `unsafety ${object.unsafety.toFixed(1)} of 10, category ${categoryText(object)}`, text: object.unsafety.toFixed(1), style: {background: css(colour), color: dark ? '#fff' : '#1d2126'},
   });
 }
 

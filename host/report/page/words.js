@@ -106,9 +106,13 @@ function fallKnown(object) {
 }
 
 // Who passes where it lands, and how hard it lands: a sentence of its own; '' where it lands softly.
-function hitsText(fall) {
+function hitsText(object) {
+  const fall = object.fall;
   if (!(fall.hits_J > 0)) return '';
-  const people = 100 * fall.people_share, energy = number(Number(fall.hits_J.toPrecision(2)), 'J');
+  const joules = value => number(Number(value.toPrecision(2)), 'J');
+  const people = 100 * fall.people_share, stopped = fall.leans_on >= 0 && fall.hits_J < 0.9 * object.release_J;
+  // Risk and category are of what is not stopped.
+  const energy = joules(fall.hits_J) + (stopped ? `, and ${joules(object.release_J)} if that gives way` : '');
   if (typeof fall.people_share !== 'number') return ` It would land with ${energy}.`;
   const who = people <= 0 ? 'nobody passes who walks' : `${people < 0.5 ? 'less than 1' : Math.round(people)} of 100 people pass who walk`;
   return ` It would land where ${who} through the room, with ${energy}.`;
@@ -125,7 +129,7 @@ function happensText(scene, object) {
   const against = scene.objectById.get(fall.leans_on);
   const how = against ? `, against ${against.grounded ? 'a wall or what is fixed to it' : 'object ' + against.id}${goes ? ',' : ''}` :
     fall.drop_m > 0 ? `, falls ${metres(fall.drop_m)} ${landsText(scene, fall)}` : '';
-  return verb + how + end + hitsText(fall);
+  return verb + how + end + hitsText(object);
 }
 
 // What a simulator made of the scene (topple verify): how many stay, and which moved.

@@ -217,7 +217,7 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
     std::vector<ShakenObject> bodies(objects.size()), standing(objects.size());
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (cells[o].empty() || objects[o].grounded) return;
-        stances[o] = stance(surroundings, cells[o]);
+        stances[o] = stance(surroundings, cells[o], objects[o]);
         bodies[o] = shaken_object(objects[o], stances[o], columns);
         standing[o] = where_it_stands(objects[o], bodies[o]);
     });

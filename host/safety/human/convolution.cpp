@@ -29,14 +29,16 @@ Strikes no_strikes(const SecondaryMotion& motion) {
 }
 
 std::vector<Extent> extents(const SolidCells& cells, std::span<const std::int32_t> object_of_cell,
-                            std::size_t objects) {
-    std::vector<Extent> out(objects, {INFINITY, -INFINITY});
+                            std::span<const RiskObject> objects) {
+    std::vector<Extent> out(objects.size(), {INFINITY, -INFINITY});
     for (std::size_t c = 0; c < object_of_cell.size(); ++c) {
         if (object_of_cell[c] < 0) continue;
         Extent& extent = out[static_cast<std::size_t>(object_of_cell[c])];
         extent.bottom_m = std::min(extent.bottom_m, cells.k[c] * cells.voxel_m);
         extent.top_m = std::max(extent.top_m, (cells.k[c] + 1) * cells.voxel_m);
     }
+    for (std::size_t o = 0; o < out.size(); ++o)
+        if (!std::isnan(objects[o].base_m)) out[o].bottom_m = objects[o].base_m;
     return out;
 }
 

@@ -22,7 +22,7 @@ namespace topple::safety {
 inline constexpr std::size_t strike_heights = physics::Toppling::heights;
 using Strikes = std::vector<std::array<std::array<double, strike_heights>, direction_count>>;
 
-// Where an object's cells begin and end, grid frame.
+// An object's base and the top of its cells, grid frame.
 struct Extent {
     double bottom_m = 0, top_m = 0;
     double height_m(std::size_t part) const {  // of that part's middle, above the bottom
@@ -30,7 +30,7 @@ struct Extent {
     }
 };
 std::vector<Extent> extents(const SolidCells& cells, std::span<const std::int32_t> object_of_cell,
-                            std::size_t objects);
+                            std::span<const RiskObject> objects);
 
 Strikes no_strikes(const SecondaryMotion& motion);
 

@@ -174,7 +174,7 @@ HumanField::HumanField(device::Device& device, const Surroundings& surroundings,
                        {}}) {
     check(options);
     Parts& p = *parts_;
-    p.extent = extents(*surroundings.cells, p.object_of_cell, objects.size());
+    p.extent = extents(*surroundings.cells, p.object_of_cell, objects);
     p.secondary = p.options.motions.empty() ? table_motion(p.options) : recorded_motion(p.options);
     p.map = walkable_map(surroundings, p.options);
     if (p.map.walkable.empty()) return;

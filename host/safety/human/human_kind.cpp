@@ -9,7 +9,7 @@ const DisturbanceKind& human_kind() {
         .words = {.cause = "people walking by",
                   .event = "walk",
                   .one_event = "one person walking through the room",
-                  .column = "human",
+                  .column = "walk",
                   .doing = "walking people through the room",
                   .mend = "Keep the way past it clear, or fasten it",
                   // Where as many come as go, the mean of their speeds is small.

@@ -236,9 +236,10 @@ WalkableMap walkable_map(const Surroundings& surroundings, const HumanOptions& o
         char text[32];
         std::snprintf(text, sizeof(text), "%.1f", area);
         map.notes.push_back(std::string("People walk on only ") + text +
-                            " square metres: the lowest level surface was taken for the floor. If "
-                            "it is a table top or the like, nobody walks there: ignore the risk by "
-                            "people, or leave human out of the disturbances.");
+                            " square metres: either the floor was hardly scanned, so that people "
+                            "are missed, or the lowest level surface is no floor but a table top "
+                            "or the like, where nobody walks: then leave human out of the "
+                            "disturbances.");
     }
     return map;
 }

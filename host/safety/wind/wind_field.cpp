@@ -233,7 +233,7 @@ std::vector<double> tipping_gusts(device::Device& device, const Surroundings& su
     std::vector<double> out(objects.size(), std::numeric_limits<double>::quiet_NaN());
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (cells[o].empty() || objects[o].grounded) return;
-        const Stance stands = stance(surroundings, cells[o]);
+        const Stance stands = stance(surroundings, cells[o], objects[o]);
         for (const auto& way : directions()) {
             const Frontage front =
                 wind_frontage(*surroundings.cells, columns, cells[o], way, options.shelter_m);
@@ -283,7 +283,7 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
     ArrowSample arrows;
     for (std::size_t o = 0; o < objects.size(); ++o) {
         if (cells[o].empty() || objects[o].grounded) continue;
-        const Stance stands = stance(surroundings, cells[o]);
+        const Stance stands = stance(surroundings, cells[o], objects[o]);
         std::vector<std::array<float, 3>> wind(cells[o].size(),
                                                {0, 0, 0});  // sum of directions, count
         std::vector<WindLoad> gales;

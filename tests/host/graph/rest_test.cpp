@@ -163,6 +163,21 @@ TEST_P(RestOf, AFootOfWhichOneSideWasSeenGoesOnWhereNobodySaw) {
     EXPECT_NEAR(out.support_height_m, 0, 1e-9);
 }
 
+// Nobody saw in below it: a box with its foot hidden stands on the floor; of what is hidden for
+// more than half of what was seen nobody knows.
+TEST_P(RestOf, AFootThatIsHiddenForLongIsNotKnown) {
+    for (const bool much : {false, true}) {
+        FloorScene scene;
+        const double bottom = much ? 0.3 : 0.1;
+        const auto thing = scene.add(box({0, 0, bottom}, {0.2, 0.2, 0.5}));
+        scene.voxelise();
+        scene.cells.unseen_below.assign(scene.cells.size(), 20);
+        const Rest out = rest(scene, thing, {}, 20);
+        EXPECT_EQ(out.kind, much ? RestKind::hidden : RestKind::seen) << bottom;
+        EXPECT_NEAR(out.support_height_m, 0, 1e-9) << "straight down from there";
+    }
+}
+
 TEST_P(RestOf, WhatHasNoSolidCellsRestsOnNothing) {
     FloorScene scene;
     const auto thing = scene.add(box({0, 0, 0}, {0.001, 0.001, 0.001}));

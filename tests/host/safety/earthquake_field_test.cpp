@@ -177,12 +177,26 @@ TEST_F(EarthquakeField, SupportGoesOnUntilTheTableEnds) {
     const auto surroundings = room.surroundings();
     const auto cells =
         cells_of_objects(movable_object_of_cells(surroundings, room.objects), room.objects.size());
-    const Stance stands = stance(surroundings, cells[id]);
+    const Stance stands = stance(surroundings, cells[id], room.objects[id]);
     const Columns columns(*surroundings.cells);
     EXPECT_NEAR(support_reach(stands, columns, -1, 0), 0.14, 0.011);
     EXPECT_NEAR(support_reach(stands, columns, 1, 0), 0.86, 0.011);
     EXPECT_NEAR(support_reach(stands, columns, 0, 1), 0.5, 0.011);
     EXPECT_NEAR(support_reach(stands, columns, -0.6, 0.8), 0.14 / 0.6, 0.02);
+}
+
+// Its foot hides the 20 cm down to what carries it: heights count from there.
+TEST_F(EarthquakeField, HeightsCountFromWhatCarriesAThing) {
+    test::Room room(0.02);
+    room.floor(0, 3, 0, 3);
+    const auto id = static_cast<std::size_t>(room.thing(1.5, 1.5, 0.2));
+    const auto surroundings = room.surroundings();
+    const auto cells =
+        cells_of_objects(movable_object_of_cells(surroundings, room.objects), room.objects.size());
+    const double above_itself = stance(surroundings, cells[id], room.objects[id]).height();
+    room.objects[id].base_m = 0;
+    EXPECT_NEAR(stance(surroundings, cells[id], room.objects[id]).height(), above_itself + 0.2,
+                1e-6);
 }
 
 TEST_F(EarthquakeField, NothingToShake) {
