@@ -33,8 +33,8 @@ std::vector<Result> measure_fields(device::Device& device, const StageScene& sce
     StageClock clock(timings, options);
     const VoxelStage voxels =
         make_solids(device, scene.ingested, scene.geometry, stage_voxel_m, clock);
-    const SolidParts parts = solid_parts(scene.geometry, voxels);
-    const ObjectStage objects = find_objects(device, parts, options, clock);
+    SolidParts parts = solid_parts(scene.geometry, voxels);
+    const ObjectStage objects = find_objects(device, options, clock, parts);
     std::vector<Result> out;
     for (const Field& field : fields) {
         options.disturbances = {field.name};

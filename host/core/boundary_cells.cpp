@@ -70,6 +70,24 @@ std::size_t BoundaryCells::find(std::int32_t vi, std::int32_t vj, std::int32_t v
     return low;
 }
 
+BoundaryCells BoundaryCells::only(const std::vector<bool>& kept) const {
+    BoundaryCells out;
+    out.patches = patches;
+    const auto pick = [&](const auto& from, auto& to) {
+        for (std::size_t n = 0; n < from.size(); ++n)
+            if (kept[n]) to.push_back(from[n]);
+    };
+    pick(i, out.i);
+    pick(j, out.j);
+    pick(k, out.k);
+    pick(primitive, out.primitive);
+    for (std::size_t s = 0; s < slots; ++s) pick(slot[s], out.slot[s]);
+    pick(form, out.form);
+    pick(share, out.share);
+    for (std::size_t a = 0; a < 3; ++a) pick(moment[a], out.moment[a]);
+    return out;
+}
+
 std::uint32_t make_form(bool any_group, const std::array<SlotUse, BoundaryCells::slots>& uses,
                         std::size_t used) {
     auto form = static_cast<std::uint32_t>(used) | (any_group ? 8U : 0U);

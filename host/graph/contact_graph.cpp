@@ -170,22 +170,22 @@ struct Extent {
 };
 
 // A primitive's columns: the lowest cell of each, and how far down from there nobody has seen.
-struct Underside {
+struct Bottom {
     std::int32_t i, j, lowest, unseen;
 };
 
 // The convex hull of a primitive's columns, seen from above: it may go on where it is hidden, but
 // not beyond that.
-std::vector<std::array<double, 2>> hull_of(const std::vector<Underside>& columns, double h) {
+std::vector<std::array<double, 2>> hull_of(const std::vector<Bottom>& columns, double h) {
     std::vector<BorderPoint> corners;
-    for (const Underside& u : columns) add_corners(u.i, u.j, h, corners);
+    for (const Bottom& u : columns) add_corners(u.i, u.j, h, corners);
     return graph::outline_of(corners).polygon;
 }
 
 // The columns that may rest on a surface at this height, within its outline if that is known:
 // unseen from their underside down to it, or, where they end at it, for some way on: else it is air
 // that they end in. What bounds them may tell that they reach the surface.
-std::uint64_t add_hidden_corners(const std::vector<Underside>& undersides, double height_m,
+std::uint64_t add_hidden_corners(const std::vector<Bottom>& undersides, double height_m,
                                  const std::vector<std::array<double, 2>>& outline, double h,
                                  std::int32_t primitive, const Shapes& shapes,
                                  std::vector<BorderPoint>& corners) {
@@ -195,7 +195,7 @@ std::uint64_t add_hidden_corners(const std::vector<Underside>& undersides, doubl
     };
     const double surface = height_m / h;
     std::uint64_t columns = 0;
-    for (const Underside& u : undersides) {
+    for (const Bottom& u : undersides) {
         const double above = u.lowest - surface;
         const bool rests = above >= -1.5 &&
                            (u.unseen >= std::max(above - 0.5, 2.0) ||
@@ -216,13 +216,13 @@ constexpr double least_on_scraps = 0.15;
 
 // What is not seen to hang, and is not seen to stand either, stands on the highest level surface
 // under it: others hide its foot, and it hides its shadow on the table.
-void add_hidden_carryings(const std::vector<std::vector<Underside>>& undersides,
+void add_hidden_carryings(const std::vector<std::vector<Bottom>>& undersides,
                           const std::vector<Extent>& extents, double h, const Shapes& shapes,
                           ContactGraph& graph) {
     constexpr double least_hidden = 0.5;  // share of the columns below which nobody has seen
     std::vector<Carrying> found;
     for (std::int32_t p = 0; p < graph.primitives; ++p) {
-        const std::vector<Underside>& own = undersides[static_cast<std::size_t>(p)];
+        const std::vector<Bottom>& own = undersides[static_cast<std::size_t>(p)];
         if (own.empty() || !graph.carriers_of(p).empty()) continue;
         const Extent& e = extents[static_cast<std::size_t>(p)];
         Carrying best;
@@ -339,7 +339,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     std::map<std::pair<std::int32_t, std::int32_t>, Columns> carried;  // (supported, supporter)
     std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, std::uint64_t> gaps;
     std::map<std::pair<std::int32_t, std::int32_t>, std::uint64_t> hidden;
-    std::vector<std::vector<Underside>> undersides(count);
+    std::vector<std::vector<Bottom>> undersides(count);
     std::vector<Extent> extents(count);
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const std::int32_t upper = cells.primitive[n];
@@ -348,7 +348,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         graph.lowest_m[p] = std::min(graph.lowest_m[p], cells.k[n] * h);
         graph.highest_m[p] = std::max(graph.highest_m[p], (cells.k[n] + 1) * h);
         graph.section_m2[p] += h * h * h;
-        std::vector<Underside>& own = undersides[p];
+        std::vector<Bottom>& own = undersides[p];
         if (own.empty() || own.back().i != cells.i[n] || own.back().j != cells.j[n]) {
             own.push_back({cells.i[n], cells.j[n], cells.k[n],
                            cells.unseen_below.empty() ? 0 : cells.unseen_below[n]});

@@ -10,6 +10,7 @@
 #include "core/thread_pool.h"
 #include "fitted/boosted_trees.h"
 #include "geometry/primitive_shapes.h"
+#include "graph/false_feet.h"
 #include "physics/body_landscape.h"
 #include "physics/drop.h"
 #include "physics/overturning.h"
@@ -53,21 +54,30 @@ void add_independent(const physics::BodyError& more, physics::BodyError& to) {
         to.center_m[a] = std::hypot(to.center_m[a], more.center_m[a]);
 }
 
+// The ground comes first, where there is one.
+std::int32_t grounded_object(const ObjectStage& of) {
+    const auto& group = of.grouping.group;
+    return std::ranges::find(group, -1) == group.end() ? -1 : 0;
+}
+
+void number_objects(ObjectStage& out) {
+    const std::int32_t grounded = grounded_object(out);
+    for (const std::int32_t g : out.grouping.group)
+        out.object_of_primitive.push_back(g + grounded + 1);
+}
+
 // Objects by group, the ground first.
 void collect_objects(const SolidScene& solids, const std::vector<bool>& shell,
                      const ParseOptions& options, ObjectStage& out) {
     const SolidCells& cells = solids.cells();
     const BoundaryCells& boundary = solids.boundary();
     const std::vector<std::int32_t>& group = out.grouping.group;
-    const bool has_ground = std::find(group.begin(), group.end(), -1) != group.end();
+    const bool has_ground = grounded_object(out) == 0;
     std::int32_t objects = 0;
-    for (const std::int32_t g : group) {
-        out.object_of_primitive.push_back(g + (has_ground ? 1 : 0));
-        objects = std::max(objects, out.object_of_primitive.back() + 1);
-    }
+    for (const std::int32_t o : out.object_of_primitive) objects = std::max(objects, o + 1);
     const ObjectMasses masses =
         weigh_objects(solids, out.object_of_primitive, static_cast<std::size_t>(objects),
-                      has_ground ? 0 : -1, options, out.bodies);
+                      grounded_object(out), options, out.bodies);
     std::vector<std::vector<std::int32_t>> members(static_cast<std::size_t>(objects));
     for (std::size_t p = 0; p < group.size(); ++p) {
         members[static_cast<std::size_t>(out.object_of_primitive[p])].push_back(
@@ -227,8 +237,8 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
     });
 }
 
-ObjectStage find_objects(device::Device& device, const SolidParts& solid,
-                         const ParseOptions& options, StageClock& stage) {
+ObjectStage find_objects(device::Device& device, const ParseOptions& options, StageClock& stage,
+                         SolidParts& solid) {
     ObjectStage out;
     PartStage parts = weigh_parts(device, solid, options, stage);
     stage("grouping", [&] {
@@ -238,6 +248,10 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
         grouping.cancelled = options.cancelled;
         out.grouping = graph::group_primitives(parts.contacts, parts.bodies, parts.joints,
                                                parts.shell, grouping, device.threads().threads());
+        number_objects(out);
+        // Joints were judged with all that was completed, as their models were fitted.
+        solid.solids =
+            graph::without_false_feet(solid.solids, out.object_of_primitive, grounded_object(out));
     });
     const SolidCells& cells = solid.solids->cells();
     const BoundaryCells& boundary = solid.solids->boundary();
@@ -248,10 +262,8 @@ ObjectStage find_objects(device::Device& device, const SolidParts& solid,
     });
     // The models of joints know contacts of whole voxels; what follows takes their true borders.
     const auto count = static_cast<std::int32_t>(solid.model.size());
-    out.contacts = stage("borders", [&] {
-        return boundary.size() > 0 ? graph::build_contact_graph(device, cells, count, 1, boundary)
-                                   : std::move(parts.contacts);
-    });
+    out.contacts = stage(
+        "borders", [&] { return graph::build_contact_graph(device, cells, count, 1, boundary); });
     out.pair_probability = graph::pair_probabilities(out.contacts, parts.joints, parts.shell);
     const physics::SupportTable table = stage("supports", [&] {
         std::vector<bool> loose;

@@ -78,7 +78,8 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
                    const SolidScene& solids, std::span<const std::int32_t> object_of_primitive,
                    double friction, std::vector<StableObject>& objects);
 
-ObjectStage find_objects(device::Device& device, const SolidParts& solid,
-                         const ParseOptions& options, StageClock& stage);
+// Takes from the solids what turns out to be no object's (graph/false_feet.h).
+ObjectStage find_objects(device::Device& device, const ParseOptions& options, StageClock& stage,
+                         SolidParts& solid);
 
 }  // namespace topple

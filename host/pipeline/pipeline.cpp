@@ -88,15 +88,16 @@ ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOp
                         " voxels that a solid takes; give a denser scan, or a smaller --voxel" +
                         (scale.empty() ? "" : "; " + scale));
     }
-    const SolidParts parts = solid_parts(geometry, voxels);
-    const ObjectStage objects = find_objects(device, parts, options, stage);           // 3, 4
+    SolidParts parts = solid_parts(geometry, voxels);
+    const ObjectStage objects = find_objects(device, options, stage, parts);  // 3, 4
+    take_over(parts.solids, voxels);
     const SafetyStage safety = assess_safety(device, parts, objects, options, stage);  // 5
     stage("assembly", [&] {
         assemble_objects(parts, objects, safety, scene);
         assemble_points(input, geometry, voxels, parts, objects, safety, scene);
         if (options.coordinates) take_coordinates(input, scene.points);
     });
-    return {std::move(scene), std::move(voxels.scene), nullptr, std::move(voxels.solids)};
+    return {std::move(scene), std::move(voxels.scene), nullptr, std::move(parts.solids)};
 }
 
 template <class Ingest>

@@ -261,7 +261,7 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
     const auto tiled = std::make_shared<TiledResult>(std::move(work), input, options.unit_m, bins,
                                                      layout, std::move(joined.number));
     parts.points = tiled->count_points(parts.model.size());
-    const ObjectStage objects = find_objects(device, parts, options, stage);
+    const ObjectStage objects = find_objects(device, options, stage, parts);
     SafetyStage safety = assess_safety(device, parts, objects, options, stage);
     stage("assembly", [&] {
         assemble_objects(parts, objects, safety, scene);

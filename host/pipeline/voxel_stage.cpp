@@ -239,6 +239,17 @@ bool carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScen
 
 }  // namespace
 
+void take_over(std::shared_ptr<const SolidScene> solids, VoxelStage& stage) {
+    SolidCells cells = stage.solids->cells();
+    const SolidCells& now = solids->cells();
+    std::vector<vdb::Claim> claims;
+    for (std::size_t n = 0; n < cells.size(); ++n)
+        if (now.primitive[n] != cells.primitive[n])
+            claims.push_back({{now.i[n], now.j[n], now.k[n]}, now.primitive[n], now.basis[n]});
+    vdb::commit(claims, *stage.scene, cells);
+    stage.solids = std::move(solids);
+}
+
 std::vector<std::int32_t> numbered(std::span<const std::int32_t> primitive,
                                    std::span<const std::int32_t> number) {
     std::vector<std::int32_t> out;

@@ -33,6 +33,9 @@ constexpr std::uint64_t least_voxels = 8;
 VoxelStage make_solids(device::Device& device, const Ingested& input, const GeometryStage& geometry,
                        double voxel_m, StageClock& stage);
 
+// What of the solids is found to be no primitive's, the same cells being solid.
+void take_over(std::shared_ptr<const SolidScene> solids, VoxelStage& stage);
+
 // Labels by primitive as labels by solid.
 std::vector<std::int32_t> numbered(std::span<const std::int32_t> primitive,
                                    std::span<const std::int32_t> number);

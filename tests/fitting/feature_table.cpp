@@ -42,9 +42,9 @@ void write(const std::filesystem::path& file, const std::vector<T>& values) {
 
 // What tells closed furniture, of each object that can move: height, fill, backing; and the object
 // of each primitive, -1 for the room.
-void write_objects(device::Device& device, const SolidParts& parts, const ParseOptions& options,
+void write_objects(device::Device& device, SolidParts parts, const ParseOptions& options,
                    StageClock& stage, const std::filesystem::path& folder) {
-    const ObjectStage found = find_objects(device, parts, options, stage);
+    const ObjectStage found = find_objects(device, options, stage, parts);
     std::vector<double> volume;
     for (const StableObject& o : found.objects) volume.push_back(o.candidate.body.volume_m3);
     std::vector<std::int32_t> object = found.object_of_primitive;

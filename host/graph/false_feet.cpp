@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "graph/false_feet.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/touching_cells.h"
+#include "core/union_find.h"
+#include "graph/rest.h"
+
+namespace topple::graph {
+namespace {
+
+// The lowest cell that was seen of each object, or that hangs together with such: what lies below
+// is no foot.
+std::vector<std::int32_t> true_feet(const SolidCells& cells, std::span<const std::int32_t> object,
+                                    std::size_t objects) {
+    UnionFind pieces(cells.size());
+    const auto join = [&](std::size_t m, std::size_t n) {
+        if (object[n] >= 0 && object[n] == object[m]) pieces.join(m, n);
+    };
+    each_touching(cells, join);
+    each_across_gaps(cells, noise_gap, join);
+    std::vector<bool> seen(cells.size(), false);  // by a piece's root
+    for (std::size_t n = 0; n < cells.size(); ++n)
+        if (cells.basis[n] == Basis::surface) seen[pieces.root(n)] = true;
+    constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
+    std::vector<std::int32_t> out(objects, none);
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        if (object[n] < 0 || !seen[pieces.root(n)]) continue;
+        std::int32_t& low = out[static_cast<std::size_t>(object[n])];
+        low = std::min(low, cells.k[n]);
+    }
+    for (std::int32_t& low : out)  // of what was not seen at all there is nothing to tell
+        if (low == none) low = std::numeric_limits<std::int32_t>::min();
+    return out;
+}
+
+}  // namespace
+
+std::shared_ptr<const SolidScene> without_false_feet(
+    const std::shared_ptr<const SolidScene>& solids,
+    std::span<const std::int32_t> object_of_primitive, std::int32_t grounded) {
+    const auto object_of = [&](std::int32_t primitive) {
+        const std::int32_t o =
+            primitive < 0 ? -1 : object_of_primitive[static_cast<std::size_t>(primitive)];
+        return o == grounded ? -1 : o;
+    };
+    SolidCells cells = solids->cells();
+    std::vector<std::int32_t> object;
+    for (const std::int32_t p : cells.primitive) object.push_back(object_of(p));
+    std::int32_t objects = 0;
+    for (const std::int32_t o : object) objects = std::max(objects, o + 1);
+    const auto feet = true_feet(cells, object, static_cast<std::size_t>(objects));
+    const auto foot = [&](std::int32_t o) { return feet[static_cast<std::size_t>(o)]; };
+    bool changed = false;
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        if (object[n] < 0 || cells.k[n] >= foot(object[n])) continue;
+        cells.primitive[n] = -1;
+        changed = true;
+    }
+    if (!changed) return solids;
+    // Surfaces pass through one voxel below the lowest cell at most.
+    const BoundaryCells& boundary = solids->boundary();
+    std::vector<bool> kept(boundary.size(), true);
+    for (std::size_t b = 0; b < boundary.size(); ++b) {
+        const std::int32_t o = object_of(boundary.primitive[b]);
+        kept[b] = o < 0 || o >= objects || boundary.k[b] + 1 >= foot(o);
+    }
+    std::vector<Role> roles;
+    for (std::size_t p = 0; p < solids->primitives(); ++p)
+        roles.push_back(solids->role(static_cast<std::int32_t>(p)));
+    return std::make_shared<const SolidScene>(std::move(cells), std::move(roles), solids->strays(),
+                                              boundary.only(kept));
+}
+
+}  // namespace topple::graph
