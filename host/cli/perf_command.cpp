@@ -6,8 +6,10 @@
 #include <system_error>
 
 #include "cli/commands.h"
+#include "perf/profile.h"
 #include "perf/report.h"
 #include "perf/suite.h"
+#include "topple/device.h"
 #include "topple/error.h"
 
 namespace topple::cli {
@@ -15,13 +17,20 @@ namespace {
 
 struct PerfArguments {
     perf::SuiteOptions suite;
-    std::string json, csv;
+    std::string json, csv, profile;
     bool list = false;
 };
 
 int run(const PerfArguments& a) {
     if (a.list) {
         for (const std::string& name : perf::case_names()) std::printf("%s\n", name.c_str());
+        return 0;
+    }
+    if (!a.profile.empty()) {
+        const auto& names = a.suite.backends;
+        perf::print_profile(perf::profile(
+            device::open_device(names.empty() ? "native" : names.front(), a.suite.threads),
+            a.profile));
         return 0;
     }
     // Told before the measuring, which takes minutes.
@@ -77,6 +86,9 @@ Command add_perf(CLI::App& app) {
     app.add_flag_function(
         "--no-roofline", [&suite](std::int64_t) { suite.roofline = false; },
         "Leave out the probes of bandwidth and arithmetic that no --filter names");
+    app.add_option("--profile", a->profile,
+                   "Parse this input instead, and print what each stage takes: time, memory,\n"
+                   "dispatches, and what goes to the device and back");
     app.add_flag("--list", a->list, "Print the names of the cases");
     return [a] { return run(*a); };
 }
