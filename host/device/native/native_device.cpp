@@ -116,8 +116,10 @@ class NativeDevice final : public Device {
             const NativeArgs args{addresses.data(), dispatch.params.data()};
             // Some chunks per thread, so that an uneven load evens out; none so small that waking
             // a thread takes longer.
+            const std::uint64_t of_group =
+                std::uint64_t{dispatch.kernel->group_size} * dispatch.kernel->items_native;
             const std::uint64_t least =
-                dispatch.kernel->per_group ? 1 : least_items / dispatch.kernel->group_size;
+                dispatch.kernel->per_group ? 1 : std::max<std::uint64_t>(1, least_items / of_group);
             const std::uint64_t chunk =
                 std::max(least, dispatch.groups / (std::uint64_t{pool_.threads()} * 16) + 1);
             pool_.run(dispatch.groups, chunk, [&](std::uint64_t first, std::uint64_t last) {
