@@ -76,23 +76,23 @@ std::size_t CellTable::find(std::uint64_t key) {
     return last_;
 }
 
-void CellTable::add(std::span<const CellSums> sums) {
+void CellTable::add(std::span<const CellSums> sums, std::span<const std::uint32_t> which) {
     // Tables are larger than caches: some sums at a time, so that the memory of each step is
     // fetched while the others are under way.
     constexpr std::size_t at_once = 16;
     std::array<std::uint32_t*, at_once> place{};
     std::array<std::size_t, at_once> block{};
-    for (; !sums.empty(); sums = sums.subspan(std::min(at_once, sums.size()))) {
-        const auto some = sums.first(std::min(at_once, sums.size()));
+    for (; !which.empty(); which = which.subspan(std::min(at_once, which.size()))) {
+        const auto some = which.first(std::min(at_once, which.size()));
         const auto local = [&](std::size_t i) {
-            const std::uint64_t key = some[i].key;
+            const std::uint64_t key = sums[some[i]].key;
             return (key >> x_bits & 3) << 4 | (key >> y_bits & 3) << 2 | (key & 3);
         };
         if (!slots_.empty()) {
-            for (const CellSums& s : some)
-                __builtin_prefetch(&slots_[hash(block_of(s.key)) & (slots_.size() - 1)]);
+            for (const std::uint32_t s : some)
+                __builtin_prefetch(&slots_[hash(block_of(sums[s].key)) & (slots_.size() - 1)]);
         }
-        for (std::size_t i = 0; i < some.size(); ++i) block[i] = find(block_of(some[i].key));
+        for (std::size_t i = 0; i < some.size(); ++i) block[i] = find(block_of(sums[some[i]].key));
         for (std::size_t i = 0; i < some.size(); ++i) {
             place[i] = &blocks_[block[i]].at[local(i)];
             __builtin_prefetch(place[i]);
@@ -102,10 +102,10 @@ void CellTable::add(std::span<const CellSums> sums) {
         }
         for (std::size_t i = 0; i < some.size(); ++i) {
             if (*place[i] != 0) {
-                cells_[*place[i] - 1].add(some[i]);
+                cells_[*place[i] - 1].add(sums[some[i]]);
                 continue;
             }
-            cells_.push_back(some[i]);
+            cells_.push_back(sums[some[i]]);
             *place[i] = static_cast<std::uint32_t>(cells_.size());
             ++blocks_[block[i]].count;
         }
@@ -120,6 +120,17 @@ void CellTable::grow() {
         while (slots_[at] != 0) at = (at + 1) & mask;
         slots_[at] = static_cast<std::uint32_t>(block + 1);
     }
+}
+
+void CellTables::add(std::span<const std::span<const CellSums>> parts, ThreadPool& pool) {
+    std::vector<std::array<std::vector<std::uint32_t>, shard_count>> of(parts.size());
+    pool.each(parts.size(), 1, [&](std::size_t p) {
+        for (std::size_t n = 0; n < parts[p].size(); ++n)
+            of[p][shard_of(parts[p][n].key)].push_back(static_cast<std::uint32_t>(n));
+    });
+    pool.each(shard_count, 1, [&](std::size_t shard) {
+        for (std::size_t p = 0; p < parts.size(); ++p) shards[shard].add(parts[p], of[p][shard]);
+    });
 }
 
 std::vector<CellSums> CellTables::sorted(ThreadPool& pool) const {

@@ -41,7 +41,7 @@ class CellTable {
         std::array<std::uint32_t, 64> at{};  // by cell, z fastest: place in cells() + 1, or 0
     };
     static std::uint64_t block_of(std::uint64_t key) { return key >> 2 & block_mask; }
-    void add(std::span<const CellSums> sums);
+    void add(std::span<const CellSums> sums, std::span<const std::uint32_t> which);
     const std::vector<CellSums>& cells() const { return cells_; }
     const std::vector<Block>& blocks() const { return blocks_; }
 
@@ -57,37 +57,41 @@ class CellTable {
     std::size_t last_ = 0;  // the block found last
 };
 
-// Cells shared out over tables by block, so that several threads may fill them, one per table.
+// Cells shared out over tables by cubes of 32 cells, so that several threads may fill them, one per
+// table, and that neighbours are near one another in memory.
 struct CellTables {
-    static constexpr std::size_t shard_count = 16;
+    // So many that the part of a table that a batch of sums meets stays in a core's cache.
+    static constexpr std::size_t shard_count = 256;
     static std::size_t shard_of(std::uint64_t key) {
-        return CellTable::block_of(key) * 0xD6E8FEB86659FD93u >> 60;
+        constexpr std::uint64_t cube_mask = 0xFFFFu * (1 + (1ull << 21) + (1ull << 42));
+        return (key >> 5 & cube_mask) * 0xD6E8FEB86659FD93u >> 56;
     }
     std::array<CellTable, shard_count> shards;
-    // Calls body(shard, table) once for each, one thread to a table.
-    template <class Body>
-    void for_each_shard(ThreadPool& pool, const Body& body) {
-        pool.run(shard_count, 1, [&](std::uint64_t first, std::uint64_t last) {
-            for (std::uint64_t s = first; s < last; ++s)
-                body(static_cast<std::size_t>(s), shards[s]);
-        });
-    }
+    // In order, whatever the number of threads.
+    void add(std::span<const std::span<const CellSums>> parts, ThreadPool& pool);
     // All cells by ascending key.
     std::vector<CellSums> sorted(ThreadPool& pool) const;
 };
 
+// What depends on a reading's depth alone.
+struct DepthReading {
+    float largest_jump = 0;  // to a neighbour on one surface, as stored
+    std::uint32_t weight = 0;
+};
+
 struct FrameFusion::Cells {
-    static constexpr std::size_t shard_count = CellTables::shard_count, block_count = 16;
+    static constexpr std::size_t block_count = 16;
     Cells(const Intrinsics& intrinsics, unsigned threads) : pool(threads), witnesses(intrinsics) {}
     ThreadPool pool;
     CellTables tables;
     Witnesses witnesses;
-    // Per block of image rows and shard: runs of readings in one cell.
-    std::array<std::array<std::vector<CellSums>, shard_count>, block_count> runs;
+    // Per block of image rows: runs of readings in one cell.
+    std::array<std::vector<CellSums>, block_count> runs;
+    void flush();  // runs to the tables
     std::vector<Vec3> viewpoints;
     std::array<std::uint64_t, block_count> outside{};  // readings beyond the grid's reach
-    std::vector<float> sigma_limit;     // by stored depth: largest jump on one surface
-    std::vector<std::uint32_t> weight;  // by stored depth
+    std::vector<DepthReading> by_depth;                // as stored
+    std::vector<float> columns;                        // of pixels: the ray's slope
 };
 
 // Fused cells to clean: sorted by key.

@@ -155,20 +155,13 @@ void flatten_level(FusedCells& fused, const CellGrid& grid, double scale,
 // Sorts the cells by key and sums up those of one key.
 void bin_anew(FusedCells& fused, ThreadPool& pool) {
     CellTables tables;
-    const std::size_t n = fused.cells.size(), blocks = (n + fused_chunk - 1) / fused_chunk;
-    std::vector<std::array<std::vector<std::uint32_t>, CellTables::shard_count>> parts(blocks);
-    pool.run(n, fused_chunk, [&](std::uint64_t first, std::uint64_t last) {
-        for (std::uint64_t i = first; i < last; ++i) {
-            parts[first / fused_chunk][CellTables::shard_of(fused.cells[i].key)].push_back(
-                static_cast<std::uint32_t>(i));
-        }
-    });
-    tables.for_each_shard(pool, [&](std::size_t shard, CellTable& table) {
-        for (const auto& part : parts) {
-            for (const std::uint32_t i : part[shard]) table.add({&fused.cells[i], 1});
-        }
-    });
-    parts = {};
+    constexpr std::size_t most_parts = 64;
+    std::vector<std::span<const CellSums>> parts;
+    const std::span<const CellSums> cells = fused.cells;
+    const std::size_t part = std::max(fused_chunk, cells.size() / most_parts + 1);
+    for (std::size_t first = 0; first < cells.size(); first += part)
+        parts.push_back(cells.subspan(first, std::min(part, cells.size() - first)));
+    tables.add(parts, pool);
     fused.cells = {};
     fused.cells = tables.sorted(pool);
 }

@@ -13,6 +13,10 @@ namespace topple::geometry {
 
 namespace {
 
+// Sums of readings that wait for their tables: of some frames at a time, since a table's memory is
+// far from one frame to the next.
+constexpr std::size_t batch_runs = std::size_t{1} << 20;
+
 // Beyond this angle between the ray and the surface's normal, neighbouring readings say little
 // about each other, and a jump counts as one between two surfaces.
 constexpr double grazing_tangent = 7.1;  // tan 82 degrees
@@ -51,33 +55,123 @@ void check(const DepthFrame& frame, const Intrinsics& k, std::size_t number) {
     }
 }
 
-// A reading between two surfaces lies on neither: along a row or a column, both neighbours are too
-// far off in depth. Missing neighbours don't support it either.
-bool flying(const std::uint16_t* depth, std::uint32_t u, std::uint32_t v, const Intrinsics& k,
-            float limit) {
-    const auto far = [&](std::uint32_t other) {
-        return other == 0 ||
-               std::abs(static_cast<float>(other) - static_cast<float>(*depth)) > limit;
-    };
-    const std::size_t w = k.width;
-    const bool left = u == 0 || far(depth[-1]), right = u + 1 == w || far(depth[1]);
-    const bool up = v == 0 || far(*(depth - w)), down = v + 1 == k.height || far(depth[w]);
-    return (left && right) || (up && down);
-}
+// Cells, and 65536ths of one, from the grid's lowest corner.
+struct CellPoint {
+    std::array<std::int64_t, 3> cell{};
+    std::array<std::uint32_t, 3> part{};
+};
+
+// Back-projects one frame, some pixels of a row at a time: in single precision, from the camera, as
+// its place in the grid is known to more digits. Lengths in cells.
+class Strip {
+  public:
+    static constexpr std::uint32_t width = 32;  // pixels
+    static constexpr float farthest = 1e9F;     // cells: beyond the grid's reach
+
+    // columns: of each, how far ahead it is a metre away.
+    Strip(const Intrinsics& k, const DepthFrame& frame, double cell_m,
+          std::span<const DepthReading> by_depth, std::span<const float> columns)
+        : k_(k), frame_(frame), by_depth_(by_depth), columns_(columns) {
+        const Mat4& m = frame.camera_to_world;
+        metres_ = static_cast<float>(1 / k.depth_scale);
+        for (std::size_t a = 0; a < 3; ++a) {
+            for (std::size_t c = 0; c < 3; ++c) turn_[a][c] = m[4 * a + c] / cell_m;
+            const double at = m[4 * a + 3] / cell_m, whole = std::floor(at);
+            // Beyond the grid's reach: as far from it as can be told.
+            constexpr double far = 1e15;
+            camera_cell_[a] = static_cast<std::int64_t>(std::clamp(whole, -far, far)) + key_bias;
+            camera_part_[a] = static_cast<float>(at - whole);
+        }
+    }
+
+    // Calls visit(u, point, weight) for each of the pixels [first, last) of row v that has a
+    // reading on a surface.
+    template <class Visit>
+    void read(std::uint32_t v, std::uint32_t first, std::uint32_t last, const Visit& visit) {
+        const std::size_t count = last - first;
+        const std::array<std::uint32_t, width> kept = look(v, first, count);
+        const double dy = (v - k_.cy) / k_.fy;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const auto row = static_cast<float>(turn_[a][1] * dy + turn_[a][2]);
+            const auto column = static_cast<float>(turn_[a][0]), part = camera_part_[a];
+            for (std::size_t n = 0; n < width; ++n) {
+                float at = (column * ahead_[n] + row) * metres_ * depth_[n] + part;
+                at = at < farthest ? at : farthest;
+                at = at > -farthest ? at : -farthest;
+                const auto cut = static_cast<std::int32_t>(at);
+                const std::int32_t cell = cut - (static_cast<float>(cut) > at ? 1 : 0);
+                cell_[a][n] = cell;
+                part_[a][n] = static_cast<std::int32_t>((at - static_cast<float>(cell)) * 65536.0f);
+            }
+        }
+        for (std::size_t n = 0; n < count; ++n) {
+            if (kept[n] == 0) continue;
+            CellPoint point;
+            for (std::size_t a = 0; a < 3; ++a) {
+                point.cell[a] = camera_cell_[a] + cell_[a][n];
+                point.part[a] = std::min(static_cast<std::uint32_t>(part_[a][n]), 65535u);
+            }
+            visit(first + static_cast<std::uint32_t>(n), point, weight_[n]);
+        }
+    }
+
+  private:
+    // Fills in depths and their weights, and tells which are to be kept. A reading between two
+    // surfaces lies on neither: along a row or a column, both neighbours are too far off in depth.
+    // Missing neighbours don't support it either.
+    std::array<std::uint32_t, width> look(std::uint32_t v, std::uint32_t first, std::size_t count) {
+        const std::uint16_t* row = frame_.depth.data() + std::size_t{v} * k_.width;
+        std::array<float, width + 2> own{};
+        std::array<float, width> above{}, below{}, limit{};
+        for (std::size_t n = 0; n < count; ++n) {
+            const std::uint16_t stored = row[first + n];
+            own[n + 1] = stored;
+            limit[n] = by_depth_[stored].largest_jump;
+            weight_[n] = by_depth_[stored].weight;
+            ahead_[n] = columns_[first + n];
+        }
+        if (first > 0) own[0] = row[first - 1];
+        if (first + count < k_.width) own[count + 1] = row[first + count];
+        for (std::size_t n = 0; v > 0 && n < count; ++n) above[n] = *(row + first + n - k_.width);
+        for (std::size_t n = 0; v + 1 < k_.height && n < count; ++n)
+            below[n] = row[first + n + k_.width];
+        std::array<std::uint32_t, width> kept{};
+        for (std::size_t n = 0; n < width; ++n) {
+            const float depth = own[n + 1], most = limit[n];
+            const auto far = [&](float other) {
+                return (other == 0) | (std::fabs(other - depth) > most);
+            };
+            const bool between = (far(own[n]) & far(own[n + 2])) | (far(above[n]) & far(below[n]));
+            kept[n] = (depth > 0) & !between;
+            depth_[n] = depth;
+        }
+        return kept;
+    }
+
+    const Intrinsics& k_;
+    const DepthFrame& frame_;
+    std::span<const DepthReading> by_depth_;
+    std::span<const float> columns_;
+    std::array<std::array<double, 3>, 3> turn_{};
+    std::array<std::int64_t, 3> camera_cell_{};
+    std::array<float, 3> camera_part_{};
+    float metres_ = 0;
+    std::array<float, width> depth_{}, ahead_{};
+    std::array<std::uint32_t, width> weight_{};
+    std::array<std::array<std::int32_t, width>, 3> cell_{}, part_{};
+};
 
 // Sums up the readings of a patch of the image, which mostly fall into few cells, before they go to
 // the tables: a slot for each cell, or for the last one of several that share it.
 class PatchSums {
   public:
-    static constexpr std::uint32_t width = 32;  // pixels
-    PatchSums(std::array<std::vector<CellSums>, CellTables::shard_count>& runs, std::uint32_t frame)
-        : runs_(runs), frame_(frame) {}
+    PatchSums(std::vector<CellSums>& runs, std::uint32_t frame) : runs_(runs), frame_(frame) {}
 
-    // p: in cells, from the grid's lowest corner; positive. rgb: of the pixel, or null.
-    void add(const std::array<double, 3>& p, std::uint32_t weight, const std::uint8_t* rgb) {
-        std::array<std::uint64_t, 3> fixed{};
-        for (std::size_t a = 0; a < 3; ++a) fixed[a] = static_cast<std::uint64_t>(p[a] * 65536);
-        const std::uint64_t x = fixed[0] >> 16, y = fixed[1] >> 16, z = fixed[2] >> 16;
+    // rgb: of the pixel, or null. The cell's numbers are positive.
+    void add(const CellPoint& at, std::uint32_t weight, const std::uint8_t* rgb) {
+        const auto x = static_cast<std::uint64_t>(at.cell[0]),
+                   y = static_cast<std::uint64_t>(at.cell[1]),
+                   z = static_cast<std::uint64_t>(at.cell[2]);
         const std::uint64_t key = x << 42 | y << 21 | z;
         CellSums& sums = slots_[(x & 7) << 6 | (y & 7) << 3 | (z & 7)];
         if (sums.count == 0 || sums.key != key) {
@@ -89,7 +183,7 @@ class PatchSums {
             sums.key = key;
             sums.best_frame = frame_;
         }
-        for (std::size_t a = 0; a < 3; ++a) sums.offset[a] += weight * (fixed[a] & 0xFFFF);
+        for (std::size_t a = 0; a < 3; ++a) sums.offset[a] += std::uint64_t{weight} * at.part[a];
         sums.weight += weight;
         sums.best_weight = std::max(sums.best_weight, weight);
         ++sums.count;
@@ -107,8 +201,8 @@ class PatchSums {
     }
 
   private:
-    void put(const CellSums& sums) { runs_[CellTables::shard_of(sums.key)].push_back(sums); }
-    std::array<std::vector<CellSums>, CellTables::shard_count>& runs_;
+    void put(const CellSums& sums) { runs_.push_back(sums); }
+    std::vector<CellSums>& runs_;
     std::uint32_t frame_;
     std::array<CellSums, 512> slots_{};
     std::array<CellSums*, 512> used_{};
@@ -123,16 +217,17 @@ FrameFusion::FrameFusion(const Intrinsics& intrinsics, double cell_m, unsigned t
       cell_m_(cell_m) {
     check(intrinsics, cell_m);
     // One entry per stored depth: what depends on depth alone.
-    cells_->sigma_limit.resize(65536);
-    cells_->weight.resize(65536);
+    for (std::uint32_t u = 0; u < intrinsics.width; ++u)
+        cells_->columns.push_back(static_cast<float>((u - intrinsics.cx) / intrinsics.fx));
+    cells_->by_depth.resize(65536);
     const double focal = std::min(intrinsics.fx, intrinsics.fy);
     for (std::size_t stored = 1; stored < 65536; ++stored) {
         const double z = static_cast<double>(stored) / intrinsics.depth_scale;
         const double sigma = depth_sigma(z), ratio = least_depth_sigma / sigma;
-        cells_->sigma_limit[stored] = static_cast<float>(
-            intrinsics.depth_scale * (3 * std::sqrt(2.0) * sigma + z * grazing_tangent / focal));
-        cells_->weight[stored] =
-            std::max(1u, static_cast<std::uint32_t>(std::lround(65535 * ratio * ratio)));
+        cells_->by_depth[stored] = {
+            static_cast<float>(intrinsics.depth_scale *
+                               (3 * std::sqrt(2.0) * sigma + z * grazing_tangent / focal)),
+            std::max(1u, static_cast<std::uint32_t>(std::lround(65535 * ratio * ratio)))};
     }
 }
 FrameFusion::~FrameFusion() = default;
@@ -145,38 +240,28 @@ void FrameFusion::add(const DepthFrame& frame) {
     const auto number = static_cast<std::uint32_t>(c.viewpoints.size());
     const Mat4& m = frame.camera_to_world;
     c.viewpoints.push_back({m[3], m[7], m[11]});
-    const double per_cell = 1 / cell_m_;
 
     c.witnesses.add(frame);
     const auto add_rows = [&](std::uint64_t block) {
-        auto& runs = c.runs[block];
-        for (auto& list : runs) list.clear();
         const auto first = static_cast<std::uint32_t>(block * k.height / Cells::block_count);
         const auto last = static_cast<std::uint32_t>((block + 1) * k.height / Cells::block_count);
-        PatchSums patch(runs, number);
-        for (std::uint32_t u0 = 0; u0 < k.width; u0 += PatchSums::width) {
-            const std::uint32_t u1 = std::min(k.width, u0 + PatchSums::width);
+        PatchSums patch(c.runs[block], number);
+        Strip strip(k, frame, cell_m_, c.by_depth, c.columns);
+        for (std::uint32_t u0 = 0; u0 < k.width; u0 += Strip::width) {
+            const std::uint32_t u1 = std::min(k.width, u0 + Strip::width);
             for (std::uint32_t v = first; v < last; ++v) {
-                const double dy = (v - k.cy) / k.fy;
-                const std::uint16_t* row = frame.depth.data() + std::size_t{v} * k.width;
                 const std::uint8_t* rgb =
                     frame.rgb.empty() ? nullptr : frame.rgb.data() + std::size_t{3} * v * k.width;
-                for (std::uint32_t u = u0; u < u1; ++u) {
-                    const std::uint16_t stored = row[u];
-                    if (stored == 0 || flying(row + u, u, v, k, c.sigma_limit[stored])) continue;
-                    const double z = stored / k.depth_scale, dx = (u - k.cx) / k.fx;
-                    constexpr auto bias = static_cast<double>(key_bias);
-                    const std::array<double, 3> p{
-                        ((m[0] * dx + m[1] * dy + m[2]) * z + m[3]) * per_cell + bias,
-                        ((m[4] * dx + m[5] * dy + m[6]) * z + m[7]) * per_cell + bias,
-                        ((m[8] * dx + m[9] * dy + m[10]) * z + m[11]) * per_cell + bias};
-                    if (p[0] >= 1 && p[1] >= 1 && p[2] >= 1 && p[0] < 2 * bias - 1 &&
-                        p[1] < 2 * bias - 1 && p[2] < 2 * bias - 1) {
-                        patch.add(p, c.weight[stored], rgb ? rgb + std::size_t{3} * u : nullptr);
-                    } else {
-                        ++c.outside[block];
-                    }
-                }
+                strip.read(v, u0, u1,
+                           [&](std::uint32_t u, const CellPoint& at, std::uint32_t weight) {
+                               const auto inside = [](std::int64_t cell) {
+                                   return cell >= 1 && cell < 2 * key_bias - 1;
+                               };
+                               if (inside(at.cell[0]) && inside(at.cell[1]) && inside(at.cell[2]))
+                                   patch.add(at, weight, rgb ? rgb + std::size_t{3} * u : nullptr);
+                               else
+                                   ++c.outside[block];
+                           });
             }
             patch.flush();
         }
@@ -185,14 +270,21 @@ void FrameFusion::add(const DepthFrame& frame) {
     c.pool.run(Cells::block_count, 1, [&](std::uint64_t begin, std::uint64_t end) {
         for (std::uint64_t block = begin; block < end; ++block) add_rows(block);
     });
-    c.tables.for_each_shard(c.pool, [&](std::size_t shard, CellTable& table) {
-        for (const auto& block : c.runs) table.add(block[shard]);
-    });
+    std::size_t waiting = 0;
+    for (const auto& block : c.runs) waiting += block.size();
+    if (waiting >= batch_runs) c.flush();
+}
+
+void FrameFusion::Cells::flush() {
+    const std::vector<std::span<const CellSums>> parts(runs.begin(), runs.end());
+    tables.add(parts, pool);
+    for (auto& block : runs) block.clear();
 }
 
 FusedCloud FrameFusion::finish(const std::function<void()>& poll) {
     FusedCells fused;
     fused.cell_m = cell_m_;
+    cells_->flush();
     fused.cells = cells_->tables.sorted(cells_->pool);
     cells_->tables = {};
     cells_->runs = {};
