@@ -40,10 +40,12 @@ struct MeanHeight {
     double or_else(double height_m) const { return count > 0 ? sum / count : height_m; }
 };
 
-void add_corners(const Underside& u, double h, const BoundaryCells& boundary,
-                 std::vector<BorderPoint>& points, MeanHeight* height = nullptr) {
-    for (const solids::UndersideCorner& c :
-         solids::underside_of(boundary, u.i, u.j, u.k, u.own, h)) {
+// A column's underside, found once for all ways in which a body may be held.
+using Corners = std::vector<solids::UndersideCorner>;
+
+void add_corners(const Corners& corners, std::vector<BorderPoint>& points,
+                 MeanHeight* height = nullptr) {
+    for (const solids::UndersideCorner& c : corners) {
         points.push_back({{c.at[0], c.at[1]}, c.error_m});
         if (height) height->add(c.at[2]);
     }
@@ -151,6 +153,9 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
     const double h = contacts.voxel_m;
     std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
     for (const Underside& u : columns) lowest = std::min(lowest, u.k);
+    std::vector<Corners> corners;
+    for (const Underside& u : columns)
+        corners.push_back(solids::underside_of(boundary, u.i, u.j, u.k, u.own, h));
     const bool held = !c.support_polygon.empty();
 
     std::vector<BorderPoint> seen;
@@ -158,16 +163,17 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
     std::vector<BorderPoint> near = seen, hidden = seen;
     MeanHeight foot, met;  // of its lowest columns, and of what they nearly stand on
     std::int32_t lowest_met = std::numeric_limits<std::int32_t>::max();
-    for (const Underside& u : columns) {
+    for (std::size_t n = 0; n < columns.size(); ++n) {
+        const Underside& u = columns[n];
         if (u.gap >= 0 && u.gap <= noise_gap) {
-            add_corners(u, h, boundary, near);
+            add_corners(corners[n], near);
             const std::int32_t top = u.k - u.gap - 1;
             if (top < lowest_met) met = {};
             lowest_met = std::min(lowest_met, top);
             if (top == lowest_met) met.add(solids::top_of(boundary, u.i, u.j, top, u.primitive, h));
         }
         if (u.k <= lowest + uneven_foot)
-            add_corners(u, h, boundary, hidden, u.k == lowest ? &foot : nullptr);
+            add_corners(corners[n], hidden, u.k == lowest ? &foot : nullptr);
     }
     const double low_m = foot.or_else(lowest * h);
     double near_height = met.or_else(held ? c.support_height_m : low_m);
@@ -175,9 +181,10 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
     // The foot that was seen may go on where nobody saw in, down to what carries it.
     std::vector<BorderPoint> partly = near;
     bool goes_on = false;
-    for (const Underside& u : columns) {
+    for (std::size_t n = 0; n < columns.size(); ++n) {
+        const Underside& u = columns[n];
         if (!held || u.unseen == 0 || u.k * h - near_height > (u.unseen + noise_gap) * h) continue;
-        add_corners(u, h, boundary, partly);
+        add_corners(corners[n], partly);
         goes_on = true;
     }
     std::vector<BorderPoint> leaning = near;
@@ -188,7 +195,7 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
         }
     }
     std::vector<BorderPoint> all_columns;
-    for (const Underside& u : columns) add_corners(u, h, boundary, all_columns);
+    for (const Corners& of_column : corners) add_corners(of_column, all_columns);
     Outline whole = outline_of(all_columns);
     const double widest = margin_of(c, whole.polygon);
     struct Way {

@@ -68,7 +68,7 @@ void number_objects(ObjectStage& out) {
 
 // Objects by group, the ground first.
 void collect_objects(const SolidScene& solids, const std::vector<bool>& shell,
-                     const ParseOptions& options, ObjectStage& out) {
+                     const ParseOptions& options, ThreadPool& threads, ObjectStage& out) {
     const SolidCells& cells = solids.cells();
     const BoundaryCells& boundary = solids.boundary();
     const std::vector<std::int32_t>& group = out.grouping.group;
@@ -85,8 +85,9 @@ void collect_objects(const SolidScene& solids, const std::vector<bool>& shell,
     }
     const auto columns = graph::undersides(cells, out.object_of_primitive, members.size());
     const auto errors = physics::volume_errors(cells, boundary);
-    for (std::size_t o = 0; o < members.size(); ++o) {
-        StableObject object;
+    out.objects.resize(members.size());
+    threads.each(members.size(), 1, [&](std::size_t o) {
+        StableObject& object = out.objects[o];
         object.candidate =
             graph::candidate_of(out.contacts, out.bodies, shell, std::move(members[o]));
         object.body_error = physics::body_error(object.candidate.body, object.candidate.primitives,
@@ -115,8 +116,7 @@ void collect_objects(const SolidScene& solids, const std::vector<bool>& shell,
             object.highest_m =
                 std::max(object.highest_m, out.contacts.highest_m[static_cast<std::size_t>(p)]);
         }
-        out.objects.push_back(std::move(object));
-    }
+    });
     std::vector<graph::Carried> carried;
     for (const StableObject& o : out.objects)
         carried.push_back({o.grounded, o.candidate.body.mass_kg});
@@ -274,7 +274,7 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
                                      physics::geodesic_sphere(sphere_frequency));
     });
     stage("barriers", [&] {
-        collect_objects(*solid.solids, parts.shell.pinned, options, out);
+        collect_objects(*solid.solids, parts.shell.pinned, options, device.threads(), out);
         find_barriers(device, table, *solid.solids, out.object_of_primitive, options.friction,
                       out.objects);
     });
