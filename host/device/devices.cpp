@@ -2,6 +2,9 @@
 #include "device/devices.h"
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
+#include <system_error>
 
 #include "device/probe.h"
 #include "topple/error.h"
@@ -26,9 +29,27 @@ void check_driver(Backend backend) {
     }
 }
 
+// Whether the system has a node of any GPU's driver. To ask the drivers themselves takes a tenth of
+// a second, since software drivers load their compilers.
+bool may_have_gpu() {
+#ifdef __linux__
+    // Mesa's and others' in the kernel, NVIDIA's, AMD's for computing, Windows' below Linux, and
+    // those of telephones' chips.
+    constexpr std::array nodes{"/dev/dri",  "/dev/nvidiactl", "/dev/kfd",
+                               "/dev/dxg",  "/dev/mali0",     "/dev/kgsl-3d0"};
+    return std::ranges::any_of(nodes, [](const char* node) {
+        std::error_code error;
+        return std::filesystem::exists(node, error);
+    });
+#else
+    return true;
+#endif
+}
+
 // A software driver behind a GPU's interface is slower than the native backend on the same CPU, so
 // "auto" takes only a real GPU. Vulkan first: its kernels are built ahead of time.
 std::unique_ptr<Device> open_best(unsigned threads) {
+    if (!may_have_gpu()) return open_native(threads);
     if (has_gpu(probe(Backend::vulkan))) return open_vulkan();
     if (has_gpu(probe(Backend::opencl))) return open_opencl();
     return open_native(threads);
