@@ -35,8 +35,8 @@ bool may_have_gpu() {
 #ifdef __linux__
     // Mesa's and others' in the kernel, NVIDIA's, AMD's for computing, Windows' below Linux, and
     // those of telephones' chips.
-    constexpr std::array nodes{"/dev/dri",  "/dev/nvidiactl", "/dev/kfd",
-                               "/dev/dxg",  "/dev/mali0",     "/dev/kgsl-3d0"};
+    constexpr std::array nodes{"/dev/dri", "/dev/nvidiactl", "/dev/kfd",
+                               "/dev/dxg", "/dev/mali0",     "/dev/kgsl-3d0"};
     return std::ranges::any_of(nodes, [](const char* node) {
         std::error_code error;
         return std::filesystem::exists(node, error);

@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -57,67 +58,84 @@ class Part {
             if (!(p[a] >= low_[a] - slack_ && p[a] <= low_[a] + edge_ + slack_)) return false;
         return true;
     }
+    // Where planes meet is known but for rounding after one round: no more of them lead back.
+    bool beyond(const Vec3& p) const {
+        const double rounding = 1e-6 * edge_ + slack_;
+        for (std::size_t a = 0; a < 3; ++a)
+            if (p[a] < low_[a] - rounding || p[a] > low_[a] + edge_ + rounding) return true;
+        return false;
+    }
     void keep(const Vec3& p) {
         if (b_.solid(n_, p, slack_)) out_.push_back(p);
     }
 
     // Along an edge a patch's value is a polynomial of degree two.
     void add_edges(const SurfacePatch& patch) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::array<double, 8> value{};  // at the corners
+        for (unsigned c = 0; c < 8; ++c) value[c] = patch.value(at(c & 1, c >> 1 & 1, c >> 2));
+        const bool flat = patch.flat();
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const unsigned u = (axis + 1) % 3, v = (axis + 2) % 3;
             for (unsigned c = 0; c < 4; ++c) {
+                const unsigned first = (c & 1) << u | (c >> 1) << v;
+                const double f0 = value[first], f1 = value[first | 1U << axis];
+                // Most edges lie to one side of a plane.
+                if (flat && f0 * f1 > 0 &&
+                    std::min(std::abs(f0), std::abs(f1)) > 2 * slack * std::abs(f1 - f0))
+                    continue;
                 Vec3 from = low_;
-                from[(axis + 1) % 3] += (c & 1) * edge_;
-                from[(axis + 2) % 3] += (c >> 1) * edge_;
-                Vec3 to = from, half = from;
-                to[axis] += edge_;
+                from[u] += (c & 1) * edge_;
+                from[v] += (c >> 1) * edge_;
+                Vec3 half = from;
                 half[axis] += edge_ / 2;
-                const double f0 = patch.value(from), f1 = patch.value(to), fh = patch.value(half);
+                const double fh = patch.value(half);
                 const double a = 2 * (f0 + f1 - 2 * fh), b = f1 - f0 - a;
-                for (const double t : roots(a, b, f0)) {
+                each_root(a, b, f0, [&](double t) {
+                    if (!(t >= -slack && t <= 1 + slack)) return;
                     Vec3 p = from;
                     p[axis] += t * edge_;
                     keep(p);
-                }
+                });
             }
         }
     }
-    static std::vector<double> roots(double a, double b, double c) {
-        std::vector<double> out;
-        const auto add = [&](double t) {
-            if (t >= -slack && t <= 1 + slack) out.push_back(t);
-        };
+    template <class Visit>
+    static void each_root(double a, double b, double c, const Visit& visit) {
         if (std::abs(a) < 1e-9 * std::abs(b)) {
-            if (b != 0) add(-c / b);
-            return out;
+            if (b != 0) visit(-c / b);
+            return;
         }
         const double root = b * b - 4 * a * c;
-        if (a == 0 || root < 0) return out;
+        if (a == 0 || root < 0) return;
         const double q = -0.5 * (b + std::copysign(std::sqrt(root), b));
-        add(q / a);
-        if (q != 0) add(c / q);
-        return out;
+        visit(q / a);
+        if (q != 0) visit(c / q);
     }
 
     // Newton's method from the middle of a side, within its plane.
     void add_sides(const SurfacePatch& p, const SurfacePatch& q) {
+        const bool flat = p.flat() && q.flat();
         for (std::size_t axis = 0; axis < 3; ++axis) {
             for (const double end : {0.0, 1.0}) {
                 Vec3 x = at(0.5, 0.5, 0.5);
                 x[axis] = low_[axis] + end * edge_;
                 const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
                 for (int round = 0; round < 4; ++round) {
+                    const Vec3 before = x;
                     const Vec3 gp = p.gradient(x), gq = q.gradient(x);
                     const double det = gp[u] * gq[v] - gp[v] * gq[u];
                     if (std::abs(det) < 1e-3) break;
                     const double fp = p.value(x), fq = q.value(x);
                     x[u] -= (fp * gq[v] - fq * gp[v]) / det;
                     x[v] -= (gp[u] * fq - gq[u] * fp) / det;
+                    if (x == before || (flat && beyond(x))) break;
                 }
                 settle({&p, &q}, x);
             }
         }
     }
     void add_meeting(const SurfacePatch& p, const SurfacePatch& q, const SurfacePatch& r) {
+        const bool flat = p.flat() && q.flat() && r.flat();
         Vec3 x = at(0.5, 0.5, 0.5);
         for (int round = 0; round < 4; ++round) {
             Eigen::Matrix3d g;
@@ -130,7 +148,9 @@ class Part {
             }
             if (std::abs(g.determinant()) < 1e-3) return;
             const Eigen::Vector3d step = g.inverse() * f;
+            const Vec3 before = x;
             for (std::size_t a = 0; a < 3; ++a) x[a] -= step[static_cast<int>(a)];
+            if (x == before || (flat && beyond(x))) break;
         }
         settle({&p, &q, &r}, x);
     }
