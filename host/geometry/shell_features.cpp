@@ -110,11 +110,12 @@ std::array<double, 5> sides(const SurfaceSamples& s, const PrimitiveShape& p,
         near += d < -slack && d > -0.5;
     }
     const double count = static_cast<double>(std::max<std::size_t>(1, distance.size()));
-    std::ranges::sort(distance);
     const auto at = [&](double share) {
-        return distance.empty() ? 0.0
-                                : distance[static_cast<std::size_t>(
-                                      share * static_cast<double>(distance.size() - 1))];
+        if (distance.empty()) return 0.0;
+        const auto place = distance.begin() + static_cast<std::ptrdiff_t>(
+                                                  share * static_cast<double>(distance.size() - 1));
+        std::nth_element(distance.begin(), place, distance.end());
+        return *place;
     };
     return {behind / count, before / count, near / count, -at(0.005), at(0.995)};
 }

@@ -36,23 +36,39 @@ class Cells {
         }
         std::ranges::sort(entries_);
     }
+    // Calls use(own, around) for each cell: its samples, and all in it and the 26 about it.
+    template <class Use>
+    void each(const Use& use) const {
+        std::vector<std::uint32_t> own, around;
+        for (auto at = entries_.begin(); at != entries_.end();) {
+            const std::array<std::int32_t, 3> middle = at->first;
+            own.clear();
+            for (; at != entries_.end() && at->first == middle; ++at) own.push_back(at->second);
+            around.clear();
+            for (std::int32_t i = -1; i <= 1; ++i)
+                for (std::int32_t j = -1; j <= 1; ++j)
+                    add_column({middle[0] + i, middle[1] + j, middle[2]}, around);
+            use(own, around);
+        }
+    }
+
+  private:
+    using Entry = std::pair<std::array<std::int32_t, 3>, std::uint32_t>;
+
     std::array<std::int32_t, 3> cell(std::uint32_t n) const {
         const auto at = [&](float v) { return static_cast<std::int32_t>(std::floor(v / edge_m_)); };
         return {at(samples_.x[n]), at(samples_.y[n]), at(samples_.z[n])};
     }
     // All samples in the column of three cells along z about one.
-    template <class Use>
-    void each_in_column(std::array<std::int32_t, 3> middle, const Use& use) const {
+    void add_column(std::array<std::int32_t, 3> middle, std::vector<std::uint32_t>& out) const {
         const std::array<std::int32_t, 3> low{middle[0], middle[1], middle[2] - 1};
         auto at = std::ranges::lower_bound(entries_, low, {}, &Entry::first);
         for (; at != entries_.end() && at->first[0] == middle[0] && at->first[1] == middle[1] &&
                at->first[2] <= middle[2] + 1;
              ++at)
-            use(at->second);
+            out.push_back(at->second);
     }
 
-  private:
-    using Entry = std::pair<std::array<std::int32_t, 3>, std::uint32_t>;
     double edge_m_;
     const SurfaceSamples& samples_;
     std::vector<Entry> entries_;
@@ -60,33 +76,32 @@ class Cells {
 
 std::vector<Contact> find_contacts(const SurfaceSamples& s) {
     const double reach = near_m(s.spacing_m);
-    const Cells cells(s, reach);
     std::vector<Contact> out;
     std::vector<Contact> found;  // of one sample, one for each other primitive
-    for (std::uint32_t n = 0; n < s.size(); ++n) {
-        if (s.primitive[n] < 0) continue;
-        found.clear();
-        const std::array<std::int32_t, 3> middle = cells.cell(n);
-        const auto use = [&](std::uint32_t m) {
-            if (s.primitive[m] == s.primitive[n]) return;
-            const double dx = s.x[m] - s.x[n], dy = s.y[m] - s.y[n], dz = s.z[m] - s.z[n];
-            const auto d = static_cast<float>(std::sqrt(dx * dx + dy * dy + dz * dz));
-            if (d > reach) return;
-            for (Contact& c : found) {
-                if (s.primitive[c.to] != s.primitive[m]) continue;
-                if (std::tie(d, m) < std::tie(c.distance_m, c.to)) c.to = m, c.distance_m = d;
-                return;
+    Cells(s, reach).each([&](std::span<const std::uint32_t> own,
+                             std::span<const std::uint32_t> around) {
+        for (const std::uint32_t n : own) {
+            found.clear();
+            for (const std::uint32_t m : around) {
+                if (s.primitive[m] == s.primitive[n]) continue;
+                const double dx = s.x[m] - s.x[n], dy = s.y[m] - s.y[n], dz = s.z[m] - s.z[n];
+                const auto d = static_cast<float>(std::sqrt(dx * dx + dy * dy + dz * dz));
+                if (d > reach) continue;
+                const auto known = std::ranges::find_if(found, [&](const Contact& c) {
+                    return s.primitive[c.to] == s.primitive[m];
+                });
+                if (known == found.end()) {
+                    const auto [a, b] = std::minmax(s.primitive[n], s.primitive[m]);
+                    found.push_back({a, b, n, m, d, s.primitive[n] == a});
+                } else if (std::tie(d, m) < std::tie(known->distance_m, known->to)) {
+                    known->to = m;
+                    known->distance_m = d;
+                }
             }
-            const auto [a, b] = std::minmax(s.primitive[n], s.primitive[m]);
-            found.push_back({a, b, n, m, d, s.primitive[n] == a});
-        };
-        for (std::int32_t i = -1; i <= 1; ++i) {
-            for (std::int32_t j = -1; j <= 1; ++j)
-                cells.each_in_column({middle[0] + i, middle[1] + j, middle[2]}, use);
+            out.insert(out.end(), found.begin(), found.end());
         }
-        out.insert(out.end(), found.begin(), found.end());
-    }
-    std::ranges::stable_sort(out, {}, [](const Contact& c) { return std::pair(c.a, c.b); });
+    });
+    std::ranges::sort(out, {}, [](const Contact& c) { return std::tuple(c.a, c.b, c.from); });
     return out;
 }
 
