@@ -87,9 +87,8 @@ std::vector<Contact> find_contacts(const SurfaceSamples& s) {
                 const double dx = s.x[m] - s.x[n], dy = s.y[m] - s.y[n], dz = s.z[m] - s.z[n];
                 const auto d = static_cast<float>(std::sqrt(dx * dx + dy * dy + dz * dz));
                 if (d > reach) continue;
-                const auto known = std::ranges::find_if(found, [&](const Contact& c) {
-                    return s.primitive[c.to] == s.primitive[m];
-                });
+                const auto known = std::ranges::find_if(
+                    found, [&](const Contact& c) { return s.primitive[c.to] == s.primitive[m]; });
                 if (known == found.end()) {
                     const auto [a, b] = std::minmax(s.primitive[n], s.primitive[m]);
                     found.push_back({a, b, n, m, d, s.primitive[n] == a});

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/thread_pool.h"
 #include "graph/outline.h"
 #include "physics/tipping.h"
 #include "solids/cell_shape.h"
@@ -75,10 +76,10 @@ struct MeanHeight {
     double mean_m() const { return sum[count[1] > 0] / count[count[1] > 0]; }
 };
 
-struct Columns {
-    std::vector<BorderPoint> corners;
-    std::uint64_t count = 0;
-    MeanHeight height;
+// A column in which one primitive lies right above another: the lowest cell of the one, and the
+// first layer that the other does not reach.
+struct ContactColumn {
+    std::int32_t i, j, k, top;
 };
 
 // The outlines of undersides: of the surfaces that bound them within voxels.
@@ -210,6 +211,51 @@ std::uint64_t add_hidden_corners(const std::vector<Bottom>& undersides, double h
     return columns;
 }
 
+// What is seen to carry, before its outline is known.
+struct Carrier {
+    std::int32_t supporter = -1, supported = -1;
+    double area_m2 = 0;
+    bool wide = false;  // it may go on where it is hidden
+    std::span<const ContactColumn> columns;
+};
+
+// The outlines and heights of contacts: most of the time that contacts take.
+void find_outlines(std::span<const Carrier> carriers,
+                   const std::vector<std::vector<Bottom>>& undersides, double h,
+                   const Shapes& shapes, ThreadPool& threads, ContactGraph& graph) {
+    std::vector<bool> asked(undersides.size(), false);
+    std::vector<std::size_t> wide;
+    for (const Carrier& c : carriers) {
+        const auto below = static_cast<std::size_t>(std::max(c.supporter, 0));
+        if (!c.wide || asked[below]) continue;
+        asked[below] = true;
+        wide.push_back(below);
+    }
+    std::vector<std::vector<std::array<double, 2>>> hulls(undersides.size());
+    threads.each(wide.size(), 1,
+                 [&](std::size_t n) { hulls[wide[n]] = hull_of(undersides[wide[n]], h); });
+    graph.carryings.resize(carriers.size());
+    constexpr std::uint64_t at_once = 8;
+    threads.each(carriers.size(), at_once, [&](std::size_t n) {
+        const Carrier& c = carriers[n];
+        std::vector<BorderPoint> corners;
+        MeanHeight heights;
+        for (const auto& [i, j, k, top] : c.columns) {
+            heights.add(top * h, false);
+            shapes.add(i, j, k, c.supported, corners, &heights);
+        }
+        const double height = heights.mean_m();
+        if (c.wide)
+            add_hidden_corners(undersides[static_cast<std::size_t>(c.supported)], height,
+                               hulls[static_cast<std::size_t>(c.supporter)], h, c.supported, shapes,
+                               corners);
+        Outline outline = graph::outline_of(corners);
+        graph.carryings[n] = {
+            c.supporter,    c.supported, c.area_m2, height, std::move(outline.polygon),
+            outline.error_m};
+    });
+}
+
 // Solid that belongs to no primitive is mostly noise: it carries what rests on it with this share
 // of its columns.
 constexpr double least_on_scraps = 0.15;
@@ -336,7 +382,8 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
 
     const double h = cells.voxel_m;
     const Shapes shapes(cells, boundary);
-    std::map<std::pair<std::int32_t, std::int32_t>, Columns> carried;  // (supported, supporter)
+    std::map<std::pair<std::int32_t, std::int32_t>, std::vector<ContactColumn>>
+        carried;  // (supported, supporter)
     std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, std::uint64_t> gaps;
     std::map<std::pair<std::int32_t, std::int32_t>, std::uint64_t> hidden;
     std::vector<std::vector<Bottom>> undersides(count);
@@ -367,34 +414,25 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         if (cells.unseen_below.empty() || cells.unseen_below[n] >= empty)
             ++hidden[std::minmax(upper, lower)];
         if (empty > static_cast<std::int32_t>(gap)) continue;
-        Columns& columns = carried[{upper, lower}];
-        ++columns.count;
-        columns.height.add((cells.k[n - 1] + 1) * h, false);
-        shapes.add(cells.i[n], cells.j[n], cells.k[n], upper, columns.corners, &columns.height);
+        carried[{upper, lower}].push_back({cells.i[n], cells.j[n], cells.k[n], cells.k[n - 1] + 1});
     }
-    std::vector<std::vector<std::array<double, 2>>> outlines(count);  // of those asked for
     for (std::size_t p = 0; p < count; ++p)
         if (graph.section_m2[p] > 0) graph.section_m2[p] /= graph.highest_m[p] - graph.lowest_m[p];
-    for (auto& [key, columns] : carried) {
+    std::vector<Carrier> carriers;
+    for (const auto& [key, columns] : carried) {
         const auto& [supported, supporter] = key;
         const Extent& load = extents[static_cast<std::size_t>(supported)];
-        const auto met = static_cast<double>(columns.count);
+        const auto met = static_cast<double>(columns.size());
         const bool scraps = supporter < 0;
         if (scraps && met < least_on_scraps * static_cast<double>(load.columns)) continue;
         const double area = scraps ? met : upward_faces(graph.pairs, supporter, supported);
         if (area <= 0) continue;
-        const double height = columns.height.mean_m();
         // A surface at least half as wide may go on where it is hidden; a leg does not.
-        if (!scraps && 2 * extents[static_cast<std::size_t>(supporter)].columns >= load.columns) {
-            const auto below = static_cast<std::size_t>(supporter);
-            if (outlines[below].empty()) outlines[below] = hull_of(undersides[below], h);
-            add_hidden_corners(undersides[static_cast<std::size_t>(supported)], height,
-                               outlines[below], h, supported, shapes, columns.corners);
-        }
-        Outline outline = graph::outline_of(columns.corners);
-        graph.carryings.push_back({supporter, supported, area * h * h, height,
-                                   std::move(outline.polygon), outline.error_m});
+        const bool wide =
+            !scraps && 2 * extents[static_cast<std::size_t>(supporter)].columns >= load.columns;
+        carriers.push_back({supporter, supported, area * h * h, wide, columns});
     }
+    find_outlines(carriers, undersides, h, shapes, device.threads(), graph);
     add_leanings(graph);
     add_hidden_carryings(undersides, extents, h, shapes, graph);
     add_hidden_joints(device, cells, primitives, hidden, graph);
