@@ -27,7 +27,8 @@ struct Around {
 template <class Visit>
 void visit_surroundings(const FusedCells& fused, ThreadPool& pool, const Visit& visit) {
     const std::size_t n = fused.cells.size();
-    std::vector<std::uint64_t> key(n), count(n + 1), weight(n + 1);
+    // Behind the last come more keys than a run has, above all.
+    std::vector<std::uint64_t> key(n + 3, ~std::uint64_t{0}), count(n + 1), weight(n + 1);
     for (std::size_t i = 0; i < n; ++i) {
         key[i] = fused.cells[i].key;
         count[i + 1] = count[i] + fused.cells[i].count;
@@ -35,23 +36,28 @@ void visit_surroundings(const FusedCells& fused, ThreadPool& pool, const Visit& 
     }
     pool.run(n, fused_chunk, [&](std::uint64_t first, std::uint64_t last) {
         std::array<std::uint64_t, 9> lowest{};  // of each column, relative to the cell's key
-        std::array<std::size_t, 9> lo{}, hi{};
+        std::array<std::size_t, 9> lo{};
         for (std::size_t c = 0; c < 9; ++c) {
             lowest[c] = ((c / 3) << key_shift[0]) + ((c % 3) << key_shift[1]) -
                         ((1ull << key_shift[0]) + (1ull << key_shift[1]) + 1);
-            lo[c] = hi[c] = static_cast<std::size_t>(
-                std::lower_bound(key.begin(), key.end(), key[first] + lowest[c]) - key.begin());
+            lo[c] = static_cast<std::size_t>(
+                std::lower_bound(key.begin(), key.end() - 3, key[first] + lowest[c]) - key.begin());
         }
         for (std::uint64_t i = first; i < last; ++i) {
             Around around;
             for (std::size_t c = 0; c < 9; ++c) {
+                // Mostly one or two on; which of them no branch foretells.
                 const std::uint64_t low = key[i] + lowest[c];
-                while (lo[c] < n && key[lo[c]] < low) ++lo[c];
-                hi[c] = std::max(hi[c], lo[c]);
-                while (hi[c] < n && key[hi[c]] < low + 3) ++hi[c];
-                around.cells += hi[c] - lo[c];
-                around.count += count[hi[c]] - count[lo[c]];
-                around.weight += weight[hi[c]] - weight[lo[c]];
+                std::size_t at = lo[c];
+                at += key[at] < low;
+                at += key[at] < low;
+                while (key[at] < low) ++at;
+                lo[c] = at;
+                const std::size_t end = at + (key[at] < low + 3) + (key[at + 1] < low + 3) +
+                                        (key[at + 2] < low + 3);
+                around.cells += end - at;
+                around.count += count[end] - count[at];
+                around.weight += weight[end] - weight[at];
             }
             visit(static_cast<std::size_t>(i), around);
         }
