@@ -30,6 +30,8 @@ class Profiler {
   public:
     explicit Profiler(const device::Device& device) : device_(device) {}
     void begin(const std::string& stage) {
+        // A stage may tell more than once that none of it is done yet.
+        if (open_ && stages_.back().name == stage) return;
         end();
         open_ = true;
         stages_.push_back({stage, {}, device_.counters(), usage().touched_bytes, 0});

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <cctype>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
+#include <string>
 
 #include "cli/program.h"
 
@@ -26,6 +30,42 @@ TEST_F(Perf, lists_its_cases) {
     ASSERT_EQ(list.code, 0) << list.err;
     for (const char* name : {"triad\n", "support_function\n", "landscapes/hulls\n", "pipeline\n"})
         EXPECT_NE(list.out.find(name), std::string::npos) << name;
+}
+
+// A box on a floor, stage by stage.
+TEST_F(Perf, profiles_a_parse) {
+    std::ofstream cloud(in("box.xyz"));
+    for (int i = 0; i < 60; ++i) {
+        for (int j = 0; j < 60; ++j) {
+            const bool box = i > 20 && i < 40 && j > 20 && j < 40;
+            cloud << 0.02 * i << ' ' << 0.02 * j << ' ' << (box ? 0.4 : 0) << '\n';
+            if (i < 20) cloud << 0.4 << ' ' << 0.4 + 0.02 * i << ' ' << 0.4 * j / 60 << '\n';
+        }
+    }
+    cloud.close();
+    const Finished done = run({"perf", "--profile", "box.xyz"});
+    ASSERT_EQ(done.code, 0) << done.err;
+    std::istringstream lines(done.out);
+    std::string line;
+    ASSERT_TRUE(std::getline(lines, line));
+    EXPECT_NE(line.find("cpu s"), std::string::npos) << line;
+    std::set<std::string> stages;
+    std::string last;
+    while (std::getline(lines, line)) {
+        std::istringstream columns(line);
+        double wall = -1, cpu = -1;
+        for (std::string word; columns >> word && !std::isdigit(word[0]); last = word) {
+            if (word == "field") continue;
+            EXPECT_TRUE(stages.insert(word).second) << "twice: " << line;
+        }
+        std::istringstream(line.substr(18)) >> wall >> cpu;
+        EXPECT_GE(wall, 0) << line;
+        EXPECT_GE(cpu, 0) << line;
+    }
+    for (const char* stage : {"ingest", "filling", "grouping", "barriers", "output"})
+        EXPECT_TRUE(stages.contains(stage)) << stage;
+    EXPECT_EQ(last, "all");
+    expect_failure(1, {"perf", "--profile", "none.ply"}, {"none.ply"});
 }
 
 TEST_F(Perf, counts_and_results_are_those_of_the_last_time) {
