@@ -27,8 +27,9 @@ class MeshPieces {
     explicit MeshPieces(const SurfaceMesh& mesh);
     std::size_t size() const { return blocks_.size(); }
 
-    // quadric: of each vertex of the whole.
-    MeshPiece cut(std::size_t block, std::span<const ErrorQuadric> quadric) const;
+    // quadric: of each vertex of the whole. number: one of each vertex, 0 as it comes and goes.
+    MeshPiece cut(std::size_t block, std::span<const ErrorQuadric> quadric,
+                  std::vector<std::uint32_t>& number) const;
     // The mesh that the pieces are now. quadric: on entry as for cut(), then of its vertices.
     SurfaceMesh joined(std::span<const MeshPiece> pieces, std::vector<ErrorQuadric>& quadric) const;
 

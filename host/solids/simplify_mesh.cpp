@@ -264,9 +264,7 @@ void simplify_blocks(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
                      ThreadPool& pool) {
     const MeshPieces blocks(mesh);
     std::vector<MeshPiece> pieces(blocks.size());
-    pool.each(pieces.size(), 1, [&](std::size_t n) {
-        MeshPiece& p = pieces[n];
-        p = blocks.cut(n, quadric);
+    const auto simplify_block = [&](MeshPiece& p) {
         Simplifier simplifier(p.mesh, patches, options);
         simplifier.quadrics().swap(p.quadric);
         simplifier.run(p.fixed);
@@ -275,6 +273,14 @@ void simplify_blocks(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
         keep(kept, p.quadric);
         keep(kept, p.fixed);
         keep(kept, p.from);
+    };
+    constexpr std::uint64_t chunk = 8;
+    pool.run(pieces.size(), chunk, [&](std::uint64_t first, std::uint64_t last) {
+        std::vector<std::uint32_t> number(mesh.vertex.size(), 0);
+        for (std::uint64_t n = first; n < last; ++n) {
+            pieces[n] = blocks.cut(n, quadric, number);
+            simplify_block(pieces[n]);
+        }
     });
     mesh = blocks.joined(pieces, quadric);
 }
