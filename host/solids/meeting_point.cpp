@@ -11,11 +11,17 @@ namespace topple::solids {
 namespace {
 
 constexpr double farthest = 1.5;  // how far a vertex may go to where its patches meet, in voxels
+constexpr int most_rounds = 6;
+constexpr double settled_step = 1e-6;  // of a voxel: a step that ends the search
 
 }  // namespace
 
 Vec3 MeetingPoint::operator()(std::span<const std::uint32_t> of, const Vec3& base,
                               const Vec3& corner) {
+    if (of.size() == 1) {
+        Vec3 x = base;
+        return settle(patches_[of[0]], x) && near(x, corner) ? x : base;
+    }
     const auto is_flat = [&](std::uint32_t p) { return patches_[p].flat(); };
     Known once;
     const bool few = of.size() <= once.of.size();
@@ -58,15 +64,26 @@ MeetingPoint::Spread MeetingPoint::spread(std::span<const std::uint32_t> of, con
     return {eigen.eigenvalues(), eigen.eigenvectors()};
 }
 
-// Newton's method. Whether the patches determine so many directions. first: at x as it comes, and
+// Newton's method on one patch: whether it has a direction.
+bool MeetingPoint::settle(const SurfacePatch& patch, Vec3& x) const {
+    for (int round = 0; round < most_rounds; ++round) {
+        const Vec3 g = patch.gradient(x);
+        const double slope = length(g);
+        if (!(slope > 0)) return false;
+        const double step = patch.distance(x);
+        for (std::size_t a = 0; a < 3; ++a) x[a] -= g[a] / slope * step;
+        if (std::abs(step) < settled_step * h_) break;
+    }
+    return true;
+}
+
+// The same on several. Whether they determine so many directions. first: at x as it comes, and
 // all along where they are flat.
 bool MeetingPoint::settle(std::span<const std::uint32_t> of, int rank, const Spread& first,
                           bool flat, Vec3& x) const {
-    constexpr int rounds = 6;
-    constexpr double least = 0.02;    // eigenvalue, of the largest: creases above 16 degrees
-    constexpr double settled = 1e-6;  // of a voxel
+    constexpr double least = 0.02;  // eigenvalue, of the largest: creases above 16 degrees
     Spread later;
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < most_rounds; ++round) {
         if (round > 0 && !flat) later = spread(of, x);
         const auto& [values, vectors] = round > 0 && !flat ? later : first;
         if (!(values[3 - rank] > least * values[2])) return false;
@@ -82,7 +99,7 @@ bool MeetingPoint::settle(std::span<const std::uint32_t> of, int rank, const Spr
             step -= v * (v.dot(b) / values[2 - k]);
         }
         for (std::size_t k = 0; k < 3; ++k) x[k] += step[static_cast<int>(k)];
-        if (step.norm() < settled * h_) break;
+        if (step.norm() < settled_step * h_) break;
     }
     return true;
 }

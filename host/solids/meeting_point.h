@@ -39,6 +39,7 @@ class MeetingPoint {
 
     Spread spread(std::span<const std::uint32_t> of, const Vec3& x) const;
     Known& place_of(std::span<const std::uint32_t> of);
+    bool settle(const SurfacePatch& patch, Vec3& x) const;
     bool settle(std::span<const std::uint32_t> of, int rank, const Spread& first, bool flat,
                 Vec3& x) const;
     bool near(const Vec3& x, const Vec3& corner) const;

@@ -67,7 +67,8 @@ MeshPiece MeshPieces::cut(std::size_t block, std::span<const ErrorQuadric> quadr
 }
 
 SurfaceMesh MeshPieces::joined(std::span<const MeshPiece> pieces,
-                               std::vector<ErrorQuadric>& quadric) const {
+                               std::vector<ErrorQuadric>& quadric,
+                               std::vector<std::uint8_t>& settled) const {
     std::vector<std::uint32_t> number(mesh_.vertex.size(), 0);
     for (const MeshPiece& p : pieces)
         for (const std::uint32_t v : p.from) number[v] = 1;
@@ -80,9 +81,13 @@ SurfaceMesh MeshPieces::joined(std::span<const MeshPiece> pieces,
         quadric[out.vertex.size() - 1] = quadric[v];
     }
     quadric.resize(out.vertex.size());
+    settled.assign(out.vertex.size(), 0);
     for (const MeshPiece& p : pieces) {
-        for (std::size_t v = 0; v < p.from.size(); ++v)
-            if (p.fixed[v] == 0) quadric[number[p.from[v]]] = p.quadric[v];
+        for (std::size_t v = 0; v < p.from.size(); ++v) {
+            if (p.fixed[v] != 0) continue;
+            quadric[number[p.from[v]]] = p.quadric[v];
+            settled[number[p.from[v]]] = p.settled[v];
+        }
         for (std::size_t t = 0; t < p.mesh.triangle.size(); ++t) {
             const auto [a, b, c] = p.mesh.triangle[t];
             out.triangle.push_back({number[p.from[a]], number[p.from[b]], number[p.from[c]]});

@@ -25,16 +25,26 @@ class Simplifier {
 
     // Of the planes of the mesh as it is.
     void find_quadrics(ThreadPool& pool) {
+        constexpr std::uint64_t chunk = 1 << 12;
+        std::vector<Vec3> normal(mesh_.triangle.size());
+        pool.each(normal.size(), chunk, [&](std::size_t t) {
+            if (!is_curved(t))
+                normal[t] = normal_at(static_cast<std::uint32_t>(t), mesh_.triangle[t][0]);
+        });
         quadric_.resize(around_.size());
-        pool.each(around_.size(), 1 << 12,
-                  [&](std::size_t v) { add_planes(static_cast<std::uint32_t>(v)); });
+        pool.each(around_.size(), chunk,
+                  [&](std::size_t v) { add_planes(static_cast<std::uint32_t>(v), normal); });
     }
     std::vector<ErrorQuadric>& quadrics() { return quadric_; }
+    // Of each vertex, whether it was asked in vain, could be merged into all its neighbours, and
+    // nothing that counts has changed since: it need not be asked again.
+    std::vector<std::uint8_t>& settled() { return settled_; }
 
     // Vertices that are `fixed` stay, and nothing is merged into them: there is more around them
     // than the mesh has. Empty: none is.
     void run(std::span<const std::uint8_t> fixed = {}) {
         fixed_ = fixed;
+        settled_.resize(around_.size(), 0);
         // A vertex that can't go is asked again once something around it has changed.
         std::vector<bool> asked(around_.size(), false);
         std::vector<std::size_t> changed(around_.size(), 0);  // in which round
@@ -45,11 +55,19 @@ class Simplifier {
                 // Changes of one round lie apart, or long fans would arise.
                 if (around_[v].empty() || asked[v] || changed[v] == round) continue;
                 asked[v] = true;
-                if (is_fixed(v) || !remove(v)) continue;
+                if (is_fixed(v) || settled_[v] != 0) continue;
+                if (!remove(v)) {
+                    settled_[v] = std::ranges::none_of(
+                        neighbours_, [&](std::uint32_t n) { return is_fixed(n); });
+                    continue;
+                }
                 any = true;
                 for (const std::uint32_t n : neighbours_) {
                     asked[n] = false;
                     changed[n] = round;
+                    // Who could be merged into it looks at the triangles around it.
+                    for (const std::uint32_t t : around_[n])
+                        for (const std::uint32_t w : mesh_.triangle[t]) settled_[w] = 0;
                 }
             }
         }
@@ -117,14 +135,23 @@ class Simplifier {
         return out;
     }
 
-    void add_planes(std::uint32_t v) {
+    bool is_curved(std::size_t t) const {
+        const std::uint32_t patch = mesh_.facet[t].patch;
+        return patch != no_patch && !patches_[patch].flat();
+    }
+    Vec3 normal_at(std::uint32_t t, std::uint32_t v) const {
+        return unit(outside_of(t, mesh_.triangle[t], mesh_.vertex[v]));
+    }
+
+    // normal_of: triangles, but of those on curved patches.
+    void add_planes(std::uint32_t v, std::span<const Vec3> normal_of) {
         // How much further than from a patch a vertex may be from what no patch tells of.
         constexpr double unknown = 20;
         const bool bordered = is_bordered(v);
         for (const std::uint32_t t : around_[v]) {
             const bool known = mesh_.facet[t].patch != no_patch;
             const Vec3& at = mesh_.vertex[v];
-            const Vec3 normal = unit(outside_of(t, mesh_.triangle[t], at));
+            const Vec3 normal = is_curved(t) ? normal_at(t, v) : normal_of[t];
             Vec3 counted = normal;
             if (!known)
                 for (double& x : counted) x /= unknown;
@@ -133,9 +160,7 @@ class Simplifier {
             const std::uint32_t next = after(mesh_.triangle[t], v),
                                 before = after(mesh_.triangle[t], v, 2);
             if (is_border(t, v, next)) add_border(v, next, normal, quadric_[v]);
-            if (is_border(t, before, v))
-                add_border(before, v, unit(outside_of(t, mesh_.triangle[t], mesh_.vertex[before])),
-                           quadric_[v]);
+            if (is_border(t, before, v)) add_border(before, v, normal_at(t, before), quadric_[v]);
         }
     }
     // The plane through a border of primitives across the surface.
@@ -175,7 +200,9 @@ class Simplifier {
         const bool bordered = is_bordered(v);
         for (const std::uint32_t u : neighbours_) {
             if (is_fixed(u)) continue;
-            if (quadric_[v].at(mesh_.vertex[u]) + quadric_[u].at(mesh_.vertex[u]) > most_) continue;
+            // No error is less than 0, but for rounding.
+            const double own = quadric_[v].at(mesh_.vertex[u]);
+            if (own > 2 * most_ || own + quadric_[u].at(mesh_.vertex[u]) > most_) continue;
             const Vec3 way = minus(mesh_.vertex[u], mesh_.vertex[v]);
             nearest_.emplace_back(dot(way, way), u);
         }
@@ -247,6 +274,7 @@ class Simplifier {
     VertexRings around_;     // of a vertex that is gone, none
     std::vector<ErrorQuadric> quadric_;
     std::span<const std::uint8_t> fixed_;
+    std::vector<std::uint8_t> settled_;
     std::vector<std::uint32_t> neighbours_;  // of the vertex that is looked at, ascending
     std::vector<std::uint32_t> gained_;
     std::vector<std::pair<double, std::uint32_t>> nearest_;
@@ -261,7 +289,7 @@ void keep(std::span<const std::uint32_t> which, std::vector<T>& of) {
 // Each block by itself, up to its borders.
 void simplify_blocks(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
                      const SimplifyOptions& options, std::vector<ErrorQuadric>& quadric,
-                     ThreadPool& pool) {
+                     std::vector<std::uint8_t>& settled, ThreadPool& pool) {
     const MeshPieces blocks(mesh);
     std::vector<MeshPiece> pieces(blocks.size());
     const auto simplify_block = [&](MeshPiece& p) {
@@ -269,8 +297,10 @@ void simplify_blocks(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
         simplifier.quadrics().swap(p.quadric);
         simplifier.run(p.fixed);
         simplifier.quadrics().swap(p.quadric);
+        simplifier.settled().swap(p.settled);
         const std::vector<std::uint32_t> kept = simplifier.compact();
         keep(kept, p.quadric);
+        keep(kept, p.settled);
         keep(kept, p.fixed);
         keep(kept, p.from);
     };
@@ -282,7 +312,7 @@ void simplify_blocks(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
             simplify_block(pieces[n]);
         }
     });
-    mesh = blocks.joined(pieces, quadric);
+    mesh = blocks.joined(pieces, quadric, settled);
 }
 
 }  // namespace
@@ -298,9 +328,11 @@ void simplify(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
         return;
     }
     std::vector<ErrorQuadric> quadric = std::move(first.quadrics());
-    simplify_blocks(mesh, patches, options, quadric, pool);
+    std::vector<std::uint8_t> settled;
+    simplify_blocks(mesh, patches, options, quadric, settled, pool);
     Simplifier rest(mesh, patches, options);
     rest.quadrics().swap(quadric);
+    rest.settled().swap(settled);
     rest.run();
     rest.compact();
 }
