@@ -18,7 +18,7 @@ constexpr double settled_step = 1e-6;  // of a voxel: a step that ends the searc
 
 Vec3 MeetingPoint::operator()(std::span<const std::uint32_t> of, const Vec3& base,
                               const Vec3& corner) {
-    if (of.size() == 1) {
+    if (of.size() == 1 && !patches_[of[0]].flat()) {
         Vec3 x = base;
         return settle(patches_[of[0]], x) && near(x, corner) ? x : base;
     }

@@ -45,6 +45,7 @@ class Simplifier {
     void run(std::span<const std::uint8_t> fixed = {}) {
         fixed_ = fixed;
         settled_.resize(around_.size(), 0);
+        found_in_.assign(around_.size(), 0);
         // A vertex that can't go is asked again once something around it has changed.
         std::vector<bool> asked(around_.size(), false);
         std::vector<std::size_t> changed(around_.size(), 0);  // in which round
@@ -104,11 +105,12 @@ class Simplifier {
         const Vec3& p = mesh_.vertex[t[0]];
         return cross(minus(mesh_.vertex[t[1]], p), minus(mesh_.vertex[t[2]], p));
     }
-    // The vertex after v in a triangle, going round; that before it is two after.
-    static std::uint32_t after(const std::array<std::uint32_t, 3>& t, std::uint32_t v,
-                               std::size_t steps = 1) {
-        const std::size_t at = t[0] == v ? 0 : t[1] == v ? 1 : 2;
-        return t[(at + steps) % 3];
+    // The vertices after v in a triangle, going round, and before it.
+    static std::uint32_t after(const std::array<std::uint32_t, 3>& t, std::uint32_t v) {
+        return t[0] == v ? t[1] : t[1] == v ? t[2] : t[0];
+    }
+    static std::uint32_t before(const std::array<std::uint32_t, 3>& t, std::uint32_t v) {
+        return t[0] == v ? t[2] : t[1] == v ? t[0] : t[1];
     }
 
     static Vec3 side_of(const Facet& facet) {
@@ -143,7 +145,7 @@ class Simplifier {
         return unit(outside_of(t, mesh_.triangle[t], mesh_.vertex[v]));
     }
 
-    // normal_of: triangles, but of those on curved patches.
+    // normal_of: triangles; 0 of those on curved patches.
     void add_planes(std::uint32_t v, std::span<const Vec3> normal_of) {
         // How much further than from a patch a vertex may be from what no patch tells of.
         constexpr double unknown = 20;
@@ -151,16 +153,16 @@ class Simplifier {
         for (const std::uint32_t t : around_[v]) {
             const bool known = mesh_.facet[t].patch != no_patch;
             const Vec3& at = mesh_.vertex[v];
-            const Vec3 normal = is_curved(t) ? normal_at(t, v) : normal_of[t];
+            const Vec3 normal = normal_of[t] == Vec3{} ? normal_at(t, v) : normal_of[t];
             Vec3 counted = normal;
             if (!known)
                 for (double& x : counted) x /= unknown;
             quadric_[v].add_plane(counted, at);
             if (!bordered) continue;
             const std::uint32_t next = after(mesh_.triangle[t], v),
-                                before = after(mesh_.triangle[t], v, 2);
+                                last = before(mesh_.triangle[t], v);
             if (is_border(t, v, next)) add_border(v, next, normal, quadric_[v]);
-            if (is_border(t, before, v)) add_border(before, v, normal_at(t, before), quadric_[v]);
+            if (is_border(t, last, v)) add_border(last, v, normal_at(t, last), quadric_[v]);
         }
     }
     // The plane through a border of primitives across the surface.
@@ -181,7 +183,7 @@ class Simplifier {
     // Whether another primitive lies beyond the edge from v to `next` of triangle t.
     bool is_border(std::uint32_t t, std::uint32_t v, std::uint32_t next) const {
         for (const std::uint32_t other : around_[v]) {
-            if (after(mesh_.triangle[other], v, 2) == next)
+            if (before(mesh_.triangle[other], v) == next)
                 return mesh_.facet[other].primitive != mesh_.facet[t].primitive;
         }
         return false;
@@ -189,8 +191,12 @@ class Simplifier {
 
     void find_neighbours(std::uint32_t v) {
         neighbours_.clear();
-        for (const std::uint32_t t : around_[v]) neighbours_.push_back(after(mesh_.triangle[t], v));
-        std::ranges::sort(neighbours_);
+        ++search_;
+        for (const std::uint32_t t : around_[v]) {
+            const std::uint32_t n = after(mesh_.triangle[t], v);
+            neighbours_.push_back(n);
+            found_in_[n] = search_;
+        }
     }
 
     // Merges v into the nearest neighbour that can take it.
@@ -224,7 +230,7 @@ class Simplifier {
     bool stays_closed(std::uint32_t u) const {
         std::size_t common = 0;
         for (const std::uint32_t t : around_[u])
-            common += std::ranges::binary_search(neighbours_, after(mesh_.triangle[t], u));
+            common += found_in_[after(mesh_.triangle[t], u)] == search_;
         return common == 2;
     }
     // No triangle turns far or becomes a line, and no edge too long.
@@ -275,7 +281,9 @@ class Simplifier {
     std::vector<ErrorQuadric> quadric_;
     std::span<const std::uint8_t> fixed_;
     std::vector<std::uint8_t> settled_;
-    std::vector<std::uint32_t> neighbours_;  // of the vertex that is looked at, ascending
+    std::vector<std::uint32_t> neighbours_;  // of the vertex that is looked at
+    std::vector<std::uint64_t> found_in_;    // of each vertex: the last search that found it there
+    std::uint64_t search_ = 0;
     std::vector<std::uint32_t> gained_;
     std::vector<std::pair<double, std::uint32_t>> nearest_;
 };
