@@ -422,7 +422,7 @@ Scene scene_of(const Json& json) {
 
 }  // namespace
 
-std::string scene_json(const Scene& scene) {
+OrderedJson scene_document(const Scene& scene) {
     Json json = Json::object();
     json["schema"] = schema;
     json["source"] = scene.source;
@@ -454,7 +454,11 @@ std::string scene_json(const Scene& scene) {
     json["timings_s"] = std::move(timings);
     json["swc_energy"] = numbers(scene.swc_energy);
     json["notes"] = scene.notes;
-    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json;
+}
+
+std::string scene_json(const Scene& scene) {
+    return scene_document(scene).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 void write_scene_json(const std::filesystem::path& file, const Scene& scene) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "core/json.h"
 #include "topple/scene.h"
 
 // scene.json, schema "topple.scene/1": all of a Scene but its points, voxels and fields. A number
@@ -11,6 +12,8 @@
 namespace topple::io {
 
 std::string scene_json(const Scene& scene);
+// The same before it is written; its text may have to be mended yet.
+OrderedJson scene_document(const Scene& scene);
 
 // Throws Error(input) where the file can't be written.
 void write_scene_json(const std::filesystem::path& file, const Scene& scene);

@@ -44,23 +44,38 @@ std::vector<std::span<const solids::ObjectVoxel>> by_object(
     return out;
 }
 
-// Calls what(n, pool) for each object: large ones, as the building is, share out their own work.
-template <class What>
-void each_object(std::span<const std::span<const solids::ObjectVoxel>> objects, ThreadPool& pool,
-                 const What& what) {
-    constexpr std::size_t large = 50'000;  // voxels
-    std::vector<std::size_t> small;
-    for (std::size_t n = 0; n < objects.size(); ++n) {
-        if (objects[n].size() < large)
-            small.push_back(n);
-        else
-            what(n, pool);
+// Threads for work on all objects. Large ones, as the building is, share out their own, and
+// meanwhile small ones are worked on side by side: what a large one does on one thread holds up
+// nobody.
+class ObjectPools {
+  public:
+    explicit ObjectPools(unsigned threads)
+        : both_(std::min(threads, 2U)), within_(threads), beside_(threads) {}
+
+    // Calls what(n, pool) for each object.
+    template <class What>
+    void each(std::span<const std::span<const solids::ObjectVoxel>> objects, const What& what) {
+        constexpr std::size_t least = 50'000;  // voxels
+        std::vector<std::size_t> large, small;
+        for (std::size_t n = 0; n < objects.size(); ++n)
+            (objects[n].size() < least ? small : large).push_back(n);
+        both_.each(2, 1, [&](std::size_t which) {
+            if (which == 0) {
+                for (const std::size_t n : large) what(n, within_);
+                return;
+            }
+            beside_.each(small.size(), 1, [&](std::size_t n) {
+                ThreadPool alone(1);
+                what(small[n], alone);
+            });
+        });
     }
-    pool.each(small.size(), 1, [&](std::size_t n) {
-        ThreadPool alone(1);
-        what(small[n], alone);
-    });
-}
+    // For all else.
+    ThreadPool& all() { return beside_; }
+
+  private:
+    ThreadPool both_, within_, beside_;
+};
 
 Vec3 in_input(const vdb::VoxelFrame& frame, const Vec3& v) {
     Vec3 out{};
@@ -82,14 +97,14 @@ std::vector<ObjectSurface> object_surfaces(const Scene& scene, const SolidCells&
     const auto objects = by_object(voxels);
     std::optional<SurfaceColours> colours;
     if (!scene.points.red.empty()) colours.emplace(scene.points, cells, object_of, frame);
-    ThreadPool pool(threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency()));
+    ObjectPools pools(threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency()));
     std::vector<solids::SurfaceMesh> meshes(objects.size());
-    each_object(objects, pool, [&](std::size_t n, ThreadPool& threads_of_it) {
+    pools.each(objects, [&](std::size_t n, ThreadPool& threads_of_it) {
         meshes[n] =
             solids::surface_mesh(objects[n], boundary, object_of, frame.voxel_m, threads_of_it);
     });
     for (const Level& level : levels) {
-        each_object(objects, pool, [&](std::size_t n, ThreadPool& threads_of_it) {
+        pools.each(objects, [&](std::size_t n, ThreadPool& threads_of_it) {
             solids::simplify(meshes[n], boundary.patches,
                              {.tolerance_m = level.tolerance * frame.voxel_m,
                               .longest_m = colours ? level.coloured_edge * frame.voxel_m : 0},
@@ -100,7 +115,7 @@ std::vector<ObjectSurface> object_surfaces(const Scene& scene, const SolidCells&
         if (triangles <= most_triangles) break;
     }
     std::vector<ObjectSurface> out(objects.size());
-    pool.each(objects.size(), 1, [&](std::size_t n) {
+    pools.all().each(objects.size(), 1, [&](std::size_t n) {
         const solids::SurfaceMesh& mesh = meshes[n];
         ObjectSurface& to = out[n];
         to.object = objects[n].front().object;

@@ -60,18 +60,24 @@ std::vector<std::function<void()>> writers(const std::filesystem::path& folder,
     };
     const std::shared_future<std::shared_ptr<const vdb::VoxelScene>> voxels =
         std::async(std::launch::deferred, load);
+    // Those of a building are too large for a page.
+    const bool with_surfaces = !result.tiled || options.glb;
+    // What the page shows beside them another thread makes meanwhile.
+    const std::shared_future<std::shared_ptr<report::Report>> page =
+        std::async(std::launch::deferred, [=, &scene] {
+            return std::make_shared<report::Report>(scene, with_surfaces && !scene.solid.x.empty());
+        });
     std::vector<std::function<void()>> out;
     out.emplace_back([=, &result, &options, &scene, &poll] {
-        // Those of a building are too large for a page.
         std::vector<ObjectSurface> surfaces;
-        if (!result.tiled || options.glb)
-            surfaces = surfaces_of(result, *voxels.get(), options.threads);
+        if (with_surfaces) surfaces = surfaces_of(result, *voxels.get(), options.threads);
         poll();
-        report::write_report(folder / "report.html", scene, surfaces);
+        page.get()->write(folder / "report.html", surfaces);
         poll();
         if (options.glb)
             write_objects_glb(folder / "objects.glb", scene, surfaces, voxels.get()->frame());
     });
+    out.emplace_back([=] { page.wait(); });
     out.emplace_back([=] { voxels.get()->write(folder / "volume.vdb"); });
     out.emplace_back([=, &result, &poll] { write_points(folder / "points.ply", result, poll); });
     if (options.pictures) out.emplace_back([=, &scene] { report::write_pictures(folder, scene); });

@@ -230,19 +230,6 @@ Json disturbances_json() {
     return kinds;
 }
 
-std::string data_json(const Scene& scene, std::span<const ObjectSurface> surfaces) {
-    Json json = Json::parse(io::scene_json(scene));
-    const auto view = pack_view(scene, {}, surfaces);
-    json["colours"] = colours_json(view);
-    json["view"] = view_json(view);
-    json["drawings"] = landscapes_json(scene);
-    json["ramp"] = {{"colours", ramp}, {"bands", bands}};
-    json["disturbance_kinds"] = disturbances_json();
-    json["unsafety_ramp"] = unsafety_ramp;
-    json["unranked_colour"] = unranked_colour;
-    return script_safe(json.dump());
-}
-
 // Writes the template with its @NAMES@ filled in, one pass: what is filled in is not searched.
 void write_page(io::FileWriter& writer, std::string_view html,
                 std::initializer_list<std::pair<std::string_view, std::string_view>> parts) {
@@ -259,10 +246,33 @@ void write_page(io::FileWriter& writer, std::string_view html,
 
 }  // namespace
 
-void write_report(const std::filesystem::path& file, const Scene& scene,
-                  std::span<const ObjectSurface> surfaces) {
-    const auto data = data_json(scene, surfaces);
-    const auto title = html_escaped(scene.source);
+struct Report::Parts {
+    std::string source;
+    ViewPacker view;
+    Json data;
+};
+
+Report::Report(const Scene& scene, bool with_surfaces)
+    : parts_(new Parts{scene.source, {scene, {}, with_surfaces}, io::scene_document(scene)}) {
+    Json& json = parts_->data;
+    for (const char* later : {"colours", "view"}) json[later] = nullptr;
+    json["drawings"] = landscapes_json(scene);
+    json["ramp"] = {{"colours", ramp}, {"bands", bands}};
+    json["disturbance_kinds"] = disturbances_json();
+    json["unsafety_ramp"] = unsafety_ramp;
+    json["unranked_colour"] = unranked_colour;
+}
+Report::~Report() = default;
+
+void Report::write(const std::filesystem::path& file, std::span<const ObjectSurface> surfaces) {
+    Json& json = parts_->data;
+    {
+        const PackedView view = parts_->view.pack(surfaces);
+        json["colours"] = colours_json(view);
+        json["view"] = view_json(view);
+    }
+    const auto data = script_safe(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+    const auto title = html_escaped(parts_->source);
     io::FileWriter writer(file);
     write_page(writer, page::html,
                {{"@TITLE@", title},
@@ -272,6 +282,11 @@ void write_report(const std::filesystem::path& file, const Scene& scene,
                 {"@CONTROLS@", page::controls},
                 {"@SCRIPT@", page::script}});
     writer.close();
+}
+
+void write_report(const std::filesystem::path& file, const Scene& scene,
+                  std::span<const ObjectSurface> surfaces) {
+    Report(scene, !surfaces.empty()).write(file, surfaces);
 }
 
 }  // namespace topple::report

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <span>
 
 #include "core/object_surface.h"
@@ -18,5 +19,22 @@ namespace topple::report {
 // surfaces: of the scene's solids; without them, and where they are too large, voxels are shown.
 void write_report(const std::filesystem::path& file, const Scene& scene,
                   std::span<const ObjectSurface> surfaces = {});
+
+// The same in two steps, the first of which needs no surfaces.
+class Report {
+  public:
+    // with_surfaces: whether there will be some. The scene must outlive it.
+    Report(const Scene& scene, bool with_surfaces);
+    ~Report();
+    Report(const Report&) = delete;
+    Report& operator=(const Report&) = delete;
+
+    // Once.
+    void write(const std::filesystem::path& file, std::span<const ObjectSurface> surfaces);
+
+  private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
 
 }  // namespace topple::report

@@ -22,39 +22,52 @@ std::uint8_t direction_code(const std::array<float, 3>& direction) {
 }
 
 void SurfacePacker::add(const ObjectSurface& surface,
-                        const std::function<std::uint16_t(std::int32_t)>& group_of,
-                        const std::function<SurfaceVertex(std::size_t, std::uint16_t)>& vertex_of) {
+                        const std::function<std::uint16_t(std::int32_t)>& group_of) {
     std::vector<std::size_t> order(surface.triangle.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, {}, [&](std::size_t t) { return surface.primitive[t]; });
     // The number of each vertex, good for the group at `begun` and after.
     std::vector<std::size_t> number(surface.vertex.size(), 0);
-    std::size_t begun = out_.cell.size() + 1;
+    std::size_t begun = vertex_.size() + 1;
     std::int32_t primitive = -2;
     std::uint16_t group = 0;
     for (const std::size_t t : order) {
         if (surface.primitive[t] != primitive) {
             primitive = surface.primitive[t];
             group = group_of(primitive);
-            begun = out_.cell.size() + 1;
+            begun = vertex_.size() + 1;
         }
         std::array<std::uint16_t, 3> index{};
         for (std::size_t n = 0; n < 3; ++n) {
             std::size_t& at = number[surface.triangle[t][n]];  // and 1
             // What is too far back comes once more.
-            if (at < begun || out_.cell.size() + 1 - at > 65535) {
-                const SurfaceVertex v = vertex_of(surface.triangle[t][n], group);
-                out_.cell.push_back(v.cell);
-                out_.aux.push_back(v.aux);
-                if (coloured_) out_.photo.push_back(v.photo);
-                at = out_.cell.size();
+            if (at < begun || vertex_.size() + 1 - at > 65535) {
+                vertex_.push_back({&surface, surface.triangle[t][n], group});
+                at = vertex_.size();
                 index[n] = 0;
             } else {
-                index[n] = static_cast<std::uint16_t>(out_.cell.size() + 1 - at);
+                index[n] = static_cast<std::uint16_t>(vertex_.size() + 1 - at);
             }
         }
-        out_.index.push_back(index);
+        index_.push_back(index);
     }
+}
+
+PackedSurface SurfacePacker::take(
+    const std::function<SurfaceVertex(const ObjectSurface&, std::size_t, std::uint16_t)>&
+        vertex_of) {
+    PackedSurface out;
+    out.cell.reserve(vertex_.size());
+    out.aux.reserve(vertex_.size());
+    if (coloured_) out.photo.reserve(vertex_.size());
+    for (const Vertex& from : vertex_) {
+        const SurfaceVertex v = vertex_of(*from.surface, from.number, from.group);
+        out.cell.push_back(v.cell);
+        out.aux.push_back(v.aux);
+        if (coloured_) out.photo.push_back(v.photo);
+    }
+    out.index = std::move(index_);
+    return out;
 }
 
 }  // namespace topple::report

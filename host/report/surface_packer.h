@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "core/object_surface.h"
 #include "report/view_data.h"
@@ -25,19 +26,26 @@ class SurfacePacker {
   public:
     explicit SurfacePacker(bool coloured) : coloured_(coloured) {}
 
-    // group_of: of a primitive. vertex_of: number v of the surface, in a group.
+    // group_of: of a primitive. The surface must outlive the packer.
     void add(const ObjectSurface& surface,
-             const std::function<std::uint16_t(std::int32_t)>& group_of,
-             const std::function<SurfaceVertex(std::size_t, std::uint16_t)>& vertex_of);
+             const std::function<std::uint16_t(std::int32_t)>& group_of);
 
-    std::size_t bytes() const {
-        return out_.cell.size() * (coloured_ ? 16 : 12) + out_.index.size() * 6;
-    }
-    PackedSurface take() { return std::move(out_); }
+    // What it will take.
+    std::size_t bytes() const { return vertex_.size() * (coloured_ ? 16 : 12) + index_.size() * 6; }
+    // vertex_of: vertex number v of a surface, in a group.
+    PackedSurface take(const std::function<SurfaceVertex(const ObjectSurface&, std::size_t,
+                                                         std::uint16_t)>& vertex_of);
 
   private:
+    // A vertex, before it is known whether it is needed.
+    struct Vertex {
+        const ObjectSurface* surface;
+        std::uint32_t number;
+        std::uint16_t group;
+    };
     bool coloured_;
-    PackedSurface out_;
+    std::vector<Vertex> vertex_;
+    std::vector<std::array<std::uint16_t, 3>> index_;
 };
 
 }  // namespace topple::report

@@ -100,10 +100,12 @@ std::int8_t signed_byte(double value) {
     return static_cast<std::int8_t>(std::lround(std::clamp(value, -1.0, 1.0) * 127));
 }
 
-class Packer {
+}  // namespace
+
+class ViewPacker::Work {
   public:
-    Packer(const Scene& scene, const ViewLimits& limits, std::span<const ObjectSurface> surfaces)
-        : scene_(scene), limits_(limits), surfaces_(surfaces), groups_(view_.groups) {
+    Work(const Scene& scene, const ViewLimits& limits, bool with_surfaces)
+        : scene_(scene), limits_(limits), with_surfaces_(with_surfaces), groups_(view_.groups) {
         view_.view_from_input = view_frame(scene);
         view_.coloured = !scene.points.red.empty();
         // With colours a record takes 16 bytes, without them 12.
@@ -114,15 +116,15 @@ class Packer {
         for (const auto& object : scene.objects) {
             if (object.grounded) grounded_.insert(object.id);
         }
-    }
-
-    PackedView pack() {
         measure();
         pack_voxels();
-        pack_surfaces();
-        pack_points();
         for (const auto& [name, field] : scene_.fields) pack_field(field, view_.fields[name]);
         view_.walks = pack_walks(scene_.walks, view_.view_from_input, limits_.walk_cells);
+    }
+
+    PackedView pack(std::span<const ObjectSurface> surfaces) {
+        pack_surfaces(surfaces);
+        pack_points();
         return std::move(view_);
     }
 
@@ -161,7 +163,7 @@ class Packer {
         if (at[0].empty()) at[0] = at[1] = at[2] = {0};
         bounds_ = scene_bounds<float>({at[0], at[1], at[2]}, 0.01f);
         // Surfaces reach beyond the middles of their voxels.
-        const double margin = surfaces_.empty() ? 0 : 2 * scene_.voxel_size_m;
+        const double margin = with_surfaces_ ? 2 * scene_.voxel_size_m : 0;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             view_.origin_m[axis] = bounds_.low[axis] - margin;
             view_.step_m[axis] =
@@ -328,21 +330,23 @@ class Packer {
     }
 
     // In place of the voxels, where it is not too large.
-    void pack_surfaces() {
-        if (surfaces_.empty() || cells_.empty()) return;
+    void pack_surfaces(std::span<const ObjectSurface> surfaces) {
+        if (surfaces.empty() || cells_.empty()) return;
         SurfacePacker packer(view_.coloured);
-        for (const ObjectSurface& surface : surfaces_) {
-            packer.add(
-                surface,
-                [&](std::int32_t primitive) { return groups_.of(primitive, surface.object); },
-                [&](std::size_t v, std::uint16_t group) { return vertex_of(surface, v, group); });
+        for (const ObjectSurface& surface : surfaces) {
+            packer.add(surface, [&](std::int32_t primitive) {
+                return groups_.of(primitive, surface.object);
+            });
         }
         const std::size_t record = view_.coloured ? 16 : 12;
         // It may have some of the points' room.
         const std::size_t own = limits_.voxels * record, of_points = limits_.points / 2 * record;
         if (packer.bytes() > own + of_points) return;
         if (packer.bytes() > own) limits_.points -= (packer.bytes() - own) / record;
-        view_.surface = packer.take();
+        view_.surface =
+            packer.take([&](const ObjectSurface& surface, std::size_t v, std::uint16_t group) {
+                return vertex_of(surface, v, group);
+            });
         view_.voxels.cell.clear();
         view_.voxels.aux.clear();
         view_.voxels.photo.clear();
@@ -481,7 +485,7 @@ class Packer {
 
     const Scene& scene_;
     ViewLimits limits_;
-    std::span<const ObjectSurface> surfaces_;
+    bool with_surfaces_;
     PackedView view_;
     Groups groups_;
     std::set<std::int32_t> grounded_;
@@ -494,11 +498,17 @@ class Packer {
     std::vector<CellColours::Known> colours_;  // of what is drawn, where the scan has colours
 };
 
-}  // namespace
+ViewPacker::ViewPacker(const Scene& scene, const ViewLimits& limits, bool with_surfaces)
+    : work_(std::make_unique<Work>(scene, limits, with_surfaces)) {}
+ViewPacker::~ViewPacker() = default;
+
+PackedView ViewPacker::pack(std::span<const ObjectSurface> surfaces) {
+    return work_->pack(surfaces);
+}
 
 PackedView pack_view(const Scene& scene, const ViewLimits& limits,
                      std::span<const ObjectSurface> surfaces) {
-    return Packer(scene, limits, surfaces).pack();
+    return ViewPacker(scene, limits, !surfaces.empty()).pack(surfaces);
 }
 
 }  // namespace topple::report

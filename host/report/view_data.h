@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -66,6 +67,23 @@ struct PackedView {
     PackedSurface surface;  // in place of voxels; empty where there is none, or too large a one
     std::map<std::string, Arrows> fields;
     PackedWalks walks;
+};
+
+// pack_view() in two steps, the first of which takes as long and needs no surfaces.
+class ViewPacker {
+  public:
+    // with_surfaces: whether there will be some. The scene must outlive it.
+    ViewPacker(const Scene& scene, const ViewLimits& limits, bool with_surfaces);
+    ~ViewPacker();
+    ViewPacker(const ViewPacker&) = delete;
+    ViewPacker& operator=(const ViewPacker&) = delete;
+
+    // Once.
+    PackedView pack(std::span<const ObjectSurface> surfaces);
+
+  private:
+    class Work;
+    std::unique_ptr<Work> work_;
 };
 
 // Never fails; what is not finite is left out. surfaces: of the scene's solids; without them voxels

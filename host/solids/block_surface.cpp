@@ -2,6 +2,7 @@
 #include "solids/block_surface.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace topple::solids {
@@ -37,12 +38,92 @@ std::vector<VoxelFace> faces_of(std::span<const ObjectVoxel> voxels) {
     return out;
 }
 
-// A face's corner, by the voxel corner where it lies.
+constexpr std::uint8_t none = 255;
+
+constexpr std::array<Place, 4> corners_of_side(std::size_t direction) {
+    const std::size_t axis = direction / 2;
+    const bool upper = direction % 2;
+    std::array<Place, 4> out{};
+    for (std::size_t n = 0; n < 4; ++n) {
+        const bool u = n == 1 || n == 2, v = n >= 2;
+        out[n][axis] = upper;
+        out[n][(axis + 1) % 3] = upper ? u : v;
+        out[n][(axis + 2) % 3] = upper ? v : u;
+    }
+    return out;
+}
+
+// The sides of voxels by direction: their corners, and which of these is at a corner of the voxel,
+// which bits number, x first.
+struct Sides {
+    std::array<std::array<Place, 4>, 6> corner{};
+    std::array<std::array<std::uint8_t, 8>, 6> slot_at{};
+};
+constexpr Sides sides = [] {
+    Sides out;
+    for (std::size_t d = 0; d < 6; ++d) {
+        out.corner[d] = corners_of_side(d);
+        out.slot_at[d].fill(none);
+        for (std::uint8_t slot = 0; slot < 4; ++slot) {
+            const auto& [x, y, z] = out.corner[d][slot];
+            out.slot_at[d][static_cast<std::size_t>(4 * x + 2 * y + z)] = slot;
+        }
+    }
+    return out;
+}();
+
+// A face's corner.
 struct FaceCorner {
-    Place at;
     std::uint32_t face;
     std::uint8_t slot;
 };
+
+// Calls visit(at, corners) for each voxel corner that faces have, ascending, with their corners
+// there, by face. Faces: by voxel.
+template <class Visit>
+void each_corner(std::span<const ObjectVoxel> voxels, const std::vector<VoxelFace>& faces,
+                 const Visit& visit) {
+    struct Row {
+        Place at;
+        std::uint32_t first;
+    };
+    constexpr std::int32_t beyond_all = std::numeric_limits<std::int32_t>::max();
+    std::vector<Row> row;  // of faces of one voxel
+    for (std::uint32_t f = 0; f < faces.size(); ++f) {
+        if (f == 0 || faces[f].voxel != faces[f - 1].voxel)
+            row.push_back({voxels[faces[f].voxel].at, f});
+    }
+    row.push_back({{beyond_all, 0, 0}, static_cast<std::uint32_t>(faces.size())});
+    // Voxels ascend, and so do their lowest corners, and so on: those of a kind are a sequence of
+    // which each next one is known, and of voxels that share a corner that with the highest number
+    // of it comes first.
+    std::array<std::size_t, 8> next{};
+    std::array<Place, 8> at{};
+    const auto find_at = [&](std::size_t kind) {
+        const Place& voxel = row[next[kind]].at;
+        at[kind] = voxel;
+        if (voxel[0] == beyond_all) return;
+        for (std::size_t a = 0; a < 3; ++a)
+            at[kind][a] += static_cast<std::int32_t>(kind >> (2 - a) & 1);
+    };
+    for (std::size_t kind = 0; kind < 8; ++kind) find_at(kind);
+    std::vector<FaceCorner> here;
+    for (;;) {
+        const Place lowest = *std::ranges::min_element(at);
+        if (lowest[0] == beyond_all) return;
+        here.clear();
+        for (std::size_t kind = 8; kind-- > 0;) {
+            if (at[kind] != lowest) continue;
+            const std::size_t voxel = next[kind]++;
+            for (std::uint32_t f = row[voxel].first; f < row[voxel + 1].first; ++f) {
+                const std::uint8_t slot = sides.slot_at[faces[f].direction][kind];
+                if (slot != none) here.push_back({f, slot});
+            }
+            find_at(kind);
+        }
+        if (!here.empty()) visit(lowest, std::span<const FaceCorner>(here));
+    }
+}
 
 // The faces that meet in one voxel corner. The eight voxels around it have octants: bit a tells
 // that it lies above the corner along axis a. Between them are twelve places of faces.
@@ -54,7 +135,7 @@ class Meeting {
         std::iota(parent_.begin(), parent_.end(), std::uint8_t{0});
         for (std::size_t n = 0; n < here.size(); ++n) {
             const VoxelFace& face = faces[here[n].face];
-            const Place offset = face_corners(face.direction)[here[n].slot];
+            const Place& offset = sides.corner[face.direction][here[n].slot];
             unsigned octant = 0;
             for (unsigned a = 0; a < 3; ++a) octant |= offset[a] == 0 ? 1U << a : 0U;
             octant_[n] = octant;
@@ -87,7 +168,7 @@ class Meeting {
             if (!one) continue;
             for (const std::uint8_t n : around) {
                 const std::uint8_t slot = here_[n].slot;
-                const auto corners = face_corners(faces_[here_[n].face].direction);
+                const auto& corners = sides.corner[faces_[here_[n].face].direction];
                 const std::size_t axis = edge / 2;
                 const bool to_next = corners[(slot + 1U) % 4][axis] != corners[slot][axis];
                 pinched[here_[n].face] |=
@@ -97,8 +178,6 @@ class Meeting {
     }
 
   private:
-    static constexpr std::uint8_t none = 255;
-
     static unsigned place_of(std::size_t axis, unsigned octant) {
         return static_cast<unsigned>(4 * axis + (octant >> (axis + 1) % 3 & 1) +
                                      2 * (octant >> (axis + 2) % 3 & 1));
@@ -141,44 +220,16 @@ class Meeting {
 
 }  // namespace
 
-std::array<std::array<std::int32_t, 3>, 4> face_corners(std::uint8_t direction) {
-    const std::size_t axis = direction / 2;
-    const bool upper = direction % 2;
-    std::array<Place, 4> out{};
-    for (std::size_t n = 0; n < 4; ++n) {
-        const bool u = n == 1 || n == 2, v = n >= 2;
-        out[n][axis] = upper;
-        out[n][(axis + 1) % 3] = upper ? u : v;
-        out[n][(axis + 2) % 3] = upper ? v : u;
-    }
-    return out;
-}
-
 BlockSurface block_surface(std::span<const ObjectVoxel> voxels) {
     BlockSurface out;
     out.face = faces_of(voxels);
-    std::vector<FaceCorner> corners;
-    corners.reserve(4 * out.face.size());
-    for (std::uint32_t f = 0; f < out.face.size(); ++f) {
-        const auto offsets = face_corners(out.face[f].direction);
-        for (std::uint8_t slot = 0; slot < 4; ++slot) {
-            Place at = voxels[out.face[f].voxel].at;
-            for (std::size_t a = 0; a < 3; ++a) at[a] += offsets[slot][a];
-            corners.push_back({at, f, slot});
-        }
-    }
-    std::ranges::stable_sort(corners, {}, &FaceCorner::at);
     std::vector<std::uint8_t> pinched(out.face.size(), 0);
-    for (std::size_t first = 0; first < corners.size();) {
-        std::size_t last = first;
-        while (last < corners.size() && corners[last].at == corners[first].at) ++last;
-        Meeting meeting(std::span<const FaceCorner>(corners).subspan(first, last - first),
-                        out.face);
+    each_corner(voxels, out.face, [&](const Place& at, std::span<const FaceCorner> corners) {
+        Meeting meeting(corners, out.face);
         const std::uint32_t made = meeting.join(static_cast<std::uint32_t>(out.corner.size()));
-        out.corner.insert(out.corner.end(), made, corners[first].at);
+        out.corner.insert(out.corner.end(), made, at);
         meeting.mark_pinched(pinched);
-        first = last;
-    }
+    });
     for (std::size_t f = 0; f < out.face.size(); ++f) {
         for (unsigned n = 0; n < 4; ++n) {
             const bool both =

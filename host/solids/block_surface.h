@@ -36,7 +36,4 @@ struct BlockSurface {
 // voxels: of one object, sorted by (i, j, k).
 BlockSurface block_surface(std::span<const ObjectVoxel> voxels);
 
-// The corners of a face, relative to its voxel's lowest.
-std::array<std::array<std::int32_t, 3>, 4> face_corners(std::uint8_t direction);
-
 }  // namespace topple::solids

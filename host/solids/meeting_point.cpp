@@ -11,46 +11,95 @@ namespace topple::solids {
 namespace {
 
 constexpr double farthest = 1.5;  // how far a vertex may go to where its patches meet, in voxels
+constexpr int most_rounds = 6;
+constexpr double settled_step = 1e-6;  // of a voxel: a step that ends the search
 
 }  // namespace
 
 Vec3 MeetingPoint::operator()(std::span<const std::uint32_t> of, const Vec3& base,
-                              const Vec3& corner) const {
+                              const Vec3& corner) {
+    if (of.size() == 1 && !patches_[of[0]].flat()) {
+        Vec3 x = base;
+        return settle(patches_[of[0]], x) && near(x, corner) ? x : base;
+    }
+    const auto is_flat = [&](std::uint32_t p) { return patches_[p].flat(); };
+    Known once;
+    const bool few = of.size() <= once.of.size();
+    Known& found = few ? place_of(of) : once;
+    bool flat = found.count > 0 && std::ranges::equal(std::span(found.of).first(found.count), of);
+    if (!flat) {
+        flat = std::ranges::all_of(of, is_flat);
+        once.spread = spread(of, base);
+        if (few && flat) {
+            std::ranges::copy(of, once.of.begin());
+            once.count = of.size();
+            found = once;
+        }
+    }
+    const Spread& first = flat && few ? found.spread : once.spread;
     for (int rank = std::min<int>(3, static_cast<int>(of.size())); rank > 0; --rank) {
         Vec3 x = base;
-        if (settle(of, rank, x) && near(x, corner)) return x;
+        if (settle(of, rank, first, flat, x) && near(x, corner)) return x;
     }
     return base;
 }
 
-// Newton's method. Whether the patches determine so many directions.
-bool MeetingPoint::settle(std::span<const std::uint32_t> of, int rank, Vec3& x) const {
-    constexpr int rounds = 6;
-    constexpr double least = 0.02;    // eigenvalue, of the largest: creases above 16 degrees
-    constexpr double settled = 1e-6;  // of a voxel
-    for (int round = 0; round < rounds; ++round) {
-        Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+MeetingPoint::Known& MeetingPoint::place_of(std::span<const std::uint32_t> of) {
+    std::uint32_t mixed = 0;
+    for (const std::uint32_t p : of) mixed = (mixed ^ p) * 0x9e3779b1U;
+    return known_[mixed >> 24];
+}
+
+MeetingPoint::Spread MeetingPoint::spread(std::span<const std::uint32_t> of, const Vec3& x) const {
+    Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+    for (const std::uint32_t p : of) {
+        const Vec3 g = patches_[p].gradient(x);
+        const double slope = length(g);
+        if (!(slope > 0)) continue;
+        const Eigen::Vector3d n = Eigen::Vector3d(g[0], g[1], g[2]) / slope;
+        a += n * n.transpose();
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+    eigen.computeDirect(a);
+    return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+
+// Newton's method on one patch: whether it has a direction.
+bool MeetingPoint::settle(const SurfacePatch& patch, Vec3& x) const {
+    for (int round = 0; round < most_rounds; ++round) {
+        const Vec3 g = patch.gradient(x);
+        const double slope = length(g);
+        if (!(slope > 0)) return false;
+        const double step = patch.distance(x);
+        for (std::size_t a = 0; a < 3; ++a) x[a] -= g[a] / slope * step;
+        if (std::abs(step) < settled_step * h_) break;
+    }
+    return true;
+}
+
+// The same on several. Whether they determine so many directions. first: at x as it comes, and
+// all along where they are flat.
+bool MeetingPoint::settle(std::span<const std::uint32_t> of, int rank, const Spread& first,
+                          bool flat, Vec3& x) const {
+    constexpr double least = 0.02;  // eigenvalue, of the largest: creases above 16 degrees
+    Spread later;
+    for (int round = 0; round < most_rounds; ++round) {
+        if (round > 0 && !flat) later = spread(of, x);
+        const auto& [values, vectors] = round > 0 && !flat ? later : first;
+        if (!(values[3 - rank] > least * values[2])) return false;
         Eigen::Vector3d b = Eigen::Vector3d::Zero();
         for (const std::uint32_t p : of) {
             const Vec3 g = patches_[p].gradient(x);
             const double slope = length(g);
-            if (!(slope > 0)) continue;
-            const Eigen::Vector3d n = Eigen::Vector3d(g[0], g[1], g[2]) / slope;
-            a += n * n.transpose();
-            b += n * patches_[p].distance(x);
+            if (slope > 0) b += Eigen::Vector3d(g[0], g[1], g[2]) / slope * patches_[p].distance(x);
         }
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
-        eigen.computeDirect(a);
         Eigen::Vector3d step = Eigen::Vector3d::Zero();
-        const double largest = eigen.eigenvalues()[2];
         for (int k = 0; k < rank; ++k) {
-            const double value = eigen.eigenvalues()[2 - k];
-            if (!(value > least * largest)) return false;
-            const Eigen::Vector3d v = eigen.eigenvectors().col(2 - k);
-            step -= v * (v.dot(b) / value);
+            const Eigen::Vector3d v = vectors.col(2 - k);
+            step -= v * (v.dot(b) / values[2 - k]);
         }
         for (std::size_t k = 0; k < 3; ++k) x[k] += step[static_cast<int>(k)];
-        if (step.norm() < settled * h_) break;
+        if (step.norm() < settled_step * h_) break;
     }
     return true;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace topple::solids {
 namespace {
@@ -33,31 +34,41 @@ MeshPieces::MeshPieces(const SurfaceMesh& mesh) : mesh_(mesh), shared_(mesh.vert
     }
 }
 
-MeshPiece MeshPieces::cut(std::size_t block, std::span<const ErrorQuadric> quadric) const {
+MeshPiece MeshPieces::cut(std::size_t block, std::span<const ErrorQuadric> quadric,
+                          std::vector<std::uint32_t>& number) const {
     MeshPiece out;
-    for (const std::uint32_t t : blocks_.group(block))
-        for (const std::uint32_t v : mesh_.triangle[t]) out.from.push_back(v);
+    const auto triangles = blocks_.group(block);
+    for (const std::uint32_t t : triangles) {
+        for (const std::uint32_t v : mesh_.triangle[t])
+            if (std::exchange(number[v], 1) == 0) out.from.push_back(v);
+    }
     std::ranges::sort(out.from);
-    out.from.erase(std::unique(out.from.begin(), out.from.end()), out.from.end());
+    const std::size_t count = out.from.size();
+    out.mesh.vertex.reserve(count);
+    out.mesh.corner.reserve(count);
+    out.quadric.reserve(count);
+    out.fixed.reserve(count);
     for (const std::uint32_t v : out.from) {
+        number[v] = static_cast<std::uint32_t>(out.mesh.vertex.size());
         out.mesh.vertex.push_back(mesh_.vertex[v]);
         out.mesh.corner.push_back(mesh_.corner[v]);
         out.quadric.push_back(quadric[v]);
         out.fixed.push_back(shared_[v]);
     }
-    const auto number = [&](std::uint32_t v) {
-        return static_cast<std::uint32_t>(std::ranges::lower_bound(out.from, v) - out.from.begin());
-    };
-    for (const std::uint32_t t : blocks_.group(block)) {
+    out.mesh.triangle.reserve(triangles.size());
+    out.mesh.facet.reserve(triangles.size());
+    for (const std::uint32_t t : triangles) {
         const auto [a, b, c] = mesh_.triangle[t];
-        out.mesh.triangle.push_back({number(a), number(b), number(c)});
+        out.mesh.triangle.push_back({number[a], number[b], number[c]});
         out.mesh.facet.push_back(mesh_.facet[t]);
     }
+    for (const std::uint32_t v : out.from) number[v] = 0;
     return out;
 }
 
 SurfaceMesh MeshPieces::joined(std::span<const MeshPiece> pieces,
-                               std::vector<ErrorQuadric>& quadric) const {
+                               std::vector<ErrorQuadric>& quadric,
+                               std::vector<std::uint8_t>& settled) const {
     std::vector<std::uint32_t> number(mesh_.vertex.size(), 0);
     for (const MeshPiece& p : pieces)
         for (const std::uint32_t v : p.from) number[v] = 1;
@@ -70,9 +81,13 @@ SurfaceMesh MeshPieces::joined(std::span<const MeshPiece> pieces,
         quadric[out.vertex.size() - 1] = quadric[v];
     }
     quadric.resize(out.vertex.size());
+    settled.assign(out.vertex.size(), 0);
     for (const MeshPiece& p : pieces) {
-        for (std::size_t v = 0; v < p.from.size(); ++v)
-            if (p.fixed[v] == 0) quadric[number[p.from[v]]] = p.quadric[v];
+        for (std::size_t v = 0; v < p.from.size(); ++v) {
+            if (p.fixed[v] != 0) continue;
+            quadric[number[p.from[v]]] = p.quadric[v];
+            settled[number[p.from[v]]] = p.settled[v];
+        }
         for (std::size_t t = 0; t < p.mesh.triangle.size(); ++t) {
             const auto [a, b, c] = p.mesh.triangle[t];
             out.triangle.push_back({number[p.from[a]], number[p.from[b]], number[p.from[c]]});

@@ -17,6 +17,7 @@ struct MeshPiece {
     SurfaceMesh mesh;
     std::vector<ErrorQuadric> quadric;  // of each vertex
     std::vector<std::uint8_t> fixed;    // of each vertex: other pieces have it, too
+    std::vector<std::uint8_t> settled;  // of each vertex: 1 where nothing is left to be done
     std::vector<std::uint32_t> from;    // of each vertex: which one of the whole, ascending
 };
 
@@ -27,10 +28,13 @@ class MeshPieces {
     explicit MeshPieces(const SurfaceMesh& mesh);
     std::size_t size() const { return blocks_.size(); }
 
-    // quadric: of each vertex of the whole.
-    MeshPiece cut(std::size_t block, std::span<const ErrorQuadric> quadric) const;
-    // The mesh that the pieces are now. quadric: on entry as for cut(), then of its vertices.
-    SurfaceMesh joined(std::span<const MeshPiece> pieces, std::vector<ErrorQuadric>& quadric) const;
+    // quadric: of each vertex of the whole. number: one of each vertex, 0 as it comes and goes.
+    MeshPiece cut(std::size_t block, std::span<const ErrorQuadric> quadric,
+                  std::vector<std::uint32_t>& number) const;
+    // The mesh that the pieces are now. quadric: on entry as for cut(), then of its vertices, as
+    // settled becomes.
+    SurfaceMesh joined(std::span<const MeshPiece> pieces, std::vector<ErrorQuadric>& quadric,
+                       std::vector<std::uint8_t>& settled) const;
 
   private:
     const SurfaceMesh& mesh_;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <tuple>
+#include <numeric>
+#include <span>
+#include <utility>
 
 #include "solids/meeting_point.h"
 #include "solids/vectors.h"
@@ -17,7 +19,7 @@ constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
 struct Edge {
     std::uint32_t low, high, triangle;
     std::uint8_t slot;
-    auto order() const { return std::tuple(low, high, triangle); }
+    auto order() const { return std::pair(high, triangle); }
 };
 
 bool is_curved(const Facet& facet, std::span<const SurfacePatch> patches) {
@@ -31,14 +33,24 @@ std::vector<Edge> curved_edges(const SurfaceMesh& mesh, std::span<const SurfaceP
         if (!is_curved(mesh.facet[t], patches)) continue;
         for (const std::uint32_t v : mesh.triangle[t]) at_curve[v] = true;
     }
-    std::vector<Edge> out;
-    for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t) {
-        for (std::uint8_t n = 0; n < 3; ++n) {
-            const std::uint32_t a = mesh.triangle[t][n], b = mesh.triangle[t][(n + 1) % 3];
-            if (at_curve[a] && at_curve[b]) out.push_back({std::min(a, b), std::max(a, b), t, n});
+    // In rows by the lower vertex, of few edges each.
+    std::vector<std::uint32_t> row(mesh.vertex.size() + 1, 0);
+    const auto each = [&](const auto& visit) {
+        for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t) {
+            for (std::uint8_t n = 0; n < 3; ++n) {
+                const std::uint32_t a = mesh.triangle[t][n], b = mesh.triangle[t][(n + 1) % 3];
+                if (at_curve[a] && at_curve[b]) visit(Edge{std::min(a, b), std::max(a, b), t, n});
+            }
         }
+    };
+    each([&](const Edge& edge) { ++row[edge.low + 1]; });
+    std::partial_sum(row.begin(), row.end(), row.begin());
+    std::vector<Edge> out(row.back());
+    std::vector<std::uint32_t> next(row.begin(), row.end() - 1);
+    each([&](const Edge& edge) { out[next[edge.low]++] = edge; });
+    for (std::size_t v = 0; v + 1 < row.size(); ++v) {
+        std::ranges::sort(std::span(out).subspan(row[v], row[v + 1] - row[v]), {}, &Edge::order);
     }
-    std::ranges::sort(out, {}, &Edge::order);
     return out;
 }
 
@@ -48,7 +60,7 @@ using Middles = std::vector<std::array<std::uint32_t, 3>>;
 Middles add_middles(SurfaceMesh& mesh, std::span<const SurfacePatch> patches, double voxel_m) {
     constexpr double tolerance = 0.01;  // of a voxel
     constexpr double furthest = 0.4;    // of the edge: what bends more is no arc
-    const MeetingPoint meet(patches, voxel_m);
+    MeetingPoint meet(patches, voxel_m);
     const std::vector<Edge> edges = curved_edges(mesh, patches);
     Middles out(mesh.triangle.size(), {no_vertex, no_vertex, no_vertex});
     for (std::size_t n = 0; n + 1 < edges.size(); n += 2) {

@@ -25,16 +25,27 @@ class Simplifier {
 
     // Of the planes of the mesh as it is.
     void find_quadrics(ThreadPool& pool) {
+        constexpr std::uint64_t chunk = 1 << 12;
+        std::vector<Vec3> normal(mesh_.triangle.size());
+        pool.each(normal.size(), chunk, [&](std::size_t t) {
+            if (!is_curved(t))
+                normal[t] = normal_at(static_cast<std::uint32_t>(t), mesh_.triangle[t][0]);
+        });
         quadric_.resize(around_.size());
-        pool.each(around_.size(), 1 << 12,
-                  [&](std::size_t v) { add_planes(static_cast<std::uint32_t>(v)); });
+        pool.each(around_.size(), chunk,
+                  [&](std::size_t v) { add_planes(static_cast<std::uint32_t>(v), normal); });
     }
     std::vector<ErrorQuadric>& quadrics() { return quadric_; }
+    // Of each vertex, whether it was asked in vain, could be merged into all its neighbours, and
+    // nothing that counts has changed since: it need not be asked again.
+    std::vector<std::uint8_t>& settled() { return settled_; }
 
     // Vertices that are `fixed` stay, and nothing is merged into them: there is more around them
     // than the mesh has. Empty: none is.
     void run(std::span<const std::uint8_t> fixed = {}) {
         fixed_ = fixed;
+        settled_.resize(around_.size(), 0);
+        found_in_.assign(around_.size(), 0);
         // A vertex that can't go is asked again once something around it has changed.
         std::vector<bool> asked(around_.size(), false);
         std::vector<std::size_t> changed(around_.size(), 0);  // in which round
@@ -45,11 +56,19 @@ class Simplifier {
                 // Changes of one round lie apart, or long fans would arise.
                 if (around_[v].empty() || asked[v] || changed[v] == round) continue;
                 asked[v] = true;
-                if (is_fixed(v) || !remove(v)) continue;
+                if (is_fixed(v) || settled_[v] != 0) continue;
+                if (!remove(v)) {
+                    settled_[v] = std::ranges::none_of(
+                        neighbours_, [&](std::uint32_t n) { return is_fixed(n); });
+                    continue;
+                }
                 any = true;
                 for (const std::uint32_t n : neighbours_) {
                     asked[n] = false;
                     changed[n] = round;
+                    // Who could be merged into it looks at the triangles around it.
+                    for (const std::uint32_t t : around_[n])
+                        for (const std::uint32_t w : mesh_.triangle[t]) settled_[w] = 0;
                 }
             }
         }
@@ -86,11 +105,12 @@ class Simplifier {
         const Vec3& p = mesh_.vertex[t[0]];
         return cross(minus(mesh_.vertex[t[1]], p), minus(mesh_.vertex[t[2]], p));
     }
-    // The vertex after v in a triangle, going round; that before it is two after.
-    static std::uint32_t after(const std::array<std::uint32_t, 3>& t, std::uint32_t v,
-                               std::size_t steps = 1) {
-        const std::size_t at = t[0] == v ? 0 : t[1] == v ? 1 : 2;
-        return t[(at + steps) % 3];
+    // The vertices after v in a triangle, going round, and before it.
+    static std::uint32_t after(const std::array<std::uint32_t, 3>& t, std::uint32_t v) {
+        return t[0] == v ? t[1] : t[1] == v ? t[2] : t[0];
+    }
+    static std::uint32_t before(const std::array<std::uint32_t, 3>& t, std::uint32_t v) {
+        return t[0] == v ? t[2] : t[1] == v ? t[0] : t[1];
     }
 
     static Vec3 side_of(const Facet& facet) {
@@ -117,25 +137,32 @@ class Simplifier {
         return out;
     }
 
-    void add_planes(std::uint32_t v) {
+    bool is_curved(std::size_t t) const {
+        const std::uint32_t patch = mesh_.facet[t].patch;
+        return patch != no_patch && !patches_[patch].flat();
+    }
+    Vec3 normal_at(std::uint32_t t, std::uint32_t v) const {
+        return unit(outside_of(t, mesh_.triangle[t], mesh_.vertex[v]));
+    }
+
+    // normal_of: triangles; 0 of those on curved patches.
+    void add_planes(std::uint32_t v, std::span<const Vec3> normal_of) {
         // How much further than from a patch a vertex may be from what no patch tells of.
         constexpr double unknown = 20;
         const bool bordered = is_bordered(v);
         for (const std::uint32_t t : around_[v]) {
             const bool known = mesh_.facet[t].patch != no_patch;
             const Vec3& at = mesh_.vertex[v];
-            const Vec3 normal = unit(outside_of(t, mesh_.triangle[t], at));
+            const Vec3 normal = normal_of[t] == Vec3{} ? normal_at(t, v) : normal_of[t];
             Vec3 counted = normal;
             if (!known)
                 for (double& x : counted) x /= unknown;
             quadric_[v].add_plane(counted, at);
             if (!bordered) continue;
             const std::uint32_t next = after(mesh_.triangle[t], v),
-                                before = after(mesh_.triangle[t], v, 2);
+                                last = before(mesh_.triangle[t], v);
             if (is_border(t, v, next)) add_border(v, next, normal, quadric_[v]);
-            if (is_border(t, before, v))
-                add_border(before, v, unit(outside_of(t, mesh_.triangle[t], mesh_.vertex[before])),
-                           quadric_[v]);
+            if (is_border(t, last, v)) add_border(last, v, normal_at(t, last), quadric_[v]);
         }
     }
     // The plane through a border of primitives across the surface.
@@ -156,7 +183,7 @@ class Simplifier {
     // Whether another primitive lies beyond the edge from v to `next` of triangle t.
     bool is_border(std::uint32_t t, std::uint32_t v, std::uint32_t next) const {
         for (const std::uint32_t other : around_[v]) {
-            if (after(mesh_.triangle[other], v, 2) == next)
+            if (before(mesh_.triangle[other], v) == next)
                 return mesh_.facet[other].primitive != mesh_.facet[t].primitive;
         }
         return false;
@@ -164,8 +191,12 @@ class Simplifier {
 
     void find_neighbours(std::uint32_t v) {
         neighbours_.clear();
-        for (const std::uint32_t t : around_[v]) neighbours_.push_back(after(mesh_.triangle[t], v));
-        std::ranges::sort(neighbours_);
+        ++search_;
+        for (const std::uint32_t t : around_[v]) {
+            const std::uint32_t n = after(mesh_.triangle[t], v);
+            neighbours_.push_back(n);
+            found_in_[n] = search_;
+        }
     }
 
     // Merges v into the nearest neighbour that can take it.
@@ -175,7 +206,9 @@ class Simplifier {
         const bool bordered = is_bordered(v);
         for (const std::uint32_t u : neighbours_) {
             if (is_fixed(u)) continue;
-            if (quadric_[v].at(mesh_.vertex[u]) + quadric_[u].at(mesh_.vertex[u]) > most_) continue;
+            // No error is less than 0, but for rounding.
+            const double own = quadric_[v].at(mesh_.vertex[u]);
+            if (own > 2 * most_ || own + quadric_[u].at(mesh_.vertex[u]) > most_) continue;
             const Vec3 way = minus(mesh_.vertex[u], mesh_.vertex[v]);
             nearest_.emplace_back(dot(way, way), u);
         }
@@ -197,7 +230,7 @@ class Simplifier {
     bool stays_closed(std::uint32_t u) const {
         std::size_t common = 0;
         for (const std::uint32_t t : around_[u])
-            common += std::ranges::binary_search(neighbours_, after(mesh_.triangle[t], u));
+            common += found_in_[after(mesh_.triangle[t], u)] == search_;
         return common == 2;
     }
     // No triangle turns far or becomes a line, and no edge too long.
@@ -247,7 +280,10 @@ class Simplifier {
     VertexRings around_;     // of a vertex that is gone, none
     std::vector<ErrorQuadric> quadric_;
     std::span<const std::uint8_t> fixed_;
-    std::vector<std::uint32_t> neighbours_;  // of the vertex that is looked at, ascending
+    std::vector<std::uint8_t> settled_;
+    std::vector<std::uint32_t> neighbours_;  // of the vertex that is looked at
+    std::vector<std::uint64_t> found_in_;    // of each vertex: the last search that found it there
+    std::uint64_t search_ = 0;
     std::vector<std::uint32_t> gained_;
     std::vector<std::pair<double, std::uint32_t>> nearest_;
 };
@@ -261,22 +297,30 @@ void keep(std::span<const std::uint32_t> which, std::vector<T>& of) {
 // Each block by itself, up to its borders.
 void simplify_blocks(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
                      const SimplifyOptions& options, std::vector<ErrorQuadric>& quadric,
-                     ThreadPool& pool) {
+                     std::vector<std::uint8_t>& settled, ThreadPool& pool) {
     const MeshPieces blocks(mesh);
     std::vector<MeshPiece> pieces(blocks.size());
-    pool.each(pieces.size(), 1, [&](std::size_t n) {
-        MeshPiece& p = pieces[n];
-        p = blocks.cut(n, quadric);
+    const auto simplify_block = [&](MeshPiece& p) {
         Simplifier simplifier(p.mesh, patches, options);
         simplifier.quadrics().swap(p.quadric);
         simplifier.run(p.fixed);
         simplifier.quadrics().swap(p.quadric);
+        simplifier.settled().swap(p.settled);
         const std::vector<std::uint32_t> kept = simplifier.compact();
         keep(kept, p.quadric);
+        keep(kept, p.settled);
         keep(kept, p.fixed);
         keep(kept, p.from);
+    };
+    constexpr std::uint64_t chunk = 8;
+    pool.run(pieces.size(), chunk, [&](std::uint64_t first, std::uint64_t last) {
+        std::vector<std::uint32_t> number(mesh.vertex.size(), 0);
+        for (std::uint64_t n = first; n < last; ++n) {
+            pieces[n] = blocks.cut(n, quadric, number);
+            simplify_block(pieces[n]);
+        }
     });
-    mesh = blocks.joined(pieces, quadric);
+    mesh = blocks.joined(pieces, quadric, settled);
 }
 
 }  // namespace
@@ -292,9 +336,11 @@ void simplify(SurfaceMesh& mesh, std::span<const SurfacePatch> patches,
         return;
     }
     std::vector<ErrorQuadric> quadric = std::move(first.quadrics());
-    simplify_blocks(mesh, patches, options, quadric, pool);
+    std::vector<std::uint8_t> settled;
+    simplify_blocks(mesh, patches, options, quadric, settled, pool);
     Simplifier rest(mesh, patches, options);
     rest.quadrics().swap(quadric);
+    rest.settled().swap(settled);
     rest.run();
     rest.compact();
 }

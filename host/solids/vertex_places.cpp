@@ -50,7 +50,7 @@ class Places {
           facet_(facet),
           entries_(entries),
           faces_(surface),
-          meet_(patches, entries.voxel_m()),
+          patches_(patches),
           h_(entries.voxel_m()),
           known_(surface.corner.size()),
           open_(voxels.size(), 0) {}
@@ -59,12 +59,12 @@ class Places {
         constexpr std::uint64_t chunk = 1 << 11;
         std::vector<Vec3> at(surface_.corner.size());
         pool.run(at.size(), chunk, [&](std::uint64_t first, std::uint64_t last) {
-            Scratch scratch;
+            Scratch scratch{MeetingPoint(patches_, h_)};
             for (std::uint64_t v = first; v < last; ++v) at[v] = place(v, corner(v), scratch);
         });
         smooth(at);
         pool.run(at.size(), chunk, [&](std::uint64_t first, std::uint64_t last) {
-            Scratch scratch;
+            Scratch scratch{MeetingPoint(patches_, h_)};
             for (std::uint64_t v = first; v < last; ++v)
                 if (!known_[v]) at[v] = place(v, at[v], scratch);
         });
@@ -79,7 +79,8 @@ class Places {
 
     // Of the vertex that is placed: its patches, others, and the voxels around it.
     struct Scratch {
-        std::vector<std::uint32_t> of, others, around;
+        MeetingPoint meet;
+        std::vector<std::uint32_t> of{}, others{}, around{};
     };
 
     // Where the patches of the vertex's faces meet next to `base`.
@@ -97,7 +98,7 @@ class Places {
         }
         if (s.of.empty()) return base;
         make_unique(s.of);
-        const Vec3 met = meet_(s.of, base, corner(v));
+        const Vec3 met = s.meet(s.of, base, corner(v));
         make_unique(s.around);
         return on_solid(met, s.around) ? met : cut(met, base, corner(v), s);
     }
@@ -129,7 +130,7 @@ class Places {
         Vec3 best = met;
         double least = h_;
         const auto attempt = [&] {
-            const Vec3 p = meet_(s.of, base, corner);
+            const Vec3 p = s.meet(s.of, base, corner);
             const double moved = length(minus(p, met));
             if (moved >= least || !on_solid(p, s.around)) return;
             least = moved;
@@ -230,7 +231,7 @@ class Places {
     std::span<const Facet> facet_;
     const ObjectEntries& entries_;
     VertexFaces faces_;
-    MeetingPoint meet_;
+    std::span<const SurfacePatch> patches_;
     double h_;
     std::vector<std::uint8_t> known_;  // of each vertex: each of its faces has a patch
     std::vector<std::uint8_t> open_;   // of each voxel, bits of the directions of its faces

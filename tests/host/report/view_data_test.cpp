@@ -416,13 +416,14 @@ TEST(ViewData, surfaces_may_have_many_vertices) {
     }
     SurfacePacker packer(false);
     const auto group = [](std::int32_t) { return std::uint16_t{1}; };
-    packer.add(fan, group, [](std::size_t v, std::uint16_t g) {
+    packer.add(fan, group);
+    const auto vertex = [](const ObjectSurface&, std::size_t v, std::uint16_t g) {
         SurfaceVertex out;
         out.cell = {static_cast<std::uint16_t>(v & 65535), static_cast<std::uint16_t>(v >> 16), 0,
                     g};
         return out;
-    });
-    const PackedSurface packed = packer.take();
+    };
+    const PackedSurface packed = packer.take(vertex);
     EXPECT_EQ(packed.cell.size(), 80001u);
     const auto number = numbers_of(packed);
     for (std::size_t i = 0; i < number.size(); ++i) {
