@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/thread_pool.h"
 #include "geometry/primitive_shapes.h"
 #include "geometry/surface_samples.h"
 #include "graph/contact_graph.h"
@@ -24,6 +25,7 @@ struct Joint {
 std::vector<Joint> find_joints(const geometry::SurfaceSamples& samples,
                                const geometry::PrimitiveShapes& shapes,
                                const ContactGraph& contacts, std::span<const physics::Body> bodies,
-                               const SurfaceSeams& seams, std::span<const float> shell);
+                               const SurfaceSeams& seams, std::span<const float> shell,
+                               ThreadPool& threads);
 
 }  // namespace topple::graph

@@ -39,13 +39,13 @@ graph::ShellOdds shell_odds(const std::vector<double>& log_odds) {
 }
 
 std::vector<graph::Joint> find_joints(const SolidParts& parts, const graph::ContactGraph& contacts,
-                                      std::span<const physics::Body> bodies) {
+                                      std::span<const physics::Body> bodies, ThreadPool& threads) {
     std::vector<float> shell;
     for (const double odds : parts.shell_log_odds)
         shell.push_back(static_cast<float>(fitted::probability(odds)));
     return graph::find_joints(parts.samples,
                               geometry::primitive_shapes(parts.samples, parts.model.size()),
-                              contacts, bodies, parts.seams, shell);
+                              contacts, bodies, parts.seams, shell, threads);
 }
 
 void add_independent(const physics::BodyError& more, physics::BodyError& to) {
@@ -159,7 +159,7 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
     graph::ContactGraph contacts =
         stage("contacts", [&] { return graph::build_contact_graph(device, cells, count); });
     std::vector<graph::Joint> joints =
-        stage("joints", [&] { return find_joints(parts, contacts, bodies); });
+        stage("joints", [&] { return find_joints(parts, contacts, bodies, device.threads()); });
     return {std::move(bodies), std::move(contacts), std::move(joints),
             shell_odds(parts.shell_log_odds)};
 }
