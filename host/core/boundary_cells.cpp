@@ -2,29 +2,9 @@
 #include "core/boundary_cells.h"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 namespace topple {
-
-double SurfacePatch::value(const Vec3& p) const {
-    const double u = p[0] - origin[0], v = p[1] - origin[1], w = p[2] - origin[2];
-    return c[0] + c[1] * u + c[2] * v + c[3] * w + c[4] * u * u + c[5] * v * v + c[6] * w * w +
-           c[7] * u * v + c[8] * u * w + c[9] * v * w;
-}
-
-Vec3 SurfacePatch::gradient(const Vec3& p) const {
-    const double u = p[0] - origin[0], v = p[1] - origin[1], w = p[2] - origin[2];
-    return {c[1] + 2 * c[4] * u + c[7] * v + c[8] * w, c[2] + 2 * c[5] * v + c[7] * u + c[9] * w,
-            c[3] + 2 * c[6] * w + c[8] * u + c[9] * v};
-}
-
-double SurfacePatch::distance(const Vec3& p) const {
-    // On a tube's axis the gradient vanishes.
-    constexpr double least = 0.2;
-    const Vec3 g = gradient(p);
-    return value(p) / std::max(std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]), least);
-}
 
 bool SurfacePatch::flat() const {
     return std::all_of(c.begin() + 4, c.end(), [](double v) { return v == 0; });

@@ -53,8 +53,8 @@ void visit_surroundings(const FusedCells& fused, ThreadPool& pool, const Visit& 
                 at += key[at] < low;
                 while (key[at] < low) ++at;
                 lo[c] = at;
-                const std::size_t end = at + (key[at] < low + 3) + (key[at + 1] < low + 3) +
-                                        (key[at + 2] < low + 3);
+                const std::size_t end =
+                    at + (key[at] < low + 3) + (key[at + 1] < low + 3) + (key[at + 2] < low + 3);
                 around.cells += end - at;
                 around.count += count[end] - count[at];
                 around.weight += weight[end] - weight[at];

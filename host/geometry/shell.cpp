@@ -31,32 +31,33 @@ Role role_of_shape(const PrimitiveShape& p, double floor_m, double top_m) {
     return Role::fixture;
 }
 
-void judge(const SurfaceSamples& samples, const StoreyHint& storey, Shell& out) {
+void judge(const SurfaceSamples& samples, const StoreyHint& storey, ThreadPool& threads,
+           Shell& out) {
     PrimitiveShapes shapes = primitive_shapes(samples, out.log_odds.size());
     if (std::isfinite(storey.floor_m)) shapes.low[2] = storey.floor_m;
-    const std::vector<float> rows = shell_features(samples, shapes, SightLines(samples));
+    const std::vector<float> rows = shell_features(samples, shapes, SightLines(samples), threads);
     const fitted::BoostedTrees& model = fitted::shell_model(shell_feature_names());
     const std::size_t width = shell_feature_names().size();
-    for (std::size_t p = 0; p < shapes.of.size(); ++p) {
+    threads.each(shapes.of.size(), 16, [&](std::size_t p) {
         const double height = shapes.of[p].center[2];
         if (shapes.of[p].samples() == 0 || height < storey.below_m || height >= storey.top_m)
-            continue;
+            return;
         const auto row = std::span(rows).subspan(p * width, width);
         out.log_odds[p] = fitted::log_odds(fitted::probability(model.log_odds(row)));
         if (out.log_odds[p] > 0)
             out.role[p] = role_of_shape(shapes.of[p], shapes.low[2], shapes.high[2]);
-    }
+    });
 }
 
 }  // namespace
 
-Shell find_shell(const SurfaceSamples& samples, std::size_t primitives,
+Shell find_shell(const SurfaceSamples& samples, std::size_t primitives, ThreadPool& threads,
                  std::span<const StoreyHint> storeys) {
     Shell out;
     out.log_odds.assign(primitives, fitted::log_odds(0));
     out.role.assign(primitives, Role::none);
     constexpr StoreyHint all{.floor_m = std::numeric_limits<double>::quiet_NaN()};
-    if (storeys.empty()) judge(samples, all, out);
+    if (storeys.empty()) judge(samples, all, threads, out);
     for (const StoreyHint& storey : storeys) {
         const bool whole = std::isinf(storey.below_m) && std::isinf(storey.top_m);
         judge(whole ? samples
@@ -65,7 +66,7 @@ Shell find_shell(const SurfaceSamples& samples, std::size_t primitives,
                                         return samples.z[n] >= storey.below_m &&
                                                samples.z[n] < storey.top_m;
                                     }),
-              storey, out);
+              storey, threads, out);
     }
     return out;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/role.h"
+#include "core/thread_pool.h"
 #include "geometry/storeys.h"
 #include "geometry/surface_samples.h"
 
@@ -18,7 +19,7 @@ struct Shell {
 };
 
 // samples: in the scene's frame, sorted by primitive. storeys: each is looked at by itself.
-Shell find_shell(const SurfaceSamples& samples, std::size_t primitives,
+Shell find_shell(const SurfaceSamples& samples, std::size_t primitives, ThreadPool& threads,
                  std::span<const StoreyHint> storeys = {});
 
 }  // namespace topple::geometry

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace topple::geometry {
 namespace {
@@ -95,14 +96,13 @@ std::array<float, N> met(const SurfaceSamples& s, const PrimitiveShape& p, const
 }
 
 // How the scene lies about the plane of a face: the shares of all samples behind it and before it,
-// the share close behind it, and how far it goes on at either side.
-std::array<double, 5> sides(const SurfaceSamples& s, const PrimitiveShape& p,
-                            const Vector3d& face) {
-    const double slack = std::max(0.06, 1.5 * s.spacing_m);
-    const std::size_t step = std::max<std::size_t>(1, s.size() / 4000);
+// the share close behind it, and how far it goes on at either side. some: of the samples.
+std::array<double, 5> sides(std::span<const Vector3d> some, double spacing_m,
+                            const PrimitiveShape& p, const Vector3d& face) {
+    const double slack = std::max(0.06, 1.5 * spacing_m);
     std::vector<double> distance;
-    for (std::size_t n = 0; n < s.size(); n += step)
-        distance.push_back((Vector3d(s.x[n], s.y[n], s.z[n]) - p.center).dot(face));
+    distance.reserve(some.size());
+    for (const Vector3d& at : some) distance.push_back((at - p.center).dot(face));
     double behind = 0, before = 0, near = 0;
     for (const double d : distance) {
         behind += d < -slack;
@@ -112,10 +112,10 @@ std::array<double, 5> sides(const SurfaceSamples& s, const PrimitiveShape& p,
     const double count = static_cast<double>(std::max<std::size_t>(1, distance.size()));
     const auto at = [&](double share) {
         if (distance.empty()) return 0.0;
-        const auto place = distance.begin() + static_cast<std::ptrdiff_t>(
-                                                  share * static_cast<double>(distance.size() - 1));
-        std::nth_element(distance.begin(), place, distance.end());
-        return *place;
+        const auto rank =
+            static_cast<std::ptrdiff_t>(share * static_cast<double>(distance.size() - 1));
+        std::ranges::nth_element(distance, distance.begin() + rank);
+        return distance[static_cast<std::size_t>(rank)];
     };
     return {behind / count, before / count, near / count, -at(0.005), at(0.995)};
 }
@@ -141,12 +141,15 @@ std::span<const std::string_view> shell_feature_names() {
 }
 
 std::vector<float> shell_features(const SurfaceSamples& s, const PrimitiveShapes& shapes,
-                                  const SightLines& lines) {
+                                  const SightLines& lines, ThreadPool& threads) {
     const Scene scene(shapes);
     const Vector3d size = scene.size();
-    std::vector<float> rows;
-    rows.reserve(shapes.of.size() * names.size());
-    for (const PrimitiveShape& p : shapes.of) {
+    std::vector<Vector3d> some;
+    const std::size_t step = std::max<std::size_t>(1, s.size() / 4000);
+    for (std::size_t n = 0; n < s.size(); n += step) some.emplace_back(s.x[n], s.y[n], s.z[n]);
+    std::vector<float> rows(shapes.of.size() * names.size());
+    threads.each(shapes.of.size(), 4, [&](std::size_t number) {
+        const PrimitiveShape& p = shapes.of[number];
         const Vector3d face = p.face();
         // What stands upright is asked what is behind it at its own height.
         const bool upright = std::abs(face[2]) < 0.5;
@@ -164,7 +167,7 @@ std::vector<float> shell_features(const SurfaceSamples& s, const PrimitiveShapes
         const double scene_length = std::abs(along[0]) * size[0] + std::abs(along[1]) * size[1];
         const double rectangle = upright ? (length + s.spacing_m) * (extent[2] + s.spacing_m)
                                          : (extent[0] + s.spacing_m) * (extent[1] + s.spacing_m);
-        const auto [behind, before, near, depth_behind, depth_before] = sides(s, p, face);
+        const auto [behind, before, near, depth_behind, depth_before] = sides(some, s.spacing_m, p, face);
         const auto back = met<3>(s, p, lines, -out, {0.3, 1, 4});
         const auto front = met<3>(s, p, lines, out, {0.3, 1, 4});
         const auto down = met<3>(s, p, lines, {0, 0, -1}, {0.25, 0.6, 3});
@@ -226,8 +229,9 @@ std::vector<float> shell_features(const SurfaceSamples& s, const PrimitiveShapes
                                                    shapes.area_m2,
                                                    scene.upright_m2 / shapes.area_m2,
                                                    scene.tallest_upright_m};
-        for (const double value : row) rows.push_back(static_cast<float>(value));
-    }
+        for (std::size_t f = 0; f < row.size(); ++f)
+            rows[number * row.size() + f] = static_cast<float>(row[f]);
+    });
     return rows;
 }
 

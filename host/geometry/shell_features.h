@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/thread_pool.h"
 #include "geometry/primitive_shapes.h"
 #include "geometry/sight_lines.h"
 
@@ -19,6 +20,6 @@ std::span<const std::string_view> shell_feature_names();
 
 // Row after row, one for each primitive, in the order of the names.
 std::vector<float> shell_features(const SurfaceSamples& samples, const PrimitiveShapes& shapes,
-                                  const SightLines& lines);
+                                  const SightLines& lines, ThreadPool& threads);
 
 }  // namespace topple::geometry

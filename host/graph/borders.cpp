@@ -26,80 +26,88 @@ struct Contact {
     bool of_a;  // whether `from` is a's
 };
 
-// Samples by cells of a grid, each cell a range.
-class Cells {
+constexpr std::uint64_t sample_chunk = 1 << 12;  // samples handed to a thread at once
+
+// A sample in its cell of a grid, by cell.
+struct InCell {
+    std::array<std::int32_t, 3> cell;
+    std::uint32_t sample;
+    auto operator<=>(const InCell&) const = default;
+};
+
+std::vector<InCell> by_cell(const SurfaceSamples& s, double edge_m) {
+    const auto at = [&](float v) { return static_cast<std::int32_t>(std::floor(v / edge_m)); };
+    std::vector<InCell> out;
+    out.reserve(s.size());
+    for (std::uint32_t n = 0; n < s.size(); ++n)
+        if (s.primitive[n] >= 0) out.push_back({{at(s.x[n]), at(s.y[n]), at(s.z[n])}, n});
+    std::ranges::sort(out);
+    return out;
+}
+
+// The samples in the 27 cells around ones that are asked for in their order.
+class Beside {
   public:
-    Cells(const SurfaceSamples& s, double edge_m) : edge_m_(edge_m), samples_(s) {
-        entries_.reserve(s.size());
-        for (std::uint32_t n = 0; n < s.size(); ++n) {
-            if (s.primitive[n] >= 0) entries_.push_back({cell(n), n});
-        }
-        std::ranges::sort(entries_);
+    explicit Beside(std::span<const InCell> samples, const InCell& first) : samples_(samples) {
+        for (std::size_t column = 0; column < first_.size(); ++column)
+            first_[column] = static_cast<std::size_t>(
+                std::ranges::lower_bound(samples, low(first, column), {}, &InCell::cell) -
+                samples.begin());
     }
-    // Calls use(own, around) for each cell: its samples, and all in it and the 26 about it.
     template <class Use>
-    void each(const Use& use) const {
-        std::vector<std::uint32_t> own, around;
-        for (auto at = entries_.begin(); at != entries_.end();) {
-            const std::array<std::int32_t, 3> middle = at->first;
-            own.clear();
-            for (; at != entries_.end() && at->first == middle; ++at) own.push_back(at->second);
-            around.clear();
-            for (std::int32_t i = -1; i <= 1; ++i)
-                for (std::int32_t j = -1; j <= 1; ++j)
-                    add_column({middle[0] + i, middle[1] + j, middle[2]}, around);
-            use(own, around);
+    void each(const InCell& middle, const Use& use) {
+        for (std::size_t column = 0; column < first_.size(); ++column) {
+            const std::array<std::int32_t, 3> from = low(middle, column);
+            std::size_t& first = first_[column];
+            while (first < samples_.size() && samples_[first].cell < from) ++first;
+            for (std::size_t n = first; n < samples_.size(); ++n) {
+                const auto& cell = samples_[n].cell;
+                if (cell[0] != from[0] || cell[1] != from[1] || cell[2] > from[2] + 2) break;
+                use(samples_[n].sample);
+            }
         }
     }
 
   private:
-    using Entry = std::pair<std::array<std::int32_t, 3>, std::uint32_t>;
-
-    std::array<std::int32_t, 3> cell(std::uint32_t n) const {
-        const auto at = [&](float v) { return static_cast<std::int32_t>(std::floor(v / edge_m_)); };
-        return {at(samples_.x[n]), at(samples_.y[n]), at(samples_.z[n])};
-    }
-    // All samples in the column of three cells along z about one.
-    void add_column(std::array<std::int32_t, 3> middle, std::vector<std::uint32_t>& out) const {
-        const std::array<std::int32_t, 3> low{middle[0], middle[1], middle[2] - 1};
-        auto at = std::ranges::lower_bound(entries_, low, {}, &Entry::first);
-        for (; at != entries_.end() && at->first[0] == middle[0] && at->first[1] == middle[1] &&
-               at->first[2] <= middle[2] + 1;
-             ++at)
-            out.push_back(at->second);
+    static std::array<std::int32_t, 3> low(const InCell& middle, std::size_t column) {
+        return {middle.cell[0] + static_cast<std::int32_t>(column / 3) - 1,
+                middle.cell[1] + static_cast<std::int32_t>(column % 3) - 1, middle.cell[2] - 1};
     }
 
-    double edge_m_;
-    const SurfaceSamples& samples_;
-    std::vector<Entry> entries_;
+    std::span<const InCell> samples_;
+    std::array<std::size_t, 9> first_{};  // of each column of three cells along z
 };
 
-std::vector<Contact> find_contacts(const SurfaceSamples& s) {
+// Sorted by (a, b, from).
+std::vector<Contact> find_contacts(const SurfaceSamples& s, ThreadPool& threads) {
     const double reach = near_m(s.spacing_m);
-    std::vector<Contact> out;
-    std::vector<Contact> found;  // of one sample, one for each other primitive
-    Cells(s, reach).each([&](std::span<const std::uint32_t> own,
-                             std::span<const std::uint32_t> around) {
-        for (const std::uint32_t n : own) {
+    const std::vector<InCell> samples = by_cell(s, reach);
+    std::vector<std::vector<Contact>> parts(samples.size() / sample_chunk + 1);
+    threads.run(samples.size(), sample_chunk, [&](std::uint64_t first, std::uint64_t last) {
+        std::vector<Contact>& part = parts[first / sample_chunk];
+        std::vector<Contact> found;  // of one sample, one for each other primitive
+        Beside beside(samples, samples[first]);
+        for (std::uint64_t at = first; at < last; ++at) {
+            const std::uint32_t n = samples[at].sample;
             found.clear();
-            for (const std::uint32_t m : around) {
-                if (s.primitive[m] == s.primitive[n]) continue;
+            beside.each(samples[at], [&](std::uint32_t m) {
+                if (s.primitive[m] == s.primitive[n]) return;
                 const double dx = s.x[m] - s.x[n], dy = s.y[m] - s.y[n], dz = s.z[m] - s.z[n];
                 const auto d = static_cast<float>(std::sqrt(dx * dx + dy * dy + dz * dz));
-                if (d > reach) continue;
-                const auto known = std::ranges::find_if(
-                    found, [&](const Contact& c) { return s.primitive[c.to] == s.primitive[m]; });
-                if (known == found.end()) {
-                    const auto [a, b] = std::minmax(s.primitive[n], s.primitive[m]);
-                    found.push_back({a, b, n, m, d, s.primitive[n] == a});
-                } else if (std::tie(d, m) < std::tie(known->distance_m, known->to)) {
-                    known->to = m;
-                    known->distance_m = d;
+                if (d > reach) return;
+                for (Contact& c : found) {
+                    if (s.primitive[c.to] != s.primitive[m]) continue;
+                    if (std::tie(d, m) < std::tie(c.distance_m, c.to)) c.to = m, c.distance_m = d;
+                    return;
                 }
-            }
-            out.insert(out.end(), found.begin(), found.end());
+                const auto [a, b] = std::minmax(s.primitive[n], s.primitive[m]);
+                found.push_back({a, b, n, m, d, s.primitive[n] == a});
+            });
+            part.insert(part.end(), found.begin(), found.end());
         }
     });
+    std::vector<Contact> out;
+    for (const auto& part : parts) out.insert(out.end(), part.begin(), part.end());
     std::ranges::sort(out, {}, [](const Contact& c) { return std::tuple(c.a, c.b, c.from); });
     return out;
 }
@@ -168,17 +176,18 @@ double near_m(double spacing_m) {
     return std::max(least_near_m, near_edges * spacing_m);
 }
 
-std::vector<Border> find_borders(const SurfaceSamples& samples) {
-    const std::vector<Contact> contacts = find_contacts(samples);
-    std::vector<Border> out;
+std::vector<Border> find_borders(const SurfaceSamples& samples, ThreadPool& threads) {
+    const std::vector<Contact> contacts = find_contacts(samples, threads);
+    const auto same = [](const Contact& x, const Contact& y) { return x.a == y.a && x.b == y.b; };
+    std::vector<std::span<const Contact>> of;
     for (std::size_t first = 0; first < contacts.size();) {
         std::size_t last = first;
-        while (last < contacts.size() && contacts[last].a == contacts[first].a &&
-               contacts[last].b == contacts[first].b)
-            ++last;
-        out.push_back(border_of(samples, std::span(contacts).subspan(first, last - first)));
+        while (last < contacts.size() && same(contacts[last], contacts[first])) ++last;
+        of.push_back(std::span(contacts).subspan(first, last - first));
         first = last;
     }
+    std::vector<Border> out(of.size());
+    threads.each(of.size(), 16, [&](std::size_t n) { out[n] = border_of(samples, of[n]); });
     return out;
 }
 

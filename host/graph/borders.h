@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/thread_pool.h"
 #include "geometry/surface_samples.h"
 
 namespace topple::graph {
@@ -32,6 +33,6 @@ struct Border {
 double near_m(double spacing_m);
 
 // Sorted by (a, b).
-std::vector<Border> find_borders(const geometry::SurfaceSamples& samples);
+std::vector<Border> find_borders(const geometry::SurfaceSamples& samples, ThreadPool& threads);
 
 }  // namespace topple::graph

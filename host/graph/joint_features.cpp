@@ -41,14 +41,15 @@ class Rows {
   public:
     Rows(const geometry::SurfaceSamples& samples, const geometry::PrimitiveShapes& shapes,
          const ContactGraph& contacts, std::span<const physics::Body> bodies,
-         const SurfaceSeams& seams, std::span<const float> shell)
+         const SurfaceSeams& seams, std::span<const float> shell, ThreadPool& threads)
         : samples_(samples),
           shapes_(shapes),
           contacts_(contacts),
           bodies_(bodies),
           seams_(seams),
           shell_(shell),
-          borders_(find_borders(samples)),
+          threads_(threads),
+          borders_(find_borders(samples, threads)),
           nodes_(shapes.of.size()) {
         for (const float p : shell) ground_.push_back(p > 0.5f);
         for (const Border& b : borders_) {
@@ -62,7 +63,7 @@ class Rows {
             auto& pair = at_[std::minmax(c.supporter, c.supported)];
             (c.supporter < c.supported ? pair.a_carries : pair.b_carries) = &c;
         }
-        for (std::size_t p = 0; p < nodes_.size(); ++p) {
+        threads.each(nodes_.size(), 16, [&](std::size_t p) {
             Node& node = nodes_[p];
             node.volume_m3 = bodies[p].volume_m3;
             const Vector3d box = (shapes.of[p].high - shapes.of[p].low).cwiseMax(samples.spacing_m);
@@ -70,16 +71,22 @@ class Rows {
             if (bodies[p].voxels > 0)
                 node.stands =
                     margin(candidate_of(contacts, bodies, ground_, {static_cast<std::int32_t>(p)}));
-        }
+        });
     }
 
-    JointTable table() {
+    JointTable table() const {
         JointTable out;
+        std::vector<const Evidence*> of;
         for (const auto& [pair, evidence] : at_) {
             if (node_of(pair.first).volume_m3 <= 0 || node_of(pair.second).volume_m3 <= 0) continue;
             out.pairs.push_back(pair);
-            add_row(pair.first, pair.second, evidence, out.rows);
+            of.push_back(&evidence);
         }
+        const std::size_t width = joint_feature_names().size();
+        out.rows.resize(of.size() * width);
+        threads_.each(of.size(), 16, [&](std::size_t n) {
+            add_row(out.pairs[n].first, out.pairs[n].second, *of[n], &out.rows[n * width]);
+        });
         return out;
     }
 
@@ -97,7 +104,7 @@ class Rows {
         node.borders += 1;
     }
 
-    void add_row(std::int32_t a, std::int32_t b, const Evidence& e, std::vector<float>& rows) const;
+    void add_row(std::int32_t a, std::int32_t b, const Evidence& e, float* row_values) const;
 
     const geometry::SurfaceSamples& samples_;
     const geometry::PrimitiveShapes& shapes_;
@@ -105,6 +112,7 @@ class Rows {
     std::span<const physics::Body> bodies_;
     const SurfaceSeams& seams_;
     std::span<const float> shell_;
+    ThreadPool& threads_;
     std::vector<Border> borders_;
     std::vector<Node> nodes_;
     std::vector<bool> ground_;
@@ -114,15 +122,15 @@ class Rows {
 // One row is written value by value, each with its name, so that names and values can't part.
 class Row {
   public:
-    explicit Row(std::vector<float>* values, std::vector<std::string_view>* names)
+    Row(float* values, std::vector<std::string_view>* names)
         : values_(values), names_(names) {}
     void operator()(std::string_view name, double value) {
-        if (values_) values_->push_back(static_cast<float>(value));
+        if (values_) *values_++ = static_cast<float>(value);
         if (names_) names_->push_back(name);
     }
 
   private:
-    std::vector<float>* values_;
+    float* values_;  // the next one
     std::vector<std::string_view>* names_;
 };
 
@@ -292,7 +300,7 @@ void write_row(const Inputs& in, Row& row) {
 }
 
 void Rows::add_row(std::int32_t a, std::int32_t b, const Evidence& e,
-                   std::vector<float>& rows) const {
+                   float* row_values) const {
     const auto at = [](std::int32_t p) { return static_cast<std::size_t>(p); };
     const bool a_is_small = shapes_.of[at(a)].area_m2 <= shapes_.of[at(b)].area_m2;
     const std::int32_t small = a_is_small ? a : b, big = a_is_small ? b : a;
@@ -330,7 +338,7 @@ void Rows::add_row(std::int32_t a, std::int32_t b, const Evidence& e,
         in.seam_ledge = static_cast<double>(seam->second.ledge) / pairs;
         in.seam_pairs = std::log1p(pairs);
     }
-    Row row(&rows, nullptr);
+    Row row(row_values, nullptr);
     write_row(in, row);
 }
 
@@ -353,8 +361,8 @@ std::span<const std::string_view> joint_feature_names() {
 JointTable joint_features(const geometry::SurfaceSamples& samples,
                           const geometry::PrimitiveShapes& shapes, const ContactGraph& contacts,
                           std::span<const physics::Body> bodies, const SurfaceSeams& seams,
-                          std::span<const float> shell) {
-    return Rows(samples, shapes, contacts, bodies, seams, shell).table();
+                          std::span<const float> shell, ThreadPool& threads) {
+    return Rows(samples, shapes, contacts, bodies, seams, shell, threads).table();
 }
 
 }  // namespace topple::graph

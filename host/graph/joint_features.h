@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/thread_pool.h"
 #include "geometry/primitive_shapes.h"
 #include "geometry/surface_samples.h"
 #include "graph/contact_graph.h"
@@ -31,6 +32,6 @@ struct JointTable {
 JointTable joint_features(const geometry::SurfaceSamples& samples,
                           const geometry::PrimitiveShapes& shapes, const ContactGraph& contacts,
                           std::span<const physics::Body> bodies, const SurfaceSeams& seams,
-                          std::span<const float> shell);
+                          std::span<const float> shell, ThreadPool& threads);
 
 }  // namespace topple::graph

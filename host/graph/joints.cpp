@@ -11,12 +11,12 @@ std::vector<Joint> find_joints(const geometry::SurfaceSamples& samples,
                                const ContactGraph& contacts, std::span<const physics::Body> bodies,
                                const SurfaceSeams& seams, std::span<const float> shell,
                                ThreadPool& threads) {
-    const JointTable table = joint_features(samples, shapes, contacts, bodies, seams, shell);
+    const JointTable table =
+        joint_features(samples, shapes, contacts, bodies, seams, shell, threads);
     const fitted::BoostedTrees& model = fitted::joint_model(joint_feature_names());
     const std::size_t width = joint_feature_names().size();
     std::vector<Joint> out(table.pairs.size());
-    constexpr std::uint64_t at_once = 64;
-    threads.each(out.size(), at_once, [&](std::size_t n) {
+    threads.each(out.size(), 64, [&](std::size_t n) {
         const auto row = std::span(table.rows).subspan(n * width, width);
         // No model knows more than one part in a thousand.
         const double odds = fitted::log_odds(fitted::probability(model.log_odds(row)));

@@ -53,7 +53,7 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
         g.samples = geometry::sample_surface(input.cloud, g.surfels, g.primitive_of_point, g.frame,
                                              std::max(geometry::finest_sample_m, input.cell_m));
         geometry::Shell shell =
-            geometry::find_shell(g.samples, g.primitives.model.size(), g.storeys);
+            geometry::find_shell(g.samples, g.primitives.model.size(), device.threads(), g.storeys);
         g.role = std::move(shell.role);
         g.shell_log_odds = std::move(shell.log_odds);
     });

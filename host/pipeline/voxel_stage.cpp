@@ -87,8 +87,9 @@ struct Faces {
 solids::SeenCells seen_and_between(const CloudView& cloud, const geometry::GapPoints& gaps,
                                    std::vector<std::int32_t> solid, std::vector<std::int32_t> face,
                                    const std::vector<std::int32_t>& number,
-                                   const std::array<Vec3, 3>& axes, double voxel_m) {
-    if (gaps.size() == 0) return solids::seen_cells(cloud, solid, face, axes, voxel_m);
+                                   const std::array<Vec3, 3>& axes, double voxel_m,
+                                   ThreadPool& threads) {
+    if (gaps.size() == 0) return solids::seen_cells(cloud, solid, face, axes, voxel_m, threads);
     std::int32_t faces = 0;
     for (const std::int32_t f : face) faces = std::max(faces, f + 1);
     std::vector<bool> left(static_cast<std::size_t>(faces), false);
@@ -100,7 +101,7 @@ solids::SeenCells seen_and_between(const CloudView& cloud, const geometry::GapPo
         solid.push_back(number[static_cast<std::size_t>(gaps.primitive[n])]);
         face.push_back(f >= 0 && f < faces && left[static_cast<std::size_t>(f)] ? f : -1);
     }
-    return solids::seen_cells(all, solid, face, axes, voxel_m);
+    return solids::seen_cells(all, solid, face, axes, voxel_m, threads);
 }
 
 Faces find_faces(device::Device& device, const Ingested& input, const GeometryStage& geometry,
@@ -115,11 +116,13 @@ Faces find_faces(device::Device& device, const Ingested& input, const GeometrySt
                                       geometry.frame.axes, device.threads());
     std::vector<std::int32_t> solid_of_point = numbered(geometry.primitive_of_point, number);
     solids::drop_explained(input.cloud, out.patches, geometry.frame.axes,
-                           2 * geometry.surfels.cell_m, solid_of_point, face_of_point);
+                           2 * geometry.surfels.cell_m, solid_of_point, face_of_point,
+                           device.threads());
     solids::add_narrow_faces(input.cloud, geometry.frame.axes, 2 * geometry.surfels.cell_m,
-                             out.patches, solid_of_point, face_of_point);
+                             out.patches, solid_of_point, face_of_point, device.threads());
     out.seen = seen_and_between(input.cloud, gaps, std::move(solid_of_point),
-                                std::move(face_of_point), number, geometry.frame.axes, voxel_m);
+                                std::move(face_of_point), number, geometry.frame.axes, voxel_m,
+                                device.threads());
     out.sheet = solids::one_sided(out.seen, out.patches, roles.size());
     for (std::size_t p = 0; p < roles.size(); ++p)
         out.sheet[p] = out.sheet[p] && in_shell(roles[p]);

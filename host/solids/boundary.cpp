@@ -101,8 +101,8 @@ std::vector<std::uint8_t> faced_around(const SolidCells& cells, const SeenCells&
 }
 
 // Voxels of one primitive in which another was seen, too.
-void add_shared(const SolidCells& cells, const SeenCells& seen,
-                std::vector<BorderVoxel>& candidates) {
+std::vector<BorderVoxel> shared(const SolidCells& cells, const SeenCells& seen) {
+    std::vector<BorderVoxel> out;
     std::size_t n = 0;
     for (std::size_t m = 0; m < seen.size(); ++m) {
         const std::tuple at(seen.i[m], seen.j[m], seen.k[m]);
@@ -110,25 +110,29 @@ void add_shared(const SolidCells& cells, const SeenCells& seen,
         if (n == cells.size()) break;
         if (std::tie(cells.i[n], cells.j[n], cells.k[n]) != at) continue;
         if (cells.primitive[n] >= 0 && cells.primitive[n] != seen.primitive[m])
-            candidates.push_back({seen.i[m], seen.j[m], seen.k[m], seen.primitive[m]});
+            out.push_back({seen.i[m], seen.j[m], seen.k[m], seen.primitive[m]});
     }
+    return out;
 }
 
 // What mates reach, or bound of their primitive's own cells.
-void add_mates(const SolidCells& cells, std::span<const Mate> mates,
-               std::vector<BorderVoxel>& candidates) {
+std::vector<BorderVoxel> mated(const SolidCells& cells, std::span<const Mate> mates) {
+    std::vector<BorderVoxel> out;
     std::size_t n = 0;
     for (const Mate& m : mates) {
         const std::tuple at(m.i, m.j, m.k);
         while (n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) < at) ++n;
         const bool own = n < cells.size() && std::tie(cells.i[n], cells.j[n], cells.k[n]) == at &&
                          cells.primitive[n] == m.primitive;
-        if (own || m.extends) candidates.push_back({m.i, m.j, m.k, m.primitive, own, !own});
+        if (own || m.extends) out.push_back({m.i, m.j, m.k, m.primitive, own, !own});
     }
+    return out;
 }
 
-void unite(std::vector<BorderVoxel>& candidates) {
-    std::ranges::sort(candidates, {}, &BorderVoxel::key);
+// Of two that are sorted.
+void unite(std::vector<BorderVoxel>& candidates, std::span<const BorderVoxel> more) {
+    const auto middle = candidates.insert(candidates.end(), more.begin(), more.end());
+    std::ranges::inplace_merge(candidates, middle, {}, &BorderVoxel::key);
     std::size_t kept = 0;
     for (std::size_t n = 0; n < candidates.size(); ++n) {
         if (kept > 0 && candidates[kept - 1].key() == candidates[n].key()) {
@@ -341,10 +345,10 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
     std::vector<BorderVoxel> candidates;
     const std::vector<std::uint8_t> faced =
         faced_around(cells, seen, patches, candidates, device.threads());
-    add_shared(cells, seen, candidates);
-    const std::vector<Mate> mates = find_mates(cells, seen, faced, rests, patches);
-    add_mates(cells, mates, candidates);
-    unite(candidates);
+    unite(candidates, shared(cells, seen));
+    const std::vector<Mate> mates =
+        find_mates(cells, seen, faced, rests, patches, device.threads());
+    unite(candidates, mated(cells, mates));
     std::vector<WallSide> walls;
     std::vector<Combination> sums =
         combine_all(cells, seen, patches, mates, sheet, candidates, walls, device.threads());

@@ -6,6 +6,7 @@
 
 #include "core/boundary_cells.h"
 #include "core/solid_cells.h"
+#include "core/thread_pool.h"
 #include "device/device.h"
 #include "solids/patches.h"
 
@@ -41,7 +42,7 @@ struct Mate {
 // primitive).
 std::vector<Mate> find_mates(const SolidCells& cells, const SeenCells& seen,
                              std::span<const std::uint8_t> faced, std::span<const KnownRest> rests,
-                             std::vector<SurfacePatch>& patches);
+                             std::vector<SurfacePatch>& patches, ThreadPool& threads);
 
 // The next cell along +axis of each, so many voxels away at most; no_cell where there is none.
 inline constexpr std::size_t no_cell = ~std::size_t{0};

@@ -65,37 +65,41 @@ std::vector<BorderVoxel> cut_off(const SolidCells& cells, std::vector<bool>& air
 std::vector<bool> out_of_reach(const SolidCells& cells, std::span<const BorderVoxel> voxels,
                                std::span<const Combination> sums, const std::vector<bool>& air) {
     constexpr std::array<Place, 6> ways{
-        {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
+    constexpr std::size_t axes = 3;  // of which the first ways are
     const auto place = [&](std::size_t c) { return Place{voxels[c].i, voxels[c].j, voxels[c].k}; };
-    std::vector<bool> out(voxels.size(), false);
-    std::vector<std::size_t> open;
-    for (std::size_t c = 0; c < voxels.size(); ++c) out[c] = !voxels[c].own;
+    std::vector<std::size_t> beyond;  // what may hang on cells
+    for (std::size_t c = 0; c < voxels.size(); ++c)
+        if (!voxels[c].own && !sums[c].nothing) beyond.push_back(c);
+    UnionFind pieces(beyond.size());
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+        std::size_t m = 0;
+        for (std::size_t n = 0; n < beyond.size(); ++n) {
+            const std::int32_t primitive = voxels[beyond[n]].primitive;
+            const std::pair wanted(sum_of(place(beyond[n]), ways[axis]), primitive);
+            const auto at = [&] { return std::pair(place(beyond[m]), voxels[beyond[m]].primitive); };
+            while (m < beyond.size() && at() < wanted) ++m;
+            if (m == beyond.size()) break;
+            if (at() == wanted) pieces.join(n, m);
+        }
+    }
+    std::vector<bool> hangs(beyond.size(), false);  // by the root of its piece
     for (const Place& way : ways) {
-        std::size_t n = 0;
-        for (std::size_t c = 0; c < voxels.size(); ++c) {
-            if (voxels[c].own || sums[c].nothing || !out[c]) continue;
-            const Place at = sum_of(place(c), way);
-            while (n < cells.size() && Place{cells.i[n], cells.j[n], cells.k[n]} < at) ++n;
-            if (n == cells.size()) break;
-            if (Place{cells.i[n], cells.j[n], cells.k[n]} != at || air[n] ||
-                cells.primitive[n] != voxels[c].primitive)
-                continue;
-            out[c] = false;
-            open.push_back(c);
+        std::size_t cell = 0;
+        for (std::size_t n = 0; n < beyond.size(); ++n) {
+            const Place at = sum_of(place(beyond[n]), way);
+            const auto here = [&] { return Place{cells.i[cell], cells.j[cell], cells.k[cell]}; };
+            while (cell < cells.size() && here() < at) ++cell;
+            if (cell == cells.size()) break;
+            if (here() == at && !air[cell] &&
+                cells.primitive[cell] == voxels[beyond[n]].primitive)
+                hangs[pieces.root(n)] = true;
         }
     }
-    for (std::size_t at = 0; at < open.size(); ++at) {
-        for (const Place& way : ways) {
-            const Place p = sum_of(place(open[at]), way);
-            const CellKey key{p[0], p[1], p[2], voxels[open[at]].primitive};
-            const auto beside = std::ranges::lower_bound(voxels, key, {}, &BorderVoxel::key);
-            if (beside == voxels.end() || beside->key() != key) continue;
-            const auto c = static_cast<std::size_t>(beside - voxels.begin());
-            if (!out[c] || sums[c].nothing) continue;
-            out[c] = false;
-            open.push_back(c);
-        }
-    }
+    std::vector<bool> out(voxels.size(), false);
+    for (std::size_t c = 0; c < voxels.size(); ++c) out[c] = !voxels[c].own;
+    for (std::size_t n = 0; n < beyond.size(); ++n)
+        if (hangs[pieces.root(n)]) out[beyond[n]] = false;
     return out;
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
 #include <tuple>
 
 #include "solids/boundary.h"
@@ -53,19 +52,30 @@ struct Face {
 // Of each primitive and direction.
 struct Side {
     std::vector<Face> faces;
-    std::set<std::int32_t> others;
+    std::vector<std::int32_t> others;  // in whatever order, some more than once
     Box box;
 };
+
+void sort_unique(auto& values) {
+    std::ranges::sort(values);
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+}
 
 class MateFinder {
   public:
     MateFinder(const SolidCells& cells, const SeenCells& seen, std::span<const std::uint8_t> faced,
                std::vector<SurfacePatch>& patches)
         : cells_(cells), faced_(faced), patches_(patches), extent_(patches.size()) {
+        for (const std::vector<std::int32_t>* all : {&cells.primitive, &seen.primitive})
+            for (const std::int32_t p : *all) primitives_ = std::max(primitives_, p + 1);
+        of_primitive_.resize(static_cast<std::size_t>(primitives_));
         for (std::size_t n = 0; n < seen.size(); ++n) {
-            of_primitive_[seen.primitive[n]].insert(static_cast<std::uint32_t>(seen.patch[n]));
-            extent_[static_cast<std::size_t>(seen.patch[n])].add({seen.i[n], seen.j[n], seen.k[n]});
+            const auto patch = static_cast<std::uint32_t>(seen.patch[n]);
+            auto& own = of_primitive_[static_cast<std::size_t>(seen.primitive[n])];
+            if (own.empty() || own.back() != patch) own.push_back(patch);
+            extent_[patch].add({seen.i[n], seen.j[n], seen.k[n]});
         }
+        for (auto& own : of_primitive_) sort_unique(own);
     }
 
     void add_rests(std::span<const KnownRest> rests) {
@@ -78,47 +88,68 @@ class MateFinder {
         }
     }
 
-    std::vector<Mate> find() {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::vector<std::size_t> next = next_cells(cells_, axis, 2);
-            std::vector<std::size_t> previous(cells_.size(), no_cell);
-            for (std::size_t n = 0; n < next.size(); ++n)
-                if (next[n] != no_cell) previous[next[n]] = n;
-            add_sides(axis, -1, previous);
-            add_sides(axis, 1, next);
-        }
-        std::ranges::sort(mates_, {}, [](const Mate& m) {
-            return std::tuple(m.i, m.j, m.k, m.primitive, m.patch, m.outside, !m.extends);
+    std::vector<Mate> find(ThreadPool& threads) const {
+        std::array<std::vector<Mate>, 6> found;  // by direction
+        threads.each(found.size(), 1, [&](std::size_t direction) {
+            add_sides(direction / 2, direction % 2 ? 1 : -1, found[direction]);
+            std::ranges::sort(found[direction], {}, order_of);
         });
+        std::vector<Mate> all;
+        for (const std::vector<Mate>& some : found) {
+            const auto middle = all.insert(all.end(), some.begin(), some.end());
+            std::inplace_merge(
+                all.begin(), middle, all.end(),
+                [](const Mate& a, const Mate& b) { return order_of(a) < order_of(b); });
+        }
         const auto same = [](const Mate& a, const Mate& b) {
             return std::tie(a.i, a.j, a.k, a.primitive, a.patch, a.outside) ==
                    std::tie(b.i, b.j, b.k, b.primitive, b.patch, b.outside);
         };
-        mates_.erase(std::unique(mates_.begin(), mates_.end(), same), mates_.end());
-        return std::move(mates_);
+        all.erase(std::unique(all.begin(), all.end(), same), all.end());
+        return all;
     }
 
   private:
-    void add_sides(std::size_t axis, int way, const std::vector<std::size_t>& beside) {
+    static std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t, std::uint32_t, bool,
+                      bool>
+    order_of(const Mate& m) {
+        return {m.i, m.j, m.k, m.primitive, m.patch, m.outside, !m.extends};
+    }
+
+    // The cell beside each, one way along an axis, across one empty voxel at most.
+    std::vector<std::size_t> beside(std::size_t axis, int way) const {
+        std::vector<std::size_t> next = next_cells(cells_, axis, 2);
+        if (way > 0) return next;
+        std::vector<std::size_t> previous(cells_.size(), no_cell);
+        for (std::size_t n = 0; n < next.size(); ++n)
+            if (next[n] != no_cell) previous[next[n]] = n;
+        return previous;
+    }
+
+    void add_sides(std::size_t axis, int way, std::vector<Mate>& mates) const {
         const std::size_t direction = 2 * axis + (way > 0);
-        std::map<std::int32_t, Side> sides;
+        const std::vector<std::size_t> beside_of = beside(axis, way);
+        std::vector<Side> sides(static_cast<std::size_t>(primitives_));
         for (std::size_t n = 0; n < cells_.size(); ++n) {
             const std::int32_t p = cells_.primitive[n];
             if (p < 0) continue;
             const bool faced = (faced_[n] >> direction & 1) != 0;
-            const std::size_t m = beside[n];
+            const std::size_t m = beside_of[n];
             const bool adjacent = m != no_cell && std::abs(std::int64_t{place(cells_, m)[axis]} -
                                                            place(cells_, n)[axis]) == 1;
             const std::int32_t other = m == no_cell ? -1 : cells_.primitive[m];
             // A face that was seen is where it was seen, but it may pass a voxel of another.
             if ((other == p && adjacent) || (faced && (other < 0 || other == p))) continue;
-            Side& side = sides[p];
+            Side& side = sides[static_cast<std::size_t>(p)];
             side.faces.push_back({n, other == p ? -1 : other, faced});
-            if (other >= 0 && other != p) side.others.insert(other);
+            if (other >= 0 && other != p && (side.others.empty() || side.others.back() != other))
+                side.others.push_back(other);
             side.box.add(place(cells_, n));
         }
-        for (const auto& [p, side] : sides) {
-            if (!side.others.empty()) add_side(p, side, axis, way);
+        for (std::int32_t p = 0; p < primitives_; ++p) {
+            Side& side = sides[static_cast<std::size_t>(p)];
+            sort_unique(side.others);
+            if (!side.others.empty()) add_side(p, side, axis, way, mates);
         }
     }
 
@@ -128,11 +159,13 @@ class MateFinder {
         bool outside;
     };
 
-    void add_side(std::int32_t p, const Side& side, std::size_t axis, int way) {
+    void add_side(std::int32_t p, const Side& side, std::size_t axis, int way,
+                  std::vector<Mate>& mates) const {
         std::vector<Candidate> candidates;
-        for (const std::uint32_t patch : of_primitive_[p]) candidates.push_back({patch, -1, false});
+        for (const std::uint32_t patch : of_primitive_[static_cast<std::size_t>(p)])
+            candidates.push_back({patch, -1, false});
         for (const std::int32_t q : side.others) {
-            for (const std::uint32_t patch : of_primitive_[q]) {
+            for (const std::uint32_t patch : of_primitive_[static_cast<std::size_t>(q)]) {
                 if (extent_[patch].meets(side.box)) candidates.push_back({patch, q, true});
             }
             if (axis != 2) continue;
@@ -151,13 +184,13 @@ class MateFinder {
                 const SurfacePatch& patch = patches_[c.patch];
                 const Vec3 g = patch.gradient(at);
                 const double along = (c.outside ? -way : way) * g[axis];
-                if (!(along >= facing * std::hypot(g[0], g[1], g[2]))) continue;
+                if (!(along >= 0) || !(along >= facing * std::hypot(g[0], g[1], g[2]))) continue;
                 const double d = std::abs(patch.distance(at));
                 if (d >= least) continue;
                 least = d;
                 best = &c;
             }
-            if (best) bound(p, face.cell, axis, way, *best);
+            if (best) bound(p, face.cell, axis, way, *best, mates);
         }
     }
 
@@ -170,7 +203,8 @@ class MateFinder {
 
     // Of the cells that the patch passes or leaves out inside of the primitive, and of those that
     // it reaches beyond.
-    void bound(std::int32_t p, std::size_t n, std::size_t axis, int way, const Candidate& c) {
+    void bound(std::int32_t p, std::size_t n, std::size_t axis, int way, const Candidate& c,
+               std::vector<Mate>& mates) const {
         const double h = cells_.voxel_m;
         const SurfacePatch& patch = patches_[c.patch];
         const Place from = place(cells_, n);
@@ -181,7 +215,7 @@ class MateFinder {
             const double d = (c.outside ? -1 : 1) * patch.distance(middle);
             const double half = reach_of(patch.gradient(middle), h);
             if (step <= 0 ? d > -half : d < half)
-                mates_.push_back({at[0], at[1], at[2], p, c.patch, c.outside, step > 0});
+                mates.push_back({at[0], at[1], at[2], p, c.patch, c.outside, step > 0});
         }
     }
 
@@ -189,9 +223,9 @@ class MateFinder {
     std::span<const std::uint8_t> faced_;
     std::vector<SurfacePatch>& patches_;
     std::vector<Box> extent_;  // of each patch, where it was seen
-    std::map<std::int32_t, std::set<std::uint32_t>> of_primitive_;
+    std::int32_t primitives_ = 0;
+    std::vector<std::vector<std::uint32_t>> of_primitive_;  // patches, ascending
     std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::uint32_t>> rests_;
-    std::vector<Mate> mates_;
 };
 
 }  // namespace
@@ -213,10 +247,10 @@ double reach_of(const Vec3& g, double voxel_m) {
 
 std::vector<Mate> find_mates(const SolidCells& cells, const SeenCells& seen,
                              std::span<const std::uint8_t> faced, std::span<const KnownRest> rests,
-                             std::vector<SurfacePatch>& patches) {
+                             std::vector<SurfacePatch>& patches, ThreadPool& threads) {
     MateFinder finder(cells, seen, faced, patches);
     finder.add_rests(rests);
-    return finder.find();
+    return finder.find(threads);
 }
 
 }  // namespace topple::solids

@@ -37,16 +37,23 @@ std::array<Key, 27> around(const Key& key) {
     return out;
 }
 
+// A key, and the first place that has it.
+using FirstOfKey = std::pair<Key, std::size_t>;
+
 // Sorted by order(): of each the number of the piece that hangs together over cells.
 std::vector<std::size_t> pieces_of(std::span<const Left> left) {
-    std::map<Key, std::size_t> first;
+    std::vector<FirstOfKey> first;  // sorted
     UnionFind pieces(left.size());
-    for (std::size_t n = 0; n < left.size(); ++n)
-        pieces.join(n, first.try_emplace({left[n].primitive, left[n].cell}, n).first->second);
+    for (std::size_t n = 0; n < left.size(); ++n) {
+        const Key key{left[n].primitive, left[n].cell};
+        if (first.empty() || first.back().first != key) first.emplace_back(key, n);
+        pieces.join(n, first.back().second);
+    }
     for (const auto& [key, n] : first) {
         for (const Key& beside : around(key)) {
-            const auto found = first.find(beside);
-            if (found != first.end()) pieces.join(n, found->second);
+            if (!(beside < key)) continue;  // which finds this one
+            const auto found = std::ranges::lower_bound(first, beside, {}, &FirstOfKey::first);
+            if (found != first.end() && found->first == beside) pieces.join(n, found->second);
         }
     }
     std::vector<std::size_t> out(left.size());
@@ -69,50 +76,104 @@ struct Face {
     std::size_t before = 0, behind = 0;
 };
 
+constexpr std::uint64_t point_chunk = 1 << 14;  // points handed to a thread at once
+
+// Parts in their order.
+template <class T>
+std::vector<T> strung(const std::vector<std::vector<T>>& parts) {
+    std::vector<T> out;
+    for (const std::vector<T>& part : parts) out.insert(out.end(), part.begin(), part.end());
+    return out;
+}
+
+// The cells of a primitive around which there are faces, and which, sorted; each once.
+using FaceNear = std::pair<Key, std::size_t>;
+
+// Counts for each face the points of its primitive nearby that lie before and behind it.
+void count_sides(const CloudView& cloud, const std::array<Vec3, 3>& axes, const PatchMap& map,
+                 std::span<const FaceNear> beside, std::span<const std::int32_t> primitive_of_point,
+                 std::span<const std::int32_t> patch_of_point, std::span<Face> faces,
+                 ThreadPool& threads) {
+    std::vector<bool> asked;  // by primitive
+    for (const Face& face : faces) {
+        const auto p = static_cast<std::size_t>(face.primitive);
+        if (asked.size() <= p) asked.resize(p + 1, false);
+        asked[p] = true;
+    }
+    struct Count {
+        std::size_t before = 0, behind = 0;
+    };
+    std::vector<std::vector<Count>> parts(cloud.size() / point_chunk + 1);
+    threads.run(cloud.size(), point_chunk, [&](std::uint64_t first, std::uint64_t last) {
+        std::vector<Count>& part = parts[first / point_chunk];
+        part.resize(faces.size());
+        for (std::uint64_t n = first; n < last; ++n) {
+            const auto p = static_cast<std::size_t>(primitive_of_point[n]);
+            if (patch_of_point[n] < 0 || p >= asked.size() || !asked[p]) continue;
+            const Eigen::Vector3d at = rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]);
+            const Key key{primitive_of_point[n], map.cell_of(at)};
+            for (auto near = std::ranges::lower_bound(beside, key, {}, &FaceNear::first);
+                 near != beside.end() && near->first == key; ++near) {
+                const SurfacePatch& patch = faces[near->second].patch;
+                const double d = distance_to(patch, at), rim = outlier * patch.noise_m;
+                part[near->second].before += d > rim;
+                part[near->second].behind += d < -rim;
+            }
+        }
+    });
+    for (const std::vector<Count>& part : parts) {
+        for (std::size_t f = 0; f < part.size(); ++f) {
+            faces[f].before += part[f].before;
+            faces[f].behind += part[f].behind;
+        }
+    }
+}
+
 }  // namespace
 
 void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, double cell_m,
                       std::vector<SurfacePatch>& patches,
                       std::vector<std::int32_t>& primitive_of_point,
-                      std::vector<std::int32_t>& patch_of_point) {
-    PatchMap map(cell_m);
+                      std::vector<std::int32_t>& patch_of_point, ThreadPool& threads) {
+    const PatchMap map(cloud, patch_of_point, primitive_of_point, axes, cell_m, threads);
     const auto point = [&](std::size_t n) {
         return rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]);
     };
     std::vector<std::int32_t> primitive(patches.size(), -1);
-    std::vector<std::uint32_t> off;
     for (std::size_t n = 0; n < patch_of_point.size(); ++n) {
-        if (primitive_of_point[n] < 0) continue;
-        if (patch_of_point[n] < 0) {
-            off.push_back(static_cast<std::uint32_t>(n));
-            continue;
-        }
-        const auto patch = static_cast<std::size_t>(patch_of_point[n]);
-        primitive[patch] = std::max(primitive[patch], primitive_of_point[n]);
-        const Eigen::Vector3d at = point(n);
-        map.add(at, patch_of_point[n]);
-        if (std::abs(distance_to(patches[patch], at)) > outlier * patches[patch].noise_m)
-            off.push_back(static_cast<std::uint32_t>(n));
+        if (patch_of_point[n] < 0) continue;
+        std::int32_t& of = primitive[static_cast<std::size_t>(patch_of_point[n])];
+        of = std::max(of, primitive_of_point[n]);
     }
-    std::vector<Left> left;
-    std::vector<std::int32_t> near;
-    for (const std::uint32_t n : off) {
-        const Eigen::Vector3d at = point(n);
-        map.around(at, near);
-        const std::int32_t other = explaining(patches, near, at, [](std::int32_t) { return true; });
-        if (other >= 0) {
-            patch_of_point[n] = other;
-            primitive_of_point[n] = primitive[static_cast<std::size_t>(other)];
-        } else {
-            left.push_back({primitive_of_point[n], map.cell_of(at), at, n});
+    std::vector<std::vector<Left>> parts(cloud.size() / point_chunk + 1);
+    threads.run(cloud.size(), point_chunk, [&](std::uint64_t first, std::uint64_t last) {
+        std::vector<std::int32_t> room;
+        for (std::uint64_t n = first; n < last; ++n) {
+            if (primitive_of_point[n] < 0) continue;
+            const Eigen::Vector3d at = point(n);
+            if (patch_of_point[n] >= 0) {
+                const SurfacePatch& own = patches[static_cast<std::size_t>(patch_of_point[n])];
+                if (!(std::abs(distance_to(own, at)) > outlier * own.noise_m)) continue;
+            }
+            const std::int32_t other = explaining(patches, map.around(at, room), at,
+                                                  [](std::int32_t) { return true; });
+            if (other >= 0) {
+                patch_of_point[n] = other;
+                primitive_of_point[n] = primitive[static_cast<std::size_t>(other)];
+            } else {
+                parts[first / point_chunk].push_back({primitive_of_point[n], map.cell_of(at), at,
+                                                      static_cast<std::uint32_t>(n)});
+            }
         }
-    }
+    });
+    std::vector<Left> left = strung(parts);
     std::ranges::sort(left, {}, &Left::order);
     const std::vector<std::size_t> piece = pieces_of(left);
     std::map<std::size_t, std::vector<std::size_t>> members;
     for (std::size_t n = 0; n < left.size(); ++n) members[piece[n]].push_back(n);
     std::vector<Face> faces;
-    std::map<Key, std::vector<std::size_t>> beside;  // faces around cells of a primitive
+    std::vector<FaceNear> beside;
+    std::vector<std::int32_t> room;
     for (const auto& [number, all] : members) {
         if (all.size() < least_points) continue;
         constexpr double enough = 0.8;  // share of the points that the plane explains
@@ -126,31 +187,20 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
             continue;
         double noise = 0;  // the primitive's own here
         for (const std::size_t n : all) {
-            map.around(left[n].at, near);
-            for (const std::int32_t p : near)
+            for (const std::int32_t p : map.around(left[n].at, room))
                 if (primitive[static_cast<std::size_t>(p)] == face.primitive)
                     noise = std::max(noise, patches[static_cast<std::size_t>(p)].noise_m);
         }
         if (face.patch.noise_m > noise) continue;
         for (const std::size_t n : all)
             for (const Key& key : around({face.primitive, left[n].cell}))
-                if (beside[key].empty() || beside[key].back() != faces.size())
-                    beside[key].push_back(faces.size());
+                beside.emplace_back(key, faces.size());
         faces.push_back(std::move(face));
     }
     if (faces.empty()) return;
-    for (std::size_t n = 0; n < patch_of_point.size(); ++n) {
-        if (patch_of_point[n] < 0) continue;
-        const Eigen::Vector3d at = point(n);
-        const auto found = beside.find({primitive_of_point[n], map.cell_of(at)});
-        if (found == beside.end()) continue;
-        for (const std::size_t f : found->second) {
-            const double d = distance_to(faces[f].patch, at),
-                         rim = outlier * faces[f].patch.noise_m;
-            faces[f].before += d > rim;
-            faces[f].behind += d < -rim;
-        }
-    }
+    std::ranges::sort(beside);
+    beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+    count_sides(cloud, axes, map, beside, primitive_of_point, patch_of_point, faces, threads);
     for (Face& face : faces) {
         constexpr double most_before = 0.05;  // share
         if (face.before > face.behind) {

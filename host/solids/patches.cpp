@@ -191,22 +191,12 @@ std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
                                       std::span<const geometry::Region> regions,
                                       std::span<const std::int32_t> region_of_point,
                                       const std::array<Vec3, 3>& axes, ThreadPool& threads) {
-    std::vector<std::size_t> first(regions.size() + 1, 0);
-    for (const std::int32_t r : region_of_point)
-        if (r >= 0) ++first[static_cast<std::size_t>(r) + 1];
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<std::uint32_t> order(first.back());
-    std::vector<std::size_t> at(first.begin(), first.end() - 1);
-    for (std::size_t n = 0; n < region_of_point.size(); ++n)
-        if (region_of_point[n] >= 0)
-            order[at[static_cast<std::size_t>(region_of_point[n])]++] =
-                static_cast<std::uint32_t>(n);
+    const PointsByLabel members(region_of_point, regions.size());
     std::vector<SurfacePatch> out(regions.size());
     threads.each(regions.size(), 16, [&](std::size_t r) {
-        const std::size_t count = first[r + 1] - first[r], step = count / most_points + 1;
+        const std::size_t step = members.of(r).size() / most_points + 1;
         Points points;
-        for (std::size_t m = first[r]; m < first[r + 1]; ++m) {
-            const std::uint32_t n = order[m];
+        for (const std::uint32_t n : members.of(r)) {
             if (is_chosen(cloud, n, step))
                 points.push_back(rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]));
         }

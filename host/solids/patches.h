@@ -41,7 +41,7 @@ std::vector<SurfacePatch> fit_patches(const CloudView& cloud,
 void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patches,
                     const std::array<Vec3, 3>& axes, double cell_m,
                     std::vector<std::int32_t>& primitive_of_point,
-                    std::vector<std::int32_t>& patch_of_point);
+                    std::vector<std::int32_t>& patch_of_point, ThreadPool& threads);
 
 // Faces too narrow for regions of their own, as the rim of a cup. Points that lie off their patch
 // go to the nearest one beside it that explains them. Where those left over within a primitive hang
@@ -50,7 +50,7 @@ void drop_explained(const CloudView& cloud, std::span<const SurfacePatch> patche
 void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, double cell_m,
                       std::vector<SurfacePatch>& patches,
                       std::vector<std::int32_t>& primitive_of_point,
-                      std::vector<std::int32_t>& patch_of_point);
+                      std::vector<std::int32_t>& patch_of_point, ThreadPool& threads);
 
 // Where the patches were seen: of each voxel, primitive and patch the points' number and mean.
 // Sorted by (i, j, k, primitive, patch).
@@ -61,7 +61,7 @@ struct SeenCells {
 };
 SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primitive_of_point,
                      std::span<const std::int32_t> patch_of_point, const std::array<Vec3, 3>& axes,
-                     double voxel_m);
+                     double voxel_m, ThreadPool& threads);
 
 // Whether each of so many primitives was seen from one side only: its patches face one way.
 std::vector<bool> one_sided(const SeenCells& seen, std::span<const SurfacePatch> patches,

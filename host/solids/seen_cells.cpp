@@ -11,49 +11,83 @@ namespace topple::solids {
 namespace {
 
 struct SeenPoint {
-    std::int32_t i, j, k, primitive, patch;
+    std::int32_t i, j, k, primitive;
     float x, y, z;
-    auto key() const { return std::tie(i, j, k, primitive, patch); }
-    auto order() const { return std::tie(i, j, k, primitive, patch, x, y, z); }
+    auto key() const { return std::tie(i, j, k, primitive); }
+    auto order() const { return std::tie(i, j, k, primitive, x, y, z); }
 };
+
+// The mean of points of one patch in one cell, and where it belongs.
+struct SeenMean {
+    std::int32_t i, j, k, primitive, patch;
+    float count, x, y, z;
+    auto key() const { return std::tie(i, j, k, primitive, patch); }
+};
+
+void add_means(std::span<const SeenPoint> sorted, std::int32_t patch, std::vector<SeenMean>& out) {
+    for (std::size_t n = 0; n < sorted.size();) {
+        const SeenPoint& first = sorted[n];
+        std::size_t end = n;
+        double sum[3] = {0, 0, 0};
+        for (; end < sorted.size() && sorted[end].key() == first.key(); ++end) {
+            sum[0] += sorted[end].x;
+            sum[1] += sorted[end].y;
+            sum[2] += sorted[end].z;
+        }
+        const auto count = static_cast<double>(end - n);
+        out.push_back({first.i, first.j, first.k, first.primitive, patch, static_cast<float>(count),
+                       static_cast<float>(sum[0] / count), static_cast<float>(sum[1] / count),
+                       static_cast<float>(sum[2] / count)});
+        n = end;
+    }
+}
 
 }  // namespace
 
 SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primitive_of_point,
                      std::span<const std::int32_t> patch_of_point, const std::array<Vec3, 3>& axes,
-                     double voxel_m) {
-    std::vector<SeenPoint> places;
-    for (std::size_t n = 0; n < cloud.size(); ++n) {
-        if (primitive_of_point[n] < 0 || patch_of_point[n] < 0) continue;
-        const Eigen::Vector3d p = rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]);
-        const auto cell = [&](double v) {
-            return static_cast<std::int32_t>(std::clamp(std::floor(v / voxel_m), -2e9, 2e9));
-        };
-        places.push_back({cell(p.x()), cell(p.y()), cell(p.z()), primitive_of_point[n],
-                          patch_of_point[n], static_cast<float>(p.x()), static_cast<float>(p.y()),
-                          static_cast<float>(p.z())});
-    }
-    std::ranges::sort(places, {}, &SeenPoint::order);
-    SeenCells out;
-    for (std::size_t n = 0; n < places.size();) {
-        std::size_t end = n;
-        double sum[3] = {0, 0, 0};
-        for (; end < places.size() && places[end].key() == places[n].key(); ++end) {
-            sum[0] += places[end].x;
-            sum[1] += places[end].y;
-            sum[2] += places[end].z;
+                     double voxel_m, ThreadPool& threads) {
+    std::int32_t patches = 0;
+    for (const std::int32_t p : patch_of_point) patches = std::max(patches, p + 1);
+    const PointsByLabel members(patch_of_point, static_cast<std::size_t>(patches));
+    // Patch by patch: there are many fewer means to sort than points.
+    std::vector<std::vector<SeenMean>> of_patch(static_cast<std::size_t>(patches));
+    threads.run(of_patch.size(), 4, [&](std::uint64_t from, std::uint64_t to) {
+        std::vector<SeenPoint> places;
+        for (std::uint64_t patch = from; patch < to; ++patch) {
+            places.clear();
+            for (const std::uint32_t n : members.of(patch)) {
+                if (primitive_of_point[n] < 0) continue;
+                const Eigen::Vector3d p = rotated(axes, cloud.x[n], cloud.y[n], cloud.z[n]);
+                const auto cell = [&](double v) {
+                    return static_cast<std::int32_t>(
+                        std::clamp(std::floor(v / voxel_m), -2e9, 2e9));
+                };
+                places.push_back({cell(p.x()), cell(p.y()), cell(p.z()), primitive_of_point[n],
+                                  static_cast<float>(p.x()), static_cast<float>(p.y()),
+                                  static_cast<float>(p.z())});
+            }
+            std::ranges::sort(places, {}, &SeenPoint::order);
+            add_means(places, static_cast<std::int32_t>(patch), of_patch[patch]);
         }
-        const auto count = static_cast<double>(end - n);
-        out.i.push_back(places[n].i);
-        out.j.push_back(places[n].j);
-        out.k.push_back(places[n].k);
-        out.primitive.push_back(places[n].primitive);
-        out.patch.push_back(places[n].patch);
-        out.count.push_back(static_cast<float>(count));
-        out.x.push_back(static_cast<float>(sum[0] / count));
-        out.y.push_back(static_cast<float>(sum[1] / count));
-        out.z.push_back(static_cast<float>(sum[2] / count));
-        n = end;
+    });
+    std::vector<SeenMean> means;
+    for (const auto& some : of_patch) means.insert(means.end(), some.begin(), some.end());
+    std::ranges::sort(means, {}, &SeenMean::key);
+    SeenCells out;
+    for (auto* values : {&out.i, &out.j, &out.k, &out.primitive, &out.patch})
+        values->reserve(means.size());
+    for (auto* values : {&out.count, &out.x, &out.y, &out.z}) values->reserve(means.size());
+    for (const SeenMean& m : means) {
+        out.i.push_back(m.i);
+        out.j.push_back(m.j);
+        out.k.push_back(m.k);
+        out.primitive.push_back(m.primitive);
+        out.patch.push_back(m.patch);
+        out.count.push_back(m.count);
+        out.x.push_back(m.x);
+        out.y.push_back(m.y);
+        out.z.push_back(m.z);
     }
     return out;
 }

@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 
+#include "core/thread_pool.h"
 #include "geometry/shell_features.h"
 #include "host/geometry/sampled_faces.h"
 
@@ -25,6 +26,11 @@ constexpr std::size_t parts = 10;
 
 constexpr std::size_t at(Part part) {
     return static_cast<std::size_t>(part);
+}
+
+ThreadPool& threads() {
+    static ThreadPool pool(2);
+    return pool;
 }
 
 SurfaceSamples room(const std::set<std::int32_t>& without = {}, double spacing_m = 0.03,
@@ -57,7 +63,7 @@ void expect_shell(const Shell& shell, std::initializer_list<Part> of_the_room,
 
 TEST(Shell, IsTheRoomAndNotWhatStandsInIt) {
     for (const double spacing_m : {0.03, 0.05}) {
-        const Shell shell = find_shell(room({}, spacing_m), parts);
+        const Shell shell = find_shell(room({}, spacing_m), parts, threads());
         expect_shell(shell, {floor, west, south, east, north, ceiling}, {table, box, crate});
         EXPECT_EQ(shell.role[at(floor)], Role::floor);
         EXPECT_EQ(shell.role[at(ceiling)], Role::ceiling);
@@ -77,36 +83,36 @@ TEST(Shell, OfARoughFloorIsAFloor) {
         samples.ny[n] = static_cast<float>(std::sin(lean) * std::sin(heading));
         samples.nz[n] = static_cast<float>(std::cos(lean));
     }
-    const Shell shell = find_shell(samples, parts);
+    const Shell shell = find_shell(samples, parts, threads());
     expect_shell(shell, {floor}, {table, box, crate});
     EXPECT_EQ(shell.role[at(floor)], Role::floor);
 }
 
 TEST(Shell, NeedsNoCeiling) {
-    const Shell shell = find_shell(room({ceiling}), parts);
+    const Shell shell = find_shell(room({ceiling}), parts, threads());
     expect_shell(shell, {floor, west, south, east, north}, {table, box, crate, ceiling});
     EXPECT_EQ(shell.role[at(floor)], Role::floor);
 }
 
 // As one camera in a corner sees it.
 TEST(Shell, OfACornerIsFloorAndTwoWalls) {
-    const Shell shell = find_shell(room({ceiling, west, south}), parts);
+    const Shell shell = find_shell(room({ceiling, west, south}), parts, threads());
     expect_shell(shell, {floor, east, north}, {table, box, crate});
     EXPECT_EQ(shell.role[at(north)], Role::wall);
 }
 
 TEST(Shell, WhatHasNoSamplesIsNoShell) {
-    const Shell shell = find_shell(room({crate}), parts + 2);
+    const Shell shell = find_shell(room({crate}), parts + 2, threads());
     ASSERT_EQ(shell.role.size(), parts + 2);
     for (const std::size_t p : {at(crate), parts, parts + 1}) {
         EXPECT_EQ(shell.role[p], Role::none);
         EXPECT_LT(shell.log_odds[p], -6);
     }
-    EXPECT_TRUE(find_shell({}, 0).role.empty());
+    EXPECT_TRUE(find_shell({}, 0, threads()).role.empty());
 }
 
 TEST(Shell, IsAsSureAsTheModelCanBe) {
-    for (const double odds : find_shell(room(), parts).log_odds)
+    for (const double odds : find_shell(room(), parts, threads()).log_odds)
         EXPECT_LE(std::abs(odds), std::log(999) + 1e-9);
 }
 
@@ -122,7 +128,7 @@ TEST(Shell, OfTwoStoreysIsFoundInEach) {
         both.primitive.push_back(p + static_cast<std::int32_t>(parts));
     const std::vector<StoreyHint> storeys{{.floor_m = 0, .top_m = 2.65},
                                           {.floor_m = 2.8, .below_m = 2.65}};
-    const Shell one = find_shell(below, parts, {}), two = find_shell(both, 2 * parts, storeys);
+    const Shell one = find_shell(below, parts, threads(), {}), two = find_shell(both, 2 * parts, threads(), storeys);
     for (std::size_t p = 0; p < parts; ++p) {
         EXPECT_NEAR(two.log_odds[p], one.log_odds[p], 0.5) << p;
         EXPECT_EQ(two.role[p], one.role[p]) << p;
@@ -140,7 +146,7 @@ double shell_feature(const std::vector<float>& rows, Part part, std::string_view
 TEST(ShellFeatures, SayWhatIsBehindAndBefore) {
     const SurfaceSamples samples = room();
     const PrimitiveShapes shapes = primitive_shapes(samples, parts);
-    const std::vector<float> rows = shell_features(samples, shapes, SightLines(samples));
+    const std::vector<float> rows = shell_features(samples, shapes, SightLines(samples), threads());
     const auto names = shell_feature_names();
     EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
     ASSERT_EQ(rows.size(), parts * names.size());

@@ -5,10 +5,16 @@
 
 #include <cmath>
 
+#include "core/thread_pool.h"
 #include "host/geometry/sampled_faces.h"
 
 namespace topple::graph {
 namespace {
+
+ThreadPool& threads() {
+    static ThreadPool pool(2);
+    return pool;
+}
 
 using Eigen::Vector3d;
 using test::SampledFaces;
@@ -24,7 +30,7 @@ SampledFaces two_plates(double step_m, double apart_m = 0) {
 // Of the lattices only the two rows next to the border are within 6 cm of the other plate's, at
 // one and at two spacings from its first row.
 TEST(Borders, OfFlushPlatesAreInClosedForm) {
-    const auto borders = find_borders(two_plates(0).samples);
+    const auto borders = find_borders(two_plates(0).samples, threads());
     ASSERT_EQ(borders.size(), 1u);
     const Border& b = borders[0];
     EXPECT_EQ(b.a, 0);
@@ -51,7 +57,7 @@ TEST(Borders, OfFlushPlatesAreInClosedForm) {
 }
 
 TEST(Borders, AStepIsNotFlush) {
-    const Border b = find_borders(two_plates(0.02).samples).at(0);
+    const Border b = find_borders(two_plates(0.02).samples, threads()).at(0);
     EXPECT_EQ(b.flush_share, 0);
     EXPECT_NEAR(b.parallel, 1, 1e-6);
     EXPECT_NEAR(b.offset, 0.02, 1e-6);
@@ -62,13 +68,13 @@ TEST(Borders, AStepIsNotFlush) {
 TEST(Borders, AreWithinTheReachOfNoise) {
     EXPECT_DOUBLE_EQ(near_m(0.01), 0.06);
     EXPECT_DOUBLE_EQ(near_m(0.1), 0.22);
-    EXPECT_NEAR(find_borders(two_plates(0, 0.03).samples).at(0).gap_least, 0.055, 1e-6);
-    EXPECT_TRUE(find_borders(two_plates(0, 0.04).samples).empty());
+    EXPECT_NEAR(find_borders(two_plates(0, 0.03).samples, threads()).at(0).gap_least, 0.055, 1e-6);
+    EXPECT_TRUE(find_borders(two_plates(0, 0.04).samples, threads()).empty());
     // Samples of no primitive border on nothing.
     SampledFaces loose = two_plates(0);
     for (std::int32_t& p : loose.samples.primitive) p = p == 1 ? -1 : p;
-    EXPECT_TRUE(find_borders(loose.samples).empty());
-    EXPECT_TRUE(find_borders({}).empty());
+    EXPECT_TRUE(find_borders(loose.samples, threads()).empty());
+    EXPECT_TRUE(find_borders({}, threads()).empty());
 }
 
 // A box's top and side bend away from each other, a floor and a wall towards each other.
@@ -78,14 +84,14 @@ TEST(Borders, TellOuterFromInnerEdges) {
     box.face(1, {0, 0, -0.4}, {0, 0.4, 0}, {0, 0, 0.4});  // side, towards +x
     corner.face(0, {0, 0, 0}, {0.4, 0, 0}, {0, 0.4, 0});  // floor
     corner.face(1, {0, 0, 0}, {0, 0.4, 0}, {0, 0, 0.4});  // wall at x = 0
-    const Border outer = find_borders(box.samples).at(0);
+    const Border outer = find_borders(box.samples, threads()).at(0);
     EXPECT_EQ(outer.convex_share, 1);
     EXPECT_EQ(outer.concave_share, 0);
     EXPECT_GT(outer.convexity, 1);
     EXPECT_LE(outer.convexity, std::sqrt(2.0) + 1e-6);
     EXPECT_NEAR(outer.parallel, 0, 1e-6);
     EXPECT_EQ(outer.flush_share, 0);
-    const Border inner = find_borders(corner.samples).at(0);
+    const Border inner = find_borders(corner.samples, threads()).at(0);
     EXPECT_EQ(inner.concave_share, 1);
     EXPECT_EQ(inner.convex_share, 0);
     EXPECT_NEAR(inner.convexity, -outer.convexity, 1e-5) << "the same with the sides turned";
@@ -94,20 +100,20 @@ TEST(Borders, TellOuterFromInnerEdges) {
 TEST(Borders, ColoursAreComparedWhereBothAreKnown) {
     SampledFaces faces = two_plates(0);
     faces.paint(0, 50, 3, 0);
-    EXPECT_TRUE(std::isnan(find_borders(faces.samples).at(0).colour));
+    EXPECT_TRUE(std::isnan(find_borders(faces.samples, threads()).at(0).colour));
     faces.paint(1, 50, 0, 4);
-    EXPECT_NEAR(find_borders(faces.samples).at(0).colour, 5, 1e-5);
+    EXPECT_NEAR(find_borders(faces.samples, threads()).at(0).colour, 5, 1e-5);
     // Half of them without: the other half counts.
     for (std::size_t n = 0; n < faces.samples.size(); ++n)
         if (faces.samples.y[n] > 0.2f) faces.samples.lab_l[n] = NAN;
-    EXPECT_NEAR(find_borders(faces.samples).at(0).colour, 5, 1e-5);
+    EXPECT_NEAR(find_borders(faces.samples, threads()).at(0).colour, 5, 1e-5);
 }
 
 // Three plates in a row: each has a border with the next, in order.
 TEST(Borders, AreSortedByTheirPrimitives) {
     SampledFaces faces(0.02);
     for (const std::int32_t p : {2, 0, 1}) faces.face(p, {0.4 * p, 0, 0}, {0.4, 0, 0}, {0, 0.4, 0});
-    const auto borders = find_borders(faces.samples);
+    const auto borders = find_borders(faces.samples, threads());
     ASSERT_EQ(borders.size(), 2u);
     EXPECT_EQ(std::pair(borders[0].a, borders[0].b), std::pair(0, 1));
     EXPECT_EQ(std::pair(borders[1].a, borders[1].b), std::pair(1, 2));

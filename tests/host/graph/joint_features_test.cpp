@@ -45,7 +45,7 @@ struct BoxAndTable {
         return joint_features(
             faces.samples,
             geometry::primitive_shapes(faces.samples, static_cast<std::size_t>(solids.count)),
-            contacts, solids.bodies(device), seams, shell);
+            contacts, solids.bodies(device), seams, shell, device.threads());
     }
 };
 

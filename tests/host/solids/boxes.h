@@ -8,6 +8,7 @@
 
 #include "core/boundary_cells.h"
 #include "core/solid_cells.h"
+#include "core/thread_pool.h"
 #include "solids/patches.h"
 #include "topple/cloud_view.h"
 
@@ -41,8 +42,9 @@ struct Scanned {
     SolidCells cells;
 
     SeenCells seen() const {
+        ThreadPool threads(2);
         return seen_cells(cloud, primitive, patch, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}},
-                          cells.voxel_m);
+                          cells.voxel_m, threads);
     }
 };
 

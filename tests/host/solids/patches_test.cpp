@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "core/thread_pool.h"
 #include "geometry/algebraic_model.h"
 #include "host/geometry/geometry_random.h"
 
@@ -123,7 +124,9 @@ TEST(Patches, OfAnEdgeAreItsSides) {
     edge.origin = {0.295, 0, -0.005};
     edge.c = {0, std::sqrt(0.5), 0, std::sqrt(0.5), 0, 0, 0, 0, 0, 0};
     top.noise_m = side.noise_m = edge.noise_m = 1e-3;
-    drop_explained(s.cloud, std::vector{top, side, edge}, as_is, 0.04, s.label, patch_of_point);
+    ThreadPool threads(2);
+    drop_explained(s.cloud, std::vector{top, side, edge}, as_is, 0.04, s.label, patch_of_point,
+                   threads);
     for (std::size_t n = 0; n < patch_of_point.size(); ++n) {
         const bool on_top = std::abs(s.cloud.z[n])<1e-6, on_side = s.cloud.x[n]> 0.2999F;
         if (on_top && on_side) continue;
@@ -160,7 +163,8 @@ TEST(NarrowFaces, AreWhatPointsOffTheirPatchesLieIn) {
     on[1] = 0;
     std::vector<SurfacePatch> patches{patch({0, 0, 0}, {-1, 0, 0}),
                                       patch({thick, 0, 0}, {1, 0, 0})};
-    add_narrow_faces(s.cloud, as_is, 0.02, patches, s.label, on);
+    ThreadPool threads(2);
+    add_narrow_faces(s.cloud, as_is, 0.02, patches, s.label, on, threads);
     ASSERT_EQ(patches.size(), 3u);
     EXPECT_NEAR(patches[2].distance({0.004, 0.1, high}), 0, 1e-4);
     EXPECT_NEAR(patches[2].gradient({0.004, 0.1, high})[2], 1, 1e-2) << "the wall is below";
@@ -187,7 +191,8 @@ TEST(NarrowFaces, HaveTheirPrimitiveBehindThem) {
         s.add({between(random, 0, 0.2), between(random, 0, 0.2), 0.005});
         on.push_back(0);
     }
-    add_narrow_faces(s.cloud, as_is, 0.02, patches, s.label, on);
+    ThreadPool threads(2);
+    add_narrow_faces(s.cloud, as_is, 0.02, patches, s.label, on, threads);
     EXPECT_EQ(patches.size(), 2u);
 }
 
@@ -197,8 +202,10 @@ TEST(SeenCells, HoldCountAndMeanOfEachPatch) {
     s.add({0.013, 0.012, -0.003});
     s.add({0.011, 0.012, 0.001});
     s.add({0.5, 0.5, 0.5});
-    const SeenCells cells = seen_cells(s.cloud, std::vector<std::int32_t>{4, 4, 4, -1},
-                                       std::vector<std::int32_t>{7, 7, 7, 7}, as_is, 0.02);
+    ThreadPool threads(2);
+    const SeenCells cells =
+        seen_cells(s.cloud, std::vector<std::int32_t>{4, 4, 4, -1},
+                   std::vector<std::int32_t>{7, 7, 7, 7}, as_is, 0.02, threads);
     ASSERT_EQ(cells.size(), 2u);
     EXPECT_EQ(cells.k[0], -1);
     EXPECT_EQ(cells.count[0], 2);
