@@ -91,7 +91,7 @@ struct FrameFusion::Cells {
     std::vector<Vec3> viewpoints;
     std::array<std::uint64_t, block_count> outside{};  // readings beyond the grid's reach
     std::vector<DepthReading> by_depth;                // as stored
-    std::vector<float> columns;                        // of pixels: the ray's slope
+    std::vector<double> columns;                       // of pixels: the ray's slope
 };
 
 // Fused cells to clean: sorted by key.

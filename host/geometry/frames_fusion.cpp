@@ -57,61 +57,46 @@ void check(const DepthFrame& frame, const Intrinsics& k, std::size_t number) {
 
 // Cells, and 65536ths of one, from the grid's lowest corner.
 struct CellPoint {
-    std::array<std::int64_t, 3> cell{};
+    std::array<std::uint64_t, 3> cell{};
     std::array<std::uint32_t, 3> part{};
 };
 
-// Back-projects one frame, some pixels of a row at a time: in single precision, from the camera, as
-// its place in the grid is known to more digits. Lengths in cells.
+// Back-projects one frame, some pixels of a row at a time. Lengths in cells.
 class Strip {
   public:
     static constexpr std::uint32_t width = 32;  // pixels
-    static constexpr float farthest = 1e9F;     // cells: beyond the grid's reach
 
     // columns: of each, how far ahead it is a metre away.
     Strip(const Intrinsics& k, const DepthFrame& frame, double cell_m,
-          std::span<const DepthReading> by_depth, std::span<const float> columns)
-        : k_(k), frame_(frame), by_depth_(by_depth), columns_(columns) {
-        const Mat4& m = frame.camera_to_world;
-        metres_ = static_cast<float>(1 / k.depth_scale);
-        for (std::size_t a = 0; a < 3; ++a) {
-            for (std::size_t c = 0; c < 3; ++c) turn_[a][c] = m[4 * a + c] / cell_m;
-            const double at = m[4 * a + 3] / cell_m, whole = std::floor(at);
-            // Beyond the grid's reach: as far from it as can be told.
-            constexpr double far = 1e15;
-            camera_cell_[a] = static_cast<std::int64_t>(std::clamp(whole, -far, far)) + key_bias;
-            camera_part_[a] = static_cast<float>(at - whole);
-        }
-    }
+          std::span<const DepthReading> by_depth, std::span<const double> columns)
+        : k_(k), frame_(frame), by_depth_(by_depth), columns_(columns), per_cell_(1 / cell_m) {}
 
     // Calls visit(u, point, weight) for each of the pixels [first, last) of row v that has a
-    // reading on a surface.
+    // reading on a surface; the point is null where it is beyond the grid's reach.
     template <class Visit>
     void read(std::uint32_t v, std::uint32_t first, std::uint32_t last, const Visit& visit) {
         const std::size_t count = last - first;
         const std::array<std::uint32_t, width> kept = look(v, first, count);
+        const Mat4& m = frame_.camera_to_world;
         const double dy = (v - k_.cy) / k_.fy;
-        for (std::size_t a = 0; a < 3; ++a) {
-            const auto row = static_cast<float>(turn_[a][1] * dy + turn_[a][2]);
-            const auto column = static_cast<float>(turn_[a][0]), part = camera_part_[a];
-            for (std::size_t n = 0; n < width; ++n) {
-                float at = (column * ahead_[n] + row) * metres_ * depth_[n] + part;
-                at = at < farthest ? at : farthest;
-                at = at > -farthest ? at : -farthest;
-                const auto cut = static_cast<std::int32_t>(at);
-                const std::int32_t cell = cut - (static_cast<float>(cut) > at ? 1 : 0);
-                cell_[a][n] = cell;
-                part_[a][n] = static_cast<std::int32_t>((at - static_cast<float>(cell)) * 65536.0f);
-            }
-        }
         for (std::size_t n = 0; n < count; ++n) {
             if (kept[n] == 0) continue;
+            const auto u = first + static_cast<std::uint32_t>(n);
+            const double z = static_cast<double>(depth_[n]) / k_.depth_scale, dx = columns_[u];
             CellPoint point;
+            bool inside = true;
             for (std::size_t a = 0; a < 3; ++a) {
-                point.cell[a] = camera_cell_[a] + cell_[a][n];
-                point.part[a] = std::min(static_cast<std::uint32_t>(part_[a][n]), 65535u);
+                const double* row = &m[4 * a];
+                constexpr auto bias = static_cast<double>(key_bias);
+                const double at =
+                    ((row[0] * dx + row[1] * dy + row[2]) * z + row[3]) * per_cell_ + bias;
+                inside = inside && at >= 1 && at < 2 * bias - 1;
+                if (!inside) break;
+                const auto fixed = static_cast<std::uint64_t>(at * 65536);
+                point.cell[a] = fixed >> 16;
+                point.part[a] = static_cast<std::uint32_t>(fixed & 0xFFFF);
             }
-            visit(first + static_cast<std::uint32_t>(n), point, weight_[n]);
+            visit(u, inside ? &point : nullptr, weight_[n]);
         }
     }
 
@@ -128,7 +113,6 @@ class Strip {
             own[n + 1] = stored;
             limit[n] = by_depth_[stored].largest_jump;
             weight_[n] = by_depth_[stored].weight;
-            ahead_[n] = columns_[first + n];
         }
         if (first > 0) own[0] = row[first - 1];
         if (first + count < k_.width) own[count + 1] = row[first + count];
@@ -151,14 +135,10 @@ class Strip {
     const Intrinsics& k_;
     const DepthFrame& frame_;
     std::span<const DepthReading> by_depth_;
-    std::span<const float> columns_;
-    std::array<std::array<double, 3>, 3> turn_{};
-    std::array<std::int64_t, 3> camera_cell_{};
-    std::array<float, 3> camera_part_{};
-    float metres_ = 0;
-    std::array<float, width> depth_{}, ahead_{};
+    std::span<const double> columns_;
+    double per_cell_ = 0;
+    std::array<float, width> depth_{};
     std::array<std::uint32_t, width> weight_{};
-    std::array<std::array<std::int32_t, width>, 3> cell_{}, part_{};
 };
 
 // Sums up the readings of a patch of the image, which mostly fall into few cells, before they go to
@@ -167,11 +147,9 @@ class PatchSums {
   public:
     PatchSums(std::vector<CellSums>& runs, std::uint32_t frame) : runs_(runs), frame_(frame) {}
 
-    // rgb: of the pixel, or null. The cell's numbers are positive.
+    // rgb: of the pixel, or null.
     void add(const CellPoint& at, std::uint32_t weight, const std::uint8_t* rgb) {
-        const auto x = static_cast<std::uint64_t>(at.cell[0]),
-                   y = static_cast<std::uint64_t>(at.cell[1]),
-                   z = static_cast<std::uint64_t>(at.cell[2]);
+        const auto [x, y, z] = at.cell;
         const std::uint64_t key = x << 42 | y << 21 | z;
         CellSums& sums = slots_[(x & 7) << 6 | (y & 7) << 3 | (z & 7)];
         if (sums.count == 0 || sums.key != key) {
@@ -218,7 +196,7 @@ FrameFusion::FrameFusion(const Intrinsics& intrinsics, double cell_m, unsigned t
     check(intrinsics, cell_m);
     // One entry per stored depth: what depends on depth alone.
     for (std::uint32_t u = 0; u < intrinsics.width; ++u)
-        cells_->columns.push_back(static_cast<float>((u - intrinsics.cx) / intrinsics.fx));
+        cells_->columns.push_back((u - intrinsics.cx) / intrinsics.fx);
     cells_->by_depth.resize(65536);
     const double focal = std::min(intrinsics.fx, intrinsics.fy);
     for (std::size_t stored = 1; stored < 65536; ++stored) {
@@ -253,12 +231,9 @@ void FrameFusion::add(const DepthFrame& frame) {
                 const std::uint8_t* rgb =
                     frame.rgb.empty() ? nullptr : frame.rgb.data() + std::size_t{3} * v * k.width;
                 strip.read(v, u0, u1,
-                           [&](std::uint32_t u, const CellPoint& at, std::uint32_t weight) {
-                               const auto inside = [](std::int64_t cell) {
-                                   return cell >= 1 && cell < 2 * key_bias - 1;
-                               };
-                               if (inside(at.cell[0]) && inside(at.cell[1]) && inside(at.cell[2]))
-                                   patch.add(at, weight, rgb ? rgb + std::size_t{3} * u : nullptr);
+                           [&](std::uint32_t u, const CellPoint* at, std::uint32_t weight) {
+                               if (at)
+                                   patch.add(*at, weight, rgb ? rgb + std::size_t{3} * u : nullptr);
                                else
                                    ++c.outside[block];
                            });

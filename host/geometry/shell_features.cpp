@@ -167,7 +167,8 @@ std::vector<float> shell_features(const SurfaceSamples& s, const PrimitiveShapes
         const double scene_length = std::abs(along[0]) * size[0] + std::abs(along[1]) * size[1];
         const double rectangle = upright ? (length + s.spacing_m) * (extent[2] + s.spacing_m)
                                          : (extent[0] + s.spacing_m) * (extent[1] + s.spacing_m);
-        const auto [behind, before, near, depth_behind, depth_before] = sides(some, s.spacing_m, p, face);
+        const auto [behind, before, near, depth_behind, depth_before] =
+            sides(some, s.spacing_m, p, face);
         const auto back = met<3>(s, p, lines, -out, {0.3, 1, 4});
         const auto front = met<3>(s, p, lines, out, {0.3, 1, 4});
         const auto down = met<3>(s, p, lines, {0, 0, -1}, {0.25, 0.6, 3});

@@ -122,8 +122,7 @@ class Rows {
 // One row is written value by value, each with its name, so that names and values can't part.
 class Row {
   public:
-    Row(float* values, std::vector<std::string_view>* names)
-        : values_(values), names_(names) {}
+    Row(float* values, std::vector<std::string_view>* names) : values_(values), names_(names) {}
     void operator()(std::string_view name, double value) {
         if (values_) *values_++ = static_cast<float>(value);
         if (names_) names_->push_back(name);
@@ -299,8 +298,7 @@ void write_row(const Inputs& in, Row& row) {
     add_solids(in, row);
 }
 
-void Rows::add_row(std::int32_t a, std::int32_t b, const Evidence& e,
-                   float* row_values) const {
+void Rows::add_row(std::int32_t a, std::int32_t b, const Evidence& e, float* row_values) const {
     const auto at = [](std::int32_t p) { return static_cast<std::size_t>(p); };
     const bool a_is_small = shapes_.of[at(a)].area_m2 <= shapes_.of[at(b)].area_m2;
     const std::int32_t small = a_is_small ? a : b, big = a_is_small ? b : a;

@@ -120,9 +120,9 @@ Faces find_faces(device::Device& device, const Ingested& input, const GeometrySt
                            device.threads());
     solids::add_narrow_faces(input.cloud, geometry.frame.axes, 2 * geometry.surfels.cell_m,
                              out.patches, solid_of_point, face_of_point, device.threads());
-    out.seen = seen_and_between(input.cloud, gaps, std::move(solid_of_point),
-                                std::move(face_of_point), number, geometry.frame.axes, voxel_m,
-                                device.threads());
+    out.seen =
+        seen_and_between(input.cloud, gaps, std::move(solid_of_point), std::move(face_of_point),
+                         number, geometry.frame.axes, voxel_m, device.threads());
     out.sheet = solids::one_sided(out.seen, out.patches, roles.size());
     for (std::size_t p = 0; p < roles.size(); ++p)
         out.sheet[p] = out.sheet[p] && in_shell(roles[p]);

@@ -77,7 +77,9 @@ std::vector<bool> out_of_reach(const SolidCells& cells, std::span<const BorderVo
         for (std::size_t n = 0; n < beyond.size(); ++n) {
             const std::int32_t primitive = voxels[beyond[n]].primitive;
             const std::pair wanted(sum_of(place(beyond[n]), ways[axis]), primitive);
-            const auto at = [&] { return std::pair(place(beyond[m]), voxels[beyond[m]].primitive); };
+            const auto at = [&] {
+                return std::pair(place(beyond[m]), voxels[beyond[m]].primitive);
+            };
             while (m < beyond.size() && at() < wanted) ++m;
             if (m == beyond.size()) break;
             if (at() == wanted) pieces.join(n, m);
@@ -91,8 +93,7 @@ std::vector<bool> out_of_reach(const SolidCells& cells, std::span<const BorderVo
             const auto here = [&] { return Place{cells.i[cell], cells.j[cell], cells.k[cell]}; };
             while (cell < cells.size() && here() < at) ++cell;
             if (cell == cells.size()) break;
-            if (here() == at && !air[cell] &&
-                cells.primitive[cell] == voxels[beyond[n]].primitive)
+            if (here() == at && !air[cell] && cells.primitive[cell] == voxels[beyond[n]].primitive)
                 hangs[pieces.root(n)] = true;
         }
     }

@@ -19,8 +19,8 @@ Eigen::Vector3d normal_of(const SurfacePatch& patch, const Eigen::Vector3d& p) {
     return Eigen::Vector3d(g[0], g[1], g[2]).normalized();
 }
 
-// The patch of more points that lies nearest to a point, within its noise; -1 where none does. Those
-// of fewer points were asked before, and may be dropped.
+// The patch of more points that lies nearest to a point, within its noise; -1 where none does.
+// Those of fewer points were asked before, and may be dropped.
 struct Explainer {
     std::span<const SurfacePatch> patches;
     const PointsByLabel& members;  // of each patch
@@ -31,8 +31,7 @@ struct Explainer {
             return std::pair(members.of(static_cast<std::size_t>(patch)).size(), patch);
         };
         const auto mine = rank(own);
-        return explaining(patches, near, p,
-                          [&](std::int32_t other) { return rank(other) > mine; });
+        return explaining(patches, near, p, [&](std::int32_t other) { return rank(other) > mine; });
     }
 };
 

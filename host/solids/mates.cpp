@@ -97,9 +97,9 @@ class MateFinder {
         std::vector<Mate> all;
         for (const std::vector<Mate>& some : found) {
             const auto middle = all.insert(all.end(), some.begin(), some.end());
-            std::inplace_merge(
-                all.begin(), middle, all.end(),
-                [](const Mate& a, const Mate& b) { return order_of(a) < order_of(b); });
+            std::inplace_merge(all.begin(), middle, all.end(), [](const Mate& a, const Mate& b) {
+                return order_of(a) < order_of(b);
+            });
         }
         const auto same = [](const Mate& a, const Mate& b) {
             return std::tie(a.i, a.j, a.k, a.primitive, a.patch, a.outside) ==

@@ -155,14 +155,14 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
                 const SurfacePatch& own = patches[static_cast<std::size_t>(patch_of_point[n])];
                 if (!(std::abs(distance_to(own, at)) > outlier * own.noise_m)) continue;
             }
-            const std::int32_t other = explaining(patches, map.around(at, room), at,
-                                                  [](std::int32_t) { return true; });
+            const std::int32_t other =
+                explaining(patches, map.around(at, room), at, [](std::int32_t) { return true; });
             if (other >= 0) {
                 patch_of_point[n] = other;
                 primitive_of_point[n] = primitive[static_cast<std::size_t>(other)];
             } else {
-                parts[first / point_chunk].push_back({primitive_of_point[n], map.cell_of(at), at,
-                                                      static_cast<std::uint32_t>(n)});
+                parts[first / point_chunk].push_back(
+                    {primitive_of_point[n], map.cell_of(at), at, static_cast<std::uint32_t>(n)});
             }
         }
     });

@@ -78,9 +78,8 @@ void run(const std::filesystem::path& scan, const std::filesystem::path& folder)
     std::vector<float> shell;
     for (const double odds : parts.shell_log_odds)
         shell.push_back(static_cast<float>(fitted::probability(odds)));
-    const graph::JointTable joints = graph::joint_features(samples, shapes, weighed.contacts,
-                                                           weighed.bodies, parts.seams, shell,
-                                                           device->threads());
+    const graph::JointTable joints = graph::joint_features(
+        samples, shapes, weighed.contacts, weighed.bodies, parts.seams, shell, device->threads());
     std::filesystem::create_directories(folder);
     std::vector<std::int32_t> pairs;
     for (const auto& [a, b] : joints.pairs) pairs.insert(pairs.end(), {a, b});

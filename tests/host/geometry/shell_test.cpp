@@ -128,7 +128,8 @@ TEST(Shell, OfTwoStoreysIsFoundInEach) {
         both.primitive.push_back(p + static_cast<std::int32_t>(parts));
     const std::vector<StoreyHint> storeys{{.floor_m = 0, .top_m = 2.65},
                                           {.floor_m = 2.8, .below_m = 2.65}};
-    const Shell one = find_shell(below, parts, threads(), {}), two = find_shell(both, 2 * parts, threads(), storeys);
+    const Shell one = find_shell(below, parts, threads(), {}),
+                two = find_shell(both, 2 * parts, threads(), storeys);
     for (std::size_t p = 0; p < parts; ++p) {
         EXPECT_NEAR(two.log_odds[p], one.log_odds[p], 0.5) << p;
         EXPECT_EQ(two.role[p], one.role[p]) << p;

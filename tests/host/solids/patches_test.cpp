@@ -203,9 +203,8 @@ TEST(SeenCells, HoldCountAndMeanOfEachPatch) {
     s.add({0.011, 0.012, 0.001});
     s.add({0.5, 0.5, 0.5});
     ThreadPool threads(2);
-    const SeenCells cells =
-        seen_cells(s.cloud, std::vector<std::int32_t>{4, 4, 4, -1},
-                   std::vector<std::int32_t>{7, 7, 7, 7}, as_is, 0.02, threads);
+    const SeenCells cells = seen_cells(s.cloud, std::vector<std::int32_t>{4, 4, 4, -1},
+                                       std::vector<std::int32_t>{7, 7, 7, 7}, as_is, 0.02, threads);
     ASSERT_EQ(cells.size(), 2u);
     EXPECT_EQ(cells.k[0], -1);
     EXPECT_EQ(cells.count[0], 2);
