@@ -14,6 +14,7 @@
 #include "boxes.h"
 #include "device/device.h"
 #include "device/devices.h"
+#include "host/solids/cell_column.h"
 #include "topple/error.h"
 #include "vdb/voxel_scene.h"
 
@@ -185,30 +186,18 @@ TEST(Completion, AFrontBeforeAWallReachesToItUnlessOneSawBehind) {
     EXPECT_LT(backing(0.5, 1.6), 0.05) << "what lies behind was seen from the sides";
 }
 
-// A column of cells of one primitive, sorted among others by where it stands.
-void add_column(SolidCells& cells, std::int32_t i, std::int32_t k, std::int32_t end,
-                std::int32_t primitive, Basis basis) {
-    for (; k < end; ++k) {
-        cells.i.push_back(i);
-        cells.j.push_back(0);
-        cells.k.push_back(k);
-        cells.primitive.push_back(primitive);
-        cells.basis.push_back(basis);
-    }
-}
-
 TEST(Completion, WhatHangsTogetherWithNothingSeenIsNotSolid) {
     constexpr std::int32_t floor = 0, bottle = 1, table = 2;
     SolidCells cells;
     cells.voxel_m = h;
     // A bottle above a table's edge; rays went on to below the table.
-    add_column(cells, 0, 0, 1, floor, Basis::surface);
-    add_column(cells, 0, 1, 4, bottle, Basis::two_votes);
-    add_column(cells, 0, 30, 33, bottle, Basis::two_votes);
-    add_column(cells, 0, 36, 40, bottle, Basis::surface);
-    add_column(cells, 5, 10, 12, bottle, Basis::two_votes);
-    add_column(cells, 6, 11, 20, bottle, Basis::two_votes);
-    add_column(cells, 7, 19, 21, table, Basis::surface);
+    test::add_column(cells, 0, 0, 1, floor, Basis::surface);
+    test::add_column(cells, 0, 1, 4, bottle, Basis::two_votes);
+    test::add_column(cells, 0, 30, 33, bottle, Basis::two_votes);
+    test::add_column(cells, 0, 36, 40, bottle, Basis::surface);
+    test::add_column(cells, 5, 10, 12, bottle, Basis::two_votes);
+    test::add_column(cells, 6, 11, 20, bottle, Basis::two_votes);
+    test::add_column(cells, 7, 19, 21, table, Basis::surface);
     const VoxelScene scene(VoxelFrame{.voxel_m = h});
     const std::vector<Role> roles{Role::floor};
     const auto dropped = [&](std::int32_t gap) {

@@ -5,33 +5,23 @@
 
 #include <vector>
 
+#include "host/solids/cell_column.h"
+
 namespace topple::graph {
 namespace {
-
-// A column of cells of one primitive, sorted among others by where it stands.
-void add_column(SolidCells& cells, std::int32_t i, std::int32_t k, std::int32_t end,
-                std::int32_t primitive, Basis basis) {
-    for (; k < end; ++k) {
-        cells.i.push_back(i);
-        cells.j.push_back(0);
-        cells.k.push_back(k);
-        cells.primitive.push_back(primitive);
-        cells.basis.push_back(basis);
-    }
-}
 
 // A cup on a bed on the floor; rays went on to below the bed.
 TEST(FalseFeet, WhatWasFilledBelowWhatCarriesAThingIsNotItsOwn) {
     constexpr std::int32_t floor = 0, bed = 1, cup = 2, handle = 3;
     SolidCells cells;
     cells.voxel_m = 0.02;
-    add_column(cells, 0, 0, 1, floor, Basis::surface);
-    add_column(cells, 0, 1, 2, cup, Basis::two_votes);
-    add_column(cells, 0, 20, 25, bed, Basis::two_votes);
-    add_column(cells, 0, 25, 30, cup, Basis::surface);
-    add_column(cells, 1, 26, 29, handle, Basis::surface);
-    add_column(cells, 2, 0, 1, floor, Basis::two_votes);
-    add_column(cells, 2, 1, 3, floor, Basis::two_votes);
+    test::add_column(cells, 0, 0, 1, floor, Basis::surface);
+    test::add_column(cells, 0, 1, 2, cup, Basis::two_votes);
+    test::add_column(cells, 0, 20, 25, bed, Basis::two_votes);
+    test::add_column(cells, 0, 25, 30, cup, Basis::surface);
+    test::add_column(cells, 1, 26, 29, handle, Basis::surface);
+    test::add_column(cells, 2, 0, 1, floor, Basis::two_votes);
+    test::add_column(cells, 2, 1, 3, floor, Basis::two_votes);
     BoundaryCells boundary;
     for (const auto& [k, primitive] : {std::pair{1, cup}, {25, cup}, {30, cup}}) {
         boundary.i.push_back(0);

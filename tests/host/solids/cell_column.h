@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "core/solid_cells.h"
+
+namespace topple::test {
+
+// A column of cells of one primitive, sorted among others by where it stands.
+inline void add_column(SolidCells& cells, std::int32_t i, std::int32_t k, std::int32_t end,
+                       std::int32_t primitive, Basis basis) {
+    for (; k < end; ++k) {
+        cells.i.push_back(i);
+        cells.j.push_back(0);
+        cells.k.push_back(k);
+        cells.primitive.push_back(primitive);
+        cells.basis.push_back(basis);
+    }
+}
+
+}  // namespace topple::test
