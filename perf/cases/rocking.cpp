@@ -35,6 +35,7 @@ struct ShakenBlocks {
                 scale.push_back(
                     static_cast<float>((plane == 2 ? 0.3 : 1) * std::pow(1.2, e / kinds % 10)));
         }
+        scale.resize(4 * events, 1.0f);  // all of the friction
         for (std::uint32_t r = 0; r < records; ++r) {
             step.push_back(0.01f);
             first.push_back(first.back() + chunks);

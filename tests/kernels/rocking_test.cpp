@@ -67,6 +67,7 @@ GroundSteps random_ground(Random& random, std::size_t chunks, double step_s) {
 struct RockingEvent {
     std::uint32_t body = 0, record = 0;
     double along = 1, across = 0, up = 0;
+    double grip = 1;  // of its body's friction
 };
 
 // One dispatch.
@@ -121,13 +122,14 @@ RockingRun run_rocking(device::Device& device, const RockingCase& c) {
         }
     }
     RockingRun out;
-    std::array<std::vector<float>, 3> scales;
+    std::array<std::vector<float>, 4> scales;
     const auto push = [&](const RockingEvent& e) {
         if (event_body.size() % block_events == 0) block_record.push_back(e.record);
         event_body.push_back(e.body);
         scales[0].push_back(static_cast<float>(e.along));
         scales[1].push_back(static_cast<float>(e.across));
         scales[2].push_back(static_cast<float>(e.up));
+        scales[3].push_back(static_cast<float>(e.grip));
     };
     for (std::size_t n = 0; n < c.events.size(); ++n) {
         if (n > 0 && c.events[n].record != c.events[n - 1].record)
@@ -169,7 +171,9 @@ RockingRun run_rocking(device::Device& device, const RockingCase& c) {
 
 oracle::BlockMotion by_oracle(const RockingCase& c, const RockingEvent& e, double step = 1e-4) {
     const GroundSteps& record = c.records[e.record];
-    oracle::BlockOracle block(c.bodies[e.body], g);
+    oracle::Block body = c.bodies[e.body];
+    body.friction *= e.grip;
+    oracle::BlockOracle block(body, g);
     return block.run([&](double t) { return record.at(t, e.along, e.across, e.up); },
                      record.duration_s() + 20, step);
 }
@@ -209,7 +213,7 @@ RockingCase random_case(Random& random, std::size_t bodies, std::size_t records,
             const double size = random.uniform(1, 12), turn = random.uniform(0, 6.28f);
             c.events.push_back({random.word() % static_cast<std::uint32_t>(bodies),
                                 static_cast<std::uint32_t>(r), size * std::cos(turn),
-                                size * std::sin(turn), size * 0.6});
+                                size * std::sin(turn), size * 0.6, random.uniform(0.3f, 1)});
         }
     }
     return c;

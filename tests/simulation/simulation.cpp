@@ -14,7 +14,9 @@
 namespace topple::simulation {
 namespace {
 
-constexpr double step_s = 1.0 / 240, margin_m = 1e-3, gravity = 9.80665;
+// In steps four times as long a quarter of the falls in earthquakes come out otherwise; in steps a
+// quarter as long 3 % of the events, and 15 % of the falls.
+constexpr double step_s = 1.0 / 960, margin_m = 1e-3, gravity = 9.80665;
 
 btVector3 center_of(const Cell& cell, double voxel) {
     return {(cell[0] + 0.5) * voxel, (cell[1] + 0.5) * voxel, (cell[2] + 0.5) * voxel};

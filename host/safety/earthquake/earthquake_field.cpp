@@ -51,14 +51,16 @@ struct Shaken {
         double way_m = 0, support_m = 0;
     };
     std::array<Slip, 4> slips{};
+    double together = 0;  // correlation of the slips in both planes
 };
 
 Shaken shaken_by(const ShakenObject& object, double mass_kg, double friction,
-                 const std::array<Motion, 2>& motions) {
+                 const PlaneMotions& motions) {
     Shaken out;
+    out.together = motions.together;
     out.overturns = !object.held;
     for (std::size_t p = 0; p < 2; ++p) {
-        const Motion& m = motions[p];
+        const Motion& m = motions.in[p];
         const Profile& body = object.body[p];
         const auto [dx, dy] = object.way[p];
         Shaken::Slip &ahead = out.slips[2 * p], &behind = out.slips[2 * p + 1];
@@ -75,13 +77,17 @@ Shaken shaken_by(const ShakenObject& object, double mass_kg, double friction,
     return out;
 }
 
-// How far it slid along a level way at most, by the furthest that it was in both planes.
-double slid_towards_m(const Shaken& shaken, const Vec3& way) {
-    double out = 0;
-    for (std::size_t p = 0; p < 2; ++p) {
-        const Shaken::Slip &ahead = shaken.slips[2 * p], &behind = shaken.slips[2 * p + 1];
-        const double along = ahead.way[0] * way[0] + ahead.way[1] * way[1];
-        out += along > 0 ? ahead.way_m * along : behind.way_m * -along;
+// Where it was when it had slid furthest each way of one plane: in the other it was then, in the
+// mean, at its own furthest times the correlation.
+std::array<Vec3, 4> furthest_slips(const Shaken& shaken) {
+    std::array<Vec3, 4> out;
+    for (std::size_t s = 0; s < out.size(); ++s) {
+        const std::size_t other = 2 - s / 2 * 2;  // of the other plane, ahead
+        const bool ahead = (s % 2 == 0) == (shaken.together > 0);
+        const Shaken::Slip &slip = shaken.slips[s], &beside = shaken.slips[other + (ahead ? 0 : 1)];
+        const double drawn_m = std::abs(shaken.together) * beside.way_m;
+        for (std::size_t c = 0; c < 2; ++c)
+            out[s][c] = slip.way_m * slip.way[c] + drawn_m * beside.way[c];
     }
     return out;
 }
@@ -107,10 +113,11 @@ Outcome outcome_of(const RiskObject& object, const Shaken& shaken) {
                          slip.way_m >= slide_towards_m(object, slip.way, slip.support_m);
         if (off) weigh(slip.way, fallen);
     }
-    for (unsigned d = 0; object.toppling && d < direction_count; ++d) {
-        const auto [x, y] = direction(d);
-        const double slid = slid_towards_m(shaken, {x, y, 0});
-        if (slid > 0 && slid >= slide_towards_m(object, {x, y, 0}, 0)) weigh({x, y, 0}, fallen);
+    for (const Vec3& slid : furthest_slips(shaken)) {
+        const double far = std::hypot(slid[0], slid[1]);
+        if (!object.toppling || !(far > 0)) continue;
+        const Vec3 way{slid[0] / far, slid[1] / far, 0};
+        if (far >= slide_towards_m(object, way, 0)) weigh(way, fallen);
     }
     return std::isfinite(fallen.barrier_J) ? fallen : shaken_only;
 }
@@ -139,9 +146,10 @@ std::vector<WorkSample> work_of(const std::vector<Shaken>& shaken, const RiskObj
 }
 
 std::vector<Shaken> shaken_by_all(const ShakenObject& body, double mass_kg, double friction,
-                                  const std::vector<std::array<Motion, 2>>& motions) {
+                                  const std::vector<PlaneMotions>& motions) {
     std::vector<Shaken> out;
-    for (const auto& motion : motions) out.push_back(shaken_by(body, mass_kg, friction, motion));
+    for (const PlaneMotions& motion : motions)
+        out.push_back(shaken_by(body, mass_kg, friction, motion));
     return out;
 }
 

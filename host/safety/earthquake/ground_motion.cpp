@@ -36,6 +36,42 @@ std::array<double, 2> weakest_way(const RiskObject& object, const Stance& stance
     return way;
 }
 
+// Second moments of a record's level components.
+class LevelMoments {
+  public:
+    explicit LevelMoments(const Accelerogram& record) {
+        for (std::size_t n = 0; n < record.m_s2.size(); ++n) {
+            const double a = record.m_s2[n];
+            const double b = n < record.across_m_s2.size() ? record.across_m_s2[n] : 0;
+            aa_ += a * a;
+            ab_ += a * b;
+            bb_ += b * b;
+        }
+    }
+    // Root mean square of the shaking along a unit way, over that of both components together.
+    double share(const std::array<double, 2>& way) const {
+        return aa_ + bb_ > 0 ? std::sqrt(variance(way) / (aa_ + bb_)) : 1;
+    }
+    double correlation(const std::array<double, 2>& one, const std::array<double, 2>& other) const {
+        const double both = std::sqrt(variance(one) * variance(other));
+        return both > 1e-12 * (aa_ + bb_) ? covariance(one, other) / both : 0;
+    }
+
+  private:
+    double covariance(const std::array<double, 2>& p, const std::array<double, 2>& q) const {
+        return p[0] * q[0] * aa_ + (p[0] * q[1] + p[1] * q[0]) * ab_ + p[1] * q[1] * bb_;
+    }
+    double variance(const std::array<double, 2>& way) const {
+        return std::max(0.0, covariance(way, way));
+    }
+    double aa_ = 0, ab_ = 0, bb_ = 0;
+};
+
+// A level way by the record's components.
+std::array<double, 2> in_record(const GroundEvent& event, const std::array<double, 2>& way) {
+    return {way[0] * event.dx + way[1] * event.dy, way[1] * event.dx - way[0] * event.dy};
+}
+
 }  // namespace
 
 std::vector<GroundEvent> from_all_ways(std::uint32_t record, double scale) {
@@ -65,16 +101,17 @@ Motions shake_objects(device::Device& device, std::span<const ShakenObject> obje
                       std::span<const GroundEvent> events, double friction, bool endless) {
     std::vector<Profile> bodies;
     std::vector<Shaking> shakings;
+    const std::vector<LevelMoments> moments(records.begin(), records.end());
     for (const std::size_t o : which) {
         for (std::size_t p = 0; p < 2; ++p) {
             Profile body = objects[o].body[p];
             if (endless) body.support_ahead_m = body.support_behind_m = INFINITY;
             bodies.push_back(body);
-            const auto [wx, wy] = objects[o].way[p];
             for (const GroundEvent& e : events) {
+                const auto [along, across] = in_record(e, objects[o].way[p]);
                 shakings.push_back({static_cast<std::uint32_t>(bodies.size() - 1), e.record,
-                                    e.scale * (wx * e.dx + wy * e.dy),
-                                    e.scale * (wy * e.dx - wx * e.dy), e.scale});
+                                    e.scale * along, e.scale * across, e.scale,
+                                    moments[e.record].share({along, across})});
             }
         }
     }
@@ -83,7 +120,10 @@ Motions shake_objects(device::Device& device, std::span<const ShakenObject> obje
     for (std::size_t w = 0; w < which.size(); ++w) {
         for (std::size_t e = 0; e < events.size(); ++e) {
             const std::size_t at = 2 * w * events.size() + e;
-            out[which[w]].push_back({found[at], found[at + events.size()]});
+            const auto& way = objects[which[w]].way;
+            const double together = moments[events[e].record].correlation(
+                in_record(events[e], way[0]), in_record(events[e], way[1]));
+            out[which[w]].push_back({{found[at], found[at + events.size()]}, together});
         }
     }
     return out;
@@ -115,7 +155,7 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
             const std::size_t level = e / direction_count % levels_g.size();
             unsigned falls = 0;
             for (unsigned d = 0; d < direction_count; ++d) {
-                const auto& [weak, across] = motions[o][e + d];
+                const auto& [weak, across] = motions[o][e + d].in;
                 falls += !objects[o].held || weak.fell(objects[o].body[0]) ||
                          across.fell(objects[o].body[1]);
             }

@@ -25,7 +25,8 @@ std::vector<GroundEvent> from_all_ways(std::uint32_t record, double scale);
 
 // An object, seen from the side in the plane in which its support ends nearest to below its centre,
 // and in the one across that. It is taken to move in each of them by itself: what stands on a
-// rectangle rocks over the edges of it. Friction counts in full in both.
+// rectangle rocks over the edges of it. Of the friction each plane has the share that the shaking
+// has in it, since what slides goes where it is shaken and is held as a whole.
 struct ShakenObject {
     std::array<std::array<double, 2>, 2> way{};  // unit, which is ahead
     std::array<Profile, 2> body{};
@@ -34,10 +35,15 @@ struct ShakenObject {
 };
 ShakenObject shaken_object(const RiskObject& object, const Stance& stance, const Columns& columns);
 
-// How each object moves in each event, in its two planes: by object, then event. Where an object's
-// index is not in `which`, there is none. endless: supports go on for ever, so that slips tell how
-// far it would have gone.
-using Motions = std::vector<std::vector<std::array<Motion, 2>>>;
+// How an object moves in an event, in its two planes, and the correlation of what shakes it in
+// them.
+struct PlaneMotions {
+    std::array<Motion, 2> in{};
+    double together = 0;
+};
+// By object, then event. Where an object's index is not in `which`, there is none. endless:
+// supports go on for ever, so that slips tell how far it would have gone.
+using Motions = std::vector<std::vector<PlaneMotions>>;
 Motions shake_objects(device::Device& device, std::span<const ShakenObject> objects,
                       std::span<const std::size_t> which, std::span<const Accelerogram> records,
                       std::span<const GroundEvent> events, double friction, bool endless);

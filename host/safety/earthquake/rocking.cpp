@@ -70,9 +70,9 @@ struct Chunks {
     }
 };
 
-template <class T>
-std::vector<T> joined(const std::array<std::vector<T>, 3>& planes) {
-    std::vector<T> out;
+template <class Planes>
+auto joined(const Planes& planes) {
+    typename Planes::value_type out;
     for (const auto& plane : planes) out.insert(out.end(), plane.begin(), plane.end());
     // A buffer has one element at least.
     if (out.empty()) out.push_back({});
@@ -88,7 +88,7 @@ device::Buffer<T> on(device::Device& device, const std::vector<T>& values, const
 struct Batch {
     std::vector<std::uint32_t> source;  // index into the shakings; none: padding
     std::vector<std::uint32_t> body, block_record;
-    std::array<std::vector<float>, 3> scale;
+    std::array<std::vector<float>, 4> scale;
     static constexpr std::uint32_t none = ~std::uint32_t{0};
 
     void add(std::uint32_t index, const Shaking& s) {
@@ -106,6 +106,7 @@ struct Batch {
         scale[0].push_back(static_cast<float>(s.along));
         scale[1].push_back(static_cast<float>(s.across));
         scale[2].push_back(static_cast<float>(s.up));
+        scale[3].push_back(static_cast<float>(s.grip));
     }
 };
 
@@ -209,7 +210,7 @@ std::vector<Motion> shake(device::Device& device, std::span<const Profile> bodie
                                               " or no record " + std::to_string(s.record));
         if (fineness[s.body] < 0) continue;
         const Profile& body = bodies[s.body];
-        const double least = std::min(friction, body.least_base_m() / body.height_m);
+        const double least = std::min(s.grip * friction, body.least_base_m() / body.height_m);
         order.push_back({fineness[s.body], s.record,
                          std::hypot(s.along, s.across) / std::max(least, 1e-6),
                          static_cast<std::uint32_t>(n)});

@@ -22,10 +22,12 @@ struct Profile {
     double least_base_m() const { return ahead_m < behind_m ? ahead_m : behind_m; }
 };
 
-// A record acts on a body: its components, of which the level two add up, are multiplied.
+// A record acts on a body: its components, of which the level two add up, are multiplied. Of the
+// friction it has a share, as the rest holds the body against what shakes it across.
 struct Shaking {
     std::uint32_t body = 0, record = 0;  // indices
     double along = 0, across = 0, up = 0;
+    double grip = 1;
 };
 
 // How far it came, each way: the largest turn about an edge, and the largest slip over the ground.

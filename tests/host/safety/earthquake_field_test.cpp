@@ -10,6 +10,7 @@
 #include "physics/landscape.h"
 #include "room.h"
 #include "safety/columns.h"
+#include "safety/earthquake/ground_motion.h"
 #include "safety/earthquake/rocking.h"
 #include "safety/fields.h"
 #include "safety/objects.h"
@@ -50,6 +51,39 @@ TEST(Earthquake, UnknownBodiesAndRecordsAreRefused) {
     EXPECT_TRUE(shake(*device, bodies, records, {}, mu).empty());
     for (const Shaking& wrong : {Shaking{1, 0, 1, 0, 0}, Shaking{0, 1, 1, 0, 0}})
         EXPECT_THROW(shake(*device, bodies, records, std::vector{wrong}, mu), Error);
+}
+
+// What slides is held by all of its friction, whatever way it is shaken: its slips in both planes
+// are those of Newmark's s = (a - mu g) a t^2 / (2 mu g) along that way.
+TEST(Earthquake, SlipsFarEnoughWhateverTheWay) {
+    const auto device = device::open_native(1);
+    ShakenObject slab{{{{1, 0}, {0, 1}}}, {}, true, 0};
+    slab.body.fill({0.5, 0.5, 0.1, 0.3, INFINITY, INFINITY});
+    const double a = 4, t = 0.25 * 99.5 / 100;  // the last sample falls to 0 within a step
+    Accelerogram both = square_pulse(a / std::sqrt(2.0), 0.25);
+    both.across_m_s2 = both.m_s2;
+    const std::vector records{square_pulse(a, 0.25), both};
+    const double way = (a - mu * gravity) * a * t * t / (2 * mu * gravity);
+    std::vector<GroundEvent> events = from_all_ways(0, 1);
+    const std::vector<GroundEvent> of_both = from_all_ways(1, 1);
+    events.insert(events.end(), of_both.begin(), of_both.end());
+    const std::vector<std::size_t> which{0};
+    const Motions found =
+        shake_objects(*device, std::vector{slab}, which, records, events, mu, true);
+    ASSERT_EQ(found[0].size(), events.size());
+    for (std::size_t e = 0; e < events.size(); ++e) {
+        SCOPED_TRACE(e);
+        const auto& [x, y] = found[0][e].in;
+        const double slid_x = double{x.slid_ahead_m} - x.slid_behind_m,
+                     slid_y = double{y.slid_ahead_m} - y.slid_behind_m;
+        EXPECT_NEAR(std::hypot(slid_x, slid_y), way, 0.03 * way);
+        const double turn = events[e].record == 0 ? 0 : M_PI / 4;
+        const double towards = std::atan2(events[e].dy, events[e].dx) + turn;
+        EXPECT_NEAR(slid_x, way * std::cos(towards), 0.03 * way);
+        EXPECT_NEAR(slid_y, way * std::sin(towards), 0.03 * way);
+        const bool one_plane = std::min(std::abs(slid_x), std::abs(slid_y)) < 0.01 * way;
+        EXPECT_NEAR(found[0][e].together, one_plane ? 0 : slid_x * slid_y > 0 ? 1 : -1, 1e-9);
+    }
 }
 
 TEST(Earthquake, TippingEnergyOfTheBox) {
