@@ -7,7 +7,8 @@
 Each item of the 2nd edition's fragility database (v3.1.2, groups E20.22, contents, unanchored) becomes a scan, points
 on the faces of a box of its depth and height that stands on a floor, or on a table; `topple parse` finds it there, and
 its median and dispersion are compared with FEMA's. FEMA's own velocities were computed from the items' proportions,
-for rocking without slip, so these boxes stand on friction 0.8. The accelerations are judgement from surveys; friction
+for rocking without slip, so these boxes stand on friction 1: b / h is 0.62 at most, which shaken askew takes up to
+sqrt(2) times that. The accelerations are judgement from surveys; friction
 is as the item is named there, from tables of engineers: rubber 0.7, smooth 0.25 to 0.3, glass or metal on wood 0.2. What
 stands on furniture is shaken by that: 2.5 times as strongly as the floor, as building codes reckon flexible components
 (a_p of ASCE 7, chapter 13), unless --amplification says otherwise.
@@ -40,7 +41,7 @@ THINGS = [('fragile on a shelf', 0.10, 0.20, 0.30, 0.3, 0.40, 0.6),
           ('desktop electronics, slip-resistant', 0.35, 0.40, 0.75, 0.7, 1.0, 0.5),
           ('desktop electronics, smooth', 0.35, 0.40, 0.75, 0.25, 0.4, 0.5),
           ('home entertainment', 0.40, 0.40, 0.60, 0.4, 0.8, 0.45)]
-FRICTION = 0.8
+FRICTION = 1.0
 SPACING_M = 0.012
 
 

@@ -108,10 +108,12 @@ Motions shake_objects(device::Device& device, std::span<const ShakenObject> obje
             if (endless) body.support_ahead_m = body.support_behind_m = INFINITY;
             bodies.push_back(body);
             for (const GroundEvent& e : events) {
-                const auto [along, across] = in_record(e, objects[o].way[p]);
+                const auto in = in_record(e, objects[o].way[p]);
+                const double share = moments[e.record].share(in);
+                // Rounding alone shakes it across the only way that it is shaken.
+                const double scale = share > 1e-6 ? e.scale : 0;
                 shakings.push_back({static_cast<std::uint32_t>(bodies.size() - 1), e.record,
-                                    e.scale * along, e.scale * across, e.scale,
-                                    moments[e.record].share({along, across})});
+                                    scale * in[0], scale * in[1], e.scale, share});
             }
         }
     }
