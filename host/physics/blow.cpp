@@ -10,6 +10,10 @@
 namespace topple::physics {
 namespace {
 
+// A blow below the centre that meets an edge askew throws the body back onto a corner, and more is
+// lost when it comes down: so many times the energy in the mean of things struck in MuJoCo.
+constexpr double on_a_corner = 1.25;
+
 // Blows of more than so many times the least energy that could tip it are not looked at.
 constexpr double most_speed = 32;
 
@@ -121,11 +125,33 @@ class Pivot {
     bool goes_over(double angle, double turn, int s) const {
         if (turn < 0) return false;
         const double b = radius_ * std::sin(top_ - angle), h = radius_ * std::cos(top_ - angle);
-        if (s < 0 && slipping2(1) > 0 && h * b > mu_ * (k2_ + h * h)) {
-            const double stiff = h_ + mu_ * b_, over = (b_ - mu_ * h_) / stiff - angle;
-            return turn >= std::sqrt(gravity * stiff / slipping2(1)) * over;
-        }
+        if (s < 0 && h * b > mu_ * (k2_ + h * h)) return slips_on(angle, turn);
+        return has_energy(angle, turn);
+    }
+    bool has_energy(double angle, double turn) const {
         return pinned2_ * square(turn) / 2 >= gravity * radius_ * (1 - std::cos(top_ - angle));
+    }
+    // From an edge at rest that does not hold, forwards: until it is over, turns back, or the edge
+    // comes to rest again. Steps of the equations of the kernel `rocking`.
+    bool slips_on(double angle, double turn) const {
+        const double step = 0.05 * std::sqrt(pinned2_ / (gravity * radius_));
+        constexpr int most_steps = 400;
+        double slip = 0;
+        for (int n = 0; n < most_steps; ++n) {
+            const double middle = angle + step / 2 * turn;
+            const double b = radius_ * std::sin(top_ - middle),
+                         h = radius_ * std::cos(top_ - middle);
+            const double eased = std::max(k2_ + b * b - mu_ * h * b, k2_ / 16);
+            const double pressed = std::max(gravity - h * square(turn), 0.0) / eased;  // N / M k^2
+            const double bends = pressed * (mu_ * h - b);
+            slip += step * (-mu_ * k2_ * pressed - h * bends - b * square(turn));
+            angle += step * (turn + step / 2 * bends);
+            turn += step * bends;
+            if (angle >= top_) return true;
+            if (slip <= 0) return has_energy(angle, turn);
+            if (turn <= 0) return false;
+        }
+        return false;
     }
     // exp(l t) at which the angle is that of the edge's top.
     double over(const Slip& slip) const {
@@ -222,7 +248,9 @@ double tips_ahead_m_s(const Upright& body, double z_m, double friction, double a
                                     free_share(body, z_m));
     }
     const Pivot behind(body.behind_m, body.height_m, body.gyration_m, friction);
-    return ahead.least_speed(struck_low(body, ahead, behind, z_m, friction), free_share(body, z_m));
+    const Turning start = struck_low(body, ahead, behind, z_m, friction);
+    const double more = aside > 0 ? std::sqrt(on_a_corner) : 1;
+    return more * ahead.least_speed(start, free_share(body, z_m));
 }
 
 double tips_behind_m_s(const Upright& body, double z_m, double friction) {

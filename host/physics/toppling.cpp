@@ -82,9 +82,7 @@ Toppling::Toppling(const Candidate& candidate, const Body& body, const Stability
             const Upright side = upright(tip.way, tip.beside_m);
             for (std::size_t a = 0; a < slants; ++a) {
                 const double c = cosine_of_slant(a), aside = std::sqrt(1 - c * c) / c;
-                tip.ahead_m_s[n][a] = a > 0 && height_m(n) < center_m_
-                                          ? tip.ahead_m_s[n][0]
-                                          : tips_ahead_m_s(side, height_m(n), friction, aside);
+                tip.ahead_m_s[n][a] = tips_ahead_m_s(side, height_m(n), friction, aside);
             }
             const Upright other{side.behind_m, side.ahead_m, side.height_m, side.gyration_m};
             tip.behind_m_s[n] = tips_behind_m_s(other, height_m(n), friction);

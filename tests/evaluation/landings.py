@@ -6,8 +6,7 @@
 
 Generates rooms of each kind, parses and exports them. Each object whose fall is said to happen and that is free in the export
 is struck in the direction of its fall, all others being free as well: by impulses of rising energy, at the height at which the
-least falls by topple's table (at its centre of mass where it would slide), until it ends tilted by 20 degrees or 2 cm lower: what comes to lean,
-higher than it stood, has not fallen. Its
+least falls by topple's table (at its centre of mass where it would slide), until it ends tilted by 5 degrees or 2 cm lower. Its
 first landing is where its centre of mass, 2 cm lower or tilted by 20 degrees, first loses half of the speed at which it sinks;
 where it leans on something at once, where it ends.
 Of things that move while the room comes to rest, or that no blow upsets, there is nothing to compare; they are counted.
@@ -29,7 +28,7 @@ from rooms import UNSTABLE, add_options, chosen, generate, run
 
 SETTLING_S, WATCHED_S = 0.5, 3.0
 MOVED_M, MOVED_DEG = 0.01, 2.0
-LIES_DEG, FELL_M, SINKS_M_S = 20.0, 0.02, 0.1
+FELL_DEG, LIES_DEG, FELL_M, SINKS_M_S = 5.0, 20.0, 0.02, 0.1
 WITHIN_M = 0.3
 TIMES = (1.05, 1.4, 2, 3, 4.5, 7, 10, 15, 25, 40)  # what the table says
 STATE = mujoco.mjtState.mjSTATE_INTEGRATION
@@ -138,7 +137,7 @@ class Room:
                 break
         if sum(data.warning[w].number for w in UNSTABLE) > unstable:  # it says nothing
             raise OverflowError
-        if tilt() < LIES_DEG and data.xipos[body][2] > start[2] - FELL_M:
+        if tilt() < FELL_DEG and data.xipos[body][2] > start[2] - FELL_M:
             return None
         return lands or (data.xipos[body].copy(), tilt())
 

@@ -134,7 +134,7 @@ TEST(Blow, OnIceNothingButTheBlowTurns) {
     const double k2 = body.gyration_m * body.gyration_m, z = 0.25, arm = z - 0.15;
     // rate w = v (z - h) / (k^2 + b^2), and (k^2 + b^2) w^2 / 2 = the barrier.
     const double v = std::sqrt(2 * rise(body) * (k2 + 0.05 * 0.05)) / arm;
-    EXPECT_NEAR(tips_ahead_m_s(body, z, 0), v, 0.03 * v) << "its angles are not that small";
+    EXPECT_NEAR(tips_ahead_m_s(body, z, 0), v, 0.04 * v) << "its angles are not that small";
     EXPECT_TRUE(std::isinf(tips_ahead_m_s(body, 0.15, 0))) << "at the centre it glides away";
     EXPECT_TRUE(std::isinf(tips_behind_m_s(body, 0.15, 0)));
     EXPECT_NEAR(sliding_share(body, 0.15, 0.3), 1, 1e-12);
