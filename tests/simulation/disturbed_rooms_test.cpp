@@ -25,7 +25,7 @@
 namespace topple::simulation {
 namespace {
 
-constexpr double mu = 0.3, voxel_m = 0.025;
+constexpr double mu = 0.3, voxel_m = 0.025, short_step_s = 1.0 / 960;
 
 double whole(double metres) {
     return voxel_m * std::round(metres / voxel_m);
@@ -101,7 +101,8 @@ struct Layout {
 };
 
 // One object among the others, which stay where they are; what it carries is left out.
-Simulation of_object(const Layout& layout, const safety::Surroundings& around, std::int32_t id) {
+Simulation of_object(const Layout& layout, const safety::Surroundings& around, std::int32_t id,
+                     double step_s) {
     const SolidCells& cells = *around.cells;
     std::map<std::int32_t, std::vector<Cell>> parts;
     std::vector<Cell> fixed;
@@ -115,7 +116,7 @@ Simulation of_object(const Layout& layout, const safety::Surroundings& around, s
     }
     LooseBody body{voxel_m, 700, {}};
     for (auto& [primitive, part] : parts) body.parts.push_back(std::move(part));
-    return {body, fixed, mu};
+    return {body, fixed, mu, step_s};
 }
 
 double at_time(const Accelerogram& record, double seconds) {
@@ -152,7 +153,7 @@ class SlowDisturbances : public ::testing::Test {
 
     // Each event of each object: what topple says of it, and the simulator.
     template <typename Fields, typename Falls>
-    Tally compare(const char* what, const Fields& fields, const Falls& falls) {
+    Tally compare(const char* what, double step_s, const Fields& fields, const Falls& falls) {
         Tally all, objects, whatever_way;
         std::map<std::string, Tally> by_name;
         for (std::uint64_t seed = 1; seed <= layouts; ++seed) {
@@ -163,7 +164,7 @@ class SlowDisturbances : public ::testing::Test {
                     const safety::RiskObject& object = scene.at_risk[o];
                     if (object.grounded) continue;
                     Simulation simulation =
-                        of_object(layout, scene.around, static_cast<std::int32_t>(o));
+                        of_object(layout, scene.around, static_cast<std::int32_t>(o), step_s);
                     bool own_ever = false, theirs_ever = false;
                     for (std::size_t e = 0; e < field.work[o].size(); ++e) {
                         const safety::WorkSample& event = field.work[o][e];
@@ -202,7 +203,7 @@ TEST_F(SlowDisturbances, Earthquake) {
         return r;
     };
     const Tally tally = compare(
-        "earthquake",
+        "earthquake", short_step_s,
         [&](const test::AssessedRoom& scene, std::uint64_t seed) {
             safety::EarthquakeOptions options;
             options.record = record(seed);
@@ -230,7 +231,7 @@ TEST_F(SlowDisturbances, Earthquake) {
 TEST_F(SlowDisturbances, Wind) {
     safety::WindOptions options;
     const Tally tally = compare(
-        "wind",
+        "wind", short_step_s,
         [&](const test::AssessedRoom& scene, std::uint64_t seed) {
             options.speed_m_s = 10 + 4 * static_cast<double>(seed);
             return std::vector{safety::wind_field(*device, scene.around, scene.at_risk, options)};
@@ -257,7 +258,7 @@ TEST_F(SlowDisturbances, Wind) {
 // A strike gives its energy to the body, of motion and turning together, at its height.
 TEST_F(SlowDisturbances, Human) {
     const Tally tally = compare(
-        "human",
+        "human", 1.0 / 240,
         [&](const test::AssessedRoom& scene, std::uint64_t seed) {
             safety::HumanOptions options;
             options.seed = seed;

@@ -31,7 +31,10 @@ LooseBody without_rough_underside(LooseBody body, std::span<const Cell> fixed);
 // side, so that it would begin deep in its surroundings and be thrown out of them.
 class Simulation {
   public:
-    Simulation(const LooseBody& body, std::span<const Cell> fixed, double friction);
+    // step_s: what is shaken or pushed for seconds takes short ones. In steps of 1/240 s a quarter
+    // of the falls in earthquakes come out otherwise than in steps of 1/960 s.
+    Simulation(const LooseBody& body, std::span<const Cell> fixed, double friction,
+               double step_s = 1.0 / 240);
     ~Simulation();
     Simulation(Simulation&&) noexcept;
 
@@ -63,6 +66,7 @@ class Simulation {
   private:
     struct World;
     std::unique_ptr<World> world_;
+    double step_s_;
 };
 
 }  // namespace topple::simulation
