@@ -176,9 +176,9 @@ TEST_F(SlowRisk, FallsWithTheWeightOfTheBase) {
             topple::Random random(static_cast<std::uint64_t>(400 + n));
             seed = static_cast<std::uint64_t>(n + 1);
             const double pole = n % 2 ? 0.1 : 0.15, foot = pole + 0.1;
-            const double high = whole(random.uniform(0.8, 1.2)), to = 0.05 + pole;
+            const double high = whole(random.uniform(1.2, 1.6)), to = 0.05 + pole;
             wind_m_s = random.uniform(20, 26);
-            pga_m_s2 = random.uniform(3, 6);
+            pga_m_s2 = random.uniform(4, 7);
             const double plate_m3 = foot * foot * 0.1, pole_m3 = pole * pole * high;
             const double mass = 700 * (plate_m3 + pole_m3);
             std::vector<safety::Risk> series;
@@ -281,7 +281,9 @@ TEST_F(SlowRisk, RisesWithThePeakOfTheGround) {
             mean[p].mean_J += shaken.mean_J / variants;
             mean[p].chance += shaken.chance / variants;
         }
-        expect_rises(series, named("pulses", n));
+        // What slides nearly as early as it rocks does not fall.
+        const double slender = std::min(column.width, column.depth) / column.height;
+        expect_rises(series, named("pulses", n), Of::both, slender < 0.6 * mu);
     }
     expect_rises(mean, "records, mean");
     EXPECT_EQ(mean.front().chance, 0);
