@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "perf/peers/landscape_peers.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <string>
 
 #include "perf/landscape_stages.h"
 #include "perf/peers/bullet_pushes.h"
+#include "perf/peers/script.h"
 #include "physics/hull_landscape.h"
-#include "topple/error.h"
 
 namespace topple::perf {
 namespace {
@@ -29,25 +25,15 @@ const Result* first_of(const std::vector<Result>& own, const char* name) {
 std::optional<Result> compare_with_trimesh(const std::vector<Result>& own) {
     const Result* mine = first_of(own, "landscapes/hulls");
     if (!mine) return std::nullopt;
-    const auto path = std::filesystem::temp_directory_path() /
-                      ("topple-hulls-" + std::to_string(getpid()) + ".txt");
-    std::ofstream file(path);
-    file.precision(17);
+    std::ostringstream text;
+    text.precision(17);
     for (const auto& hull : hull_points()) {
-        for (const Vec3& p : hull) file << p[0] << ' ' << p[1] << ' ' << p[2] << ' ';
-        file << '\n';
+        for (const Vec3& p : hull) text << p[0] << ' ' << p[1] << ' ' << p[2] << ' ';
+        text << '\n';
     }
-    file.close();
-    if (!file) throw Error(ErrorKind::input, path.string() + ": can't be written");
-    const std::string command =
-        "python3 " TOPPLE_PERF_DIR "/peers/trimesh_poses.py '" + path.string() + "'";
-    std::string answer;
-    if (std::FILE* pipe = popen(command.c_str(), "r")) {
-        char text[256];
-        while (std::fgets(text, sizeof(text), pipe)) answer += text;
-        pclose(pipe);
-    }
-    std::filesystem::remove(path);
+    const ScriptFile file("hulls.txt");
+    file.write(text.str());
+    const std::string answer = answer_of("trimesh_poses.py", {&file});
     Result peer;
     std::istringstream words(answer);
     std::string version;

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "perf/peers/cloud_peers.h"
 #include "perf/peers/octomap_carving.h"
 #include "perf/peers/pcl_segmentation.h"
 #include "scenes/score.h"
@@ -34,10 +35,10 @@ void print_row(const Result& own, const Result& peer) {
 }
 
 void print_segments(const StageScene& scene, std::span<const std::int32_t> label,
-                    const PeerSegments& peer) {
+                    std::span<const std::int32_t> peer) {
     const auto& truth = scene.sequence.part_of_point;
     const auto own = scenes::segmentation_score(truth, label);
-    const auto theirs = scenes::segmentation_score(truth, peer.label);
+    const auto theirs = scenes::segmentation_score(truth, peer);
     std::printf("part mIoU %.3f against %.3f, Hamming %.3f against %.3f\n", own.miou, theirs.miou,
                 own.hamming, theirs.hamming);
 }
@@ -74,9 +75,19 @@ std::vector<Result> compare_with_peers(const StageScene& scene, const StageRun& 
         results.push_back(peer_result("segmentation/" + peer->name, peer->library,
                                       segmentation.work, peer->normals_s + peer->segments_s));
         print_row(segmentation, results.back());
-        print_segments(scene, own.label, *peer);
+        print_segments(scene, own.label, peer->label);
     }
     if (results.empty()) std::printf("PCL: not in this build; apt-get install libpcl-dev\n");
+    for (const CloudPeer& peer : cloud_peers(scene.ingested.cloud)) {
+        const bool segments = !peer.label.empty();
+        const Result& mine = segments ? segmentation : result_of(own, "segmentation/normals");
+        results.push_back(peer_result(peer.name, peer.library, mine.work, peer.seconds));
+        print_row(mine, results.back());
+        if (segments)
+            print_segments(scene, own.label, peer.label);
+        else
+            std::printf("%s\n", peer.library.c_str());
+    }
     const Result& carving = result_of(own, "carving");
     Agreement agreement;
     const auto map =
