@@ -131,8 +131,11 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
             if (!shares.empty()) out.people_share = shares;
         }
     });
-    out.gust_m_s =
-        stage("gusts", [&] { return safety::tipping_gusts(device, around, at_risk, {}); });
+    out.gust_m_s = stage("gusts", [&] {
+        for (const safety::Disturbance& disturbance : out.disturbances)
+            if (!disturbance.gust_m_s.empty()) return disturbance.gust_m_s;
+        return safety::tipping_gusts(device, around, at_risk, {});
+    });
     stage("risk", [&] { weigh_risks(at_risk, out); });
     stage("advice", [&] {
         out.advice =

@@ -92,6 +92,7 @@ struct Disturbance {
     std::function<std::vector<std::vector<WorkSample>>(std::span<const RiskObject>)> work_if;
     std::vector<Push> strongest;       // by object: of all its events
     std::vector<Fragility> fragility;  // by object, of an earthquake
+    std::vector<double> gust_m_s;      // of wind from all sides: as tipping_gusts has it
     std::vector<std::string> notes;    // e.g. no walkable floor was found
 };
 

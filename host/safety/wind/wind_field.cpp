@@ -172,6 +172,25 @@ double tipping_force(const WindLoad& load, double friction) {
     return std::numeric_limits<double>::infinity();
 }
 
+// The speed from which a gust tips it over the edge ahead; infinite where none does.
+double tipping_gust_m_s(const RiskObject& object, const WindLoad& load,
+                        const WindOptions& options) {
+    if (!(load.area_m2 > 0) || !(load.pressure_height_m > 0))
+        return std::numeric_limits<double>::infinity();
+    const double force =
+        object.mass_kg * physics::gravity * load.half_base_m / load.pressure_height_m;
+    return std::sqrt(2 * force /
+                     (options.air_density_kg_m3 * options.drag_coefficient * load.area_m2));
+}
+
+double least_gust_m_s(const RiskObject& object, std::span<const WindLoad> loads,
+                      const WindOptions& options) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const WindLoad& load : loads)
+        least = std::min(least, tipping_gust_m_s(object, load, options));
+    return std::isfinite(least) ? least : std::numeric_limits<double>::quiet_NaN();
+}
+
 }  // namespace
 
 Frontage wind_frontage(const SolidCells& solid, const Columns& columns,
@@ -234,18 +253,13 @@ std::vector<double> tipping_gusts(device::Device& device, const Surroundings& su
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (cells[o].empty() || objects[o].grounded) return;
         const Stance stands = stance(surroundings, cells[o], objects[o]);
+        std::vector<WindLoad> loads;
         for (const auto& way : directions()) {
             const Frontage front =
                 wind_frontage(*surroundings.cells, columns, cells[o], way, options.shelter_m);
-            if (!(front.area_m2 > 0)) continue;
-            const WindLoad load = load_on(objects[o], stands, front, way);
-            if (!(load.pressure_height_m > 0)) continue;
-            const double force =
-                objects[o].mass_kg * physics::gravity * load.half_base_m / load.pressure_height_m;
-            const double speed = std::sqrt(
-                2 * force / (options.air_density_kg_m3 * options.drag_coefficient * front.area_m2));
-            if (std::isfinite(speed) && !(out[o] <= speed)) out[o] = speed;
+            loads.push_back(load_on(objects[o], stands, front, way));
         }
+        out[o] = least_gust_m_s(objects[o], loads, options);
     });
     return out;
 }
@@ -304,6 +318,10 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
             const double force = wind_force(load, options);
             if (force > out.strongest[o].force_N)
                 out.strongest[o] = {force, load.pressure_height_m};
+        }
+        if (!options.from_deg) {
+            out.gust_m_s.resize(objects.size(), std::numeric_limits<double>::quiet_NaN());
+            out.gust_m_s[o] = least_gust_m_s(objects[o], gales, options);
         }
         out.response[o] = [gales = std::move(gales), options,
                            probability = 1.0 / double{directions}](const RiskObject& object) {

@@ -93,6 +93,12 @@ TEST_F(WindField, GustThatTipsTheBox) {
     const double q = std::numbers::pi / 8, wide = 0.3 * std::cos(q) + 0.2 * std::sin(q);
     EXPECT_NEAR(gusts[id],
                 std::sqrt(2 * 21 * 9.80665 * 0.4 / std::cos(q) / (1.2 * 1.3 * 0.5 * wide)), 0.1);
+    // A field of wind from all sides has them, too, and none of one side.
+    WindOptions options;
+    EXPECT_EQ(wind_field(*device, room.surroundings(), room.objects, options).gust_m_s[id],
+              gusts[id]);
+    options.from_deg = 90;
+    EXPECT_TRUE(wind_field(*device, room.surroundings(), room.objects, options).gust_m_s.empty());
 }
 
 TEST_F(WindField, FrontageFromAllSides) {
