@@ -116,6 +116,7 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         to.shake_g = from.overturning.shake_g;
         to.fragility_pga_g = from.fragility.pga_g;
         to.fragility_pga_dispersion = from.fragility.pga_dispersion;
+        to.fragility_firm_pga_g = from.fragility.firm_pga_g;
         to.fragility_pgv_m_s = from.fragility.pgv_m_s;
         to.fragility_pgv_dispersion = from.fragility.pgv_dispersion;
         to.falls_per_year = from.fragility.falls_per_year;

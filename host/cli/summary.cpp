@@ -17,9 +17,20 @@ namespace {
 
 constexpr std::size_t rows_shown = 12, sentences_shown = 3;
 
-double risk_of(const Object& o, const std::string& disturbance) {
+// "-": not reckoned.
+std::string risk_text(const Object& o, const std::string& disturbance) {
     const auto at = o.risk_J.find(disturbance);
-    return at == o.risk_J.end() ? 0 : at->second;
+    if (at == o.risk_J.end() || !o.seen_enough) return "-";
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.3g", at->second);
+    return text;
+}
+
+// Rounded to two digits, not with an exponent.
+std::string two_digits(double value) {
+    if (!(value > 0)) return io::short_number(value);
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+    return io::short_number(std::round(value / unit) * unit);
 }
 
 std::string category_text(const Object& o) {
@@ -42,7 +53,7 @@ std::string risks_text(const Scene& scene) {
         const auto& [key, follows, name, unit] = kind->words.figure;
         const auto figure = scene.events.find(key);
         if (*follows != 0 && figure != scene.events.end())
-            event += follows + io::short_number(figure->second) + " " + unit;
+            event += follows + two_digits(figure->second) + " " + unit;
         events.push_back(std::move(event));
     }
     return listed(columns, "and") +
@@ -56,8 +67,8 @@ std::string people_text(const Fall& fall) {
     if (!fall.falls || std::isnan(fall.people_share) || !(fall.hits_J > 0)) return "";
     char text[96];
     std::snprintf(text, sizeof(text),
-                  " It lands with %.2g J; of 100 people who walk through, %.0f pass there.",
-                  fall.hits_J, 100 * fall.people_share);
+                  " It lands with %s J; of 100 people who walk through, %.0f pass there.",
+                  two_digits(fall.hits_J).c_str(), 100 * fall.people_share);
     return text;
 }
 
@@ -135,7 +146,7 @@ void print_objects(const Scene& scene) {
         std::printf("%6d %8s %8s %8.3g %9s %9.3g %6s ", o.id, unsafety, category_text(o).c_str(),
                     o.mass_kg, barrier, o.release_J, o.mode.c_str());
         for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
-            std::printf("%10.3g ", risk_of(o, kind->name));
+            std::printf("%10s ", risk_text(o, kind->name).c_str());
         std::printf(" %s\n", rests_on.contains(o.id) ? rests_on[o.id].c_str() : "-");
     }
     if (movable.size() > rows_shown)

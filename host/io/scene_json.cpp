@@ -115,6 +115,7 @@ Json to_json(const Overturning& o) {
 Json to_json(const Fragility& f) {
     return {{"pga_g", number(f.pga_g)},
             {"pga_dispersion", number(f.pga_dispersion)},
+            {"firm_pga_g", number(f.firm_pga_g)},
             {"pgv_m_s", number(f.pgv_m_s)},
             {"pgv_dispersion", number(f.pgv_dispersion)},
             {"counted",
@@ -292,6 +293,7 @@ Fragility fragility_of(const Json& json) {
     Fragility f;
     f.pga_g = number_at(json, "pga_g");
     f.pga_dispersion = number_at(json, "pga_dispersion");
+    if (json.contains("firm_pga_g")) f.firm_pga_g = number_at(json, "firm_pga_g");
     f.pgv_m_s = number_at(json, "pgv_m_s");
     f.pgv_dispersion = number_at(json, "pgv_dispersion");
     for (const Json& step : json.at("counted"))

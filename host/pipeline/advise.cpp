@@ -7,6 +7,7 @@
 
 #include "physics/drop.h"
 #include "physics/landscape.h"
+#include "safety/disturbances.h"
 
 namespace topple {
 namespace {
@@ -123,6 +124,18 @@ bool leaves_room(const Landscape::Places& around) {
     return false;
 }
 
+// Nearly every event of a kind that has happened before would have upset it, and yet it stood
+// there.
+bool fell_before(std::span<const safety::Disturbance> disturbances,
+                 std::span<const std::vector<safety::Risk>> risk, std::size_t o) {
+    constexpr double nearly_all = 0.9;
+    for (std::size_t d = 0; d < disturbances.size(); ++d) {
+        const safety::DisturbanceKind* kind = safety::find_disturbance_kind(disturbances[d].name);
+        if (kind && kind->everyday && risk[d][o].chance >= nearly_all) return true;
+    }
+    return false;
+}
+
 // What holds the object upright against the strongest push of what puts it at more risk than is
 // tolerated.
 safety::Push fixing(const safety::RiskObject& object,
@@ -164,7 +177,8 @@ std::vector<Suggestion> advise(const SolidScene& solids,
         if (objects[o].grounded) continue;
         if (at_risk[o].grounded) out[o].kind = Suggestion::Kind::see;
         if (at_risk[o].grounded || !(worst[o] > tolerable_J)) continue;
-        if (at_risk[o].barrier_J <= objects[o].barrier_error_J) {
+        if (at_risk[o].barrier_J <= objects[o].barrier_error_J ||
+            fell_before(disturbances, risk, o)) {
             out[o].kind = Suggestion::Kind::check;
             out[o].risk_J = worst[o];
             continue;

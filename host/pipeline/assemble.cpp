@@ -120,7 +120,8 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
                                        : std::numeric_limits<double>::quiet_NaN();
         const safety::CategoryEnds& category = safety.category[o];
         to.unsafety_category = to.seen_enough ? safety::to_string(category.lower) : "";
-        to.unsafety_certain = to.seen_enough && category.lower == category.higher;
+        to.unsafety_certain = to.seen_enough && category.lower == category.higher &&
+                              safety.advice[o].kind != Suggestion::Kind::check;
         scene.objects.push_back(std::move(to));
     }
 }

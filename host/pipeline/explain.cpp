@@ -281,6 +281,8 @@ void foretell(const ObjectStage& objects, const SafetyStage& safety, const ToInp
         object.fall.lands_on = swept.stopped ? -1 : object.why.lands_on;
         if (swept.by >= 0)
             object.fall.leans_on = objects.object_of_primitive[static_cast<std::size_t>(swept.by)];
+        // What stops it is not taken along.
+        std::erase(object.fall.takes_along, object.fall.leans_on);
         const Suggestion& what = safety.advice[o];
         static constexpr std::array kinds{"", "see", "check", "move", "fix"};
         object.advice.kind = kinds[static_cast<std::size_t>(what.kind)];

@@ -73,6 +73,7 @@ void bind_items(py::module_& module) {
     py::class_<Fragility>(module, "Fragility")
         .def_readonly("pga_g", &Fragility::pga_g)
         .def_readonly("pga_dispersion", &Fragility::pga_dispersion)
+        .def_readonly("firm_pga_g", &Fragility::firm_pga_g)
         .def_readonly("pgv_m_s", &Fragility::pgv_m_s)
         .def_readonly("pgv_dispersion", &Fragility::pgv_dispersion)
         .def_property_readonly(

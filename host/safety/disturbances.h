@@ -50,6 +50,7 @@ struct DisturbanceKind {
                                                const ParseOptions& options);
     // What it reckons with, by names.
     std::map<std::string, double> (*events)(const ParseOptions& options);
+    bool everyday = false;  // such events have happened before the scan
 };
 
 // In the order in which they are reckoned and shown.

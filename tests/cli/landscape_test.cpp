@@ -37,7 +37,7 @@ void expect_told_summary(const std::string& out) {
     std::size_t rows = 0, told = 0;
     for (std::string line; std::getline(lines, line);) {
         char id[16], barrier[16], carriers[64];
-        if (std::sscanf(line.c_str(), " %15[0-9] %*f %*s %*f %15s %*f %*s %*f %*f %*f %63s", id,
+        if (std::sscanf(line.c_str(), " %15[0-9] %*s %*s %*f %15s %*f %*s %*s %*s %*s %63s", id,
                         barrier, carriers) == 3) {
             ++rows;
             if (std::string(barrier).starts_with("0-")) uncertain.insert(id);

@@ -98,10 +98,10 @@ void check_object(const Object& o, std::size_t objects) {
         expect(n == 0 || breaks.counted[n].pga_g > breaks.counted[n - 1].pga_g,
                "peaks of earthquakes don't rise");
     }
-    expect(std::isnan(breaks.pga_g) == std::isnan(breaks.pga_dispersion) &&
+    expect((!std::isnan(breaks.pga_g) || std::isnan(breaks.pga_dispersion)) &&
                std::isnan(breaks.pgv_m_s) == std::isnan(breaks.pgv_dispersion),
-           "a median without its dispersion");
-    for (const double v : {breaks.pga_g, breaks.pga_dispersion, breaks.pgv_m_s,
+           "a dispersion without its median");
+    for (const double v : {breaks.pga_g, breaks.pga_dispersion, breaks.firm_pga_g, breaks.pgv_m_s,
                            breaks.pgv_dispersion, breaks.falls_per_year, breaks.return_years})
         if (!std::isnan(v)) expect_amount(v, "how an earthquake upsets an object");
     const DirectedBarrier& directed = o.barrier_by_direction;

@@ -152,7 +152,10 @@ struct Fragility {
         double pga_g = 0;
         double chance = 0;  // share of the records and directions in which it fell
     };
-    double pga_g = none, pga_dispersion = none;         // of peak ground acceleration, over g
+    // Of peak ground acceleration, over g; where counts level off below 9 in 10, as those of what
+    // slides from some sides do, the peak at which half falls, and no dispersion.
+    double pga_g = none, pga_dispersion = none;
+    double firm_pga_g = none;                           // the same median if its foot can't slide
     double pgv_m_s = none, pgv_dispersion = none;       // of peak ground velocity
     std::vector<Step> counted;                          // by rising peaks; empty: not asked for
     double falls_per_year = none, return_years = none;  // with a hazard curve

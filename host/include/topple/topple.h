@@ -198,6 +198,7 @@ typedef struct topple_object {
     /* earthquakes half of which upset it (struct Fragility of topple/scene.h); NaN: none of those
      * that were tried. The rates are NaN without a hazard curve. */
     double fragility_pga_g, fragility_pga_dispersion, fragility_pgv_m_s, fragility_pgv_dispersion;
+    double fragility_firm_pga_g;
     double falls_per_year, return_years;
     /* S(W) by direction and height (struct DirectedBarrier of topple/scene.h): blow_heights numbers
      * in blow_height_m, 16 in push_barrier_J, 16 rows of blow_heights in blow_barrier_J; infinity:

@@ -18,27 +18,30 @@ function fragilityText(object) {
   const round = value => Number(value.toPrecision(2)), strongest = f.counted[f.counted.length - 1];
   const rate = f.return_years === null || f.return_years === undefined ? '' :
     ` Where it stands, it falls once in ${round(f.return_years)} years on average.`;
+  // Friction is a guess: on what does not let it slide it may go over earlier.
+  const slides = typeof f.firm_pga_g === 'number' && !(f.pga_g !== null && f.pga_g < 1.1 * f.firm_pga_g) ?
+    ` as long as it can slide; where it can't, half of those with peaks of ${round(f.firm_pga_g)} g do` : '';
   if (f.pga_g === null) {
     return strongest.chance > 0 ?
-      `Of earthquakes with peaks of ${round(strongest.pga_g)} g, ${Math.round(100 * strongest.chance)} % upset it.${rate}` :
-      `No earthquake with peaks of up to ${round(strongest.pga_g)} g upsets it.`;
+      `Of earthquakes with peaks of ${round(strongest.pga_g)} g, ${Math.round(100 * strongest.chance)} % turn it over or move it off${slides}.${rate}` :
+      `No earthquake with peaks of up to ${round(strongest.pga_g)} g turns it over or moves it off${slides}.`;
   }
-  const speed = f.pgv_m_s === null ? '' : ` or ${round(f.pgv_m_s)} m/s`;
-  return `Half of all earthquakes with peaks of ${round(f.pga_g)} g${speed} upset it.${rate}`;
+  const speed = f.pgv_m_s === null ? '' : ` or peak velocities of ${round(f.pgv_m_s)} m/s`;
+  return `Half of all earthquakes with peaks of ${round(f.pga_g)} g${speed} turn it over or move it off${slides}.${rate}`;
 }
 
 // The curve; null where nothing was counted.
 function fragilityChart(object) {
   const f = object.fragility;
   if (!f || !f.counted || f.counted.length < 2) return null;
-  const width = 300, height = 120, left = 34, right = 8, top = 8, bottom = 26;
+  const width = 300, height = 120, left = 40, right = 8, top = 8, bottom = 26;
   const low = Math.log(f.counted[0].pga_g), high = Math.log(f.counted[f.counted.length - 1].pga_g);
   const x = pga => left + (Math.log(pga) - low) / (high - low) * (width - left - right);
   const y = chance => height - bottom - chance * (height - top - bottom);
   const svg = svgElement('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img',
     'aria-label': 'Chance of falling over the peak acceleration of an earthquake'});
   svg.append(svgElement('path', {class: 'axis', d: `M${left} ${top}V${height - bottom}H${width - right}`}));
-  if (f.pga_g !== null) {
+  if (f.pga_g !== null && f.pga_dispersion !== null) {
     const points = [];
     for (let n = 0; n <= 60; n++) {
       const pga = Math.exp(low + (high - low) * n / 60);

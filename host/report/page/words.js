@@ -53,6 +53,7 @@ function causesOf(object) {
 }
 
 function upsetText(object) {
+  if (object.seen_enough === false) return 'Its risk is not reckoned: nothing was seen to hold it.';
   const names = causesOf(object);
   if (!names.length) return 'Upset by nothing that was reckoned with.';
   const chances = names.map(name => chanceText(name, (object.fall_chance || {})[name])).filter(text => text);

@@ -83,9 +83,21 @@ std::optional<Lognormal> fit_lognormal(std::span<const Trials> trials) {
     return Lognormal{std::exp(-a / b), 1 / b};
 }
 
+double half_falls_g(const Fragility& fragility) {
+    const auto& counted = fragility.counted;
+    for (std::size_t n = 0; n < counted.size(); ++n) {
+        if (counted[n].chance < 0.5) continue;
+        if (n == 0) return counted[n].pga_g;
+        const auto &low = counted[n - 1], &high = counted[n];
+        const double way = (0.5 - low.chance) / (high.chance - low.chance);
+        return low.pga_g * std::pow(high.pga_g / low.pga_g, way);
+    }
+    return Fragility::none;
+}
+
 double falls_per_year(const HazardCurve& hazard, const Fragility& fragility) {
     const auto chance = [&](double pga_g) {
-        return std::isfinite(fragility.pga_g)
+        return std::isfinite(fragility.pga_dispersion)
                    ? Lognormal{fragility.pga_g, fragility.pga_dispersion}.chance(pga_g)
                    : counted_chance(fragility, pga_g);
     };

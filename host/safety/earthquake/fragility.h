@@ -30,7 +30,12 @@ std::optional<Lognormal> fit_lognormal(std::span<const Trials> trials);
 
 // How many falls a year: the integral of the chance of falling over the annual rates at which peaks
 // come. Peaks beyond the curve's last count as that one; those below its first as none. Without a
-// lognormal the chance is that of the steps, straight between them over the peak's logarithm.
+// dispersion the chance is that of the steps, straight between them over the peak's logarithm.
 double falls_per_year(const HazardCurve& hazard, const Fragility& fragility);
+
+// Chances at one strength over the next; where they reach 9 in 10, a lognormal describes them.
+inline constexpr double least_of_all = 0.9;
+// The first peak at which half falls, between the steps as above; NaN where none is.
+double half_falls_g(const Fragility& fragility);
 
 }  // namespace topple::safety

@@ -16,6 +16,7 @@ namespace topple::safety {
 namespace {
 
 constexpr double weakest_g = 0.05, next_g = 1.4, strongest_g = 4;
+constexpr double firm_friction = 2;
 
 // Outward normal of the edge of the support nearest to below the centre.
 std::array<double, 2> weakest_way(const RiskObject& object, const Stance& stance) {
@@ -66,6 +67,14 @@ class LevelMoments {
     }
     double aa_ = 0, ab_ = 0, bb_ = 0;
 };
+
+// b / h, where it is least.
+double slenderness(const ShakenObject& object) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Profile& body : object.body)
+        if (body.height_m > 0) least = std::min(least, body.least_base_m() / body.height_m);
+    return least;
+}
 
 // A level way by the record's components.
 std::array<double, 2> in_record(const GroundEvent& event, const std::array<double, 2>& way) {
@@ -149,33 +158,50 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
             events.insert(events.end(), ways.begin(), ways.end());
         }
     }
-    const Motions motions = shake_objects(device, objects, which, records, events, friction, false);
-    for (const std::size_t o : which) {
-        std::vector<Trials> by_acceleration, by_velocity;
-        for (const double g : levels_g) by_acceleration.push_back({g, 0, 0});
+    const auto fell = [&](const Motions& motions, std::size_t o, std::size_t e) {
+        const auto& [weak, across] = motions[o][e].in;
+        return !objects[o].held || weak.fell(objects[o].body[0]) || across.fell(objects[o].body[1]);
+    };
+    const auto count = [&](const Motions& motions, std::size_t o, std::vector<Trials>& peaks,
+                           std::vector<Trials>& speeds) {
+        peaks.clear();
+        speeds.clear();
+        for (const double g : levels_g) peaks.push_back({g, 0, 0});
         for (std::size_t e = 0; e < events.size(); e += direction_count) {
             const std::size_t level = e / direction_count % levels_g.size();
             unsigned falls = 0;
-            for (unsigned d = 0; d < direction_count; ++d) {
-                const auto& [weak, across] = motions[o][e + d].in;
-                falls += !objects[o].held || weak.fell(objects[o].body[0]) ||
-                         across.fell(objects[o].body[1]);
-            }
-            by_acceleration[level].falls += falls;
-            by_acceleration[level].of += direction_count;
-            by_velocity.push_back(
+            for (unsigned d = 0; d < direction_count; ++d) falls += fell(motions, o, e + d);
+            peaks[level].falls += falls;
+            peaks[level].of += direction_count;
+            speeds.push_back(
                 {levels_g[level] * velocity[events[e].record], falls, direction_count});
         }
-        const auto with_error = [&](double dispersion) {
-            return std::min(most_dispersion, std::hypot(dispersion, objects[o].base_error_share));
-        };
-        Fragility& f = out[o];
-        for (const Trials& t : by_acceleration)
+    };
+    const auto set_median = [](std::span<const Trials> peaks, Fragility& f) {
+        f.counted.clear();
+        for (const Trials& t : peaks)
             f.counted.push_back({t.strength, static_cast<double>(t.falls) / t.of});
-        if (const auto fitted = fit_lognormal(by_acceleration)) {
-            f.pga_g = fitted->median;
-            f.pga_dispersion = with_error(fitted->dispersion);
-            if (const auto by_speed = fit_lognormal(by_velocity)) {
+        const auto fitted = fit_lognormal(peaks);
+        const bool levels_off = f.counted.back().chance < least_of_all;
+        f.pga_g = levels_off ? half_falls_g(f) : fitted ? fitted->median : Fragility::none;
+        f.pga_dispersion = fitted && !levels_off ? fitted->dispersion : Fragility::none;
+    };
+    std::vector<Trials> peaks, speeds;
+    const Motions motions = shake_objects(device, objects, which, records, events, friction, false);
+    for (const std::size_t o : which) {
+        count(motions, o, peaks, speeds);
+        Fragility& f = out[o];
+        set_median(peaks, f);
+        f.firm_pga_g = f.pga_g;
+        if (std::isfinite(f.pga_dispersion)) {
+            // What slides does not go with b / h.
+            const double error =
+                slenderness(objects[o]) < friction ? objects[o].base_error_share : 0;
+            const auto with_error = [&](double dispersion) {
+                return std::min(most_dispersion, std::hypot(dispersion, error));
+            };
+            f.pga_dispersion = with_error(f.pga_dispersion);
+            if (const auto by_speed = fit_lognormal(speeds)) {
                 f.pgv_m_s = by_speed->median;
                 f.pgv_dispersion = with_error(by_speed->dispersion);
             }
@@ -184,6 +210,18 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
             f.falls_per_year = falls_per_year(*hazard, f);
             f.return_years = f.falls_per_year > 0 ? 1 / f.falls_per_year : Fragility::none;
         }
+    }
+    // Of what may slide before it rocks, shaken askew.
+    std::vector<std::size_t> sliding;
+    for (const std::size_t o : which)
+        if (objects[o].held && slenderness(objects[o]) > 0.6 * friction) sliding.push_back(o);
+    const Motions firm = shake_objects(device, objects, sliding, records, events,
+                                       std::max(friction, firm_friction), false);
+    for (const std::size_t o : sliding) {
+        count(firm, o, peaks, speeds);
+        Fragility f;
+        set_median(peaks, f);
+        out[o].firm_pga_g = f.pga_g;
     }
     return out;
 }

@@ -51,7 +51,8 @@ Motions shake_objects(device::Device& device, std::span<const ShakenObject> obje
 // Chances of falling over the strength of shaking: each record scaled to peaks of 0.05 g and so on
 // by factors of 1.4 up to 4 g, on the ground, from 16 directions; what the objects stand on shakes
 // floor_amplification times as strongly. What upsets a body goes with b / h, so that the error of
-// that adds to the dispersion that records and directions make. By object, empty for those not in
+// that adds to the dispersion that records and directions make, but for what slides first. What may
+// slide is shaken once more on friction that lets nothing slide. By object, empty for those not in
 // `which`, and for all where a record has no peak.
 std::vector<Fragility> fragilities(device::Device& device, std::span<const ShakenObject> objects,
                                    std::span<const std::size_t> which,

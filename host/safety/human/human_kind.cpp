@@ -35,7 +35,8 @@ const DisturbanceKind& human_kind() {
         .events =
             [](const ParseOptions& options) {
                 return std::map<std::string, double>{{"walks", options.walks}};
-            }};
+            },
+        .everyday = true};
     return kind;
 }
 

@@ -234,7 +234,7 @@ class SyntheticScene {
         Object& monitor = scene_.objects[3];
         monitor.fall = {true, at(1.9, 3.2, 0.2), 0.76, 0, -1, {2}, 44, 0.12};
         monitor.overturning = {15.2, 0.4, {}, 31.4, 1.2, 18.3, 0.2717};
-        monitor.fragility = {0.41,  0.3, 0.52, 0.28, {{0.2, 0.01}, {0.4, 0.45}, {0.8, 0.98}},
+        monitor.fragility = {0.41,  0.3, 0.36, 0.52, 0.28, {{0.2, 0.01}, {0.4, 0.45}, {0.8, 0.98}},
                              0.002, 500};
         monitor.advice = {"fix", {}, 0.1, 12, 0.3, "Fix it where it stands: 12 N at 0.3 m."};
         Object& cup = scene_.objects[2];

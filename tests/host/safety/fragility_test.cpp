@@ -101,6 +101,34 @@ TEST(Fragility, RateOfFallsByCornell) {
     EXPECT_EQ(falls_per_year(hazard, {}), 0);
 }
 
+TEST(Fragility, WhatSlidesIsToldHowItWouldFareWhereItCant) {
+    const auto device = device::open_native(2);
+    test::Room room(0.02);
+    room.floor(0, 2, 0, 2);
+    const auto box = static_cast<std::size_t>(room.box(0.5, 0.6, 0.5, 0.6, 0, 0.26, false));
+    const auto surroundings = room.surroundings();
+    const auto on = [&](double friction) {
+        return earthquake_field(*device, surroundings, room.objects, friction, {}).fragility[box];
+    };
+    const Fragility slippery = on(0.3), firm = on(2);  // b / h is 0.38
+    EXPECT_EQ(slippery.counted.back().chance, 0);
+    EXPECT_TRUE(std::isnan(slippery.pga_g));
+    EXPECT_EQ(slippery.firm_pga_g, firm.pga_g);
+    EXPECT_GT(firm.pga_g, 0.38);
+    EXPECT_LT(firm.pga_g, 1.5);
+}
+
+TEST(Fragility, MediansOfCountsThatLevelOff) {
+    Fragility f;
+    f.counted = {{0.1, 0}, {0.2, 0.25}, {0.4, 0.75}, {0.8, 0.7}};
+    EXPECT_NEAR(half_falls_g(f), std::sqrt(0.2 * 0.4), 1e-12);
+    f.counted = {{0.1, 0}, {0.2, 0.4}};
+    EXPECT_TRUE(std::isnan(half_falls_g(f)));
+    f.counted = {{0.1, 0.6}};
+    EXPECT_EQ(half_falls_g(f), 0.1);
+    EXPECT_TRUE(std::isnan(half_falls_g({})));
+}
+
 TEST(Fragility, SlenderThingsFallEarlierAndAmplifiedFloorsSooner) {
     const auto device = device::open_native(2);
     test::Room room(0.02);
@@ -122,6 +150,9 @@ TEST(Fragility, SlenderThingsFallEarlierAndAmplifiedFloorsSooner) {
     EXPECT_NEAR(ground[slender].return_years * ground[slender].falls_per_year, 1, 1e-9);
     EXPECT_TRUE(std::isnan(ground[squat].pga_g)) << "it slides on a floor without an end";
     EXPECT_EQ(ground[squat].counted.back().chance, 0);
+    // What does not slide in any case is no firmer on firmer ground.
+    EXPECT_EQ(ground[slender].firm_pga_g, ground[slender].pga_g);
+    EXPECT_GT(ground[stout].firm_pga_g, 1.3 * ground[slender].firm_pga_g);
     EXPECT_TRUE(ground[0].counted.empty()) << "the floor";
     options.floor_amplification = 2;
     options.hazard.reset();
