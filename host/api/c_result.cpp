@@ -90,6 +90,7 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         to.primitives = result->objects[index].primitives;
         to.primitive_count = from.primitives.size();
         to.mass_kg = from.mass_kg;
+        copy_vector(from.size_m, to.size_m);
         copy_vector(from.center_of_mass_m, to.center_of_mass_m);
         to.barrier_J = from.barrier_J;
         to.barrier_error_J = from.barrier_error_J;

@@ -72,6 +72,15 @@ std::string people_text(const Fall& fall) {
     return text;
 }
 
+// ", 0.08 x 0.2 x 0.21 m": the height last.
+std::string size_text(const Object& o) {
+    if (!(o.size_m[2] > 0)) return "";
+    char text[64];
+    std::snprintf(text, sizeof(text), ", %.2g x %.2g x %.2g m", o.size_m[0], o.size_m[1],
+                  o.size_m[2]);
+    return text;
+}
+
 // "The 3 riskiest of the 5 objects whose barrier is ...", or of fewer without an order among one.
 std::string riskiest_text(std::size_t shown, std::size_t of) {
     if (of == 1) return "The one object";
@@ -111,7 +120,7 @@ void print_sentences(const std::vector<const Object*>& riskiest_first) {
     std::printf(":\n");
     for (std::size_t i = 0; i < shown; ++i) {
         const Object& o = *told[i];
-        std::printf("Object %d: %s%s%s%s\n", o.id, o.why.sentence.c_str(),
+        std::printf("Object %d%s: %s%s%s%s\n", o.id, size_text(o).c_str(), o.why.sentence.c_str(),
                     people_text(o.fall).c_str(), o.advice.sentence.empty() ? "" : " ",
                     o.advice.sentence.c_str());
     }

@@ -149,6 +149,7 @@ Json to_json(const Object& o) {
         {"mass_kg", number(o.mass_kg)},
         {"mass_model", o.mass_model},
         {"center_of_mass_m", vector(o.center_of_mass_m)},
+        {"size_m", vector(o.size_m)},
         {"inertia_kg_m2", matrix(o.inertia_kg_m2)},
         {"mass_error_kg", number(o.mass_error_kg)},
         {"center_of_mass_error_m", vector(o.center_of_mass_error_m)},
@@ -326,6 +327,7 @@ Object object_of(const Json& json) {
     if (json.contains("agreement")) o.agreement = number_at(json, "agreement");
     o.mass_kg = number_at(json, "mass_kg");
     o.center_of_mass_m = vector_at(json, "center_of_mass_m");
+    if (json.contains("size_m")) o.size_m = vector_at(json, "size_m");
     o.barrier_J = number_at(json, "barrier_J");
     // Earlier versions did not write it.
     if (json.contains("barrier_error_J")) o.barrier_error_J = number_at(json, "barrier_error_J");

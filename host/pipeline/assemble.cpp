@@ -65,8 +65,35 @@ DirectedBarrier directed(const physics::Toppling& toppling) {
     return out;
 }
 
-void add_objects(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,
-                 Scene& scene) {
+// Of each object, along the grid's axes.
+std::vector<Vec3> sizes_m(const SolidCells& cells, const ObjectStage& objects) {
+    constexpr std::int32_t far = std::numeric_limits<std::int32_t>::max();
+    struct Ends {
+        std::array<std::int32_t, 3> low{far, far, far}, high{-far, -far, -far};
+    };
+    std::vector<Ends> ends(objects.objects.size());
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        if (cells.primitive[c] < 0) continue;
+        const std::int32_t o =
+            objects.object_of_primitive[static_cast<std::size_t>(cells.primitive[c])];
+        if (o < 0) continue;
+        Ends& e = ends[static_cast<std::size_t>(o)];
+        const std::array at{cells.i[c], cells.j[c], cells.k[c]};
+        for (std::size_t a = 0; a < 3; ++a) {
+            e.low[a] = std::min(e.low[a], at[a]);
+            e.high[a] = std::max(e.high[a], at[a]);
+        }
+    }
+    std::vector<Vec3> out(ends.size());
+    for (std::size_t o = 0; o < ends.size(); ++o)
+        for (std::size_t a = 0; a < 3 && ends[o].high[a] >= ends[o].low[a]; ++a)
+            out[o][a] = (ends[o].high[a] - ends[o].low[a] + 1) * cells.voxel_m;
+    return out;
+}
+
+void add_objects(const SolidCells& cells, const ObjectStage& objects, const SafetyStage& safety,
+                 const ToInput& to_input, Scene& scene) {
+    const std::vector<Vec3> size_m = sizes_m(cells, objects);
     for (std::size_t o = 0; o < objects.objects.size(); ++o) {
         const StableObject& from = objects.objects[o];
         Object to;
@@ -75,6 +102,7 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
         to.grounded = from.grounded;
         to.agreement = from.agreement;
         to.mass_kg = from.candidate.body.mass_kg;
+        to.size_m = size_m[o];
         to.mass_model = from.closed ? "closed" : "solid";
         to.center_of_mass_m = to_input(from.candidate.body.center);
         to.inertia_kg_m2 = to_input.tensor(from.inertia);
@@ -287,7 +315,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
         axes[0][0], axes[0][1], axes[0][2], 0, axes[1][0], axes[1][1], axes[1][2], 0,
         axes[2][0], axes[2][1], axes[2][2], 0, 0,          0,          0,          1};
     add_primitives(parts, objects, to_input, scene);
-    add_objects(objects, safety, to_input, scene);
+    add_objects(parts.solids->cells(), objects, safety, to_input, scene);
     add_contacts(objects, to_input, scene);
     add_fields(safety, to_input, scene);
     add_walks(safety, to_input, scene);

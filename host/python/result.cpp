@@ -106,6 +106,7 @@ void bind_items(py::module_& module) {
         .def_readonly("agreement", &Object::agreement)
         .def_readonly("mass_kg", &Object::mass_kg)
         .def_readonly("center_of_mass_m", &Object::center_of_mass_m)
+        .def_readonly("size_m", &Object::size_m)
         .def_readonly("barrier_J", &Object::barrier_J)
         .def_readonly("barrier_error_J", &Object::barrier_error_J)
         .def_readonly("mass_error_kg", &Object::mass_error_kg)

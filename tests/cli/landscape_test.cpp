@@ -42,7 +42,7 @@ void expect_told_summary(const std::string& out) {
             ++rows;
             if (std::string(barrier).starts_with("0-")) uncertain.insert(id);
             EXPECT_TRUE(std::isdigit(carriers[0]) || std::string(carriers) == "-") << line;
-        } else if (std::sscanf(line.c_str(), "Object %15[0-9]: ", id) == 1) {
+        } else if (std::sscanf(line.c_str(), "Object %15[0-9], ", id) == 1) {
             ++told;
             EXPECT_FALSE(uncertain.contains(id)) << line;
         }

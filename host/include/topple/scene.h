@@ -169,6 +169,8 @@ struct Object {
     // Share of the sampler's chains that found it, but for a tenth of its parts; 1 for the ground.
     double agreement = 1;
     double mass_kg = 0;
+    // Its box along the room's axes (Scene::manhattan_from_input), the third upright; to a voxel.
+    Vec3 size_m{};
     // "solid", of the density that was given all through; or "closed": furniture that is boards of
     // that density around ParseOptions::contents_kg_m3.
     std::string mass_model = "solid";

@@ -180,6 +180,7 @@ typedef struct topple_object {
     const int32_t* primitives;
     uint64_t primitive_count;
     double mass_kg, center_of_mass_m[3];
+    double size_m[3]; /* along the room's axes, the third upright */
     double barrier_J, barrier_error_J, release_J;
     const char* mode; /* "tip", "slide" or "none" */
     double direction[3];

@@ -37,7 +37,7 @@ function riskItem(scene, object, choose) {
     element('span', {className: 'head'}, [
       element('span', {className: 'swatch', style: {background: css(colourOf(scene, object.id))}}),
       element('strong', {text: `Object ${object.id}`}),
-      line('mass', `${number(object.mass_kg, 'kg')}`),
+      line('mass', [number(object.mass_kg, 'kg'), sizeText(object)].filter(text => text).join(', ')),
       line('category', object.unsafety_category ? `category ${categoryText(object)}` : ''),
       unsafetyBadge(scene, object)]),
     line('from', isDoubtful(object) ? `As scanned a touch would upset it. ${happensText(scene, object)}` : upsetText(object)),
@@ -46,6 +46,8 @@ function riskItem(scene, object, choose) {
     item.append(line('then', happensText(scene, object)));
     const overturning = overturningText(object);
     if (overturning) item.append(line('then', overturning));
+    const shaken = fragilityText(object);
+    if (shaken) item.append(line('then', shaken));
   }
   if (object.agreement < 0.5) {
     item.append(line('then', `Only ${Math.round(100 * object.agreement)} % of the searches found it so: its parts may belong together otherwise.`));

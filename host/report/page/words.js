@@ -84,6 +84,15 @@ function metres(length) {
   return length < 0.995 ? `${Math.max(1, Math.round(100 * length))} cm` : `${length.toFixed(1)} m`;
 }
 
+// "8 \u00d7 20 \u00d7 21 cm", the height last; '' where it is not known.
+function sizeText(object) {
+  const size = object.size_m;
+  if (!size || !size.every(value => value > 0)) return '';
+  const centimetres = size.every(value => value < 0.995);
+  const shown = value => centimetres ? Math.max(1, Math.round(100 * value)) : value.toFixed(2);
+  return `${size.map(shown).join(' \u00d7 ')} ${centimetres ? 'cm' : 'm'}`;
+}
+
 const compassNames = ['north', 'north-east', 'east', 'south-east', 'south', 'south-west', 'west', 'north-west'];
 
 function compassOf(degrees) {
