@@ -34,8 +34,8 @@ namespace {
 // one piece.
 constexpr double probe_reference_s = 0.075;
 constexpr double tiled_point_s = 0.27e-6, tiled_m2_s = 0.033, tiled_fixed_s = 1;
-constexpr double point_s = 4.3e-6, surface_voxel_s = 5.2e-5, voxel_s = 6.1e-8, pixel_s = 6.5e-8,
-                 fixed_s = 0.3;
+constexpr double point_s = 2.9e-6, surface_voxel_s = 4.7e-5, voxel_s = 2.3e-7, pixel_s = 2.8e-7,
+                 fixed_s = 0.89;
 // Of the cells that a surface passes, those in which frames are fused to a point that stays.
 constexpr double fused_share = 0.66;
 // Cells of a block of a furnished building.
