@@ -17,20 +17,17 @@ namespace {
 
 constexpr std::size_t rows_shown = 12, sentences_shown = 3;
 
+std::string three_digits(double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.3g", value);
+    return text;
+}
+
 // "-": not reckoned.
 std::string risk_text(const Object& o, const std::string& disturbance) {
     const auto at = o.risk_J.find(disturbance);
     if (at == o.risk_J.end() || !o.seen_enough) return "-";
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.3g", at->second);
-    return text;
-}
-
-// Rounded to two digits, not with an exponent.
-std::string two_digits(double value) {
-    if (!(value > 0)) return io::short_number(value);
-    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
-    return io::short_number(std::round(value / unit) * unit);
+    return three_digits(at->second);
 }
 
 std::string category_text(const Object& o) {
@@ -53,7 +50,7 @@ std::string risks_text(const Scene& scene) {
         const auto& [key, follows, name, unit] = kind->words.figure;
         const auto figure = scene.events.find(key);
         if (*follows != 0 && figure != scene.events.end())
-            event += follows + two_digits(figure->second) + " " + unit;
+            event += follows + three_digits(figure->second) + " " + unit;
         events.push_back(std::move(event));
     }
     return listed(columns, "and") +
@@ -68,7 +65,7 @@ std::string people_text(const Fall& fall) {
     char text[96];
     std::snprintf(text, sizeof(text),
                   " It lands with %s J; of 100 people who walk through, %.0f pass there.",
-                  two_digits(fall.hits_J).c_str(), 100 * fall.people_share);
+                  io::two_digits(fall.hits_J).c_str(), 100 * fall.people_share);
     return text;
 }
 

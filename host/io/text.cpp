@@ -5,9 +5,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -58,6 +60,15 @@ std::string short_number(double value) {
     char text[32];
     std::snprintf(text, sizeof(text), "%.6g", value);
     return text;
+}
+
+std::string two_digits(double value) {
+    char digits[64];
+    const double size = std::abs(value);
+    if (size < 0.0005) return "0";
+    const int before = static_cast<int>(std::floor(std::log10(size))) + 1;
+    std::snprintf(digits, sizeof(digits), "%.*f", std::max(0, 2 - before), value);
+    return digits;
 }
 
 std::string bytes_text(std::uint64_t bytes) {

@@ -28,6 +28,8 @@ std::string path_text(const std::filesystem::path& path);
 std::string counted(std::uint64_t count, const char* noun);
 // A number as short as it reads back the same to 6 digits.
 std::string short_number(double value);
+// Two digits, or all before the point, without an exponent; below half a thousandth it is nothing.
+std::string two_digits(double value);
 
 // "512 B", "200 MiB", "1.5 GiB": to three digits.
 std::string bytes_text(std::uint64_t bytes);

@@ -3,30 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <string>
 
+#include "io/text.h"
 #include "physics/fall_sweep.h"
 #include "safety/disturbances.h"
 
 namespace topple {
 namespace {
 
-// Two digits, without an exponent; halves of a millimetre or a millijoule are nothing.
-std::string number(double value) {
-    char digits[64];
-    const double size = std::abs(value);
-    if (size < 0.0005) return "0";
-    const int before = static_cast<int>(std::floor(std::log10(size))) + 1;
-    std::snprintf(digits, sizeof(digits), "%.*f", std::max(0, 2 - before), value);
-    return digits;
-}
 std::string length(double metres) {
-    return metres < 0.1 ? number(100 * metres) + " cm" : number(metres) + " m";
+    return metres < 0.1 ? io::two_digits(100 * metres) + " cm" : io::two_digits(metres) + " m";
 }
 std::string energy(double joules) {
-    return number(joules) + " J";
+    return io::two_digits(joules) + " J";
 }
 
 std::string compass(double azimuth_deg) {
@@ -230,7 +221,7 @@ std::string fix_sentence(const Object& object, const Suggestion& what) {
         text += mend_of(object);
     }
     if (!(what.hold.force_N > 0)) return text + ".";
-    return text + ": the fixing must hold " + number(what.hold.force_N) + " N at " +
+    return text + ": the fixing must hold " + io::two_digits(what.hold.force_N) + " N at " +
            length(what.hold.height_m) + " above what it stands on.";
 }
 

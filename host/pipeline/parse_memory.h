@@ -14,7 +14,7 @@ namespace topple {
 // In one piece. The peak is where the surface is taken apart, or where solids are made; `views`: of
 // a cloud, which is looked at from free places, and not of frames.
 // Of the 192 random inputs of tests/estimates that it is fitted to 77 % come within 25 % of this,
-// and none to more than 1.85 of it; a real scan of many noisy frames to 2.1.
+// and none to more than 1.85 of it; a real scan of many noisy frames to 2.2.
 inline double one_piece_peak(double points, double surface_m2, const Bounds<float>& bounds,
                              double voxel_m, bool views = true) {
     constexpr double fixed = 92e6, of_views = 17e6, a_point = 353, a_surface_voxel = 1670,

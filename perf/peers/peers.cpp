@@ -78,7 +78,9 @@ std::vector<Result> compare_with_peers(const StageScene& scene, const StageRun& 
         print_segments(scene, own.label, peer->label);
     }
     if (results.empty()) std::printf("PCL: not in this build; apt-get install libpcl-dev\n");
-    for (const CloudPeer& peer : cloud_peers(scene.ingested.cloud)) {
+    const std::vector<CloudPeer> peers = cloud_peers(scene.ingested.cloud);
+    if (peers.empty()) std::printf("Open3D, small_gicp: not found by python3; they are on PyPI\n");
+    for (const CloudPeer& peer : peers) {
         const bool segments = !peer.label.empty();
         const Result& mine = segments ? segmentation : result_of(own, "segmentation/normals");
         results.push_back(peer_result(peer.name, peer.library, mine.work, peer.seconds));

@@ -31,7 +31,6 @@ std::string answer_of(const char* script, std::initializer_list<const ScriptFile
     command.append(script).append("'");
     for (const ScriptFile* file : files)
         command.append(" '").append(file->path().string()).append("'");
-    command.append(" 2>/dev/null");
     std::string answer;
     if (std::FILE* pipe = popen(command.c_str(), "r")) {
         char text[256];

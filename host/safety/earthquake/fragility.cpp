@@ -9,6 +9,9 @@
 namespace topple::safety {
 namespace {
 
+// Counts that end below this level off: a lognormal, which goes on to 1, does not describe them.
+constexpr double least_at_strongest = 0.9;
+
 // Of the log-likelihood in (a, b): its slopes, and Fisher's information.
 struct Score {
     double a = 0, b = 0, aa = 0, ab = 0, bb = 0;
@@ -93,6 +96,19 @@ double half_falls_g(const Fragility& fragility) {
         return low.pga_g * std::pow(high.pga_g / low.pga_g, way);
     }
     return Fragility::none;
+}
+
+Fragility fragility_of(std::span<const Trials> peaks) {
+    Fragility f;
+    for (const Trials& t : peaks)
+        f.counted.push_back({t.strength, static_cast<double>(t.falls) / t.of});
+    if (f.counted.back().chance < least_at_strongest) {
+        f.pga_g = half_falls_g(f);
+    } else if (const auto fitted = fit_lognormal(peaks)) {
+        f.pga_g = fitted->median;
+        f.pga_dispersion = fitted->dispersion;
+    }
+    return f;
 }
 
 double falls_per_year(const HazardCurve& hazard, const Fragility& fragility) {

@@ -33,9 +33,11 @@ std::optional<Lognormal> fit_lognormal(std::span<const Trials> trials);
 // dispersion the chance is that of the steps, straight between them over the peak's logarithm.
 double falls_per_year(const HazardCurve& hazard, const Fragility& fragility);
 
-// Chances at one strength over the next; where they reach 9 in 10, a lognormal describes them.
-inline constexpr double least_of_all = 0.9;
 // The first peak at which half falls, between the steps as above; NaN where none is.
 double half_falls_g(const Fragility& fragility);
+
+// The counts over peak acceleration, g, rising, and what follows from them: median and dispersion
+// of the lognormal, or the median alone where they level off. There must be one.
+Fragility fragility_of(std::span<const Trials> peaks);
 
 }  // namespace topple::safety

@@ -72,7 +72,7 @@ class LevelMoments {
 double slenderness(const ShakenObject& object) {
     double least = std::numeric_limits<double>::infinity();
     for (const Profile& body : object.body)
-        if (body.height_m > 0) least = std::min(least, body.least_base_m() / body.height_m);
+        if (body.height_m > 0) least = std::min(least, body.slenderness());
     return least;
 }
 
@@ -158,40 +158,31 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
             events.insert(events.end(), ways.begin(), ways.end());
         }
     }
-    const auto fell = [&](const Motions& motions, std::size_t o, std::size_t e) {
-        const auto& [weak, across] = motions[o][e].in;
-        return !objects[o].held || weak.fell(objects[o].body[0]) || across.fell(objects[o].body[1]);
+    struct Counts {
+        std::vector<Trials> peaks, speeds;  // over peak acceleration, g, and velocity, m/s
     };
-    const auto count = [&](const Motions& motions, std::size_t o, std::vector<Trials>& peaks,
-                           std::vector<Trials>& speeds) {
-        peaks.clear();
-        speeds.clear();
-        for (const double g : levels_g) peaks.push_back({g, 0, 0});
+    const auto counts = [&](const ShakenObject& object, const std::vector<PlaneMotions>& motions) {
+        Counts found;
+        for (const double g : levels_g) found.peaks.push_back({g, 0, 0});
         for (std::size_t e = 0; e < events.size(); e += direction_count) {
             const std::size_t level = e / direction_count % levels_g.size();
             unsigned falls = 0;
-            for (unsigned d = 0; d < direction_count; ++d) falls += fell(motions, o, e + d);
-            peaks[level].falls += falls;
-            peaks[level].of += direction_count;
-            speeds.push_back(
+            for (unsigned d = 0; d < direction_count; ++d) {
+                const auto& [weak, across] = motions[e + d].in;
+                falls += !object.held || weak.fell(object.body[0]) || across.fell(object.body[1]);
+            }
+            found.peaks[level].falls += falls;
+            found.peaks[level].of += direction_count;
+            found.speeds.push_back(
                 {levels_g[level] * velocity[events[e].record], falls, direction_count});
         }
+        return found;
     };
-    const auto set_median = [](std::span<const Trials> peaks, Fragility& f) {
-        f.counted.clear();
-        for (const Trials& t : peaks)
-            f.counted.push_back({t.strength, static_cast<double>(t.falls) / t.of});
-        const auto fitted = fit_lognormal(peaks);
-        const bool levels_off = f.counted.back().chance < least_of_all;
-        f.pga_g = levels_off ? half_falls_g(f) : fitted ? fitted->median : Fragility::none;
-        f.pga_dispersion = fitted && !levels_off ? fitted->dispersion : Fragility::none;
-    };
-    std::vector<Trials> peaks, speeds;
     const Motions motions = shake_objects(device, objects, which, records, events, friction, false);
     for (const std::size_t o : which) {
-        count(motions, o, peaks, speeds);
+        const Counts counted = counts(objects[o], motions[o]);
         Fragility& f = out[o];
-        set_median(peaks, f);
+        f = fragility_of(counted.peaks);
         f.firm_pga_g = f.pga_g;
         if (std::isfinite(f.pga_dispersion)) {
             // What slides does not go with b / h.
@@ -201,7 +192,7 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
                 return std::min(most_dispersion, std::hypot(dispersion, error));
             };
             f.pga_dispersion = with_error(f.pga_dispersion);
-            if (const auto by_speed = fit_lognormal(speeds)) {
+            if (const auto by_speed = fit_lognormal(counted.speeds)) {
                 f.pgv_m_s = by_speed->median;
                 f.pgv_dispersion = with_error(by_speed->dispersion);
             }
@@ -217,12 +208,8 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
         if (objects[o].held && slenderness(objects[o]) > 0.6 * friction) sliding.push_back(o);
     const Motions firm = shake_objects(device, objects, sliding, records, events,
                                        std::max(friction, firm_friction), false);
-    for (const std::size_t o : sliding) {
-        count(firm, o, peaks, speeds);
-        Fragility f;
-        set_median(peaks, f);
-        out[o].firm_pga_g = f.pga_g;
-    }
+    for (const std::size_t o : sliding)
+        out[o].firm_pga_g = fragility_of(counts(objects[o], firm[o]).peaks).pga_g;
     return out;
 }
 

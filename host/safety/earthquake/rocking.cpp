@@ -210,7 +210,7 @@ std::vector<Motion> shake(device::Device& device, std::span<const Profile> bodie
                                               " or no record " + std::to_string(s.record));
         if (fineness[s.body] < 0) continue;
         const Profile& body = bodies[s.body];
-        const double least = std::min(s.grip * friction, body.least_base_m() / body.height_m);
+        const double least = std::min(s.grip * friction, body.slenderness());
         order.push_back({fineness[s.body], s.record,
                          std::hypot(s.along, s.across) / std::max(least, 1e-6),
                          static_cast<std::uint32_t>(n)});

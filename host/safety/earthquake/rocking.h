@@ -20,6 +20,7 @@ struct Profile {
     // How far the support goes on under the centre each way, at least.
     double support_ahead_m = 0, support_behind_m = 0;
     double least_base_m() const { return ahead_m < behind_m ? ahead_m : behind_m; }
+    double slenderness() const { return least_base_m() / height_m; }  // where it rocks, over g
 };
 
 // A record acts on a body: its components, of which the level two add up, are multiplied. Of the

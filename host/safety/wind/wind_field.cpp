@@ -294,6 +294,8 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
             fronts[n] =
                 wind_frontage(solid, columns, cells[o], blown[n % blown.size()], options.shelter_m);
     });
+    if (!options.from_deg)
+        out.gust_m_s.assign(objects.size(), std::numeric_limits<double>::quiet_NaN());
     ArrowSample arrows;
     for (std::size_t o = 0; o < objects.size(); ++o) {
         if (cells[o].empty() || objects[o].grounded) continue;
@@ -319,10 +321,7 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
             if (force > out.strongest[o].force_N)
                 out.strongest[o] = {force, load.pressure_height_m};
         }
-        if (!options.from_deg) {
-            out.gust_m_s.resize(objects.size(), std::numeric_limits<double>::quiet_NaN());
-            out.gust_m_s[o] = least_gust_m_s(objects[o], gales, options);
-        }
+        if (!options.from_deg) out.gust_m_s[o] = least_gust_m_s(objects[o], gales, options);
         out.response[o] = [gales = std::move(gales), options,
                            probability = 1.0 / double{directions}](const RiskObject& object) {
             std::vector<WorkSample> work;
