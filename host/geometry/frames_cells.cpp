@@ -15,6 +15,14 @@ struct BlockPlace {
 // Bits 0 to 20, 21 to 41 and 42 to 62 of a block's key are its z, y and x.
 constexpr unsigned y_bits = 21, x_bits = 42;
 
+// A cell's place in its block, and a block's in its cube.
+std::size_t place_in_block(std::uint64_t key) {
+    return (key >> x_bits & 3) << 4 | (key >> y_bits & 3) << 2 | (key & 3);
+}
+std::size_t place_in_cube(std::uint64_t key) {
+    return (key >> (x_bits + 2) & 7) << 6 | (key >> (y_bits + 2) & 7) << 3 | (key >> 2 & 7);
+}
+
 // The first of the blocks after `begin` whose key differs above the lowest `bits` bits.
 std::size_t end_of_group(const std::vector<BlockPlace>& blocks, std::size_t begin, std::size_t end,
                          unsigned bits) {
@@ -62,63 +70,60 @@ void CellSums::add_colour(const std::array<std::uint32_t, 3>& sums, std::uint32_
     colour_weight += weights;
 }
 
-std::size_t CellTable::find(std::uint64_t key) {
-    if (last_ < blocks_.size() && blocks_[last_].key == key) return last_;
-    if (2 * (blocks_.size() + 1) > slots_.size()) grow();
+CellTable::Cube& CellTable::cube(std::uint64_t key) {
+    if (last_ < cubes_.size() && cubes_[last_].key == key) return cubes_[last_];
+    if (2 * (cubes_.size() + 1) > slots_.size()) grow();
     const std::size_t mask = slots_.size() - 1;
     std::size_t at = hash(key) & mask;
-    while (slots_[at] != 0 && blocks_[slots_[at] - 1].key != key) at = (at + 1) & mask;
+    while (slots_[at] != 0 && cubes_[slots_[at] - 1].key != key) at = (at + 1) & mask;
     if (slots_[at] == 0) {
-        blocks_.push_back({.key = key});
-        slots_[at] = static_cast<std::uint32_t>(blocks_.size());
+        cubes_.push_back({.key = key});
+        slots_[at] = static_cast<std::uint32_t>(cubes_.size());
     }
     last_ = slots_[at] - 1;
-    return last_;
+    return cubes_[last_];
+}
+
+CellTable::Block& CellTable::block(std::uint64_t key) {
+    std::uint32_t& place = cube(cube_of(key)).at[place_in_cube(key)];
+    if (place == 0) {
+        blocks_.push_back({.key = block_of(key)});
+        place = static_cast<std::uint32_t>(blocks_.size());
+    }
+    return blocks_[place - 1];
+}
+
+CellSums& CellTable::cell(std::uint64_t key) {
+    Block& home = block(key);
+    std::uint32_t& place = home.at[place_in_block(key)];
+    if (place == 0) {
+        cells_.push_back({.key = key});
+        place = static_cast<std::uint32_t>(cells_.size());
+        ++home.count;
+    }
+    return cells_[place - 1];
 }
 
 void CellTable::add(std::span<const CellSums> sums, std::span<const std::uint32_t> which) {
-    // Tables are larger than caches: some sums at a time, so that the memory of each step is
-    // fetched while the others are under way.
-    constexpr std::size_t at_once = 16;
-    std::array<std::uint32_t*, at_once> place{};
-    std::array<std::size_t, at_once> block{};
-    for (; !which.empty(); which = which.subspan(std::min(at_once, which.size()))) {
-        const auto some = which.first(std::min(at_once, which.size()));
-        const auto local = [&](std::size_t i) {
-            const std::uint64_t key = sums[some[i]].key;
-            return (key >> x_bits & 3) << 4 | (key >> y_bits & 3) << 2 | (key & 3);
-        };
-        if (!slots_.empty()) {
-            for (const std::uint32_t s : some)
-                __builtin_prefetch(&slots_[hash(block_of(sums[s].key)) & (slots_.size() - 1)]);
-        }
-        for (std::size_t i = 0; i < some.size(); ++i) block[i] = find(block_of(sums[some[i]].key));
-        for (std::size_t i = 0; i < some.size(); ++i) {
-            place[i] = &blocks_[block[i]].at[local(i)];
-            __builtin_prefetch(place[i]);
-        }
-        for (std::size_t i = 0; i < some.size(); ++i) {
-            if (*place[i] != 0) __builtin_prefetch(&cells_[*place[i] - 1]);
-        }
-        for (std::size_t i = 0; i < some.size(); ++i) {
-            if (*place[i] != 0) {
-                cells_[*place[i] - 1].add(sums[some[i]]);
-                continue;
-            }
-            cells_.push_back(sums[some[i]]);
-            *place[i] = static_cast<std::uint32_t>(cells_.size());
-            ++blocks_[block[i]].count;
-        }
+    for (const std::uint32_t s : which) cell(sums[s].key).add(sums[s]);
+}
+
+void CellTable::add(std::span<const Reading> readings, std::uint32_t frame) {
+    CellSums* sums = nullptr;  // those of the reading before, mostly in the same cell
+    for (const Reading& reading : readings) {
+        const std::uint64_t key = reading.key();
+        if (!sums || sums->key != key) sums = &cell(key);
+        sums->add(reading, frame);
     }
 }
 
 void CellTable::grow() {
     slots_.assign(std::max<std::size_t>(2 * slots_.size(), 256), 0);
     const std::size_t mask = slots_.size() - 1;
-    for (std::size_t block = 0; block < blocks_.size(); ++block) {
-        std::size_t at = hash(blocks_[block].key) & mask;
+    for (std::size_t cube = 0; cube < cubes_.size(); ++cube) {
+        std::size_t at = hash(cubes_[cube].key) & mask;
         while (slots_[at] != 0) at = (at + 1) & mask;
-        slots_[at] = static_cast<std::uint32_t>(block + 1);
+        slots_[at] = static_cast<std::uint32_t>(cube + 1);
     }
 }
 
@@ -131,6 +136,28 @@ void CellTables::add(std::span<const std::span<const CellSums>> parts, ThreadPoo
     pool.each(shard_count, 1, [&](std::size_t shard) {
         for (std::size_t p = 0; p < parts.size(); ++p) shards[shard].add(parts[p], of[p][shard]);
     });
+}
+
+void WaitingReadings::add(const Reading& reading, std::uint32_t frame) {
+    const std::uint64_t key = reading.key(), cube = CellTable::cube_of(key);
+    if (!last_ || cube != cube_ || last_->back().frame != frame) {
+        cube_ = cube;
+        last_ = &runs_[CellTables::shard_of(key)];
+        last_->push_back({static_cast<std::uint32_t>(readings_.size()), 0, frame});
+    }
+    ++last_->back().count;
+    readings_.push_back(reading);
+}
+
+void WaitingReadings::add_to(CellTable& table, std::size_t shard) const {
+    const std::span<const Reading> all = readings_;
+    for (const Run& run : runs_[shard]) table.add(all.subspan(run.first, run.count), run.frame);
+}
+
+void WaitingReadings::clear() {
+    readings_.clear();
+    for (auto& runs : runs_) runs.clear();
+    last_ = nullptr;
 }
 
 std::vector<CellSums> CellTables::sorted(ThreadPool& pool) const {

@@ -7,10 +7,20 @@
 #include <vector>
 
 #include "core/thread_pool.h"
+#include "geometry/back_projection.h"
 #include "geometry/frames_fusion.h"
 #include "geometry/frames_witnesses.h"
 
 namespace topple::geometry {
+
+// One reading, where it waits for its table: 20 bytes.
+struct Reading {
+    std::array<std::uint32_t, 2> key_halves{};  // of its cell, the lower one first
+    std::array<std::uint16_t, 3> part{};        // 65536ths of the cell, from its lowest corner
+    std::uint16_t weight = 0;                   // inverse variance, in 65535ths of the best one's
+    std::uint32_t rgb = 0;                      // 8 bits each, red lowest; 0 where it isn't known
+    std::uint64_t key() const { return std::uint64_t{key_halves[1]} << 32 | key_halves[0]; }
+};
 
 // What the readings in one cell sum up to. Integers, so that the sums do not depend on the order in
 // which threads or frames arrive. Offsets are 1 / 65536 of a cell from its lowest corner.
@@ -26,13 +36,29 @@ struct CellSums {
     std::array<std::uint32_t, 3> colour{};
     std::uint32_t colour_weight = 0;
     void add(const CellSums& other);
+    void add(const Reading& reading, std::uint32_t frame);
     void add_colour(const std::array<std::uint32_t, 3>& sums, std::uint32_t weights);
 };
 
-inline constexpr std::int64_t key_bias = std::int64_t{1} << 20;
+inline void CellSums::add(const Reading& reading, std::uint32_t frame) {
+    const std::uint32_t w = reading.weight;
+    for (std::size_t a = 0; a < 3; ++a) offset[a] += std::uint64_t{w} * reading.part[a];
+    weight += w;
+    ++count;
+    if (w > best_weight || (w == best_weight && frame < best_frame)) {
+        best_weight = w;
+        best_frame = frame;
+    }
+    if (reading.rgb == 0) return;
+    const std::uint32_t coarse = (w + 255) >> 8;
+    add_colour({coarse * (reading.rgb & 0xFF), coarse * (reading.rgb >> 8 & 0xFF),
+                coarse * (reading.rgb >> 16 & 0xFF)},
+               coarse);
+}
 
-// Occupied cells and their sums, found through blocks of 4 x 4 x 4 cells: the readings of a frame
-// stay within few blocks for long, so that most lookups touch memory just touched.
+// Occupied cells and their sums, found through cubes of 8 x 8 x 8 blocks of 4 x 4 x 4 cells: the
+// readings of a frame stay within few of them for long, so that most lookups touch memory just
+// touched.
 class CellTable {
   public:
     struct Block {
@@ -40,31 +66,46 @@ class CellTable {
         std::uint32_t count = 0;             // of occupied cells
         std::array<std::uint32_t, 64> at{};  // by cell, z fastest: place in cells() + 1, or 0
     };
-    static std::uint64_t block_of(std::uint64_t key) { return key >> 2 & block_mask; }
+    // Where the cube lies that a cell is in: the upper 16 of the 21 bits of each axis, where they
+    // lie in a key shifted by 5.
+    static std::uint64_t cube_of(std::uint64_t key) {
+        return key >> 5 & 0xFFFFu * (1 + (1ull << 21) + (1ull << 42));
+    }
     void add(std::span<const CellSums> sums, std::span<const std::uint32_t> which);
+    // Readings of one frame.
+    void add(std::span<const Reading> readings, std::uint32_t frame);
     const std::vector<CellSums>& cells() const { return cells_; }
     const std::vector<Block>& blocks() const { return blocks_; }
 
   private:
+    struct Cube {
+        std::uint64_t key = 0;
+        std::array<std::uint32_t, 512> at{};  // by block, z fastest: place in blocks() + 1, or 0
+    };
     // The upper 19 of the 21 bits of each axis, where they lie in a key shifted by 2.
-    static constexpr std::uint64_t block_mask = 0x7FFFFu * (1 + (1ull << 21) + (1ull << 42));
+    static std::uint64_t block_of(std::uint64_t key) {
+        return key >> 2 & 0x7FFFFu * (1 + (1ull << 21) + (1ull << 42));
+    }
     static std::uint64_t hash(std::uint64_t key) { return key * 0x9E3779B97F4A7C15u >> 20; }
-    std::size_t find(std::uint64_t key);  // the block's place, new where there was none
+    Cube& cube(std::uint64_t key);
+    // The cell's block, and the cell, which has no readings where there was none.
+    Block& block(std::uint64_t key);
+    CellSums& cell(std::uint64_t key);
     void grow();
-    std::vector<std::uint32_t> slots_;  // open addressing: place in blocks_ + 1, or 0
+    std::vector<std::uint32_t> slots_;  // open addressing: place in cubes_ + 1, or 0
+    std::vector<Cube> cubes_;
     std::vector<Block> blocks_;
     std::vector<CellSums> cells_;
-    std::size_t last_ = 0;  // the block found last
+    std::size_t last_ = 0;  // the cube found last
 };
 
-// Cells shared out over tables by cubes of 32 cells, so that several threads may fill them, one per
+// Cells shared out over tables by their cubes, so that several threads may fill them, one per
 // table, and that neighbours are near one another in memory.
 struct CellTables {
     // So many that the part of a table that a batch of sums meets stays in a core's cache.
     static constexpr std::size_t shard_count = 256;
     static std::size_t shard_of(std::uint64_t key) {
-        constexpr std::uint64_t cube_mask = 0xFFFFu * (1 + (1ull << 21) + (1ull << 42));
-        return (key >> 5 & cube_mask) * 0xD6E8FEB86659FD93u >> 56;
+        return CellTable::cube_of(key) * 0xD6E8FEB86659FD93u >> 56;
     }
     std::array<CellTable, shard_count> shards;
     // In order, whatever the number of threads.
@@ -73,25 +114,37 @@ struct CellTables {
     std::vector<CellSums> sorted(ThreadPool& pool) const;
 };
 
-// What depends on a reading's depth alone.
-struct DepthReading {
-    float largest_jump = 0;  // to a neighbour on one surface, as stored
-    std::uint32_t weight = 0;
+// Readings of some rows of frames, in the order in which they came, and the tables they go to.
+class WaitingReadings {
+  public:
+    void add(const Reading& reading, std::uint32_t frame);
+    std::size_t size() const { return readings_.size(); }
+    void add_to(CellTable& table, std::size_t shard) const;
+    void clear();
+
+  private:
+    // Readings of one frame in one cube, one after the other.
+    struct Run {
+        std::uint32_t first = 0, count = 0, frame = 0;
+    };
+    std::vector<Reading> readings_;
+    std::array<std::vector<Run>, CellTables::shard_count> runs_;
+    std::vector<Run>* last_ = nullptr;  // holds the run of the reading before,
+    std::uint64_t cube_ = 0;            // which lies in this cube
 };
 
 struct FrameFusion::Cells {
-    static constexpr std::size_t block_count = 16;
-    Cells(const Intrinsics& intrinsics, unsigned threads) : pool(threads), witnesses(intrinsics) {}
+    static constexpr std::size_t block_count = 16;  // of image rows
+    Cells(const Intrinsics& intrinsics, double cell_m, unsigned threads)
+        : pool(threads), projection(intrinsics, cell_m), witnesses(intrinsics) {}
     ThreadPool pool;
+    BackProjection projection;
     CellTables tables;
     Witnesses witnesses;
-    // Per block of image rows: runs of readings in one cell.
-    std::array<std::vector<CellSums>, block_count> runs;
-    void flush();  // runs to the tables
+    std::array<WaitingReadings, block_count> waiting;
+    void flush();  // what waits to the tables
     std::vector<Vec3> viewpoints;
     std::array<std::uint64_t, block_count> outside{};  // readings beyond the grid's reach
-    std::vector<DepthReading> by_depth;                // as stored
-    std::vector<double> columns;                       // of pixels: the ray's slope
 };
 
 // Fused cells to clean: sorted by key.
