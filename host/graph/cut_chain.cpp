@@ -187,8 +187,20 @@ bool CutChain::grow_component(std::int32_t seed) {
             moved_.push_back(link.node);
         }
     }
-    std::sort(moved_.begin(), moved_.end());
+    sort_moved();
     return true;
+}
+
+// Of many nodes it is quicker to pick them from their group's, which ascend.
+void CutChain::sort_moved() {
+    constexpr std::size_t few = 8;
+    if (moved_.size() <= few) {
+        std::sort(moved_.begin(), moved_.end());
+        return;
+    }
+    moved_.clear();
+    std::ranges::copy_if(members_[static_cast<std::size_t>(from_)], std::back_inserter(moved_),
+                         [&](std::int32_t n) { return is_moved_.has(n); });
 }
 
 // The target is one of the groups that touch the component from outside, or a fresh group, each

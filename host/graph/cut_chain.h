@@ -91,6 +91,7 @@ class CutChain {
 
     bool draw();
     bool grow_component(std::int32_t seed);
+    void sort_moved();
     void choose_target();
     bool stays_connected();
     bool reaches(std::int32_t start, bool shell);
