@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "perf/measure.h"
-#include "simulation/pushes.h"
+#include "perf/standing_objects.h"
 
 // Pose landscapes as grouping and the barriers of objects use them, host and kernels together.
 namespace topple::perf {

@@ -5,6 +5,8 @@
 
 #include <chrono>
 
+#include "simulation/pushes.h"
+
 namespace topple::perf {
 
 std::optional<PeerPushes> bullet_pushes(const std::vector<simulation::StandingObject>& objects) {

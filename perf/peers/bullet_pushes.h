@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/pushes.h"
+#include "perf/standing_objects.h"
 
 // What it takes Bullet to find the least blows that topple objects. nullopt where the build found
 // none.

@@ -8,19 +8,12 @@
 #include <span>
 #include <vector>
 
+#include "perf/standing_objects.h"
 #include "topple/input.h"
 
 // What a rigid-body simulator (Bullet, in double precision) makes of bodies of voxels. Metres,
 // kilograms, seconds; z up; gravity 9.80665 m/s^2. It shares nothing with topple's physics.
 namespace topple::simulation {
-
-using Cell = std::array<std::int32_t, 3>;  // spans [i, i + 1] * voxel_m per axis
-
-// One rigid body that is the convex hulls of its parts, its mass that of its cells.
-struct LooseBody {
-    double voxel_m = 0, density_kg_m3 = 700;
-    std::vector<std::vector<Cell>> parts;
-};
 
 // The body without what of each part reaches below the level on which most of it rests, where that
 // is less than half of it: a rough underside interlocks with its support, which would be left out.

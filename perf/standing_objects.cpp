@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "perf/standing_objects.h"
+
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -8,7 +10,6 @@
 #include "graph/stable_objects.h"
 #include "physics/drop.h"
 #include "scenes/random.h"
-#include "simulation/pushes.h"
 
 namespace topple::simulation {
 namespace {
