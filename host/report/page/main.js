@@ -334,6 +334,7 @@ function chosenText(scene, object) {
 
 window.toppleReady = start();
 window.toppleReady.catch(error => {
+  document.body.dataset.error = error.message;
   const message = document.getElementById('no-view');
   message.textContent = error.message;
   message.hidden = false;

@@ -193,10 +193,15 @@ TEST_F(Page, keeps_corrections_of_this_parse) {
                 R"("corrections": [{"do": "mass", "at_m": [[1, 2, 3]], "kg": 4, "held": true,
                     "outcome": "held", "objects": [2]}, {"do": "apart", "at_m": [[0, 0, 0]],
                     "from_m": [[1, 1, 1]], "held": false, "outcome": "nothing is there", "objects": []}],)");
+    const std::string object = "{\"id\":2,\"primitives\"";
+    html.insert(html.find(object) + 1, "\"name\":\"fridge\",\"corrected\":[1],");
     std::ofstream(folder_ / "report.html") << html;
     const auto page = open(folder_ / "report.html", R"(
         const out = document.body.dataset;
         out.list = document.getElementById('mend-list').textContent;
+        out.card = document.querySelector('.item[data-object="2"]').textContent;
+        toppleChoose(2);
+        out.mass = document.querySelector('#detail .numbers dd').textContent;
         toppleChoose(4);
         document.querySelector('[data-do=fixed]').click();
         document.querySelectorAll('#mend-list button')[1].click();
@@ -204,8 +209,11 @@ TEST_F(Page, keeps_corrections_of_this_parse) {
     )");
     EXPECT_EQ(page.data("error"), "(none)") << page.log;
     EXPECT_EQ(test::text(page.data("list")),
-              "Object 2: 4\u00a0kg (of this parse: held) undo"
+              "Fridge: 4\u00a0kg (of this parse: held) undo"
               "1 place: apart from others (of this parse: nothing is there) undo");
+    EXPECT_EQ(test::text(page.data("card")).find("Fridge8.7object 2, 0.4\u00a0kg"), 0u)
+        << page.data("card");
+    EXPECT_EQ(test::text(page.data("mass")), "0.4\u00a0kg, as given by hand");
     EXPECT_EQ(unescaped(page.data("said")),
               Json::parse(R"([{"do": "mass", "at_m": 1, "kg": 4}, {"do": "fixed", "at_m": 1}])"));
 }
