@@ -72,7 +72,7 @@ std::vector<std::function<void()>> writers(const std::filesystem::path& folder,
         std::vector<ObjectSurface> surfaces;
         if (with_surfaces) surfaces = surfaces_of(result, *voxels.get(), options.threads);
         poll();
-        page.get()->write(folder / "report.html", surfaces);
+        page.get()->write(folder / "report.html", surfaces, options.threads);
         poll();
         if (options.glb)
             write_objects_glb(folder / "objects.glb", scene, surfaces, voxels.get()->frame());

@@ -11,10 +11,12 @@
 #include <vector>
 
 #include "core/json.h"
+#include "core/thread_pool.h"
 #include "io/file_writer.h"
 #include "io/palette.h"
 #include "io/scene_json.h"
 #include "report/base64.h"
+#include "report/deflated.h"
 #include "report/drawing.h"
 #include "report/page_parts.h"
 #include "report/script_safe.h"
@@ -38,19 +40,79 @@ std::string packed(const std::vector<T>& records) {
 Json records_json(const Records& records) {
     Json json{{"count", records.cell.size()},
               {"total", records.total},
-              {"cell", packed(records.cell)},
-              {"aux", packed(records.aux)}};
-    if (!records.photo.empty()) json["photo"] = packed(records.photo);
+              {"cell", deflated(records.cell)},
+              {"aux", deflated(records.aux)}};
+    if (!records.photo.empty()) json["photo"] = deflated(records.photo);
     return json;
 }
 
-Json surface_json(const PackedSurface& surface) {
+// Normals only shade, which takes few digits: to multiples of `unit`, a power of 2.
+std::vector<std::array<std::int8_t, 4>> rounded_normals(std::vector<std::array<std::int8_t, 4>> aux,
+                                                        int unit) {
+    for (auto& record : aux) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const int nearest = (record[axis] + 128 + unit / 2) / unit * unit - 128;
+            record[axis] = static_cast<std::int8_t>(std::min(nearest, 128 - unit));
+        }
+    }
+    return aux;
+}
+
+// In the order of a curve that fills space (Morton's), along which neighbours are alike.
+Records along_a_curve(const Records& records) {
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+    const auto spread = [](std::uint64_t v) {
+        std::uint64_t out = 0;
+        for (unsigned bit = 0; bit < 16; ++bit) out |= (v >> bit & 1) << (3 * bit);
+        return out;
+    };
+    for (std::uint32_t i = 0; i < records.cell.size(); ++i) {
+        const auto& c = records.cell[i];
+        order.emplace_back(spread(c[0]) | spread(c[1]) << 1 | spread(c[2]) << 2, i);
+    }
+    std::ranges::sort(order);
+    Records out;
+    out.total = records.total;
+    for (const auto& [key, i] : order) {
+        out.cell.push_back(records.cell[i]);
+        out.aux.push_back(records.aux[i]);
+        if (!records.photo.empty()) out.photo.push_back(records.photo[i]);
+    }
+    return out;
+}
+
+Json points_json(const Records& points) {
+    Records sorted = along_a_curve(points);
+    sorted.aux = rounded_normals(std::move(sorted.aux), 8);
+    return records_json(sorted);
+}
+
+// To a tenth of a millimetre.
+Json spots_json(const PackedView& view) {
+    Json spots = Json::array();
+    for (const auto& spot : view.spots) {
+        Json place = Json::array();
+        if (spot)
+            for (const double x : *spot) place.push_back(std::round(10000 * x) / 10000);
+        spots.push_back(std::move(place));
+    }
+    return spots;
+}
+
+Json surface_json(const PackedSurface& surface, ThreadPool& pool) {
+    std::array<std::string, 4> parts;
+    pool.each(parts.size(), 1, [&](std::size_t n) {
+        parts[n] = n == 0   ? deflated(surface.cell)
+                   : n == 1 ? deflated(rounded_normals(surface.aux, 4))
+                   : n == 2 ? deflated_plain(surface.index)
+                            : deflated(surface.photo);
+    });
     Json json{{"count", surface.cell.size()},
               {"triangles", surface.index.size()},
-              {"cell", packed(surface.cell)},
-              {"aux", packed(surface.aux)},
-              {"index", packed(surface.index)}};
-    if (!surface.photo.empty()) json["photo"] = packed(surface.photo);
+              {"cell", std::move(parts[0])},
+              {"aux", std::move(parts[1])},
+              {"index", std::move(parts[2])}};
+    if (!surface.photo.empty()) json["photo"] = std::move(parts[3]);
     return json;
 }
 
@@ -74,7 +136,8 @@ Json walks_json(const PackedWalks& walks) {
             {"paths", std::move(paths)}};
 }
 
-Json view_json(const PackedView& view) {
+// points: of the view, as the page has them.
+Json view_json(const PackedView& view, Json points, ThreadPool& pool) {
     Json groups = Json::array();
     for (const auto& [primitive, object] : view.groups) groups.push_back({primitive, object});
     Json fields = Json::object();
@@ -88,9 +151,10 @@ Json view_json(const PackedView& view) {
             {"step_m", view.step_m},
             {"cube_m", view.cube_m},
             {"groups", std::move(groups)},
+            {"spots", spots_json(view)},
             {"voxels", records_json(view.voxels)},
-            {"points", records_json(view.points)},
-            {"surface", surface_json(view.surface)},
+            {"points", std::move(points)},
+            {"surface", surface_json(view.surface, pool)},
             {"fields", std::move(fields)},
             {"walks", walks_json(view.walks)}};
 }
@@ -249,14 +313,18 @@ void write_page(io::FileWriter& writer, std::string_view html,
 struct Report::Parts {
     std::string source;
     ViewPacker view;
-    Json data;
+    Json data, points;
 };
 
 Report::Report(const Scene& scene, bool with_surfaces)
-    : parts_(new Parts{scene.source, {scene, {}, with_surfaces}, io::scene_document(scene)}) {
+    : parts_(new Parts{scene.source, {scene, {}, with_surfaces}, io::scene_document(scene), {}}) {
+    parts_->points = points_json(parts_->view.points());
     Json& json = parts_->data;
+    // What is long and nobody but the page reads there.
+    for (const char* bulk : {"primitives", "contacts", "swc_energy"})
+        json[bulk] = deflated(json[bulk].dump());
     for (const char* later : {"colours", "view"}) json[later] = nullptr;
-    json["drawings"] = landscapes_json(scene);
+    json["drawings"] = deflated(landscapes_json(scene).dump());
     json["ramp"] = {{"colours", ramp}, {"bands", bands}};
     json["disturbance_kinds"] = disturbances_json();
     json["unsafety_ramp"] = unsafety_ramp;
@@ -264,12 +332,14 @@ Report::Report(const Scene& scene, bool with_surfaces)
 }
 Report::~Report() = default;
 
-void Report::write(const std::filesystem::path& file, std::span<const ObjectSurface> surfaces) {
+void Report::write(const std::filesystem::path& file, std::span<const ObjectSurface> surfaces,
+                   unsigned threads) {
+    ThreadPool pool(threads);
     Json& json = parts_->data;
     {
-        const PackedView view = parts_->view.pack(surfaces);
+        const PackedView view = parts_->view.pack(surfaces, pool);
         json["colours"] = colours_json(view);
-        json["view"] = view_json(view);
+        json["view"] = view_json(view, std::move(parts_->points), pool);
     }
     const auto data = script_safe(json.dump(-1, ' ', false, Json::error_handler_t::replace));
     const auto title = html_escaped(parts_->source);
@@ -286,7 +356,7 @@ void Report::write(const std::filesystem::path& file, std::span<const ObjectSurf
 
 void write_report(const std::filesystem::path& file, const Scene& scene,
                   std::span<const ObjectSurface> surfaces) {
-    Report(scene, !surfaces.empty()).write(file, surfaces);
+    Report(scene, !surfaces.empty()).write(file, surfaces, 0);
 }
 
 }  // namespace topple::report

@@ -29,8 +29,9 @@ class Report {
     Report(const Report&) = delete;
     Report& operator=(const Report&) = delete;
 
-    // Once.
-    void write(const std::filesystem::path& file, std::span<const ObjectSurface> surfaces);
+    // Once. threads: 0 for as many as the machine has.
+    void write(const std::filesystem::path& file, std::span<const ObjectSurface> surfaces,
+               unsigned threads);
 
   private:
     struct Parts;

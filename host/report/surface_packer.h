@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/object_surface.h"
+#include "core/thread_pool.h"
 #include "report/view_data.h"
 
 namespace topple::report {
@@ -32,9 +33,10 @@ class SurfacePacker {
 
     // What it will take.
     std::size_t bytes() const { return vertex_.size() * (coloured_ ? 16 : 12) + index_.size() * 6; }
-    // vertex_of: vertex number v of a surface, in a group.
+    // vertex_of: vertex number v of a surface, in a group; several threads call it.
     PackedSurface take(const std::function<SurfaceVertex(const ObjectSurface&, std::size_t,
-                                                         std::uint16_t)>& vertex_of);
+                                                         std::uint16_t)>& vertex_of,
+                       ThreadPool& pool);
 
   private:
     // A vertex, before it is known whether it is needed.

@@ -4,65 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "core/scene_bounds.h"
 #include "report/cell_colours.h"
 #include "report/cells.h"
 #include "report/open_sides.h"
+#include "report/part_spots.h"
 #include "report/surface_packer.h"
+#include "report/view_frame.h"
 
 namespace topple::report {
 namespace {
-
-using Rows = std::array<Vec3, 3>;
-
-double dot(const Vec3& a, const Vec3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Rows rows_of(const Mat4& m) {
-    return {Vec3{m[0], m[1], m[2]}, Vec3{m[4], m[5], m[6]}, Vec3{m[8], m[9], m[10]}};
-}
-
-bool is_rotation(const Rows& r) {
-    for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t k = i; k < 3; ++k) {
-            if (!(std::abs(dot(r[i], r[k]) - (i == k ? 1.0 : 0.0)) < 1e-3)) return false;
-        }
-    }
-    return dot(cross(r[0], r[1]), r[2]) > 0;
-}
-
-// The scene's own frame where it has one with z up, else any with z up.
-Rows view_frame(const Scene& scene) {
-    const double length = std::sqrt(dot(scene.up, scene.up));
-    const Vec3 up = length > 1e-9
-                        ? Vec3{scene.up[0] / length, scene.up[1] / length, scene.up[2] / length}
-                        : Vec3{0, 0, 1};
-    const auto given = rows_of(scene.manhattan_from_input);
-    if (is_rotation(given) && dot(given[2], up) > 0.9) return given;
-    // The input axis that is farthest from up becomes x.
-    std::size_t least = 0;
-    for (std::size_t axis = 1; axis < 3; ++axis) {
-        if (std::abs(up[axis]) < std::abs(up[least])) least = axis;
-    }
-    Vec3 x{};
-    x[least] = 1;
-    const double along = dot(x, up);
-    for (std::size_t axis = 0; axis < 3; ++axis) x[axis] -= along * up[axis];
-    const double norm = std::sqrt(dot(x, x));
-    for (auto& value : x) value /= norm;
-    return {x, cross(up, x), up};
-}
-
-Vec3 turned(const Rows& r, double x, double y, double z) {
-    const Vec3 p{x, y, z};
-    return {dot(r[0], p), dot(r[1], p), dot(r[2], p)};
-}
 
 struct Box {
     Vec3 low{1e30, 1e30, 1e30}, high{-1e30, -1e30, -1e30};
@@ -118,15 +72,17 @@ class ViewPacker::Work {
         }
         measure();
         pack_voxels();
+        pack_points();
         for (const auto& [name, field] : scene_.fields) pack_field(field, view_.fields[name]);
         view_.walks = pack_walks(scene_.walks, view_.view_from_input, limits_.walk_cells);
     }
 
-    PackedView pack(std::span<const ObjectSurface> surfaces) {
-        pack_surfaces(surfaces);
-        pack_points();
+    PackedView pack(std::span<const ObjectSurface> surfaces, ThreadPool& pool) {
+        pack_surfaces(surfaces, pool);
         return std::move(view_);
     }
+
+    const Records& points() const { return view_.points; }
 
   private:
     // What is fixed to the ground, or belongs to no object: it may be looked through.
@@ -147,7 +103,8 @@ class ViewPacker::Work {
                                              static_cast<float>(p[2]));
     }
 
-    // The box of all that is drawn, and how it divides into 65,535 steps.
+    // The box of all that is drawn, and how it divides into steps: 65,535 at most, and none finer
+    // than shows.
     void measure() {
         std::array<std::vector<float>, 3> at;
         const auto add = [&](const auto& cloud) {
@@ -166,8 +123,8 @@ class ViewPacker::Work {
         const double margin = with_surfaces_ ? 2 * scene_.voxel_size_m : 0;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             view_.origin_m[axis] = bounds_.low[axis] - margin;
-            view_.step_m[axis] =
-                std::max(double{bounds_.high[axis]} - bounds_.low[axis] + 2 * margin, 1e-3) / 65535;
+            const double extent = double{bounds_.high[axis]} - bounds_.low[axis] + 2 * margin;
+            view_.step_m[axis] = std::max({extent / 65535, 1e-3 / 65535, scene_.voxel_size_m / 16});
         }
         for (std::size_t i = 0; i < scene_.solid.x.size(); ++i) {
             const auto p = place(scene_.solid, i);
@@ -253,6 +210,7 @@ class ViewPacker::Work {
             // A scene of things far apart is not coarsened without end.
             if (mark_exposed(cells, table) > limits_.voxels && merge < 64) continue;
             add_normals(cells, table, edge);
+            find_spots(cells, table, edge);
             if (view_.coloured) find_colours(cells, table, edge);
             write_cells(cells, edge);
             view_.cube_m = edge;
@@ -260,6 +218,26 @@ class ViewPacker::Work {
             table_ = std::move(table);
             return;
         }
+    }
+
+    // The centre of a cube of edge `edge`.
+    Vec3 centre_of(const Cell& cell, double edge) const {
+        Vec3 p;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            p[axis] = solid_box_.low[axis] + (cell.index[axis] + 0.5 - lattice_shift_) * edge;
+        return p;
+    }
+
+    // By group, in the input's frame.
+    void find_spots(const std::vector<Cell>& cells, const CellTable& table, double edge) {
+        const auto chosen = inner_cells(cells, table, view_.groups.size());
+        std::vector<std::optional<Vec3>> near(view_.groups.size());
+        for (std::size_t g = 0; g < near.size(); ++g) {
+            if (chosen[g] == CellTable::absent || view_.groups[g].first < 0) continue;
+            const Vec3 p = centre_of(cells[chosen[g]], edge);
+            near[g] = turned_back(view_.view_from_input, p);
+        }
+        view_.spots = nearest_points(scene_.points, view_.groups, std::move(near));
     }
 
     void add_normals(std::vector<Cell>& cells, const CellTable& table, double edge) {
@@ -315,11 +293,7 @@ class ViewPacker::Work {
         auto& out = view_.voxels;
         for (const auto& cell : cells) {
             if (cell.exposed == 0 || out.cell.size() == limits_.voxels) continue;
-            Vec3 p;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                p[axis] = solid_box_.low[axis] + (cell.index[axis] + 0.5 - lattice_shift_) * edge;
-            }
-            out.cell.push_back(quantised(p, cell.group));
+            out.cell.push_back(quantised(centre_of(cell, edge), cell.group));
             const auto flags = static_cast<std::int8_t>(cell.exposed | (cell.completed ? 64 : 0));
             out.aux.push_back({signed_byte(cell.normal[0]), signed_byte(cell.normal[1]),
                                signed_byte(cell.normal[2]), flags});
@@ -330,7 +304,7 @@ class ViewPacker::Work {
     }
 
     // In place of the voxels, where it is not too large.
-    void pack_surfaces(std::span<const ObjectSurface> surfaces) {
+    void pack_surfaces(std::span<const ObjectSurface> surfaces, ThreadPool& pool) {
         if (surfaces.empty() || cells_.empty()) return;
         SurfacePacker packer(view_.coloured);
         for (const ObjectSurface& surface : surfaces) {
@@ -338,15 +312,11 @@ class ViewPacker::Work {
                 return groups_.of(primitive, surface.object);
             });
         }
-        const std::size_t record = view_.coloured ? 16 : 12;
-        // It may have some of the points' room.
-        const std::size_t own = limits_.voxels * record, of_points = limits_.points / 2 * record;
-        if (packer.bytes() > own + of_points) return;
-        if (packer.bytes() > own) limits_.points -= (packer.bytes() - own) / record;
+        if (packer.bytes() > limits_.surface_bytes) return;
         view_.surface =
-            packer.take([&](const ObjectSurface& surface, std::size_t v, std::uint16_t group) {
-                return vertex_of(surface, v, group);
-            });
+            packer.take([&](const ObjectSurface& surface, std::size_t v,
+                            std::uint16_t group) { return vertex_of(surface, v, group); },
+                        pool);
         view_.voxels.cell.clear();
         view_.voxels.aux.clear();
         view_.voxels.photo.clear();
@@ -502,13 +472,18 @@ ViewPacker::ViewPacker(const Scene& scene, const ViewLimits& limits, bool with_s
     : work_(std::make_unique<Work>(scene, limits, with_surfaces)) {}
 ViewPacker::~ViewPacker() = default;
 
-PackedView ViewPacker::pack(std::span<const ObjectSurface> surfaces) {
-    return work_->pack(surfaces);
+PackedView ViewPacker::pack(std::span<const ObjectSurface> surfaces, ThreadPool& pool) {
+    return work_->pack(surfaces, pool);
+}
+
+const Records& ViewPacker::points() const {
+    return work_->points();
 }
 
 PackedView pack_view(const Scene& scene, const ViewLimits& limits,
                      std::span<const ObjectSurface> surfaces) {
-    return ViewPacker(scene, limits, !surfaces.empty()).pack(surfaces);
+    ThreadPool alone(1);
+    return ViewPacker(scene, limits, !surfaces.empty()).pack(surfaces, alone);
 }
 
 }  // namespace topple::report

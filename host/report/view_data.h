@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/object_surface.h"
+#include "core/thread_pool.h"
 #include "report/view_walks.h"
 #include "topple/scene.h"
 
@@ -19,10 +21,11 @@
 // that z is up and, where the scene has a Manhattan frame, its walls follow the axes.
 namespace topple::report {
 
-// How much the page may hold; 400,000 voxels and 300,000 points take 11 MB. Of scans with colours
-// it is three quarters of them, which take as much.
+// How much the page may hold. A surface's bytes are those of its records, about twice what they
+// take in the page. Of scans with colours it is three quarters of the voxels and points.
 struct ViewLimits {
     std::size_t voxels = 400'000, points = 300'000, arrows = 1'200, walk_cells = 40'000;
+    std::size_t surface_bytes = 16'000'000;
 };
 
 // Records of a voxel or point. cell: x, y, z in steps of PackedView::step_m from origin_m, then the
@@ -61,7 +64,10 @@ struct PackedView {
     double cube_m =
         0;  // edge of the cubes that are drawn; larger than a voxel where those are merged
     std::vector<std::pair<std::int32_t, std::int32_t>>
-        groups;             // primitive and object of each group
+        groups;  // primitive and object of each group
+    // Of each group a place well inside of its primitive's surface, as far as one is solid: a point
+    // of the scan, in the input's frame. By it a correction tells which primitive it means.
+    std::vector<std::optional<Vec3>> spots;
     bool coloured = false;  // the scan has colours
     Records voxels, points;
     PackedSurface surface;  // in place of voxels; empty where there is none, or too large a one
@@ -78,8 +84,10 @@ class ViewPacker {
     ViewPacker(const ViewPacker&) = delete;
     ViewPacker& operator=(const ViewPacker&) = delete;
 
+    // Those of the view, before it is packed.
+    const Records& points() const;
     // Once.
-    PackedView pack(std::span<const ObjectSurface> surfaces);
+    PackedView pack(std::span<const ObjectSurface> surfaces, ThreadPool& pool);
 
   private:
     class Work;

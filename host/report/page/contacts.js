@@ -71,7 +71,7 @@ function contactGraph(scene, id, choose) {
     const dot = svgElement('circle', {cx: x, cy: y, r: 6, fill: css(colourOf(scene, own ? primitive : object)), class: 'node'});
     svg.append(dot);
     const other = scene.objectById.get(object);
-    const text = own ? `part ${primitive}` : object < 0 || !other ? 'no object' : other.grounded ? `ground, part ${primitive}` : `object ${object}, part ${primitive}`;
+    const text = own ? `part ${primitive}` : object < 0 || !other ? 'no object' : other.grounded ? `ground, part ${primitive}` : `${objectName(scene, object)}, part ${primitive}`;
     say(own ? x - 11 : x + 10, y + 4, own ? 'end' : 'start', text, own ? '' : 'reach');
     if (!own && other) {
       dot.addEventListener('click', () => choose(object));

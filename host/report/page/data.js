@@ -2,25 +2,28 @@
 'use strict';
 
 // The scene as it was inlined, its records as typed arrays, and what is looked up by id.
-function loadScene() {
+async function loadScene() {
   const scene = JSON.parse(document.getElementById('data').textContent);
-  const view = scene.view;
-  for (const records of [view.voxels, view.points]) {
-    records.cell = new Uint16Array(bytesOf(records.cell));
-    records.aux = new Int8Array(bytesOf(records.aux));
-    if (records.photo) records.photo = new Uint8Array(bytesOf(records.photo));
+  if (!window.DecompressionStream) {
+    throw new Error('This browser is too old for this report: it can\u2019t inflate data. Chromium 80, Firefox 113 and Safari 16.4 can.');
   }
-  const surface = view.surface;
-  surface.cell = new Uint16Array(bytesOf(surface.cell));
-  surface.aux = new Int8Array(bytesOf(surface.aux));
-  if (surface.photo) surface.photo = new Uint8Array(bytesOf(surface.photo));
-  surface.index = vertexNumbers(new Uint16Array(bytesOf(surface.index)));
+  const view = scene.view, surface = view.surface;
+  const records = [[view.voxels, 'cell', Uint16Array, 4], [view.points, 'cell', Uint16Array, 4], [surface, 'cell', Uint16Array, 4],
+    [view.voxels, 'aux', Int8Array, 4], [view.points, 'aux', Int8Array, 4], [surface, 'aux', Int8Array, 4],
+    [view.voxels, 'photo', Uint8Array, 4], [view.points, 'photo', Uint8Array, 4], [surface, 'photo', Uint8Array, 4]];
+  await Promise.all(records.filter(([owner, name]) => owner[name]).map(async ([owner, name, Type, channels]) => {
+    owner[name] = recordsOf(await inflated(owner[name]), Type, channels);
+  }));
+  surface.index = vertexNumbers(await inflated(surface.index));
+  for (const bulk of ['primitives', 'contacts', 'swc_energy', 'drawings']) {
+    scene[bulk] = JSON.parse(new TextDecoder().decode(await inflated(scene[bulk])));
+  }
   for (const name of Object.keys(view.fields)) {
-    view.fields[name].arrow = new Float32Array(bytesOf(view.fields[name].arrow));
+    view.fields[name].arrow = new Float32Array(bytesOf(view.fields[name].arrow).buffer);
   }
   scene.coloured = !!(view.voxels.photo || surface.photo || view.points.photo);
-  view.walks.shade = new Uint8Array(bytesOf(view.walks.shade));
-  view.walks.floor_mm = new Int16Array(bytesOf(view.walks.floor_mm));
+  view.walks.shade = bytesOf(view.walks.shade);
+  view.walks.floor_mm = new Int16Array(bytesOf(view.walks.floor_mm).buffer);
   scene.verified = JSON.parse(document.getElementById('verified').textContent);
   scene.objectById = new Map(scene.objects.map(object => [object.id, object]));
   const reckoned = new Set(scene.objects.flatMap(object => Object.keys(object.risk_J)));
@@ -29,11 +32,37 @@ function loadScene() {
   return scene;
 }
 
-// Of triangles' corners that tell how many vertices back they are, 0 for one that is new.
-function vertexNumbers(back) {
-  const out = new Uint32Array(back.length);
-  let next = 0;
-  for (let i = 0; i < back.length; ++i) out[i] = back[i] ? next - back[i] : next++;
+// Of zlib's format in base64.
+async function inflated(base64) {
+  const stream = new Blob([bytesOf(base64)]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+// Undoes deflated() of host/report/deflated.h: channel by channel the steps from record to record, low bytes before high ones.
+function recordsOf(bytes, Type, channels) {
+  const wide = Type.BYTES_PER_ELEMENT === 2, out = new Type(bytes.length / Type.BYTES_PER_ELEMENT), count = out.length / channels;
+  for (let c = 0, base = 0; c < channels; ++c, base += count * Type.BYTES_PER_ELEMENT) {
+    for (let i = 0, value = 0, at = c; i < count; ++i, at += channels) {
+      const low = bytes[base + i];
+      if (wide) {
+        const step = low | bytes[base + count + i] << 8;
+        value = value + (step >>> 1 ^ -(step & 1)) & 65535;
+      } else {
+        value = value + low & 255;
+      }
+      out[at] = value;
+    }
+  }
+  return out;
+}
+
+// Of triangles' corners that tell how many vertices back they are, 0 for one that is new: low bytes, then high ones.
+function vertexNumbers(bytes) {
+  const count = bytes.length / 2, out = new Uint32Array(count);
+  for (let i = 0, next = 0; i < count; ++i) {
+    const back = bytes[i] | bytes[count + i] << 8;
+    out[i] = back ? next - back : next++;
+  }
   return out;
 }
 
@@ -41,7 +70,7 @@ function bytesOf(base64) {
   const text = atob(base64);
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
-  return bytes.buffer;
+  return bytes;
 }
 
 const noColour = [168, 172, 178];

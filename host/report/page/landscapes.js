@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 'use strict';
 
+// What explains a drawing, by the first word of its title.
+const drawnTerms = {Instability: 'instability', Poses: 'pose', Disconnectivity: 'basin'};
+
 // The drawings of an object's energy landscapes, as the program laid them out.
 function drawingsOf(scene, id) {
   return (scene.drawings[id] || []).map(drawing => {
-    const figure = element('figure', {}, [element('h3', {text: drawing.title})]);
+    const key = drawnTerms[drawing.title.split(/[ :]/)[0]];
+    const figure = element('figure', {}, [element('h3', {}, [key ? term(key, drawing.title) : drawing.title])]);
     figure.append(paintDrawing(scene, drawing));
     return figure;
   });
@@ -47,7 +51,7 @@ function pixelImage(side, box, colourAt) {
 // The height of the centre of mass over all up directions, an equal-area map: Lambert's azimuthal
 // projection around the pose as it is. Bands of equal height make the contours.
 function sphereImage(scene, sphere) {
-  const corners = new Int16Array(bytesOf(sphere.corners)), side = Math.round(3 * sphere.radius);
+  const corners = new Int16Array(bytesOf(sphere.corners).buffer), side = Math.round(3 * sphere.radius);
   const colours = [];
   for (let band = 0; band < scene.ramp.bands; ++band) colours.push(colourAlong(scene.ramp.colours, (band + 0.5) / scene.ramp.bands));
   const scale = scene.ramp.bands / Math.max(sphere.high - sphere.low, 1e-9);
@@ -67,7 +71,7 @@ function sphereImage(scene, sphere) {
 }
 
 function rasterImage(raster) {
-  const code = new Uint8Array(bytesOf(raster.code)), scale = Math.max(1, Math.floor(400 / raster.side));
+  const code = bytesOf(raster.code), scale = Math.max(1, Math.floor(400 / raster.side));
   const box = {x: raster.corner[0], y: raster.corner[1], width: raster.size, height: raster.size};
   return pixelImage(raster.side * scale, box,
     (x, y) => raster.palette[code[Math.floor(y / scale) * raster.side + Math.floor(x / scale)]]);

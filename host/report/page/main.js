@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 'use strict';
 
+window.addEventListener('unhandledrejection', event => { document.body.dataset.error = String(event.reason && event.reason.message || event.reason); });
 window.addEventListener('error', event => { document.body.dataset.error = event.message || 'error'; });
 
 function fillHeader(scene) {
@@ -141,19 +142,38 @@ function sayThinned(scene) {
 }
 
 function openView(scene) {
-  const canvas = document.getElementById('canvas');
   try {
-    return new View(canvas, scene);
+    return new View(document.getElementById('canvas'), scene);
   } catch (error) {
-    const message = document.getElementById('no-view');
-    message.textContent = 'The 3D view needs WebGL, which this browser doesn\u2019t offer here. The table and the curves below work without it.';
-    message.hidden = false;
     document.body.dataset.view = 'none';
     return null;
   }
 }
 
-function connectPointer(scene, view, choose) {
+// A still picture in the view's place, from each of four sides.
+function showStill(scene) {
+  const message = document.getElementById('no-view'), drawn = scene.painter.draws;
+  message.textContent = 'The 3D view needs WebGL, which this browser doesn\u2019t offer here. ' +
+    (drawn ? 'Here is a picture instead; numbers are those of the riskiest objects.' : 'The table and the curves below work without it.');
+  message.hidden = false;
+  // What is about the view, which isn't there.
+  for (const part of document.querySelectorAll('.toolbar, .stage .hint')) part.hidden = true;
+  document.querySelector('.compass').style.display = 'none';
+  if (!drawn) return;
+  const still = element('canvas', {width: 960, height: 600, role: 'img', className: 'still'});
+  const sides = [['from the south-west', 0], ['from the south-east', 90], ['from the north-east', 180], ['from the north-west', -90]];
+  const show = side => {
+    paintScene(scene, still, scene.coloured ? 'photo' : 'object', sides[side][1]);
+    still.setAttribute('aria-label', `The scene ${sides[side][0]}`);
+  };
+  const box = element('div', {className: 'group', id: 'sides', role: 'group', 'aria-label': 'Seen from'},
+    sides.map(([text], n) => element('button', {type: 'button', text, 'data-value': String(n)})));
+  document.getElementById('canvas').append(box, still);
+  radioGroup('sides', '0', value => show(Number(value)));
+  show(0);
+}
+
+function connectPointer(scene, view, parts, choose) {
   const canvas = view.renderer.domElement, tip = document.getElementById('tip');
   let down = null;
   const place = event => {
@@ -166,8 +186,10 @@ function connectPointer(scene, view, choose) {
     const moved = down ? Math.hypot(x - down[0], y - down[1]) : 99;
     down = null;
     if (moved > 5 || event.button !== 0) return;
-    const id = view.pick(x, y);
-    choose(id !== null && id >= 0 ? id : null);
+    const [part, id] = view.pickGroup(x, y) || [-1, -1];
+    if (event.shiftKey && id >= 0) parts.toggleObject(id);
+    else if (event.ctrlKey || event.metaKey || document.getElementById('mend-tap').checked) parts.togglePart(part);
+    else if (!event.shiftKey) choose(id >= 0 ? id : null);
   });
   let asked = 0;
   canvas.addEventListener('pointermove', event => {
@@ -176,11 +198,12 @@ function connectPointer(scene, view, choose) {
     // Where the pointer rests: finding what lies there takes a pass over the scene.
     clearTimeout(asked);
     asked = setTimeout(() => {
-      const id = view.pick(x, y), object = scene.objectById.get(id);
-      tip.hidden = id === null;
-      if (id === null) return;
+      const group = view.pickGroup(x, y);
+      tip.hidden = !group;
+      if (!group) return;
+      const [part, id] = group, object = scene.objectById.get(id);
       tip.textContent = !object ? 'not part of an object'
-        : `object ${id}` + (object.grounded ? ', grounded' : `, unsafety ${object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)}`);
+        : objectName(scene, id) + (part >= 0 ? `, part ${part}` : '') + (object.grounded ? ', grounded' : `, unsafety ${object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)}`);
       tip.style.left = x + 'px';
       tip.style.top = y + 'px';
     }, 60);
@@ -188,33 +211,82 @@ function connectPointer(scene, view, choose) {
   canvas.addEventListener('pointerleave', () => { clearTimeout(asked); tip.hidden = true; });
 }
 
-function start() {
-  const scene = loadScene();
+// "#object=12"
+function linkedObject(scene) {
+  const found = location.hash.match(/^#object=(\d+)$/);
+  return found && scene.objectById.has(Number(found[1])) ? Number(found[1]) : null;
+}
+
+// The address says what is chosen, without a step in the history for each.
+function setLink(id) {
+  if (id === null && !location.hash.startsWith('#object=')) return;
+  try {
+    history.replaceState(null, '', id === null ? '#' : `#object=${id}`);
+  } catch (error) {
+    // A page within another has no address.
+  }
+}
+
+// On paper the view is a picture, and all pictures are there.
+function preparePrint(scene, state) {
+  addEventListener('beforeprint', () => {
+    // Paper has no tooltips.
+    for (const folded of document.querySelectorAll('#glossary, #risk details')) folded.open = true;
+    paintPictures(scene, true);
+    const stage = document.getElementById('canvas');
+    for (const old of stage.querySelectorAll('.on-paper')) old.remove();
+    if (!scene.painter.draws || stage.querySelector('.still')) return;
+    const canvas = element('canvas', {width: 1200, height: 750, className: 'on-paper'});
+    paintScene(scene, canvas, state.mode === 'primitive' ? 'object' : state.mode, 0);
+    stage.append(canvas);
+  });
+}
+
+async function start() {
+  const scene = await loadScene();
+  scene.boxes = boxesOf(scene);
+  scene.floor = floorOf(scene, scene.boxes);
+  scene.painter = new Painter(scene);
+  scene.pictures = new Map();
   fillHeader(scene);
   fillBottom(scene);
+  fillGlossary();
   sayThinned(scene);
   const view = openView(scene);
   const panel = document.getElementById('detail');
   const state = {mode: scene.coloured ? 'photo' : 'object', chosen: null, fieldsOn: []};
+  const say = text => { document.getElementById('say').textContent = text; };
   const repaint = () => {
     if (!view) return;
-    view.paint(state.mode, state.chosen);
+    view.paint(state.mode, state.chosen, parts.marked);
     legend(scene, state, view);
   };
+  const parts = new PartsPanel(scene, repaint, say);
   const choose = id => {
-    state.chosen = id === state.chosen ? null : id;
-    showObject(panel, scene, state.chosen, choose);
+    state.chosen = id === state.chosen || !scene.objectById.has(id) ? null : id;
+    showObject(panel, scene, state.chosen, choose, visit);
     table.choose(state.chosen);
+    parts.choose(state.chosen);
     if (state.chosen === null) delete document.body.dataset.chosen;
     else document.body.dataset.chosen = state.chosen;
+    setLink(state.chosen);
+    say(state.chosen === null ? 'Nothing is chosen.' : chosenText(scene, scene.objectById.get(state.chosen)));
     if (view) view.mark(scene.objectById.get(state.chosen));
     repaint();
+    paintPictures(scene);
+  };
+  // From a list or a link: the view goes there.
+  const visit = id => {
+    if (id !== state.chosen) choose(id);
+    if (view && scene.boxes.has(id)) view.fly(scene.boxes.get(id));
   };
   const table = new ObjectTable(document.getElementById('objects'), scene, choose);
   fillRisk(document.getElementById('risk'), scene, id => {
     choose(id);
     document.querySelector('.stage').scrollIntoView({block: 'nearest'});
+    if (!panel.hidden) panel.querySelector('h2').focus({preventScroll: true});
   });
+  const compare = new ComparePanel(scene, visit, say);
 
   if (view) {
     if (!scene.coloured) document.querySelector('#colour-by [data-value=photo]').remove();
@@ -225,7 +297,7 @@ function start() {
     fieldBoxes(scene, view, state);
     document.getElementById('through').addEventListener('change', event => view.setThrough(event.target.checked));
     document.getElementById('reset').addEventListener('click', () => view.reset());
-    connectPointer(scene, view, choose);
+    connectPointer(scene, view, parts, choose);
     repaint();
     view.render();
     window.toppleView = view;
@@ -237,13 +309,33 @@ function start() {
     document.body.dataset.firstPictureMs = Math.round(performance.now());
     view.hideUnseenLabels();
   } else {
-    // What is about the picture, which isn't there.
-    for (const part of document.querySelectorAll('.toolbar, .stage .hint')) part.hidden = true;
-    document.querySelector('.compass').style.display = 'none';
+    showStill(scene);
   }
+  preparePrint(scene, state);
+  addEventListener('keydown', event => {
+    if (event.key === 'Escape' && state.chosen !== null) choose(null);
+  });
+  addEventListener('hashchange', () => { if (linkedObject(scene) !== null) visit(linkedObject(scene)); });
+  if (linkedObject(scene) !== null) visit(linkedObject(scene));
+  paintPictures(scene);
   window.toppleChoose = choose;
+  window.toppleParts = parts;
+  window.toppleCompare = compare;
+  window.toppleScene = scene;
   document.body.dataset.rows = document.querySelectorAll('#objects tbody tr').length;
   document.body.dataset.ready = '1';
 }
 
-start();
+// For screen readers, when one is chosen.
+function chosenText(scene, object) {
+  return `${capital(objectName(scene, object.id))} chosen: ${number(object.mass_kg, 'kg')}` +
+    (object.grounded ? ', grounded.' : `, unsafety ${object.unsafety === null ? 'not known' : object.unsafety.toFixed(1)}. ${upsetText(object)}`);
+}
+
+window.toppleReady = start();
+window.toppleReady.catch(error => {
+  document.body.dataset.error = error.message;
+  const message = document.getElementById('no-view');
+  message.textContent = error.message;
+  message.hidden = false;
+});

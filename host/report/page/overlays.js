@@ -214,7 +214,7 @@ class Labels {
     this.chosen = object;
     for (const shown of object ? [object] : this.risky) {
       if (shown.center_of_mass_m.some(value => value === null)) continue;
-      const node = element('span', {className: 'number', text: String(shown.id)});
+      const node = element('span', {className: 'number', text: shown.name || String(shown.id)});
       this.container.append(node);
       this.nodes.set(shown, node);
     }

@@ -30,29 +30,38 @@ function missingText(scene) {
   return lines.join(' ');
 }
 
-function riskItem(scene, object, choose) {
+// What its rank, its category and its advice are of, so that they don't seem to contradict each other. rank: 0 for none.
+function standingText(object, rank) {
+  const words = [];
+  if (rank) words.push(`${rank === 1 ? 'Largest' : `${rank}${['nd', 'rd'][rank - 2] || 'th'} largest`} risk here`);
+  if (object.unsafety_category) words.push(`by itself: ${categoryText(object)}`);
+  if (!(object.advice && object.advice.sentence)) words.push('tolerated, no advice');
+  return capital(words.join(' \u00b7 '));
+}
+
+function riskItem(scene, object, choose, rank = 0) {
   const line = (className, text) => element('span', {className, text});
-  const advice = object.advice && object.advice.sentence;
-  const item = element('button', {type: 'button', className: 'item', onclick: () => choose(object.id)}, [
+  const advice = object.advice && object.advice.sentence, mass = number(object.mass_kg, 'kg');
+  const words = element('span', {className: 'words'}, [
     element('span', {className: 'head'}, [
       element('span', {className: 'swatch', style: {background: css(colourOf(scene, object.id))}}),
-      element('strong', {text: `Object ${object.id}`}),
-      line('mass', [number(object.mass_kg, 'kg'), sizeText(object)].filter(text => text).join(', ')),
-      line('category', object.unsafety_category ? `category ${categoryText(object)}` : ''),
+      element('strong', {text: capital(objectName(scene, object.id))}),
       unsafetyBadge(scene, object)]),
+    line('mass', [object.name ? `object ${object.id}` : '', massIsGiven(scene, object) ? mass : mass + ({solid: ' if solid', closed: ' if of boards', hollow: ' as a shell'}[object.mass_model] || ''), sizeText(object)].filter(text => text).join(', ')),
+    line('standing', standingText(object, rank)),
     line('from', isDoubtful(object) ? `As scanned a touch would upset it. ${happensText(scene, object)}` : upsetText(object)),
   ]);
   if (!isDoubtful(object)) {
-    item.append(line('then', happensText(scene, object)));
-    const overturning = overturningText(object);
-    if (overturning) item.append(line('then', overturning));
-    const shaken = fragilityText(object);
-    if (shaken) item.append(line('then', shaken));
+    words.append(line('then', happensText(scene, object)));
+    for (const text of [overturningText(object), fragilityText(object), keepClearText(scene, object)]) if (text) words.append(line('then', text));
   }
   if (object.agreement < 0.5) {
-    item.append(line('then', `Only ${Math.round(100 * object.agreement)} % of the searches found it so: its parts may belong together otherwise.`));
+    words.append(line('then', `Only ${Math.round(100 * object.agreement)} % of the searches found it so: its parts may belong together otherwise.`));
   }
-  if (advice) item.append(line('advice', advice));
+  if (advice) words.append(line('advice', advice));
+  const item = element('button', {type: 'button', className: 'item', onclick: () => choose(object.id)}, [words]);
+  const picture = pictureOf(scene, object.id);
+  if (picture) item.prepend(picture);
   item.dataset.object = object.id;
   return item;
 }
@@ -111,13 +120,14 @@ function rankedText(scene, shown, movable) {
 }
 
 function fillRiskiest(panel, scene, worst, movable, choose) {
-  panel.append(element('p', {className: 'hint', text:
-    rankedText(scene, worst.length, movable) + ' ' + eventsText(scene) + ' The badge is unsafety: 10 is the worst of this scene, whatever it is; the category is by itself, by how often it falls and how hard; ? where its error leaves a lower one open. ' +
-    'Choose one to see it in the room.'}));
+  panel.append(element('p', {className: 'hint', text: rankedText(scene, worst.length, movable)}));
+  panel.append(element('details', {}, [element('summary', {text: 'How to read this'}), element('p', {className: 'hint', text: eventsText(scene) + ' The badge is '}, [
+    term('unsafety', 'unsafety'), ': it ranks, and 10 is the worst of this scene, however harmless. \u201cBy itself\u201d is the ', term('category', 'category'),
+    ', none to high, whatever else is here; ? where its error leaves a lower one open. ', term('advice', 'Advice'), ' (\u2192) is for what is above the tolerated risk.'])]));
   if (worst.every(object => !(object.advice && object.advice.kind))) {
     panel.append(element('p', {className: 'hint', text: 'All of these risks are tolerated: nothing needs to be done.'}));
   }
-  const list = element('div', {className: 'items'}, worst.map(object => riskItem(scene, object, choose)));
+  const list = element('div', {className: 'items'}, worst.map((object, n) => riskItem(scene, object, choose, n + 1)));
   panel.append(list);
   if (worst.length > listedOnPhones) {
     panel.append(element('button', {type: 'button', className: 'more', text: `show ${worst.length - listedOnPhones} more`,

@@ -3,7 +3,7 @@
 
 // What voxels and points share: the place of a record, its group's colour, and the look through walls.
 // The palette's alpha says: 1 a movable thing, about 0.5 a grounded one, 0 hidden. In place of its colour a record may
-// show its own, that of the scan: then the palette's red says how far it fades.
+// show its own, that of the scan: then the palette's red says how far it fades, and its green whether it is marked.
 const recordShader = `
   attribute vec4 cell;   // x, y, z in steps, group
   attribute vec4 aux;    // normal / 127, flags
@@ -20,7 +20,10 @@ const recordShader = `
     float row = floor((cell.w + 0.5) / paletteSize.x);
     float column = cell.w - row * paletteSize.x;
     vec4 colour = texture2D(palette, (vec2(column, row) + 0.5) / paletteSize);
-    if (own > 0.5) colour.rgb = mix(photo.a > 0.5 ? photo.rgb : vec3(0.62), vec3(0.84, 0.835, 0.815), colour.r);
+    if (own > 0.5) {
+      vec3 seen = mix(photo.a > 0.5 ? photo.rgb : vec3(0.62), vec3(0.84, 0.835, 0.815), colour.r);
+      colour.rgb = mix(seen, vec3(1.0, 0.5, 0.08), colour.g);
+    }
     return colour;
   }
 

@@ -17,22 +17,23 @@ function barrierText(object, unit) {
 function objectColumns(scene) {
   const columns = [
     {name: 'Object', value: object => object.id, cell: object => [
-      element('span', {className: 'swatch', style: {background: css(colourOf(scene, object.id))}}), String(object.id)]},
+      element('button', {type: 'button', className: 'plain', 'aria-label': `choose ${objectName(scene, object.id)}`}, [
+        element('span', {className: 'swatch', style: {background: css(colourOf(scene, object.id))}}), object.name ? `${object.name} (${object.id})` : String(object.id)])]},
     {name: 'Mass (kg)', value: object => object.mass_kg},
-    {name: 'Barrier (J)', value: object => object.grounded ? Infinity : object.barrier_J, cell: object => [barrierText(object)]},
-    {name: 'Release (J)', value: object => object.grounded ? -1 : object.release_J, number: object => object.grounded ? null : object.release_J},
+    {name: 'Barrier (J)', term: 'barrier', value: object => object.grounded ? Infinity : object.barrier_J, cell: object => [barrierText(object)]},
+    {name: 'Release (J)', term: 'release', value: object => object.grounded ? -1 : object.release_J, number: object => object.grounded ? null : object.release_J},
     {name: 'How', text: true, value: howText, cell: object => [howText(object)]},
   ];
   for (const name of scene.disturbances) {
-    columns.push({name: capital(causeOf(name)) + ' (J)', value: object => object.risk_J[name], cell: object => riskCell(object, name)});
+    columns.push({name: capital(causeOf(name)) + ' (J)', term: 'risk', value: object => object.risk_J[name], cell: object => riskCell(object, name)});
   }
   if (scene.objects.some(object => object.advice && object.advice.kind)) {
-    columns.push({name: 'Advice', text: true, value: adviceText, cell: object => [adviceText(object)]});
+    columns.push({name: 'Advice', term: 'advice', text: true, value: adviceText, cell: object => [adviceText(object)]});
   }
   const order = ['none', 'low', 'medium', 'high'];
-  columns.push({name: 'Category', text: true, value: object => object.grounded || !object.unsafety_category ? null : order.indexOf(object.unsafety_category),
+  columns.push({name: 'Category', term: 'category', text: true, value: object => object.grounded || !object.unsafety_category ? null : order.indexOf(object.unsafety_category),
     cell: object => [object.grounded ? '\u2013' : categoryText(object)]});
-  columns.push({name: 'Unsafety', value: object => object.unsafety, cell: object => [unsafetyBadge(scene, object)]});
+  columns.push({name: 'Unsafety', term: 'unsafety', value: object => object.unsafety, cell: object => [unsafetyBadge(scene, object)]});
   return columns;
 }
 
@@ -65,12 +66,17 @@ function riskCell(object, name) {
   return cell;
 }
 
+// White or black, whichever stands out more (WCAG's relative luminance): by 4.5 to 1 at least.
+function textOn(colour) {
+  const [red, green, blue] = colour.map(value => value <= 10 ? value / 3295 : ((value / 255 + 0.055) / 1.055) ** 2.4);
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue > 0.179 ? '#000' : '#fff';
+}
+
 function unsafetyBadge(scene, object) {
   if (object.unsafety === null) return '\u2013';
   const colour = object.grounded ? noColour : riskColour(scene, object.unsafety);
-  const dark = 0.3 * colour[0] + 0.59 * colour[1] + 0.11 * colour[2] < 140;
   return element('span', {
-    className: 'unsafety', title: `unsafety ${object.unsafety.toFixed(1)} of 10, category ${categoryText(object)}`, text: object.unsafety.toFixed(1), style: {background: css(colour), color: dark ? '#fff' : '#1d2126'},
+    className: 'unsafety', title: `unsafety ${object.unsafety.toFixed(1)} of 10, category ${categoryText(object)}`, text: object.unsafety.toFixed(1), style: {background: css(colour), color: textOn(colour)},
   });
 }
 
@@ -82,19 +88,14 @@ class ObjectTable {
     this.rows = new Map();
     this.heads = this.columns.map((column, i) => {
       const head = element('th', {className: column.text ? 'text' : '', scope: 'col'},
-        [element('button', {type: 'button', text: column.name, onclick: () => this.sort(i)})]);
+        [element('button', {type: 'button', text: column.name, title: column.term ? glossary[column.term][1] : '', onclick: () => this.sort(i)})]);
       return head;
     });
     table.tHead.append(element('tr', {}, this.heads));
     for (const object of scene.objects) {
       const cells = this.columns.map(column => element('td', {className: column.text ? 'text' : ''},
         column.cell ? column.cell(object) : [number(column.number ? column.number(object) : column.value(object))]));
-      const row = element('tr', {tabIndex: 0, onclick: () => choose(object.id), onkeydown: event => {
-        if (event.key === 'Enter' || event.key === ' ') {
-          event.preventDefault();
-          choose(object.id);
-        }
-      }}, cells);
+      const row = element('tr', {onclick: () => choose(object.id)}, cells);
       this.rows.set(object.id, row);
     }
     this.sort(this.columns.length - 1, -1);
@@ -130,56 +131,74 @@ class ObjectTable {
 
 // --- the panel of one object --------------------------------------------------------------------------
 
+// Pairs of a name, which may be an element, and a value.
 function numberList(pairs) {
   const list = element('dl', {className: 'numbers'});
-  for (const [name, value] of pairs) list.append(element('dt', {text: name}), element('dd', {text: value}));
+  for (const [name, value] of pairs) list.append(element('dt', {}, [name]), element('dd', {text: value}));
   return list;
 }
 
-function objectLinks(ids, choose) {
+// An object's figures, for numberList().
+function figuresOf(scene, object) {
+  const pairs = [['Mass', massText(scene, object)],
+    ['Centre of mass, in the scan\u2019s frame', object.center_of_mass_m.map(v => v === null ? '\u2013' : v.toFixed(2)).join(', ') + ' m' +
+      within(Math.hypot(...(object.center_of_mass_error_m || [])))],
+    ['Where', placeText(scene, object) || '\u2013']];
+  if (!object.grounded) {
+    pairs.push([element('span', {}, [term('barrier', 'Barrier'), ': energy that moves it']),
+      barrierText(object, 'J') + (isDoubtful(object) ? '' : within(object.barrier_error_J))],
+    [element('span', {}, ['It then can ', term('release', 'release')]), number(object.release_J, 'J')]);
+    if (object.footprint_error_m > 0) pairs.push(['Error of its footprint', number(1000 * object.footprint_error_m, 'mm')]);
+  }
+  if (object.why.azimuth_deg !== null) pairs.push(['Weakest direction', azimuthText(object.why.azimuth_deg)]);
+  for (const name of object.grounded ? [] : scene.disturbances) {
+    pairs.push([element('span', {}, [term('risk', 'Risk'), ` from ${causeOf(name)}`]), riskText(object, name)]);
+  }
+  pairs.push([element('span', {}, [term('unsafety', 'Unsafety'), ', 1 to 10 within this scene']), object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
+  if (!object.grounded && object.unsafety_category) {
+    pairs.push([element('span', {}, [term('category', 'Category'), ', by itself']),
+      object.unsafety_category + (object.unsafety_certain ? '' : ', or lower: its errors leave it open')]);
+  }
+  return pairs;
+}
+
+function objectLinks(scene, ids, choose) {
   return element('div', {className: 'links'}, ids.map(([id, text]) =>
-    element('button', {type: 'button', text: 'object ' + id + (text ? ' \u00b7 ' + text : ''), onclick: () => choose(id)})));
+    element('button', {type: 'button', text: objectName(scene, id) + (text ? ' \u00b7 ' + text : ''), onclick: () => choose(id)})));
 }
 
 // Fills the panel, or hides it where nothing is chosen.
-function showObject(panel, scene, id, choose) {
+function showObject(panel, scene, id, choose, visit) {
   panel.replaceChildren();
   panel.scrollTop = 0;
   const object = scene.objectById.get(id);
   panel.hidden = !object;
   if (!object) return;
-  panel.append(element('button', {type: 'button', text: '\u2190 all that is at risk', onclick: () => choose(null)}));
-  const heading = element('h2', {}, [element('span', {className: 'swatch', style: {background: css(colourOf(scene, id))}}), 'Object ' + id]);
+  panel.append(element('div', {className: 'row'}, [
+    element('button', {type: 'button', text: '\u2190 all that is at risk', onclick: () => {
+      choose(null);
+      (document.querySelector(`.item[data-object="${id}"]`) || document.getElementById('risk')).focus();
+    }}),
+    element('button', {type: 'button', className: 'near', text: 'near by', title: 'The view goes there', onclick: () => visit(id)})]));
+  const heading = element('h2', {tabIndex: -1}, [element('span', {className: 'swatch', style: {background: css(colourOf(scene, id))}}),
+    capital(objectName(scene, id)) + (object.name ? ` (object ${id})` : '')]);
   panel.append(heading);
-  const overturning = overturningText(object);
-  if (overturning) panel.append(element('p', {className: 'why', text: overturning}));
-  if (!object.grounded) panel.append(element('p', {className: 'why', text: upsetText(object)}));
-  const fragility = fragilityText(object), curve = fragilityChart(object);
-  if (fragility) panel.append(element('p', {className: 'why', text: fragility}));
-  if (fallKnown(object)) panel.append(element('p', {className: 'why', text: happensText(scene, object)}));
-  if (object.advice && object.advice.sentence) panel.append(element('p', {className: 'advice', text: object.advice.sentence}));
-  panel.append(element('p', {className: 'why', text: object.why.sentence}));
-  const settled = scene.verified ? verifiedObjectText(scene.verified, id) : '';
-  if (settled) panel.append(element('p', {className: 'why', text: settled}));
-  const pairs = [['Mass', number(object.mass_kg, 'kg') + within(object.mass_error_kg) + (object.mass_model === 'closed' ? ', as boards around contents' : '')],
-    ['Centre of mass', object.center_of_mass_m.map(v => v === null ? '\u2013' : v.toFixed(2)).join(', ') + ' m' + within(Math.hypot(...(object.center_of_mass_error_m || [])))]];
-  if (!object.grounded) {
-    pairs.push(['Barrier: energy that moves it', barrierText(object, 'J') + (isDoubtful(object) ? '' : within(object.barrier_error_J))],
-      ['It then can release', number(object.release_J, 'J')]);
-    if (object.footprint_error_m > 0) pairs.push(['Error of its footprint', number(1000 * object.footprint_error_m, 'mm')]);
-  }
-  if (object.why.azimuth_deg !== null) pairs.push(['Weakest direction', azimuthText(object.why.azimuth_deg)]);
-  for (const name of object.grounded ? [] : scene.disturbances) {
-    pairs.push([`Risk from ${causeOf(name)}`, riskText(object, name)]);
-  }
-  pairs.push(['Unsafety, 1 to 10', object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
-  if (!object.grounded && object.unsafety_category) {
-    pairs.push(['Category', object.unsafety_category + (object.unsafety_certain ? '' : ', or lower: its errors leave it open')]);
-  }
-  panel.append(numberList(pairs));
+  const picture = pictureOf(scene, id);
+  if (picture) panel.append(picture);
+  const say = (text, className = 'why') => { if (text) panel.append(element('p', {className, text})); };
+  say(overturningText(object));
+  if (!object.grounded) say(upsetText(object));
+  const curve = fragilityChart(object);
+  say(fragilityText(object));
+  if (fallKnown(object)) say(happensText(scene, object));
+  say(keepClearText(scene, object), 'clear');
+  say(object.advice && object.advice.sentence, 'advice');
+  say(object.why.sentence);
+  say(scene.verified ? verifiedObjectText(scene.verified, id) : '');
+  panel.append(numberList(figuresOf(scene, object)));
 
   if (curve) {
-    panel.append(element('h3', {text: 'Chance of falling, over an earthquake\u2019s peak'}),
+    panel.append(element('h3', {}, [term('pga', 'Chance of falling, over an earthquake\u2019s peak')]),
       element('figure', {className: 'fragility'}, [curve]));
   }
   const contacts = contactGraph(scene, id, choose);
@@ -187,8 +206,8 @@ function showObject(panel, scene, id, choose) {
   panel.append(...drawingsOf(scene, id));
   const on = scene.supports.filter(s => s.supported === id).map(s => [s.supporter, areaText(s.area_m2)]);
   const carries = scene.supports.filter(s => s.supporter === id).map(s => [s.supported, areaText(s.area_m2)]);
-  if (on.length) panel.append(element('h3', {text: 'Rests on'}), objectLinks(on, choose));
-  if (carries.length) panel.append(element('h3', {text: 'Carries'}), objectLinks(carries, choose));
+  if (on.length) panel.append(element('h3', {text: 'Rests on'}), objectLinks(scene, on, choose));
+  if (carries.length) panel.append(element('h3', {text: 'Carries'}), objectLinks(scene, carries, choose));
   panel.append(element('h3', {text: 'Made of'}), primitiveList(scene, object));
 }
 
@@ -212,7 +231,7 @@ function primitiveList(scene, object) {
   for (const part of parts.slice(0, 12)) {
     list.append(element('dt', {}, [
       element('span', {className: 'swatch', style: {background: css(colourOf(scene, part.id))}}),
-      'primitive ' + part.id + ' (' + part.model + ')']),
+      `part ${part.id}, ${shapeText(part)}`]),
     element('dd', {text: part.volume_m3 === null ? '\u2013' : number(part.volume_m3 * 1000, 'l')}));
   }
   if (parts.length > 12) list.append(element('dt', {text: `and ${parts.length - 12} more`}), element('dd'));

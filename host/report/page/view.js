@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 'use strict';
 
+// Of parts that were chosen to be put right.
+const markColour = [255, 128, 20];
+
 const faceNormals = [[-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1]];
 
 // The 3D view. Throws where there is no WebGL. Draws only when something changed.
@@ -8,15 +11,19 @@ class View {
   constructor(container, scene) {
     this.container = container;
     this.scene = scene;
+    this.software = drawsInSoftware();
     // Smooth edges take long in software, and where a pixel is half a CSS pixel they are smooth enough.
-    this.renderer = new THREE.WebGLRenderer({antialias: (window.devicePixelRatio || 1) < 2 && !drawsInSoftware(), alpha: true});
+    this.renderer = new THREE.WebGLRenderer({antialias: (window.devicePixelRatio || 1) < 2 && !this.software, alpha: true});
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.world = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(45, 1, 0.02, 500);
     this.camera.up.set(0, 0, 1);
     container.prepend(this.renderer.domElement);
     this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.enableKeys = false;  // they would move what keys turn here
     this.controls.addEventListener('change', () => this.redraw());
+    this.renderer.domElement.tabIndex = 0;
+    this.renderer.domElement.addEventListener('keydown', event => this.turnByKey(event));
     this.makePalette();
     this.measure();
     this.makeSolids();
@@ -57,8 +64,10 @@ class View {
     };
   }
 
-  // Colours every group by `mode`, or all by the scan's colours; with `chosen`, all but that object's fade.
-  paint(mode, chosen) {
+  // Colours every group by `mode`, or all by the scan's colours; with `chosen`, all but that object's fade. The parts of
+  // the set `marked` are coloured as chosen ones.
+  paint(mode, chosen, marked) {
+    const pale = [214, 213, 208];
     this.scene.view.groups.forEach(([primitive, id], i) => {
       const object = this.scene.objectById.get(id);
       const grounded = !object || object.grounded;
@@ -69,32 +78,24 @@ class View {
       // Of a photo the ground is what people recognise their room by.
       if (mode === 'photo') fade = 0;
       if (chosen !== null) fade = id === chosen ? 0 : Math.max(fade, 0.72);
-      const pale = [214, 213, 208];
-      for (let c = 0; c < 3; ++c) this.paletteBytes[4 * i + c] = mode === 'photo' ? 255 * fade : colour[c] + (pale[c] - colour[c]) * fade;
-      this.paletteBytes[4 * i + 3] = grounded ? 128 : 255;
+      const mark = marked.has(primitive);
+      for (let c = 0; c < 3; ++c) {
+        this.paletteBytes[4 * i + c] = mode === 'photo' ? [255 * fade, mark ? 255 : 0, 0][c]
+          : mark ? markColour[c] : colour[c] + (pale[c] - colour[c]) * fade;
+      }
+      this.paletteBytes[4 * i + 3] = grounded && !mark ? 128 : 255;
     });
     this.uniforms.own.value = mode === 'photo' ? 1 : 0;
     this.palette.needsUpdate = true;
     this.redraw();
   }
 
-  // The box and the reach of what is drawn, from the records' 2nd and 98th hundredths.
+  // The box and the reach of what is drawn.
   measure() {
-    const view = this.scene.view;
-    const records = [view.surface, view.voxels].find(solids => solids.count) || view.points;
-    this.box = new THREE.Box3(new THREE.Vector3(-0.5, -0.5, -0.5), new THREE.Vector3(0.5, 0.5, 0.5));
-    this.reach = 1;
-    if (!records.count) return;
-    const stride = Math.max(1, Math.floor(records.count / 20000));
-    ['x', 'y', 'z'].forEach((axis, k) => {
-      const values = [];
-      for (let i = 0; i < records.count; i += stride) values.push(records.cell[4 * i + k]);
-      values.sort((a, b) => a - b);
-      const at = share => view.origin_m[k] + view.step_m[k] * values[Math.floor(share * (values.length - 1))];
-      this.box.min[axis] = at(0.02);
-      this.box.max[axis] = at(0.98);
-    });
-    this.reach = Math.max(this.box.min.distanceTo(this.box.max), 4 * view.cube_m, 0.05);
+    const {low, high} = this.scene.boxes.get(null);
+    this.box = new THREE.Box3(new THREE.Vector3(...low), new THREE.Vector3(...high));
+    this.reach = Math.max(this.box.min.distanceTo(this.box.max), 4 * this.scene.view.cube_m, 0.05);
+    if (!drawnRecords(this.scene.view).count) this.reach = 1;
   }
 
   // --- what is drawn --------------------------------------------------------------------------------
@@ -263,6 +264,46 @@ class View {
     this.redraw();
   }
 
+  // To where an object is seen from near by, from the side that the camera is on; at once where movement is not wanted or slow.
+  fly(box) {
+    const low = new THREE.Vector3(...box.low), high = new THREE.Vector3(...box.high);
+    const target = low.clone().add(high).multiplyScalar(0.5), radius = Math.max(low.distanceTo(high) / 2, 0.03 * this.reach);
+    const direction = this.camera.position.clone().sub(this.controls.target).normalize();
+    if (direction.z < 0.35) direction.setZ(0.35).normalize();
+    const half = Math.atan(Math.tan(this.camera.fov * Math.PI / 360) * Math.min(1, this.camera.aspect));
+    const position = target.clone().addScaledVector(direction, 2.2 * radius / Math.sin(half));
+    const from = {position: this.camera.position.clone(), target: this.controls.target.clone()};
+    const still = this.software || matchMedia('(prefers-reduced-motion: reduce)').matches, begun = performance.now();
+    const step = () => {
+      const share = still ? 1 : Math.min((performance.now() - begun) / 450, 1), eased = share * share * (3 - 2 * share);
+      this.camera.position.lerpVectors(from.position, position, eased);
+      this.controls.target.lerpVectors(from.target, target, eased);
+      this.controls.update();
+      this.redraw();
+      if (share < 1) requestAnimationFrame(step);
+    };
+    step();
+  }
+
+  // Arrows turn the view about its middle, plus and minus come nearer and go back, 0 shows all.
+  turnByKey(event) {
+    const offset = this.camera.position.clone().sub(this.controls.target), ball = new THREE.Spherical().setFromVector3(
+      new THREE.Vector3(offset.x, offset.z, -offset.y));
+    const keys = {
+      ArrowLeft: () => { ball.theta -= 0.15; }, ArrowRight: () => { ball.theta += 0.15; },
+      ArrowUp: () => { ball.phi -= 0.12; }, ArrowDown: () => { ball.phi += 0.12; },
+      '+': () => { ball.radius *= 0.85; }, '=': () => { ball.radius *= 0.85; }, '-': () => { ball.radius /= 0.85; },
+    };
+    if (event.key === '0') this.reset();
+    if (!keys[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    keys[event.key]();
+    const turned = new THREE.Vector3().setFromSpherical(ball.makeSafe());
+    this.camera.position.copy(this.controls.target).add(new THREE.Vector3(turned.x, -turned.z, turned.y));
+    this.controls.update();
+    this.redraw();
+  }
+
   // Takes on the container's size; whether that changed.
   fit() {
     const width = this.container.clientWidth || 1, height = this.container.clientHeight || 1;
@@ -340,17 +381,23 @@ class View {
 
   // The object under a place of the container (CSS pixels): its id, -1 for unassigned, null for none.
   pick(x, y) {
+    const group = this.pickGroup(x, y);
+    return group ? group[1] : null;
+  }
+
+  // The primitive and the object there, or null.
+  pickGroup(x, y) {
     if (this.idsStale) this.drawGroups();
     const column = Math.floor(x / this.container.clientWidth * this.ids.width);
     const row = Math.floor((1 - y / this.container.clientHeight) * this.ids.height);
     const bytes = new Uint8Array(4);
     this.renderer.readRenderTargetPixels(this.ids, column, row, 1, 1, bytes);
-    return this.objectOf(bytes, 0);
+    return this.groupOf(bytes, 0);
   }
 
-  objectOf(bytes, at) {
+  groupOf(bytes, at) {
     const group = bytes[at] + 256 * bytes[at + 1] + 65536 * bytes[at + 2] - 1;
-    return group >= 0 && group < this.scene.view.groups.length ? this.scene.view.groups[group][1] : null;
+    return this.scene.view.groups[group] || null;
   }
 
   // Once the camera rests: finding what is seen takes a pass over the scene.
@@ -366,8 +413,8 @@ class View {
     const {width, height} = this.ids, bytes = new Uint8Array(4 * width * height), count = new Map();
     this.renderer.readRenderTargetPixels(this.ids, 0, 0, width, height, bytes);
     for (let at = 0; at < bytes.length; at += 4) {
-      const id = this.objectOf(bytes, at);
-      if (id !== null) count.set(id, (count.get(id) || 0) + 1);
+      const group = this.groupOf(bytes, at);
+      if (group) count.set(group[1], (count.get(group[1]) || 0) + 1);
     }
     return count;
   }

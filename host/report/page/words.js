@@ -23,6 +23,12 @@ function listed(words, last = 'and') {
   return words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} ${last} ${words[words.length - 1]}`;
 }
 
+// What an object is called: by its name where it has one.
+function objectName(scene, id) {
+  const object = scene.objectById.get(id);
+  return object && object.name ? object.name : id < 0 ? 'no object' : `object ${id}`;
+}
+
 function objectList(ids) {
   const shown = ids.slice(0, 5).map(String);
   if (ids.length > 5) shown.push(`${ids.length - 5} more`);
@@ -80,6 +86,15 @@ function overturningText(object) {
     `; begins to ${slides ? 'slide' : 'rock'} where the ground shakes with ${round(o.shake_g)} g.`;
 }
 
+// A mass is a guess from the volume, unless it was given.
+function massText(scene, object) {
+  const mass = number(object.mass_kg, 'kg') + within(object.mass_error_kg), density = number(scene.density_kg_m3, 'kg/m\u00b3');
+  if (massIsGiven(scene, object)) return `${mass}, as given by hand`;
+  if (object.mass_model === 'solid' || !object.mass_model) return `${mass}, if solid at ${density}`;
+  if (object.mass_model === 'closed') return `${mass}, if of boards at ${density} around contents`;
+  return `${mass}, ${object.mass_model}`;
+}
+
 function metres(length) {
   return length < 0.995 ? `${Math.max(1, Math.round(100 * length))} cm` : `${length.toFixed(1)} m`;
 }
@@ -107,7 +122,7 @@ function wayOf(scene, vector) {
 
 function landsText(scene, fall) {
   const below = scene.objectById.get(fall.lands_on);
-  return !below ? 'to what lies below' : below.grounded ? 'to the floor or what is fixed to it' : `onto object ${below.id}`;
+  return !below ? 'to what lies below' : below.grounded ? 'to the floor or what is fixed to it' : `onto ${objectName(scene, below.id)}`;
 }
 
 // Whether the program told where it falls.
@@ -137,7 +152,7 @@ function happensText(scene, object) {
   const verb = object.mode === 'tip' ? `It tips over${to}` : object.mode === 'slide' ? `It slides off${to}` : `It comes down${to}`;
   const goes = fall.takes_along.length, end = goes ? ` and takes ${objectList(fall.takes_along)} along.` : '.';
   const against = scene.objectById.get(fall.leans_on);
-  const how = against ? `, against ${against.grounded ? 'a wall or what is fixed to it' : 'object ' + against.id}${goes ? ',' : ''}` :
+  const how = against ? `, against ${against.grounded ? 'a wall or what is fixed to it' : objectName(scene, against.id)}${goes ? ',' : ''}` :
     fall.drop_m > 0 ? `, falls ${metres(fall.drop_m)} ${landsText(scene, fall)}` : '';
   return verb + how + end + hitsText(object);
 }

@@ -2,15 +2,13 @@
 #include "report/report.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <sstream>
 #include <string>
 
+#include "in_browser.h"
 #include "report/verified.h"
 #include "synthetic_scene.h"
 #include "topple/error.h"
@@ -20,95 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Report : public ::testing::Test {
-  protected:
-    Report() {
-        auto name = (fs::temp_directory_path() / "topple-test-XXXXXX").string();
-        folder_ = mkdtemp(name.data());
-    }
-    ~Report() override {
-        std::error_code error;
-        fs::remove_all(folder_, error);
-    }
-
-    std::string read(const fs::path& file) const {
-        std::ostringstream out;
-        out << std::ifstream(file, std::ios::binary).rdbuf();
-        return out.str();
-    }
-
-    // Opens the page in a headless browser, runs `script` after the page's own, and returns the
-    // page as it then stands and what the browser logged. `flags`: more for the browser.
-    struct Opened {
-        std::string dom, log;
-        std::string data(const std::string& name) const {
-            const auto key = "data-" + name + "=\"";
-            const auto body = dom.find("<body");
-            const auto at = dom.find(key, body);
-            if (body == std::string::npos || at == std::string::npos || at > dom.find('>', body))
-                return "(none)";
-            return dom.substr(at + key.size(), dom.find('"', at + key.size()) - at - key.size());
-        }
-    };
-    Opened open(const fs::path& page, const std::string& script = "",
-                const std::string& flags = "") {
-        return shown(read(page) + "<script>" + script + "</script>", flags);
-    }
-    // The same in a window as small as a phone's, which the browser's own can't be: within a frame.
-    // `script` says what it found in `out`.
-    Opened open_on_phone(const fs::path& page, const std::string& script) {
-        std::string inner =
-            read(page) + "<script>const out = parent.document.body.dataset;" + script + "</script>";
-        std::string escaped;
-        for (const char c : inner) {
-            if (c == '&') {
-                escaped += "&amp;";
-            } else if (c == '"') {
-                escaped += "&quot;";
-            } else {
-                escaped += c;
-            }
-        }
-        return shown(
-            "<!DOCTYPE html><body><iframe width=390 height=844 style='border:0' srcdoc=\"" +
-            escaped + "\"></iframe></body>");
-    }
-    Opened shown(const std::string& html, const std::string& flags = "") {
-        const auto file = folder_ / "shown.html";
-        std::ofstream(file) << html;
-        const std::string command =
-            "timeout 240 chromium --headless --no-sandbox --use-angle=swiftshader "
-            "--enable-unsafe-swiftshader --enable-logging=stderr --window-size=900,900 "
-            "--user-data-dir='" +
-            (folder_ / "browser").string() + "' " + flags +
-            " --virtual-time-budget=10000 --dump-dom 'file://" + file.string() + "' > '" +
-            (folder_ / "dom").string() + "' 2> '" + (folder_ / "log").string() + "'";
-        EXPECT_EQ(std::system(command.c_str()), 0);
-        return {read(folder_ / "dom"), read(folder_ / "log")};
-    }
-
-    fs::path folder_;
-};
-
-// An attribute's text as it was before it was written into the page.
-std::string text(std::string attribute) {
-    const std::string space = "&nbsp;";
-    for (auto at = attribute.find(space); at != std::string::npos; at = attribute.find(space))
-        attribute.replace(at, space.size(), "\u00a0");
-    return attribute;
-}
-
-bool no_browser() {
-    return std::system("command -v chromium > /dev/null 2>&1") != 0;
-}
-
-// A browser that is missing skips a test by name, and fails it where everything must run.
-#define NEEDS_BROWSER()                                                                \
-    if (no_browser()) {                                                                \
-        const char* required = std::getenv("TOPPLE_REQUIRE_BACKENDS");                 \
-        if (required && std::string(required) == "1") FAIL() << "chromium is missing"; \
-        GTEST_SKIP() << "chromium is missing: apt-get install chromium";               \
-    }
+class Report : public test::InBrowser {};
 
 TEST_F(Report, is_one_file_whose_text_can_not_break_out) {
     const auto scene = test::SyntheticScene(0.08).make();
@@ -176,7 +86,7 @@ TEST_F(Report, shows_what_a_simulator_found) {
         toppleChoose(1);
         out.stayed = words().includes('Stayed in MuJoCo 2.2.2.');
     )");
-    EXPECT_EQ(text(page.data("line")),
+    EXPECT_EQ(test::text(page.data("line")),
               "In MuJoCo 2.2.2, 1 of 2 objects stayed for 5\u00a0s; this moved: object 3.");
     EXPECT_EQ(page.data("moved"), "true");
     EXPECT_EQ(page.data("stayed"), "true");
@@ -304,7 +214,7 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
           "its top",
           "if 18 N don't slide it before; begins to rock where the ground shakes with 0.27 g.",
           "Fix it where it stands: 12 N"}) {
-        EXPECT_NE(text(page.data("first")).find(part), std::string::npos)
+        EXPECT_NE(test::text(page.data("first")).find(part), std::string::npos)
             << part << " in " << page.data("first");
     }
     for (const char* part : {"Object 3", "Barrier: energy that moves it", "1.4\u00a0J",
@@ -316,7 +226,7 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
                              "with peaks of 0.36 g do. Where it stands, it "
                              "falls once in 500 years on average.",
                              "Chance of falling, over an earthquake\u2019s peak"}) {
-        EXPECT_NE(text(page.data("clicked")).find(part), std::string::npos)
+        EXPECT_NE(test::text(page.data("clicked")).find(part), std::string::npos)
             << part << " in " << page.data("clicked");
     }
     EXPECT_EQ(page.data("marker"), "middle lands");

@@ -83,7 +83,7 @@ TEST(ViewData, strays_leave_the_rest_its_steps) {
     const auto view = pack_view(scene);
     EXPECT_EQ(view.voxels.total, 12u * 12 * 12 + 2);
     EXPECT_EQ(view.voxels.cell.size(), 12u * 12 * 12 - 10 * 10 * 10);
-    for (const double step : view.step_m) EXPECT_LT(step, 1e-4);
+    for (const double step : view.step_m) EXPECT_LT(step, 2e-3);
 }
 
 TEST(ViewData, places_are_right_to_a_sixty_thousandth) {
@@ -144,7 +144,7 @@ TEST(ViewData, merged_cubes_lie_where_their_voxels_are) {
     ASSERT_EQ(view.voxels.cell.size(), 56u) << "4^3 less its 2^3 inside";
     for (const auto& cell : view.voxels.cell) {
         const double x = (place(view, cell)[0] + 3) / 0.04 - 0.5;
-        EXPECT_NEAR(x, std::round(x), 1e-3) << "cubes of 4 cm from the edge on";
+        EXPECT_NEAR(x, std::round(x), view.step_m[0] / 0.04) << "cubes of 4 cm from the edge on";
     }
 }
 
@@ -399,7 +399,7 @@ TEST(ViewData, surfaces_have_the_scans_colours) {
 TEST(ViewData, surfaces_that_are_too_large_are_left_out) {
     auto scene = cube_of(5, 0.02);
     const std::vector surfaces{surface_of(scene, 5)};
-    const auto view = pack_view(scene, {.voxels = 30, .points = 1, .arrows = 1}, surfaces);
+    const auto view = pack_view(scene, {.surface_bytes = 300}, surfaces);
     EXPECT_TRUE(view.surface.cell.empty());
     EXPECT_FALSE(view.voxels.cell.empty());
 }
@@ -423,7 +423,8 @@ TEST(ViewData, surfaces_may_have_many_vertices) {
                     g};
         return out;
     };
-    const PackedSurface packed = packer.take(vertex);
+    ThreadPool pool(3);
+    const PackedSurface packed = packer.take(vertex, pool);
     EXPECT_EQ(packed.cell.size(), 80001u);
     const auto number = numbers_of(packed);
     for (std::size_t i = 0; i < number.size(); ++i) {

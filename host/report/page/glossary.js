@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+'use strict';
+
+// The words that the page doesn't explain where they stand.
+const glossary = {
+  object: ['object', 'What moves as one: all parts that are fixed to each other.'],
+  ground: ['ground', 'The floor with all that is fixed to it: walls, the ceiling, what is built in. It can\u2019t fall.'],
+  part: ['part (primitive)', 'A piece of surface of one shape, flat or round, and the solid behind it. Objects are made of parts.'],
+  barrier: ['barrier', 'The least energy, in joules, that moves an object out of its place for good: over its edge, or off what carries it. ' +
+    'One joule lifts 1 kg by 10 cm.'],
+  release: ['release', 'The energy, in joules, that the object sets free when it then falls. From about 40 J on a blow to the head is dangerous.'],
+  instability: ['instability S(W)', 'How much energy S an object can release, once a disturbance has given it the energy W.'],
+  disturbance: ['disturbance', 'What can upset things: people who walk by and touch them, wind, earthquakes.'],
+  event: ['event', 'One happening of a disturbance: a walk through the room, a gale, an earthquake.'],
+  risk: ['risk', 'The chance that one event upsets the object, times the energy that it then releases: joules to be expected per event.'],
+  unsafety: ['unsafety', 'The risk as a mark from 1 to 10 within this scene: 10 is the worst that is here, even where that is harmless. It ranks.'],
+  category: ['category', 'How unsafe an object is by itself, whatever else is in the scene: none, low, medium or high, by how likely ' +
+    'one event makes it fall and how hard it then lands, at the worse end of the errors. With a ? the better end says less.'],
+  advice: ['advice', 'What would bring the risk below what is tolerated. An object may rank first and need none, where all is harmless.'],
+  overturning: ['overturning', 'Tipping over an edge of the foot, once the middle of mass is beyond it.'],
+  pose: ['pose', 'A way to stand or lie at rest. Between two poses lies a pass: the lowest that a body must be lifted to go from one to the other.'],
+  basin: ['basin', 'All positions from which a body comes back to the same pose.'],
+  grounded: ['grounded', 'Part of the ground, or fixed to it.'],
+  pga: ['peak, g', 'The strongest acceleration of the ground in an earthquake, as a multiple of gravity: things rattle at 0.05 g, buildings are damaged from about 0.2 g.'],
+  error: ['\u00b1', 'One standard error: two times in three the true figure lies within it.'],
+};
+
+// The words of a term as a link to where it is explained; hovering says it at once.
+function term(key, text) {
+  return element('a', {className: 'term', href: '#word-' + key, title: glossary[key][1], text: text || glossary[key][0],
+    onclick: () => { document.getElementById('glossary').open = true; }});
+}
+
+function fillGlossary() {
+  const list = element('dl', {});
+  for (const [key, [word, meaning]] of Object.entries(glossary)) {
+    list.append(element('dt', {id: 'word-' + key, text: word, tabIndex: -1}), element('dd', {text: meaning}));
+  }
+  document.getElementById('glossary').append(list);
+}

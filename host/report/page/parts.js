@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+'use strict';
+
+// Which parts are chosen to be put right, and what is said of them: the panel below the view. Parts are chosen by
+// Ctrl-click (one) and Shift-click (all of an object) in the view, or in the list; where none is, all of the chosen object's are meant.
+class PartsPanel {
+  // changed(): what is marked in the view is another. say(text): for screen readers.
+  constructor(scene, changed, say) {
+    this.scene = scene;
+    this.changed = changed;
+    this.say = say;
+    this.object = null;
+    this.marked = new Set();
+    this.corrections = new Corrections(scene, () => this.fillList());
+    this.partsOf = new Map();
+    for (const part of scene.primitives) this.partsOf.set(part.object, [...this.partsOf.get(part.object) || [], part]);
+    for (const parts of this.partsOf.values()) parts.sort((a, b) => b.volume_m3 - a.volume_m3 || a.id - b.id);
+    this.owner = new Map(scene.primitives.map(part => [part.id, part.object]));
+    this.makeActions();
+    this.fillList();
+    this.fill();
+    addEventListener('beforeunload', event => { if (!this.corrections.saved) event.preventDefault(); });
+  }
+
+  // The object whose parts are listed, or null.
+  choose(id) {
+    this.object = id;
+    this.fill();
+  }
+
+  togglePart(part) {
+    if (!this.owner.has(part)) return;
+    const on = !this.marked.has(part);
+    if (on) this.marked.add(part);
+    else this.marked.delete(part);
+    this.say(`Part ${part} of ${objectName(this.scene, this.owner.get(part))} ${on ? 'chosen' : 'no longer chosen'}. ${this.marked.size} in all.`);
+    this.fill();
+    this.changed();
+  }
+
+  toggleObject(id) {
+    const parts = (this.partsOf.get(id) || []).map(part => part.id), on = !parts.every(part => this.marked.has(part));
+    for (const part of parts) {
+      if (on) this.marked.add(part);
+      else this.marked.delete(part);
+    }
+    this.say(`All ${plural(parts.length, 'part')} of ${objectName(this.scene, id)} ${on ? 'chosen' : 'no longer chosen'}.`);
+    this.fill();
+    this.changed();
+  }
+
+  clear() {
+    this.marked.clear();
+    this.fill();
+    this.changed();
+  }
+
+  // What is meant: the chosen parts, else all of the object.
+  parts() {
+    if (this.marked.size) return [...this.marked].sort((a, b) => a - b);
+    return (this.partsOf.get(this.object) || []).map(part => part.id);  // the largest first
+  }
+
+  // "part 3 of object 2", "parts 3 and 5 of objects 2 and 4", "object 2"
+  meant() {
+    const parts = this.parts(), owners = [...new Set(parts.map(part => this.owner.get(part)))].sort((a, b) => a - b);
+    const objects = owners.map(id => objectName(this.scene, id));
+    const whole = owners.every(id => this.partsOf.get(id).every(part => parts.includes(part.id)));
+    if (whole) return listed(objects);
+    return `${objectList(parts).replace('object', 'part')} of ${listed(objects)}`;
+  }
+
+  makeActions() {
+    const box = document.getElementById('mend-actions');
+    const number = (id, text, unit, value, step) => {
+      const field = element('input', {type: 'number', id, min: 0, step, value, className: 'short'});
+      return [element('label', {htmlFor: id, text}), field, element('span', {text: unit, className: 'unit'})];
+    };
+    const act = (kind, text, how) => element('button', {type: 'button', text, onclick: how, 'data-do': kind});
+    const value = id => Number(document.getElementById(id).value);
+    const form = (fields, button) => {
+      const node = element('form', {className: 'row'}, [...fields, button]);
+      node.addEventListener('submit', event => { event.preventDefault(); button.click(); });
+      return node;
+    };
+    box.append(
+      element('div', {className: 'row'}, [
+        act('one_thing', 'one thing', () => this.note('one_thing', {}, 'one thing')),
+        act('apart', 'a thing by itself', () => this.standAlone()),
+        act('fixed', 'fixed to the wall', () => this.note('fixed', {}, 'fixed to the wall')),
+        act('not_there', 'not there', () => this.note('not_there', {}, 'not there'))]),
+      form([element('label', {htmlFor: 'mend-name', text: 'name'}), element('input', {id: 'mend-name', type: 'text', maxLength: 60, autocomplete: 'off'})],
+        act('name', 'set name', () => {
+          const name = document.getElementById('mend-name').value.trim();
+          if (!name) this.refuse('Write a name first.');
+          else this.note('name', {name}, `called \u201c${name}\u201d`);
+        })),
+      form(number('mend-kg', 'mass', 'kg', '', 'any'), act('mass', 'set mass', () => {
+        const kg = value('mend-kg');
+        if (!(kg > 0) || !isFinite(kg)) this.refuse('Write a mass above 0 kg first.');
+        else this.note('mass', {kg}, `${kg} kg`);
+      })),
+      form(number('mend-wall', 'walls', 'cm', '2', 'any'), act('hollow', 'hollow', () => {
+        const cm = value('mend-wall');
+        if (!(cm > 0) || !isFinite(cm)) this.refuse('Write how thick the walls are, above 0 cm.');
+        else this.note('hollow', {wall_m: Math.round(cm * 100) / 10000}, `hollow, walls of ${cm} cm`);
+      })));
+    document.getElementById('mend-clear').addEventListener('click', () => this.clear());
+    document.getElementById('mend-save').addEventListener('click', () => { this.corrections.save(); this.say('corrections.json was saved.'); });
+    document.getElementById('mend-copy').addEventListener('click', () => {
+      const copied = navigator.clipboard ? navigator.clipboard.writeText(this.corrections.command()) : Promise.reject();
+      copied.then(() => this.say('Copied.'), () => getSelection().selectAllChildren(document.getElementById('mend-command')));
+    });
+  }
+
+  refuse(text) {
+    document.getElementById('mend-note').textContent = text;
+  }
+
+  note(kind, more, what) {
+    const parts = this.parts(), meant = this.meant();
+    if (!this.corrections.told(parts).length) return this.refuse(`Of ${meant || 'this'} no surface is drawn, by which it could be told again.`);
+    if (kind === 'one_thing' && this.corrections.told(parts).length < 2) return this.refuse('Choose at least two parts, or two objects, first.');
+    this.corrections.add([{do: kind, at_m: this.corrections.at(parts), ...more}], `${capital(meant)}: ${what}`);
+    this.done();
+  }
+
+  // One thing, and not one with any other part of the objects that it is in now.
+  standAlone() {
+    const parts = this.parts(), meant = this.meant(), owners = new Set(parts.map(part => this.owner.get(part)));
+    const rest = this.scene.primitives.filter(part => owners.has(part.object) && !parts.includes(part.id)).map(part => part.id);
+    if (!this.corrections.told(rest).length) return this.refuse(`${capital(meant)} is by itself already: choose some of its parts.`);
+    if (!this.corrections.told(parts).length) return this.refuse(`Of ${meant} no surface is drawn, by which it could be told again.`);
+    const at_m = this.corrections.at(parts), apart = {do: 'apart', at_m, from_m: this.corrections.near(rest, parts)};
+    this.corrections.add(at_m.length > 1 ? [{do: 'one_thing', at_m}, apart] : [apart], `${capital(meant)}: a thing by itself`);
+    this.done();
+  }
+
+  done() {
+    for (const id of ['mend-name', 'mend-kg']) document.getElementById(id).value = '';
+    this.say(`Noted: ${this.corrections.list[this.corrections.list.length - 1].text}.`);
+    this.clear();
+  }
+
+  // The list of parts, and what is chosen of them.
+  fill() {
+    const list = document.getElementById('mend-parts'), parts = this.partsOf.get(this.object) || [];
+    const focused = list.contains(document.activeElement) ? document.activeElement.value : null, top = list.scrollTop;
+    // First what was chosen of other objects.
+    const others = [...this.marked].filter(id => this.owner.get(id) !== this.object).sort((a, b) => a - b)
+      .map(id => this.scene.primitives.find(part => part.id === id));
+    list.replaceChildren(...[...others, ...parts].map(part => this.partBox(part)));
+    list.scrollTop = top;
+    const again = focused !== null && list.querySelector(`input[value="${focused}"]`);
+    if (again) again.focus();
+    const meant = this.meant(), any = this.parts().length > 0;
+    document.getElementById('mend-meant').textContent = !any ? 'Nothing is chosen.'
+      : `Chosen: ${meant}${this.marked.size ? '' : ', all of it'}.`;
+    document.getElementById('mend-clear').hidden = !this.marked.size;
+    document.getElementById('mend-note').textContent = '';
+    list.hidden = !list.childNodes.length;
+    for (const control of document.querySelectorAll('#mend-actions button')) control.disabled = !any;
+    document.querySelector('#mend-actions [data-do=one_thing]').disabled = this.parts().length < 2;
+  }
+
+  partBox(part) {
+    const other = this.owner.get(part.id) !== this.object;
+    const box = element('input', {type: 'checkbox', value: part.id, checked: this.marked.has(part.id), onchange: () => this.togglePart(part.id)});
+    return element('label', {className: 'check'}, [box,
+      element('span', {className: 'swatch', style: {background: css(colourOf(this.scene, part.id))}}),
+      `${part.name || `part ${part.id}`}${other ? ` of ${objectName(this.scene, part.object)}` : ''}, ${shapeText(part)}`,
+      element('span', {className: 'pm', text: part.volume_m3 === null ? '' : number(part.volume_m3 * 1000, 'l')})]);
+  }
+
+  // The corrections so far.
+  fillList() {
+    const {list, saved} = this.corrections, out = document.getElementById('mend-list');
+    out.replaceChildren(...list.map(entry => element('li', {}, [entry.text + ' ',
+      element('button', {type: 'button', text: 'undo', 'aria-label': `undo: ${entry.text}`, onclick: () => {
+        this.corrections.remove(entry);
+        this.say(`Undone: ${entry.text}.`);
+        document.getElementById('mend-list-heading').focus();
+      }})])));
+    document.getElementById('mend-result').hidden = !list.length && saved;
+    document.getElementById('mend-list-heading').textContent = plural(list.length, 'correction');
+    document.getElementById('mend-command').textContent = this.corrections.command();
+  }
+}
+
+function shapeText(part) {
+  return {plane: 'flat', quadric: 'round', merged: 'of several faces'}[part.model] || part.model;
+}

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+'use strict';
+
+// Where things are in the view's frame, z up: metres.
+
+function viewPlace(scene, v) {
+  return scene.view.view_from_input.map(row => row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);
+}
+
+// The records that the solids are drawn from: their surface, else their voxels, else the scan.
+function drawnRecords(view) {
+  return [view.surface, view.voxels].find(solids => solids.count) || view.points;
+}
+
+// The box of each object and of all of them (key null): {low, high}. Of all it is that of the records' 2nd to 98th
+// hundredths, since scans have strays.
+function boxesOf(scene) {
+  const {view} = scene, {cell, count} = drawnRecords(view), boxes = new Map();
+  const place = (values, k) => view.origin_m[k] + view.step_m[k] * values[k];
+  const groups = view.groups.map(() => ({low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity]}));
+  for (let i = 0; i < 4 * count; i += 4) {
+    const {low, high} = groups[cell[i + 3]];
+    for (let k = 0; k < 3; ++k) {
+      if (cell[i + k] < low[k]) low[k] = cell[i + k];
+      if (cell[i + k] > high[k]) high[k] = cell[i + k];
+    }
+  }
+  view.groups.forEach(([, object], g) => {
+    const {low, high} = groups[g];
+    if (!(low[0] <= high[0])) return;
+    const from = low.map((value, k) => place(low, k)), to = high.map((value, k) => place(high, k));
+    const box = boxes.get(object);
+    if (!box) boxes.set(object, {low: from, high: to});
+    else for (let k = 0; k < 3; ++k) { box.low[k] = Math.min(box.low[k], from[k]); box.high[k] = Math.max(box.high[k], to[k]); }
+  });
+  boxes.set(null, wholeBox(view));
+  return boxes;
+}
+
+function wholeBox(view) {
+  const {cell, count} = drawnRecords(view), box = {low: [-0.5, -0.5, -0.5], high: [0.5, 0.5, 0.5]};
+  if (!count) return box;
+  const stride = Math.max(1, Math.floor(count / 20000));
+  for (let k = 0; k < 3; ++k) {
+    const values = [];
+    for (let i = 0; i < count; i += stride) values.push(cell[4 * i + k]);
+    values.sort((a, b) => a - b);
+    const at = share => view.origin_m[k] + view.step_m[k] * values[Math.floor(share * (values.length - 1))];
+    box.low[k] = at(0.02);
+    box.high[k] = at(0.98);
+  }
+  return box;
+}
+
+// The height of the floor: the middle one of those that people walk on; where there is none, of the lowest that the scan has.
+function floorOf(scene, boxes) {
+  const {walks} = scene.view, heights = [];
+  walks.shade.forEach((shade, at) => { if (shade) heights.push(walks.corner_m[2] + walks.floor_mm[at] / 1000); });
+  if (!heights.length) return {height_m: boxes.get(null).low[2], known: false};
+  heights.sort((a, b) => a - b);
+  return {height_m: heights[heights.length >> 1], known: true};
+}
+
+// "1.20 m east and 0.45 m north of the scene's south-west corner, 0.76 to 1.20 m above the floor"; '' where it is not drawn.
+function placeText(scene, object) {
+  const box = scene.boxes.get(object.id), whole = scene.boxes.get(null);
+  if (!box) return '';
+  const middle = k => (box.low[k] + box.high[k]) / 2 - whole.low[k];
+  const metre = value => value.toFixed(2).replace('-', '\u2212');
+  const {height_m, known} = scene.floor;
+  return `${metre(middle(0))} m east and ${metre(middle(1))} m north of the scene\u2019s south-west corner; ` +
+    `from ${metre(box.low[2] - height_m)} to ${metre(box.high[2] - height_m)} m above ${known ? 'the floor' : 'the lowest that was scanned'}`;
+}
+
+// How far around it nobody should stay: where its middle lands, and half its longest side beyond. null where that is not known.
+function keepClear(scene, object) {
+  if (object.grounded || !fallKnown(object)) return null;
+  const from = viewPlace(scene, object.center_of_mass_m.map(value => value || 0)), to = viewPlace(scene, object.fall.lands_m);
+  const box = scene.boxes.get(object.id), size = object.size_m && object.size_m.every(value => value > 0) ? object.size_m
+    : box ? box.high.map((value, k) => value - box.low[k]) : null;
+  if (!size) return null;
+  return Math.hypot(to[0] - from[0], to[1] - from[1]) + Math.max(...size) / 2;
+}
+
+function keepClearText(scene, object) {
+  const distance = keepClear(scene, object);
+  if (distance === null) return '';
+  const way = wayOf(scene, object.fall.lands_m.map((value, k) => value - (object.center_of_mass_m[k] || 0)));
+  return `Keep ${metres(Math.ceil(distance * 10) / 10)} clear${way ? ` to the ${way}` : ''}, measured from its middle: that far it reaches when it lands${object.fall.leans_on >= 0 ? ', should what stops it give way' : ''}.`;
+}

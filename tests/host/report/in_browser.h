@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace topple::test {
+
+class InBrowser : public ::testing::Test {
+  protected:
+    InBrowser() {
+        auto name = (std::filesystem::temp_directory_path() / "topple-test-XXXXXX").string();
+        folder_ = mkdtemp(name.data());
+    }
+    ~InBrowser() override {
+        std::error_code error;
+        std::filesystem::remove_all(folder_, error);
+    }
+
+    std::string read(const std::filesystem::path& file) const {
+        std::ostringstream out;
+        out << std::ifstream(file, std::ios::binary).rdbuf();
+        return out.str();
+    }
+
+    // Opens the page in a headless browser, runs `script` once the page is ready, and returns the
+    // page as it then stands and what the browser logged. The script may await. `flags`: more for
+    // the browser; `link`: what follows the page's address.
+    struct Opened {
+        std::string dom, log;
+        std::string data(const std::string& name) const {
+            const auto key = "data-" + name + "=\"";
+            const auto body = dom.find("<body");
+            const auto at = dom.find(key, body);
+            if (body == std::string::npos || at == std::string::npos || at > dom.find('>', body))
+                return "(none)";
+            return dom.substr(at + key.size(), dom.find('"', at + key.size()) - at - key.size());
+        }
+    };
+    Opened open(const std::filesystem::path& page, const std::string& script = "",
+                const std::string& flags = "", const std::string& link = "") {
+        return shown(
+            read(page) + "<script>toppleReady.then(async () => {" + script + "});</script>", flags,
+            link);
+    }
+    // The same in a window as small as a phone's, which the browser's own can't be: within a frame.
+    // `script` says what it found in `out`.
+    Opened open_on_phone(const std::filesystem::path& page, const std::string& script) {
+        std::string inner =
+            read(page) +
+            "<script>const out = parent.document.body.dataset; toppleReady.then(async () => {" +
+            script + "});</script>";
+        std::string escaped;
+        for (const char c : inner) {
+            if (c == '&') {
+                escaped += "&amp;";
+            } else if (c == '"') {
+                escaped += "&quot;";
+            } else {
+                escaped += c;
+            }
+        }
+        return shown(
+            "<!DOCTYPE html><body><iframe width=390 height=844 style='border:0' srcdoc=\"" +
+            escaped + "\"></iframe></body>");
+    }
+    Opened shown(const std::string& html, const std::string& flags = "",
+                 const std::string& link = "") {
+        const auto file = folder_ / "shown.html";
+        std::ofstream(file) << html;
+        const std::string command =
+            "timeout 240 chromium --headless --no-sandbox --use-angle=swiftshader "
+            "--enable-unsafe-swiftshader --enable-logging=stderr --window-size=900,900 "
+            "--user-data-dir='" +
+            (folder_ / "browser").string() + "' " + flags +
+            " --virtual-time-budget=10000 --dump-dom 'file://" + file.string() + link + "' > '" +
+            (folder_ / "dom").string() + "' 2> '" + (folder_ / "log").string() + "'";
+        EXPECT_EQ(std::system(command.c_str()), 0);
+        return {read(folder_ / "dom"), read(folder_ / "log")};
+    }
+
+    std::filesystem::path folder_;
+};
+
+// An attribute's text as it was before it was written into the page.
+inline std::string text(std::string attribute) {
+    const std::string space = "&nbsp;";
+    for (auto at = attribute.find(space); at != std::string::npos; at = attribute.find(space))
+        attribute.replace(at, space.size(), "\u00a0");
+    return attribute;
+}
+
+inline bool no_browser() {
+    return std::system("command -v chromium > /dev/null 2>&1") != 0;
+}
+
+// A browser that is missing skips a test by name, and fails it where everything must run.
+#define NEEDS_BROWSER()                                                                \
+    if (topple::test::no_browser()) {                                                  \
+        const char* required = std::getenv("TOPPLE_REQUIRE_BACKENDS");                 \
+        if (required && std::string(required) == "1") FAIL() << "chromium is missing"; \
+        GTEST_SKIP() << "chromium is missing: apt-get install chromium";               \
+    }
+
+}  // namespace topple::test
