@@ -102,6 +102,7 @@ ViewServer::ViewServer(const std::filesystem::path& folder, std::uint16_t port) 
     if (fd < 0) io::fail(folder, std::string("can't be opened: ") + std::strerror(errno));
     inner_ = std::make_unique<Inner>(fd);
     httplib::Server& server = inner_->server;
+    server.set_keep_alive_timeout(1);  // seconds: an idle connection must not hold up the end
     // The library's own choice shares a port with whoever else has it.
     server.set_socket_options([](socket_t socket) {
         const int yes = 1;

@@ -90,8 +90,8 @@ def test_e57_of_one_scan_knows_its_scanner(points, device, tmp_path):
     assert np.allclose(scan.viewpoint, eye) and np.abs(scan.points - points).max() < 1e-6
     assert (scan.colours == colours_of(points - eye)).all()
     result = parsed(tmp_path / 'one.e57', device)
-    expected = topple.parse(points, colours=colours_of(points - eye), viewpoint=list(eye), device=device, disturbances=[])
-    same_objects(result, expected, within=0.02)
+    expected = topple.parse(scan.points, colours=scan.colours, viewpoint=list(eye), device=device, disturbances=[])
+    same_objects(result, expected)
 
 
 def test_e57_that_is_wrong(points, device, tmp_path):

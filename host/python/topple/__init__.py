@@ -15,11 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import _topple, formats
+from . import _topple, formats, plot
 from ._topple import Contact, Device, DirectedBarrier, Error, Fall, Object, Overturning, Primitive, Support, __version__, open_device
+from .foxglove import to_mcap
+from .rerun_viewer import to_rerun
 
 __all__ = ['Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Object', 'Overturning', 'Primitive', 'Result',
-           'Support', '__version__', 'devices', 'open_device', 'parse']
+           'Support', '__version__', 'devices', 'formats', 'open_device', 'parse', 'plot', 'to_mcap', 'to_rerun']
 
 
 class DeviceInfo(NamedTuple):
