@@ -54,7 +54,8 @@ def plan(result, *, by='unsafety', labels=True, axes=None):
         for o in result.objects:
             if (top == o.id).any():
                 place = geometry.room_axes(result) @ o.center_of_mass_m
-                axes.annotate(str(o.id), place[:2], ha='center', va='center', fontsize='small')
+                axes.annotate(str(o.id), place[:2], ha='center', va='center', fontsize='small',
+                              bbox={'facecolor': 'white', 'edgecolor': 'none', 'alpha': 0.6, 'pad': 1})
     axes.figure.colorbar(image, ax=axes, label='unsafety' if by == 'unsafety' else f'expected release per event, {by} (J)')
     axes.set(xlabel='x (m)', ylabel='y (m)', aspect='equal', xlim=extent[:2], ylim=extent[2:])
     return axes
