@@ -93,7 +93,7 @@ PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text,
     for (const char* known : {".xyz", ".txt", ".csv", ".asc", ".pts"}) {
         if (extension == known) return parse_xyz(file, text, sink);
     }
-    for (const char* known : {".e57", ".mcap", ".db3", ".r3d", ".zip"}) {
+    for (const char* known : {".e57", ".mcap", ".db3", ".bag", ".r3d", ".zip"}) {
         if (extension == known) {
             fail(file,
                  std::string("is read by topple.parse of Python only; make it one that is read "

@@ -221,6 +221,7 @@ def test_polycam_that_is_wrong(walk, photographs, device, tmp_path):
     (folder / 'keyframes' / 'corrected_cameras' / '1001.json').write_text('{"fx": 1')
     refused(folder, device, '1001.json')
     refused(truncated(zipped(folder, tmp_path / 'raw.zip')), device)
+    refused(zipped(tmp_path / 'raw' / 'keyframes' / 'depth', tmp_path / 'other.zip'), device, 'Polycam', 'Record3D')
 
 
 def record3d_metadata(walk, name):

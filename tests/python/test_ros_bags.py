@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Bags of ROS: depth images with tf, and clouds, from what rosbags and mcap-ros2-support write."""
+import struct
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import topple
 import topple.formats
 from made_scans import CAMERA, POSES, colours_of, parsed, quaternion, refused, same_objects, truncated
 from topple.formats import ros_bag
+from topple.formats.frames import grey_png
 from topple.formats.transforms import Transforms
 
 rosbags = pytest.importorskip('rosbags')
@@ -40,6 +43,18 @@ def image(time, depth, encoding, frame='optical'):
     padded[:, :-8] = data.view(np.uint8).reshape(height, -1)
     return TYPES['sensor_msgs/msg/Image'](header=header(time, frame), height=height, width=width, encoding=encoding, is_bigendian=0,
                                           step=padded.shape[1], data=padded.ravel())
+
+
+def packed_image(time, depth, kind):
+    """As compressed_depth_image_transport writes them."""
+    if kind == '16UC1':
+        a, b, stored = 0.0, 0.0, np.round(depth * 1000)
+    else:  # of inverse depth, the finer the nearer
+        a, b = 100 * (100 / 5 + 1), 1 - 100.0
+        stored = np.round(a / depth + b)
+    data = struct.pack('<iff', 0, a, b) + grey_png(stored.astype(np.uint16))
+    return TYPES['sensor_msgs/msg/CompressedImage'](header=header(time, 'optical'), format=f'{kind}; compressedDepth png',
+                                                    data=np.frombuffer(data, np.uint8))
 
 
 def camera_info():
@@ -98,6 +113,24 @@ def test_depth_images(walk, sequence, device, tmp_path, storage, encoding):
     assert any(f'{len(walk)} of the {len(walk)} depth images' in note and '"map"' in note for note in result.notes)
     alone = next(file for file in bag.iterdir() if file.suffix in ('.mcap', '.db3'))
     assert [o.mass_kg for o in parsed(alone, device).objects] == [o.mass_kg for o in result.objects]
+
+
+@pytest.mark.parametrize('kind, within', [('16UC1', 1e-9), ('32FC1', 0.02)])
+def test_compressed_depth_images(walk, tmp_path, kind, within):
+    pytest.importorskip('PIL')
+    messages = depth_messages(walk[:3], '16UC1')
+    packed = []
+    for topic, name, time, message in messages:
+        if 'image' in topic:
+            depth = walk[time // SECOND - 1][1]
+            topic, name, message = f'{topic}/compressedDepth', 'sensor_msgs/msg/CompressedImage', packed_image(time, depth, kind)
+        packed.append((topic, name, time, message))
+    with ros_bag.Bag(write_bag(tmp_path / 'packed', 'mcap', packed)) as bag:
+        seen = [ros_bag._depth(message, bag.path) for _, message in bag.messages('/camera/depth/image_raw/compressedDepth')]
+    for got, (_, depth) in zip(seen, walk):
+        assert got == pytest.approx(depth, rel=within)
+    done = topple.formats.convert(tmp_path / 'packed', tmp_path / 'out')
+    assert any('3 of the 3' in note for note in done.notes)
 
 
 def test_frames_of_a_camera_that_stands_are_taken_once(walk, tmp_path):

@@ -43,11 +43,19 @@ class Converted:
 
 
 def format_of(path):
-    """The module of a path's format; None where topple reads it itself, or nobody does."""
+    """The module of a path's format; None where topple reads it itself, or nobody does. Raises topple.Error for an archive that is none
+    of the known exports."""
     path = pathlib.Path(path)
-    if not path.exists():
-        return None
-    return next((module for module in FORMATS if module.recognises(path)), None)
+    try:
+        if not path.exists() or (path / 'intrinsics.json').exists():  # topple's own folder of frames
+            return None
+        found = next((module for module in FORMATS if module.recognises(path)), None)
+    except OSError as error:
+        raise wrong(path, error.strerror or str(error)) from None
+    if found is None and path.suffix.lower() == '.zip' and path.is_file():
+        raise wrong(path, "is no raw data of Polycam (keyframes/depth/) and no EXR export of Record3D (metadata.json, depth/, rgb/); "
+                          'unpack it, and give the scan that is in it')
+    return found
 
 
 @contextlib.contextmanager

@@ -164,7 +164,7 @@ def _sparse(folder):
 def recognises(path):
     if path.is_file():
         return path.name in ('points3D.bin', 'points3D.txt')
-    return path.is_dir() and not (path / 'intrinsics.json').exists() and (_dense(path) or _sparse(path)) is not None
+    return path.is_dir() and (_dense(path) or _sparse(path)) is not None
 
 
 def _frames(workspace, folder, unit_m):

@@ -3,6 +3,8 @@
 
 Depth images with their CameraInfo and tf become frames; where there are none, PointCloud2 becomes a cloud in tf's root."""
 import contextlib
+import io
+import struct
 from collections import Counter
 
 import numpy as np
@@ -13,7 +15,7 @@ from .frames import Camera, FrameFolder
 from .transforms import Transforms
 
 FORMAT = 'ROS bag'
-IMAGE, INFO, CLOUD = 'sensor_msgs/msg/Image', 'sensor_msgs/msg/CameraInfo', 'sensor_msgs/msg/PointCloud2'
+IMAGE, PACKED, INFO, CLOUD = (f'sensor_msgs/msg/{kind}' for kind in ('Image', 'CompressedImage', 'CameraInfo', 'PointCloud2'))
 DEPTH_ENCODINGS = {'16UC1': ('u2', 0.001), 'mono16': ('u2', 0.001), '32FC1': ('f4', 1.0)}  # kind, metres
 # A camera that hardly moved sees nothing new.
 STEP_M, TURN_RAD = 0.05, np.deg2rad(3)
@@ -80,6 +82,9 @@ def _time(header):
 def _depth_topics(bag):
     """{topic: messages} of images that hold depth, as the first of each tells."""
     found = Counter()
+    for topic in bag.topics(PACKED):
+        if topic.endswith('/compressedDepth'):
+            found[topic] = bag.topics(PACKED)[topic]
     for topic, count in bag.topics(IMAGE).items():
         for _, message in bag.messages(topic):
             if message.encoding in ('16UC1', '32FC1') or (message.encoding == 'mono16' and 'depth' in topic):
@@ -99,6 +104,7 @@ def _most(counts, wanted, path, what):
 
 def _info_topic(bag, topic):
     """The topic of the CameraInfo that belongs to an image: its neighbour, by ROS' convention."""
+    topic = topic.removesuffix('/compressedDepth')
     place = topic.rsplit('/', 1)[0]
     topics = bag.topics(INFO)
     for name in (f'{place}/camera_info', f'{topic}/camera_info', f'{place.rsplit("/", 1)[0]}/camera_info'):
@@ -117,8 +123,28 @@ def _camera(info, topic):
     return Camera(info.width, info.height, k[0], k[4], k[2], k[5]), bool(np.any(np.abs(d) > 1e-6))
 
 
+def _unpacked(message, path):
+    """(height, width) in metres of an image that the plugin compressed_depth_image_transport packed: a head of 12 bytes, then a PNG of
+    millimetres, or of inverse depth between two constants that are in the head."""
+    image = needs('PIL.Image', 'pillow', path)
+    with reading(path, 'bag with sound compressedDepth images'):
+        data = bytes(message.data)
+        _, a, b = struct.unpack_from('<iff', data)
+        stored = np.array(image.open(io.BytesIO(data[12:])))
+        if stored.ndim != 2:
+            raise wrong(path, 'has a compressedDepth image that is not grey')
+        if message.format.startswith('16UC1'):
+            return stored * 0.001
+        if message.format.startswith('32FC1'):
+            with np.errstate(divide='ignore'):
+                return np.where(stored > 0, a / (stored.astype(float) - b), 0.0)
+    raise wrong(path, f'has a compressedDepth image of format {message.format}; 16UC1 and 32FC1 are read')
+
+
 def _depth(message, path):
     """(height, width) in metres."""
+    if hasattr(message, 'format'):
+        return _unpacked(message, path)
     if message.encoding not in DEPTH_ENCODINGS:
         raise wrong(path, f'has a depth image of encoding {message.encoding}; 16UC1 and 32FC1 are read')
     kind, metres = DEPTH_ENCODINGS[message.encoding]
@@ -260,7 +286,7 @@ def convert(path, folder, options):
             return _frames(bag, folder, topic, sorted(set(depth) - {topic}))
         if not clouds:
             kinds = sorted({c.msgtype for c in bag.connections})
-            raise wrong(path, f'has no depth image (16UC1, 32FC1) and no PointCloud2, but {", ".join(kinds)[:300] or "nothing"}')
+            raise wrong(path, f'has no depth image (16UC1, 32FC1, compressedDepth) and no PointCloud2, but {", ".join(kinds)[:300] or "nothing"}')
         topic = _most(clouds, options.topic, path, 'PointCloud2')
         cloud = _cloud(bag, topic, sorted(set(clouds) - {topic})).moved_near(options.unit_m)
     out = folder / f'points{options.ending}'
