@@ -269,13 +269,41 @@ def test_record3d_exr(walk, photographs, coloured_sequence, device, tmp_path):
     refused(folder, device, 'depth/3.exr')
 
 
-# What is missing, and the command
+def test_record3d_of_a_sensor_on_its_side():
+    upright = topple.formats.record3d._camera(720, 960, 700.0, 710.0, 480.0, 360.0)
+    assert (upright.fx, upright.fy, upright.cx, upright.cy) == (710.0, 700.0, 360.0, 480.0)
+    assert topple.formats.record3d._camera(720, 960, 700.0, 710.0, 350.0, 470.0).cx == 350.0
+
+
+# What is missing, what goes wrong, and the command
+
+def test_what_crashes_crashes_apart(points, device, tmp_path, monkeypatch):
+    """A reader that dies, or takes more than it may, is an Error that names the file."""
+    (tmp_path / 'sitecustomize.py').write_text(
+        'import os, sys\n'
+        'class Dies:\n'
+        '    def find_spec(self, name, path=None, target=None):\n'
+        '        if name == "lazrs": os.abort()\n'
+        '        if name == "pye57": bytearray(1 << 40)\n'
+        'sys.meta_path.insert(0, Dies())\n')
+    monkeypatch.setattr(sys, 'path', [str(tmp_path), *sys.path])
+    for name, part in (('room.laz', 'SIGABRT'), ('room.e57', 'address space')):
+        (tmp_path / name).write_bytes(b'LASF')
+        refused(tmp_path / name, device, part)
+
+
+def test_a_conversion_is_cancelled(points, device, tmp_path):
+    model = colmap_model(tmp_path / 'model', POSES[:1], ['a.jpg'], True, points)
+    with pytest.raises(topple.Error) as error:
+        parsed(model, device, cancelled=lambda: True)
+    assert error.value.kind == 'cancelled'
+
 
 def test_a_missing_package_is_named(device, tmp_path):
     file = tmp_path / 'room.laz'
     file.write_bytes(b'LASF')
     code = ('import sys; sys.modules["lazrs"] = None\nimport topple\n'
-            f'try: topple.parse({str(file)!r})\nexcept topple.Error as e: print(e.kind, e)')
+            f'try: topple.parse({str(file)!r}, isolate=False)\nexcept topple.Error as e: print(e.kind, e)')
     said = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True).stdout
     assert said.startswith('usage') and "pip install 'laspy[lazrs]'" in said and str(file) in said
 

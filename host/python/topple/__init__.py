@@ -250,7 +250,7 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     if isinstance(source, (str, os.PathLike)):
         if normals is not None or viewpoint is not None or colours is not None:
             raise _usage('normals, colours and viewpoint are for points in memory; a file brings its own')
-        with formats.opened(source, formats.Options(unit_m=unit_m)) as converted:
+        with formats.opened(source, formats.Options(unit_m=unit_m, isolate=isolate), cancelled) as converted:
             if converted is None:
                 return Result(_topple.parse_path(os.fspath(source), device, options, progress, cancelled), None)
             if converted.is_sequence:

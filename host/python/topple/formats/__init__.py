@@ -14,7 +14,7 @@ from typing import List, Optional
 
 import numpy as np
 
-from . import colmap, e57, laz, polycam, record3d, ros_bag
+from . import apart, colmap, e57, laz, polycam, record3d, ros_bag
 from .errors import Error, wrong
 
 FORMATS = (laz, e57, ros_bag, colmap, polycam, record3d)
@@ -25,6 +25,7 @@ class Options:
     unit_m: float = 1.0  # metres of a unit of the scan's coordinates, where its format leaves that open
     topic: Optional[str] = None  # of a ROS bag, rather than the one of most messages
     ending: str = '.pcd'  # of a cloud's file: .ply, or .pcd, which keeps the sensor's place
+    isolate: bool = True  # in a process of its own, with limits of memory and time
 
 
 @dataclasses.dataclass
@@ -59,9 +60,9 @@ def format_of(path):
 
 
 @contextlib.contextmanager
-def opened(path, options=Options()):
+def opened(path, options=Options(), cancelled=None):
     """The scan at a path, converted in a temporary folder, or None where topple reads it itself. Errors from within the block that
-    name the temporary file name the scan instead."""
+    name the temporary file name the scan instead. cancelled: is polled while it is converted; true ends that."""
     path = pathlib.Path(path)
     module = format_of(path)
     if module is None:
@@ -71,7 +72,10 @@ def opened(path, options=Options()):
     place = folder = pathlib.Path(made) / 'scan'
     try:
         folder.mkdir()
-        place, notes, offset = module.convert(path, folder, options)
+        if options.isolate:
+            place, notes, offset = apart.convert(module, path, folder, options, cancelled)
+        else:
+            place, notes, offset = module.convert(path, folder, options)
         if place.is_dir() and options.unit_m != 1 and module is not colmap:
             raise wrong(path, f'unit_m is for clouds and COLMAP; the depth of a {module.FORMAT} is in metres', 'usage')
         converted = Converted(place, notes, np.zeros(3) if offset is None else offset, module.FORMAT)

@@ -18,9 +18,10 @@ def main():
     one.add_argument('out', metavar='OUT', help='.ply or .pcd for a cloud, .las of a .laz, or a folder for depth frames')
     one.add_argument('--unit-m', type=float, default=1.0, metavar='METRES', help='metres of a unit of a COLMAP model or of a cloud far from its origin')
     one.add_argument('--topic', help='of a bag, rather than the one of most messages')
+    one.add_argument('--no-isolate', action='store_true', help='read in this process, without limits of memory and time')
     asked = parser.parse_args()
     try:
-        converted = convert(asked.scan, asked.out, Options(unit_m=asked.unit_m, topic=asked.topic))
+        converted = convert(asked.scan, asked.out, Options(unit_m=asked.unit_m, topic=asked.topic, isolate=not asked.no_isolate))
     except Error as error:
         print(f'topple.formats: {error}', file=sys.stderr)
         return EXIT_CODES.get(error.kind, 1)

@@ -108,6 +108,17 @@ class FrameFolder:
         return notes
 
 
+# Phones' LiDAR reaches this far; what they tell of depth beyond is made up.
+PHONE_REACH_M = 5.0
+
+
+def by_phone(depth_m, confidence):
+    """Depth of a phone's LiDAR without what is too far, or what it trusts least itself: confidence 0. confidence: of the same shape, or
+    None."""
+    good = depth_m <= PHONE_REACH_M if confidence is None else (depth_m <= PHONE_REACH_M) & (confidence > 0)
+    return np.where(good, depth_m, 0.0)
+
+
 def from_graphics(pose):
     """Camera to world of a camera with x right, y up and looking along -z (OpenGL, ARKit), as topple has it."""
     return pose @ np.diag([1.0, -1.0, -1.0, 1.0])

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Polycam's raw data of phones with LiDAR, as a zip archive or a folder: keyframes with depth and poses.
 
-Poses are Polycam's corrected ones where there are any. Depth that the phone itself trusts least is left out."""
+Poses are Polycam's corrected ones where there are any. Depth beyond 5 m, and what the phone itself trusts least, is left out."""
 import io
 
 import numpy as np
 
 from .errors import needs, reading, wrong
-from .frames import Camera, FrameFolder, from_graphics
+from .frames import Camera, FrameFolder, by_phone, from_graphics
 from .packed_folder import PackedFolder, holds
 
 FORMAT = 'Polycam export'
@@ -49,14 +49,13 @@ def convert(path, folder, options):
                 depthless += 1
                 continue
             camera, pose = _camera(path, export, f'{cameras}{name}.json')
-            depth = _image(path, export, f'{DEPTH}{name}.png')
-            if export.has(f'{CONFIDENCE}{name}.png'):
-                trust = _image(path, export, f'{CONFIDENCE}{name}.png')
-                if trust.shape == depth.shape:
-                    depth = np.where(trust > 0, depth, 0)
+            depth = _image(path, export, f'{DEPTH}{name}.png') / 1000.0
+            trust = _image(path, export, f'{CONFIDENCE}{name}.png') if export.has(f'{CONFIDENCE}{name}.png') else None
+            if trust is not None and trust.shape != depth.shape:
+                raise wrong(path, f'{CONFIDENCE}{name}.png is of another size than the depth image')
             seen = export.read(f'{images}{name}.jpg') if export.has(f'{images}{name}.jpg') else None
             # Each keyframe has intrinsics of its own, by the lens' focus; depth is smaller than colour.
-            frames.add(camera.resized(depth.shape[1], depth.shape[0]), depth / 1000.0, pose, seen)
+            frames.add(camera.resized(depth.shape[1], depth.shape[0]), by_phone(depth, trust), pose, seen)
         if depthless:
             notes.append(f'{depthless} of the keyframes have no depth image.')
         if not corrected:

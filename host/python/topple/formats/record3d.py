@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Record3D's recordings of phones with LiDAR: .r3d (pyliblzfse), or its export of EXR images with metadata.json (OpenEXR), as a zip
-archive or a folder. Depth that the phone itself trusts least is left out."""
+archive or a folder. Depth beyond 5 m, and what the phone itself trusts least, is left out."""
 import os
 import tempfile
 
 import numpy as np
 
 from .errors import needs, reading, wrong
-from .frames import Camera, FrameFolder, from_graphics, pose
+from .frames import Camera, FrameFolder, by_phone, from_graphics, pose
 from .packed_folder import PackedFolder, holds
 
 FORMAT = 'Record3D recording'
@@ -28,8 +28,14 @@ def _cameras(path, metadata, count):
         poses = np.array(metadata['poses'], float).reshape(-1, 7)
         if len(poses) < count or len(own) < count:
             raise wrong(path, f'has {count} frames of depth, but {len(poses)} poses and {len(own)} intrinsics')
-        return [(Camera(width, height, *(float(v) for v in own[n])), from_graphics(pose(poses[n, :4], poses[n, 4:])))
+        return [(_camera(width, height, *(float(v) for v in own[n])), from_graphics(pose(poses[n, :4], poses[n, 4:])))
                 for n in range(count)]
+
+
+def _camera(width, height, fx, fy, cx, cy):
+    """Of a phone held upright; some recordings have the intrinsics of the sensor, which lies on its side then."""
+    across = abs(cy - width / 2) + abs(cx - height / 2)
+    return Camera(width, height, fy, fx, cy, cx) if across < abs(cx - width / 2) + abs(cy - height / 2) else Camera(width, height, fx, fy, cx, cy)
 
 
 def _exr(path, name, data):
@@ -73,11 +79,10 @@ def _recording(path, folder):
         cameras = _cameras(path, metadata, numbers[-1] + 1 if numbers else 0)
         for number in numbers:
             depth = unpacked(f'rgbd/{number}.depth', '<f4')
-            if export.has(f'rgbd/{number}.conf'):
-                depth = np.where(unpacked(f'rgbd/{number}.conf', 'u1') > 0, depth, 0)
+            trust = unpacked(f'rgbd/{number}.conf', 'u1') if export.has(f'rgbd/{number}.conf') else None
             camera, camera_to_world = cameras[number]
             seen = export.read(f'rgbd/{number}.jpg') if export.has(f'rgbd/{number}.jpg') else None
-            frames.add(camera.resized(width, height), depth, camera_to_world, seen)
+            frames.add(camera.resized(width, height), by_phone(depth, trust), camera_to_world, seen)
         return folder, frames.finish(), None
 
 
@@ -91,7 +96,7 @@ def _export(path, folder):
             depth = _exr(path, f'depth/{number}.exr', export.read(f'depth/{number}.exr'))
             camera, camera_to_world = cameras[number]
             pictures = [name for name in (f'rgb/{number}.jpg', f'rgb/{number}.png') if export.has(name)]
-            frames.add(camera.resized(depth.shape[1], depth.shape[0]), depth, camera_to_world,
+            frames.add(camera.resized(depth.shape[1], depth.shape[0]), by_phone(depth, None), camera_to_world,
                        export.read(pictures[0]) if pictures else None)
         return folder, frames.finish(), None
 
