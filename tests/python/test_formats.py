@@ -177,6 +177,23 @@ def test_colmap_that_is_wrong(walk, device, tmp_path):
     refused(folder / 'points3D.bin', device, 'cut short')
 
 
+# Gaussian splats
+
+def test_splats(points, ply, device, tmp_path):
+    y00 = 0.5 / np.sqrt(np.pi)
+    haze = np.random.default_rng(2).uniform([0.2, 0.2, 0.2], [2.6, 2.2, 1.3], (2000, 3))
+    names = ['x', 'y', 'z', 'f_dc_0', 'f_dc_1', 'f_dc_2', 'opacity', *(f'scale_{n}' for n in range(3)), *(f'rot_{n}' for n in range(4))]
+    records = np.zeros((len(points) + len(haze), len(names)), '<f4')
+    records[:, :3] = np.concatenate([points, haze])
+    records[:len(points), 3:6] = (colours_of(points) / 255 - 0.5) / y00
+    records[:, 6] = np.where(np.arange(len(records)) < len(points), 3, -3)
+    header = ['ply', 'format binary_little_endian 1.0', f'element vertex {len(records)}', *(f'property float {n}' for n in names), 'end_header', '']
+    (tmp_path / 'splats.ply').write_bytes('\n'.join(header).encode() + records.tobytes())
+    result = parsed(tmp_path / 'splats.ply', device)
+    same_objects(result, ply)
+    assert any('splats' in note for note in result.notes)
+
+
 # Phones
 
 def polycam(folder, walk, photographs):

@@ -58,7 +58,7 @@ def packed_image(time, depth, kind):
 
 
 def camera_info():
-    k = np.array([CAMERA.fx, 0, CAMERA.cx, 0, CAMERA.fy, CAMERA.cy, 0, 0, 1])
+    k = np.array([CAMERA.fx, 0, CAMERA.cx, 0, CAMERA.fy, CAMERA.cy, 0, 0, 1], float)
     return TYPES['sensor_msgs/msg/CameraInfo'](
         header=header(0, 'optical'), height=CAMERA.height, width=CAMERA.width, distortion_model='plumb_bob', d=np.zeros(5), k=k,
         r=np.eye(3).ravel(), p=np.zeros(12), binning_x=0, binning_y=0,
@@ -157,6 +157,24 @@ def test_clouds(points, ply, device, tmp_path):
     # Without tf nothing is known of the sensor, as of points in a PLY.
     plain = write_bag(tmp_path / 'plain', 'mcap', [('/points', kind, SECOND, point_cloud(SECOND, points, 'map', colours_of(points)))])
     same_objects(parsed(plain, device), ply, within=1e-6)
+
+
+def test_clouds_of_ros_1(points, tmp_path):
+    from rosbags.rosbag1 import Writer
+    store = get_typestore(Stores.ROS1_NOETIC)
+    kind = 'sensor_msgs/msg/PointCloud2'
+    message = point_cloud(SECOND, points, 'map', colours_of(points))
+    header_of, fields = store.types['std_msgs/msg/Header'], store.types['sensor_msgs/msg/PointField']
+    values = {name: getattr(message, name) for name in message.__dataclass_fields__ if name != '__msgtype__'}
+    values['header'] = header_of(seq=1, stamp=store.types['builtin_interfaces/msg/Time'](1, 0), frame_id='map')
+    values['fields'] = [fields(f.name, f.offset, f.datatype, f.count) for f in message.fields]
+    with Writer(tmp_path / 'room.bag') as writer:
+        connection = writer.add_connection('/points', kind, typestore=store)
+        writer.write(connection, SECOND, store.serialize_ros1(store.types[kind](**values), kind))
+    topple.formats.convert(tmp_path / 'room.bag', tmp_path / 'room.ply')
+    head, _, body = (tmp_path / 'room.ply').read_bytes().partition(b'end_header\n')
+    records = np.frombuffer(body, [('xyz', '<f4', 3), ('rgb', 'u1', 3)])
+    assert np.array_equal(records['xyz'], points) and np.array_equal(records['rgb'], colours_of(points))
 
 
 def test_many_clouds_become_one(points, device, tmp_path):

@@ -75,7 +75,8 @@ def opened(path, options=Options(), cancelled=None):
         if options.isolate:
             place, notes, offset = apart.convert(module, path, folder, options, cancelled)
         else:
-            place, notes, offset = module.convert(path, folder, options)
+            with np.errstate(all='ignore'):  # of damaged numbers; a library says nothing
+                place, notes, offset = module.convert(path, folder, options)
         if place.is_dir() and options.unit_m != 1 and module is not colmap:
             raise wrong(path, f'unit_m is for clouds and COLMAP; the depth of a {module.FORMAT} is in metres', 'usage')
         converted = Converted(place, notes, np.zeros(3) if offset is None else offset, module.FORMAT)

@@ -89,8 +89,8 @@ class FrameFolder:
 
     def _check(self, camera):
         if not (camera.width > 0 and camera.height > 0 and np.isfinite([camera.fx, camera.fy, camera.cx, camera.cy]).all()
-                and camera.fx > 0 and camera.fy > 0):
-            raise wrong(self.source, f'its camera makes no sense: {camera}')
+                and camera.fx >= 1 and camera.fy >= 1):
+            raise wrong(self.source, f'its camera makes no sense, in pixels: {camera}')
 
     def finish(self, notes=()):
         """Writes what is not images; returns the notes, with what was done to the frames."""

@@ -18,7 +18,7 @@ FORMAT = 'ROS bag'
 IMAGE, PACKED, INFO, CLOUD = (f'sensor_msgs/msg/{kind}' for kind in ('Image', 'CompressedImage', 'CameraInfo', 'PointCloud2'))
 DEPTH_ENCODINGS = {'16UC1': ('u2', 0.001), 'mono16': ('u2', 0.001), '32FC1': ('f4', 1.0)}  # kind, metres
 # A camera that hardly moved sees nothing new.
-STEP_M, TURN_RAD = 0.05, np.deg2rad(3)
+STEP_M, TURN_RAD = 0.03, np.deg2rad(2)
 CELL_M = 0.01  # of several clouds each cell keeps its first point
 TYPES = {1: 'i1', 2: 'u1', 3: 'i2', 4: 'u2', 5: 'i4', 6: 'u4', 7: 'f4', 8: 'f8'}
 
