@@ -55,6 +55,9 @@ def test_laz_that_is_wrong(points, device, tmp_path):
     whole = laz(tmp_path / 'room.laz', points)
     for share in (0.02, 0.5, 0.95):
         refused(truncated(whole, share), device)
+    endless = tmp_path / 'endless.laz'  # laspy goes through all the records that it promises
+    endless.write_bytes(whole.read_bytes()[:100] + b'\xff' * 4 + whole.read_bytes()[104:])
+    refused(endless, device, '4294967295 records', isolate=False)
     other = tmp_path / 'other.laz'
     other.write_bytes(b'ply\n' + b'x' * 500)
     refused(other, device, 'LASF')

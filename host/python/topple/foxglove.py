@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A Result as an MCAP file, for Foxglove and what else reads its schemas."""
+import contextlib
 import os
-import tempfile
 
 import numpy as np
 
@@ -22,22 +22,16 @@ def to_mcap(result, path):
     schemas = _Schemas()
     writer_of = geometry.needed('mcap_protobuf.writer', 'mcap-protobuf-support', 'to_mcap')
     path = os.fspath(path)
-    handle, temporary = tempfile.mkstemp(prefix='.topple-', suffix='.mcap', dir=os.path.dirname(os.path.abspath(path)))
+    unfinished = os.path.join(os.path.dirname(path), f'.topple-{os.getpid()}-{os.path.basename(path)}')
     try:
-        with os.fdopen(handle, 'wb') as file, writer_of.Writer(file) as writer:
+        with open(unfinished, 'xb') as file, writer_of.Writer(file) as writer:
             for topic, message in _messages(result, schemas):
                 writer.write_message(topic=topic, message=message, log_time=TIME_NS, publish_time=TIME_NS)
-        os.chmod(temporary, 0o666 & ~_umask())
-        os.replace(temporary, path)
+        os.replace(unfinished, path)
     except BaseException:
-        os.unlink(temporary)
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(unfinished)
         raise
-
-
-def _umask():
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 class _Schemas:
