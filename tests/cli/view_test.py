@@ -66,8 +66,14 @@ def serves_the_files(program, out):
             assert status == 200 and body == (out / name).read_bytes(), name
         assert ask(port, '/scene.json', host=f'localhost:{port}')[2] == 'application/json'
         assert ask(port, '/scene.json', 'HEAD')[:2] == (200, b'')
-        status, body, _ = ask(port, '/points.ply', Range='bytes=4-9')
-        assert status == 206 and body == (out / 'points.ply').read_bytes()[4:10]
+        assert ask(port, '/scene%2Ejson?a=b')[1] == (out / 'scene.json').read_bytes()
+        connection = http.client.HTTPConnection('127.0.0.1', port, timeout=20)  # several over one
+        for name in ('scene.json', 'missing', 'report.html'):
+            connection.request('GET', f'/{name}')
+            answer = connection.getresponse()
+            body = answer.read()
+            assert (answer.status, body) == (200, (out / name).read_bytes()) if name != 'missing' else answer.status == 404
+        connection.close()
 
 
 def serves_nothing_else(program, out):
@@ -81,7 +87,7 @@ def serves_nothing_else(program, out):
     try:
         with served(program, out) as (port, _):
             for path in ('/../secret', '/%2e%2e/secret', '/..%2fsecret', '/..%5csecret', '//etc/passwd', '/%2fetc%2fpasswd', '/link', '/folder',
-                         '/folder/inner', '/.hidden', '/pipe', '/..', '/.', '/scene.json%00', '/scene.json/', f'/{"a" * 5000}', '/missing'):
+                         '/folder/inner', '/.hidden', '/pipe', '/..', '/.', '/scene.json%00', '/scene.json/', '/%zz', '/%', '*', f'/{"a" * 5000}', '/missing'):
                 status, body, _ = ask(port, path)
                 assert status in (400, 404) and b'secret' not in body, (path, status, body)
             assert ask(port, '/scene.json', host='evil.example')[0] == 403
