@@ -71,6 +71,7 @@ Command add_estimate(CLI::App& app);
 Command add_landscape(CLI::App& app);
 Command add_export(CLI::App& app);
 Command add_verify(CLI::App& app);
+Command add_view(CLI::App& app);
 Command add_perf(CLI::App& app);
 
 }  // namespace topple::cli

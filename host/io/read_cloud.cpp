@@ -93,6 +93,14 @@ PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text,
     for (const char* known : {".xyz", ".txt", ".csv", ".asc", ".pts"}) {
         if (extension == known) return parse_xyz(file, text, sink);
     }
+    for (const char* known : {".e57", ".mcap", ".db3", ".bag", ".r3d", ".zip"}) {
+        if (extension == known) {
+            fail(file,
+                 std::string("is read by topple.parse of Python only; make it one that is read "
+                             "here: python3 -m topple.formats convert ") +
+                     file.filename().string() + " OUT");
+        }
+    }
     fail(file, "is no known kind of point cloud or mesh (its extension is " + in_quotes(extension) +
                    "); give a .ply, .pcd, .xyz, .las, .obj, .stl, .glb, .gltf, .bt, .ot or .vdb "
                    "file, or a "

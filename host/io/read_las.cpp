@@ -52,8 +52,9 @@ Header read_header(const std::filesystem::path& file, std::string_view bytes) {
     h.points = value_at<std::uint32_t>(bytes, 107);
     if (h.format & 0xC0) {
         fail(file,
-             "is compressed (LAZ), which is not read; unpack it to .las, with laszip, las2las "
-             "or pdal translate");
+             "is compressed (LAZ), which only topple.parse of Python reads; unpack it to .las: "
+             "python3 "
+             "-m topple.formats convert FILE.laz FILE.las, or with laszip or las2las");
     }
     if (h.minor == 4) {
         if (bytes.size() < 375) fail(file, "is cut short: a LAS 1.4 header has 375 bytes");

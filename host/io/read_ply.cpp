@@ -9,6 +9,7 @@
 #include "io/formats.h"
 #include "io/ply_file.h"
 #include "io/scalar.h"
+#include "io/splats.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -18,6 +19,7 @@ namespace {
 struct Wanted {
     std::array<std::size_t, 3> point{}, normal{}, colour{};
     CloudFields fields;
+    std::optional<SplatFields> splats;  // then colour is where theirs are
 };
 
 std::optional<std::size_t> find_property(const std::filesystem::path& file,
@@ -69,6 +71,7 @@ void find_colour(const std::filesystem::path& file, const PlyElement& vertex, Wa
 
 Wanted find_wanted(const std::filesystem::path& file, const PlyElement& vertex) {
     Wanted wanted;
+    wanted.splats = splat_fields(file, vertex);
     static constexpr std::array<const char*, 3> point{"x", "y", "z"};
     static constexpr std::array<const char*, 3> normal{"nx", "ny", "nz"},
         long_normal{"normal_x", "normal_y", "normal_z"};
@@ -87,7 +90,12 @@ Wanted find_wanted(const std::filesystem::path& file, const PlyElement& vertex) 
         }
     }
     wanted.fields.normals = normals == 3;
-    find_colour(file, vertex, wanted);
+    if (wanted.splats) {
+        wanted.colour = wanted.splats->colour;
+        wanted.fields = {.normals = false, .colours = ColourValues::bytes};  // normals are all 0
+    } else {
+        find_colour(file, vertex, wanted);
+    }
     return wanted;
 }
 
@@ -103,6 +111,41 @@ std::vector<const PlyElement*> after(const PlyHeader& header, const PlyElement& 
     }
     return out;
 }
+
+// Passes vertices on to a cloud; of splats those that hide what lies behind.
+class Vertices {
+  public:
+    Vertices(const std::filesystem::path& file, std::uint64_t promised, const Wanted& wanted,
+             const CloudSink* sink)
+        : file_(file), splats_(wanted.splats), cloud_(file, promised, wanted.fields, sink) {}
+
+    void add(const std::array<double, 3>& point, const std::array<double, 3>& normal,
+             const std::array<double, 3>& colour, double opacity) {
+        ++seen_;
+        if (!splats_) {
+            cloud_.add(point, normal, colour);
+        } else if (hides(opacity)) {
+            cloud_.add(point, normal, splat_colour(colour));
+        }
+    }
+    std::uint64_t seen() const { return seen_; }
+
+    PointCloud finish() {
+        if (splats_ && seen_ > 0 && cloud_.seen() == 0) {
+            fail(file_, std::string("holds ") + counted(seen_, "Gaussian splat") +
+                            ", of which none is more than half opaque; there is no surface");
+        }
+        PointCloud out = cloud_.finish();
+        if (splats_) out.notes.push_back(splats_note(cloud_.seen(), seen_));
+        return out;
+    }
+
+  private:
+    const std::filesystem::path& file_;
+    std::optional<SplatFields> splats_;
+    CloudBuilder cloud_;
+    std::uint64_t seen_ = 0;
+};
 
 // Reads vertex lines. Every item is one line.
 PointCloud read_ascii(const std::filesystem::path& file, std::string_view bytes,
@@ -123,16 +166,18 @@ PointCloud read_ascii(const std::filesystem::path& file, std::string_view bytes,
             continue;
         }
         const auto wanted = find_wanted(file, element);
-        CloudBuilder cloud(file, element.count, wanted.fields, sink);
+        Vertices cloud(file, element.count, wanted, sink);
         const bool coloured = wanted.fields.colours != ColourValues::none;
         // Where each value on the line goes; null: nowhere.
         std::array<double, 3> point{}, normal{}, colour{};
+        double opacity = 0;
         std::vector<double*> place(element.properties.size(), nullptr);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             place[wanted.point[axis]] = &point[axis];
             if (wanted.fields.normals) place[wanted.normal[axis]] = &normal[axis];
             if (coloured) place[wanted.colour[axis]] = &colour[axis];
         }
+        if (wanted.splats) place[wanted.splats->opacity] = &opacity;
         const auto bad = [&](const std::string& message) {
             fail(file, "line " + std::to_string(lines.number()) + ": " + message);
         };
@@ -164,7 +209,7 @@ PointCloud read_ascii(const std::filesystem::path& file, std::string_view bytes,
             if (!next_token(rest).empty()) {
                 bad("more than the " + counted(place.size(), "value") + " that each vertex has");
             }
-            cloud.add(point, normal, colour);
+            cloud.add(point, normal, colour, opacity);
         }
         for (const PlyElement* rest : after(header, element)) {
             for (std::uint64_t i = 0; i < rest->count; ++i) {
@@ -188,17 +233,15 @@ PointCloud read_binary(const std::filesystem::path& file, std::string_view bytes
         }
         items.expect(element);
         const auto wanted = find_wanted(file, element);
-        CloudBuilder cloud(file, element.count, wanted.fields, sink);
+        Vertices cloud(file, element.count, wanted, sink);
         const bool coloured = wanted.fields.colours != ColourValues::none;
         // Where each property of the current vertex starts.
         std::vector<const char*> starts(element.properties.size());
+        const auto load_one = [&](std::size_t which) {
+            return load_scalar(element.properties[which].type, starts[which], items.swapped());
+        };
         const auto load = [&](const std::array<std::size_t, 3>& which) {
-            std::array<double, 3> values;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                values[axis] = load_scalar(element.properties[which[axis]].type,
-                                           starts[which[axis]], items.swapped());
-            }
-            return values;
+            return std::array{load_one(which[0]), load_one(which[1]), load_one(which[2])};
         };
         const bool fixed = !element.has_lists();
         const auto stride = element.least_bytes();
@@ -210,7 +253,8 @@ PointCloud read_binary(const std::filesystem::path& file, std::string_view bytes
             }
             cloud.add(load(wanted.point),
                       wanted.fields.normals ? load(wanted.normal) : std::array<double, 3>{},
-                      coloured ? load(wanted.colour) : std::array<double, 3>{});
+                      coloured ? load(wanted.colour) : std::array<double, 3>{},
+                      wanted.splats ? load_one(wanted.splats->opacity) : 0);
         }
         if (fixed && element.count > 0) {
             PlyElement others = element;  // than the first, which was stepped over

@@ -179,6 +179,14 @@ void bind_parse(py::module_& module) {
                    return run(device, options, std::move(progress), std::move(cancelled),
                               [&](const ParseOptions& o) { return parse(view, o); });
                });
+    // Of a scan that was parsed from a copy in another format.
+    module.def("came_from", [](Parsed& parsed, const std::string& source,
+                               const std::vector<std::string>& notes, const Vec3& offset_m) {
+        Scene& scene = parsed.result.scene;
+        scene.source = source;
+        scene.notes.insert(scene.notes.begin(), notes.begin(), notes.end());
+        for (std::size_t axis = 0; axis < 3; ++axis) scene.offset_m[axis] += offset_m[axis];
+    });
     module.def("write",
                [](Parsed& parsed, const std::string& folder, bool pictures, bool glb, bool octomap,
                   const std::vector<py::array>& points, const std::vector<py::array>& colours) {

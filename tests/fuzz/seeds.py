@@ -26,6 +26,13 @@ def ply():
         data += b"".join(struct.pack(order + "B4i", 4, *q) for q in QUADS)
         yield head.format("binary_%s_endian" % name, faces).encode() + data
 
+    # Gaussian splats, of which half are haze.
+    names = ["f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"]
+    fields = "".join("property float %s\n" % n for n in names)
+    splats = [(*c, 0.5, -0.5, 0, (-1) ** n, -4, -4, -4, 1, 0, 0, 0) for n, c in enumerate(CORNERS)]
+    yield (head.format("ascii", fields) + "".join(" ".join("%g" % v for v in s) + "\n" for s in splats)).encode()
+    yield head.format("binary_little_endian", fields).encode() + b"".join(struct.pack("<14f", *s) for s in splats)
+
 
 def pcd():
     head = ("# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH %d\nHEIGHT %d\n"

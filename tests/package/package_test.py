@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Installs what was built, and uses it as a stranger's project would.
 
-  package_test.py install|example|headers|adopt_opencl|examples|pkg_config|python|python_example
+  package_test.py install|example|headers|adopt_opencl|examples|pkg_config|python|python_formats|python_example
       --source DIR --build DIR --work DIR ...
 
 `install` comes first: it installs into WORK, moves the whole elsewhere, so that nothing can depend on where
@@ -146,6 +146,22 @@ class Package:
         self.use_python_package()
         print(run(sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', os.path.join(self.a.source, 'tests/python')))
 
+    def python_formats(self):
+        """Those of tests/python that take packages of others, which ./dev setup installs."""
+        self.use_python_package()
+        wanted = ['lazrs', 'laspy', 'pye57', 'rosbags', 'mcap_ros2', 'mcap_protobuf', 'foxglove_schemas_protobuf', 'liblzfse', 'OpenEXR', 'PIL',
+                  'pytest']
+        if not os.path.exists(self.a.venv_python):
+            print(f'{self.a.venv_python} is missing: ./dev setup')
+            sys.exit(SKIPPED)
+        found = 'import importlib.util as u, sys; print(*[p for p in sys.argv[1:] if u.find_spec(p) is None])'
+        missing = run(self.a.venv_python, '-c', found, *wanted).split()
+        if missing:
+            print(f'{self.a.venv_python} has no {", ".join(missing)}: ./dev setup')
+            sys.exit(SKIPPED)
+        tests = [os.path.join(self.a.source, 'tests/python', name) for name in ('test_formats.py', 'test_ros_bags.py', 'test_viewers.py')]
+        print(run(self.a.venv_python, '-m', 'pytest', '-q', '-rs', '-p', 'no:cacheprovider', *tests))
+
     def python_example(self):
         """docs/examples in Python."""
         self.use_python_package()
@@ -168,8 +184,8 @@ class Package:
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument('test', choices=['install', 'example', 'headers', 'adopt_opencl', 'examples', 'pkg_config', 'python',
-                                         'python_example'])
-    for name in ('source', 'build', 'work', 'cmake', 'generator', 'c-compiler', 'compiler', 'build-type'):
+                                         'python_formats', 'python_example'])
+    for name in ('source', 'build', 'work', 'cmake', 'generator', 'c-compiler', 'compiler', 'build-type', 'venv-python'):
         parser.add_argument('--' + name, required=True)
     arguments = parser.parse_args()
     getattr(Package(arguments), arguments.test)()

@@ -3,6 +3,8 @@ import numpy as np
 import pytest
 
 import topple
+from made_scans import CAMERA, POSES, colours_of, parsed, photograph, seen_from
+from topple.formats import cloud, frames
 
 
 def room_points():
@@ -37,3 +39,41 @@ def device():
 @pytest.fixture(scope='session')
 def result(points, device):
     return topple.parse(points, device=device, disturbances=['wind'])
+
+
+@pytest.fixture(scope='session')
+def ply(points, device, tmp_path_factory):
+    path = tmp_path_factory.mktemp('ply') / 'room.ply'
+    cloud.write_cloud(path, cloud.Cloud(points.astype(float), colours_of(points)), path)
+    return parsed(path, device)
+
+
+@pytest.fixture(scope='session')
+def walk():
+    return [(pose, seen_from(pose)[0]) for pose in POSES]
+
+
+@pytest.fixture(scope='session')
+def sequence(walk, device, tmp_path_factory):
+    folder = tmp_path_factory.mktemp('frames') / 'walk'
+    out = frames.FrameFolder(folder, folder)
+    for pose, depth in walk:
+        out.add(CAMERA, depth, pose)
+    out.finish()
+    return parsed(folder, device)
+
+
+@pytest.fixture(scope='session')
+def photographs(tmp_path_factory):
+    folder = tmp_path_factory.mktemp('photographs')
+    return [photograph(pose, folder / 'seen.jpg') for pose in POSES]
+
+
+@pytest.fixture(scope='session')
+def coloured_sequence(walk, photographs, device, tmp_path_factory):
+    folder = tmp_path_factory.mktemp('coloured') / 'walk'
+    out = frames.FrameFolder(folder, folder)
+    for (pose, depth), seen in zip(walk, photographs):
+        out.add(CAMERA, depth, pose, seen)
+    out.finish()
+    return parsed(folder, device)

@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
         {"export", "Make a scene for simulators of what a parse has found", add_export},
         {"verify", "Run what a parse has found in MuJoCo, and say what stays where it is",
          add_verify},
+        {"view", "Show what a parse has found in the browser", add_view},
         {"devices", "List every device of every backend, or why one is missing", add_devices},
         {"generate", "Make a scan of a furnished room, with its ground truth", add_generate},
         {"evaluate", "Parse generated rooms and judge the results against the truth", add_evaluate},

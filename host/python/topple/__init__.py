@@ -15,11 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import _topple
+from . import _topple, formats, plot
 from ._topple import Contact, Device, DirectedBarrier, Error, Fall, Object, Overturning, Primitive, Support, __version__, open_device
+from .foxglove import to_mcap
+from .rerun_viewer import to_rerun
 
 __all__ = ['Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Object', 'Overturning', 'Primitive', 'Result',
-           'Support', '__version__', 'devices', 'open_device', 'parse']
+           'Support', '__version__', 'devices', 'formats', 'open_device', 'parse', 'plot', 'to_mcap', 'to_rerun']
 
 
 class DeviceInfo(NamedTuple):
@@ -207,7 +209,8 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
           viewpoint=None, colours=None, isolate=True, progress=None, cancelled=None):
     """Parses a scan into a Result.
 
-    source: a path, as the command line takes it; or points in metres: an array of shape (N, 3), records with
+    source: a path, as the command line takes it, or of what topple.formats converts (docs/formats.md: .laz, .e57, bags of ROS,
+    COLMAP, Polycam, Record3D); or points in metres: an array of shape (N, 3), records with
     fields x, y, z, a tuple of three arrays, or whatever has __dlpack__. float32 is read where it lies, with any
     strides, and must not change meanwhile; float64 is converted, which takes 12 bytes a point, and integers are
     refused: hardly ever are they metres. Points that are not finite are left out: Result.point_index then says
@@ -247,7 +250,15 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     if isinstance(source, (str, os.PathLike)):
         if normals is not None or viewpoint is not None or colours is not None:
             raise _usage('normals, colours and viewpoint are for points in memory; a file brings its own')
-        return Result(_topple.parse_path(os.fspath(source), device, options, progress, cancelled), None)
+        with formats.opened(source, formats.Options(unit_m=unit_m, isolate=isolate), cancelled) as converted:
+            if converted is None:
+                return Result(_topple.parse_path(os.fspath(source), device, options, progress, cancelled), None)
+            if converted.is_sequence:
+                options.unit_m = 1.0
+            parsed = _topple.parse_path(os.fspath(converted.path), device, options, progress, cancelled)
+            _topple.came_from(parsed, os.fspath(source), converted.notes, list(converted.offset * unit_m))
+            converted.needed_by = result = Result(parsed, None)
+            return result
     points = _columns(source, ('x', 'y', 'z'), 'points')
     directions = [] if normals is None else _columns(normals, ('nx', 'ny', 'nz'), 'normals')
     channels = [] if colours is None else _channels(colours)

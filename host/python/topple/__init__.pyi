@@ -5,6 +5,10 @@ from typing import Any, Callable, Literal, NamedTuple, Optional, Protocol, Seque
 import numpy as np
 from numpy.typing import NDArray
 
+from . import formats as formats, plot as plot
+from .foxglove import to_mcap as to_mcap
+from .rerun_viewer import to_rerun as to_rerun
+
 __version__: str
 __all__: list[str]
 

@@ -313,6 +313,10 @@ TEST_F(Ply, files_that_can_not_be_read) {
                        {"empty.ply", "empty", "0 bytes"});
     expect_input_error([&] { read_cloud(folder_); }, {"folder"});
     expect_input_error([&] { read_cloud(write("a.png", "\x89PNG")); }, {"\".png\"", ".ply"});
+    for (const char* name : {"a.e57", "b.mcap", "c.R3D"}) {
+        expect_input_error([&] { read_cloud(write(name, "abc")); },
+                           {name, "python3 -m topple.formats convert"});
+    }
     expect_input_error([&] { read_cloud(write("two\nlines.xyz", "a")); }, {"two\\x0alines.xyz"});
 }
 

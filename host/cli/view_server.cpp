@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include "cli/view_server.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "io/text.h"
+#include "topple/error.h"
+
+namespace topple::cli {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+using boost::asio::ip::tcp;
+using Request = http::request<http::string_body>;
+
+constexpr const char* this_machine = "127.0.0.1";
+
+const char* media_type(std::string_view name) {
+    const auto dot = name.rfind('.');
+    const std::string_view ending = dot == std::string_view::npos ? "" : name.substr(dot);
+    if (ending == ".html") return "text/html; charset=utf-8";
+    if (ending == ".json") return "application/json";
+    if (ending == ".png") return "image/png";
+    if (ending == ".glb") return "model/gltf-binary";
+    return "application/octet-stream";
+}
+
+// Of a file of the folder itself. None of these needs a look at what lies where.
+bool plain_name(std::string_view name) {
+    return !name.empty() && name.front() != '.' && std::ranges::none_of(name, [](char c) {
+        return c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+    });
+}
+
+// %41 is A. None: it is no such text.
+std::optional<std::string> decoded(std::string_view text) {
+    std::string out;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        if (text[at] != '%') {
+            out.push_back(text[at]);
+            continue;
+        }
+        const auto digit = [&](std::size_t place) {
+            const std::string_view digits = "0123456789abcdef";
+            const char c = place < text.size() ? text[place] : ' ';
+            return digits.find(c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c);
+        };
+        const std::size_t high = digit(at + 1), low = digit(at + 2);
+        if (high == std::string_view::npos || low == std::string_view::npos) return std::nullopt;
+        out.push_back(static_cast<char>(16 * high + low));
+        at += 2;
+    }
+    return out;
+}
+
+// What lies in the folder that is served, and where it is served.
+struct Served {
+    Served() = default;
+    ~Served() {
+        if (folder >= 0) close(folder);
+    }
+    Served(const Served&) = delete;
+    Served& operator=(const Served&) = delete;
+
+    int folder = -1;
+    std::string port;
+};
+
+// One connection: requests one after another, until it is idle for long or says that it ends.
+class Session : public std::enable_shared_from_this<Session> {
+  public:
+    Session(tcp::socket socket, const Served& served)
+        : stream_(std::move(socket)), served_(served) {}
+
+    void read() {
+        parser_.emplace();
+        parser_->body_limit(1024);  // of what nobody reads
+        stream_.expires_after(std::chrono::seconds(30));
+        http::async_read(stream_, buffer_, *parser_,
+                         [self = shared_from_this()](beast::error_code error, std::size_t) {
+                             if (!error) self->answer(self->parser_->release());
+                         });
+    }
+
+  private:
+    void answer(const Request& request) {
+        const std::string_view host = as_text(request[http::field::host]);
+        const std::string here = std::string(":") + served_.port;
+        if (host != std::string(this_machine) + here && host != std::string("localhost") + here)
+            return refuse(request, http::status::forbidden,
+                          "This server answers to its own address only.");
+        if (request.method() != http::verb::get && request.method() != http::verb::head)
+            return refuse(request, http::status::method_not_allowed,
+                          "Files are read here, and nothing else.");
+        const std::string_view target = as_text(request.target());
+        const auto path = decoded(target.substr(0, target.find_first_of("?#")));
+        if (!path || !path->starts_with('/')) return not_found(request);
+        send_file(request, *path == "/" ? "report.html" : path->substr(1));
+    }
+
+    void send_file(const Request& request, const std::string& name) {
+        if (!plain_name(name)) return not_found(request);
+        const int fd =
+            openat(served_.folder, name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        if (fd < 0) return not_found(request);
+        beast::file_posix file;
+        file.native_handle(fd);  // which closes it
+        struct stat about {};
+        if (fstat(fd, &about) != 0 || !S_ISREG(about.st_mode)) return not_found(request);
+        if (request.method() == http::verb::head) {
+            http::response<http::empty_body> response;
+            response.content_length(static_cast<std::uint64_t>(about.st_size));
+            return send(request, std::move(response), media_type(name));
+        }
+        http::response<http::file_body> response;
+        beast::error_code error;
+        response.body().reset(std::move(file), error);
+        if (error) return not_found(request);
+        response.prepare_payload();
+        send(request, std::move(response), media_type(name));
+    }
+
+    void not_found(const Request& request) {
+        refuse(request, http::status::not_found, "There is no such file.");
+    }
+
+    void refuse(const Request& request, http::status status, const char* why) {
+        http::response<http::string_body> response;
+        response.result(status);
+        response.body() = std::string(why) + "\n";
+        response.prepare_payload();
+        if (request.method() == http::verb::head) response.body().clear();
+        send(request, std::move(response), "text/plain; charset=utf-8");
+    }
+
+    template <class Body>
+    void send(const Request& request, http::response<Body> made, const char* type) {
+        const auto response = std::make_shared<http::response<Body>>(std::move(made));
+        response->version(request.version());
+        response->keep_alive(request.keep_alive());
+        response->set(http::field::content_type, type);
+        response->set(http::field::cache_control, "no-store");
+        response->set("X-Content-Type-Options", "nosniff");
+        stream_.expires_after(std::chrono::minutes(10));
+        http::async_write(
+            stream_, *response,
+            [self = shared_from_this(), response](beast::error_code error, std::size_t) {
+                if (!error && response->keep_alive()) return self->read();
+                self->stream_.socket().shutdown(tcp::socket::shutdown_send, error);
+            });
+    }
+
+    static std::string_view as_text(beast::string_view text) { return {text.data(), text.size()}; }
+
+    beast::tcp_stream stream_;
+    beast::flat_buffer buffer_{1 << 16};
+    std::optional<http::request_parser<http::string_body>> parser_;
+    const Served& served_;
+};
+
+}  // namespace
+
+struct ViewServer::Inner {
+    void accept() {
+        acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
+            if (!error) std::make_shared<Session>(std::move(socket), served)->read();
+            accept();
+        });
+    }
+
+    Served served;  // outlives the sessions
+    boost::asio::io_context context{1};
+    tcp::acceptor acceptor{context};
+};
+
+ViewServer::ViewServer(const std::filesystem::path& folder, std::uint16_t port)
+    : inner_(std::make_unique<Inner>()) {
+    Served& served = inner_->served;
+    served.folder = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (served.folder < 0)
+        io::fail(folder, std::string("can't be opened: ") + std::strerror(errno));
+    tcp::acceptor& acceptor = inner_->acceptor;
+    beast::error_code error;
+    acceptor.open(tcp::v4(), error);
+    if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+    if (!error) acceptor.bind({boost::asio::ip::make_address(this_machine), port}, error);
+    if (!error) acceptor.listen(tcp::acceptor::max_listen_connections, error);
+    if (error) {
+        throw Error(ErrorKind::usage, std::string("--port ") + std::to_string(port) +
+                                          ": can't be taken (" + error.message() +
+                                          "); leave it out for one that is free");
+    }
+    served.port = std::to_string(acceptor.local_endpoint().port());
+    inner_->accept();
+}
+
+ViewServer::~ViewServer() = default;
+
+std::string ViewServer::url() const {
+    return std::string("http://") + this_machine + ":" + inner_->served.port + "/";
+}
+
+void ViewServer::run(const std::function<bool()>& done) {
+    while (!done()) inner_->context.run_for(std::chrono::milliseconds(100));
+}
+
+}  // namespace topple::cli

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: MIT
+"""python3 -m topple.formats convert IN OUT: other programs' scans as `topple parse` reads them."""
+import argparse
+import sys
+
+from . import Options, convert
+from .errors import Error
+
+EXIT_CODES = {'usage': 2}  # as of the program; else 1
+
+
+def main():
+    parser = argparse.ArgumentParser(prog='python3 -m topple.formats', description=__doc__)
+    commands = parser.add_subparsers(dest='command', required=True)
+    one = commands.add_parser('convert', help='make a cloud or a folder of depth frames of a scan in another format')
+    one.add_argument('scan', metavar='IN', help='.laz, .e57, .mcap, .db3, .bag, .r3d, a .zip of Polycam or Record3D, or a folder of COLMAP, '
+                                                'of a bag or of one of those exports')
+    one.add_argument('out', metavar='OUT', help='.ply or .pcd for a cloud, .las of a .laz, or a folder for depth frames')
+    one.add_argument('--unit-m', type=float, default=1.0, metavar='METRES', help='metres of a unit of a COLMAP model or of a cloud far from its origin')
+    one.add_argument('--topic', help='of a bag, rather than the one of most messages')
+    one.add_argument('--no-isolate', action='store_true', help='read in this process, without limits of memory and time')
+    asked = parser.parse_args()
+    try:
+        converted = convert(asked.scan, asked.out, Options(unit_m=asked.unit_m, topic=asked.topic, isolate=not asked.no_isolate))
+    except Error as error:
+        print(f'topple.formats: {error}', file=sys.stderr)
+        return EXIT_CODES.get(error.kind, 1)
+    for note in converted.notes:
+        print(note)
+    print(converted.path)
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

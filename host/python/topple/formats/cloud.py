@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+"""Points on their way into a file that topple reads."""
+import dataclasses
+from typing import List, Optional
+
+import numpy as np
+
+from .errors import wrong
+
+# Where 32-bit coordinates resolve less than half a millimetre, the points are moved, as those of LAS are.
+NEAR_M = 4096.0
+
+
+@dataclasses.dataclass
+class Cloud:
+    """Points of one file, in its frame and unit."""
+    points: np.ndarray  # (N, 3) float64
+    colours: Optional[np.ndarray] = None  # (N, 3) uint8, sRGB; 0, 0, 0 where it is not known
+    viewpoint: Optional[np.ndarray] = None  # (3,): where the sensor was
+    offset: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(3))  # the file's points are these plus this
+    notes: List[str] = dataclasses.field(default_factory=list)
+
+    def moved_near(self, unit_m):
+        """The same near the origin, if its first point lies far from it; a unit has unit_m metres."""
+        finite = np.isfinite(self.points).all(axis=1)
+        if not finite.any():
+            return self
+        first = self.points[finite.argmax()]
+        if (np.abs(first) * unit_m <= NEAR_M).all():
+            return self
+        shift = np.floor(first)
+        said = ', '.join(f'{-s * unit_m:.10g}' for s in shift)
+        return dataclasses.replace(
+            self, points=self.points - shift, offset=self.offset + shift,
+            viewpoint=None if self.viewpoint is None else self.viewpoint - shift,
+            notes=self.notes + [f"The file's coordinates lie far from the origin, and were moved by ({said}) m; "
+                                'offset_m in scene.json has the exact way back.'])
+
+
+def write_cloud(path, cloud, source):
+    """Writes a binary .ply, or a binary .pcd, which has a place for the sensor's. source: the file to name in errors."""
+    if len(cloud.points) == 0:
+        raise wrong(source, 'has no points')
+    fields = [('x', '<f4'), ('y', '<f4'), ('z', '<f4')]
+    pcd = path.suffix == '.pcd'
+    if cloud.colours is not None:
+        fields += [('rgb', '<u4')] if pcd else [('red', 'u1'), ('green', 'u1'), ('blue', 'u1')]
+    records = np.empty(len(cloud.points), dtype=fields)
+    for axis, name in enumerate('xyz'):
+        records[name] = cloud.points[:, axis]
+    if cloud.colours is not None and pcd:
+        red, green, blue = (cloud.colours[:, c].astype(np.uint32) for c in range(3))
+        records['rgb'] = red << 16 | green << 8 | blue
+    elif cloud.colours is not None:
+        for c, name in enumerate(('red', 'green', 'blue')):
+            records[name] = cloud.colours[:, c]
+    with open(path, 'wb') as out:
+        out.write((_pcd_header if pcd else _ply_header)(cloud).encode())
+        records.tofile(out)
+
+
+def _ply_header(cloud):
+    lines = ['ply', 'format binary_little_endian 1.0', f'element vertex {len(cloud.points)}',
+             *(f'property float {name}' for name in 'xyz')]
+    if cloud.colours is not None:
+        lines += [f'property uchar {name}' for name in ('red', 'green', 'blue')]
+    return '\n'.join([*lines, 'end_header', ''])
+
+
+def _pcd_header(cloud):
+    colour = cloud.colours is not None
+    # A quaternion of 1 0 0 0 at the origin would say that the place is not known; its negative turns as little.
+    place = '0 0 0 1 0 0 0' if cloud.viewpoint is None else \
+        ' '.join(repr(float(v)) for v in cloud.viewpoint) + ' -1 0 0 0'
+    return '\n'.join(['# .PCD v0.7', 'VERSION 0.7', 'FIELDS x y z' + ' rgb' * colour, 'SIZE 4 4 4' + ' 4' * colour,
+                      'TYPE F F F' + ' U' * colour, 'COUNT 1 1 1' + ' 1' * colour, f'WIDTH {len(cloud.points)}', 'HEIGHT 1',
+                      f'VIEWPOINT {place}', f'POINTS {len(cloud.points)}', 'DATA binary', ''])

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: MIT
+"""E57 of laser scanners (pye57): all scans of the file in its frame, with colours, and the scanner's place where there is one."""
+import numpy as np
+
+from .cloud import Cloud, write_cloud
+from .errors import needs, reading, wrong
+
+FORMAT = 'E57 file'
+COLOURS = ('colorRed', 'colorGreen', 'colorBlue')
+
+
+def recognises(path):
+    return path.is_file() and path.suffix.lower() == '.e57'
+
+
+def _scan(file, index, notes):
+    """Points (N, 3), colours (N, 3) or None, and the scanner's place or None, in the file's frame."""
+    header = file.get_header(index)
+    coloured = all(name in header.point_fields for name in COLOURS)
+    try:
+        data = file.read_scan(index, colors=coloured, ignore_missing_fields=True)
+    except Exception:
+        if not coloured:
+            raise
+        data, coloured = file.read_scan(index, ignore_missing_fields=True), False
+        notes.append(f'The colours of scan {index} are of more than 8 bits, or damaged, and were left out.')
+    points = np.stack([data['cartesianX'], data['cartesianY'], data['cartesianZ']], axis=1)
+    colours = np.stack([data[name] for name in COLOURS], axis=1).astype(np.uint8) if coloured else None
+    # Spherical readings are of the scanner; Cartesian ones of it where their frame is its own, which a pose tells.
+    own = header.has_pose() or 'sphericalRange' in header.point_fields
+    return points, colours, np.array(header.translation, float) if own else None
+
+
+def read(path, unit_m=1.0):
+    """The Cloud of all scans."""
+    pye57 = needs('pye57', 'pye57', path)
+    notes = []
+    with reading(path, FORMAT):
+        file = pye57.E57(str(path))
+        try:
+            scans = [_scan(file, index, notes) for index in range(file.scan_count)]
+        finally:
+            file.close()
+    scans = [scan for scan in scans if len(scan[0])]
+    if not scans:
+        raise wrong(path, 'has no scan with points')
+    places = [place for _, _, place in scans]
+    colours = None
+    if any(c is not None for _, c, _ in scans):
+        colours = np.concatenate([np.zeros((len(p), 3), np.uint8) if c is None else c for p, c, _ in scans])
+    if len(scans) > 1:
+        notes.append(f'The file has {len(scans)} scans, which were put together by their poses; where each scanner stood is '
+                     'not used, as a cloud has one viewpoint at most.')
+    elif places[0] is None:
+        notes.append('The file does not say where the scanner stood.')
+    return Cloud(np.concatenate([p for p, _, _ in scans]), colours, places[0] if len(scans) == 1 else None,
+                 notes=notes).moved_near(unit_m)
+
+
+def convert(path, folder, options):
+    cloud = read(path, options.unit_m)
+    out = folder / f'points{options.ending}'
+    write_cloud(out, cloud, path)
+    return out, cloud.notes, cloud.offset

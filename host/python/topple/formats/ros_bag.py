@@ -1,0 +1,294 @@
+# SPDX-License-Identifier: MIT
+"""Recordings of ROS (rosbags): bags of ROS 2 (.mcap, .db3, or their folder) and of ROS 1 (.bag).
+
+Depth images with their CameraInfo and tf become frames; where there are none, PointCloud2 becomes a cloud in tf's root."""
+import contextlib
+import io
+import struct
+from collections import Counter
+
+import numpy as np
+
+from .cloud import Cloud, write_cloud
+from .errors import needs, reading, wrong
+from .frames import Camera, FrameFolder
+from .transforms import Transforms
+
+FORMAT = 'ROS bag'
+IMAGE, PACKED, INFO, CLOUD = (f'sensor_msgs/msg/{kind}' for kind in ('Image', 'CompressedImage', 'CameraInfo', 'PointCloud2'))
+DEPTH_ENCODINGS = {'16UC1': ('u2', 0.001), 'mono16': ('u2', 0.001), '32FC1': ('f4', 1.0)}  # kind, metres
+# A camera that hardly moved sees nothing new.
+STEP_M, TURN_RAD = 0.03, np.deg2rad(2)
+CELL_M = 0.01  # of several clouds each cell keeps its first point
+TYPES = {1: 'i1', 2: 'u1', 3: 'i2', 4: 'u2', 5: 'i4', 6: 'u4', 7: 'f4', 8: 'f8'}
+
+
+def recognises(path):
+    if path.is_dir():
+        return (path / 'metadata.yaml').is_file() and any(file.suffix in ('.mcap', '.db3') for file in path.iterdir())
+    return path.suffix.lower() in ('.mcap', '.db3', '.bag')
+
+
+class Bag:
+    """The messages of a bag, decoded."""
+
+    def __init__(self, path):
+        self.path = path
+        highlevel = needs('rosbags.highlevel', 'rosbags', path)
+        typesys = needs('rosbags.typesys', 'rosbags', path)
+        with reading(path, FORMAT):
+            # Bags before MCAP don't say what their types are; those that are read here never changed.
+            self.reader = highlevel.AnyReader([path], default_typestore=typesys.get_typestore(typesys.Stores.LATEST))
+            self.reader.open()
+        self.connections = list(self.reader.connections)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        with contextlib.suppress(Exception):
+            self.reader.close()
+
+    def topics(self, kind):
+        """{topic: number of messages} of a type."""
+        counts = Counter()
+        for connection in self.connections:
+            if connection.msgtype == kind:
+                counts[connection.topic] += connection.msgcount
+        return counts
+
+    def messages(self, *topics):
+        """(topic, message), in the order of their recording."""
+        chosen = [c for c in self.connections if c.topic in topics]
+        with reading(self.path, FORMAT):
+            if not chosen:
+                return
+            for connection, _, data in self.reader.messages(connections=chosen):
+                yield connection.topic, self.reader.deserialize(data, connection.msgtype)
+
+
+def _transforms(bag):
+    found = Transforms()
+    for topic, message in bag.messages('/tf', '/tf_static'):
+        found.add(message, fixed=topic == '/tf_static')
+    found.sort()
+    return found
+
+
+def _time(header):
+    return header.stamp.sec * 1_000_000_000 + header.stamp.nanosec
+
+
+def _depth_topics(bag):
+    """{topic: messages} of images that hold depth, as the first of each tells."""
+    found = Counter()
+    for topic in bag.topics(PACKED):
+        if topic.endswith('/compressedDepth'):
+            found[topic] = bag.topics(PACKED)[topic]
+    for topic, count in bag.topics(IMAGE).items():
+        for _, message in bag.messages(topic):
+            if message.encoding in ('16UC1', '32FC1') or (message.encoding == 'mono16' and 'depth' in topic):
+                found[topic] = count
+            break
+    return found
+
+
+def _most(counts, wanted, path, what):
+    """The topic that is wanted, or else the one of most messages; the first by name of several."""
+    if wanted is not None and wanted in counts:
+        return wanted
+    if wanted is not None:
+        raise wrong(path, f'has no {what} in topic {wanted}; it has {", ".join(sorted(counts)) or "none"}', 'usage')
+    return min(counts, key=lambda topic: (-counts[topic], topic))
+
+
+def _info_topic(bag, topic):
+    """The topic of the CameraInfo that belongs to an image: its neighbour, by ROS' convention."""
+    topic = topic.removesuffix('/compressedDepth')
+    place = topic.rsplit('/', 1)[0]
+    topics = bag.topics(INFO)
+    for name in (f'{place}/camera_info', f'{topic}/camera_info', f'{place.rsplit("/", 1)[0]}/camera_info'):
+        if name in topics:
+            return name
+    if len(topics) == 1:
+        return next(iter(topics))
+    raise wrong(bag.path, f'has depth images in {topic}, but no camera_info beside them; it has {", ".join(sorted(topics)) or "none"}')
+
+
+def _camera(info, topic):
+    """The Camera, and whether it has distortion that is left alone."""
+    k, p, d = (np.array(getattr(info, name, getattr(info, name.upper(), ())), float) for name in 'kpd')
+    if 'rect' in topic and len(p) == 12 and p[0] > 0:
+        return Camera(info.width, info.height, p[0], p[5], p[2], p[6]), False
+    return Camera(info.width, info.height, k[0], k[4], k[2], k[5]), bool(np.any(np.abs(d) > 1e-6))
+
+
+def _unpacked(message, path):
+    """(height, width) in metres of an image that the plugin compressed_depth_image_transport packed: a head of 12 bytes, then a PNG of
+    millimetres, or of inverse depth between two constants that are in the head."""
+    image = needs('PIL.Image', 'pillow', path)
+    with reading(path, 'bag with sound compressedDepth images'):
+        data = bytes(message.data)
+        _, a, b = struct.unpack_from('<iff', data)
+        stored = np.array(image.open(io.BytesIO(data[12:])))
+        if stored.ndim != 2:
+            raise wrong(path, 'has a compressedDepth image that is not grey')
+        if message.format.startswith('16UC1'):
+            return stored * 0.001
+        if message.format.startswith('32FC1'):
+            with np.errstate(divide='ignore'):
+                return np.where(stored > 0, a / (stored.astype(float) - b), 0.0)
+    raise wrong(path, f'has a compressedDepth image of format {message.format}; 16UC1 and 32FC1 are read')
+
+
+def _depth(message, path):
+    """(height, width) in metres."""
+    if hasattr(message, 'format'):
+        return _unpacked(message, path)
+    if message.encoding not in DEPTH_ENCODINGS:
+        raise wrong(path, f'has a depth image of encoding {message.encoding}; 16UC1 and 32FC1 are read')
+    kind, metres = DEPTH_ENCODINGS[message.encoding]
+    kind = np.dtype(kind).newbyteorder('>' if message.is_bigendian else '<')
+    row = message.width * kind.itemsize
+    data = np.asarray(message.data, np.uint8)
+    if message.step < row or len(data) < message.step * message.height or message.height == 0 or row == 0:
+        raise wrong(path, f'has a depth image of {message.width} x {message.height} pixels in {len(data)} bytes, {message.step} a row')
+    rows = data[:message.step * message.height].reshape(message.height, message.step)[:, :row]
+    return np.ascontiguousarray(rows).view(kind).astype(float) * metres
+
+
+class _Moved:
+    """Tells which poses lie far enough from the last one that was taken."""
+
+    def __init__(self):
+        self.last = None
+
+    def __call__(self, pose):
+        if self.last is not None:
+            step = np.linalg.norm(pose[:3, 3] - self.last[:3, 3])
+            cosine = (np.trace(self.last[:3, :3].T @ pose[:3, :3]) - 1) / 2
+            if step < STEP_M and np.arccos(np.clip(cosine, -1, 1)) < TURN_RAD:
+                return False
+        self.last = pose
+        return True
+
+
+def _frames(bag, folder, topic, others):
+    transforms = _transforms(bag)
+    info_topic = _info_topic(bag, topic)
+    camera = distorted = None
+    for _, info in bag.messages(info_topic):
+        with reading(bag.path, FORMAT):
+            camera, distorted = _camera(info, topic)
+        break
+    if camera is None:
+        raise wrong(bag.path, f'{info_topic} has no message')
+    frames, moved = FrameFolder(folder, bag.path), _Moved()
+    seen = unplaced = 0
+    for _, message in bag.messages(topic):
+        seen += 1
+        frame = message.header.frame_id.lstrip('/')
+        pose = transforms.to_root(frame, _time(message.header))
+        if pose is None:
+            unplaced += 1
+        elif moved(pose):
+            depth = _depth(message, bag.path)
+            frames.add(camera.resized(depth.shape[1], depth.shape[0]), depth, pose)
+    if unplaced == seen:
+        raise wrong(bag.path, f'{topic}: tf does not say where {frame} was when any of its {seen} images was taken')
+    notes = [f'{len(frames.poses)} of the {seen} depth images of {topic} were taken: those before which the camera had moved by '
+             f'{STEP_M * 100:.0f} cm or turned by {np.rad2deg(TURN_RAD):.0f} degrees. Coordinates are in the frame '
+             f'"{transforms.root_of(frame)}".']
+    if unplaced:
+        notes.append(f'{unplaced} depth images were left out, as tf does not say where the camera was.')
+    if distorted:
+        notes.append(f"{info_topic} tells of the lens' distortion, which is not corrected: surfaces are bent towards the images' corners.")
+    if others:
+        notes.append(f'Other topics with depth were left out: {", ".join(others)}.')
+    return folder, frames.finish(notes), None
+
+
+def _points(message, path):
+    """Points (N, 3) float64, and colours (N, 3) uint8 or None."""
+    fields = {field.name: field for field in message.fields}
+    missing = [name for name in 'xyz' if name not in fields]
+    if missing:
+        raise wrong(path, f'has a PointCloud2 without field {missing[0]}')
+    order = '>' if message.is_bigendian else '<'
+    names = ['x', 'y', 'z'] + [name for name in ('rgb', 'rgba') if name in fields][:1]
+    kinds = ['u4' if name.startswith('rgb') else TYPES[fields[name].datatype] for name in names]
+    layout = np.dtype({'names': names, 'formats': [order + kind for kind in kinds],
+                       'offsets': [fields[name].offset for name in names], 'itemsize': message.point_step})
+    data = np.asarray(message.data, np.uint8)
+    row = message.width * message.point_step
+    if message.row_step < row or len(data) < message.row_step * message.height:
+        raise wrong(path, f'has a PointCloud2 of {message.width} x {message.height} points in {len(data)} bytes')
+    rows = data[:message.row_step * message.height].reshape(message.height, message.row_step)[:, :row]
+    records = np.ascontiguousarray(rows).reshape(-1).view(layout)
+    points = np.stack([records[axis].astype(float) for axis in 'xyz'], axis=1)
+    if len(names) == 3:
+        return points, None
+    packed = records[names[3]]
+    return points, np.stack([packed >> 16 & 255, packed >> 8 & 255, packed & 255], axis=1).astype(np.uint8)
+
+
+def _thinned(points, colours):
+    """The first point of each cell, in order."""
+    finite = np.isfinite(points).all(axis=1)
+    points, colours = points[finite], colours[finite]
+    _, first = np.unique(np.floor(points / CELL_M).astype(np.int64), axis=0, return_index=True)
+    first.sort()
+    return points[first], colours[first]
+
+
+def _cloud(bag, topic, others):
+    transforms = _transforms(bag)
+    points, colours = np.empty((0, 3)), np.empty((0, 3), np.uint8)
+    thinned_to = taken = unplaced = 0
+    coloured, frame, place = False, '', None
+    for _, message in bag.messages(topic):
+        frame = message.header.frame_id.lstrip('/')
+        pose = transforms.to_root(frame, _time(message.header))
+        if pose is None:
+            unplaced += 1
+            continue
+        with reading(bag.path, FORMAT):
+            new, seen = _points(message, bag.path)
+        coloured = coloured or seen is not None
+        points = np.concatenate([points, new @ pose[:3, :3].T + pose[:3, 3]])
+        colours = np.concatenate([colours, np.zeros((len(new), 3), np.uint8) if seen is None else seen])
+        taken += 1
+        # Only a frame that has a place in another is the sensor's.
+        place = pose[:3, 3] if frame in transforms.edges else None
+        if taken > 1 and len(points) > 2 * thinned_to + 2_000_000:
+            points, colours = _thinned(points, colours)
+            thinned_to = len(points)
+    if taken == 0:
+        raise wrong(bag.path, f'{topic}: tf does not say where "{frame}" was when any of its {unplaced} clouds was taken'
+                    if unplaced else f'{topic} has no message')
+    notes = []
+    if taken > 1:
+        points, colours = _thinned(points, colours)
+        notes.append(f'The {taken} clouds of {topic} were put together; each cell of {CELL_M * 100:.0f} cm keeps one point. Coordinates '
+                     f'are in the frame "{transforms.root_of(frame)}".')
+    if unplaced:
+        notes.append(f'{unplaced} clouds were left out, as tf does not say where the sensor was.')
+    if others:
+        notes.append(f'Other topics with clouds were left out: {", ".join(others)}.')
+    return Cloud(points, colours if coloured else None, place if taken == 1 else None, notes=notes)
+
+
+def convert(path, folder, options):
+    with Bag(path) as bag:
+        depth, clouds = _depth_topics(bag), bag.topics(CLOUD)
+        if depth and options.topic not in clouds:
+            topic = _most(depth, options.topic, path, 'depth image')
+            return _frames(bag, folder, topic, sorted(set(depth) - {topic}))
+        if not clouds:
+            kinds = sorted({c.msgtype for c in bag.connections})
+            raise wrong(path, f'has no depth image (16UC1, 32FC1, compressedDepth) and no PointCloud2, but {", ".join(kinds)[:300] or "nothing"}')
+        topic = _most(clouds, options.topic, path, 'PointCloud2')
+        cloud = _cloud(bag, topic, sorted(set(clouds) - {topic})).moved_near(options.unit_m)
+    out = folder / f'points{options.ending}'
+    write_cloud(out, cloud, path)
+    return out, cloud.notes, cloud.offset

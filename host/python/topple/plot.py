@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""Plots of a Result for papers (pip install matplotlib). Each draws into the axes that it is given, or a figure of its own, and
+returns the axes: plot.plan(result).figure.savefig('plan.pdf')."""
+import math
+
+import numpy as np
+
+from . import geometry
+
+
+def _axes(axes, **options):
+    if axes is not None:
+        return axes
+    return geometry.needed('matplotlib.pyplot', 'matplotlib', 'topple.plot').subplots(layout='constrained', **options)[1]
+
+
+def plan(result, *, by='unsafety', labels=True, axes=None):
+    """The floor plan, along the room's axes in metres: what can move, seen from above, and walls in grey.
+
+    by: "unsafety", 1 to 10, what has no rank being hatched; or a disturbance that was parsed for, "human", "wind" or
+    "earthquake": its risk in J. labels: writes objects' ids. Raises topple.Error of kind "usage"."""
+    names = sorted(result.fields)
+    if by != 'unsafety' and by not in names:
+        raise geometry.usage(f"plan: by={by!r}; expected 'unsafety'" + ''.join(f' or {name!r}' for name in names))
+    points, owners = geometry.solid_points(result)
+    if len(points) == 0:
+        raise geometry.usage('plan: the result has no solids to draw')
+    axes = _axes(axes)
+    turned = points @ geometry.room_axes(result).T
+    step = result.voxel_size_m
+    low = turned.min(axis=0)
+    cells = np.round((turned - low) / step).astype(int)
+    shape = cells.max(axis=0)[:2] + 1
+    grounded = np.array([o.grounded for o in result.objects] + [True])  # -1, of no object, is the last
+    values = np.array([o.unsafety if by == 'unsafety' else o.risk_J.get(by, math.nan) for o in result.objects] + [math.nan])
+    # Walls stand where the ground fills more than half of the height; floor and ceiling don't.
+    fixed, moving = cells[grounded[owners]], cells[~grounded[owners]]
+    heights = np.zeros(shape)
+    np.add.at(heights, (fixed[:, 0], fixed[:, 1]), 1)
+    walls = np.where(heights > (cells[:, 2].max() + 1) / 2, 1.0, np.nan)
+    top = np.full(shape, -1)
+    order = np.argsort(moving[:, 2], kind='stable')
+    top[moving[order, 0], moving[order, 1]] = owners[~grounded[owners]][order]
+    seen, unranked = np.where(top >= 0, values[top], np.nan), (top >= 0) & np.isnan(values[top])
+    extent = [low[0] - step / 2, low[0] + (shape[0] - 0.5) * step, low[1] - step / 2, low[1] + (shape[1] - 0.5) * step]
+    shown = {'origin': 'lower', 'extent': extent, 'interpolation': 'nearest'}
+    axes.imshow(walls.T, cmap='Greys', vmin=0, vmax=2, **shown)
+    limits = {'vmin': 1, 'vmax': 10} if by == 'unsafety' else {'vmin': 0, 'vmax': max(np.nanmax(values, initial=0), 1e-9)}
+    image = axes.imshow(seen.T, cmap='RdYlGn_r' if by == 'unsafety' else 'YlOrRd', **limits, **shown)
+    if unranked.any():
+        x, y = (low[axis] + np.arange(shape[axis]) * step for axis in (0, 1))
+        axes.contourf(x, y, unranked.T.astype(float), levels=[0.5, 1.5], colors='none', hatches=['////'])
+    if labels:
+        for o in result.objects:
+            if (top == o.id).any():
+                place = geometry.room_axes(result) @ o.center_of_mass_m
+                axes.annotate(str(o.id), place[:2], ha='center', va='center', fontsize='small',
+                              bbox={'facecolor': 'white', 'edgecolor': 'none', 'alpha': 0.6, 'pad': 1})
+    axes.figure.colorbar(image, ax=axes, label='unsafety' if by == 'unsafety' else f'expected release per event, {by} (J)')
+    axes.set(xlabel='x (m)', ylabel='y (m)', aspect='equal', xlim=extent[:2], ylim=extent[2:])
+    return axes
+
+
+def instability(item, *, axes=None):
+    """S(W) of an Object: the energy that it can release, J, once a disturbance has given it W, J; both of scene.json's `instability`."""
+    steps = np.asarray(item.instability)
+    if len(steps) == 0:
+        raise geometry.usage(f'instability: object {item.id} has no S(W): it can\'t move, or was not seen enough')
+    axes = _axes(axes)
+    last = steps[-1, 0] * 1.2 if steps[-1, 0] > 0 else 1.0
+    axes.step([0, *steps[:, 0], last], [0, *steps[:, 1], steps[-1, 1]], where='post', label=f'object {item.id}')
+    axes.set(xlabel='W (J)', ylabel='S(W) (J)', xlim=(0, last))
+    axes.set_ylim(bottom=0)
+    return axes
+
+
+def fragility(item, *, axes=None):
+    """The chance that an earthquake upsets an Object by the ground's peak acceleration: what was counted, and the lognormal fit."""
+    counted, median, spread = np.asarray(item.fragility.counted), item.fragility.pga_g, item.fragility.pga_dispersion
+    if len(counted) == 0:
+        raise geometry.usage(f'fragility: object {item.id} has none: no earthquake was parsed for, or it can\'t move')
+    axes = _axes(axes)
+    axes.plot(counted[:, 0], counted[:, 1], 'o', label=f'object {item.id}, counted')
+    if math.isfinite(median) and spread > 0:
+        peaks = np.linspace(counted[:, 0].max() / 200, counted[:, 0].max(), 200)
+        chance = [0.5 * (1 + math.erf(math.log(peak / median) / (spread * math.sqrt(2)))) for peak in peaks]
+        axes.plot(peaks, chance, label=f'median {median:.2g} g, dispersion {spread:.2g}')
+    axes.set(xlabel='peak ground acceleration (g)', ylabel='chance to fall', ylim=(0, 1))
+    axes.legend()
+    return axes
+
+
+def barriers(item, *, axes=None):
+    """The least work of a slow push from which an Object falls, J, by the direction that it goes, in polar axes like a compass: 0 is the room's
+    y, clockwise as seen from above (`barrier_by_direction` of docs/output.md). What does not fall there has no point."""
+    push = np.asarray(item.barrier_by_direction.push_J)
+    if len(push) == 0 or not np.isfinite(push).any():
+        raise geometry.usage(f'barriers: object {item.id} falls in no direction, or was not seen enough')
+    axes = _axes(axes, subplot_kw={'projection': 'polar'})
+    angles = np.arange(len(push) + 1) * 2 * np.pi / len(push)
+    axes.set_theta_zero_location('N')
+    axes.set_theta_direction(-1)
+    axes.plot(angles, np.append(push, push[0]), 'o-', label=f'object {item.id} (J)')
+    axes.set_ylim(bottom=0)
+    return axes
