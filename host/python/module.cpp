@@ -122,6 +122,7 @@ PYBIND11_MODULE(_topple, module) {
     bind_result(module);
     bind_parse(module);
     bind_export(module);
+    bind_stages(module);
     py::module_::import("atexit").attr("register")(py::cpp_function([] {
         const py::gil_scoped_release release;
         Busy::stop_all();

@@ -5,6 +5,8 @@
     for o in result.objects: print(o.id, o.unsafety, o.why)
     result.write("out")
 
+topple.stages has the single stages of a parse, for arrays of your own.
+
 Lengths in metres, masses in kilograms, energies in joules, in the input's frame; ids count from 0, -1 means
 unassigned. Object.unsafety, 1 to 10, is NaN where what holds the object was not seen: such objects have no rank, and
 a sort by unsafety alone would be left in no order. What goes wrong is raised as topple.Error.
@@ -15,11 +17,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import _topple
+from . import _topple, stages
+from ._arrays import channels as _channels, columns as _columns, usage as _usage
 from ._topple import Contact, Device, DirectedBarrier, Error, Fall, Object, Overturning, Primitive, Support, __version__, open_device
 
 __all__ = ['Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Object', 'Overturning', 'Primitive', 'Result',
-           'Support', '__version__', 'devices', 'open_device', 'parse']
+           'Support', '__version__', 'devices', 'open_device', 'parse', 'stages']
 
 
 class DeviceInfo(NamedTuple):
@@ -60,75 +63,6 @@ class ExportSummary(NamedTuple):
 def devices():
     """Every device of every backend, as `topple devices` lists them."""
     return [DeviceInfo(*listed) for listed in _topple.list_devices()]
-
-
-def _usage(message):
-    error = Error(message)
-    error.kind = 'usage'
-    return error
-
-
-def _wrong_array(values, name, shape, variable, columns=''):
-    """The Error that says what an array is and what it should be, with the mend."""
-    mend = ''
-    if values.dtype.kind in 'iub':
-        mend = f"; {variable}{columns}.astype('float32') converts integers, and they must be metres"
-    elif columns:
-        mend = f'; {variable}{columns} takes the first three columns'
-    return _usage(f'{name}: expected floats of shape {shape}, not {values.dtype} of shape {values.shape}{mend}')
-
-
-def _column(values, name, variable):
-    """One coordinate of each point as float32: where it lies, if it is that already."""
-    values = np.asarray(values)
-    if values.ndim != 1 or values.dtype.kind != 'f':
-        raise _wrong_array(values, name, '(N,)', variable)
-    return values if values.dtype == np.float32 else values.astype(np.float32)
-
-
-def _columns(source, names, what):
-    """The three coordinates of an array, of records with fields of these names, or of three arrays."""
-    if isinstance(source, tuple) and len(source) == 3:
-        return [_column(c, f'{what} {name}', name) for c, name in zip(source, names)]
-    if hasattr(source, '__dlpack__') and not isinstance(source, np.ndarray):
-        source = np.from_dlpack(source)
-    source = np.asarray(source)
-    if source.dtype.names:
-        missing = [name for name in names if name not in source.dtype.names]
-        if missing:
-            raise _usage(f'{what}: the records have no field {missing[0]}')
-        return [_column(source[name], f'{what} {name}', f"{what}['{name}']") for name in names]
-    if source.ndim != 2 or source.shape[1] != 3 or source.dtype.kind != 'f':
-        raise _wrong_array(source, what, '(N, 3)', what,
-                           '[:, :3]' if source.ndim == 2 and source.shape[1] > 3 else '')
-    if source.dtype != np.float32:
-        source = source.astype(np.float32)
-    return [source[:, axis] for axis in range(3)]
-
-
-def _channels(source):
-    """Red, green and blue of an array, of records with fields of these names, or of three arrays; no copies."""
-    names = ('red', 'green', 'blue')
-    if hasattr(source, '__dlpack__') and not isinstance(source, np.ndarray):
-        source = np.from_dlpack(source)
-    if isinstance(source, tuple) and len(source) == 3:
-        channels = [np.asarray(c) for c in source]
-    else:
-        source = np.asarray(source)
-        if source.dtype.names:
-            missing = [name for name in names if name not in source.dtype.names]
-            if missing:
-                raise _usage(f'colours: the records have no field {missing[0]}')
-            channels = [source[name] for name in names]
-        elif source.ndim == 2 and source.shape[1] == 3:
-            channels = [source[:, c] for c in range(3)]
-        else:
-            raise _usage(f'colours: an array of shape {source.shape}; expected (N, 3)')
-    for channel in channels:
-        if channel.dtype != np.uint8:
-            raise _usage(f'colours: {channel.dtype}; expected uint8, 0 to 255: '
-                         'of 0 to 1 give (255 * colours).astype(np.uint8)')
-    return channels
 
 
 class Result:
