@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
 """topple.stages: against closed forms and plain NumPy, in every layout, and what it refuses."""
+import ast
+import inspect
+import os
 import threading
 import time
 
@@ -227,3 +230,29 @@ def test_other_threads_run_during_a_stage_and_a_device_serves_one(device):
         time.sleep(0.001)
     thread.join()
     assert ticks > 5 and refused and 'the device is in use by another thread' in refused[0]
+
+
+@pytest.mark.parametrize('module, name', [(topple, '__init__'), (stages, 'stages')])
+def test_the_stubs_have_the_signatures_that_there_are(module, name):
+    tree = ast.parse(open(os.path.join(os.path.dirname(topple.__file__), name + '.pyi'), encoding='utf-8').read())
+
+    def arguments(node):
+        return [a.arg for a in node.args.posonlyargs + node.args.args], [a.arg for a in node.args.kwonlyargs]
+
+    def there(function):
+        kinds = inspect.signature(function).parameters.values()
+        return ([p.name for p in kinds if p.kind is p.POSITIONAL_OR_KEYWORD], [p.name for p in kinds if p.kind is p.KEYWORD_ONLY])
+    named = {node.name for node in tree.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+    named |= {node.target.id for node in tree.body if isinstance(node, ast.AnnAssign)}
+    assert set(module.__all__) - {'stages'} <= named
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef) and inspect.isfunction(getattr(module, node.name)):
+            assert arguments(node) == there(getattr(module, node.name)), node.name
+        if isinstance(node, ast.ClassDef) and node.name not in ('_SupportsDLPack',):
+            kind = getattr(module, node.name, None)
+            if kind is None:
+                continue  # of which there are objects only
+            if hasattr(kind, '_fields'):
+                assert [n.target.id for n in node.body if isinstance(n, ast.AnnAssign)] == list(kind._fields), node.name
+            for method in (n for n in node.body if isinstance(n, ast.FunctionDef) and not n.decorator_list):
+                assert arguments(method) == there(getattr(kind, method.name)), f'{node.name}.{method.name}'

@@ -17,12 +17,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import _topple, stages
+from . import _snapshot, _tables, _topple, stages
 from ._arrays import channels as _channels, columns as _columns, usage as _usage
+from ._program import generate
 from ._topple import Contact, Device, DirectedBarrier, Error, Fall, Object, Overturning, Primitive, Support, __version__, open_device
 
 __all__ = ['Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Object', 'Overturning', 'Primitive', 'Result',
-           'Support', '__version__', 'devices', 'open_device', 'parse', 'stages']
+           'Support', '__version__', 'devices', 'generate', 'open_device', 'parse', 'stages']
 
 
 class DeviceInfo(NamedTuple):
@@ -67,7 +68,11 @@ def devices():
 
 class Result:
     """What a scan holds. Arrays over its points and voxels are the result's own memory, not copies: they keep
-    it alive, and writing to them changes what write() writes."""
+    it alive, and writing to them changes what write() writes.
+
+    It can be pickled, and so be sent between processes: objects, primitives, contacts, supports, labels, points, voxels
+    and fields come back as they were, objects as plain ones with the same attributes. What write() and export() need is
+    not among them: call these before."""
 
     def __init__(self, parsed, points, colours=()):
         self._parsed = parsed
@@ -85,6 +90,34 @@ class Result:
 
     def __repr__(self):
         return f'<topple.Result of {self.source}: {len(self.objects)} objects on {self.backend}>'
+
+    def __getstate__(self):
+        return {'parsed': _snapshot.frozen(self._parsed), 'points': self._points, 'colours': self._colours}
+
+    def __setstate__(self, state):
+        self.__init__(state['parsed'], state['points'], state['colours'])
+
+    def _whole(self, call):
+        """What C++ made, which a pickle does not hold."""
+        if isinstance(self._parsed, _snapshot.Item):
+            raise _usage(f'{call}: this result was pickled or copied, which leaves out the grids that it takes; call it on the '
+                         'result of parse(), before pickling')
+        return self._parsed
+
+    def columns(self, what='objects'):
+        """What there is, as NumPy arrays by name: one entry for each of `what`, "objects", "primitives", "contacts" or
+        "supports", in the order of ids. Names are those of the items' attributes; of an object's parts with theirs before,
+        as overturning_tilt_deg; by disturbance as risk_wind_J, risk_error_wind_J, fall_chance_wind. Vectors are (N, 3),
+        sentences and words of dtype object. NaN: none, or not asked for."""
+        return _tables.columns(self, what)
+
+    def to_dataframe(self, what='objects'):
+        """The columns() as a pandas.DataFrame, vectors as three: center_of_mass_x_m and so on. Raises ImportError where
+        pandas is not installed."""
+        return _tables.dataframe(self, what)
+
+    def _repr_html_(self):
+        return _tables.page(self)
 
     @property
     def xyz(self):
@@ -104,7 +137,7 @@ class Result:
         """Writes the folder of outputs (docs/output.md), which appears whole or not at all: with view-*.png,
         objects.glb and map.bt where they are asked for."""
         with self._writing:
-            _topple.write(self._parsed, os.fspath(folder), pictures, glb, octomap, self._points or [],
+            _topple.write(self._whole('write'), os.fspath(folder), pictures, glb, octomap, self._points or [],
                           list(self._colours))
 
     def export(self, *, mjcf=None, urdf=None, sdf=None, usd=None, visuals=True, threads=0):
@@ -116,7 +149,7 @@ class Result:
         Python run meanwhile."""
         paths = {'mjcf': mjcf, 'urdf': urdf, 'sdf': sdf, 'usd': usd}
         given = {name: os.fspath(path) for name, path in paths.items() if path is not None}
-        bodies, *rest = _topple.export_scene(self._parsed, given, visuals, threads)
+        bodies, *rest = _topple.export_scene(self._whole('export'), given, visuals, threads)
         return ExportSummary([ExportedBody(*body) for body in bodies], *rest)
 
 
