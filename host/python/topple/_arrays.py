@@ -89,7 +89,7 @@ def exactly(source, name, shape, dtype):
     Floats must be finite, and integers fit."""
     values, wanted = as_array(source, name), np.dtype(dtype)
     expected = f"({', '.join('N' if n is None else str(n) for n in shape)}{',' if len(shape) == 1 else ''})"
-    same_kind = values.dtype.kind == 'f' if wanted.kind == 'f' else values.dtype.kind in 'iu'
+    same_kind = values.dtype.kind == 'f' if wanted.kind == 'f' else values.dtype.kind in 'iu' or values.size == 0
     fits = values.ndim == len(shape) and all(n in (None, m) for n, m in zip(shape, values.shape))
     if not same_kind or not fits:
         mend = f"; {name}.astype('{wanted}') converts them" if fits and values.dtype.kind in 'iuf' else ''

@@ -90,6 +90,14 @@ def _coordinates(source, name):
     return [exactly(c, f'{name} {axis}', (None,), np.float32) for c, axis in zip(_points(source, name), 'xyz')]
 
 
+def _fields(kind, given, name):
+    """What is given as that kind of tuple, or as its values in a row."""
+    try:
+        return kind(*given)
+    except TypeError as error:
+        raise usage(f'{name}: expected {", ".join(kind._fields)}, not {given!r}') from error
+
+
 def _target(out, shape, name='out'):
     """Where a stage writes, as one row: the caller's array, or a new one."""
     if out is None:
@@ -146,14 +154,15 @@ class Volume:
         poses = as_array(camera_to_world, 'camera_to_world')
         poses = exactly(poses[None] if poses.ndim == 2 else poses, 'camera_to_world', (len(frames), 4, 4), float)
         _check_rigid(poses)
-        camera = [number(value, f'intrinsics {name}') for name, value in zip(Intrinsics._fields, Intrinsics(*intrinsics))]
+        camera = _fields(Intrinsics, intrinsics, 'intrinsics')
+        camera = [number(value, f'intrinsics {name}') for name, value in zip(Intrinsics._fields, camera)]
         self._volume.carve([f.reshape(-1) for f in frames], poses.reshape(-1), shape[1], shape[0], camera, _opened(device))
 
     def fill(self, votes, hollow=(), *, device=None):
         """Voxels that no frame saw take the label that at least `votes` (1 to 6) of the rays along their six axes hit
         first. hollow: labels that stop rays but neither fill nor are filled, as walls do. Returns how many voxels were
         completed."""
-        labels = exactly(np.asarray(hollow, int) if np.size(hollow) == 0 else hollow, 'hollow', (None,), np.int32)
+        labels = exactly(hollow, 'hollow', (None,), np.int32)
         if not isinstance(votes, (int, np.integer)) or not 1 <= votes <= 6:
             raise usage(f'votes: expected 1 to 6, not {votes!r}')
         return self._volume.fill(int(votes), labels.tolist(), _opened(device))
@@ -161,7 +170,10 @@ class Volume:
     def state_at(self, i, j, k):
         """The State of voxel (i, j, k); of arrays of voxels, int32, a uint8 array of their states. Beyond the cloud's
         bounds it is State.UNSEEN."""
-        shape = np.broadcast_shapes(*(np.shape(index) for index in (i, j, k)))
+        try:
+            shape = np.broadcast_shapes(*(np.shape(index) for index in (i, j, k)))
+        except ValueError as error:
+            raise usage(f'i, j, k: shapes {np.shape(i)}, {np.shape(j)} and {np.shape(k)} do not go together') from error
         rows = [exactly(np.broadcast_to(as_array(index, name), shape).reshape(-1), name, (None,), np.int32)
                 for index, name in zip((i, j, k), 'ijk')]
         states = self._volume.state_at(*rows)
@@ -200,9 +212,11 @@ def barriers(bodies, resolution_m, *, device=None):
 
     bodies: of StandingBody. resolution_m: to what their points are known; what is no higher than that above the lowest
     point bears the body."""
+    if not isinstance(bodies, (list, tuple)) or isinstance(bodies, StandingBody):
+        raise usage(f'bodies: expected a list of StandingBody, not {type(bodies).__name__}')
     given = []
     for n, body in enumerate(bodies):
-        points, mass_kg, center = StandingBody(*body)
+        points, mass_kg, center = _fields(StandingBody, body, f'bodies[{n}]')
         given.append((exactly(points, f'bodies[{n}].points', (None, 3), float).reshape(-1),
                       number(mass_kg, f'bodies[{n}].mass_kg'),
                       exactly(np.asarray(center, float), f'bodies[{n}].center_of_mass_m', (3,), float)))
