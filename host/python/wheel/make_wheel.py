@@ -67,7 +67,8 @@ def repaired(wheel, out):
         self._policies = [dataclasses.replace(policy, whitelist=policy.whitelist & RUNTIME) for policy in self._policies]
     WheelPolicies.__init__ = stricter
     before = set(out.glob('*.whl'))
-    sys.argv = ['auditwheel', 'repair', '--strip', '--wheel-dir', str(out), str(wheel)]
+    # Not compressed: it is opened again for the licences.
+    sys.argv = ['auditwheel', 'repair', '--strip', '-z', '0', '--wheel-dir', str(out), str(wheel)]
     if main.main():
         sys.exit('make_wheel.py: auditwheel could not repair the wheel')
     made = set(out.glob('*.whl')) - before
