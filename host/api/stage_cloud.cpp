@@ -5,6 +5,7 @@
 
 #include "api/arrays.h"
 #include "geometry/surfels.h"
+#include "io/cloud_builder.h"
 #include "io/text.h"
 #include "pipeline/caller_points.h"
 #include "vdb/completion.h"
@@ -48,6 +49,11 @@ void normals(device::Device& device, const CloudView& cloud, double cell_m, cons
     require(cell_m > 0 && std::isfinite(cell_m), "normals",
             "cell_m " + io::short_number(cell_m) +
                 ": expected metres above 0, about twice the points' spacing");
+    for (int axis = 0; eye_m && axis < 3; ++axis) {
+        require(std::abs((*eye_m)[axis]) <= io::farthest_m, "normals",
+                "eye_m " + io::short_number((*eye_m)[axis]) + ": expected metres up to " +
+                    io::short_number(io::farthest_m));
+    }
     const Usable usable(cloud);
     const std::span<const Vec3> eyes(eye_m, eye_m ? 1 : 0);
     const geometry::Surfels s = geometry::make_surfels(device, usable.view(), cell_m, eyes, {});

@@ -6,6 +6,8 @@
 
 #include "api/arrays.h"
 #include "device/queue.h"
+#include "io/cloud_builder.h"
+#include "io/text.h"
 #include "physics/landscape.h"
 #include "physics/tipping.h"
 #include "support_function.hpp"
@@ -114,6 +116,14 @@ std::vector<Barrier> barriers(device::Device& device, std::span<const StandingBo
         for (const double c : body.center_of_mass_m) finite = finite && std::isfinite(c);
         require(finite, "barriers",
                 name + ": its mass must be above 0, and its centre of mass finite");
+        for (const Vec3& p : body.points) {
+            for (const double c : p) {
+                if (!(std::abs(c) <= io::farthest_m))
+                    throw Error(ErrorKind::input,
+                                "barriers: " + name + " has a point at " + io::short_number(c) +
+                                    ": expected metres up to " + io::short_number(io::farthest_m));
+            }
+        }
         physics::Candidate c;
         c.primitives = {static_cast<std::int32_t>(points.size())};
         c.body.mass_kg = body.mass_kg;

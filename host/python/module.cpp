@@ -17,8 +17,9 @@ const char* name_of(ErrorKind kind) {
 // The library names options as the command line does, "--wind-from": as parse() does,
 // "wind_from_deg".
 std::string with_own_names(std::string text) {
-    static constexpr std::array<std::pair<const char*, const char*>, 20> names{
-        {{"--voxel", "voxel_m"},
+    static constexpr std::array<std::pair<const char*, const char*>, 21> names{
+        {{"--backend", "backend"},
+         {"--voxel", "voxel_m"},
          {"--unit", "unit_m"},
          {"--up", "up"},
          {"--disturbance", "disturbances"},
@@ -122,6 +123,7 @@ PYBIND11_MODULE(_topple, module) {
     bind_result(module);
     bind_parse(module);
     bind_export(module);
+    bind_stages(module);
     py::module_::import("atexit").attr("register")(py::cpp_function([] {
         const py::gil_scoped_release release;
         Busy::stop_all();

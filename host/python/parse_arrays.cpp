@@ -3,8 +3,8 @@
 #include <chrono>
 #include <thread>
 
+#include "arrays.h"
 #include "busy.h"
-#include "python.h"
 
 namespace topple::python {
 namespace {
@@ -106,6 +106,8 @@ Column<T> column(const py::array& from, const char* name) {
             from.strides(0)};
 }
 
+}  // namespace
+
 CloudView view_of(const std::vector<py::array>& points, const std::vector<py::array>& normals,
                   const std::vector<py::array>& colours, const std::optional<Vec3>& viewpoint) {
     CloudView view;
@@ -127,8 +129,6 @@ CloudView view_of(const std::vector<py::array>& points, const std::vector<py::ar
     view.viewpoint = viewpoint.value_or(Vec3{});
     return view;
 }
-
-}  // namespace
 
 void bind_parse(py::module_& module) {
     py::class_<ParseOptions>(module, "Options")

@@ -29,5 +29,6 @@ struct Parsed {
 void bind_export(py::module_& module);
 void bind_parse(py::module_& module);
 void bind_result(py::module_& module);
+void bind_stages(py::module_& module);
 
 }  // namespace topple::python

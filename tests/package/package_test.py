@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Installs what was built, and uses it as a stranger's project would.
 
-  package_test.py install|example|headers|adopt_opencl|examples|pkg_config|python|python_formats|python_example
+  package_test.py install|example|headers|adopt_opencl|examples|pkg_config|python|python_formats|python_example|notebooks
       --source DIR --build DIR --work DIR ...
 
 `install` comes first: it installs into WORK, moves the whole elsewhere, so that nothing can depend on where
@@ -173,6 +173,26 @@ class Package:
         self.compare(printed, 'auto')
         check(os.path.getsize(picture) > 50000, 'the picture is as good as empty')
 
+    def notebooks(self):
+        """docs/notebooks, from their first cell to their last."""
+        self.use_python_package()
+        if subprocess.run([sys.executable, '-c', 'import matplotlib'], capture_output=True).returncode:
+            print('matplotlib is missing: apt-get install python3-matplotlib')
+            sys.exit(SKIPPED)
+        os.environ['MPLBACKEND'] = 'Agg'
+        folder = os.path.join(self.a.source, 'docs/notebooks')
+        scripts = sorted(name for name in os.listdir(folder) if name.endswith('.py'))
+        check(len(scripts) >= 3, f'docs/notebooks has {scripts}')
+        for script in scripts:
+            work = os.path.join(self.a.work, script[:-3])
+            shutil.rmtree(work, ignore_errors=True)
+            os.makedirs(work)
+            os.chdir(work)
+            print(run(sys.executable, os.path.join(folder, script)))
+            pictures = [name for name in os.listdir(work) if name.endswith('.png')]
+            check(len(pictures) == 1 and os.path.getsize(pictures[0]) > 20000, f'{script} made the pictures {pictures}')
+        check(os.path.exists(os.path.join(self.a.work, 'first_report/first-report/report.html')), 'no report was written')
+
     def compare(self, printed, backend):
         """The number of objects that was printed is that of `topple parse` on that backend."""
         print(printed)
@@ -184,7 +204,7 @@ class Package:
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument('test', choices=['install', 'example', 'headers', 'adopt_opencl', 'examples', 'pkg_config', 'python',
-                                         'python_formats', 'python_example'])
+                                         'python_formats', 'python_example', 'notebooks'])
     for name in ('source', 'build', 'work', 'cmake', 'generator', 'c-compiler', 'compiler', 'build-type', 'venv-python'):
         parser.add_argument('--' + name, required=True)
     arguments = parser.parse_args()

@@ -5,6 +5,8 @@
     for o in result.objects: print(o.id, o.unsafety, o.why)
     result.write("out")
 
+topple.stages has the single stages of a parse, for arrays of your own.
+
 Lengths in metres, masses in kilograms, energies in joules, in the input's frame; ids count from 0, -1 means
 unassigned. Object.unsafety, 1 to 10, is NaN where what holds the object was not seen: such objects have no rank, and
 a sort by unsafety alone would be left in no order. What goes wrong is raised as topple.Error.
@@ -15,13 +17,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import _topple, formats, plot
+from . import _snapshot, _tables, _topple, formats, plot, stages
+from ._arrays import channels as _channels, columns as _columns, usage as _usage
+from ._program import generate
 from ._topple import Contact, Device, DirectedBarrier, Error, Fall, Object, Overturning, Primitive, Support, __version__, open_device
 from .foxglove import to_mcap
 from .rerun_viewer import to_rerun
 
 __all__ = ['Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Object', 'Overturning', 'Primitive', 'Result',
-           'Support', '__version__', 'devices', 'formats', 'open_device', 'parse', 'plot', 'to_mcap', 'to_rerun']
+           'Support', '__version__', 'devices', 'formats', 'generate', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
 
 
 class DeviceInfo(NamedTuple):
@@ -64,78 +68,13 @@ def devices():
     return [DeviceInfo(*listed) for listed in _topple.list_devices()]
 
 
-def _usage(message):
-    error = Error(message)
-    error.kind = 'usage'
-    return error
-
-
-def _wrong_array(values, name, shape, variable, columns=''):
-    """The Error that says what an array is and what it should be, with the mend."""
-    mend = ''
-    if values.dtype.kind in 'iub':
-        mend = f"; {variable}{columns}.astype('float32') converts integers, and they must be metres"
-    elif columns:
-        mend = f'; {variable}{columns} takes the first three columns'
-    return _usage(f'{name}: expected floats of shape {shape}, not {values.dtype} of shape {values.shape}{mend}')
-
-
-def _column(values, name, variable):
-    """One coordinate of each point as float32: where it lies, if it is that already."""
-    values = np.asarray(values)
-    if values.ndim != 1 or values.dtype.kind != 'f':
-        raise _wrong_array(values, name, '(N,)', variable)
-    return values if values.dtype == np.float32 else values.astype(np.float32)
-
-
-def _columns(source, names, what):
-    """The three coordinates of an array, of records with fields of these names, or of three arrays."""
-    if isinstance(source, tuple) and len(source) == 3:
-        return [_column(c, f'{what} {name}', name) for c, name in zip(source, names)]
-    if hasattr(source, '__dlpack__') and not isinstance(source, np.ndarray):
-        source = np.from_dlpack(source)
-    source = np.asarray(source)
-    if source.dtype.names:
-        missing = [name for name in names if name not in source.dtype.names]
-        if missing:
-            raise _usage(f'{what}: the records have no field {missing[0]}')
-        return [_column(source[name], f'{what} {name}', f"{what}['{name}']") for name in names]
-    if source.ndim != 2 or source.shape[1] != 3 or source.dtype.kind != 'f':
-        raise _wrong_array(source, what, '(N, 3)', what,
-                           '[:, :3]' if source.ndim == 2 and source.shape[1] > 3 else '')
-    if source.dtype != np.float32:
-        source = source.astype(np.float32)
-    return [source[:, axis] for axis in range(3)]
-
-
-def _channels(source):
-    """Red, green and blue of an array, of records with fields of these names, or of three arrays; no copies."""
-    names = ('red', 'green', 'blue')
-    if hasattr(source, '__dlpack__') and not isinstance(source, np.ndarray):
-        source = np.from_dlpack(source)
-    if isinstance(source, tuple) and len(source) == 3:
-        channels = [np.asarray(c) for c in source]
-    else:
-        source = np.asarray(source)
-        if source.dtype.names:
-            missing = [name for name in names if name not in source.dtype.names]
-            if missing:
-                raise _usage(f'colours: the records have no field {missing[0]}')
-            channels = [source[name] for name in names]
-        elif source.ndim == 2 and source.shape[1] == 3:
-            channels = [source[:, c] for c in range(3)]
-        else:
-            raise _usage(f'colours: an array of shape {source.shape}; expected (N, 3)')
-    for channel in channels:
-        if channel.dtype != np.uint8:
-            raise _usage(f'colours: {channel.dtype}; expected uint8, 0 to 255: '
-                         'of 0 to 1 give (255 * colours).astype(np.uint8)')
-    return channels
-
-
 class Result:
     """What a scan holds. Arrays over its points and voxels are the result's own memory, not copies: they keep
-    it alive, and writing to them changes what write() writes."""
+    it alive, and writing to them changes what write() writes.
+
+    It can be pickled, and so be sent between processes: objects, primitives, contacts, supports, labels, points, voxels
+    and fields come back as they were, objects as plain ones with the same attributes. What write() and export() need is
+    not among them: call these before."""
 
     def __init__(self, parsed, points, colours=()):
         self._parsed = parsed
@@ -153,6 +92,34 @@ class Result:
 
     def __repr__(self):
         return f'<topple.Result of {self.source}: {len(self.objects)} objects on {self.backend}>'
+
+    def __getstate__(self):
+        return {'parsed': _snapshot.frozen(self._parsed), 'points': self._points, 'colours': self._colours}
+
+    def __setstate__(self, state):
+        self.__init__(state['parsed'], state['points'], state['colours'])
+
+    def _whole(self, call):
+        """What C++ made, which a pickle does not hold."""
+        if isinstance(self._parsed, _snapshot.Item):
+            raise _usage(f'{call}: this result was pickled or copied, which leaves out the grids that it takes; call it on the '
+                         'result of parse(), before pickling')
+        return self._parsed
+
+    def columns(self, what='objects'):
+        """What there is, as NumPy arrays by name: one entry for each of `what`, "objects", "primitives", "contacts" or
+        "supports", in the order of ids. Names are those of the items' attributes; of an object's parts with theirs before,
+        as overturning_tilt_deg; by disturbance as risk_wind_J, risk_error_wind_J, fall_chance_wind. Vectors are (N, 3),
+        sentences and words of dtype object. NaN: none, or not asked for."""
+        return _tables.columns(self, what)
+
+    def to_dataframe(self, what='objects'):
+        """The columns() as a pandas.DataFrame, vectors as three: center_of_mass_x_m and so on. Raises ImportError where
+        pandas is not installed."""
+        return _tables.dataframe(self, what)
+
+    def _repr_html_(self):
+        return _tables.page(self)
 
     @property
     def xyz(self):
@@ -172,7 +139,7 @@ class Result:
         """Writes the folder of outputs (docs/output.md), which appears whole or not at all: with view-*.png,
         objects.glb and map.bt where they are asked for."""
         with self._writing:
-            _topple.write(self._parsed, os.fspath(folder), pictures, glb, octomap, self._points or [],
+            _topple.write(self._whole('write'), os.fspath(folder), pictures, glb, octomap, self._points or [],
                           list(self._colours))
 
     def export(self, *, mjcf=None, urdf=None, sdf=None, usd=None, visuals=True, threads=0):
@@ -184,7 +151,7 @@ class Result:
         Python run meanwhile."""
         paths = {'mjcf': mjcf, 'urdf': urdf, 'sdf': sdf, 'usd': usd}
         given = {name: os.fspath(path) for name, path in paths.items() if path is not None}
-        bodies, *rest = _topple.export_scene(self._parsed, given, visuals, threads)
+        bodies, *rest = _topple.export_scene(self._whole('export'), given, visuals, threads)
         return ExportSummary([ExportedBody(*body) for body in bodies], *rest)
 
 

@@ -5,7 +5,7 @@ from typing import Any, Callable, Literal, NamedTuple, Optional, Protocol, Seque
 import numpy as np
 from numpy.typing import NDArray
 
-from . import formats as formats, plot as plot
+from . import formats as formats, plot as plot, stages as stages
 from .foxglove import to_mcap as to_mcap
 from .rerun_viewer import to_rerun as to_rerun
 
@@ -19,6 +19,11 @@ class _SupportsDLPack(Protocol):
     def __dlpack__(self, *, stream: Any = ...) -> Any: ...
 
 _Points = Union[NDArray[Any], _SupportsDLPack, Tuple[NDArray[Any], NDArray[Any], NDArray[Any]]]
+
+_Path = Union[str, os.PathLike[str]]
+_Disturbance = Literal["human", "wind", "earthquake"]
+_Backend = Literal["auto", "native", "opencl", "vulkan"]
+_What = Literal["objects", "primitives", "contacts", "supports"]
 
 class Error(RuntimeError):
     kind: Literal["input", "usage", "device", "cancelled"]
@@ -48,6 +53,9 @@ class ExportedBody(NamedTuple):
 class ExportSummary(NamedTuple):
     bodies: list[ExportedBody]
     deepest_overlap_m: float
+    floor_m: Optional[float]
+    free_place_m: Optional[list[float]]
+    free_radius_m: float
 
 class Device:
     @property
@@ -282,32 +290,35 @@ class Result:
     def solid(self) -> dict[str, NDArray[Any]]: ...  # x, y, z, primitive, object, state
     @property
     def fields(self) -> dict[str, dict[str, _Floats]]: ...  # x, y, z, vx, vy, vz, density
-    def write(self, folder: Union[str, os.PathLike[str]], *, pictures: bool = ..., glb: bool = ..., octomap: bool = ...) -> None: ...
-    def export(self, *, mjcf: Union[str, os.PathLike[str], None] = ..., urdf: Union[str, os.PathLike[str], None] = ..., sdf: Union[str, os.PathLike[str], None] = ..., usd: Union[str, os.PathLike[str], None] = ..., visuals: bool = ..., threads: int = ...) -> ExportSummary: ...
+    def columns(self, what: _What = ...) -> dict[str, NDArray[Any]]: ...  # (N,), vectors (N, 3)
+    def to_dataframe(self, what: _What = ...) -> Any: ...  # pandas.DataFrame
+    def write(self, folder: _Path, *, pictures: bool = ..., glb: bool = ..., octomap: bool = ...) -> None: ...
+    def export(self, *, mjcf: Optional[_Path] = ..., urdf: Optional[_Path] = ..., sdf: Optional[_Path] = ..., usd: Optional[_Path] = ..., visuals: bool = ..., threads: int = ...) -> ExportSummary: ...
 
 def devices() -> list[DeviceInfo]: ...
-def open_device(backend: str = ..., threads: int = ...) -> Device: ...
+def open_device(backend: _Backend = ..., threads: int = ...) -> Device: ...
+def generate(folder: _Path, *, seed: int = ..., kind: Optional[str] = ..., frames: int = ..., single: bool = ...) -> str: ...
 def parse(
-    source: Union[str, os.PathLike[str], _Points],
+    source: Union[_Path, _Points],
     *,
-    device: Union[Device, str, None] = ...,
+    device: Union[Device, _Backend, None] = ...,
     voxel_m: float = ...,
     unit_m: float = ...,
     up: Optional[_Vec3] = ...,
-    disturbances: Optional[Union[str, Sequence[str]]] = ...,
+    disturbances: Union[_Disturbance, Sequence[_Disturbance], None] = ...,
     seed: int = ...,
     max_memory_bytes: int = ...,
     density_kg_m3: float = ...,
     friction: float = ...,
     contents_kg_m3: Optional[float] = ...,
     walks: int = ...,
-    motion: Union[str, os.PathLike[str], None] = ...,
+    motion: Union[_Path, Sequence[_Path], None] = ...,
     wind_m_s: float = ...,
     wind_from_deg: Optional[float] = ...,
     pga_m_s2: Optional[float] = ...,
-    accelerogram: Union[str, os.PathLike[str], Sequence[Union[str, os.PathLike[str], None]], None] = ...,
+    accelerogram: Union[_Path, Sequence[Optional[_Path]], None] = ...,
     floor_amplification: float = ...,
-    hazard: Union[str, os.PathLike[str], None] = ...,
+    hazard: Optional[_Path] = ...,
     tolerable_J: float = ...,
     grouping_time_s: Optional[float] = ...,
     normals: Optional[_Points] = ...,

@@ -155,6 +155,12 @@ TEST(Stages, BarrierOfABox) {
     EXPECT_NEAR(std::abs(found[0].direction[1]), 1, 1e-9);
     EXPECT_FALSE(found[0].curve.empty());
     const StandingBody none{{}, 10, {}}, light{corners, 0, {}};
+    for (const double far : {1e200, std::numeric_limits<double>::quiet_NaN()}) {
+        std::vector<Vec3> spoilt = corners;
+        spoilt[3][1] = far;
+        const StandingBody body{spoilt, 10, {0.2, 0.1, 0.5}};
+        EXPECT_THROW(barriers(*device, std::span(&body, 1), 0.001), Error) << far;
+    }
     EXPECT_THROW(barriers(*device, std::span(&none, 1), 0.001), Error);
     EXPECT_THROW(barriers(*device, std::span(&light, 1), 0.001), Error);
 }

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "topple/stages.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "arrays.h"
+#include "busy.h"
+
+namespace topple::python {
+namespace {
+
+// Two threads that carve, or one that carves while another asks, would race.
+struct SharedVolume {
+    SharedVolume(const CloudView& cloud, std::span<const std::int32_t> label, double voxel_m)
+        : volume(cloud, label, voxel_m) {}
+    stages::Volume volume;
+    std::mutex in_use;
+};
+using Volume = std::shared_ptr<SharedVolume>;
+using Device = std::shared_ptr<SharedDevice>;
+
+template <class Shared>
+std::unique_lock<std::mutex> alone(const std::shared_ptr<Shared>& shared, const char* what) {
+    std::unique_lock lock(shared->in_use, std::try_to_lock);
+    if (!lock)
+        throw Error(
+            ErrorKind::usage,
+            std::string("the ") + what + " is in use by another thread; each needs one of its own");
+    return lock;
+}
+
+// Runs a stage without the interpreter's lock.
+template <class Stage>
+auto unlocked(const Stage& stage) {
+    const Busy busy;
+    const py::gil_scoped_release release;
+    return stage();
+}
+
+// A vector's memory as an array, which owns it from then on.
+template <class T>
+py::array owned(std::vector<T>&& values) {
+    auto kept = std::make_unique<std::vector<T>>(std::move(values));
+    const py::capsule owner(kept.get(), [](void* p) { delete static_cast<std::vector<T>*>(p); });
+    const std::vector<T>& lasting = *kept.release();
+    return py::array_t<T>({static_cast<py::ssize_t>(lasting.size())},
+                          {static_cast<py::ssize_t>(sizeof(T))}, lasting.data(), owner);
+}
+
+stages::Coordinates coordinates(const std::vector<py::array>& from, const char* name) {
+    return {row<const float>(from.at(0), name), row<const float>(from.at(1), name),
+            row<const float>(from.at(2), name)};
+}
+
+using PyBody = std::tuple<py::array, double, Vec3>;
+
+py::list barriers(const std::vector<PyBody>& given, double resolution_m, const Device& device) {
+    std::vector<stages::StandingBody> bodies;
+    for (const auto& [points, mass_kg, center_of_mass_m] : given) {
+        const std::span<const double> values = row<const double>(points, "points");
+        bodies.push_back({{reinterpret_cast<const Vec3*>(values.data()), values.size() / 3},
+                          mass_kg,
+                          center_of_mass_m});
+    }
+    const auto lock = alone(device, "device");
+    std::vector<stages::Barrier> found =
+        unlocked([&] { return stages::barriers(*device->device, bodies, resolution_m); });
+    py::list out;
+    for (const stages::Barrier& b : found) {
+        std::vector<double> curve;
+        for (const InstabilityStep& step : b.curve) {
+            curve.push_back(step.W_J);
+            curve.push_back(step.S_J);
+        }
+        out.append(py::make_tuple(b.barrier_J, b.release_J, b.direction, owned(std::move(curve))));
+    }
+    return out;
+}
+
+void bind_volume(py::module_& module) {
+    py::class_<SharedVolume, Volume>(module, "Volume")
+        .def(py::init([](const std::vector<py::array>& points, const py::array& label,
+                         double voxel_m) {
+            const CloudView view = view_of(points, {}, {}, {});
+            const auto labels = row<const std::int32_t>(label, "label");
+            return unlocked([&] { return std::make_shared<SharedVolume>(view, labels, voxel_m); });
+        }))
+        // depth: images in a row, each of width * height readings; poses: 16 numbers for each.
+        .def("carve",
+             [](const Volume& self, const std::vector<py::array>& depth, const py::array& poses,
+                std::uint32_t width, std::uint32_t height, const std::array<double, 5>& camera,
+                const Device& device) {
+                 const auto [fx, fy, cx, cy, depth_scale] = camera;
+                 const Intrinsics intrinsics{width, height, fx, fy, cx, cy, depth_scale};
+                 const auto pose = row<const double>(poses, "camera_to_world");
+                 std::vector<stages::DepthView> frames(depth.size());
+                 for (std::size_t n = 0; n < frames.size(); ++n) {
+                     frames[n].depth = row<const std::uint16_t>(depth[n], "depth");
+                     std::ranges::copy(pose.subspan(16 * n, 16), frames[n].camera_to_world.begin());
+                 }
+                 const auto volume = alone(self, "volume");
+                 const auto lock = alone(device, "device");
+                 unlocked([&] { self->volume.carve(*device->device, intrinsics, frames); });
+             })
+        .def("fill",
+             [](const Volume& self, unsigned votes, const std::vector<std::int32_t>& hollow,
+                const Device& device) {
+                 const auto volume = alone(self, "volume");
+                 const auto lock = alone(device, "device");
+                 return unlocked([&] { return self->volume.fill(*device->device, votes, hollow); });
+             })
+        .def("state_at",
+             [](const Volume& self, const py::array& i, const py::array& j, const py::array& k) {
+                 const auto x = row<const std::int32_t>(i, "i"),
+                            y = row<const std::int32_t>(j, "j"),
+                            z = row<const std::int32_t>(k, "k");
+                 std::vector<std::uint8_t> state(x.size());
+                 const auto volume = alone(self, "volume");
+                 unlocked([&] {
+                     for (std::size_t n = 0; n < state.size(); ++n)
+                         state[n] =
+                             static_cast<std::uint8_t>(self->volume.state_at(x[n], y[n], z[n]));
+                 });
+                 return owned(std::move(state));
+             })
+        .def("solid", [](const Volume& self) {
+            const auto volume = alone(self, "volume");
+            stages::Voxels v = unlocked([&] { return self->volume.solid(); });
+            return py::make_tuple(owned(std::move(v.i)), owned(std::move(v.j)),
+                                  owned(std::move(v.k)), owned(std::move(v.label)),
+                                  owned(std::move(v.state)));
+        });
+}
+
+}  // namespace
+
+void bind_stages(py::module_& parent) {
+    py::module_ module = parent.def_submodule("stages");
+    module.def("point_spacing", [](const std::vector<py::array>& points) {
+        const CloudView view = view_of(points, {}, {}, {});
+        return unlocked([&] { return stages::point_spacing(view); });
+    });
+    module.def("normals", [](const std::vector<py::array>& points, double cell_m,
+                             const std::optional<Vec3>& eye_m, const Device& device,
+                             const std::vector<py::array>& out) {
+        const CloudView view = view_of(points, {}, {}, {});
+        const auto nx = row<float>(out.at(0), "out"), ny = row<float>(out.at(1), "out"),
+                   nz = row<float>(out.at(2), "out");
+        const auto lock = alone(device, "device");
+        unlocked([&] {
+            stages::normals(*device->device, view, cell_m, eye_m ? &*eye_m : nullptr, nx, ny, nz);
+        });
+    });
+    module.def(
+        "support_functions",
+        [](const std::vector<py::array>& vertices, const py::array& first,
+           const std::vector<py::array>& directions, const Device& device, const py::array& out) {
+            const stages::Coordinates v = coordinates(vertices, "vertices"),
+                                      d = coordinates(directions, "directions");
+            const auto starts = row<const std::uint64_t>(first, "first");
+            const stages::Array<float> values(row<float>(out, "out"));
+            const auto lock = alone(device, "device");
+            unlocked([&] { stages::support_functions(*device->device, v, starts, d, values); });
+        });
+    module.def("barriers", barriers);
+    module.def("convolve", [](const py::array& primary, const std::array<std::uint32_t, 3>& shape,
+                              const std::vector<py::array>& footprint, const py::array& first,
+                              const Device& device, const py::array& density) {
+        const stages::Array<const float> from(row<const float>(primary, "primary"));
+        const stages::Array<float> to(row<float>(density, "out"));
+        const auto dx = row<const std::int32_t>(footprint.at(0), "footprint dx"),
+                   dy = row<const std::int32_t>(footprint.at(1), "footprint dy");
+        const auto weight = row<const float>(footprint.at(2), "footprint weight");
+        const auto starts = row<const std::uint32_t>(first, "first");
+        const auto [directions, height, width] = shape;
+        std::vector<stages::FootprintEntry> entries;
+        for (std::size_t n = 0; n < weight.size(); ++n)
+            entries.push_back({dx[n], dy[n], weight[n]});
+        const stages::MapShape map{width, height, directions, 0};
+        const auto lock = alone(device, "device");
+        unlocked([&] { stages::convolve(*device->device, map, from, entries, starts, to); });
+    });
+    bind_volume(module);
+}
+
+}  // namespace topple::python

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: MIT
+"""What is given as arrays, as the library takes it: where it lies, if it is that already."""
+import numpy as np
+
+from ._topple import Error
+
+
+def usage(message):
+    error = Error(message)
+    error.kind = 'usage'
+    return error
+
+
+def as_array(source, name):
+    """A NumPy array of the same memory, of whatever has __dlpack__ too."""
+    if hasattr(source, '__dlpack__') and not isinstance(source, np.ndarray):
+        try:
+            return np.from_dlpack(source)
+        except (BufferError, RuntimeError, TypeError) as error:
+            raise usage(f'{name}: its memory is not NumPy\'s to read ({error}); copy it to the CPU first, as .cpu() or '
+                        '.get() do') from error
+    try:
+        return np.asarray(source)
+    except ValueError as error:
+        raise usage(f'{name}: no array can be made of it: {error}') from error
+
+
+def wrong_array(values, name, shape, variable, columns=''):
+    """The Error that says what an array is and what it should be, with the mend."""
+    mend = ''
+    if values.dtype.kind in 'iub':
+        mend = f"; {variable}{columns}.astype('float32') converts integers, and they must be metres"
+    elif columns:
+        mend = f'; {variable}{columns} takes the first three columns'
+    return usage(f'{name}: expected floats of shape {shape}, not {values.dtype} of shape {values.shape}{mend}')
+
+
+def column(values, name, variable):
+    """One coordinate of each point as float32: where it lies, if it is that already."""
+    values = as_array(values, name)
+    if values.ndim != 1 or values.dtype.kind != 'f':
+        raise wrong_array(values, name, '(N,)', variable)
+    return values if values.dtype == np.float32 else values.astype(np.float32)
+
+
+def columns(source, names, what):
+    """The three coordinates of an array, of records with fields of these names, or of three arrays."""
+    if isinstance(source, tuple) and len(source) == 3:
+        return [column(c, f'{what} {name}', name) for c, name in zip(source, names)]
+    source = as_array(source, what)
+    if source.dtype.names:
+        missing = [name for name in names if name not in source.dtype.names]
+        if missing:
+            raise usage(f'{what}: the records have no field {missing[0]}')
+        return [column(source[name], f'{what} {name}', f"{what}['{name}']") for name in names]
+    if source.ndim != 2 or source.shape[1] != 3 or source.dtype.kind != 'f':
+        raise wrong_array(source, what, '(N, 3)', what,
+                          '[:, :3]' if source.ndim == 2 and source.shape[1] > 3 else '')
+    if source.dtype != np.float32:
+        source = source.astype(np.float32)
+    return [source[:, axis] for axis in range(3)]
+
+
+def channels(source):
+    """Red, green and blue of an array, of records with fields of these names, or of three arrays; no copies."""
+    names = ('red', 'green', 'blue')
+    if isinstance(source, tuple) and len(source) == 3:
+        channels = [as_array(c, 'colours') for c in source]
+    else:
+        source = as_array(source, 'colours')
+        if source.dtype.names:
+            missing = [name for name in names if name not in source.dtype.names]
+            if missing:
+                raise usage(f'colours: the records have no field {missing[0]}')
+            channels = [source[name] for name in names]
+        elif source.ndim == 2 and source.shape[1] == 3:
+            channels = [source[:, c] for c in range(3)]
+        else:
+            raise usage(f'colours: an array of shape {source.shape}; expected (N, 3)')
+    for channel in channels:
+        if channel.dtype != np.uint8:
+            raise usage(f'colours: {channel.dtype}; expected uint8, 0 to 255: '
+                        'of 0 to 1 give (255 * colours).astype(np.uint8)')
+    return channels
+
+
+def exactly(source, name, shape, dtype):
+    """An array without gaps of that type and shape, where None stands for any length: a copy only where it is none.
+    Floats must be finite, and integers fit."""
+    values, wanted = as_array(source, name), np.dtype(dtype)
+    expected = f"({', '.join('N' if n is None else str(n) for n in shape)}{',' if len(shape) == 1 else ''})"
+    same_kind = values.dtype.kind == 'f' if wanted.kind == 'f' else values.dtype.kind in 'iu' or values.size == 0
+    fits = values.ndim == len(shape) and all(n in (None, m) for n, m in zip(shape, values.shape))
+    if not same_kind or not fits:
+        mend = f"; {name}.astype('{wanted}') converts them" if fits and values.dtype.kind in 'iuf' else ''
+        raise usage(f"{name}: expected {'floats' if wanted.kind == 'f' else 'integers'} of shape {expected}, not "
+                    f'{values.dtype} of shape {values.shape}{mend}')
+    if wanted.kind == 'f':
+        if not np.isfinite(values).all():
+            at = np.argwhere(~np.isfinite(values))[0]
+            raise usage(f'{name}: {values[tuple(at)]} at {tuple(int(n) for n in at)}; every value must be finite, leave '
+                        'out what is not')
+    elif values.size and values.dtype != wanted:
+        for value in (int(values.min()), int(values.max())):
+            if not np.iinfo(wanted).min <= value <= np.iinfo(wanted).max:
+                raise usage(f'{name}: {value} is beyond what {wanted} holds')
+    return np.require(values, wanted, ['C', 'A'])
+
+
+def number(value, name):
+    try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        raise usage(f'{name}: expected a number, not {value!r}') from error

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+"""The program `topple`, and what is run by it."""
+import os
+import re
+import subprocess
+
+from ._topple import Error
+
+
+def program():
+    """Where the program lies: in the package's folder, as in a wheel; else where it was built or installed with it."""
+    folder = os.path.dirname(os.path.abspath(__file__))
+    # PREFIX/lib/python3.x/site-packages/topple, and BUILD/python/topple
+    for path in ('topple', '../../../../bin/topple', '../../topple'):
+        path = os.path.normpath(os.path.join(folder, path))
+        if os.path.isfile(path) and os.access(path, os.X_OK):
+            return path
+    raise _error('input', f'there is no program topple in {folder}, nor beside the package; build it (./dev build), or '
+                          'install a wheel, which has it')
+
+
+def _error(kind, message):
+    error = Error(message)
+    error.kind = kind
+    return error
+
+
+def generate(folder, *, seed=1, kind=None, frames=60, single=False):
+    """Makes a scan of a furnished room, to try things on: depth frames with their poses, the fused cloud, and the truth
+    (truth.json). Returns the folder, a path that parse() takes.
+
+    kind: None for a plain room, or a family of rooms, "kitchen" or "office", say. frames: of the walk through the room.
+    single: one frame only, without its pose; not of a kind. `topple generate --help` has more. Raises Error where the
+    folder can't be written, or an option is wrong."""
+    folder = os.fspath(folder)
+    command = [program(), 'generate', folder, '--seed', str(seed), '--frames', str(frames)]
+    command += ['--kind', kind] if kind is not None else []
+    command += ['--single'] if single else []
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors='backslashreplace')
+    if done.returncode:
+        said = done.stderr.strip().splitlines() or [f'{command[0]} ended with {done.returncode}']
+        message = re.sub(r'--(seed|kind|frames|single)\b', r'\1', said[0].removeprefix('topple: '))
+        raise _error('usage' if done.returncode == 2 else 'input', message.removesuffix(' (see topple --help)'))
+    return folder

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""A result as columns, as a data frame, and as a table in a notebook."""
+import html
+import math
+
+import numpy as np
+
+from ._arrays import usage
+
+_OVERTURNING = ('tilt_deg', 'tilt_error_deg', 'push_N', 'push_error_N', 'slide_N', 'shake_g', 'hand_push_N', 'hand_push_error_N',
+                'hand_height_m', 'gust_m_s', 'gust_error_m_s')
+_FRAGILITY = ('pga_g', 'pga_dispersion', 'firm_pga_g', 'pgv_m_s', 'pgv_dispersion', 'falls_per_year', 'return_years')
+_FALL = ('falls', 'hits_J', 'lands_on', 'lands_m')
+_BY_DISTURBANCE = ('risk_J', 'risk_error_J', 'fall_chance')
+_ITEMS = {
+    'objects': ('id', 'grounded', 'mass_kg', 'mass_error_kg', 'mass_model', 'center_of_mass_m', 'center_of_mass_error_m', 'size_m',
+                'footprint_error_m', 'barrier_J', 'barrier_error_J', 'release_J', 'mode', 'direction', 'unsafety',
+                'unsafety_category', 'unsafety_certain', 'agreement', 'why', 'advice'),
+    'primitives': ('id', 'object', 'model', 'points', 'solid_voxels', 'volume_m3', 'mass_kg', 'center_of_mass_m'),
+    'contacts': ('a', 'b', 'area_m2', 'normal', 'relation', 'probability'),
+    'supports': ('supporter', 'supported', 'area_m2', 'probability'),
+}
+_TEXT = ('mass_model', 'mode', 'unsafety_category', 'why', 'advice', 'model', 'relation')
+_TYPES = {'id': np.int32, 'object': np.int32, 'a': np.int32, 'b': np.int32, 'supporter': np.int32, 'supported': np.int32,
+          'fall_lands_on': np.int32, 'points': np.uint64, 'solid_voxels': np.uint64, 'grounded': bool, 'unsafety_certain': bool,
+          'fall_falls': bool, **{name: object for name in _TEXT}}
+_VECTORS = ('center_of_mass_m', 'center_of_mass_error_m', 'size_m', 'direction', 'normal', 'fall_lands_m')
+
+
+def _column(name, values):
+    column = np.empty(len(values), object) if _TYPES.get(name) is object else None
+    if column is not None:  # sentences of any length, None where there is none
+        column[:] = values
+        return column
+    column = np.array(values, _TYPES.get(name, np.float64))
+    return column.reshape(-1, 3) if name in _VECTORS else column
+
+
+def columns(result, what):
+    if what not in _ITEMS:
+        raise usage(f'what: expected {", ".join(_ITEMS)}, not {what!r}')
+    items = getattr(result, what)
+    table = {name: [getattr(item, name) for item in items] for name in _ITEMS[what]}
+    if what == 'objects':
+        for part, names in (('overturning', _OVERTURNING), ('fragility', _FRAGILITY), ('fall', _FALL)):
+            parts = [getattr(o, part) for o in items]
+            table.update({f'{part}_{name}': [getattr(p, name) for p in parts] for name in names})
+        table['fall_people_share'] = [math.nan if o.fall.people_share is None else o.fall.people_share for o in items]
+        for name in _BY_DISTURBANCE:
+            for disturbance in sorted({d for o in items for d in getattr(o, name)}):
+                stem, unit = (name[:-2], '_J') if name.endswith('_J') else (name, '')
+                table[f'{stem}_{disturbance}{unit}'] = [getattr(o, name).get(disturbance, math.nan) for o in items]
+    return {name: _column(name, values) for name, values in table.items()}
+
+
+def dataframe(result, what):
+    try:
+        import pandas
+    except ImportError as error:
+        raise ImportError('Result.to_dataframe() takes pandas, which is not installed: pip install pandas; Result.columns() gives '
+                          'the same as NumPy arrays') from error
+    flat = {}
+    for name, column in columns(result, what).items():
+        if column.ndim == 1:
+            flat[name] = column
+            continue
+        stem, unit = (name[:-2], '_m') if name.endswith('_m') else (name, '')
+        flat.update({f'{stem}_{axis}{unit}': column[:, n] for n, axis in enumerate('xyz')})
+    return pandas.DataFrame(flat)
+
+
+_SHOWN = 12
+
+
+def _row(o):
+    rank = 'not seen enough' if math.isnan(o.unsafety) else f'{o.unsafety:.1f}'
+    hue = 'transparent' if math.isnan(o.unsafety) else f'hsl({120 - 120 * (o.unsafety - 1) / 9:.0f} 70% 60%)'
+    barrier = f'{o.barrier_J:.2g} ± {o.barrier_error_J:.1g}' if o.barrier_J > o.barrier_error_J else f'below {o.barrier_J + o.barrier_error_J:.2g}'
+    cells = [str(o.id), rank, o.unsafety_category or '', f'{o.mass_kg:.3g}', barrier, o.why]
+    cells = [f'<td>{html.escape(cell)}</td>' for cell in cells]
+    cells[1] = cells[1].replace('<td>', f'<td style="border-left: 0.6em solid {hue}">')
+    return f'<tr>{"".join(cells)}</tr>'
+
+
+def page(result):
+    """The riskiest first; last what was not seen enough."""
+    loose = sorted((o for o in result.objects if not o.grounded), key=lambda o: (math.isnan(o.unsafety), -o.unsafety, o.id))
+    head = ''.join(f'<th>{name}</th>' for name in ('id', 'unsafety, 1 to 10', 'category', 'mass, kg', 'barrier, J', 'why'))
+    more = f'<p>{len(loose) - _SHOWN} more objects in <code>Result.objects</code></p>' if len(loose) > _SHOWN else ''
+    return (f'<div><p>topple: {html.escape(result.source)}, {len(result.objects)} objects, of which {len(loose)} may move; '
+            f'{len(result.point_object)} points, on {html.escape(result.backend)}</p><table><thead><tr>{head}</tr></thead><tbody>'
+            f'{"".join(_row(o) for o in loose[:_SHOWN])}</tbody></table>{more}</div>')

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+"""Result: columns, data frames, tables of notebooks and pickles."""
+import copy
+import os
+import pickle
+import subprocess
+import sys
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+import topple
+
+
+def test_columns_have_what_the_objects_have(result):
+    table = result.columns()
+    count = len(result.objects)
+    assert all(len(column) == count for column in table.values())
+    assert table['id'].dtype == np.int32 and table['grounded'].dtype == bool
+    for o in result.objects:
+        assert table['barrier_J'][o.id] == o.barrier_J and table['why'][o.id] == o.why and table['mode'][o.id] == o.mode
+        assert table['center_of_mass_m'][o.id].tolist() == o.center_of_mass_m
+        for column, value in (('overturning_tilt_deg', o.overturning.tilt_deg), ('fragility_pga_g', o.fragility.pga_g),
+                              ('risk_wind_J', o.risk_J['wind']), ('risk_error_wind_J', o.risk_error_J['wind']),
+                              ('fall_chance_wind', o.fall_chance['wind']), ('fall_hits_J', o.fall.hits_J), ('unsafety', o.unsafety)):
+            assert np.array_equal(table[column][o.id], value, equal_nan=True), column
+        assert np.isnan(table['fall_people_share'][o.id])
+    assert not any('human' in name for name in table)
+
+
+@pytest.mark.parametrize('what', ['primitives', 'contacts', 'supports'])
+def test_columns_of_the_other_items(result, what):
+    items, table = getattr(result, what), result.columns(what)
+    assert items and set(table) == {n for n in dir(items[0]) if not n.startswith('_')}
+    for name, column in table.items():
+        assert [np.asarray(v).tolist() for v in column] == [getattr(item, name) for item in items], name
+
+
+def test_columns_of_a_scene_without_contacts_have_their_shapes(device):
+    square = np.random.default_rng(4).random((4000, 3), np.float32) * np.array([2, 2, 0.002], np.float32)
+    table = topple.parse(square, device=device, disturbances=[]).columns('supports')
+    assert table['supporter'].shape == (0,) and table['supporter'].dtype == np.int32
+    with pytest.raises(topple.Error, match='what: expected objects, primitives, contacts, supports, not 3') as raised:
+        topple.parse(square, device=device, disturbances=[]).columns(3)
+    assert raised.value.kind == 'usage'
+
+
+def test_a_data_frame_splits_vectors(result):
+    pandas = pytest.importorskip('pandas')
+    frame = result.to_dataframe()
+    assert isinstance(frame, pandas.DataFrame) and len(frame) == len(result.objects)
+    assert frame.center_of_mass_z_m[1] == result.objects[1].center_of_mass_m[2] and 'direction_x' in frame
+    assert result.to_dataframe('contacts').normal_y[0] == result.contacts[0].normal[1]
+
+
+def test_without_pandas_the_error_says_so(result, monkeypatch):
+    monkeypatch.setitem(sys.modules, 'pandas', None)
+    with pytest.raises(ImportError, match='pip install pandas'):
+        result.to_dataframe()
+
+
+class Table(HTMLParser):
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.rows, self.words = [], 0, ''
+        self.feed(text)
+        assert not self.open
+
+    def handle_starttag(self, tag, attributes):
+        self.open.append(tag)
+        self.rows += tag == 'tr'
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.words += data + '\n'
+
+
+def test_a_notebook_shows_the_riskiest_first(result):
+    table = Table(result._repr_html_())
+    loose = [o for o in result.objects if not o.grounded]
+    assert table.rows == 1 + min(len(loose), 12) and '<script' not in result._repr_html_()
+    riskiest = max(loose, key=lambda o: np.nan_to_num(o.unsafety, nan=0))
+    places = [table.words.find(o.why) for o in loose]
+    assert min(p for p in places if p >= 0) == table.words.find(riskiest.why)
+
+
+def same(a, b):
+    if isinstance(a, np.ndarray):
+        return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=a.dtype.kind == 'f')
+    if isinstance(a, (list, tuple)):
+        return len(a) == len(b) and all(map(same, a, b))
+    if isinstance(a, dict):
+        return a.keys() == b.keys() and all(same(a[name], b[name]) for name in a)
+    if type(a).__module__ == 'topple._topple':
+        return all(same(getattr(a, n), getattr(b, n)) for n in dir(a) if not n.startswith('_'))
+    return a == b or (a != a and b != b)
+
+
+def test_a_pickle_holds_all_that_can_be_asked_for(result, points, tmp_path):
+    back = pickle.loads(pickle.dumps(result))
+    for name in set(dir(result._parsed)) | {'xyz', 'normals'}:
+        if not name.startswith('_'):
+            assert same(getattr(result, name), getattr(back, name)), name
+    assert np.array_equal(np.stack(back.xyz, 1), points)
+    assert back._repr_html_() == result._repr_html_() and same(result.columns(), back.columns())
+    assert set(dir(back)) == set(dir(result))
+    again = copy.deepcopy(back)
+    assert np.array_equal(again.point_object, result.point_object)
+    for call in (lambda: back.write(tmp_path / 'out'), lambda: back.export(mjcf=tmp_path / 'mjcf')):
+        with pytest.raises(topple.Error, match='before pickling'):
+            call()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_pickle_is_read_by_another_process(result, tmp_path):
+    (tmp_path / 'result').write_bytes(pickle.dumps(result))
+    script = f'import pickle; r = pickle.load(open({str(tmp_path / "result")!r}, "rb")); print(len(r.objects), r.point_object.sum())'
+    said = subprocess.run([sys.executable, '-c', script], capture_output=True, text=True, timeout=60)
+    assert said.stdout.split() == [str(len(result.objects)), str(result.point_object.sum())], said.stderr
+
+
+def test_generates_a_room_that_parses(device, tmp_path):
+    scan = topple.generate(tmp_path / 'scan', seed=2, single=True)
+    assert sorted(os.listdir(os.path.join(scan, 'depth'))) == ['0000.png']
+    assert len(topple.parse(scan, device=device, disturbances=[]).objects) > 2
+    for wrong, words, kind in ((dict(kind='zoo'), '^kind zoo: expected plain', 'usage'), (dict(seed='x'), '^seed x: expected a whole number', 'usage')):
+        with pytest.raises(topple.Error, match=words) as raised:
+            topple.generate(tmp_path / 'other', **wrong)
+        assert raised.value.kind == kind
+    with pytest.raises(topple.Error, match='/proc/nowhere') as raised:
+        topple.generate('/proc/nowhere')
+    assert raised.value.kind == 'input'
+    listed = subprocess.run([sys.executable, '-m', 'topple', '--version'], capture_output=True, text=True, timeout=60)
+    assert topple.__version__ in listed.stdout
