@@ -32,12 +32,15 @@ void add_text(Checksum& sum, std::string_view text) {
     sum.add(text.data(), text.size());
 }
 
+// What is larger takes blocks, or is none of what is parsed in one piece.
+constexpr std::uint64_t largest_file_bytes = std::uint64_t{4} << 30;
+
 // False where it can't be read: whoever reads it next says why.
 bool add_file(Checksum& sum, const fs::path& file, const ParseOptions& options) {
     std::error_code error;
     if (!fs::is_regular_file(file, error)) return false;
     const std::uint64_t size = fs::file_size(file, error);
-    if (error) return false;
+    if (error || size > largest_file_bytes) return false;
     add_text(sum, file.filename().string());
     sum.add(&size, sizeof(size));
     std::ifstream stream(file, std::ios::binary);
@@ -160,10 +163,52 @@ void fields(FromFile& io, std::string& text) {
     io(letters);
     text.assign(letters.begin(), letters.end());
 }
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, std::vector<graph::Clearance>>
-void fields(Io& io, T& clearances) {
-    io(clearances);
+// Structs with gaps between their members go by members: equal groundwork is equal files.
+void fields(ToFile& io, const std::vector<graph::Clearance>& clearances) {
+    std::vector<std::int32_t> below;
+    std::vector<std::array<double, 2>> rest;
+    for (const graph::Clearance& c : clearances) {
+        below.push_back(c.below);
+        rest.push_back({c.gap_m, c.area_m2});
+    }
+    io(below);
+    io(rest);
+}
+void fields(FromFile& io, std::vector<graph::Clearance>& clearances) {
+    std::vector<std::int32_t> below;
+    std::vector<std::array<double, 2>> rest;
+    io(below);
+    io(rest);
+    for (std::size_t n = 0; n < std::min(below.size(), rest.size()); ++n)
+        clearances.push_back({below[n], rest[n][0], rest[n][1]});
+}
+void patch_fields(ToFile& io, const std::vector<SurfacePatch>& patches) {
+    std::vector<std::int32_t> primitive;
+    std::vector<std::array<double, 15>> form;
+    for (const SurfacePatch& p : patches) {
+        primitive.push_back(p.primitive);
+        auto to = form.emplace_back().begin();
+        to = std::ranges::copy(p.origin, to).out;
+        to = std::ranges::copy(p.c, to).out;
+        *to++ = p.noise_m;
+        *to = p.offset_m;
+    }
+    io(primitive);
+    io(form);
+}
+void patch_fields(FromFile& io, std::vector<SurfacePatch>& patches) {
+    std::vector<std::int32_t> primitive;
+    std::vector<std::array<double, 15>> form;
+    io(primitive);
+    io(form);
+    for (std::size_t n = 0; n < std::min(primitive.size(), form.size()); ++n) {
+        SurfacePatch& p = patches.emplace_back();
+        std::copy_n(form[n].begin(), 3, p.origin.begin());
+        std::copy_n(form[n].begin() + 3, 10, p.c.begin());
+        p.noise_m = form[n][13];
+        p.offset_m = form[n][14];
+        p.primitive = primitive[n];
+    }
 }
 template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, graph::Carrying>
@@ -224,7 +269,7 @@ void solid_fields(Io& io, Solids& s) {
         io(cells->unseen_below);
     }
     auto& b = s.boundary;
-    io(b.patches);
+    patch_fields(io, b.patches);
     for (auto* array : {&b.i, &b.j, &b.k, &b.primitive}) io(*array);
     for (auto& slot : b.slot) io(slot);
     io(b.form);

@@ -91,9 +91,11 @@ ParseResult parse_whole(const std::filesystem::path& input, const ParseOptions& 
                         GroundworkFile cache, Timings timings) {
     const auto lay = [&](device::Device& device, StageClock& stage) {
         Ingested ingested = stage("ingest", [&] {
+            Ingested read = ingest(device, input, options);
+            // Of what can be read: what can't may be of any size.
             if (keeps_groundwork(options) && !cache.usable())
                 cache = GroundworkFile(input, options);
-            return ingest(device, input, options);
+            return read;
         });
         Groundwork ground =
             lay_groundwork(device, std::move(ingested), options, input.string(), stage);
