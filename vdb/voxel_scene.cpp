@@ -236,6 +236,15 @@ void VoxelScene::clear_completed() {
     }
 }
 
+void VoxelScene::set_empty(std::span<const Voxel> voxels) {
+    auto state = grids_->state->getAccessor();
+    auto primitive = grids_->primitive->getAccessor();
+    for (const Voxel& at : voxels) {
+        state.setValueOff(coord(at), static_cast<std::int32_t>(State::empty));
+        primitive.setValueOff(coord(at), -1);
+    }
+}
+
 void VoxelScene::Grids::take_in(std::span<const LeafTable::Leaf> changed) {
     auto& beyond = leaves.beyond;
     for (const LeafTable::Leaf& leaf : changed) {

@@ -51,6 +51,25 @@ struct CarveOptions {
 
 using Voxel = std::array<std::int32_t, 3>;
 
+// A scene's voxels as plain arrays, but for the fields that were added and the objects.
+struct SavedVoxels {
+    VoxelFrame frame;
+    std::array<Voxel, 4> bounds{};  // lowest leaf and leaves per axis; lowest and highest surface
+    std::uint64_t unplaced = 0;
+    std::vector<Voxel> beyond;  // leaves outside of the bounds
+    // What is stored as one value: its level in the tree, lowest voxel, value, and whether active.
+    struct Tile {
+        std::int32_t level, i, j, k, value, active;
+    };
+    std::vector<Tile> tiles;
+    std::vector<Voxel> leaves;             // of the states: lowest voxels
+    std::vector<std::uint8_t> states;      // 512 of each
+    std::vector<std::uint8_t> solid;       // as states: whether active
+    std::vector<Voxel> labelled;           // leaves of the labels
+    std::vector<std::uint64_t> has_label;  // 8 words of each: of which voxels
+    std::vector<std::int32_t> label;       // of these
+};
+
 class VoxelScene {
   public:
     // Surface voxels from points and their primitive labels (-1: no primitive; the voxel is still
@@ -64,6 +83,9 @@ class VoxelScene {
                std::span<const std::int32_t> label);
     // A scene without points or bounds, for put_leaf(), labels and write().
     explicit VoxelScene(const VoxelFrame& frame);
+    // As it was saved. Throws Error(input) for what no scene saves. It can't be carved further.
+    explicit VoxelScene(const SavedVoxels& saved);
+    SavedVoxels saved() const;
     ~VoxelScene();
     VoxelScene(VoxelScene&&) noexcept;
 
@@ -98,6 +120,9 @@ class VoxelScene {
     // Makes completed voxels invisible again.
     void clear_completed();
 
+    // Takes solid voxels away: they are empty then, as if they had been seen to be.
+    void set_empty(std::span<const Voxel> voxels);
+
     // Primitive p becomes number[p]; -1: its voxels stay solid, but belong to no primitive. Throws
     // Error(usage) for a primitive beyond the span.
     void relabel(std::span<const std::int32_t> number);
@@ -124,6 +149,9 @@ class VoxelScene {
     void add_field(const std::string& name, std::span<const std::int32_t> i,
                    std::span<const std::int32_t> j, std::span<const std::int32_t> k,
                    std::span<const float> values);
+
+    // Takes one of those away again, where there is one of that name.
+    void remove_field(const std::string& name);
 
     // Grids `state`, `primitive`, `object` (Int32Grid; inactive background -1 for the last two, 2
     // for `state`, whose active voxels are the solid ones) and the added fields. The transform

@@ -159,6 +159,14 @@ void VoxelScene::add_field(const std::string& name, std::span<const std::int32_t
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
 }
 
+void VoxelScene::remove_field(const std::string& name) {
+    std::erase_if(grids_->fields, [&](const auto& field) {
+        if (field.first != name) return false;
+        clear_tree(field.second->tree());
+        return true;
+    });
+}
+
 void VoxelScene::write(const std::filesystem::path& path) const {
     const Grids& g = *grids_;
     // Labels count where the voxel is solid; elsewhere they are background.

@@ -73,6 +73,11 @@ ParseOptions parse_options(const topple_options& o, bool& cancelled) {
                                 {o.hazard_per_year, o.hazard_per_year + o.hazard_points},
                                 "hazard_pga_g"};
     }
+    if (o.corrections_file && o.corrections_json)
+        throw Error(ErrorKind::usage, "corrections_file and corrections_json: give one of both");
+    if (o.corrections_file) to.corrections = read_corrections(o.corrections_file);
+    if (o.corrections_json) to.corrections = corrections_of(o.corrections_json, "corrections_json");
+    if (o.cache_file) to.cache_file = o.cache_file;
     to.coordinates = !o.without_coordinates;
     to.isolate = !o.without_isolation;
     if (o.progress || o.log) {
@@ -149,7 +154,10 @@ topple_result::topple_result(ParseResult parsed, const topple_allocator* allocat
                            reinterpret_cast<const topple_step*>(arrays.hand(o.instability)),
                            arrays.hand(directed.height_m), arrays.hand(directed.push_J),
                            arrays.hand(directed.blow_J)});
+        corrected.push_back(arrays.hand(o.corrected));
     }
+    for (const AppliedCorrection& c : result.scene.corrections)
+        corrections.push_back(arrays.hand(c.objects));
     const ScenePoints& points = result.scene.points;
     primitive = arrays.hand(points.primitive);
     object = arrays.hand(points.object);

@@ -59,6 +59,7 @@ int topple_result_scene(const topple_result* result, topple_scene* scene, topple
         to.contacts = from.contacts.size();
         to.supports = from.supports.size();
         to.notes = from.notes.size();
+        to.corrections = from.corrections.size();
         give(to, scene, "scene");
     });
 }
@@ -76,6 +77,7 @@ int topple_result_primitive(const topple_result* result, uint64_t index,
         to.volume_m3 = from.volume_m3;
         to.mass_kg = from.mass_kg;
         copy_vector(from.center_of_mass_m, to.center_of_mass_m);
+        to.name = from.name.c_str();
         give(to, primitive, "primitive");
     });
 }
@@ -138,6 +140,9 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         to.lands_on = from.fall.lands_on;
         to.unsafety_category = from.unsafety_category.c_str();
         to.unsafety_certain = from.unsafety_certain;
+        to.name = from.name.c_str();
+        to.corrected = result->corrected[index];
+        to.corrected_count = from.corrected.size();
         give(to, object, "object");
     });
 }
@@ -163,6 +168,20 @@ int topple_result_support(const topple_result* result, uint64_t index, topple_su
         const Support& from = item(scene_of(result).supports, index, "support");
         give(topple_support{sizeof(topple_support), from.supporter, from.supported, from.area_m2},
              support, "support");
+    });
+}
+
+int topple_result_correction(const topple_result* result, uint64_t index,
+                             topple_correction* correction, topple_status* status) {
+    return guarded(status, [&] {
+        const AppliedCorrection& from = item(scene_of(result).corrections, index, "correction");
+        topple_correction to{};
+        to.what = to_string(from.correction.kind);
+        to.outcome = from.outcome.c_str();
+        to.held = from.held;
+        to.objects = result->corrections[index];
+        to.object_count = from.objects.size();
+        give(to, correction, "correction");
     });
 }
 

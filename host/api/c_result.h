@@ -51,6 +51,8 @@ struct topple_result {
         const double *blow_height_m, *push_barrier_J, *blow_barrier_J;
     };
     std::vector<OfObject> objects;
+    std::vector<const std::int32_t*> corrected;                  // by object
+    std::vector<const std::int32_t*> corrections;                // their objects
     const std::int32_t *primitive = nullptr, *object = nullptr;  // by point
     const float* normal[3] = {nullptr, nullptr, nullptr};
     const std::uint64_t* index = nullptr;

@@ -39,7 +39,8 @@ std::string joined(const std::vector<std::string>& names, const char* between) {
 struct Arguments {
     std::optional<std::string> accelerogram, accelerogram_across, accelerogram_up;
     std::optional<double> accelerogram_unit_m_s2;
-    std::optional<std::string> hazard;
+    std::optional<std::string> hazard, corrections, cache;
+    bool no_cache = false;
     std::string input, backend = "auto", up, disturbance = joined(known_disturbances(), ",");
     ParseOptions options;
     std::optional<std::string> out;
@@ -138,6 +139,7 @@ void read_options(Arguments& a) {
     if (a.accelerogram)
         a.options.accelerogram = read_accelerogram(*a.accelerogram, a.accelerogram_across,
                                                    a.accelerogram_up, a.accelerogram_unit_m_s2);
+    if (a.corrections) a.options.corrections = read_corrections(*a.corrections);
     if (a.hazard) a.options.hazard = read_hazard_curve(*a.hazard);
 }
 
@@ -170,6 +172,15 @@ std::string left_behind(const Arguments& a) {
            ": the same command goes on from there; if it shall not, delete that folder";
 }
 
+// The cache of an earlier output there is used, and replaced with it.
+void keep_cache(const io::OutputFolder& room, Arguments& a) {
+    a.output.cache_file = a.options.cache_file = room.folder() / "parse.cache";
+    std::error_code error;
+    const std::filesystem::path earlier = room.destination() / "parse.cache";
+    std::filesystem::create_hard_link(earlier, a.options.cache_file, error);
+    if (error) std::filesystem::copy_file(earlier, a.options.cache_file, error);
+}
+
 int run(Arguments& a) {
     read_options(a);
     const std::filesystem::path out =
@@ -182,7 +193,14 @@ int run(Arguments& a) {
     catch_interrupts();
     io::check_not_replaced(a.input, out);
     // Throws now, not after the parse, where nothing can be written there.
-    { const io::OutputFolder probe(out); }
+    std::optional<io::OutputFolder> room(out);
+    if (a.cache) a.options.cache_file = *a.cache;
+    // It lies there until it goes with the output.
+    const bool kept = !a.cache && !a.no_cache && !a.tile_m;
+    if (kept)
+        keep_cache(*room, a);
+    else
+        room.reset();
     // Beside the output, where there is room for it, and where the next run finds it.
     a.options.work_folder = out.parent_path() / ("." + out.filename().string() + ".topple-work");
     get_ready(a);
@@ -285,6 +303,16 @@ Command add_parse(CLI::App& app, const Team& team) {
     app.add_option("--hazard", a->hazard,
                    "How often the ground shakes there: JSON (pga_g, per_year), or lines of peak\n"
                    "acceleration in g and annual rate; gives how often each object falls");
+    app.add_option(
+        "--corrections", a->corrections,
+        "What is known of the room beside the scan: JSON that says what is one thing,\n"
+        "apart, fixed, not there, hollow, how heavy, and what it is called, by points in\n"
+        "the scan (docs/corrections.md)");
+    CLI::Option* const cache = app.add_option(
+        "--cache", a->cache,
+        "File for what does not depend on corrections and disturbances, so that the next parse\n"
+        "of the scan is quick (default: parse.cache in the folder for the results)");
+    app.add_flag("--no-cache", a->no_cache, "Keep nothing for the next parse")->excludes(cache);
     app.add_option("--tolerable", a->options.tolerable_J,
                    "Risk in joules per event up to which an object may stay as it is; for others\n"
                    "the report says where to move them, or what a fixing must hold")

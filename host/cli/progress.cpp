@@ -15,7 +15,7 @@ namespace {
 
 // What a stage does, short enough that the line fits on a terminal of 80 columns.
 const char* what_it_does(const std::string& stage) {
-    static constexpr std::array<std::pair<const char*, const char*>, 30> stages{
+    static constexpr std::array<std::pair<const char*, const char*>, 31> stages{
         {{"ingest", "reading the scan"},
          {"estimate", "measuring the scan"},
          {"sorting", "sorting the points into cubes on disk"},
@@ -35,6 +35,7 @@ const char* what_it_does(const std::string& stage) {
          {"bodies", "weighing the parts"},
          {"contacts", "finding what touches"},
          {"joints", "judging what belongs together"},
+         {"cache", "what stays the same from parse to parse"},
          {"grouping", "sampling which parts are one object"},
          {"masses", "weighing the objects"},
          {"borders", "finding what carries what"},

@@ -78,6 +78,11 @@ std::string size_text(const Object& o) {
     return text;
 }
 
+// " (fridge)", where it is named by hand.
+std::string name_text(const Object& o) {
+    return o.name.empty() ? "" : " (" + io::printable(o.name) + ")";
+}
+
 // "The 3 riskiest of the 5 objects whose barrier is ...", or of fewer without an order among one.
 std::string riskiest_text(std::size_t shown, std::size_t of) {
     if (of == 1) return "The one object";
@@ -117,9 +122,9 @@ void print_sentences(const std::vector<const Object*>& riskiest_first) {
     std::printf(":\n");
     for (std::size_t i = 0; i < shown; ++i) {
         const Object& o = *told[i];
-        std::printf("Object %d%s: %s%s%s%s\n", o.id, size_text(o).c_str(), o.why.sentence.c_str(),
-                    people_text(o.fall).c_str(), o.advice.sentence.empty() ? "" : " ",
-                    o.advice.sentence.c_str());
+        std::printf("Object %d%s%s: %s%s%s%s\n", o.id, name_text(o).c_str(), size_text(o).c_str(),
+                    o.why.sentence.c_str(), people_text(o.fall).c_str(),
+                    o.advice.sentence.empty() ? "" : " ", o.advice.sentence.c_str());
     }
 }
 
@@ -153,7 +158,8 @@ void print_objects(const Scene& scene) {
                     o.mass_kg, barrier, o.release_J, o.mode.c_str());
         for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
             std::printf("%10s ", risk_text(o, kind->name).c_str());
-        std::printf(" %s\n", rests_on.contains(o.id) ? rests_on[o.id].c_str() : "-");
+        std::printf(" %s%s\n", rests_on.contains(o.id) ? rests_on[o.id].c_str() : "-",
+                    name_text(o).c_str());
     }
     if (movable.size() > rows_shown)
         std::printf("   ... and %zu more in scene.json\n", movable.size() - rows_shown);
@@ -185,6 +191,11 @@ void print_summary(const Scene& scene, const std::filesystem::path& out, double 
         io::counted(scene.supports.size(), "support").c_str(), seconds, scene.backend.c_str(),
         scene.device.c_str());
     print_objects(scene);
+    if (!scene.corrections.empty())
+        std::printf("\n%zu of %s held.\n",
+                    static_cast<std::size_t>(
+                        std::ranges::count_if(scene.corrections, &AppliedCorrection::held)),
+                    io::counted(scene.corrections.size(), "correction").c_str());
     for (const std::string& note : scene.notes) std::printf("Note: %s\n", note.c_str());
     std::printf("\nReport: %s\n", (out / "report.html").c_str());
 }

@@ -50,6 +50,26 @@ std::size_t BoundaryCells::find(std::int32_t vi, std::int32_t vj, std::int32_t v
     return low;
 }
 
+bool BoundaryCells::fits(std::size_t primitives) const {
+    bool right = j.size() == size() && k.size() == size() && primitive.size() == size() &&
+                 form.size() == size() && share.size() == size();
+    for (const auto& patch : slot) right = right && patch.size() == size();
+    for (const auto& along : moment) right = right && along.size() == size();
+    for (std::size_t n = 0; right && n < size(); ++n) {
+        right = primitive[n] >= 0 && static_cast<std::size_t>(primitive[n]) < primitives &&
+                share[n] <= whole && slots_used(n) <= slots;
+        for (std::size_t s = 0; right && s < slots_used(n); ++s)
+            right = slot[s][n] < patches.size();
+    }
+    for (const SurfacePatch& patch : patches) {
+        double sum = patch.noise_m + patch.offset_m;
+        for (const double x : patch.c) sum += std::abs(x);
+        for (const double x : patch.origin) sum += std::abs(x);
+        right = right && std::isfinite(sum);
+    }
+    return right;
+}
+
 BoundaryCells BoundaryCells::only(const std::vector<bool>& kept) const {
     BoundaryCells out;
     out.patches = patches;

@@ -86,6 +86,8 @@ struct BoundaryCells {
     bool solid(std::size_t n, const Vec3& p, double slack_m) const;
     static constexpr std::size_t absent = ~std::size_t{0};
     std::size_t find(std::int32_t vi, std::int32_t vj, std::int32_t vk, std::int32_t p) const;
+    // Whether all that it refers to is there: patches, and primitives of so many.
+    bool fits(std::size_t primitives) const;
     // Those that are kept, in their order, with all patches.
     BoundaryCells only(const std::vector<bool>& kept) const;
 };

@@ -155,7 +155,7 @@ bool CutChain::draw() {
     if (label_.empty() || !grow_component(static_cast<std::int32_t>(random_.below(label_.size()))))
         return false;
     choose_target();
-    if (to_ == from_ || !stays_connected()) return false;
+    if (to_ == from_ || !target_is_allowed() || !stays_connected()) return false;
     from_key_ = key_[static_cast<std::size_t>(from_)];
     to_key_ = key_[static_cast<std::size_t>(to_)];
     for (const std::int32_t n : moved_) {
@@ -237,6 +237,16 @@ void CutChain::choose_target() {
         return seen_label_.has(l) ? log_miss_to_[static_cast<std::size_t>(l)] : 0;
     };
     log_cut_ratio_ = log_misses(to_) - log_misses(from_);
+}
+
+// Whether nothing in the target is to be kept apart from what moves there. States that break this
+// have no probability, so that a flip to one is turned down as any other of that kind would be.
+bool CutChain::target_is_allowed() const {
+    if (problem_.apart.empty()) return true;
+    return std::ranges::none_of(moved_, [&](std::int32_t n) {
+        return std::ranges::any_of(problem_.apart[static_cast<std::size_t>(n)],
+                                   [&](std::int32_t other) { return label_of(other) == to_; });
+    });
 }
 
 // A group is one rigid body, so it hangs together; the pinned nodes do so by definition. Flips

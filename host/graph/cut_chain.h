@@ -40,10 +40,16 @@ struct CutProblem {
     std::span<const Edge> edges;
     const std::vector<bool>& pinned;
     Adjacency adjacency;
-    std::vector<GroupKey> key;  // of each node
+    std::vector<GroupKey> key;                         // of each node
+    std::span<const std::vector<std::int32_t>> apart;  // see SwendsenWangOptions
 
-    CutProblem(std::int32_t nodes, std::span<const Edge> all, const std::vector<bool>& held)
-        : edges(all), pinned(held), adjacency(nodes, all), key(keys_of_nodes(nodes)) {}
+    CutProblem(std::int32_t nodes, std::span<const Edge> all, const std::vector<bool>& held,
+               std::span<const std::vector<std::int32_t>> kept_apart = {})
+        : edges(all),
+          pinned(held),
+          adjacency(nodes, all),
+          key(keys_of_nodes(nodes)),
+          apart(kept_apart) {}
 };
 
 // How long both ends of each edge have been in one group, in samples.
@@ -93,6 +99,7 @@ class CutChain {
     bool grow_component(std::int32_t seed);
     void sort_moved();
     void choose_target();
+    bool target_is_allowed() const;
     bool stays_connected();
     bool reaches(std::int32_t start, bool shell);
     std::int32_t free_label();

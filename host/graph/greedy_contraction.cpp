@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <queue>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -13,13 +14,18 @@ namespace {
 class Contraction {
   public:
     Contraction(std::int32_t nodes, std::span<const Joint> joints, const std::vector<bool>& pinned,
-                std::span<const double> to_pinned)
-        : between_(static_cast<std::size_t>(nodes)) {
+                std::span<const double> to_pinned, std::span<const std::vector<std::int32_t>> apart)
+        : between_(static_cast<std::size_t>(nodes)), apart_(apart.size()) {
         std::int32_t ground = -1;
         for (std::int32_t n = 0; n < nodes; ++n) {
             const bool held = pinned[static_cast<std::size_t>(n)];
             if (held && ground < 0) ground = n;
             parent_.push_back(held ? ground : n);
+        }
+        for (std::size_t n = 0; n < apart.size(); ++n) {
+            for (const std::int32_t other : apart[n])
+                apart_[static_cast<std::size_t>(root(static_cast<std::int32_t>(n)))].insert(
+                    root(other));
         }
         for (const Joint& joint : joints) add(root(joint.a), root(joint.b), joint.log_odds);
         for (std::int32_t n = 0; n < nodes && ground >= 0; ++n)
@@ -38,6 +44,7 @@ class Contraction {
             if (root(a) != a || root(b) != b) continue;
             const auto now = at(a).find(b);
             if (now == at(a).end() || now->second != sum) continue;  // an older offer
+            if (kept_apart(a, b)) continue;
             join(a, b);
         }
         std::vector<std::int32_t> label;
@@ -62,9 +69,19 @@ class Contraction {
     void offer(std::int32_t a, std::int32_t b, double sum) {
         if (sum > 0) open_.emplace(sum, -std::min(a, b), -std::max(a, b));
     }
+    bool kept_apart(std::int32_t a, std::int32_t b) const {
+        return !apart_.empty() && apart_[static_cast<std::size_t>(a)].contains(b);
+    }
     // b joins a, which is the lower.
     void join(std::int32_t a, std::int32_t b) {
         parent_[static_cast<std::size_t>(b)] = a;
+        if (!apart_.empty()) {
+            for (const std::int32_t other : apart_[static_cast<std::size_t>(b)]) {
+                apart_[static_cast<std::size_t>(other)].erase(b);
+                apart_[static_cast<std::size_t>(other)].insert(a);
+                apart_[static_cast<std::size_t>(a)].insert(other);
+            }
+        }
         at(a).erase(b);
         for (const auto& [other, sum] : at(b)) {
             if (other == a) continue;
@@ -78,6 +95,7 @@ class Contraction {
 
     std::vector<std::int32_t> parent_;
     std::vector<std::map<std::int32_t, double>> between_;
+    std::vector<std::set<std::int32_t>> apart_;  // by root, other roots; or empty
     // (sum, -a, -b): the largest sum first, then the lowest nodes.
     std::priority_queue<std::tuple<double, std::int32_t, std::int32_t>> open_;
 };
@@ -86,8 +104,9 @@ class Contraction {
 
 std::vector<std::int32_t> contract_greedily(std::int32_t nodes, std::span<const Joint> joints,
                                             const std::vector<bool>& pinned,
-                                            std::span<const double> to_pinned) {
-    return Contraction(nodes, joints, pinned, to_pinned).run();
+                                            std::span<const double> to_pinned,
+                                            std::span<const std::vector<std::int32_t>> apart) {
+    return Contraction(nodes, joints, pinned, to_pinned, apart).run();
 }
 
 }  // namespace topple::graph

@@ -14,8 +14,10 @@ namespace topple::graph {
 // them until none is above 0. The label of each node is the lowest node of its group; all that are
 // pinned are one group from the start, and `to_pinned`, of each
 // node, counts beside its joints with them. Of equal sums the lowest nodes come first.
+// apart: of each node those that no group may hold beside it, or empty.
 std::vector<std::int32_t> contract_greedily(std::int32_t nodes, std::span<const Joint> joints,
                                             const std::vector<bool>& pinned,
-                                            std::span<const double> to_pinned);
+                                            std::span<const double> to_pinned,
+                                            std::span<const std::vector<std::int32_t>> apart = {});
 
 }  // namespace topple::graph

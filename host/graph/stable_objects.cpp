@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "fitted/boosted_trees.h"
@@ -107,11 +108,17 @@ Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Bo
                           const GroupingOptions& options, unsigned threads) {
     const std::vector<Joint> biased = biased_joints(joints, graph.primitives, options.joint_bias);
     const GroupEnergy energy(graph, bodies, biased, shell, options.standing_weight);
+    // What is one object for sure is one node.
+    const LinkedNodes nodes(graph.primitives, options.links);
+    const std::vector<Joint> joints_of_nodes = nodes.joints(biased);
+    const std::vector<bool> pinned = nodes.pinned(shell.pinned);
     SwendsenWangOptions sampler;
     sampler.seed = options.seed;
     sampler.chains = 4;
     sampler.threads = threads;
-    sampler.start = contract_greedily(graph.primitives, biased, shell.pinned, shell.log_odds);
+    sampler.apart = nodes.apart();
+    sampler.start = contract_greedily(nodes.size(), joints_of_nodes, pinned,
+                                      nodes.sums(shell.log_odds), sampler.apart);
     // The start is near the best: what is left is to weigh how things stand, and to look whether a
     // few parts are better elsewhere.
     sampler.first_temperature = 0.5;
@@ -122,17 +129,18 @@ Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Bo
     sampler.sample_steps = sampler.anneal_steps / 4;
     sampler.time_limit_s = options.time_limit_s;
     sampler.cancelled = options.cancelled;
-    Partition partition = swendsen_wang_cuts(graph.primitives, edges_of(biased), shell.pinned,
-                                             energy.callbacks(), sampler);
+    Partition partition = swendsen_wang_cuts(nodes.size(), edges_of(joints_of_nodes), pinned,
+                                             nodes.energies(energy.callbacks()), sampler);
     Grouping out;
-    out.group = std::move(partition.label);
+    out.group = nodes.of_primitives(partition.label);
     out.agreement = std::move(partition.agreement);
     out.energy_curve = std::move(partition.best_energy_curve);
     return out;
 }
 
 std::vector<double> pair_probabilities(const ContactGraph& graph, std::span<const Joint> joints,
-                                       const ShellOdds& shell) {
+                                       const ShellOdds& shell, const KnownLinks& links) {
+    const LinkedNodes nodes(graph.primitives, links);
     std::vector<double> out;
     for (const physics::TouchingPair& pair : graph.pairs) {
         const auto at =
@@ -145,7 +153,8 @@ std::vector<double> pair_probabilities(const ContactGraph& graph, std::span<cons
         };
         const double both = room(pair.a) * room(pair.b);
         const double joint = known ? fitted::probability(at->log_odds) : 0;
-        out.push_back(both + (1 - both) * joint);
+        const std::optional<bool> one = nodes.one_object(pair.a, pair.b);
+        out.push_back(one ? (*one ? 1.0 : 0.0) : both + (1 - both) * joint);
     }
     return out;
 }

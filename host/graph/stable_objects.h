@@ -8,6 +8,7 @@
 
 #include "graph/contact_graph.h"
 #include "graph/joints.h"
+#include "graph/known_links.h"
 #include "physics/landscape.h"
 
 // Grouping primitives into objects that stand (paper, 4.1).
@@ -27,6 +28,7 @@ struct GroupingOptions {
     double joint_bias = -1.5;
     double time_limit_s = 0;  // see SwendsenWangOptions
     std::function<bool()> cancelled;
+    KnownLinks links;
 };
 
 struct Grouping {
@@ -53,14 +55,15 @@ double free_fall_m(const ContactGraph& graph, std::span<const std::int32_t> prim
 double standing_cost(const physics::Candidate& candidate, double noise_m);
 
 // Minimises Eq. 8 by Swendsen-Wang cuts with q = P(joint), from the greedy contraction of the
-// joints on. joints: sorted by (a, b).
+// joints on, over the groupings that keep to the links that are known. joints: sorted by (a, b).
 Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Body> bodies,
                           std::span<const Joint> joints, const ShellOdds& shell,
                           const GroupingOptions& options, unsigned threads);
 
-// That both are one solid, of each of the graph's pairs: by their joint, or as parts of the room.
-// joints: sorted by (a, b); they may be those of another graph of the same primitives.
+// That both are one solid, of each of the graph's pairs: as it is known, by their joint, or as
+// parts of the room. joints: sorted by (a, b); they may be those of another graph of the same
+// primitives.
 std::vector<double> pair_probabilities(const ContactGraph& graph, std::span<const Joint> joints,
-                                       const ShellOdds& shell);
+                                       const ShellOdds& shell, const KnownLinks& links = {});
 
 }  // namespace topple::graph

@@ -169,7 +169,7 @@ Partition swendsen_wang_cuts(std::int32_t nodes, std::span<const Edge> edges,
                              const std::vector<bool>& pinned, const GroupEnergies& energies,
                              const SwendsenWangOptions& options) {
     if (nodes == 0) return {};
-    const CutProblem problem(nodes, edges, pinned);
+    const CutProblem problem(nodes, edges, pinned, options.apart);
     const unsigned chains = std::max(1u, options.chains);
     const unsigned workers = std::clamp(options.threads, 1u, chains);
     const double limit_s = options.time_limit_s * workers / chains;

@@ -47,6 +47,9 @@ struct SwendsenWangOptions {
     // The partition to start from: nodes of one group have one label, pinned nodes share theirs.
     // Empty: each node on its own.
     std::vector<std::int32_t> start;
+    // Of each node those that no group may hold beside it; empty: there are none. Symmetric, not of
+    // two pinned nodes, and `start` keeps to it. Flips that would break it are not proposed.
+    std::vector<std::vector<std::int32_t>> apart;
     std::function<bool()> cancelled;  // polled between steps by the caller's thread; may be empty
 };
 

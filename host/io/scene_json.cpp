@@ -53,14 +53,16 @@ Json matrix(const std::array<double, N>& m) {
 }
 
 Json to_json(const Primitive& p) {
-    return {{"id", p.id},
-            {"object", p.object},
-            {"model", p.model},
-            {"points", p.points},
-            {"solid_voxels", p.solid_voxels},
-            {"volume_m3", number(p.volume_m3)},
-            {"mass_kg", number(p.mass_kg)},
-            {"center_of_mass_m", vector(p.center_of_mass_m)}};
+    Json json{{"id", p.id},
+              {"object", p.object},
+              {"model", p.model},
+              {"points", p.points},
+              {"solid_voxels", p.solid_voxels},
+              {"volume_m3", number(p.volume_m3)},
+              {"mass_kg", number(p.mass_kg)},
+              {"center_of_mass_m", vector(p.center_of_mass_m)}};
+    if (!p.name.empty()) json["name"] = p.name;
+    return json;
 }
 
 Json to_json(const Why& w) {
@@ -141,7 +143,7 @@ Json to_json(const DirectedBarrier& b) {
 }
 
 Json to_json(const Object& o) {
-    return {
+    Json json{
         {"id", o.id},
         {"primitives", o.primitives},
         {"grounded", o.grounded},
@@ -180,6 +182,23 @@ Json to_json(const Object& o) {
         {"rest_probability", number(o.rest_probability)},
         {"fall", to_json(o.fall)},
         {"advice", to_json(o.advice)}};
+    if (!o.name.empty()) json["name"] = o.name;
+    if (!o.corrected.empty()) json["corrected"] = o.corrected;
+    return json;
+}
+
+// The correction as a file says it, and what became of it.
+Json to_json(const AppliedCorrection& applied) {
+    const Correction& c = applied.correction;
+    Json json{{"do", to_string(c.kind)}, {"at_m", list(c.at_m, vector)}};
+    if (c.kind == Correction::Kind::apart) json["from_m"] = list(c.from_m, vector);
+    if (c.kind == Correction::Kind::hollow) json["wall_m"] = number(c.wall_m);
+    if (c.kind == Correction::Kind::mass) json["kg"] = number(c.mass_kg);
+    if (c.kind == Correction::Kind::name) json["name"] = c.name;
+    json["held"] = applied.held;
+    json["outcome"] = applied.outcome;
+    json["objects"] = applied.objects;
+    return json;
 }
 
 Json to_json(const Contact& c) {
@@ -221,6 +240,7 @@ Primitive primitive_of(const Json& json) {
     p.volume_m3 = number_at(json, "volume_m3");
     p.mass_kg = number_at(json, "mass_kg");
     p.center_of_mass_m = vector_at(json, "center_of_mass_m");
+    if (json.contains("name")) p.name = json.at("name").get<std::string>();
     return p;
 }
 
@@ -373,6 +393,9 @@ Object object_of(const Json& json) {
         o.rests_by = json.at("rests_by").get<std::string>();
         o.rest_probability = number_at(json, "rest_probability");
     }
+    if (json.contains("name")) o.name = json.at("name").get<std::string>();
+    if (json.contains("corrected"))
+        o.corrected = json.at("corrected").get<std::vector<std::int32_t>>();
     return o;
 }
 
@@ -385,6 +408,32 @@ Contact contact_of(const Json& json) {
     c.relation = json.at("relation").get<std::string>();
     c.probability = number_at(json, "probability");
     return c;
+}
+
+std::vector<Vec3> spots_at(const Json& json, const char* key) {
+    std::vector<Vec3> out;
+    if (json.contains(key))
+        for (const Json& at : json.at(key))
+            out.push_back({number_of(at.at(0)), number_of(at.at(1)), number_of(at.at(2))});
+    return out;
+}
+
+AppliedCorrection correction_of(const Json& json) {
+    AppliedCorrection out;
+    Correction& c = out.correction;
+    const auto what = json.at("do").get<std::string>();
+    for (auto kind = Correction::Kind::one_thing; kind <= Correction::Kind::name;
+         kind = static_cast<Correction::Kind>(static_cast<int>(kind) + 1))
+        if (what == to_string(kind)) c.kind = kind;
+    c.at_m = spots_at(json, "at_m");
+    c.from_m = spots_at(json, "from_m");
+    if (json.contains("wall_m")) c.wall_m = number_at(json, "wall_m");
+    if (json.contains("kg")) c.mass_kg = number_at(json, "kg");
+    if (json.contains("name")) c.name = json.at("name").get<std::string>();
+    out.held = json.at("held").get<bool>();
+    out.outcome = json.at("outcome").get<std::string>();
+    out.objects = json.at("objects").get<std::vector<std::int32_t>>();
+    return out;
 }
 
 Scene scene_of(const Json& json) {
@@ -415,6 +464,9 @@ Scene scene_of(const Json& json) {
              // Scenes of before 0.2 have none.
              item.contains("probability") ? number_at(item, "probability") : 1});
     }
+    if (json.contains("corrections"))
+        for (const Json& item : json.at("corrections"))
+            scene.corrections.push_back(correction_of(item));
     for (const auto& [stage, seconds] : json.at("timings_s").items()) {
         scene.timings_s.emplace_back(stage, number_of(seconds));
     }
@@ -447,6 +499,9 @@ OrderedJson scene_document(const Scene& scene) {
     json["objects"] = list(scene.objects, [](const Object& o) { return to_json(o); });
     json["contacts"] = list(scene.contacts, [](const Contact& c) { return to_json(c); });
     json["supports"] = list(scene.supports, [](const Support& s) { return to_json(s); });
+    if (!scene.corrections.empty())
+        json["corrections"] =
+            list(scene.corrections, [](const AppliedCorrection& c) { return to_json(c); });
     auto timings = Json::object();
     // A stage that ran twice counts once, with its sum.
     for (const auto& [stage, seconds] : scene.timings_s) {

@@ -153,20 +153,7 @@ class Reader {
 
     void check(const BoundaryCells& boundary, const std::vector<Role>& roles) const {
         for (const Role role : roles) expect(role <= Role::fixture);
-        for (std::size_t n = 0; n < boundary.size(); ++n) {
-            expect(boundary.primitive[n] >= 0 &&
-                   static_cast<std::uint64_t>(boundary.primitive[n]) < head_.primitives);
-            expect(boundary.share[n] <= BoundaryCells::whole);
-            expect(boundary.slots_used(n) <= BoundaryCells::slots);
-            for (std::size_t s = 0; s < boundary.slots_used(n); ++s)
-                expect(boundary.slot[s][n] < head_.patches);
-        }
-        for (const SurfacePatch& patch : boundary.patches) {
-            double sum = patch.noise_m + patch.offset_m;
-            for (const double c : patch.c) sum += std::abs(c);
-            for (const double c : patch.origin) sum += std::abs(c);
-            expect(std::isfinite(sum));
-        }
+        expect(boundary.fits(roles.size()));
     }
 
     const std::filesystem::path& file_;

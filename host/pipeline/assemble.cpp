@@ -32,6 +32,8 @@ void add_primitives(const SolidParts& parts, const ObjectStage& objects, const T
         out.volume_m3 = body.volume_m3;
         out.mass_kg = body.mass_kg;
         out.center_of_mass_m = to_input(body.center);
+        const auto name = objects.told.name_of_part.find(out.id);
+        if (name != objects.told.name_of_part.end()) out.name = name->second;
         scene.primitives.push_back(std::move(out));
     }
 }
@@ -103,7 +105,7 @@ void add_objects(const SolidCells& cells, const ObjectStage& objects, const Safe
         to.agreement = from.agreement;
         to.mass_kg = from.candidate.body.mass_kg;
         to.size_m = size_m[o];
-        to.mass_model = from.closed ? "closed" : "solid";
+        to.mass_model = from.hollow ? "hollow" : from.closed ? "closed" : "solid";
         to.center_of_mass_m = to_input(from.candidate.body.center);
         to.inertia_kg_m2 = to_input.tensor(from.inertia);
         to.mass_error_kg = from.body_error.mass_kg;
@@ -150,6 +152,8 @@ void add_objects(const SolidCells& cells, const ObjectStage& objects, const Safe
         to.unsafety_category = to.seen_enough ? safety::to_string(category.lower) : "";
         to.unsafety_certain = to.seen_enough && category.lower == category.higher &&
                               safety.advice[o].kind != Suggestion::Kind::check;
+        to.name = objects.told.name[o];
+        to.corrected = objects.told.corrected[o];
         scene.objects.push_back(std::move(to));
     }
 }
@@ -177,26 +181,6 @@ void add_contacts(const ObjectStage& objects, const ToInput& to_input, Scene& sc
         c.relation = same ? "fixed" : carries.contains({pair.a, pair.b}) ? "support" : "adjacent";
         c.probability = objects.pair_probability[i];
         scene.contacts.push_back(std::move(c));
-    }
-}
-
-void add_points(Ingested& input, const GeometryStage& geometry, const VoxelStage& voxels,
-                const ObjectStage& objects, Scene& scene) {
-    ScenePoints& out = scene.points;
-    out.index = std::move(input.index);
-    out.primitive = numbered(geometry.primitive_of_point, voxels.number);
-    out.region = geometry.region_of_point;
-    const geometry::Surfels& s = geometry.surfels;
-    const std::size_t count = input.cloud.size();
-    out.object.reserve(count);
-    for (auto* axis : {&out.nx, &out.ny, &out.nz}) axis->reserve(count);
-    for (std::size_t n = 0; n < count; ++n) {
-        const std::int32_t p = out.primitive[n];
-        out.object.push_back(p < 0 ? -1 : objects.object_of_primitive[static_cast<std::size_t>(p)]);
-        const std::uint32_t surfel = s.of_point[n];
-        out.nx.push_back(s.nx[surfel]);
-        out.ny.push_back(s.ny[surfel]);
-        out.nz.push_back(s.nz[surfel]);
     }
 }
 
@@ -274,6 +258,16 @@ void note_wind_indoors(const SolidParts& parts, const SafetyStage& safety, Scene
             "and doors are closed in gales leave wind out of the disturbances.");
 }
 
+void note_corrections(Scene& scene) {
+    for (std::size_t n = 0; n < scene.corrections.size(); ++n) {
+        const AppliedCorrection& c = scene.corrections[n];
+        if (c.outcome != "held")
+            scene.notes.push_back("Correction " + std::to_string(n + 1) + " (" +
+                                  to_string(c.correction.kind) + ") " +
+                                  (c.held ? "" : "did not hold: ") + c.outcome + ".");
+    }
+}
+
 void note_uncertain_barriers(Scene& scene) {
     const auto uncertain =
         std::count_if(scene.objects.begin(), scene.objects.end(), barrier_within_error);
@@ -319,6 +313,8 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     add_contacts(objects, to_input, scene);
     add_fields(safety, to_input, scene);
     add_walks(safety, to_input, scene);
+    scene.corrections = objects.told.corrections;
+    note_corrections(scene);
     note_unsettled_search(scene);
     note_crowded_objects(scene);
     note_uncertain_barriers(scene);
@@ -333,32 +329,22 @@ void add_exposures(const SafetyStage& safety, const SolidCells& cells, vdb::Voxe
         if (!d.exposure.empty()) voxels.add_field(d.name, cells.i, cells.j, cells.k, d.exposure);
 }
 
-void assemble_points(Ingested& input, const GeometryStage& geometry, const VoxelStage& voxels,
-                     const SolidParts& parts, const ObjectStage& objects, const SafetyStage& safety,
+void assemble_points(Groundwork ground, const ObjectStage& objects, const SafetyStage& safety,
                      Scene& scene) {
-    add_points(input, geometry, voxels, objects, scene);
-    voxels.scene->set_objects(objects.object_of_primitive);
-    scene.solid = vdb::solid_voxels(voxels.scene->frame(), parts.solids->with_strays(),
-                                    objects.object_of_primitive);
-    add_exposures(safety, parts.solids->cells(), *voxels.scene);
-}
-
-void take_coordinates(Ingested& input, ScenePoints& out) {
-    if (input.own.size() > 0) {
-        out.x = std::move(input.own.x);
-        out.y = std::move(input.own.y);
-        out.z = std::move(input.own.z);
-        out.red = std::move(input.own.red);
-        out.green = std::move(input.own.green);
-        out.blue = std::move(input.own.blue);
-        return;
+    ScenePoints& points = scene.points = std::move(ground.points);
+    if (objects.taken) {
+        for (std::int32_t& p : points.primitive)
+            if (p >= 0) p = objects.taken->number[static_cast<std::size_t>(p)];
     }
-    out.x.assign(input.cloud.x.begin(), input.cloud.x.end());
-    out.y.assign(input.cloud.y.begin(), input.cloud.y.end());
-    out.z.assign(input.cloud.z.begin(), input.cloud.z.end());
-    out.red.assign(input.cloud.red.begin(), input.cloud.red.end());
-    out.green.assign(input.cloud.green.begin(), input.cloud.green.end());
-    out.blue.assign(input.cloud.blue.begin(), input.cloud.blue.end());
+    points.object.reserve(points.primitive.size());
+    for (const std::int32_t p : points.primitive)
+        points.object.push_back(p < 0 ? -1
+                                      : objects.object_of_primitive[static_cast<std::size_t>(p)]);
+    const SolidScene& solids = *ground.parts.solids;
+    ground.voxels->set_objects(objects.object_of_primitive);
+    scene.solid = vdb::solid_voxels(ground.voxels->frame(), solids.with_strays(),
+                                    objects.object_of_primitive);
+    add_exposures(safety, solids.cells(), *ground.voxels);
 }
 
 }  // namespace topple

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "pipeline/geometry_stage.h"
-#include "pipeline/ingest.h"
+#include "pipeline/groundwork.h"
 #include "pipeline/object_stage.h"
 #include "pipeline/safety_stage.h"
 #include "pipeline/solid_parts.h"
-#include "pipeline/voxel_stage.h"
 #include "topple/scene.h"
 
 namespace topple {
@@ -24,11 +22,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
 void add_exposures(const SafetyStage& safety, const SolidCells& cells, vdb::VoxelScene& voxels);
 
 // Adds the points and the solid voxels, and hands objects and fields to the voxel grids.
-void assemble_points(Ingested& input, const GeometryStage& geometry, const VoxelStage& voxels,
-                     const SolidParts& parts, const ObjectStage& objects, const SafetyStage& safety,
+void assemble_points(Groundwork ground, const ObjectStage& objects, const SafetyStage& safety,
                      Scene& scene);
-
-// The coordinates of the points: moved, where they are the input's own.
-void take_coordinates(Ingested& input, ScenePoints& out);
 
 }  // namespace topple

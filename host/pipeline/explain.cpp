@@ -31,11 +31,17 @@ double azimuth(const Vec3& way) {
     return degrees < 0 ? degrees + 360 : degrees;
 }
 
+// "object 3", or "object 3 (fridge)".
+std::string numbered_object(const Object& o) {
+    const std::string text = "object " + std::to_string(o.id);
+    return o.name.empty() ? text : text + " (" + o.name + ")";
+}
+
 std::string what(const Scene& scene, const SolidParts& parts, std::int32_t primitive) {
     if (primitive < 0) return "what lies below";
     const auto at = static_cast<std::size_t>(primitive);
     const Object& object = scene.objects[static_cast<std::size_t>(scene.primitives[at].object)];
-    if (!object.grounded) return "object " + std::to_string(object.id);
+    if (!object.grounded) return numbered_object(object);
     switch (parts.solids->role(primitive)) {
         case Role::floor:
             return "the floor";
@@ -98,7 +104,7 @@ class Sentence {
     }
     std::string carrier() const {
         const Object& on = scene_.objects[static_cast<std::size_t>(why_.stands_on[0])];
-        return on.grounded ? "the ground" : "object " + std::to_string(on.id);
+        return on.grounded ? "the ground" : numbered_object(on);
     }
     std::string barrier() const {
         if (!barrier_within_error(object_)) return energy(why_.W_J);

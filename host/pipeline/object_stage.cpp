@@ -68,16 +68,18 @@ void number_objects(ObjectStage& out) {
 
 // Objects by group, the ground first.
 void collect_objects(const SolidScene& solids, const std::vector<bool>& shell,
-                     const ParseOptions& options, ThreadPool& threads, ObjectStage& out) {
+                     const ParseOptions& options, ThreadPool& threads, HandCorrections& hand,
+                     ObjectStage& out) {
     const SolidCells& cells = solids.cells();
     const BoundaryCells& boundary = solids.boundary();
     const std::vector<std::int32_t>& group = out.grouping.group;
     const bool has_ground = grounded_object(out) == 0;
     std::int32_t objects = 0;
     for (const std::int32_t o : out.object_of_primitive) objects = std::max(objects, o + 1);
-    const ObjectMasses masses =
-        weigh_objects(solids, out.object_of_primitive, static_cast<std::size_t>(objects),
-                      grounded_object(out), options, out.bodies);
+    const std::vector<KnownMass> known = hand.masses(
+        out.object_of_primitive, static_cast<std::size_t>(objects), grounded_object(out));
+    const ObjectMasses masses = weigh_objects(solids, out.object_of_primitive, known,
+                                              grounded_object(out), options, out.bodies);
     std::vector<std::vector<std::int32_t>> members(static_cast<std::size_t>(objects));
     for (std::size_t p = 0; p < group.size(); ++p) {
         members[static_cast<std::size_t>(out.object_of_primitive[p])].push_back(
@@ -93,8 +95,10 @@ void collect_objects(const SolidScene& solids, const std::vector<bool>& shell,
         object.body_error = physics::body_error(object.candidate.body, object.candidate.primitives,
                                                 errors, masses.density_kg_m3);
         object.closed = masses.closed[o];
+        object.hollow = masses.hollow[o];
         object.inertia = masses.inertia[o];
         add_independent(masses.contents_error[o], object.body_error);
+        if (masses.weighed[o]) object.body_error.mass_kg = 0;
         object.grounded = has_ground && o == 0;
         if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
         if (!object.grounded) {
@@ -239,15 +243,24 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
 
 ObjectStage find_objects(device::Device& device, const ParseOptions& options, StageClock& stage,
                          SolidParts& solid) {
+    return find_objects(device, options, stage, solid, weigh_parts(device, solid, options, stage));
+}
+
+ObjectStage find_objects(device::Device& device, const ParseOptions& options, StageClock& stage,
+                         SolidParts& solid, PartStage parts) {
     ObjectStage out;
-    PartStage parts = weigh_parts(device, solid, options, stage);
+    HandCorrections hand(options.corrections, solid);
     stage("grouping", [&] {
         graph::GroupingOptions grouping;
         grouping.seed = options.seed;
         grouping.time_limit_s = options.grouping_time_s.value_or(0);
         grouping.cancelled = options.cancelled;
+        grouping.links = hand.links();
+        hand.keep_apart(*solid.solids, parts.shell);
         out.grouping = graph::group_primitives(parts.contacts, parts.bodies, parts.joints,
                                                parts.shell, grouping, device.threads().threads());
+        out.taken = hand.take_from(solid, out.grouping, parts.shell, parts.joints);
+        hand.fix(solid, out.grouping, parts.shell);
         number_objects(out);
         // Joints were judged with all that was completed, as their models were fitted.
         solid.solids =
@@ -264,7 +277,8 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
     const auto count = static_cast<std::int32_t>(solid.model.size());
     out.contacts = stage(
         "borders", [&] { return graph::build_contact_graph(device, cells, count, 1, boundary); });
-    out.pair_probability = graph::pair_probabilities(out.contacts, parts.joints, parts.shell);
+    out.pair_probability =
+        graph::pair_probabilities(out.contacts, parts.joints, parts.shell, hand.links());
     const physics::SupportTable table = stage("supports", [&] {
         std::vector<bool> loose;
         for (const std::int32_t g : out.grouping.group) loose.push_back(g >= 0);
@@ -274,10 +288,11 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
                                      physics::geodesic_sphere(sphere_frequency));
     });
     stage("barriers", [&] {
-        collect_objects(*solid.solids, parts.shell.pinned, options, device.threads(), out);
+        collect_objects(*solid.solids, parts.shell.pinned, options, device.threads(), hand, out);
         find_barriers(device, table, *solid.solids, out.object_of_primitive, options.friction,
                       out.objects);
     });
+    out.told = hand.tell(out.object_of_primitive, out.objects.size(), grounded_object(out));
     return out;
 }
 

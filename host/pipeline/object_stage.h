@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "physics/landscape.h"
 #include "physics/sliding.h"
 #include "physics/toppling.h"
+#include "pipeline/hand_corrections.h"
 #include "pipeline/solid_parts.h"
 #include "pipeline/stage_clock.h"
 
@@ -30,6 +32,7 @@ struct StableObject {
     physics::SlideResult sliding;
     physics::Instability instability;  // of tipping and sliding together
     bool closed = false;               // furniture of boards around contents
+    bool hollow = false;               // a shell, as somebody knows
     physics::Symmetric inertia{};
     physics::BodyError body_error;
     double barrier_error_J = 0;
@@ -60,6 +63,8 @@ struct ObjectStage {
     std::vector<std::int32_t> object_of_primitive;  // the ground, where there is one, is object 0
     std::vector<StableObject> objects;
     std::vector<Support> supports;  // sorted by (supporter, supported)
+    HandCorrections::Told told;
+    std::optional<TakenAway> taken;  // by hand from the parts, before all else here
 };
 
 // What grouping starts from.
@@ -78,7 +83,10 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
                    const SolidScene& solids, std::span<const std::int32_t> object_of_primitive,
                    double friction, std::vector<StableObject>& objects);
 
-// Takes from the solids what turns out to be no object's (graph/false_feet.h).
+// Takes from the parts what is not there by hand, and from the solids what turns out to be no
+// object's (graph/false_feet.h).
+ObjectStage find_objects(device::Device& device, const ParseOptions& options, StageClock& stage,
+                         SolidParts& solid, PartStage parts);
 ObjectStage find_objects(device::Device& device, const ParseOptions& options, StageClock& stage,
                          SolidParts& solid);
 

@@ -2,28 +2,22 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <system_error>
 #include <utility>
 
 #include "device/device.h"
-#include "io/frame_sequence.h"
-#include "io/octomap.h"
-#include "io/text.h"
 #include "pipeline/assemble.h"
 #include "pipeline/cancelling.h"
-#include "pipeline/geometry_stage.h"
+#include "pipeline/groundwork.h"
+#include "pipeline/groundwork_file.h"
 #include "pipeline/ingest.h"
 #include "pipeline/object_stage.h"
-#include "pipeline/parse_memory.h"
 #include "pipeline/safety_stage.h"
-#include "pipeline/scale_checks.h"
 #include "pipeline/stage_clock.h"
-#include "pipeline/surface_extent.h"
 #include "pipeline/tiled_parse.h"
-#include "pipeline/voxel_size.h"
 #include "pipeline/voxel_stage.h"
 #include "safety/disturbances.h"
 #include "topple/parse.h"
-#include "vdb/read_volume.h"
 
 namespace topple {
 namespace {
@@ -45,76 +39,70 @@ void check_range(const char* option, double value, double lowest, double highest
                     number_text(highest));
 }
 
-void check_memory(const CloudView& cloud, const std::string& source, double voxel_m,
-                  const ParseOptions& options) {
-    if (options.max_memory_bytes == 0) return;
-    const SurfaceExtent surface = extent_of(cloud);
-    const std::uint64_t need = one_piece_bytes(static_cast<double>(cloud.size()), surface.area_m2(),
-                                               surface.bounds(), voxel_m);
-    if (need > options.max_memory_bytes) {
-        throw Error(ErrorKind::input,
-                    std::to_string(cloud.size()) + " points at voxels of " +
-                        io::short_number(voxel_m) + " m may need " + io::bytes_text(need) +
-                        ", more than the " + io::bytes_text(options.max_memory_bytes) +
-                        " of --max-memory; use a larger --voxel" +
-                        (io::looks_like_sequence(source) || io::looks_like_octomap(source) ||
-                                 vdb::looks_like_volume(source)
-                             ? ""
-                             : ", or --tile 5 to have it parsed in blocks"));
+// Objects and what may happen to them, from the groundwork on.
+ParseResult build_on(device::Device& device, Groundwork ground, const ParseOptions& options,
+                     Scene scene, StageClock& stage) {
+    record_run(device, options, ground.voxel_m, scene);
+    scene.offset_m = ground.offset_m;
+    scene.notes = std::move(ground.notes);
+    SolidParts& parts = ground.parts;
+    std::shared_ptr<const SolidScene> solids = parts.solids;
+    const ObjectStage objects =
+        find_objects(device, options, stage, parts, std::move(ground.weighed));  // 3, 4
+    if (objects.taken) {
+        take_away(*objects.taken, *ground.voxels);
+        solids = objects.taken->solids;
     }
-}
-
-ParseResult parse_ingested(device::Device& device, Ingested input, const ParseOptions& options,
-                           Scene scene, StageClock& stage) {
-    const double voxel_m = voxel_for_input(input, options);
-    check_memory(input.cloud, scene.source, voxel_m, options);
-    record_run(device, options, voxel_m, scene);
-    scene.offset_m = input.own.offset_m;
-    scene.notes.insert(scene.notes.end(), input.notes.begin(), input.notes.end());
-    const double extent = extent_m({input.cloud.x, input.cloud.y, input.cloud.z});
-    note_small_extent(extent, scene);
-
-    const GeometryStage geometry = find_primitives(device, input, options, stage);  // 2.1
-    if (!geometry.frame.note.empty()) scene.notes.push_back(geometry.frame.note);
-    VoxelStage voxels = make_solids(device, input, geometry, voxel_m, stage);  // 2.2
-    if (voxels.solids->primitives() == 0) {
-        const std::string scale = io::looks_like_sequence(scene.source) && input.frames
-                                      ? depth_scale_hint(*input.frames)
-                                      : small_extent_hint(extent, scene.source);
-        throw Error(ErrorKind::input,
-                    scene.source + ": " + io::counted(input.cloud.size(), "point") +
-                        (input.cloud.size() == 1 ? " was" : " were") +
-                        " found, but no surface of them fills the " + std::to_string(least_voxels) +
-                        " voxels that a solid takes; give a denser scan, or a smaller --voxel" +
-                        (scale.empty() ? "" : "; " + scale));
-    }
-    SolidParts parts = solid_parts(geometry, voxels);
-    const ObjectStage objects = find_objects(device, options, stage, parts);  // 3, 4
-    take_over(parts.solids, voxels);
+    take_over(*solids, *parts.solids, *ground.voxels);
     const SafetyStage safety = assess_safety(device, parts, objects, options, stage);  // 5
+    ParseResult result{{}, ground.voxels, nullptr, parts.solids};
     stage("assembly", [&] {
         assemble_objects(parts, objects, safety, scene);
-        assemble_points(input, geometry, voxels, parts, objects, safety, scene);
-        if (options.coordinates) take_coordinates(input, scene.points);
+        assemble_points(std::move(ground), objects, safety, scene);
     });
-    return {std::move(scene), std::move(voxels.scene), nullptr, std::move(parts.solids)};
+    result.scene = std::move(scene);
+    return result;
 }
 
-template <class Ingest>
-ParseResult run(const std::string& source, const ParseOptions& options, Ingest ingest_input) {
-    check_options(options);
+using Timings = std::vector<std::pair<std::string, double>>;
+
+// lay(device, stage): the groundwork. timings: of the stages before it.
+template <class Lay>
+ParseResult run(const std::string& source, const ParseOptions& options, Lay lay,
+                Timings timings = {}) {
     const auto device = options.device ? options.device : device::open_device("auto");
     // The clock writes into a list of its own: the scene moves while stages are still running.
-    std::vector<std::pair<std::string, double>> timings;
     StageClock stage(timings, options);
     const Cancelling cancelling(*device, options);
-    Ingested input = stage("ingest", [&] { return ingest_input(*device); });
+    Groundwork ground = lay(*device, stage);
     Scene scene;
     scene.source = source;
-    ParseResult result =
-        parse_ingested(*device, std::move(input), options, std::move(scene), stage);
+    ParseResult result = build_on(*device, std::move(ground), options, std::move(scene), stage);
     result.scene.timings_s = std::move(timings);
     return result;
+}
+
+bool keeps_groundwork(const ParseOptions& options) {
+    return !options.cache_file.empty() && options.tile_m == 0;
+}
+
+// cache: where it was looked for already.
+ParseResult parse_whole(const std::filesystem::path& input, const ParseOptions& options,
+                        GroundworkFile cache, Timings timings) {
+    const auto lay = [&](device::Device& device, StageClock& stage) {
+        Ingested ingested = stage("ingest", [&] {
+            Ingested read = ingest(device, input, options);
+            // Of what can be read: what can't may be of any size.
+            if (keeps_groundwork(options) && !cache.usable())
+                cache = GroundworkFile(input, options);
+            return read;
+        });
+        Groundwork ground =
+            lay_groundwork(device, std::move(ingested), options, input.string(), stage);
+        if (cache.usable()) stage("cache", [&] { cache.write(ground); });
+        return ground;
+    };
+    return run(input.string(), options, lay, std::move(timings));
 }
 
 }  // namespace
@@ -157,6 +145,8 @@ void check_options(const ParseOptions& o) {
     check_range("--tolerable", o.tolerable_J, 0, 1e9);
     if (o.tile_m != 0) check_range("--tile", o.tile_m, least_tile_m, 1000);
     if (o.grouping_time_s) check_range("--grouping-time", *o.grouping_time_s, 0, 86400);
+    if (const auto wrong = fault_of(o.corrections))
+        throw Error(ErrorKind::usage, "corrections: " + *wrong);
     for (const std::string& name : o.disturbances) safety::disturbance_kind(name);
 }
 
@@ -167,15 +157,35 @@ std::vector<std::string> known_disturbances() {
     return names;
 }
 
-ParseResult parse(const std::filesystem::path& input, const ParseOptions& options) {
+ParseResult parse(const std::filesystem::path& input, const ParseOptions& callers) {
+    check_options(callers);
+    ParseOptions options = callers;
+    GroundworkFile cache;
+    Timings timings;
+    if (keeps_groundwork(options) && !options.device) options.device = device::open_device("auto");
+    std::error_code error;
+    if (keeps_groundwork(options) && std::filesystem::exists(options.cache_file, error)) {
+        std::optional<Groundwork> ground = StageClock(timings, options)("cache", [&] {
+            cache = GroundworkFile(input, options);
+            return cache.read();
+        });
+        if (ground)
+            return run(
+                input.string(), options,
+                [&](device::Device&, StageClock&) { return *std::move(ground); },
+                std::move(timings));
+    }
     if (std::optional<ParseResult> tiled = parse_tiled(input, options)) return *std::move(tiled);
-    return run(input.string(), options,
-               [&](device::Device& device) { return ingest(device, input, options); });
+    return parse_whole(input, options, std::move(cache), std::move(timings));
 }
 
 ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
-    return run(cloud.source.empty() ? "cloud" : cloud.source, options,
-               [&](device::Device& device) { return ingest_view(device, cloud, options); });
+    check_options(options);
+    const std::string source = cloud.source.empty() ? "cloud" : cloud.source;
+    return run(source, options, [&](device::Device& device, StageClock& stage) {
+        Ingested input = stage("ingest", [&] { return ingest_view(device, cloud, options); });
+        return lay_groundwork(device, std::move(input), options, source, stage);
+    });
 }
 
 void add_coordinates(const CloudView& cloud, ParseResult& result) {

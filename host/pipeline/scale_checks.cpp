@@ -63,11 +63,12 @@ std::string small_extent_hint(double extent_m, const std::filesystem::path& sour
            (io::looks_like_sequence(source) ? "depth_scale in intrinsics.json" : "--unit");
 }
 
-void note_small_extent(double extent_m, Scene& scene) {
-    std::string note = small_extent_hint(extent_m, scene.source);
+void note_small_extent(double extent_m, const std::string& source,
+                       std::vector<std::string>& notes) {
+    std::string note = small_extent_hint(extent_m, source);
     if (note.empty()) return;
     note[0] = 'I';
-    scene.notes.push_back(note + ".");
+    notes.push_back(note + ".");
 }
 
 std::string depth_scale_hint(std::size_t frames, double depth_scale, double typical_depth_m) {

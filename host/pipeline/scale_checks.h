@@ -25,7 +25,7 @@ void check_spacing(const CloudView& cloud, double spacing_m);
 // what else gives the unit of such an input; else "".
 std::string small_extent_hint(double extent_m, const std::filesystem::path& source);
 // The same as a note of a scene from that source, which else shows shards of nothing in particular.
-void note_small_extent(double extent_m, Scene& scene);
+void note_small_extent(double extent_m, const std::string& source, std::vector<std::string>& notes);
 
 // Of frames whose typical reading is this far away: "at the depth_scale of intrinsics.json, 1, the
 // readings of 4 depth frames lie about 1500 m away: check it ...".

@@ -262,6 +262,7 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
                                                      layout, std::move(joined.number));
     parts.points = tiled->count_points(parts.model.size());
     const ObjectStage objects = find_objects(device, options, stage, parts);
+    if (objects.taken) tiled->take_away(*objects.taken);
     SafetyStage safety = assess_safety(device, parts, objects, options, stage);
     stage("assembly", [&] {
         assemble_objects(parts, objects, safety, scene);
@@ -269,7 +270,8 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
                                         objects.object_of_primitive);
         tiled->set_objects(objects.object_of_primitive);
         scene.points = tiled->sample(sampled_points);
-        note_small_extent(extent_m({scene.points.x, scene.points.y, scene.points.z}), scene);
+        note_small_extent(extent_m({scene.points.x, scene.points.y, scene.points.z}), scene.source,
+                          scene.notes);
         std::vector<TiledResult::Exposure> exposures;
         for (safety::Disturbance& d : safety.disturbances)
             if (!d.exposure.empty()) exposures.push_back({d.name, std::move(d.exposure)});

@@ -35,6 +35,14 @@ TiledResult::TiledResult(std::unique_ptr<tiles::WorkFolder> work, std::filesyste
     }
 }
 
+void TiledResult::take_away(const TakenAway& taken) {
+    for (auto& of_bin : label_)
+        for (std::int32_t& p : of_bin)
+            if (p >= 0) p = taken.number[static_cast<std::size_t>(p)];
+    for (const TakenAway::Voxel& v : taken.changed)
+        if (v.primitive < 0) empty_.push_back(v.at);
+}
+
 std::vector<std::uint64_t> TiledResult::count_points(std::size_t primitives) const {
     std::vector<std::uint64_t> out(primitives, 0);
     for (std::size_t b = 0; b < bins_.size(); ++b) {
@@ -121,6 +129,7 @@ vdb::VoxelScene TiledResult::load_voxels() const {
         for (std::size_t n = 0; n < block.leaves.size() / 3; ++n)
             scene.put_leaf(lowest(block.leaves, n), std::span(block.states).subspan(n * 512, 512));
     }
+    scene.set_empty(empty_);
     const SolidCells& cells = solids_->cells();
     for (std::size_t n = 0; n < cells.size(); ++n)
         scene.put_label(cells.i[n], cells.j[n], cells.k[n], cells.primitive[n]);

@@ -11,6 +11,7 @@
 
 #include "core/solid_scene.h"
 #include "pipeline/join_blocks.h"
+#include "pipeline/taken_away.h"
 #include "tiles/blocks.h"
 #include "tiles/work_folder.h"
 #include "topple/scene.h"
@@ -34,6 +35,8 @@ class TiledResult {
     void set_objects(std::vector<std::int32_t> object_of_primitive) {
         object_of_primitive_ = std::move(object_of_primitive);
     }
+    // What is taken away by hand, before the other two.
+    void take_away(const TakenAway& taken);
     // A field's strength at each of the cells, for the volume.
     struct Exposure {
         std::string name;
@@ -66,6 +69,7 @@ class TiledResult {
     BlockNumbers number_;
     std::vector<std::vector<std::int32_t>> label_;  // by bin, of its thinned points
     std::vector<std::int32_t> object_of_primitive_;
+    std::vector<vdb::Voxel> empty_;  // what is taken away of the blocks' voxels
     std::shared_ptr<const SolidScene> solids_;
     std::vector<Exposure> exposures_;
 };

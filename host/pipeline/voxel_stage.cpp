@@ -184,6 +184,30 @@ std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Inge
                                               std::move(boundary));
 }
 
+// Returns whether the frames show the scene from around.
+bool carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScene& scene,
+               StageClock& stage) {
+    ViewCoverage coverage(scene.frame().grid_from_input);
+    const Intrinsics& k = frames.intrinsics();
+    const std::uint64_t frame_bytes = std::uint64_t{2} * k.width * k.height;
+    const std::size_t per_batch =
+        static_cast<std::size_t>(std::clamp<std::uint64_t>(batch_bytes / frame_bytes, 1, 64));
+    std::vector<DepthFrame> batch;
+    for_each_frame(frames, device.threads(), [&](DepthFrame frame, std::size_t f) {
+        batch.push_back(std::move(frame));
+        coverage.add(batch.back().camera_to_world);
+        if (batch.size() < per_batch && f + 1 < frames.size()) return;
+        scene.carve(device, k, batch);
+        batch.clear();
+        stage.progress("carving", static_cast<double>(f + 1) / static_cast<double>(frames.size()));
+    });
+    return coverage.from_around();
+}
+
+constexpr const char* fraction_field = "fraction";
+
+}  // namespace
+
 // The part of each voxel that is solid, of whichever primitives.
 void store_fractions(const SolidScene& solids, vdb::VoxelScene& volume) {
     const SolidCells cells = solids.with_strays();
@@ -217,40 +241,31 @@ void store_fractions(const SolidScene& solids, vdb::VoxelScene& volume) {
         add(at, whole ? BoundaryCells::whole : share);
         n += own != -2;
     }
-    volume.add_field("fraction", i, j, k, fraction);
+    volume.add_field(fraction_field, i, j, k, fraction);
 }
 
-// Returns whether the frames show the scene from around.
-bool carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScene& scene,
-               StageClock& stage) {
-    ViewCoverage coverage(scene.frame().grid_from_input);
-    const Intrinsics& k = frames.intrinsics();
-    const std::uint64_t frame_bytes = std::uint64_t{2} * k.width * k.height;
-    const std::size_t per_batch =
-        static_cast<std::size_t>(std::clamp<std::uint64_t>(batch_bytes / frame_bytes, 1, 64));
-    std::vector<DepthFrame> batch;
-    for_each_frame(frames, device.threads(), [&](DepthFrame frame, std::size_t f) {
-        batch.push_back(std::move(frame));
-        coverage.add(batch.back().camera_to_world);
-        if (batch.size() < per_batch && f + 1 < frames.size()) return;
-        scene.carve(device, k, batch);
-        batch.clear();
-        stage.progress("carving", static_cast<double>(f + 1) / static_cast<double>(frames.size()));
-    });
-    return coverage.from_around();
-}
-
-}  // namespace
-
-void take_over(std::shared_ptr<const SolidScene> solids, VoxelStage& stage) {
-    SolidCells cells = stage.solids->cells();
-    const SolidCells& now = solids->cells();
+void take_over(const SolidScene& before, const SolidScene& now, vdb::VoxelScene& scene) {
+    SolidCells cells = before.cells();
+    const SolidCells& to = now.cells();
     std::vector<vdb::Claim> claims;
     for (std::size_t n = 0; n < cells.size(); ++n)
-        if (now.primitive[n] != cells.primitive[n])
-            claims.push_back({{now.i[n], now.j[n], now.k[n]}, now.primitive[n], now.basis[n]});
-    vdb::commit(claims, *stage.scene, cells);
-    stage.solids = std::move(solids);
+        if (to.primitive[n] != cells.primitive[n])
+            claims.push_back({{to.i[n], to.j[n], to.k[n]}, to.primitive[n], to.basis[n]});
+    vdb::commit(claims, scene, cells);
+}
+
+void take_away(const TakenAway& taken, vdb::VoxelScene& scene) {
+    scene.relabel(taken.number);
+    std::vector<vdb::Voxel> empty;
+    for (const TakenAway::Voxel& v : taken.changed) {
+        if (v.primitive < 0)
+            empty.push_back(v.at);
+        else
+            scene.put_label(v.at[0], v.at[1], v.at[2], v.primitive);
+    }
+    scene.set_empty(empty);
+    scene.remove_field(fraction_field);
+    store_fractions(*taken.solids, scene);
 }
 
 std::vector<std::int32_t> numbered(std::span<const std::int32_t> primitive,

@@ -12,6 +12,7 @@
 #include "pipeline/geometry_stage.h"
 #include "pipeline/ingest.h"
 #include "pipeline/stage_clock.h"
+#include "pipeline/taken_away.h"
 #include "vdb/voxel_scene.h"
 
 // Section 2.2 of the paper: from labelled points to solid voxels.
@@ -34,7 +35,13 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, const Geom
                        double voxel_m, StageClock& stage);
 
 // What of the solids is found to be no primitive's, the same cells being solid.
-void take_over(std::shared_ptr<const SolidScene> solids, VoxelStage& stage);
+void take_over(const SolidScene& before, const SolidScene& now, vdb::VoxelScene& scene);
+
+// What is taken away by hand: voxels that are empty, or others'; primitives have other numbers.
+void take_away(const TakenAway& taken, vdb::VoxelScene& scene);
+
+// Adds the field of how much of each voxel is solid.
+void store_fractions(const SolidScene& solids, vdb::VoxelScene& volume);
 
 // Labels by primitive as labels by solid.
 std::vector<std::int32_t> numbered(std::span<const std::int32_t> primitive,

@@ -2,6 +2,7 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <system_error>
 #include <vector>
 
 #include "core/solid_scene.h"
@@ -11,6 +12,7 @@
 #include "io/output_folder.h"
 #include "io/scene_json.h"
 #include "io/solids_file.h"
+#include "io/text.h"
 #include "io/write_ply.h"
 #include "pipeline/object_surfaces.h"
 #include "pipeline/objects_glb.h"
@@ -37,6 +39,15 @@ void write_points(const std::filesystem::path& file, const ParseResult& result, 
     } else {
         io::write_points_ply(file, result.scene.points);
     }
+}
+
+// A cache that was not written is none: the next parse begins anew.
+void move_in(const std::filesystem::path& from, const std::filesystem::path& to) {
+    std::error_code error;
+    if (!std::filesystem::exists(from, error)) return;
+    std::filesystem::rename(from, to, error);
+    if (error) std::filesystem::copy_file(from, to, error);
+    if (error) io::fail(to, "can't be written: " + error.message());
 }
 
 // Of a cloud that was parsed in blocks nothing is known within voxels.
@@ -84,6 +95,8 @@ std::vector<std::function<void()>> writers(const std::filesystem::path& folder,
     out.emplace_back([=, &scene] { io::write_solid_ply(folder / "solid.ply", scene.solid); });
     if (result.solids)
         out.emplace_back([=, &result] { io::write_solids(folder / "solids.bin", *result.solids); });
+    if (!options.cache_file.empty())
+        out.emplace_back([=, &options] { move_in(options.cache_file, folder / "parse.cache"); });
     if (options.octomap) out.emplace_back([=] { write_map(folder / "map.bt", *voxels.get()); });
     out.emplace_back([=, &scene] {
         io::write_landscapes_json(folder / "landscapes.json", scene);

@@ -159,6 +159,14 @@ void bind_parse(py::module_& module) {
                 const std::optional<std::string>& up) {
                  o.accelerogram = read_accelerogram(along, across, up);
              })
+        .def("read_corrections",
+             [](ParseOptions& o, const std::string& file) {
+                 o.corrections = read_corrections(file);
+             })
+        .def("take_corrections",
+             [](ParseOptions& o, const std::string& json) { o.corrections = corrections_of(json); })
+        .def("set_cache_file",
+             [](ParseOptions& o, const std::string& file) { o.cache_file = file; })
         .def("read_hazard_curve",
              [](ParseOptions& o, const std::string& file) { o.hazard = read_hazard_curve(file); });
     module.def(

@@ -37,7 +37,8 @@ void bind_items(py::module_& module) {
         .def_readonly("solid_voxels", &Primitive::solid_voxels)
         .def_readonly("volume_m3", &Primitive::volume_m3)
         .def_readonly("mass_kg", &Primitive::mass_kg)
-        .def_readonly("center_of_mass_m", &Primitive::center_of_mass_m);
+        .def_readonly("center_of_mass_m", &Primitive::center_of_mass_m)
+        .def_readonly("name", &Primitive::name);
     py::class_<Overturning>(module, "Overturning")
         .def_readonly("tilt_deg", &Overturning::tilt_deg)
         .def_readonly("tilt_error_deg", &Overturning::tilt_error_deg)
@@ -149,8 +150,11 @@ void bind_items(py::module_& module) {
         .def_readonly("fall", &Object::fall)
         .def_property_readonly("stands_on", [](const Object& o) { return o.why.stands_on; })
         .def_property_readonly("advice", [](const Object& o) { return o.advice.sentence; })
+        .def_readonly("name", &Object::name)
+        .def_readonly("corrected", &Object::corrected)
         .def("__repr__", [](const Object& o) {
-            return "<topple.Object " + std::to_string(o.id) + ", unsafety " +
+            return "<topple.Object " + std::to_string(o.id) +
+                   (o.name.empty() ? "" : ", " + o.name) + ", unsafety " +
                    std::to_string(o.unsafety).substr(0, 4) + ">";
         });
     py::class_<Contact>(module, "Contact")
@@ -165,6 +169,16 @@ void bind_items(py::module_& module) {
         .def_readonly("supported", &Support::supported)
         .def_readonly("area_m2", &Support::area_m2)
         .def_readonly("probability", &Support::probability);
+    py::class_<AppliedCorrection>(module, "AppliedCorrection")
+        .def_property_readonly(
+            "do", [](const AppliedCorrection& c) { return to_string(c.correction.kind); })
+        .def_readonly("held", &AppliedCorrection::held)
+        .def_readonly("outcome", &AppliedCorrection::outcome)
+        .def_readonly("objects", &AppliedCorrection::objects)
+        .def("__repr__", [](const AppliedCorrection& c) {
+            return std::string("<topple.AppliedCorrection ") + to_string(c.correction.kind) + ": " +
+                   c.outcome + ">";
+        });
 }
 
 template <class Member>
@@ -235,6 +249,9 @@ void bind_result(py::module_& module) {
             "contacts", [](const py::object& self) { return items(scene_of(self).contacts, self); })
         .def_property_readonly(
             "supports", [](const py::object& self) { return items(scene_of(self).supports, self); })
+        .def_property_readonly(
+            "corrections",
+            [](const py::object& self) { return items(scene_of(self).corrections, self); })
         .def_property_readonly("x", point_array(&ScenePoints::x))
         .def_property_readonly("y", point_array(&ScenePoints::y))
         .def_property_readonly("z", point_array(&ScenePoints::z))

@@ -45,15 +45,16 @@ class BinaryWriter {
         value(static_cast<std::uint64_t>(values.size()));
         put(values.data(), values.size() * sizeof(T));
     }
-    void finish() {
+    // durable: whether it must be there after a loss of power.
+    void finish(bool durable = true) {
         const Checksum::Value sum = sum_.value();
         writer_.write(&sum, sizeof(sum));
-        writer_.sync();
+        if (durable) writer_.sync();
         writer_.close();
         std::error_code error;
         std::filesystem::rename(part_, file_, error);
         if (error) io::fail(file_, "can't be written: " + error.message());
-        io::sync_folder(file_.parent_path());
+        if (durable) io::sync_folder(file_.parent_path());
     }
 
   private:

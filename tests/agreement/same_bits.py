@@ -107,7 +107,7 @@ def main():
                         for threads in args.threads:
                             out = folder / 'out'
                             command = [program, 'parse', file, '-o', out, '--backend', backend, '--threads', str(threads),
-                                       '--quiet', *options]
+                                       '--quiet', '--no-cache', *options]
                             subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
                             got = hashes(out, ordered)
                             runs += 1

@@ -171,7 +171,7 @@ def measure(a, seed):
     row.update({key: value for key, value in json.loads(said.out).items() if key in COLUMNS})
 
     def parse(*more):
-        return Ran([a.program, 'parse', file, '-o', folder / 'out', *options, *common, *more])
+        return Ran([a.program, 'parse', file, '-o', folder / 'out', '--no-cache', *options, *common, *more])
 
     whole = parse()
     if whole.code != 0:

@@ -12,6 +12,7 @@
 #include "io/scene_json.h"
 #include "io/text.h"
 #include "io/volume_checks.h"
+#include "topple/corrections.h"
 #include "topple/error.h"
 #include "topple/motion.h"
 
@@ -81,6 +82,10 @@ void read_as_hazard(const fs::path& file) {
     expect(curve.pga_g.size() >= 2 && !curve.fault(), "a hazard curve with a fault");
 }
 
+void read_as_corrections(const fs::path& file) {
+    expect(!fault_of(read_corrections(file)), "corrections with a fault");
+}
+
 constexpr Reader all[] = {
     {"ply", "in.ply", read_as_cloud},
     {"pcd", "in.pcd", read_as_cloud},
@@ -109,6 +114,7 @@ constexpr Reader all[] = {
     {"record_json", "in.json", read_as_record},
     {"record_text", "in.txt", read_as_record},
     {"hazard", "in.txt", read_as_hazard},
+    {"corrections", "in.json", read_as_corrections},
     {"scene", "in.json", [](const fs::path& file) { io::read_scene_json(file); }},
     {"landscapes", "in.json",
      [](const fs::path& file) {

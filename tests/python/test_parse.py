@@ -272,6 +272,34 @@ def test_colours_come_along(points, device, tmp_path):
         topple.parse(str(tmp_path), colours=colours)
 
 
+def test_takes_corrections(points, device, tmp_path):
+    on_crate, on_box = np.array([1.0, 1.2, 0.25]), (1.2, 1.2, 0.7)
+    listed = [{'do': 'one_thing', 'at_m': [on_crate, on_box]}, {'do': 'mass', 'at_m': [on_box], 'kg': np.float32(12.5)},
+              {'do': 'name', 'at_m': [list(on_crate)], 'name': 'chest'}, {'do': 'fixed', 'at_m': [[0.5, 0.5, 0.9]]}]
+    corrected = quick(points, device, corrections=listed)
+    chest = corrected.objects[corrected.corrections[0].objects[0]]
+    assert (chest.name, chest.corrected) == ('chest', [1, 2, 3]) and abs(chest.mass_kg - 12.5) < 1e-6
+    assert [c.do for c in corrected.corrections] == ['one_thing', 'mass', 'name', 'fixed']
+    assert [c.outcome for c in corrected.corrections[:3]] == ['held'] * 3
+    assert not corrected.corrections[3].held and 'nothing' in corrected.corrections[3].outcome
+    assert not quick(points, device).corrections
+    for wrong, why in ((7, 'list of dicts'), ([7], 'list of dicts'), ([{'do': 'glue'}], 'correction 1'),
+                       ([{'do': 'name', 'at_m': [on_box], 'name': object()}], 'no number')):
+        with pytest.raises(topple.Error, match=why):
+            quick(points, device, corrections=wrong)
+    file = tmp_path / 'scan.xyz'
+    np.savetxt(file, points, fmt='%.4f')
+    (tmp_path / 'corrections.json').write_text(json.dumps(
+        {'schema': 'topple.corrections/1', 'corrections': [{'do': 'not_there', 'at_m': [on_box]}]}))
+    stages = []
+    for _ in range(2):
+        stages.clear()
+        kept = topple.parse(file, device=device, disturbances=[], corrections=tmp_path / 'corrections.json',
+                            cache_file=tmp_path / 'cache', progress=lambda stage, done: stages.append(stage))
+        assert kept.corrections[0].held and len(kept.objects) == 2
+    assert stages[0] == 'cache' and 'ingest' not in stages  # it goes on from what the first one kept
+
+
 def test_the_stubs_name_what_there_is(result):
     stub = open(os.path.join(os.path.dirname(topple.__file__), '__init__.pyi'), encoding='utf-8').read()
     for kind, item in (('Object', result.objects[0]), ('Primitive', result.primitives[0]), ('Result', result),

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "topple/cloud_view.h"
+#include "topple/corrections.h"
 #include "topple/device.h"
 #include "topple/error.h"
 #include "topple/input.h"
@@ -67,6 +68,14 @@ struct ParseOptions {
     // crashes there is an Error here. Without, they read in this process, without limits, which is
     // for files that you trust. What is parsed from memory needs no such library.
     bool isolate = true;
+    // What is known of the room beside the scan (read_corrections). Of what the scan does not show
+    // there, or that others rule out, Scene::corrections tells; where two of them contradict each
+    // other the parse ends with Error(input).
+    std::vector<Correction> corrections;
+    // A file that keeps what does not depend on corrections and disturbances, of a scan that is
+    // read from files and parsed in one piece. Where it fits the scan and the options, the parse
+    // goes on from there, with the same result; else it is made anew. Empty: none.
+    std::filesystem::path cache_file;
     // Seconds for the search for objects, about; none: as long as it takes. Where a limit is met,
     // the objects depend on the machine.
     std::optional<double> grouping_time_s;
@@ -89,8 +98,8 @@ struct ParseOptions {
     // Polled now and then; true stops the parse with Error(input) "cancelled".
     std::function<bool()> cancelled;
     // Called on the same thread with what a user may want to know while it runs, a line each: that
-    // it goes on with what an earlier run has left in the work folder, or makes what is damaged
-    // there anew.
+    // it goes on with what an earlier run has left in the work folder or the cache, or makes what
+    // is damaged there anew.
     std::function<void(const std::string&)> notice;
 };
 
@@ -126,7 +135,9 @@ struct OutputOptions {
     bool pictures = false;  // the report's main views, too, as view-*.png
     bool glb = false;       // the solids as a mesh per object, too: objects.glb
     bool octomap = false;   // what was seen to be free and occupied, too: map.bt
-    unsigned threads = 0;   // 1: no thread but the caller's
+    // ParseOptions::cache_file, to be moved into the folder as parse.cache. Empty: none.
+    std::filesystem::path cache_file;
+    unsigned threads = 0;  // 1: no thread but the caller's
     // Polled now and then, from any thread; true ends the writing with Error(input) "cancelled".
     std::function<bool()> cancelled;
 };

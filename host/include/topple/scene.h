@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "topple/corrections.h"
 #include "topple/input.h"
 
 // The result of a parse. Lengths in metres, masses in kilograms, energies in joules; every
@@ -25,6 +26,7 @@ struct Primitive {
     double volume_m3 = 0;
     double mass_kg = 0;
     Vec3 center_of_mass_m{};
+    std::string name{};  // given by hand to what is fixed to the ground; else Object::name is
 };
 
 // One step of the instability curve S(W) (paper, Eq. 6).
@@ -171,8 +173,8 @@ struct Object {
     double mass_kg = 0;
     // Its box along the room's axes (Scene::manhattan_from_input), the third upright; to a voxel.
     Vec3 size_m{};
-    // "solid", of the density that was given all through; or "closed": furniture that is boards of
-    // that density around ParseOptions::contents_kg_m3.
+    // "solid", of the density that was given all through; "closed": furniture that is boards of
+    // that density around ParseOptions::contents_kg_m3; or "hollow": a shell, as a correction says.
     std::string mass_model = "solid";
     Vec3 center_of_mass_m{};
     Mat3 inertia_kg_m2{};  // about its centre of mass, along the axes of the input, row-major
@@ -214,6 +216,9 @@ struct Object {
     double rest_probability = 1;
     Fall fall;
     Advice advice;
+    std::string name{};  // given by hand; mostly empty
+    std::vector<std::int32_t>
+        corrected{};  // numbers of the corrections about it, from 1, ascending
 };
 
 // Whether the barrier can't be told from 0: what is known then is 0 to barrier_J + barrier_error_J.
@@ -303,6 +308,7 @@ struct Scene {
     std::vector<std::pair<std::string, double>> timings_s;  // in the order of the stages
     std::vector<double> swc_energy;  // best energy after each sweep of the sampler (paper, Fig. 7d)
     std::vector<std::string> notes;  // what the reader of the result should know, in sentences
+    std::vector<AppliedCorrection> corrections;  // those of ParseOptions, in their order
     ScenePoints points;
     SolidVoxels solid;
     std::map<std::string, FieldSamples> fields;  // by disturbance

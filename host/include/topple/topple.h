@@ -142,6 +142,10 @@ typedef struct topple_options {
      * they are exceeded; 0: not known. Read during the parse alone. */
     const double *hazard_pga_g, *hazard_per_year;
     uint64_t hazard_points;
+    /* What is known of the room beside the scan (docs/corrections.md): a file, or a file's text;
+     * one of both at most. NULL: nothing. */
+    const char *corrections_file, *corrections_json;
+    const char* cache_file; /* what does not depend on corrections (topple/parse.h); NULL: none */
 } topple_options;
 void topple_options_init(topple_options* options, size_t size);
 
@@ -163,6 +167,7 @@ typedef struct topple_scene {
     double up[3];
     double manhattan_from_input[16]; /* row-major 4x4 */
     uint64_t seed, points, primitives, objects, contacts, supports, notes;
+    uint64_t corrections;
 } topple_scene;
 typedef struct topple_primitive {
     size_t size;
@@ -170,6 +175,7 @@ typedef struct topple_primitive {
     const char* model;
     uint64_t points, solid_voxels;
     double volume_m3, mass_kg, center_of_mass_m[3];
+    const char* name; /* given by hand to what is fixed to the ground; else "" */
 } topple_primitive;
 typedef struct topple_step { /* of the instability curve S(W) */
     double W_J, S_J;
@@ -191,7 +197,7 @@ typedef struct topple_object {
     const char *why, *advice; /* sentences */
     /* one standard error each, as barrier_error_J */
     double mass_error_kg, center_of_mass_error_m[3], footprint_error_m;
-    const char* mass_model;  /* "solid", or "closed": boards around contents */
+    const char* mass_model;  /* "solid", "closed" (boards around contents) or "hollow" (by hand) */
     double inertia_kg_m2[9]; /* about its centre of mass, along the input's axes, row-major */
     /* to overturn it slowly (struct Overturning of topple/scene.h); NaN where it can't tip */
     double tilt_deg, tilt_error_deg, overturning_direction[3];
@@ -216,6 +222,9 @@ typedef struct topple_object {
      * better end says the same; "": not seen enough */
     const char* unsafety_category;
     int32_t unsafety_certain;
+    const char* name;         /* given by hand, or "" */
+    const int32_t* corrected; /* numbers of the corrections about it, from 1 */
+    uint64_t corrected_count;
 } topple_object;
 typedef struct topple_contact {
     size_t size;
@@ -251,6 +260,17 @@ int topple_result_risk(const topple_result* result, uint64_t index, const char* 
 int topple_result_risk_error(const topple_result* result, uint64_t index, const char* disturbance,
                              double* error_J, double* spread_J, topple_status* status);
 const char* topple_result_note(const topple_result* result, uint64_t index); /* NULL: no such */
+/* What became of correction index + 1 of those given. */
+typedef struct topple_correction {
+    size_t size;
+    const char* what;    /* "one_thing", "apart", .. */
+    const char* outcome; /* "held", or what kept it from that */
+    int32_t held;
+    const int32_t* objects; /* that it is about */
+    uint64_t object_count;
+} topple_correction;
+int topple_result_correction(const topple_result* result, uint64_t index,
+                             topple_correction* correction, topple_status* status);
 
 /* Arrays over the points, `points` of the topple_scene long, in the input's order. */
 const int32_t* topple_result_point_primitives(const topple_result* result);

@@ -11,6 +11,7 @@ Lengths in metres, masses in kilograms, energies in joules, in the input's frame
 unassigned. Object.unsafety, 1 to 10, is NaN where what holds the object was not seen: such objects have no rank, and
 a sort by unsafety alone would be left in no order. What goes wrong is raised as topple.Error.
 """
+import json
 import os
 import threading
 from typing import NamedTuple
@@ -20,11 +21,11 @@ import numpy as np
 from . import _snapshot, _tables, _topple, formats, plot, stages
 from ._arrays import channels as _channels, columns as _columns, usage as _usage
 from ._program import generate
-from ._topple import Contact, Device, DirectedBarrier, Error, Fall, Object, Overturning, Primitive, Support, __version__, open_device
+from ._topple import AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Object, Overturning, Primitive, Support, __version__, open_device
 from .foxglove import to_mcap
 from .rerun_viewer import to_rerun
 
-__all__ = ['Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Object', 'Overturning', 'Primitive', 'Result',
+__all__ = ['AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Object', 'Overturning', 'Primitive', 'Result',
            'Support', '__version__', 'devices', 'formats', 'generate', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
 
 
@@ -162,6 +163,19 @@ def _files(given):
     return [os.fspath(given)] if isinstance(given, (str, os.PathLike)) else [os.fspath(file) for file in given]
 
 
+def _corrections_text(corrections):
+    """The file's text of a list of corrections; numbers and arrays of NumPy are taken as they are in lists."""
+    def plain(value):
+        if hasattr(value, 'tolist'):
+            return value.tolist()
+        raise _usage(f'corrections: {value!r} is no number, text or list')
+    try:
+        listed = [dict(c) for c in corrections]
+    except (TypeError, ValueError):
+        raise _usage(f'corrections: expected a file or a list of dicts, not {corrections!r}'[:200]) from None
+    return json.dumps({'schema': 'topple.corrections/1', 'corrections': listed}, default=plain)
+
+
 def _components(accelerogram):
     """The paths of a record's components along, across and up, None where one is not known."""
     given = [accelerogram] if isinstance(accelerogram, (str, os.PathLike)) else list(accelerogram)
@@ -172,7 +186,7 @@ def _components(accelerogram):
 
 def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=None,
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, wind_m_s=12.0,
-          wind_from_deg=None, pga_m_s2=None, accelerogram=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, grouping_time_s=None, normals=None,
+          wind_from_deg=None, pga_m_s2=None, accelerogram=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, grouping_time_s=None, corrections=None, cache_file=None, normals=None,
           viewpoint=None, colours=None, isolate=True, progress=None, cancelled=None):
     """Parses a scan into a Result.
 
@@ -191,6 +205,9 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     points, as they are given; where the sensor was. colours: of points, sRGB as uint8, an array of shape (N, 3),
     records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. progress(stage, done) is called as stages start and go on;
     contents_kg_m3: of closed furniture, or None where all is solid.
+    corrections: what you know of the room beside the scan: a file, or a list of dicts such as {"do": "fixed", "at_m":
+    [[x, y, z]]} (docs/corrections.md); Result.corrections says what became of each. cache_file: keeps what does not
+    depend on them, so that the next parse of that file or folder is quick.
     cancelled() is polled, and True stops the parse with an Error of kind "cancelled". Ctrl-C stops it, too, with
     KeyboardInterrupt. isolate=False: meshes, OctoMaps and OpenVDB files are read in this process, not in one of
     its own with limits of memory and time; for large files that you trust. Other threads of Python run meanwhile. The other options
@@ -212,6 +229,12 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     options.floor_amplification = floor_amplification
     if hazard is not None:
         options.read_hazard_curve(os.fspath(hazard))
+    if isinstance(corrections, (str, os.PathLike)):
+        options.read_corrections(os.fspath(corrections))
+    elif corrections is not None:
+        options.take_corrections(_corrections_text(corrections))
+    if cache_file is not None:
+        options.set_cache_file(os.fspath(cache_file))
     if isinstance(device, str):
         device = open_device(device)
     if isinstance(source, (str, os.PathLike)):

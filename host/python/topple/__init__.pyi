@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 import os
-from typing import Any, Callable, Literal, NamedTuple, Optional, Protocol, Sequence, Tuple, Union
+from typing import Any, Callable, Literal, Mapping, NamedTuple, Optional, Protocol, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,6 +68,8 @@ class Device:
 class Primitive:
     @property
     def id(self) -> int: ...
+    @property
+    def name(self) -> str: ...  # given by hand to what is fixed to the ground
     @property
     def object(self) -> int: ...
     @property
@@ -153,9 +155,23 @@ class Fall:
     @property
     def people_share(self) -> Optional[float]: ...  # of walks; None: nobody walks, or nobody was asked for
 
+class AppliedCorrection:
+    @property
+    def do(self) -> str: ...
+    @property
+    def held(self) -> bool: ...
+    @property
+    def outcome(self) -> str: ...  # "held", or what kept it from that
+    @property
+    def objects(self) -> list[int]: ...  # that it is about
+
 class Object:
     @property
     def id(self) -> int: ...
+    @property
+    def name(self) -> str: ...  # given by hand; mostly ""
+    @property
+    def corrected(self) -> list[int]: ...  # numbers of the corrections about it, from 1
     @property
     def primitives(self) -> list[int]: ...
     @property
@@ -263,6 +279,8 @@ class Result:
     @property
     def notes(self) -> list[str]: ...
     @property
+    def corrections(self) -> list[AppliedCorrection]: ...  # those that were given, in their order
+    @property
     def timings_s(self) -> dict[str, float]: ...
     @property
     def events(self) -> dict[str, float]: ...
@@ -321,6 +339,8 @@ def parse(
     hazard: Optional[_Path] = ...,
     tolerable_J: float = ...,
     grouping_time_s: Optional[float] = ...,
+    corrections: Union[str, os.PathLike[str], Sequence[Mapping[str, Any]], None] = ...,
+    cache_file: Union[str, os.PathLike[str], None] = ...,
     normals: Optional[_Points] = ...,
     viewpoint: Optional[_Vec3] = ...,
     colours: Optional[_Points] = ...,

@@ -71,6 +71,50 @@ TEST_F(CApi, NamesItsDisturbances) {
     EXPECT_EQ(topple_disturbance_name(static_cast<std::uint32_t>(known.size())), nullptr);
 }
 
+TEST_F(CApi, TakesCorrections) {
+    const std::string text = R"({"schema": "topple.corrections/1", "corrections": [
+        {"do": "one_thing", "at_m": [[1.0, 1.2, 0.25], [1.2, 1.2, 0.7]]},
+        {"do": "name", "at_m": [[1.0, 1.2, 0.25]], "name": "chest"},
+        {"do": "fixed", "at_m": [[0.5, 0.5, 0.9]]}]})";
+    const auto file = write("corrections.json", text);
+    options.corrections_json = text.c_str();
+    options.corrections_file = file.c_str();
+    EXPECT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_ERROR_USAGE);
+    for (const bool by_file : {true, false}) {
+        topple_result_release(result);
+        options.corrections_json = by_file ? nullptr : text.c_str();
+        options.corrections_file = by_file ? file.c_str() : nullptr;
+        ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK)
+            << status.message;
+        topple_scene scene{};
+        scene.size = sizeof(scene);
+        ASSERT_EQ(topple_result_scene(result, &scene, nullptr), TOPPLE_OK);
+        ASSERT_EQ(scene.corrections, 3u);
+        topple_correction named{};
+        named.size = sizeof(named);
+        ASSERT_EQ(topple_result_correction(result, 1, &named, nullptr), TOPPLE_OK);
+        EXPECT_STREQ(named.what, "name");
+        EXPECT_STREQ(named.outcome, "held");
+        EXPECT_TRUE(named.held);
+        ASSERT_EQ(named.object_count, 1u);
+        topple_object object{};
+        object.size = sizeof(object);
+        ASSERT_EQ(topple_result_object(result, static_cast<std::uint64_t>(named.objects[0]),
+                                       &object, nullptr),
+                  TOPPLE_OK);
+        EXPECT_STREQ(object.name, "chest");
+        ASSERT_EQ(object.corrected_count, 2u);
+        EXPECT_EQ(object.corrected[1], 2);
+        ASSERT_EQ(topple_result_correction(result, 2, &named, nullptr), TOPPLE_OK);
+        EXPECT_FALSE(named.held);
+        EXPECT_EQ(topple_result_correction(result, 3, &named, &status), TOPPLE_ERROR_USAGE);
+    }
+    options.corrections_json = "{}";
+    topple_result_release(result);
+    EXPECT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_ERROR_INPUT);
+    EXPECT_NE(std::string(status.message).find("schema"), std::string::npos) << status.message;
+}
+
 TEST_F(CApi, ParsesAsTheLibraryDoes) {
     ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK) << status.message;
     EXPECT_STREQ(status.message, "");

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "graph/known_links.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/union_find.h"
+
+namespace topple::graph {
+namespace {
+
+void make_sorted_set(std::vector<std::int32_t>& values) {
+    std::ranges::sort(values);
+    const auto [first, last] = std::ranges::unique(values);
+    values.erase(first, last);
+}
+
+}  // namespace
+
+LinkedNodes::LinkedNodes(std::int32_t primitives, const KnownLinks& links) {
+    const auto count = static_cast<std::size_t>(primitives);
+    UnionFind sets(count);
+    for (const auto& [a, b] : links.together)
+        sets.join(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+    std::vector<std::int32_t> number(count, -1);  // by a set's root
+    for (std::size_t p = 0; p < count; ++p) {
+        std::int32_t& node = number[sets.root(p)];
+        if (node < 0) {
+            node = static_cast<std::int32_t>(members_.size());
+            members_.emplace_back();
+        }
+        node_.push_back(node);
+        members_[static_cast<std::size_t>(node)].push_back(static_cast<std::int32_t>(p));
+    }
+    if (links.apart.empty()) return;
+    apart_.resize(members_.size());
+    for (const auto& [a, b] : links.apart) {
+        apart_[static_cast<std::size_t>(node_of(a))].push_back(node_of(b));
+        apart_[static_cast<std::size_t>(node_of(b))].push_back(node_of(a));
+    }
+    for (auto& others : apart_) make_sorted_set(others);
+}
+
+std::vector<Joint> LinkedNodes::joints(std::span<const Joint> of_primitives) const {
+    std::vector<Joint> out;
+    for (const Joint& j : of_primitives) {
+        const auto [a, b] = std::minmax({node_of(j.a), node_of(j.b)});
+        if (a != b) out.push_back({a, b, j.log_odds});
+    }
+    return out;
+}
+
+std::vector<bool> LinkedNodes::pinned(const std::vector<bool>& primitives) const {
+    std::vector<bool> out(members_.size(), false);
+    for (std::size_t p = 0; p < primitives.size(); ++p)
+        if (primitives[p]) out[static_cast<std::size_t>(node_[p])] = true;
+    return out;
+}
+
+std::vector<double> LinkedNodes::sums(std::span<const double> of_primitives) const {
+    std::vector<double> out(members_.size(), 0);
+    for (std::size_t p = 0; p < of_primitives.size(); ++p)
+        out[static_cast<std::size_t>(node_[p])] += of_primitives[p];
+    return out;
+}
+
+GroupEnergies LinkedNodes::energies(GroupEnergies of_primitives) const {
+    if (members_.size() == node_.size()) return of_primitives;
+    const auto unfolded = [this](const GroupQuery& query) {
+        GroupQuery out{{}, query.pinned};
+        for (const std::int32_t node : query.nodes) {
+            const auto own = members(node);
+            out.nodes.insert(out.nodes.end(), own.begin(), own.end());
+        }
+        std::ranges::sort(out.nodes);
+        return out;
+    };
+    GroupEnergies out;
+    out.of = [unfolded, of = std::move(of_primitives.of)](std::span<const GroupQuery> queries,
+                                                          std::span<double> values) {
+        std::vector<GroupQuery> all;
+        for (const GroupQuery& query : queries) all.push_back(unfolded(query));
+        of(all, values);
+    };
+    for (auto& bound : of_primitives.at_least) {
+        out.at_least.emplace_back(
+            [unfolded, bound = std::move(bound)](const GroupQuery& query, double before) {
+                return bound(unfolded(query), before);
+            });
+    }
+    return out;
+}
+
+std::vector<std::int32_t> LinkedNodes::of_primitives(std::span<const std::int32_t> label) const {
+    std::vector<std::int32_t> out;
+    for (const std::int32_t node : node_) out.push_back(label[static_cast<std::size_t>(node)]);
+    return out;
+}
+
+std::optional<bool> LinkedNodes::one_object(std::int32_t a, std::int32_t b) const {
+    if (a != b && node_of(a) == node_of(b)) return true;
+    if (!apart_.empty() &&
+        std::ranges::binary_search(apart_[static_cast<std::size_t>(node_of(a))], node_of(b)))
+        return false;
+    return std::nullopt;
+}
+
+}  // namespace topple::graph

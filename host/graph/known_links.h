@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "graph/joints.h"
+#include "graph/swendsen_wang.h"
+
+// What somebody knows of the grouping beforehand.
+namespace topple::graph {
+
+// Pairs of primitives that are one object, whether they touch or not, and pairs that are none.
+struct KnownLinks {
+    std::vector<std::pair<std::int32_t, std::int32_t>> together, apart;
+};
+
+// The primitives as nodes of a graph in which all that are one object for sure are one node: what
+// groups those groups what is known. Nodes are numbered by their lowest primitive; without links
+// they are the primitives.
+class LinkedNodes {
+  public:
+    LinkedNodes(std::int32_t primitives, const KnownLinks& links);
+
+    std::int32_t size() const { return static_cast<std::int32_t>(members_.size()); }
+    std::int32_t node_of(std::int32_t primitive) const {
+        return node_[static_cast<std::size_t>(primitive)];
+    }
+    std::span<const std::int32_t> members(std::int32_t node) const {
+        return members_[static_cast<std::size_t>(node)];
+    }
+    // Between nodes, in their order: there may be several between two.
+    std::vector<Joint> joints(std::span<const Joint> of_primitives) const;
+    // Whether any primitive is.
+    std::vector<bool> pinned(const std::vector<bool>& primitives) const;
+    std::vector<double> sums(std::span<const double> of_primitives) const;
+    // Of each node the nodes that it is kept apart from, ascending; empty where none is from any.
+    const std::vector<std::vector<std::int32_t>>& apart() const { return apart_; }
+    // Those of groups of primitives, asked for groups of nodes.
+    GroupEnergies energies(GroupEnergies of_primitives) const;
+    std::vector<std::int32_t> of_primitives(std::span<const std::int32_t> label) const;
+    // Whether two primitives are known to be one object, or none.
+    std::optional<bool> one_object(std::int32_t a, std::int32_t b) const;
+
+  private:
+    std::vector<std::int32_t> node_;                  // by primitive
+    std::vector<std::vector<std::int32_t>> members_;  // by node, ascending
+    std::vector<std::vector<std::int32_t>> apart_;
+};
+
+}  // namespace topple::graph

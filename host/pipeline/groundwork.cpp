@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/groundwork.h"
+
+#include <utility>
+
+#include "io/frame_sequence.h"
+#include "io/octomap.h"
+#include "io/text.h"
+#include "pipeline/parse_memory.h"
+#include "pipeline/scale_checks.h"
+#include "pipeline/surface_extent.h"
+#include "pipeline/voxel_size.h"
+#include "pipeline/voxel_stage.h"
+#include "vdb/read_volume.h"
+
+namespace topple {
+namespace {
+
+void check_memory(const CloudView& cloud, const std::string& source, double voxel_m,
+                  const ParseOptions& options) {
+    if (options.max_memory_bytes == 0) return;
+    const SurfaceExtent surface = extent_of(cloud);
+    const std::uint64_t need = one_piece_bytes(static_cast<double>(cloud.size()), surface.area_m2(),
+                                               surface.bounds(), voxel_m);
+    if (need > options.max_memory_bytes) {
+        throw Error(ErrorKind::input,
+                    std::to_string(cloud.size()) + " points at voxels of " +
+                        io::short_number(voxel_m) + " m may need " + io::bytes_text(need) +
+                        ", more than the " + io::bytes_text(options.max_memory_bytes) +
+                        " of --max-memory; use a larger --voxel" +
+                        (io::looks_like_sequence(source) || io::looks_like_octomap(source) ||
+                                 vdb::looks_like_volume(source)
+                             ? ""
+                             : ", or --tile 5 to have it parsed in blocks"));
+    }
+}
+
+[[noreturn]] void no_surface(const Ingested& input, const std::string& source, double extent_m) {
+    const std::string scale = io::looks_like_sequence(source) && input.frames
+                                  ? depth_scale_hint(*input.frames)
+                                  : small_extent_hint(extent_m, source);
+    throw Error(ErrorKind::input,
+                source + ": " + io::counted(input.cloud.size(), "point") +
+                    (input.cloud.size() == 1 ? " was" : " were") +
+                    " found, but no surface of them fills the " + std::to_string(least_voxels) +
+                    " voxels that a solid takes; give a denser scan, or a smaller --voxel" +
+                    (scale.empty() ? "" : "; " + scale));
+}
+
+// The coordinates and colours of the points: moved, where they are the input's own.
+void take_coordinates(Ingested& input, ScenePoints& out) {
+    if (input.own.size() > 0) {
+        out.x = std::move(input.own.x);
+        out.y = std::move(input.own.y);
+        out.z = std::move(input.own.z);
+        out.red = std::move(input.own.red);
+        out.green = std::move(input.own.green);
+        out.blue = std::move(input.own.blue);
+        return;
+    }
+    out.x.assign(input.cloud.x.begin(), input.cloud.x.end());
+    out.y.assign(input.cloud.y.begin(), input.cloud.y.end());
+    out.z.assign(input.cloud.z.begin(), input.cloud.z.end());
+    out.red.assign(input.cloud.red.begin(), input.cloud.red.end());
+    out.green.assign(input.cloud.green.begin(), input.cloud.green.end());
+    out.blue.assign(input.cloud.blue.begin(), input.cloud.blue.end());
+}
+
+ScenePoints labelled_points(Ingested& input, const GeometryStage& geometry,
+                            const VoxelStage& voxels) {
+    ScenePoints out;
+    out.index = std::move(input.index);
+    out.primitive = numbered(geometry.primitive_of_point, voxels.number);
+    out.region = geometry.region_of_point;
+    const geometry::Surfels& s = geometry.surfels;
+    for (auto* axis : {&out.nx, &out.ny, &out.nz}) axis->reserve(out.primitive.size());
+    for (const std::uint32_t surfel : s.of_point) {
+        out.nx.push_back(s.nx[surfel]);
+        out.ny.push_back(s.ny[surfel]);
+        out.nz.push_back(s.nz[surfel]);
+    }
+    return out;
+}
+
+}  // namespace
+
+Groundwork lay_groundwork(device::Device& device, Ingested input, const ParseOptions& options,
+                          const std::string& source, StageClock& stage) {
+    Groundwork out;
+    out.voxel_m = voxel_for_input(input, options);
+    check_memory(input.cloud, source, out.voxel_m, options);
+    out.offset_m = input.own.offset_m;
+    out.notes = input.notes;
+    const double extent = extent_m({input.cloud.x, input.cloud.y, input.cloud.z});
+    note_small_extent(extent, source, out.notes);
+
+    const GeometryStage geometry = find_primitives(device, input, options, stage);  // 2.1
+    if (!geometry.frame.note.empty()) out.notes.push_back(geometry.frame.note);
+    VoxelStage voxels = make_solids(device, input, geometry, out.voxel_m, stage);  // 2.2
+    if (voxels.solids->primitives() == 0) no_surface(input, source, extent);
+    out.parts = solid_parts(geometry, voxels);
+    out.points = labelled_points(input, geometry, voxels);
+    if (options.coordinates) take_coordinates(input, out.points);
+    out.voxels = std::move(voxels.scene);
+    out.weighed = weigh_parts(device, out.parts, options, stage);  // 4.2
+    return out;
+}
+
+}  // namespace topple
