@@ -13,14 +13,14 @@ _FRAGILITY = ('pga_g', 'pga_dispersion', 'firm_pga_g', 'pgv_m_s', 'pgv_dispersio
 _FALL = ('falls', 'hits_J', 'lands_on', 'lands_m')
 _BY_DISTURBANCE = ('risk_J', 'risk_error_J', 'fall_chance')
 _ITEMS = {
-    'objects': ('id', 'grounded', 'mass_kg', 'mass_error_kg', 'mass_model', 'center_of_mass_m', 'center_of_mass_error_m', 'size_m',
+    'objects': ('id', 'name', 'grounded', 'mass_kg', 'mass_error_kg', 'mass_model', 'center_of_mass_m', 'center_of_mass_error_m', 'size_m',
                 'footprint_error_m', 'barrier_J', 'barrier_error_J', 'release_J', 'mode', 'direction', 'unsafety',
                 'unsafety_category', 'unsafety_certain', 'agreement', 'why', 'advice'),
-    'primitives': ('id', 'object', 'model', 'points', 'solid_voxels', 'volume_m3', 'mass_kg', 'center_of_mass_m'),
+    'primitives': ('id', 'object', 'model', 'points', 'solid_voxels', 'volume_m3', 'mass_kg', 'center_of_mass_m', 'name'),
     'contacts': ('a', 'b', 'area_m2', 'normal', 'relation', 'probability'),
     'supports': ('supporter', 'supported', 'area_m2', 'probability'),
 }
-_TEXT = ('mass_model', 'mode', 'unsafety_category', 'why', 'advice', 'model', 'relation')
+_TEXT = ('name', 'mass_model', 'mode', 'unsafety_category', 'why', 'advice', 'model', 'relation')
 _TYPES = {'id': np.int32, 'object': np.int32, 'a': np.int32, 'b': np.int32, 'supporter': np.int32, 'supported': np.int32,
           'fall_lands_on': np.int32, 'points': np.uint64, 'solid_voxels': np.uint64, 'grounded': bool, 'unsafety_certain': bool,
           'fall_falls': bool, **{name: object for name in _TEXT}}
@@ -76,7 +76,7 @@ def _row(o):
     rank = 'not seen enough' if math.isnan(o.unsafety) else f'{o.unsafety:.1f}'
     hue = 'transparent' if math.isnan(o.unsafety) else f'hsl({120 - 120 * (o.unsafety - 1) / 9:.0f} 70% 60%)'
     barrier = f'{o.barrier_J:.2g} ± {o.barrier_error_J:.1g}' if o.barrier_J > o.barrier_error_J else f'below {o.barrier_J + o.barrier_error_J:.2g}'
-    cells = [str(o.id), rank, o.unsafety_category or '', f'{o.mass_kg:.3g}', barrier, o.why]
+    cells = [f'{o.id} {o.name}'.strip(), rank, o.unsafety_category or '', f'{o.mass_kg:.3g}', barrier, o.why]
     cells = [f'<td>{html.escape(cell)}</td>' for cell in cells]
     cells[1] = cells[1].replace('<td>', f'<td style="border-left: 0.6em solid {hue}">')
     return f'<tr>{"".join(cells)}</tr>'
