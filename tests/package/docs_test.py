@@ -119,7 +119,7 @@ def main():
     problems = check_links(source)
     if len(sys.argv) > 2:
         problems += check_options(source, sys.argv[2])
-    sys.exit('\n'.join(problems))
+    sys.exit('\n'.join(problems) if problems else 0)
 
 
 if __name__ == '__main__':
