@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/json.h"
+#include "io/corrections_json.h"
 #include "io/file_writer.h"
 #include "io/json_text.h"
 #include "io/text.h"
@@ -184,20 +185,6 @@ Json to_json(const Object& o) {
         {"advice", to_json(o.advice)}};
     if (!o.name.empty()) json["name"] = o.name;
     if (!o.corrected.empty()) json["corrected"] = o.corrected;
-    return json;
-}
-
-// The correction as a file says it, and what became of it.
-Json to_json(const AppliedCorrection& applied) {
-    const Correction& c = applied.correction;
-    Json json{{"do", to_string(c.kind)}, {"at_m", list(c.at_m, vector)}};
-    if (c.kind == Correction::Kind::apart) json["from_m"] = list(c.from_m, vector);
-    if (c.kind == Correction::Kind::hollow) json["wall_m"] = number(c.wall_m);
-    if (c.kind == Correction::Kind::mass) json["kg"] = number(c.mass_kg);
-    if (c.kind == Correction::Kind::name) json["name"] = c.name;
-    json["held"] = applied.held;
-    json["outcome"] = applied.outcome;
-    json["objects"] = applied.objects;
     return json;
 }
 
@@ -410,32 +397,6 @@ Contact contact_of(const Json& json) {
     return c;
 }
 
-std::vector<Vec3> spots_at(const Json& json, const char* key) {
-    std::vector<Vec3> out;
-    if (json.contains(key))
-        for (const Json& at : json.at(key))
-            out.push_back({number_of(at.at(0)), number_of(at.at(1)), number_of(at.at(2))});
-    return out;
-}
-
-AppliedCorrection correction_of(const Json& json) {
-    AppliedCorrection out;
-    Correction& c = out.correction;
-    const auto what = json.at("do").get<std::string>();
-    for (auto kind = Correction::Kind::one_thing; kind <= Correction::Kind::name;
-         kind = static_cast<Correction::Kind>(static_cast<int>(kind) + 1))
-        if (what == to_string(kind)) c.kind = kind;
-    c.at_m = spots_at(json, "at_m");
-    c.from_m = spots_at(json, "from_m");
-    if (json.contains("wall_m")) c.wall_m = number_at(json, "wall_m");
-    if (json.contains("kg")) c.mass_kg = number_at(json, "kg");
-    if (json.contains("name")) c.name = json.at("name").get<std::string>();
-    out.held = json.at("held").get<bool>();
-    out.outcome = json.at("outcome").get<std::string>();
-    out.objects = json.at("objects").get<std::vector<std::int32_t>>();
-    return out;
-}
-
 Scene scene_of(const Json& json) {
     Scene scene;
     scene.source = json.at("source").get<std::string>();
@@ -500,8 +461,7 @@ OrderedJson scene_document(const Scene& scene) {
     json["contacts"] = list(scene.contacts, [](const Contact& c) { return to_json(c); });
     json["supports"] = list(scene.supports, [](const Support& s) { return to_json(s); });
     if (!scene.corrections.empty())
-        json["corrections"] =
-            list(scene.corrections, [](const AppliedCorrection& c) { return to_json(c); });
+        json["corrections"] = list(scene.corrections, json_of_correction);
     auto timings = Json::object();
     // A stage that ran twice counts once, with its sum.
     for (const auto& [stage, seconds] : scene.timings_s) {

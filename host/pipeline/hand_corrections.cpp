@@ -301,6 +301,11 @@ std::vector<KnownMass> HandCorrections::masses(std::span<const std::int32_t> obj
         std::set<std::int32_t> about;
         for (const std::int32_t p : located_[n].at)
             about.insert(object_of_primitive[static_cast<std::size_t>(p)]);
+        if (c.kind == Kind::mass && about.size() > 1)
+            remark(n,
+                   "its spots lie in " + std::to_string(about.size()) +
+                       " objects, each of which is taken to weigh that",
+                   true);
         for (const std::int32_t o : about) {
             if (o == grounded) {
                 remark(n, "what is there is of the building, whose mass counts for nothing", false);

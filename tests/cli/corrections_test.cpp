@@ -104,6 +104,27 @@ TEST_F(CorrectedParse, takes_away_what_is_not_there_from_all_files) {
     }
 }
 
+TEST_F(CorrectedParse, of_a_cloud_in_blocks) {
+    put_corrections(R"({"do": "not_there", "at_m": [[1.2, 1.2, 0.7]]},
+                       {"do": "name", "at_m": [[1.0, 1.2, 0.25]], "name": "chest"})");
+    parsed({"-o", "plain", "--tile", "5"});
+    parsed({"-o", "out", "--tile", "5", "--corrections", "corrections.json"});
+    EXPECT_FALSE(fs::exists(in("out/parse.cache")));
+    const Json plain = scene("plain"), now = scene("out");
+    ASSERT_EQ(now.at("objects").size() + 1, plain.at("objects").size());
+    EXPECT_EQ(now.at("objects")[1].at("name"), "chest");
+    for (const Json& correction : now.at("corrections"))
+        EXPECT_EQ(correction.at("outcome"), "held");
+    const auto points = [](const Json& of) {
+        std::size_t sum = 0;
+        for (const Json& p : of.at("primitives")) sum += p.at("points").get<std::size_t>();
+        return sum;
+    };
+    EXPECT_LT(points(now), points(plain));
+    EXPECT_LT(fs::file_size(in("out/solid.ply")), fs::file_size(in("plain/solid.ply")));
+    EXPECT_EQ(fs::file_size(in("out/points.ply")), fs::file_size(in("plain/points.ply")));
+}
+
 TEST_F(CorrectedParse, begins_anew_where_anything_else_is_given) {
     const auto anew = [&](const std::vector<std::string>& more) {
         std::vector<std::string> arguments{"-o", "out", "--cache", "kept"};

@@ -252,6 +252,15 @@ TEST_F(CorrectedRoom, TellsWhatComesToNothing) {
     EXPECT_FALSE(object_at(scene, on_crate).grounded);
 }
 
+TEST_F(CorrectedRoom, TellsOfAMassOfSeveralObjects) {
+    Correction mass = correction(Kind::mass, {on_box, on_crate});
+    mass.mass_kg = 9;
+    const Scene scene = parsed({mass}).scene;
+    EXPECT_TRUE(scene.corrections[0].held);
+    EXPECT_THAT(scene.corrections[0].outcome, testing::StartsWith("held, but its spots lie in 2"));
+    EXPECT_NEAR(object_at(scene, on_box).mass_kg, 9, 1e-9);
+}
+
 TEST_F(CorrectedRoom, IsNotWhatContradictsItself) {
     expect_input_error(
         [] {
