@@ -208,17 +208,19 @@ Command add_evaluate(CLI::App& app) {
     CLI::Option* const frames =
         app.add_option("--frames", a->options.camera.frames, "Depth frames of each room")
             ->capture_default_str();
-    CLI::Option* const groupings = app.add_flag(
-        "--groupings", a->groupings,
-        "Table 3 instead: the same primitives grouped by each joint's looks, greedily, and by SWC");
+    CLI::Option* const groupings =
+        app.add_flag("--groupings", a->groupings,
+                     "Instead, compare ways of grouping the same primitives (the paper's Table 3): "
+                     "each joint by itself, greedy, Swendsen-Wang cuts");
     CLI::Option* const fit_joints =
-        app.add_flag("--fit-joints", a->fit_joints,
-                     "Fit the weights of the first of these to the rooms, and print them")
+        app.add_flag(
+               "--fit-joints", a->fit_joints,
+               "Fit the weights by which --groupings judges joints by themselves, and print them")
             ->excludes(groupings);
-    CLI::Option* const bases =
-        app.add_flag("--bases", a->bases,
-                     "How often what each rule of completion takes to be solid is solid, instead")
-            ->excludes(groupings);
+    CLI::Option* const bases = app.add_flag("--bases", a->bases,
+                                            "Instead, judge each rule of completion: the share of "
+                                            "what it takes to be solid that is")
+                                   ->excludes(groupings);
     CLI::Option* const measures =
         app.add_flag("--measures", a->measures,
                      "Mass and barrier of 32 things of known measures instead, from clean points 4 "

@@ -251,9 +251,9 @@ Command add_parse(CLI::App& app, const Team& team) {
     add_isolate_option(app, a->options.isolate);
     app.add_option("--up", a->up,
                    "Up in the input's frame, X,Y,Z, as from an IMU (default: found from the scan)");
-    app.add_option(
-           "--disturbance", a->disturbance,
-           "Which to reckon with: " + joined(known_disturbances(), ", ") + ", separated by commas")
+    app.add_option("--disturbance", a->disturbance,
+                   "What may disturb the scene: " + joined(known_disturbances(), ", ") +
+                       ", separated by commas")
         ->capture_default_str();
     app.add_option("--walks", a->options.walks, "Walks of people that are sampled")
         ->check(whole_number)

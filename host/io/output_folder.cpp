@@ -25,11 +25,11 @@ namespace {
 
 // What topple writes; an earlier output may hold these and nothing else. scene.json is written
 // last.
-constexpr std::array<std::string_view, 17> our_files{
-    "parse.cache",    "solids.bin",     "points.ply",    "solid.ply",           "volume.vdb",
-    "report.html",    "objects.glb",    "map.bt",        "view-objects.png",    "view-risk.png",
-    "view-walks.png", "view-human.png", "view-wind.png", "view-earthquake.png", "landscapes.json",
-    "verify.json",    "scene.json"};
+constexpr std::array<std::string_view, 18> our_files{
+    "parse.cache",     "solids.bin",     "points.ply",     "solid.ply",      "volume.vdb",
+    "report.html",     "objects.glb",    "map.bt",         "view-photo.png", "view-objects.png",
+    "view-risk.png",   "view-walks.png", "view-human.png", "view-wind.png",  "view-earthquake.png",
+    "landscapes.json", "verify.json",    "scene.json"};
 
 bool is_our_scene(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);

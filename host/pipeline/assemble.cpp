@@ -238,9 +238,8 @@ void note_crowded_objects(Scene& scene) {
         scene.notes.push_back(
             "Object " + std::to_string(o.id) + " has " + std::to_string(parts) + " of the " +
             std::to_string(scene.primitives.size()) +
-            " parts: it is probably several things that were not told apart. What "
-            "stands in or on it may be part of it, and then no risk of its own is "
-            "reckoned.");
+            " parts: it is probably several things in one (under-segmentation). What "
+            "stands in or on it may be part of it, and then has no risk of its own.");
     }
 }
 
@@ -254,7 +253,7 @@ void note_wind_indoors(const SolidParts& parts, const SafetyStage& safety, Scene
         safety.disturbances, [](const safety::Disturbance& d) { return d.name == "wind"; });
     if (ceiling && wind)
         scene.notes.push_back(
-            "A ceiling was scanned, and the wind is reckoned as it blows outside: where windows "
+            "A ceiling was scanned, and the wind is taken to blow as outside: where windows "
             "and doors are closed in gales leave wind out of the disturbances.");
 }
 

@@ -238,7 +238,7 @@ std::string advice_sentence(const Object& object, const Suggestion& what) {
         case Suggestion::Kind::nothing:
             break;
         case Suggestion::Kind::see:
-            return "See what holds it: the scan does not show it, and its risk is not reckoned.";
+            return "See what holds it: the scan does not show it, and its risk is not known.";
         case Suggestion::Kind::check:
             return "Look whether it stands firm: what the scan shows of its support would hardly "
                    "hold it, and its risk follows from that.";

@@ -149,9 +149,9 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
             out.viewpoint_of_point.push_back(views.eye_of_surfel[s]);
     }
     if (!scan) {
-        out.notes.push_back("The cloud has no sensor poses: free space was estimated from " +
-                            std::to_string(eyes) +
-                            " viewpoints within it, and is less certain than from depth frames.");
+        out.notes.push_back(
+            "The cloud has no sensor poses: free space was estimated from " + std::to_string(eyes) +
+            " virtual views within it, and is less certain than from depth frames.");
     }
     out.frames = std::make_unique<MemoryStream>(views.intrinsics, std::move(views.frames));
 }

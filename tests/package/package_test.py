@@ -87,13 +87,13 @@ class Package:
         return folder
 
     def example(self):
-        """The README's files, as they stand there."""
+        """The files of docs/library.md, as they stand there."""
         source = os.path.join(self.a.work, 'example')
         shutil.rmtree(source, ignore_errors=True)
         os.makedirs(source)
-        with open(os.path.join(self.a.source, 'README.md'), encoding='utf-8') as file:
+        with open(os.path.join(self.a.source, 'docs/library.md'), encoding='utf-8') as file:
             blocks = dict(re.findall(r'^<!-- example: (\S+) -->\n```\w+\n(.*?)^```$', file.read(), re.M | re.S))
-        check(sorted(blocks) == ['CMakeLists.txt', 'main.cpp'], f'README.md has the example blocks {sorted(blocks)}')
+        check(sorted(blocks) == ['CMakeLists.txt', 'main.cpp'], f'docs/library.md has the example blocks {sorted(blocks)}')
         for name, text in blocks.items():
             with open(os.path.join(source, name), 'w', encoding='utf-8') as file:
                 file.write(text)

@@ -146,7 +146,7 @@ class ComparePanel {
       element('div', {className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': 'Objects of both parses'}, [
         element('table', {}, [element('thead', {}, [element('tr', {}, head)]), element('tbody', {}, body)])]),
       element('p', {className: 'hint', text: `Objects are the same where their boxes overlap by a tenth or more. Risk is the largest of ` +
-        `${listed(names.map(causeOf)) || 'none that both parses reckoned with'}, in joules per event; a change within two standard errors is none.`}));
+        `${listed(names.map(causeOf)) || 'none that both parses have'}, in joules per event; a change within two standard errors is none.`}));
     this.say(line);
   }
 }

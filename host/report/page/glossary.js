@@ -3,12 +3,14 @@
 
 // The words that the page doesn't explain where they stand.
 const glossary = {
-  object: ['object', 'What moves as one: all parts that are fixed to each other.'],
-  ground: ['ground', 'The floor with all that is fixed to it: walls, the ceiling, what is built in. It can\u2019t fall.'],
-  part: ['part (primitive)', 'A piece of surface of one shape, flat or round, and the solid behind it. Objects are made of parts.'],
-  barrier: ['barrier', 'The least energy, in joules, that moves an object out of its place for good: over its edge, or off what carries it. ' +
+  object: ['object', 'What moves as one body: all parts that are fixed to each other.'],
+  ground: ['ground', 'The room layout (floor, walls, ceiling, what is built in) with all that is fixed to it. It can\u2019t fall.'],
+  part: ['part (primitive)', 'Pieces of surface that meet convexly, and the solid behind them: about one convex part of a thing. Objects are made of parts.'],
+  support: ['support', 'That one object carries another; also the area that carries it.'],
+  occluded: ['occluded', 'Hidden behind something from all places that the scan was taken from. What is solid there is inferred.'],
+  barrier: ['energy barrier', 'The least energy, in joules, that moves an object out of its place for good: over its edge, or off what carries it. ' +
     'One joule lifts 1 kg by 10 cm.'],
-  release: ['release', 'The energy, in joules, that the object sets free when it then falls. From about 40 J on a blow to the head is dangerous.'],
+  release: ['release', 'The energy, in joules, that the object sets free when it then falls. From about 40 J on injuries need more than first aid.'],
   instability: ['instability S(W)', 'How much energy S an object can release, once a disturbance has given it the energy W.'],
   disturbance: ['disturbance', 'What can upset things: people who walk by and touch them, wind, earthquakes.'],
   event: ['event', 'One happening of a disturbance: a walk through the room, a gale, an earthquake.'],
@@ -17,11 +19,12 @@ const glossary = {
   category: ['category', 'How unsafe an object is by itself, whatever else is in the scene: none, low, medium or high, by how likely ' +
     'one event makes it fall and how hard it then lands, at the worse end of the errors. With a ? the better end says less.'],
   advice: ['advice', 'What would bring the risk below what is tolerated. An object may rank first and need none, where all is harmless.'],
-  overturning: ['overturning', 'Tipping over an edge of the foot, once the middle of mass is beyond it.'],
+  overturning: ['overturning', 'Tipping over an edge of the foot, once the centre of mass is beyond it.'],
   pose: ['pose', 'A way to stand or lie at rest. Between two poses lies a pass: the lowest that a body must be lifted to go from one to the other.'],
-  basin: ['basin', 'All positions from which a body comes back to the same pose.'],
+  basin: ['basin', 'All orientations from which a body comes back to the same pose.'],
   grounded: ['grounded', 'Part of the ground, or fixed to it.'],
-  pga: ['peak, g', 'The strongest acceleration of the ground in an earthquake, as a multiple of gravity: things rattle at 0.05 g, buildings are damaged from about 0.2 g.'],
+  fragility: ['fragility', 'The chance that an object falls, by how strong the earthquake is.'],
+  pga: ['peak (PGA), g', 'The strongest acceleration of the ground in an earthquake, as a multiple of gravity: things rattle at 0.05 g, buildings are damaged from about 0.2 g.'],
   error: ['\u00b1', 'One standard error: two times in three the true figure lies within it.'],
 };
 
@@ -36,5 +39,5 @@ function fillGlossary() {
   for (const [key, [word, meaning]] of Object.entries(glossary)) {
     list.append(element('dt', {id: 'word-' + key, text: word, tabIndex: -1}), element('dd', {text: meaning}));
   }
-  document.getElementById('glossary').append(list);
+  document.getElementById('glossary').append(list, element('p', {text: 'All words, with their units, are in docs/glossary.md of topple.'}));
 }

@@ -74,7 +74,7 @@ function fillRisk(panel, scene, choose) {
   if (missing) panel.append(element('p', {className: 'warning', text: missing}));
   if (!worst.length) {
     panel.append(element('p', {className: 'hint', text: !movable ? 'No object was found that could fall.'
-      : `Nothing of what was reckoned with puts ${doubtful.length ? 'any other' : 'an'} object at risk.`}));
+      : `None of the disturbances puts ${doubtful.length ? 'any other' : 'an'} object at risk.`}));
   } else {
     fillRiskiest(panel, scene, worst, movable, choose);
   }

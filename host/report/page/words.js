@@ -59,9 +59,9 @@ function causesOf(object) {
 }
 
 function upsetText(object) {
-  if (object.seen_enough === false) return 'Its risk is not reckoned: nothing was seen to hold it.';
+  if (object.seen_enough === false) return 'Its risk is not known: nothing was seen to hold it.';
   const names = causesOf(object);
-  if (!names.length) return 'Upset by nothing that was reckoned with.';
+  if (!names.length) return 'Upset by none of the disturbances.';
   const chances = names.map(name => chanceText(name, (object.fall_chance || {})[name])).filter(text => text);
   if (!chances.length) return `At risk from ${listed(names.map(causeOf))}.`;
   return `Upset by ${listed(chances, 'or')}.`;

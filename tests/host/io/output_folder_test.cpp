@@ -82,6 +82,7 @@ TEST_F(Output, replaces_an_earlier_output_and_an_empty_folder) {
     write("out/scene.json", our_scene);
     write("out/points.ply", "old");
     write("out/volume.vdb", "old");
+    write("out/view-photo.png", "old");
     {
         OutputFolder out(path("out"));
         write_result(out, "new");

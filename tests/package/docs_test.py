@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The pages for readers hold together: docs_test.py SOURCE [TOPPLE].
+
+Every relative link and picture in README.md, CHANGELOG.md, SECURITY.md, docs and kernels/README.md leads to a file, and to a heading
+of it where it names one; every page of docs is linked from README.md. With the program TOPPLE, every option that a page gives to a command
+of topple is one that the command's --help lists.
+"""
+import glob
+import os
+import re
+import subprocess
+import sys
+
+# Options of topple stand alone in code in these pages; elsewhere such code may be another program's.
+OPTIONS_ALONE = {'README.md', 'docs/output.md', 'docs/formats.md', 'docs/corrections.md', 'docs/scale.md', 'docs/glossary.md', 'docs/how-it-works.md',
+                 'docs/disturbances.md', 'docs/limits.md'}
+# What those pages say of other programs: topple.formats, mpirun.
+OTHERS = {'--topic', '--unit-m', '--bind-to'}
+
+
+def pages(source):
+    found = [os.path.join(source, name) for name in ('README.md', 'CHANGELOG.md', 'SECURITY.md', 'kernels/README.md')]
+    return found + sorted(glob.glob(os.path.join(source, 'docs', '**', '*.md'), recursive=True))
+
+
+def without_blocks(text):
+    return re.sub(r'^```.*?^```$', '', text, flags=re.MULTILINE | re.DOTALL)
+
+
+def anchors(text):
+    """The names that headings can be linked by, as Git hosts make them."""
+    names = set()
+    for heading in re.findall(r'^#+ +(.+?) *$', without_blocks(text), re.MULTILINE):
+        plain = re.sub(r'\[([^]]*)\]\([^)]*\)', r'\1', heading).lower()
+        names.add(re.sub(r'[^\w\- ]', '', plain).replace(' ', '-'))
+    return names
+
+
+def links(text):
+    prose = re.sub(r'`[^`\n]*`', '', without_blocks(text))
+    return re.findall(r'\]\(([^)\s]+)\)', prose)
+
+
+def check_links(source):
+    problems, linked = [], set()
+    for page in pages(source):
+        with open(page, encoding='utf-8') as file:
+            text = file.read()
+        name = os.path.relpath(page, source)
+        for link in links(text):
+            if re.match(r'[a-z]+:', link):
+                continue
+            path, _, anchor = link.partition('#')
+            target = os.path.normpath(os.path.join(os.path.dirname(page), path)) if path else page
+            if name == 'README.md':
+                linked.add(os.path.relpath(target, source))
+            if not os.path.exists(target):
+                problems.append(f'{name}: {link}: there is no such file')
+            elif anchor and target.endswith('.md'):
+                with open(target, encoding='utf-8') as file:
+                    if anchor not in anchors(file.read()):
+                        problems.append(f'{name}: {link}: there is no such heading')
+        # Files that are named without a link. kernels/README.md has those of a kernel that is yet to be written.
+        for path in re.findall(r'`((?:docs|kernels|tests|perf|host)/[\w./-]+\.\w+)`', text):
+            if name not in ('CHANGELOG.md', 'kernels/README.md') and not os.path.exists(os.path.join(source, path)):
+                problems.append(f'{name}: {path}: there is no such file')
+    for page in glob.glob(os.path.join(source, 'docs', '*.md')):
+        if os.path.relpath(page, source) not in linked:
+            problems.append(f'README.md does not link {os.path.relpath(page, source)}')
+    return problems
+
+
+def options_of(program):
+    """By command, what its --help lists; under '' those of all."""
+    def listed(*command):
+        done = subprocess.run([program, *command, '--help'], stdout=subprocess.PIPE, text=True, check=True, timeout=60)
+        return done.stdout
+
+    commands = re.findall(r'^([a-z]+)$', listed(), re.MULTILINE)
+    if len(commands) < 5:
+        sys.exit(f'{program} --help lists the commands {commands}')
+    found = {command: set(re.findall(r'--[a-z][\w-]*', listed(command))) for command in commands}
+    found[''] = set.union(*found.values(), {'--version'})
+    return found
+
+
+def check_options(source, program):
+    problems, known, counted = [], options_of(program), 0
+    for page in pages(source):
+        name = os.path.relpath(page, source)
+        if name == 'CHANGELOG.md' or name.startswith('docs/decisions'):
+            continue
+        with open(page, encoding='utf-8') as file:
+            text = file.read()
+        blocks = re.findall(r'^```(?:sh|bash)?\n(.*?)^```$', text, re.MULTILINE | re.DOTALL)
+        lines = [line for block in blocks for line in block.replace('\\\n', ' ').splitlines()]
+        code = lines + re.findall(r'`([^`\n]+)`', without_blocks(text))
+        for line in code:
+            line = line.split('  #')[0]
+            call = re.search(r'(?:^|/|\s)topple(?:-mpi)? ([a-z]+)(.*)', line)
+            if call and call[1] in known:
+                given, allowed, who = call[2], known[call[1]], 'topple ' + call[1]
+            elif name in OPTIONS_ALONE and line.startswith('--'):
+                given, allowed, who = line, known[''] | OTHERS, 'topple'
+            else:
+                continue
+            for option in re.findall(r'(?<![\w-])--[a-z][\w-]*', given):
+                counted += 1
+                if option not in allowed:
+                    problems.append(f'{name}: `{line.strip()}`: {who} has no {option}')
+    if counted < 50:
+        problems.append(f'only {counted} options were found in the pages: the search for them is broken')
+    return problems
+
+
+def main():
+    source = sys.argv[1]
+    problems = check_links(source)
+    if len(sys.argv) > 2:
+        problems += check_options(source, sys.argv[2])
+    sys.exit('\n'.join(problems) if problems else 0)
+
+
+if __name__ == '__main__':
+    main()
