@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "carve_leaves.hpp"
+#include "core/thread_pool.h"
 #include "device/buffer.h"
 #include "device/queue.h"
 #include "topple/error.h"
@@ -143,8 +144,10 @@ void Carver::upload(std::span<const DepthFrame> frames) {
         const auto some = frames.subspan(first, std::min<std::size_t>(step, frames.size() - first));
         words.resize(some.size() * words_);
         rows.clear();
-        for (std::size_t n = 0; n < some.size(); ++n) {
+        device_.threads().each(some.size(), 1, [&](std::size_t n) {
             build_pyramid(intrinsics_, some[n].depth, {words.data() + n * words_, words_});
+        });
+        for (std::size_t n = 0; n < some.size(); ++n) {
             const auto camera =
                 camera_rows(g_.frame, g_.leaves.reference(), intrinsics_, some[n].camera_to_world);
             rows.insert(rows.end(), camera.begin(), camera.end());

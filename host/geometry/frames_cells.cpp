@@ -97,7 +97,9 @@ CellSums& CellTable::cell(std::uint64_t key) {
     Block& home = block(key);
     std::uint32_t& place = home.at[place_in_block(key)];
     if (place == 0) {
-        cells_.push_back({.key = key});
+        CellSums none{};
+        none.key = key;
+        cells_.push_back(none);
         place = static_cast<std::uint32_t>(cells_.size());
         ++home.count;
     }
@@ -160,7 +162,7 @@ void WaitingReadings::clear() {
     last_ = nullptr;
 }
 
-std::vector<CellSums> CellTables::sorted(ThreadPool& pool) const {
+SortedCells CellTables::sorted(ThreadPool& pool) const {
     std::vector<BlockPlace> blocks;
     for (const CellTable& table : shards) {
         for (const CellTable::Block& block : table.blocks()) blocks.push_back({&block, &table});
@@ -176,7 +178,7 @@ std::vector<CellSums> CellTables::sorted(ThreadPool& pool) const {
         slab.push_back(end);
         first.push_back(first.back() + count);
     }
-    std::vector<CellSums> cells(first.back());
+    SortedCells cells(first.back(), boost::container::default_init);
     pool.run(slab.size() - 1, 1, [&](std::uint64_t begin, std::uint64_t end) {
         for (std::uint64_t s = begin; s < end; ++s) {
             write_slab(blocks, slab[s], slab[s + 1], cells.data() + first[s]);

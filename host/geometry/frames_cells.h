@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <boost/container/vector.hpp>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,17 +25,18 @@ struct Reading {
 
 // What the readings in one cell sum up to. Integers, so that the sums do not depend on the order in
 // which threads or frames arrive. Offsets are 1 / 65536 of a cell from its lowest corner.
+// Not initialised by itself, so that millions of them may be made where each is written.
 struct CellSums {
-    std::uint64_t key = 0;
-    std::array<std::uint64_t, 3> offset{};  // sum of weight * offset
-    std::uint64_t weight = 0;       // sum of inverse variances, in 65535ths of the best reading's
-    std::uint32_t count = 0;        // readings
-    std::uint32_t best_weight = 0;  // of the best reading,
-    std::uint32_t best_frame = 0;   // and its frame, the first of equals
+    std::uint64_t key;
+    std::array<std::uint64_t, 3> offset;  // sum of weight * offset
+    std::uint64_t weight;       // sum of inverse variances, in 65535ths of the best reading's
+    std::uint32_t count;        // readings
+    std::uint32_t best_weight;  // of the best reading,
+    std::uint32_t best_frame;   // and its frame, the first of equals
     // Of the readings whose colour is known: weight * channel, with weights of 8 bits, and those
     // weights. What would not fit is left out: the mean of 65,000 good readings is known by then.
-    std::array<std::uint32_t, 3> colour{};
-    std::uint32_t colour_weight = 0;
+    std::array<std::uint32_t, 3> colour;
+    std::uint32_t colour_weight;
     void add(const CellSums& other);
     void add(const Reading& reading, std::uint32_t frame);
     void add_colour(const std::array<std::uint32_t, 3>& sums, std::uint32_t weights);
@@ -99,6 +101,8 @@ class CellTable {
     std::size_t last_ = 0;  // the cube found last
 };
 
+using SortedCells = boost::container::vector<CellSums>;
+
 // Cells shared out over tables by their cubes, so that several threads may fill them, one per
 // table, and that neighbours are near one another in memory.
 struct CellTables {
@@ -111,7 +115,7 @@ struct CellTables {
     // In order, whatever the number of threads.
     void add(std::span<const std::span<const CellSums>> parts, ThreadPool& pool);
     // All cells by ascending key.
-    std::vector<CellSums> sorted(ThreadPool& pool) const;
+    SortedCells sorted(ThreadPool& pool) const;
 };
 
 // Readings of some rows of frames, in the order in which they came, and the tables they go to.
@@ -150,7 +154,7 @@ struct FrameFusion::Cells {
 // Fused cells to clean: sorted by key.
 struct FusedCells {
     double cell_m = 0;
-    std::vector<CellSums> cells;
+    SortedCells cells;
 };
 // Drops cells of stray readings.
 void drop_weak(FusedCells& fused, std::size_t frames, ThreadPool& pool);

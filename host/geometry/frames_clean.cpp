@@ -163,7 +163,7 @@ void bin_anew(FusedCells& fused, ThreadPool& pool) {
     CellTables tables;
     constexpr std::size_t most_parts = 64;
     std::vector<std::span<const CellSums>> parts;
-    const std::span<const CellSums> cells = fused.cells;
+    const std::span<const CellSums> cells(fused.cells.data(), fused.cells.size());
     const std::size_t part = std::max(fused_chunk, cells.size() / most_parts + 1);
     for (std::size_t first = 0; first < cells.size(); first += part)
         parts.push_back(cells.subspan(first, std::min(part, cells.size() - first)));
@@ -224,7 +224,7 @@ void flatten_layers(FusedCells& fused, double least_sigma_m, ThreadPool& pool) {
     std::size_t left = 0;
     for (const auto& cells : which) left += cells.size();
     if (left == 0) return;
-    const std::unique_ptr<device::Device> device = device::open_native();
+    const std::unique_ptr<device::Device> device = device::open_native(pool.threads());
     CellGrid grid = grid_of(fused, pool);
     std::vector<std::uint32_t> cell_of(n);  // the level's cell of each cell
     std::iota(cell_of.begin(), cell_of.end(), 0u);

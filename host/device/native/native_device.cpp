@@ -68,6 +68,8 @@ std::string cpu_name() {
 }
 
 constexpr std::uint64_t least_items = 4096;  // 1 to 100 microseconds of work
+// Copies from so many bytes on are shared out: memory that is touched first has to be cleared.
+constexpr std::uint64_t least_shared_bytes = 4u << 20, copied_at_once = 1u << 20;
 
 class NativeDevice final : public Device {
   public:
@@ -90,11 +92,11 @@ class NativeDevice final : public Device {
         return std::make_unique<NativeMemory>(*this, bytes, name);
     }
     void write(Memory& to, std::uint64_t offset, std::span<const std::byte> from) override {
-        std::memcpy(address(to) + offset, from.data(), from.size());
+        copy(address(to) + offset, from.data(), from.size());
         counters_.bytes_written += from.size();
     }
     void read(Memory& from, std::uint64_t offset, std::span<std::byte> to) override {
-        std::memcpy(to.data(), address(from) + offset, to.size());
+        copy(to.data(), address(from) + offset, to.size());
         counters_.bytes_read += to.size();
     }
     void fill(Memory& memory, std::uint64_t offset, std::uint64_t bytes,
@@ -130,6 +132,13 @@ class NativeDevice final : public Device {
     }
 
   private:
+    void copy(std::byte* to, const std::byte* from, std::uint64_t bytes) {
+        if (bytes == 0) return;
+        const std::uint64_t at_once = bytes < least_shared_bytes ? bytes : copied_at_once;
+        pool_.run(bytes, at_once, [&](std::uint64_t first, std::uint64_t last) {
+            std::memcpy(to + first, from + first, last - first);
+        });
+    }
     std::byte* address(Memory& memory) const {
         auto* mine = dynamic_cast<NativeMemory*>(&memory);
         if (!mine || &mine->device() != this) {
