@@ -187,7 +187,8 @@ PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const 
         merger.merge_all();
         cut_flush_faces(surfels, up, merger.solids(), options, cuts, facts);
         if (cuts.count > before) continue;
-        if (cut_at_ledges(surfels, up, merger.solids(), cuts, facts) == 0) return merger.result();
+        if (cut_at_ledges(surfels, up, merger.solids(), cuts, facts, threads) == 0)
+            return merger.result();
     }
 }
 

@@ -119,7 +119,7 @@ void cut_flush_faces(const Surfels& surfels, const Vec3& up, const std::vector<s
 // solid: which one each region was merged to. Returns how many ledges there were.
 std::uint32_t cut_at_ledges(const Surfels& surfels, const Vec3& up,
                             const std::vector<std::int32_t>& solid, CutRegions& cuts,
-                            RegionFacts& facts);
+                            RegionFacts& facts, ThreadPool& threads);
 
 // The surfel in the cell that holds p, or -1.
 std::int64_t surfel_at(const Surfels& surfels, const Eigen::Vector3d& p);

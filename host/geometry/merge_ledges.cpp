@@ -19,24 +19,29 @@ constexpr std::size_t least_piece = 6;
 
 std::uint32_t cut_at_ledges(const Surfels& s, const Vec3& upwards,
                             const std::vector<std::int32_t>& solid, CutRegions& cuts,
-                            RegionFacts& facts) {
+                            RegionFacts& facts, ThreadPool& threads) {
     const Eigen::Vector3d up(upwards[0], upwards[1], upwards[2]);
-    std::map<std::int32_t, std::vector<std::size_t>> regions_of;
+    std::map<std::int32_t, std::vector<std::size_t>> regions_of_root;
     for (std::size_t k = 0; k < solid.size(); ++k)
-        if (!cuts.members[k].empty()) regions_of[solid[k]].push_back(k);
+        if (!cuts.members[k].empty()) regions_of_root[solid[k]].push_back(k);
+    std::vector<std::vector<std::size_t>> regions_of;
+    for (auto& [root, regions] : regions_of_root) regions_of.push_back(std::move(regions));
+    std::vector<std::optional<double>> ledge(regions_of.size());
+    threads.each(regions_of.size(), 1, [&](std::size_t n) {
+        std::vector<std::uint32_t> members;
+        for (const std::size_t k : regions_of[n])
+            members.insert(members.end(), cuts.members[k].begin(), cuts.members[k].end());
+        ledge[n] = find_ledge(s, members, up);
+    });
     const std::uint32_t before = cuts.count;
     std::vector<std::int32_t> changed;
-    for (const auto& [root, regions] : regions_of) {
-        std::vector<std::uint32_t> members;
-        for (const std::size_t k : regions)
-            members.insert(members.end(), cuts.members[k].begin(), cuts.members[k].end());
-        const std::optional<double> ledge = find_ledge(s, members, up);
-        if (!ledge) continue;
-        for (const std::size_t k : regions) {
+    for (std::size_t n = 0; n < regions_of.size(); ++n) {
+        if (!ledge[n]) continue;
+        for (const std::size_t k : regions_of[n]) {
             changed.push_back(static_cast<std::int32_t>(k));
             std::vector<std::uint32_t> above;
             for (const std::uint32_t i : cuts.members[k])
-                if (up.dot(position(s, i)) > *ledge) above.push_back(i);
+                if (up.dot(position(s, i)) > *ledge[n]) above.push_back(i);
             const std::size_t below = cuts.members[k].size() - above.size();
             if (std::min(above.size(), below) < least_piece) {
                 cuts.ledges[k].emplace_back(cuts.count, above.size() > below);
