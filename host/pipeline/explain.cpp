@@ -17,7 +17,8 @@ std::string length(double metres) {
     return metres < 0.1 ? io::two_digits(100 * metres) + " cm" : io::two_digits(metres) + " m";
 }
 std::string energy(double joules) {
-    return io::two_digits(joules) + " J";
+    return joules < 0.01 && joules > 5e-7 ? io::two_digits(1000 * joules) + " mJ"
+                                          : io::two_digits(joules) + " J";
 }
 
 std::string compass(double azimuth_deg) {

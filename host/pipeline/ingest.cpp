@@ -208,11 +208,11 @@ void check_count(const CloudView& cloud) {
 }
 
 // All that follows from the points.
-void look_at_cloud(device::Device& device, Ingested& out) {
+void look_at_cloud(device::Device& device, Ingested& out, bool from_file) {
     const CloudView& cloud = out.cloud;
     check_count(cloud);
     const geometry::PointSpacing spacing = geometry::point_spacing(cloud);
-    check_spacing(cloud, spacing.nearest_m);
+    check_spacing(cloud, spacing.nearest_m, from_file);
     // A little above the spacing, so that a surface has no holes at this resolution.
     out.cell_m = std::clamp(1.25 * spacing.nearest_m, least_cell_m, largest_cell_m);
     out.surfels = geometry::surfels_for(spacing, surfel_cells * out.cell_m);
@@ -244,7 +244,7 @@ Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptio
     Ingested out;
     out.own = std::move(cloud);
     out.cloud = out.own;
-    look_at_cloud(device, out);
+    look_at_cloud(device, out, true);
     return out;
 }
 
@@ -261,7 +261,7 @@ Ingested ingest_view(device::Device& device, const CloudView& cloud, const Parse
         out.index = std::move(finite->index);
         out.cloud = out.own;
     }
-    look_at_cloud(device, out);
+    look_at_cloud(device, out, false);
     return out;
 }
 
@@ -298,7 +298,7 @@ Ingested ingest_volume(device::Device& device, ScannedMap map) {
     Ingested out;
     out.own = std::move(map.cloud);
     out.cloud = out.own;
-    look_at_cloud(device, out);
+    look_at_cloud(device, out, true);
     if (!map.space.free.empty()) out.space = std::move(map.space);
     return out;
 }

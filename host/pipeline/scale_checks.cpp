@@ -39,21 +39,23 @@ double extent_m(const std::array<FloatColumn, 3>& axes) {
     return extent;
 }
 
-void check_spacing(const CloudView& cloud, double spacing_m) {
+void check_spacing(const CloudView& cloud, double spacing_m, bool from_file) {
     if (spacing_m <= sparsest_m) return;
     const double extent = extent_m({cloud.x, cloud.y, cloud.z});
     std::string units, options;
     for (const auto& [unit, unit_m] : {std::pair("mm", 0.001), {"cm", 0.01}, {"in", 0.0254}}) {
         if (extent * unit_m < least_room_m || extent * unit_m > largest_room_m) continue;
         units.append(units.empty() ? "" : " or ").append(unit);
-        options.append(options.empty() ? "--unit " : " or --unit ").append(unit);
+        options.append(options.empty() ? "" : " or ");
+        options.append(from_file ? "--unit " + std::string(unit) : "by " + text_of(unit_m));
     }
     throw Error(ErrorKind::input,
                 cloud.source + ": the points extend over " + text_of(extent) + " m and are " +
                     text_of(spacing_m) + " m apart, more than the " + text_of(sparsest_m) +
                     " m at which surfaces can be found; " +
                     (units.empty() ? "give a denser scan"
-                                   : "if the coordinates are in " + units + ", say " + options +
+                                   : "if the coordinates are in " + units +
+                                         (from_file ? ", say " : ", multiply them ") + options +
                                          ", else give a denser scan"));
 }
 

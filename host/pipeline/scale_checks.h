@@ -19,7 +19,7 @@ double extent_m(const std::array<FloatColumn, 3>& axes);
 // Refuses a cloud whose points are `spacing_m` apart where that is too far for surfaces at the
 // coarsest resolution, which is what a room looks like in another unit than metres. Throws
 // Error(input), which names the units in which it would be a room.
-void check_spacing(const CloudView& cloud, double spacing_m);
+void check_spacing(const CloudView& cloud, double spacing_m, bool from_file = true);
 
 // Of what extends over less than things in a room do: "it all extends over X m: check --unit", or
 // what else gives the unit of such an input; else "".

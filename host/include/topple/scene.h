@@ -154,8 +154,9 @@ struct Fragility {
         double pga_g = 0;
         double chance = 0;  // share of the records and directions in which it fell
     };
-    // Of peak ground acceleration, over g; where counts level off below 9 in 10, as those of what
-    // slides from some sides do, the peak at which half falls, and no dispersion.
+    // Of peak ground acceleration, over g. Where counts level off below 9 in 10, or begin above
+    // half: the peak at which half falls (the least that was tried at the least), and no
+    // dispersion.
     double pga_g = none, pga_dispersion = none;
     double firm_pga_g = none;                           // the same median if its foot can't slide
     double pgv_m_s = none, pgv_dispersion = none;       // of peak ground velocity

@@ -82,6 +82,16 @@ function verdict(before, after) {
   return change < 0 ? 'safer' : 'less safe';
 }
 
+// Whether a later parse was told that what stood in an object's place is fixed to the building.
+function fixedBy(corrections, scene, other, box) {
+  const shift = [0, 1, 2].map(k => ((other.offset_m || [])[k] || 0) - ((scene.offset_m || [])[k] || 0));
+  const margin = 2 * scene.voxel_size_m;
+  return !!box && (corrections || []).some(one => one.do === 'fixed' && one.held !== false && (one.at_m || []).some(spot => {
+    const at = viewPlace(scene, spot.map((value, k) => value + shift[k]));
+    return at.every((value, k) => value >= box[k][0] - margin && value <= box[k][1] + margin);
+  }));
+}
+
 // Rows for the table: {mine, theirs, before, after, verdict}, what changed most first.
 function compareScenes(scene, other, otherIsBefore) {
   const reckoned = objects => new Set(objects.flatMap(object => Object.keys(object.risk_J || {})));
@@ -89,10 +99,12 @@ function compareScenes(scene, other, otherIsBefore) {
   const rows = matchObjects(scene, other).map(([a, b]) => {
     const [first, last] = otherIsBefore ? [b, a] : [a, b];
     const before = first && comparedRisk(first, names), after = last && comparedRisk(last, names);
-    return {mine: a, theirs: b, before, after, verdict: !first ? 'new' : !last ? 'gone' : verdict(before, after)};
+    const later = otherIsBefore ? scene : other;
+    const gone = () => fixedBy(later.corrections, scene, later, comparedBox(scene, otherIsBefore ? other : scene, first)) ? 'fixed now' : 'gone';
+    return {mine: a, theirs: b, before, after, verdict: !first ? 'new' : !last ? gone() : verdict(before, after)};
   });
   const change = row => Math.abs((row.after ? row.after.risk : 0) - (row.before ? row.before.risk : 0));
-  const order = ['less safe', 'new', 'safer', 'gone', 'unknown', 'alike'];
+  const order = ['less safe', 'new', 'safer', 'fixed now', 'gone', 'unknown', 'alike'];
   rows.sort((p, q) => order.indexOf(p.verdict) - order.indexOf(q.verdict) || change(q) - change(p));
   return {rows, names};
 }
@@ -128,8 +140,10 @@ class ComparePanel {
     if (!this.other) return;
     const {rows, names} = compareScenes(this.scene, this.other, this.order.value === 'before');
     const count = what => rows.filter(row => row.verdict === what).length;
-    const line = `${count('safer')} safer, ${count('less safe')} less safe, ${count('alike')} as before within the errors, ` +
-      `${count('new')} new, ${count('gone')} gone` + (count('unknown') ? `, ${count('unknown')} not known` : '') + '.';
+    const line = rows.some(row => row.mine && row.theirs) ? '' :
+      'No object of one is where one of the other is: are both of the same room, in the same frame? ';
+    const counts = `${count('safer')} safer, ${count('less safe')} less safe, ${count('alike')} as before within the errors, ` +
+      `${count('new')} new, ${count('gone')} gone` + (count('fixed now') ? `, ${count('fixed now')} fixed now` : '') + (count('unknown') ? `, ${count('unknown')} not known` : '') + '.';
     const risk = side => !side ? '\u2013' : side.unknown ? 'not known' : number(side.risk) + within(side.error);
     const body = rows.map(row => {
       const id = row.mine ? row.mine.id : null;
@@ -142,11 +156,11 @@ class ComparePanel {
     });
     const head = ['Object here', `In ${this.name}`, 'Risk before (J)', 'Risk after (J)', 'Became'].map((text, i) =>
       element('th', {scope: 'col', text, className: i === 2 || i === 3 ? '' : 'text'}));
-    this.out.replaceChildren(element('p', {text: line}),
+    this.out.replaceChildren(element('p', {text: line + counts}),
       element('div', {className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': 'Objects of both parses'}, [
         element('table', {}, [element('thead', {}, [element('tr', {}, head)]), element('tbody', {}, body)])]),
       element('p', {className: 'hint', text: `Objects are the same where their boxes overlap by a tenth or more. Risk is the largest of ` +
         `${listed(names.map(causeOf)) || 'none that both parses have'}, in joules per event; a change within two standard errors is none.`}));
-    this.say(line);
+    this.say(line + counts);
   }
 }

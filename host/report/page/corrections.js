@@ -66,7 +66,10 @@ class Corrections {
   // For a POSIX shell.
   command() {
     const source = this.scene.source || 'INPUT', safe = /^[\w./@%+=:,-]+$/.test(source) ? source : `'${source.replace(/'/g, `'\\''`)}'`;
-    return `topple parse ${safe} --corrections corrections.json -o OUT`;
+    // What was reckoned with is asked for again, or the second report would be of another question.
+    const kinds = this.scene.disturbances || [], all = ['human', 'wind', 'earthquake'];
+    const asked = all.every(kind => kinds.includes(kind)) || !kinds.length ? '' : ` --disturbance ${kinds.join(',')}`;
+    return `topple parse ${safe}${asked} --corrections corrections.json -o OUT`;
   }
 }
 

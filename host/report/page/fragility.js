@@ -27,7 +27,8 @@ function fragilityText(object) {
       `No earthquake with peaks of up to ${round(strongest.pga_g)} g turns it over or moves it off${slides}.`;
   }
   const speed = f.pgv_m_s === null ? '' : ` or peak velocities of ${round(f.pgv_m_s)} m/s`;
-  return `Half of all earthquakes with peaks of ${round(f.pga_g)} g${speed} turn it over or move it off${slides}.${rate}`;
+  const less = f.pga_dispersion === null && f.counted.length && f.pga_g <= f.counted[0].pga_g ? ', and perhaps less,' : '';
+  return `Half of all earthquakes with peaks of ${round(f.pga_g)} g${less}${speed} turn it over or move it off${slides}.${rate}`;
 }
 
 // The curve; null where nothing was counted.

@@ -315,8 +315,16 @@ async function start() {
   addEventListener('keydown', event => {
     if (event.key === 'Escape' && state.chosen !== null) choose(null);
   });
-  addEventListener('hashchange', () => { if (linkedObject(scene) !== null) visit(linkedObject(scene)); });
-  if (linkedObject(scene) !== null) visit(linkedObject(scene));
+  const follow = () => {
+    if (linkedObject(scene) !== null) visit(linkedObject(scene));
+    else if (location.hash.startsWith('#object=')) {
+      const wanted = location.hash.slice(1).replace('=', ' ');
+      choose(null);
+      say(`There is no ${wanted} here.`);
+    }
+  };
+  addEventListener('hashchange', follow);
+  follow();
   paintPictures(scene);
   window.toppleChoose = choose;
   window.toppleParts = parts;

@@ -12,6 +12,10 @@ namespace {
 // Counts that end below this level off: a lognormal, which goes on to 1, does not describe them.
 constexpr double least_at_strongest = 0.9;
 
+// What falls in so many of the weakest shakings falls in weaker ones, too, but nobody knows how
+// weak.
+constexpr double most_at_weakest = 0.5;
+
 // Of the log-likelihood in (a, b): its slopes, and Fisher's information.
 struct Score {
     double a = 0, b = 0, aa = 0, ab = 0, bb = 0;
@@ -32,7 +36,9 @@ Score score(std::span<const Trials> trials, double a, double b) {
 }
 
 double counted_chance(const Fragility& f, double pga_g) {
-    if (f.counted.empty() || pga_g < f.counted.front().pga_g) return 0;
+    if (f.counted.empty()) return 0;
+    const Fragility::Step& weakest = f.counted.front();
+    if (pga_g < weakest.pga_g) return weakest.chance >= most_at_weakest ? weakest.chance : 0;
     for (std::size_t n = 0; n + 1 < f.counted.size(); ++n) {
         const auto &low = f.counted[n], &high = f.counted[n + 1];
         if (pga_g >= high.pga_g) continue;
@@ -102,7 +108,8 @@ Fragility fragility_of(std::span<const Trials> peaks) {
     Fragility f;
     for (const Trials& t : peaks)
         f.counted.push_back({t.strength, static_cast<double>(t.falls) / t.of});
-    if (f.counted.back().chance < least_at_strongest) {
+    if (f.counted.back().chance < least_at_strongest ||
+        f.counted.front().chance >= most_at_weakest) {
         f.pga_g = half_falls_g(f);
     } else if (const auto fitted = fit_lognormal(peaks)) {
         f.pga_g = fitted->median;

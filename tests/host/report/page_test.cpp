@@ -320,6 +320,10 @@ TEST_F(Page, tells_what_became_safer) {
         document.getElementById('compare-order').value = 'after';
         toppleCompare.show();
         out.turned = text('tbody tr th');
+        const told = JSON.parse(json);
+        told.corrections = [{do: 'fixed', held: true, at_m: [[5, 1, 0.5]]}];
+        toppleCompare.read('told.json', JSON.stringify(told));
+        out.fixed = rows().includes('object 5: fixed now');
         toppleCompare.read('x.html', '<html></html>');
         out.wrong = text('.warning');
     )");
@@ -331,6 +335,7 @@ TEST_F(Page, tells_what_became_safer) {
               "1 safer, 1 less safe, 2 as before within the errors, 1 new, 1 gone.");
     EXPECT_EQ(page.data("same"), "true");
     EXPECT_EQ(page.data("turned"), "object 3") << "which is less safe now";
+    EXPECT_EQ(page.data("fixed"), "true");
     EXPECT_EQ(page.data("wrong"), "x.html is a web page, but no report of topple.");
 }
 

@@ -129,6 +129,16 @@ TEST(Fragility, MediansOfCountsThatLevelOff) {
     EXPECT_TRUE(std::isnan(half_falls_g({})));
 }
 
+TEST(Fragility, OfWhatAlwaysFallsIsTheWeakestThatWasTried) {
+    const std::vector<Trials> always{{0.05, 64, 64}, {0.1, 64, 64}, {0.2, 64, 64}};
+    const Fragility f = fragility_of(always);
+    EXPECT_EQ(f.pga_g, 0.05);
+    EXPECT_TRUE(std::isnan(f.pga_dispersion));
+    // Nobody knows how weak a shaking it stands: all of them count.
+    const HazardCurve hazard{{0.01, 0.1}, {0.1, 0.002}, ""};
+    EXPECT_NEAR(falls_per_year(hazard, f), 0.1, 1e-9);
+}
+
 TEST(Fragility, SlenderThingsFallEarlierAndAmplifiedFloorsSooner) {
     const auto device = device::open_native(2);
     test::Room room(0.02);
