@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <array>
+#include <string>
 #include <utility>
 
 #include "busy.h"
@@ -39,6 +40,13 @@ std::string with_own_names(std::string text) {
          {"--urdf", "urdf"},
          {"--sdf", "sdf"},
          {"--usd", "usd"}}};
+    for (const auto& [option, own] : {std::pair{"--unit mm", "unit_m=0.001"},
+                                      {"--unit cm", "unit_m=0.01"},
+                                      {"--unit in", "unit_m=0.0254"}}) {
+        const std::size_t length = std::char_traits<char>::length(option);
+        for (std::size_t at; (at = text.find(option)) != std::string::npos;)
+            text.replace(at, length, own);
+    }
     const auto in_name = [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; };
     for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at + 1)) {
         if (at > 0 && text[at - 1] != ' ') continue;  // within a file's name
