@@ -383,6 +383,9 @@ def test_exports_to_nothing_or_over_others_files_are_refused(result, tmp_path):
     with pytest.raises(topple.Error, match='mjcf') as error:
         result.export()
     assert error.value.kind == 'usage'
+    for wrong in ({'threads': -1}, {'visuals': 'no'}, {'mjcf': 3}):
+        with pytest.raises(topple.Error, match=f'^{[*wrong][0]}: expected'):
+            result.export(**{'mjcf': tmp_path / 'mjcf', **wrong})
     (tmp_path / 'scene.xml').write_text('<mujoco/>')
     with pytest.raises(topple.Error, match='scene.xml') as error:
         result.export(mjcf=tmp_path)

@@ -173,7 +173,8 @@ class Result:
         file of others is an Error of kind "input". threads: 0 for all cores; the result is the same. Other threads of
         Python run meanwhile."""
         paths = {'mjcf': mjcf, 'urdf': urdf, 'sdf': sdf, 'usd': usd}
-        given = {name: os.fspath(path) for name, path in paths.items() if path is not None}
+        given = {name: _file(name, path) for name, path in paths.items() if path is not None}
+        visuals, threads = _option('visuals', visuals), _option('threads', threads)
         bodies, *rest = _topple.export_scene(self._whole('export'), given, visuals, threads)
         return ExportSummary([ExportedBody(*body) for body in bodies], *rest)
 

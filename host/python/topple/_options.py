@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether what parse() is given for its options has their types; the library checks their ranges."""
+"""Whether what parse() and export() are given for options has their types; the library checks their ranges."""
 import math
 import operator
 
@@ -59,8 +59,9 @@ _KINDS = {
     'a number, or None': (_number, ('contents_kg_m3', 'wind_from_deg', 'pga_m_s2', 'grouping_time_s')),
     'a whole number from 0': (_whole(64), ('seed', 'max_memory_bytes')),
     'a whole number, 1 or more': (_whole(32), ('walks',)),
+    'a whole number, 0 for all cores': (_whole(32), ('threads',)),
     'three finite numbers, as [0, 0, 1], or None': (_vector, ('up', 'viewpoint')),
-    'True or False': (_flag, ('isolate',)),
+    'True or False': (_flag, ('isolate', 'visuals')),
     'a name, a list of names, or None': (_names, ('disturbances',)),
     "a Device of topple.open_device(), a backend's name, or None": (_device, ('device',)),
     'a function, or None': (_callable, ('progress', 'cancelled')),
