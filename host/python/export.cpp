@@ -11,8 +11,10 @@ namespace topple::python {
 namespace {
 
 py::tuple body_tuple(const ExportedBody& b) {
+    const py::object excess_share =
+        b.solid_m3 > 0 ? py::object(py::float_(b.parts_m3 / b.solid_m3 - 1)) : py::none();
     return py::make_tuple(b.name, b.object, b.fixed, b.on_pad, b.held, b.struts, b.moved_m, b.parts,
-                          b.mass_kg, b.solid_m3, b.parts_m3, b.lost_m3);
+                          b.mass_kg, b.solid_m3, b.parts_m3, b.lost_m3, excess_share);
 }
 
 }  // namespace

@@ -180,9 +180,10 @@ void bind_parse(py::module_& module) {
     module.def("parse_arrays",
                [](const std::vector<py::array>& points, const std::vector<py::array>& normals,
                   const std::vector<py::array>& colours, const std::optional<Vec3>& viewpoint,
-                  const std::shared_ptr<SharedDevice>& device, ParseOptions options,
-                  py::object progress, py::object cancelled) {
-                   const CloudView view = view_of(points, normals, colours, viewpoint);
+                  const std::string& name, const std::shared_ptr<SharedDevice>& device,
+                  ParseOptions options, py::object progress, py::object cancelled) {
+                   CloudView view = view_of(points, normals, colours, viewpoint);
+                   view.source = name;
                    options.coordinates = false;
                    return run(device, options, std::move(progress), std::move(cancelled),
                               [&](const ParseOptions& o) { return parse(view, o); });

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <mutex>
+#include <string>
 
 #include "topple/parse.h"
 
@@ -25,6 +26,10 @@ struct SharedDevice {
 struct Parsed {
     ParseResult result;
 };
+
+// The library names options as the command line does, "--wind-from": as parse() does,
+// "wind_from_deg".
+std::string with_own_names(std::string text);
 
 void bind_export(py::module_& module);
 void bind_parse(py::module_& module);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "python.h"
 
@@ -137,6 +138,9 @@ void bind_items(py::module_& module) {
                                    return o.unsafety_category;
                                })
         .def_readonly("unsafety_certain", &Object::unsafety_certain)
+        .def_readonly("seen_enough", &Object::seen_enough)
+        .def_readonly("rests_by", &Object::rests_by)
+        .def_readonly("rest_probability", &Object::rest_probability)
         .def_property_readonly(
             "instability",
             [](const py::object& self) {
@@ -228,10 +232,17 @@ void bind_result(py::module_& module) {
         .def_property_readonly("device", scene(&Scene::device))
         .def_property_readonly("seed", scene(&Scene::seed))
         .def_property_readonly("voxel_size_m", scene(&Scene::voxel_size_m))
+        .def_property_readonly("offset_m", scene(&Scene::offset_m))
         .def_property_readonly("up", scene(&Scene::up))
         .def_property_readonly("up_method", scene(&Scene::up_method))
         .def_property_readonly("manhattan_from_input", scene(&Scene::manhattan_from_input))
-        .def_property_readonly("notes", scene(&Scene::notes))
+        .def_property_readonly("notes",
+                               [](const Parsed& p) {
+                                   std::vector<std::string> out;
+                                   for (const std::string& note : p.result.scene.notes)
+                                       out.push_back(with_own_names(note));
+                                   return out;
+                               })
         .def_property_readonly("timings_s",
                                [](const Parsed& p) {
                                    py::dict out;

@@ -108,6 +108,8 @@ def main():
     topple = work / 'venv' / 'bin' / 'topple'
     run(topple, 'generate', 'scan', '--seed', '1', '--frames', '8', cwd=work, env=alone)
     print(run(work / 'venv' / 'bin' / 'python', '-c', SCRIPT, 'scan', 'out', cwd=work, env=alone))
+    refused = subprocess.run([topple, 'verify', 'out'], cwd=work, env=alone, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    check(refused.returncode == 3 and 'the wheel leaves out' in refused.stdout, f'topple verify: exit code {refused.returncode}\n{refused.stdout}')
     listed = run(topple, 'devices', cwd=work, env=dict(alone, VK_ICD_FILENAMES='/nowhere', VK_DRIVER_FILES='/nowhere', OCL_ICD_VENDORS='/nowhere'))
     for words in ('native  ', 'OpenCL finds no driver', 'Vulkan finds no driver'):
         check(words in listed, f'topple devices without drivers does not say "{words}":\n{listed}')

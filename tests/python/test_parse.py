@@ -151,6 +151,10 @@ def test_points_that_are_not_finite_are_left_out(points, result, device):
     (np.zeros((30, 4), np.float32), 'points: expected floats of shape (N, 3), not float32 of shape (30, 4); '
                                     'points[:, :3] takes the first three columns'),
     (np.zeros((30, 2), np.float32), 'points: expected floats of shape (N, 3), not float32 of shape (30, 2)'),
+    (np.zeros((3, 30), np.float32), 'not float32 of shape (3, 30); points.T has a row'),
+    (np.zeros((4, 5, 3), np.float32), 'points.reshape(-1, 3) has a row'),
+    ([[1, 2, 3]] * 9, "np.array(points, 'float32') converts integers"),
+    (np.random.default_rng(1).random((3000, 3)).astype(np.float32) * 3000, 'are in mm or cm, multiply the array by 0.001 or 0.01, else'),
     (np.zeros((30, 3), int), "not int64 of shape (30, 3); points.astype('float32') converts"),
     (np.zeros((30, 4), np.int32), "points[:, :3].astype('float32')"),
     ((np.zeros(3, np.float32),) * 2 + (np.zeros(3, int),), "points z: expected floats of shape (N,), not int64 of shape (3,); z.as"),
@@ -164,7 +168,7 @@ def test_errors_say_what_is_wrong(given, words, device):
         quick(given, device)
     message = str(raised.value)
     assert words in message
-    assert ('[:, :3]' in message) == (np.ndim(given) == 2 and np.shape(given)[1] > 3)
+    assert ('[:, :3]' in message) == (np.ndim(given) == 2 and np.shape(given)[0] != 3 < np.shape(given)[1])
     usage = 'expected' in message or 'field' in message
     assert raised.value.kind == ('usage' if usage else 'input')
 
@@ -181,6 +185,34 @@ def test_errors_of_options_and_devices(points):
     assert raised.value.kind == 'usage'
     assert 'native' in {d.backend for d in topple.devices() if d.usable}
     assert repr(topple.open_device('native')).startswith('<topple.Device native')
+
+
+@pytest.mark.parametrize('name, value', [
+    ('up', 'z'), ('up', '0,0,1'), ('up', (0, 0)), ('up', (0, 0, np.nan)), ('voxel_m', '1cm'), ('voxel_m', None), ('wind_from_deg', 'north'),
+    ('seed', -1), ('seed', 1.5), ('seed', 1 << 64), ('walks', 1 << 32), ('viewpoint', (0, 0)), ('device', 3), ('disturbances', 3), ('disturbances', [3]),
+    ('isolate', 'no'), ('progress', 3), ('cancelled', True), ('hazard', 3), ('cache_file', 3), ('motion', 3), ('accelerogram', 3), ('name', 3), ('name', 'a\n'),
+    ('corrections', {'do': 'fixed'})])
+def test_wrong_types_of_options_are_refused_by_name(points, name, value):
+    with pytest.raises(topple.Error, match=f'^{name}: expected') as raised:
+        topple.parse(points, **{name: value})
+    assert raised.value.kind == 'usage' and repr(value) in str(raised.value) or name == 'corrections'
+
+
+def test_options_of_numpy_are_taken(points, result, device):
+    parsed = quick(points, device, seed=np.int64(1), up=np.array([0, 0, 1]), friction=np.float32(0.3), walks=np.uint8(9))
+    assert parsed.up == [0, 0, 1] and len(parsed.objects) == len(result.objects)
+
+
+def test_a_cache_is_of_files_and_a_name_of_arrays(points, device, tmp_path):
+    with pytest.raises(topple.Error, match='^cache_file: .*points in memory') as raised:
+        quick(points, device, cache_file='/nope/x')
+    assert raised.value.kind == 'usage'
+    with pytest.raises(topple.Error, match='name are for points in memory'):
+        quick(tmp_path, device, name='desk')
+    parsed = quick(points, device, name='desk')
+    assert parsed.source == 'desk' and 'desk' in repr(parsed) and parsed.offset_m == [0, 0, 0]
+    with pytest.raises(topple.Error, match='^desk: '):
+        quick(points[:4], device, name='desk')
 
 
 def test_one_disturbance_may_be_named_alone(points, result, device):
@@ -283,7 +315,7 @@ def test_takes_corrections(points, device, tmp_path):
     assert [c.outcome for c in corrected.corrections[:3]] == ['held'] * 3
     assert not corrected.corrections[3].held and 'nothing' in corrected.corrections[3].outcome
     assert not quick(points, device).corrections
-    for wrong, why in ((7, 'list of dicts'), ([7], 'list of dicts'), ([{'do': 'glue'}], 'correction 1'),
+    for wrong, why in (([{'do': 'one_thing', 'objects': [1, 2]}], r'correction 1 \(one_thing\) has no "at_m".*result.spot'), (7, 'list of dicts'), ([7], 'list of dicts'), ([{'do': 'glue'}], 'correction 1'),
                        ([{'do': 'name', 'at_m': [on_box], 'name': object()}], 'no number')):
         with pytest.raises(topple.Error, match=why):
             quick(points, device, corrections=wrong)
@@ -339,7 +371,7 @@ def test_exports_to_simulators(result, tmp_path):
         assert body.fixed == (o.grounded or body.held) and len(body.moved_m) == 3
         assert body.parts_m3 > 0.9 * (body.solid_m3 - body.lost_m3)
     written = json.loads((tmp_path / 'mjcf' / 'bodies.json').read_text())
-    assert [b['name'] for b in written['bodies']] == [b.name for b in made.bodies]
+    assert [(b['name'], b['excess_share']) for b in written['bodies']] == [(b.name, b.excess_share) for b in made.bodies]
     assert 'object_1' in (tmp_path / 'mjcf' / 'scene.xml').read_text()
     # Its floor lies on a border of voxels, so that no fitted plane cuts one.
     assert made.floor_m == written['floor_m'] == pytest.approx(0, abs=0.021)
@@ -351,6 +383,9 @@ def test_exports_to_nothing_or_over_others_files_are_refused(result, tmp_path):
     with pytest.raises(topple.Error, match='mjcf') as error:
         result.export()
     assert error.value.kind == 'usage'
+    for wrong in ({'threads': -1}, {'visuals': 'no'}, {'mjcf': 3}):
+        with pytest.raises(topple.Error, match=f'^{[*wrong][0]}: expected'):
+            result.export(**{'mjcf': tmp_path / 'mjcf', **wrong})
     (tmp_path / 'scene.xml').write_text('<mujoco/>')
     with pytest.raises(topple.Error, match='scene.xml') as error:
         result.export(mjcf=tmp_path)

@@ -101,8 +101,8 @@ def same(a, b):
 
 def test_a_pickle_holds_all_that_can_be_asked_for(result, points, tmp_path):
     back = pickle.loads(pickle.dumps(result))
-    for name in set(dir(result._parsed)) | {'xyz', 'normals'}:
-        if not name.startswith('_'):
+    for name in dir(result):
+        if not name.startswith('_') and not callable(getattr(result, name)):
             assert same(getattr(result, name), getattr(back, name)), name
     assert np.array_equal(np.stack(back.xyz, 1), points)
     assert back._repr_html_() == result._repr_html_() and same(result.columns(), back.columns())
@@ -113,6 +113,47 @@ def test_a_pickle_holds_all_that_can_be_asked_for(result, points, tmp_path):
         with pytest.raises(topple.Error, match='before pickling'):
             call()
     assert not list(tmp_path.iterdir())
+
+
+def test_an_item_can_be_pickled_alone(result):
+    item = result.objects[1]
+    for back in (pickle.loads(pickle.dumps(item)), copy.deepcopy(item)):
+        assert back.id == 1 and back.risk_J == item.risk_J and back.overturning.tilt_deg == item.overturning.tilt_deg
+        assert np.array_equal(back.instability, item.instability)
+
+
+def test_help_has_a_line_for_each_attribute(result):
+    kinds = [topple.Result] + [type(part) for o in result.objects[:1] for part in (o, o.fall, o.overturning, o.fragility, o.barrier_by_direction)]
+    for kind in kinds + [topple.Primitive, topple.Contact, topple.Support, topple.AppliedCorrection, topple.Device]:
+        public = {n: p for n, p in vars(kind).items() if not n.startswith('_')}
+        assert kind.__doc__ and public and all(p.__doc__ for p in public.values()), kind
+    assert {n for n in dir(result._parsed) if not n.startswith('_')} - set(dir(result)) == {'x', 'y', 'z', 'nx', 'ny', 'nz'}
+    with pytest.raises(AttributeError, match="topple.Result has no attribute 'labels'"):
+        result.labels
+
+
+def test_spots_lie_in_the_midst_of_their_parts(result, points, device):
+    spots = {p.id: result.spot(p, part=True) for p in result.primitives}
+    solid = np.stack([result.solid[axis] for axis in 'xyz'], axis=1)
+    for part, spot in spots.items():
+        away = np.linalg.norm(solid - spot, axis=1)
+        assert result.solid['primitive'][away.argmin()] == part and away.min() < 1e-6
+        others = result.solid['primitive'] != part
+        largest = result.solid['primitive'] == part
+        assert away[others].min() >= result.voxel_size_m * 0.99 and away[largest].min() == away.min()
+    for o in result.objects:
+        listed = result.spots(o.id)
+        assert sorted(listed) == sorted(spots[p] for p in o.primitives)
+        largest = max(o.primitives, key=lambda p: (result.primitives[p].solid_voxels, -p))
+        assert result.spot(o) == listed[0] == spots[largest]
+    loose = [o.id for o in result.objects if not o.grounded]
+    again = topple.parse(points, device=device, disturbances=[], corrections=[
+        {'do': 'one_thing', 'at_m': [result.spot(n) for n in loose]}, {'do': 'name', 'at_m': [result.spot(loose[0])], 'name': 'pile'}])
+    assert [c.held for c in again.corrections] == [True, True] and len(again.objects) == len(result.objects) - len(loose) + 1
+    assert pickle.loads(pickle.dumps(result)).spot(1) == result.spot(1)
+    for wrong in (99, -1, 1.5, 'box', True):
+        with pytest.raises(topple.Error, match='object: expected one of the result'):
+            result.spot(wrong)
 
 
 def test_a_pickle_is_read_by_another_process(result, tmp_path):
@@ -130,6 +171,12 @@ def test_generates_a_room_that_parses(device, tmp_path):
         with pytest.raises(topple.Error, match=words) as raised:
             topple.generate(tmp_path / 'other', **wrong)
         assert raised.value.kind == kind
+    (tmp_path / 'thesis').mkdir()
+    (tmp_path / 'thesis' / 'chapter.tex').write_text('x')
+    with pytest.raises(topple.Error, match=r'thesis: holds other things .*chapter.tex.*choose a folder') as raised:
+        topple.generate(tmp_path / 'thesis')
+    assert raised.value.kind == 'input' and os.listdir(tmp_path / 'thesis') == ['chapter.tex']
+    assert topple.generate(scan, seed=3, single=True) == scan  # over its like
     with pytest.raises(topple.Error, match='/proc/nowhere') as raised:
         topple.generate('/proc/nowhere')
     assert raised.value.kind == 'input'

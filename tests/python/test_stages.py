@@ -5,6 +5,7 @@ import inspect
 import os
 import threading
 import time
+import warnings
 
 import numpy as np
 import pytest
@@ -155,6 +156,17 @@ def test_convolution_is_the_weighted_sum(device):
     assert stages.convolve(primary, table, np.array(first), device=device, out=out) is out and np.array_equal(out, found)
 
 
+def test_a_body_beside_its_footing_falls_and_says_so(device):
+    seen = box_points(0.3, 0.3, 0.6)
+    seen = seen[seen[:, 0] <= seen[:, 0].min() + 1e-6]  # of one side alone
+    middle = box_points(0.3, 0.3, 0.6).mean(axis=0)
+    with pytest.warns(RuntimeWarning, match=r'bodies\[0\]: its centre of mass is not above its footing'):
+        assert stages.barriers([(np.vstack([seen, middle]), 2.0, tuple(middle))], 0.005, device=device)[0].barrier_J == 0
+    with warnings.catch_warnings():
+        warnings.simplefilter('error')
+        assert stages.barriers([(box_points(0.3, 0.3, 0.6), 2.0, tuple(middle))], 0.005, device=device)[0].barrier_J > 0
+
+
 SQUARE = grid(side=10)
 POSE = np.eye(4)
 CAMERA = stages.Intrinsics(100, 100, 2, 2)
@@ -201,6 +213,7 @@ def volume():
     (lambda d: stages.barriers([(box_points(1, 1, 1) * np.nan, 1, (0, 0, 0))], 0, device=d), 'bodies[0].points: nan'),
     (lambda d: stages.barriers([(box_points(1, 1, 1), 1, (0, 0))], 0, device=d), 'bodies[0].center_of_mass_m: expected'),
     (lambda d: stages.barriers([(box_points(1, 1, 1) * 1e200, 1, (0, 0, 0))], 0, device=d), 'body 0 has a point at 1e+200: expected metres up to'),
+    (lambda d: stages.barriers([(np.eye(3), 1, (0, 0, 0))], 0, device=d), 'bodies[0].points: 3 of them make no solid'),
     (lambda d: stages.barriers([3], 0, device=d), 'bodies[0]: expected points, mass_kg, center_of_mass_m, not 3'),
     (lambda d: stages.barriers(5, 0, device=d), 'bodies: expected a list of StandingBody, not int'),
     (lambda d: volume().carve(np.zeros((4, 4), np.uint16), POSE, (1, 1), device=d), 'intrinsics: expected fx, fy, cx, cy, depth_scale, not (1, 1)'),

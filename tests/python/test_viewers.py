@@ -129,6 +129,8 @@ def test_plan(shaken, pyplot, tmp_path):
     assert middle == pytest.approx((geometry.room_axes(shaken) @ crate.center_of_mass_m)[:2], abs=0.05)
     assert np.isfinite(axes.images[0].get_array().filled(np.nan)).sum() > 100  # walls
     axes.figure.savefig(tmp_path / 'plan.pdf')
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert not any(one.overlaps(other) for n, one in enumerate(boxes) for other in boxes[:n])
     risk = topple.plot.plan(shaken, by='wind', labels=False)
     assert not risk.texts and risk.images[1].get_array().max() == pytest.approx(max(o.risk_J['wind'] for o in movable(shaken)))
     with pytest.raises(topple.Error, match="'earthquake' or 'wind'"):
@@ -144,7 +146,9 @@ def test_curves(shaken, pyplot):
     if np.isfinite(item.fragility.pga_g):
         peaks, chance = axes.lines[1].get_data()
         assert np.interp(item.fragility.pga_g, peaks, chance) == pytest.approx(0.5, abs=0.01)
-    polar = topple.plot.barriers(item).lines[0].get_data()[1]
+    compass = topple.plot.barriers(item)
+    polar = compass.lines[0].get_data()[1]
+    assert f'Object {item.id}' in compass.get_title() and '(J)' in compass.get_title()
     assert np.array_equal(polar[:-1], item.barrier_by_direction.push_J, equal_nan=True)
     ground = next(o for o in shaken.objects if o.grounded)
     for plot in (topple.plot.instability, topple.plot.fragility, topple.plot.barriers):

@@ -11,15 +11,18 @@ Lengths in metres, masses in kilograms, energies in joules, in the input's frame
 unassigned. Object.unsafety, 1 to 10, is NaN where what holds the object was not seen: such objects have no rank, and
 a sort by unsafety alone would be left in no order. What goes wrong is raised as topple.Error.
 """
+import copyreg
 import json
 import os
+import re
 import threading
 from typing import NamedTuple
 
 import numpy as np
 
-from . import _snapshot, _tables, _topple, formats, plot, stages
-from ._arrays import channels as _channels, columns as _columns, usage as _usage
+from . import _described, _snapshot, _spots, _tables, _topple, formats, plot, stages
+from ._arrays import channels as _channels, columns as _columns, error as _as, usage as _usage
+from ._options import option as _option
 from ._program import generate
 from ._topple import AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Object, Overturning, Primitive, Support, __version__, open_device
 from .foxglove import to_mcap
@@ -27,6 +30,10 @@ from .rerun_viewer import to_rerun
 
 __all__ = ['AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Object', 'Overturning', 'Primitive', 'Result',
            'Support', '__version__', 'devices', 'formats', 'generate', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
+
+_described.items()
+for _kind in _snapshot.ITEMS:  # of a live result: a plain item that stands alone comes back
+    copyreg.pickle(_kind, _snapshot.reduced)
 
 
 class DeviceInfo(NamedTuple):
@@ -53,6 +60,7 @@ class ExportedBody(NamedTuple):
     solid_m3: float  # of the object as it was parsed
     parts_m3: float  # of its parts: more by what their hulls add
     lost_m3: float  # cut off its parts, so that no two bodies overlap
+    excess_share: float  # how much more parts_m3 is than solid_m3, as a share; None for a pad
 
 
 class ExportSummary(NamedTuple):
@@ -69,6 +77,7 @@ def devices():
     return [DeviceInfo(*listed) for listed in _topple.list_devices()]
 
 
+@_described.result
 class Result:
     """What a scan holds. Arrays over its points and voxels are the result's own memory, not copies: they keep
     it alive, and writing to them changes what write() writes.
@@ -81,15 +90,13 @@ class Result:
         self._parsed = parsed
         self._points = points  # the caller's, where they are theirs
         self._colours = colours
+        self._parts = None  # for spots, once they are asked for
         self._writing = threading.Lock()  # the coordinates are in the result for as long as it takes
 
     def __getattr__(self, name):
-        if name.startswith('_'):
-            raise AttributeError(name)
-        return getattr(self._parsed, name)
-
-    def __dir__(self):
-        return sorted(set(object.__dir__(self)) | {n for n in dir(self._parsed) if not n.startswith('_')})
+        if name in _described.RESULT:
+            raise AttributeError(f'{name}: this result was pickled by an earlier version of topple, which had none')
+        raise AttributeError(f"topple.Result has no attribute {name!r}; help(topple.Result) lists what it has", name=name, obj=self)
 
     def __repr__(self):
         return f'<topple.Result of {self.source}: {len(self.objects)} objects on {self.backend}>'
@@ -136,6 +143,21 @@ class Result:
         """Three arrays: unit normals of the points, towards the side that was seen; 0 where there is none."""
         return self._parsed.nx, self._parsed.ny, self._parsed.nz
 
+    def spot(self, item, part=False):
+        """A spot for corrections (docs/corrections.md): [x, y, z], metres, in the midst of the largest part of an object, an
+        Object or its id; with part=True of a part, a Primitive or its id. A correction of a later parse that names it in
+        "at_m" is about that part, also where numbers have changed. Raises Error where there is no solid."""
+        return _spots.spot(self, self._solid_parts(), item, part)
+
+    def spots(self, item):
+        """A spot of each part of an object that has a solid, the largest part first: a list of [x, y, z], metres."""
+        return _spots.spots(self, self._solid_parts(), item)
+
+    def _solid_parts(self):
+        if self._parts is None:
+            self._parts = _spots.Parts(self)
+        return self._parts
+
     def write(self, folder, *, pictures=False, glb=False, octomap=False):
         """Writes the folder of outputs (docs/output.md), which appears whole or not at all: with view-*.png,
         objects.glb and map.bt where they are asked for."""
@@ -151,7 +173,8 @@ class Result:
         file of others is an Error of kind "input". threads: 0 for all cores; the result is the same. Other threads of
         Python run meanwhile."""
         paths = {'mjcf': mjcf, 'urdf': urdf, 'sdf': sdf, 'usd': usd}
-        given = {name: os.fspath(path) for name, path in paths.items() if path is not None}
+        given = {name: _file(name, path) for name, path in paths.items() if path is not None}
+        visuals, threads = _option('visuals', visuals), _option('threads', threads)
         bodies, *rest = _topple.export_scene(self._whole('export'), given, visuals, threads)
         return ExportSummary([ExportedBody(*body) for body in bodies], *rest)
 
@@ -160,11 +183,23 @@ def _files(given):
     """The paths of one file, of several, or of None."""
     if given is None:
         return []
-    return [os.fspath(given)] if isinstance(given, (str, os.PathLike)) else [os.fspath(file) for file in given]
+    try:
+        return [os.fspath(given)] if isinstance(given, (str, os.PathLike)) else [os.fspath(file) for file in given]
+    except TypeError:
+        raise _usage(f'motion: expected a file or a list of files, not {given!r}') from None
+
+
+def _file(name, given):
+    try:
+        return os.fspath(given)
+    except TypeError:
+        raise _usage(f'{name}: expected a file, not {given!r}'[:200]) from None
 
 
 def _corrections_text(corrections):
     """The file's text of a list of corrections; numbers and arrays of NumPy are taken as they are in lists."""
+    if isinstance(corrections, dict):
+        raise _usage('corrections: expected a file or a list of dicts, not one dict; put [ ] around it')
     def plain(value):
         if hasattr(value, 'tolist'):
             return value.tolist()
@@ -173,13 +208,18 @@ def _corrections_text(corrections):
         listed = [dict(c) for c in corrections]
     except (TypeError, ValueError):
         raise _usage(f'corrections: expected a file or a list of dicts, not {corrections!r}'[:200]) from None
+    for number, correction in enumerate(listed, 1):
+        if 'at_m' not in correction:
+            raise _usage(f'corrections: correction {number} ({correction.get("do")}) has no "at_m", the spots of its parts, [[x, y, z], ...]; '
+                         'ids change from parse to parse, so give [result.spot(id), ...] of an earlier result')
     return json.dumps({'schema': 'topple.corrections/1', 'corrections': listed}, default=plain)
 
 
 def _components(accelerogram):
     """The paths of a record's components along, across and up, None where one is not known."""
-    given = [accelerogram] if isinstance(accelerogram, (str, os.PathLike)) else list(accelerogram)
-    if not 1 <= len(given) <= 3 or given[0] is None:
+    one = isinstance(accelerogram, (str, os.PathLike)) or not hasattr(accelerogram, '__iter__')
+    given = [accelerogram] if one else list(accelerogram)
+    if not 1 <= len(given) <= 3 or given[0] is None or not all(file is None or isinstance(file, (str, os.PathLike)) for file in given):
         raise _usage(f'accelerogram: expected a file, or up to three: along, across and up, not {accelerogram!r}')
     return [None if file is None else os.fspath(file) for file in given + [None] * (3 - len(given))]
 
@@ -187,7 +227,7 @@ def _components(accelerogram):
 def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=None,
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, wind_m_s=12.0,
           wind_from_deg=None, pga_m_s2=None, accelerogram=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, grouping_time_s=None, corrections=None, cache_file=None, normals=None,
-          viewpoint=None, colours=None, isolate=True, progress=None, cancelled=None):
+          name=None, viewpoint=None, colours=None, isolate=True, progress=None, cancelled=None):
     """Parses a scan into a Result.
 
     source: a path, as the command line takes it, or of what topple.formats converts (docs/formats.md: .laz, .e57, bags of ROS,
@@ -207,39 +247,41 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     contents_kg_m3: of closed furniture, or None where all is solid.
     corrections: what you know of the room beside the scan: a file, or a list of dicts such as {"do": "fixed", "at_m":
     [[x, y, z]]} (docs/corrections.md); Result.corrections says what became of each. cache_file: keeps what does not
-    depend on them, so that the next parse of that file or folder is quick.
+    depend on them, so that the next parse of that file or folder is quick; of points in memory nothing is kept, and it is
+    refused. name: of points in memory, what messages, the report and Result.source call them; "points" without.
     cancelled() is polled, and True stops the parse with an Error of kind "cancelled". Ctrl-C stops it, too, with
     KeyboardInterrupt. isolate=False: meshes, OctoMaps and OpenVDB files are read in this process, not in one of
     its own with limits of memory and time; for large files that you trust. Other threads of Python run meanwhile. The other options
     are those of `topple parse --help`.
     """
     options = _topple.Options()
-    options.voxel_m, options.unit_m, options.up = voxel_m, unit_m, up
+    given = {'voxel_m': voxel_m, 'unit_m': unit_m, 'up': up, 'seed': seed, 'isolate': isolate, 'max_memory_bytes': max_memory_bytes,
+             'density_kg_m3': density_kg_m3, 'friction': friction, 'contents_kg_m3': contents_kg_m3, 'walks': walks,
+             'wind_m_s': wind_m_s, 'wind_from_deg': wind_from_deg, 'pga_m_s2': pga_m_s2,
+             'floor_amplification': floor_amplification, 'tolerable_J': tolerable_J, 'grouping_time_s': grouping_time_s}
     if disturbances is not None:
-        options.disturbances = [disturbances] if isinstance(disturbances, str) else list(disturbances)
-    options.seed, options.isolate = seed, isolate
-    options.max_memory_bytes, options.density_kg_m3, options.friction = max_memory_bytes, density_kg_m3, friction
-    options.contents_kg_m3 = contents_kg_m3
-    options.walks, options.wind_m_s, options.wind_from_deg = walks, wind_m_s, wind_from_deg
-    options.pga_m_s2, options.tolerable_J, options.grouping_time_s = pga_m_s2, tolerable_J, grouping_time_s
+        given['disturbances'] = disturbances
+    for option, value in given.items():
+        setattr(options, option, _option(option, value))
+    device, viewpoint = _option('device', device), _option('viewpoint', viewpoint)
+    progress, cancelled = _option('progress', progress), _option('cancelled', cancelled)
     for file in _files(motion):
         options.read_motion(file)
     if accelerogram is not None:
         options.read_accelerogram(*_components(accelerogram))
-    options.floor_amplification = floor_amplification
     if hazard is not None:
-        options.read_hazard_curve(os.fspath(hazard))
+        options.read_hazard_curve(_file('hazard', hazard))
     if isinstance(corrections, (str, os.PathLike)):
         options.read_corrections(os.fspath(corrections))
     elif corrections is not None:
         options.take_corrections(_corrections_text(corrections))
     if cache_file is not None:
-        options.set_cache_file(os.fspath(cache_file))
+        options.set_cache_file(_file('cache_file', cache_file))
     if isinstance(device, str):
         device = open_device(device)
     if isinstance(source, (str, os.PathLike)):
-        if normals is not None or viewpoint is not None or colours is not None:
-            raise _usage('normals, colours and viewpoint are for points in memory; a file brings its own')
+        if normals is not None or viewpoint is not None or colours is not None or name is not None:
+            raise _usage('normals, colours, viewpoint and name are for points in memory; a file brings its own')
         with formats.opened(source, formats.Options(unit_m=unit_m, isolate=isolate), cancelled) as converted:
             if converted is None:
                 return Result(_topple.parse_path(os.fspath(source), device, options, progress, cancelled), None)
@@ -249,8 +291,25 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
             _topple.came_from(parsed, os.fspath(source), converted.notes, list(converted.offset * unit_m))
             converted.needed_by = result = Result(parsed, None)
             return result
+    if cache_file is not None:
+        raise _usage(f'cache_file: {cache_file}: a cache is kept of a file or folder, and the source is points in memory; leave it out, '
+                     'or parse their file')
+    name = 'points' if name is None else name
+    if not isinstance(name, str) or not name.isprintable() or not name.strip():
+        raise _usage(f'name: expected a line of text, not {name!r}'[:200])
     points = _columns(source, ('x', 'y', 'z'), 'points')
     directions = [] if normals is None else _columns(normals, ('nx', 'ny', 'nz'), 'normals')
     channels = [] if colours is None else _channels(colours)
-    return Result(_topple.parse_arrays(points, directions, channels, viewpoint, device, options, progress, cancelled),
-                  points, channels)
+    try:
+        parsed = _topple.parse_arrays(points, directions, channels, viewpoint, name, device, options, progress, cancelled)
+    except Error as error:
+        said = re.sub(r'say unit_m=([0-9.]+)(?: or unit_m=([0-9.]+))?', _scaled, str(error))
+        if said == str(error):
+            raise
+        raise _as(error.kind, said) from None
+    return Result(parsed, points, channels)
+
+
+def _scaled(hint):
+    """What to do with an array where the library knows of files."""
+    return 'multiply the array by ' + ' or '.join(factor for factor in hint.groups() if factor)

@@ -49,6 +49,7 @@ class ExportedBody(NamedTuple):
     solid_m3: float
     parts_m3: float
     lost_m3: float
+    excess_share: Optional[float]
 
 class ExportSummary(NamedTuple):
     bodies: list[ExportedBody]
@@ -195,7 +196,7 @@ class Object:
     @property
     def footprint_error_m(self) -> float: ...
     @property
-    def mass_model(self) -> Literal["solid", "closed"]: ...
+    def mass_model(self) -> Literal["solid", "closed", "hollow"]: ...
     @property
     def inertia_kg_m2(self) -> NDArray[np.float64]: ...  # (3, 3)
     @property
@@ -224,6 +225,12 @@ class Object:
     def unsafety_category(self) -> Optional[Literal["none", "low", "medium", "high"]]: ...  # None: not seen enough
     @property
     def unsafety_certain(self) -> bool: ...
+    @property
+    def seen_enough(self) -> bool: ...
+    @property
+    def rests_by(self) -> Literal["seen", "near", "leaning", "hidden", "none", "ground"]: ...
+    @property
+    def rest_probability(self) -> float: ...
     @property
     def instability(self) -> NDArray[np.float64]: ...  # (steps, 2): W_J, S_J
     @property
@@ -271,6 +278,8 @@ class Result:
     @property
     def voxel_size_m(self) -> float: ...
     @property
+    def offset_m(self) -> list[float]: ...
+    @property
     def up(self) -> list[float]: ...
     @property
     def up_method(self) -> str: ...
@@ -308,6 +317,8 @@ class Result:
     def solid(self) -> dict[str, NDArray[Any]]: ...  # x, y, z, primitive, object, state
     @property
     def fields(self) -> dict[str, dict[str, _Floats]]: ...  # x, y, z, vx, vy, vz, density
+    def spot(self, item: Union[Object, Primitive, int], part: bool = ...) -> list[float]: ...
+    def spots(self, item: Union[Object, int]) -> list[list[float]]: ...
     def columns(self, what: _What = ...) -> dict[str, NDArray[Any]]: ...  # (N,), vectors (N, 3)
     def to_dataframe(self, what: _What = ...) -> Any: ...  # pandas.DataFrame
     def write(self, folder: _Path, *, pictures: bool = ..., glb: bool = ..., octomap: bool = ...) -> None: ...
@@ -342,6 +353,7 @@ def parse(
     corrections: Union[str, os.PathLike[str], Sequence[Mapping[str, Any]], None] = ...,
     cache_file: Union[str, os.PathLike[str], None] = ...,
     normals: Optional[_Points] = ...,
+    name: Optional[str] = ...,
     viewpoint: Optional[_Vec3] = ...,
     colours: Optional[_Points] = ...,
     isolate: bool = ...,

@@ -5,10 +5,14 @@ import numpy as np
 from ._topple import Error
 
 
+def error(kind, message):
+    made = Error(message)
+    made.kind = kind
+    return made
+
+
 def usage(message):
-    error = Error(message)
-    error.kind = 'usage'
-    return error
+    return error('usage', message)
 
 
 def as_array(source, name):
@@ -25,10 +29,16 @@ def as_array(source, name):
         raise usage(f'{name}: no array can be made of it: {error}') from error
 
 
-def wrong_array(values, name, shape, variable, columns=''):
-    """The Error that says what an array is and what it should be, with the mend."""
+def wrong_array(values, name, shape, variable, columns='', source=None):
+    """The Error that says what an array is and what it should be, with the mend; of what it was made of, too."""
     mend = ''
-    if values.dtype.kind in 'iub':
+    if isinstance(source, (list, tuple)) and values.dtype.kind in 'iub':
+        mend = f"; np.array({variable}, 'float32') converts integers, and they must be metres"
+    elif not columns and values.ndim == 2 and 3 == values.shape[0] != values.shape[1]:
+        mend = f'; {variable}.T has a row for each point'
+    elif not columns and values.ndim > 2 and values.shape[-1] == 3:
+        mend = f'; {variable}.reshape(-1, 3) has a row for each point'
+    elif values.dtype.kind in 'iub':
         mend = f"; {variable}{columns}.astype('float32') converts integers, and they must be metres"
     elif columns:
         mend = f'; {variable}{columns} takes the first three columns'
@@ -47,7 +57,7 @@ def columns(source, names, what):
     """The three coordinates of an array, of records with fields of these names, or of three arrays."""
     if isinstance(source, tuple) and len(source) == 3:
         return [column(c, f'{what} {name}', name) for c, name in zip(source, names)]
-    source = as_array(source, what)
+    given, source = source, as_array(source, what)
     if source.dtype.names:
         missing = [name for name in names if name not in source.dtype.names]
         if missing:
@@ -55,7 +65,7 @@ def columns(source, names, what):
         return [column(source[name], f'{what} {name}', f"{what}['{name}']") for name in names]
     if source.ndim != 2 or source.shape[1] != 3 or source.dtype.kind != 'f':
         raise wrong_array(source, what, '(N, 3)', what,
-                          '[:, :3]' if source.ndim == 2 and source.shape[1] > 3 else '')
+                          '[:, :3]' if source.ndim == 2 and source.shape[1] > 3 and source.shape[0] != 3 else '', given)
     if source.dtype != np.float32:
         source = source.astype(np.float32)
     return [source[:, axis] for axis in range(3)]

@@ -4,7 +4,7 @@ import os
 import re
 import subprocess
 
-from ._topple import Error
+from ._arrays import error as _error
 
 
 def program():
@@ -19,20 +19,18 @@ def program():
                           'install a wheel, which has it')
 
 
-def _error(kind, message):
-    error = Error(message)
-    error.kind = kind
-    return error
-
-
 def generate(folder, *, seed=1, kind=None, frames=60, single=False):
     """Makes a scan of a furnished room, to try things on: depth frames with their poses, the fused cloud, and the truth
     (truth.json). Returns the folder, a path that parse() takes.
 
     kind: None for a plain room, or a family of rooms, "kitchen" or "office", say. frames: of the walk through the room.
-    single: one frame only, without its pose; not of a kind. `topple generate --help` has more. Raises Error where the
-    folder can't be written, or an option is wrong."""
+    single: one frame only, without its pose; not of a kind. `topple generate --help` has more. An earlier such scan in the
+    folder is written over. Raises Error where the folder holds other things or can't be written, or an option is wrong."""
     folder = os.fspath(folder)
+    held = sorted(os.listdir(folder)) if os.path.isdir(folder) else []
+    if held and 'truth.json' not in held:
+        some = ', '.join(held[:3]) + (', ...' if len(held) > 3 else '')
+        raise _error('input', f'{folder}: holds other things than a made scan ({some}); choose a folder that is empty or does not exist')
     command = [program(), 'generate', folder, '--seed', str(seed), '--frames', str(frames)]
     command += ['--kind', kind] if kind is not None else []
     command += ['--single'] if single else []

@@ -15,6 +15,14 @@ class Item(SimpleNamespace):
 _BOUND = tuple(kind for kind in vars(_topple).values() if isinstance(kind, type) and kind is not _topple.Error)
 
 
+ITEMS = tuple(kind for kind in _BOUND if kind.__name__ not in ('Device', 'Options', 'Parsed'))
+
+
+def reduced(item):
+    """How pickle and copy take one item of a result."""
+    return frozen(item).__reduce__()
+
+
 def frozen(value):
     if isinstance(value, _BOUND):
         return Item(**{name: frozen(getattr(value, name)) for name in dir(value) if not name.startswith('_')})

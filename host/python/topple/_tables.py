@@ -15,14 +15,14 @@ _BY_DISTURBANCE = ('risk_J', 'risk_error_J', 'fall_chance')
 _ITEMS = {
     'objects': ('id', 'name', 'grounded', 'mass_kg', 'mass_error_kg', 'mass_model', 'center_of_mass_m', 'center_of_mass_error_m', 'size_m',
                 'footprint_error_m', 'barrier_J', 'barrier_error_J', 'release_J', 'mode', 'direction', 'unsafety',
-                'unsafety_category', 'unsafety_certain', 'agreement', 'why', 'advice'),
+                'unsafety_category', 'unsafety_certain', 'seen_enough', 'rests_by', 'rest_probability', 'agreement', 'why', 'advice'),
     'primitives': ('id', 'object', 'model', 'points', 'solid_voxels', 'volume_m3', 'mass_kg', 'center_of_mass_m', 'name'),
     'contacts': ('a', 'b', 'area_m2', 'normal', 'relation', 'probability'),
     'supports': ('supporter', 'supported', 'area_m2', 'probability'),
 }
-_TEXT = ('name', 'mass_model', 'mode', 'unsafety_category', 'why', 'advice', 'model', 'relation')
+_TEXT = ('name', 'mass_model', 'rests_by', 'mode', 'unsafety_category', 'why', 'advice', 'model', 'relation')
 _TYPES = {'id': np.int32, 'object': np.int32, 'a': np.int32, 'b': np.int32, 'supporter': np.int32, 'supported': np.int32,
-          'fall_lands_on': np.int32, 'points': np.uint64, 'solid_voxels': np.uint64, 'grounded': bool, 'unsafety_certain': bool,
+          'fall_lands_on': np.int32, 'points': np.uint64, 'solid_voxels': np.uint64, 'grounded': bool, 'unsafety_certain': bool, 'seen_enough': bool,
           'fall_falls': bool, **{name: object for name in _TEXT}}
 _VECTORS = ('center_of_mass_m', 'center_of_mass_error_m', 'size_m', 'direction', 'normal', 'fall_lands_m')
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._topple import Error
+from ._arrays import usage
 
 
 class Box(NamedTuple):
@@ -13,12 +13,6 @@ class Box(NamedTuple):
     object: int
     centre: np.ndarray  # (3,)
     size: np.ndarray  # (3,)
-
-
-def usage(message):
-    error = Error(message)
-    error.kind = 'usage'
-    return error
 
 
 def needed(module, package, what):

@@ -50,15 +50,37 @@ def plan(result, *, by='unsafety', labels=True, axes=None):
     if unranked.any():
         x, y = (low[axis] + np.arange(shape[axis]) * step for axis in (0, 1))
         axes.contourf(x, y, unranked.T.astype(float), levels=[0.5, 1.5], colors='none', hatches=['////'])
-    if labels:
-        for o in result.objects:
-            if (top == o.id).any():
-                place = geometry.room_axes(result) @ o.center_of_mass_m
-                axes.annotate(str(o.id), place[:2], ha='center', va='center', fontsize='small',
-                              bbox={'facecolor': 'white', 'edgecolor': 'none', 'alpha': 0.6, 'pad': 1})
     axes.figure.colorbar(image, ax=axes, label='unsafety' if by == 'unsafety' else f'expected release per event, {by} (J)')
     axes.set(xlabel='x (m)', ylabel='y (m)', aspect='equal', xlim=extent[:2], ylim=extent[2:])
+    if labels:
+        shown, cells_of = np.unique(top[top >= 0], return_counts=True)
+        largest = shown[np.argsort(-cells_of, kind='stable')]
+        _write_apart(axes, [(str(n), (geometry.room_axes(result) @ result.objects[n].center_of_mass_m)[:2]) for n in largest])
     return axes
+
+
+def _write_apart(axes, texts):
+    """Writes each text at its place, or as near beside it as no earlier one lies, with a line to it."""
+    look = {'ha': 'center', 'va': 'center', 'fontsize': 'small', 'textcoords': 'offset points',
+            'bbox': {'facecolor': 'white', 'edgecolor': 'none', 'alpha': 0.6, 'pad': 1}}
+    root = axes.figure.canvas.figure
+    root.draw_without_rendering()  # places are known in pixels once all is laid out
+    written, per_point = [], root.dpi / 72
+    for text, place in texts:
+        note = axes.annotate(text, place, (0, 0), **look)
+        box = note.get_window_extent()
+        half = np.array([box.width, box.height]) / 2 + per_point
+        middle, moved = axes.transData.transform(place), np.zeros(2)
+        angles = np.arange(12) * np.pi / 6
+        rings = [radius * np.array([np.cos(a), np.sin(a)]) for radius in np.arange(1, 9) * box.height * 0.75 for a in angles]
+        for way in [np.zeros(2), *rings]:
+            if all((np.abs(middle + way - other) >= half + other_half).any() for other, other_half in written):
+                moved = way
+                break
+        written.append((middle + moved, half))
+        if moved.any():
+            note.remove()
+            axes.annotate(text, place, moved / per_point, arrowprops={'arrowstyle': '-', 'linewidth': 0.6, 'shrinkB': 0}, **look)
 
 
 def instability(item, *, axes=None):
@@ -91,7 +113,7 @@ def fragility(item, *, axes=None):
 
 
 def barriers(item, *, axes=None):
-    """The least work of a slow push from which an Object falls, J, by the direction that it goes, in polar axes like a compass: 0 is the room's
+    """The least work of a slow push from which an Object falls, J, by the direction that it goes, in polar axes like a compass: 0° is the room's
     y, clockwise as seen from above (`barrier_by_direction` of docs/output.md). What does not fall there has no point."""
     push = np.asarray(item.barrier_by_direction.push_J)
     if len(push) == 0 or not np.isfinite(push).any():
@@ -101,5 +123,7 @@ def barriers(item, *, axes=None):
     axes.set_theta_zero_location('N')
     axes.set_theta_direction(-1)
     axes.plot(angles, np.append(push, push[0]), 'o-', label=f'object {item.id} (J)')
+    axes.set_title(f"Object {item.id}: least work of a slow push that upsets it (J)\nby where it goes, 0°: along the room's y, seen from above",
+                   fontsize='medium')
     axes.set_ylim(bottom=0)
     return axes

@@ -18,6 +18,7 @@ Other threads of Python run meanwhile, and must not write to the arrays. What is
 names the argument, what it is and what it should be.
 """
 import enum
+import warnings
 from typing import NamedTuple
 
 import numpy as np
@@ -60,7 +61,7 @@ class Voxels(NamedTuple):
 
 class StandingBody(NamedTuple):
     """A rigid body on level ground, as it stands, z up."""
-    points: np.ndarray  # (N, 3) float64, metres: points of its surface, whose convex hull decides
+    points: np.ndarray  # (N, 3) float64, metres: of its whole surface, 4 at least, whose convex hull decides; see barriers()
     mass_kg: float
     center_of_mass_m: tuple  # x, y, z
 
@@ -207,20 +208,38 @@ def support_functions(vertices, first, directions, *, device=None, out=None):
     return out
 
 
+def _beside_footing(points, center, resolution_m):
+    """Whether all that bears the body lies to one side of its centre of mass."""
+    footing = points[points[:, 2] <= points[:, 2].min() + resolution_m, :2] - center[:2]
+    angles = np.sort(np.arctan2(footing[:, 1], footing[:, 0]))
+    return np.diff(np.append(angles, angles[0] + 2 * np.pi)).max() > np.pi
+
+
 def barriers(bodies, resolution_m, *, device=None):
     """What it takes to make each of the bodies fall by tipping (paper, 3.2): a list of Barrier.
 
     bodies: of StandingBody. resolution_m: to what their points are known; what is no higher than that above the lowest
-    point bears the body."""
+    point bears the body, and is its footing.
+
+    Points must go all around the body: its corners, or the solid voxels of an object, result.solid. Of a scan that saw it
+    from one side the footing is a strip below that side, and a centre of mass that is not above it makes the body fall by
+    itself: barrier_J is 0 then, which a RuntimeWarning says."""
     if not isinstance(bodies, (list, tuple)) or isinstance(bodies, StandingBody):
         raise usage(f'bodies: expected a list of StandingBody, not {type(bodies).__name__}')
     given = []
     for n, body in enumerate(bodies):
         points, mass_kg, center = _fields(StandingBody, body, f'bodies[{n}]')
-        given.append((exactly(points, f'bodies[{n}].points', (None, 3), float).reshape(-1),
+        points = exactly(points, f'bodies[{n}].points', (None, 3), float)
+        if 0 < len(points) < 4:
+            raise usage(f'bodies[{n}].points: {len(points)} of them make no solid; give 4 at least, as the corners of its box')
+        given.append((points.reshape(-1),
                       number(mass_kg, f'bodies[{n}].mass_kg'),
                       exactly(np.asarray(center, float), f'bodies[{n}].center_of_mass_m', (3,), float)))
     found = _stages.barriers(given, number(resolution_m, 'resolution_m'), _opened(device))
+    for n, ((points, _, center), (barrier_J, *_)) in enumerate(zip(given, found)):
+        if barrier_J == 0 and _beside_footing(points.reshape(-1, 3), center, resolution_m):
+            warnings.warn(f'bodies[{n}]: its centre of mass is not above its footing, so that it falls by itself; of a body that a scan saw '
+                          'from one side give points of its whole footing', RuntimeWarning, stacklevel=2)
     return [Barrier(*energies, curve.reshape(-1, 2)) for *energies, curve in found]
 
 
