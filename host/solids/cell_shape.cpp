@@ -255,13 +255,18 @@ std::vector<UndersideCorner> underside_of(const BoundaryCells& b, std::int32_t i
     }
     const std::vector<Vec3> corners = corners_of(b, n, h);
     const SurfacePatch* below = bound_below(b, n, h);
-    double lowest = std::numeric_limits<double>::infinity();
-    for (const Vec3& c : corners) lowest = std::min(lowest, c[2]);
+    double lowest = std::numeric_limits<double>::infinity(), nearest = lowest;
+    for (const Vec3& c : corners) {
+        lowest = std::min(lowest, c[2]);
+        if (below) nearest = std::min(nearest, std::abs(below->distance(c)));
+    }
     constexpr double even = 0.1;  // of a voxel
+    // A patch along the voxel's lowest side may pass just below it: then that side is the
+    // underside.
+    const double on_below = nearest < on_patch * h ? on_patch * h : nearest + even * h;
     std::vector<UndersideCorner> out;
     for (const Vec3& c : corners) {
-        const bool on =
-            below ? std::abs(below->distance(c)) < on_patch * h : c[2] <= lowest + even * h;
+        const bool on = below ? std::abs(below->distance(c)) < on_below : c[2] <= lowest + even * h;
         if (on) out.push_back({c, error_beside(b, n, c, h), below != nullptr});
     }
     return out;

@@ -229,6 +229,30 @@ TEST(CellShape, TheUndersideHasTheBoxesOwnOutline) {
     EXPECT_NEAR(area / (4 * 0.06 * 0.04), 1, 0.002);
 }
 
+// What carries a voxel need not pass within it: a hair below, the voxel's lowest side is the
+// underside.
+TEST(CellShape, TheUndersideIsThereWhereverThePatchBelowPasses) {
+    const double h = 0.01;
+    for (const double below : {-0.3, -0.02, -0.003, -0.0005, 0.0, 0.0005, 0.003, 0.02, 0.3}) {
+        BoundaryCells b;
+        SurfacePatch floor;
+        floor.origin = {0, 0, below * h};
+        floor.c[3] = 1;
+        b.patches = {floor};
+        for (auto* index : {&b.i, &b.j, &b.k, &b.primitive}) *index = {0};
+        for (auto& slot : b.slot) slot = {0};
+        for (auto& moment : b.moment) moment = {0};
+        b.form = {make_form(false, {SlotUse{true, false, true}}, 1)};
+        b.share = {BoundaryCells::whole};
+        const auto corners = underside_of(b, 0, 0, 1, 0, h);
+        ASSERT_EQ(corners.size(), 4u) << below;
+        for (const UndersideCorner& u : corners) {
+            EXPECT_NEAR(u.at[2], std::max(below, 0.0) * h, 1.1e-3 * h) << below;
+            EXPECT_TRUE(u.bounded);
+        }
+    }
+}
+
 TEST(Boundary, NothingSeenBoundsNothing) {
     Scanned s = scan({{{0, 0, 0}, {0.05, 0.05, 0.05}}}, 0.02);
     s.cloud = {};
