@@ -5,6 +5,8 @@
 
 #include <map>
 #include <numbers>
+#include <set>
+#include <utility>
 
 #include "device/devices.h"
 #include "host/solids/boxes.h"
@@ -245,11 +247,13 @@ TEST(CellShape, TheUndersideIsThereWhereverThePatchBelowPasses) {
         b.form = {make_form(false, {SlotUse{true, false, true}}, 1)};
         b.share = {BoundaryCells::whole};
         const auto corners = underside_of(b, 0, 0, 1, 0, h);
-        ASSERT_EQ(corners.size(), 4u) << below;
+        std::set<std::pair<double, double>> places;  // a corner of the voxel may be told twice
         for (const UndersideCorner& u : corners) {
             EXPECT_NEAR(u.at[2], std::max(below, 0.0) * h, 1.1e-3 * h) << below;
             EXPECT_TRUE(u.bounded);
+            places.insert({u.at[0], u.at[1]});
         }
+        EXPECT_EQ(places.size(), 4u) << below;
     }
 }
 
