@@ -154,7 +154,7 @@ def test_points_that_are_not_finite_are_left_out(points, result, device):
     (np.zeros((3, 30), np.float32), 'not float32 of shape (3, 30); points.T has a row'),
     (np.zeros((4, 5, 3), np.float32), 'points.reshape(-1, 3) has a row'),
     ([[1, 2, 3]] * 9, "np.array(points, 'float32') converts integers"),
-    (np.random.default_rng(1).random((3000, 3)).astype(np.float32) * 3000, 'are in mm or cm, multiply the array by 0.001 or 0.01, else'),
+    (np.random.default_rng(1).random((3000, 3)).astype(np.float32) * 3000, 'are in mm or cm, multiply them by 0.001 or by 0.01, else'),
     (np.zeros((30, 3), int), "not int64 of shape (30, 3); points.astype('float32') converts"),
     (np.zeros((30, 4), np.int32), "points[:, :3].astype('float32')"),
     ((np.zeros(3, np.float32),) * 2 + (np.zeros(3, int),), "points z: expected floats of shape (N,), not int64 of shape (3,); z.as"),

@@ -14,14 +14,13 @@ a sort by unsafety alone would be left in no order. What goes wrong is raised as
 import copyreg
 import json
 import os
-import re
 import threading
 from typing import NamedTuple
 
 import numpy as np
 
 from . import _described, _snapshot, _spots, _tables, _topple, formats, plot, stages
-from ._arrays import channels as _channels, columns as _columns, error as _as, usage as _usage
+from ._arrays import channels as _channels, columns as _columns, usage as _usage
 from ._options import option as _option
 from ._program import generate
 from ._topple import AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Object, Overturning, Primitive, Support, __version__, open_device
@@ -300,16 +299,5 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     points = _columns(source, ('x', 'y', 'z'), 'points')
     directions = [] if normals is None else _columns(normals, ('nx', 'ny', 'nz'), 'normals')
     channels = [] if colours is None else _channels(colours)
-    try:
-        parsed = _topple.parse_arrays(points, directions, channels, viewpoint, name, device, options, progress, cancelled)
-    except Error as error:
-        said = re.sub(r'say unit_m=([0-9.]+)(?: or unit_m=([0-9.]+))?', _scaled, str(error))
-        if said == str(error):
-            raise
-        raise _as(error.kind, said) from None
+    parsed = _topple.parse_arrays(points, directions, channels, viewpoint, name, device, options, progress, cancelled)
     return Result(parsed, points, channels)
-
-
-def _scaled(hint):
-    """What to do with an array where the library knows of files."""
-    return 'multiply the array by ' + ' or '.join(factor for factor in hint.groups() if factor)
