@@ -18,10 +18,8 @@ constexpr std::size_t cell_planes = 10, fit_planes_count = 6, mean_planes = 8;
 constexpr float least_cosine = 0.8f;  // of the angle between normals of one surface
 constexpr std::uint32_t no_query = ~0u;
 constexpr std::uint64_t query_chunk = 1 << 15;  // queries handed to a thread at once
-// Of a tile, where a device takes as many: tables have 100 bytes for each query, 44 for each cell.
-// What fits one tile is prepared once for both kernels.
-constexpr std::size_t preferred_queries = std::size_t{1} << 20,
-                      preferred_cells = std::size_t{1} << 22;
+// Queries or cells of a tile, where a device takes as many: the tables have 100 bytes for each.
+constexpr std::size_t preferred_tile = std::size_t{1} << 20;
 
 using Planes = std::initializer_list<std::span<const float>>;
 
@@ -92,7 +90,7 @@ std::vector<PlaneFitter::Tile> PlaneFitter::make_tiles() const {
     const std::size_t most_halo =
         std::min<std::size_t>(binding / (4 * cell_planes), (1u << 28) - 1);
     const std::size_t most_queries =
-        std::clamp<std::size_t>(binding / (4 * side * side), 1, preferred_queries);
+        std::clamp<std::size_t>(binding / (4 * side * side), 1, preferred_tile);
     const auto lower = [&](std::int64_t x) {
         return static_cast<std::size_t>(
             std::lower_bound(grid_.x.begin(), grid_.x.end(), x,
@@ -101,7 +99,7 @@ std::vector<PlaneFitter::Tile> PlaneFitter::make_tiles() const {
     };
     std::vector<Tile> tiles;
     for (std::size_t first = 0; first < cell_.size();) {
-        const std::uint64_t beyond = std::uint64_t{cell_[first]} + preferred_cells;
+        const std::uint64_t beyond = std::uint64_t{cell_[first]} + preferred_tile;
         std::size_t count = static_cast<std::size_t>(
             std::lower_bound(cell_.begin() + static_cast<std::ptrdiff_t>(first), cell_.end(),
                              beyond) -

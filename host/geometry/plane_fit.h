@@ -36,7 +36,7 @@ PlaneQueries queries_at_means(const CellGrid& grid);
 
 // Fits planes to neighbourhoods in one grid, which must outlive the fitter: what kernel
 // voxel_normals needs of grid and queries is made once. They go in tiles where there is more of
-// them than fits a binding or some 300 MB; then only the last one is kept.
+// them than fits a binding or some 200 MB; then only the last one is kept.
 class PlaneFitter {
   public:
     // radius: of the neighbourhood, cells per axis, 1 to 3. Throws Error(device) where not even one
