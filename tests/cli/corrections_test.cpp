@@ -98,7 +98,8 @@ TEST_F(CorrectedParse, takes_away_what_is_not_there_from_all_files) {
     parsed({"-o", "out", "--corrections", "corrections.json"});
     parsed({"-o", "anew", "--corrections", "corrections.json", "--no-cache"});
     expect_same("out", "anew");
-    for (const Json& p : scene("out").at("primitives")) {
+    const Json there = scene("out");
+    for (const Json& p : there.at("primitives")) {
         const Json& at = p.at("center_of_mass_m");
         EXPECT_FALSE(at[2] > 0.55 && at[0] > 1.2 && at[0] < 1.45 && at[1] > 1.1 && at[1] < 1.3);
     }
