@@ -35,8 +35,8 @@ bool BoundaryCells::solid(std::size_t n, const Vec3& p, double slack_m) const {
     return !own || (any ? one : all);
 }
 
-std::size_t BoundaryCells::find(std::int32_t vi, std::int32_t vj, std::int32_t vk,
-                                std::int32_t p) const {
+std::size_t BoundaryCells::first_from(std::int32_t vi, std::int32_t vj, std::int32_t vk,
+                                      std::int32_t p) const {
     const std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t> wanted{vi, vj, vk, p};
     std::size_t low = 0, high = size();
     while (low < high) {
@@ -46,8 +46,15 @@ std::size_t BoundaryCells::find(std::int32_t vi, std::int32_t vj, std::int32_t v
         else
             high = middle;
     }
-    if (low == size() || std::tie(i[low], j[low], k[low], primitive[low]) != wanted) return absent;
     return low;
+}
+
+std::size_t BoundaryCells::find(std::int32_t vi, std::int32_t vj, std::int32_t vk,
+                                std::int32_t p) const {
+    const std::size_t n = first_from(vi, vj, vk, p);
+    if (n == size() || std::tie(i[n], j[n], k[n], primitive[n]) != std::tie(vi, vj, vk, p))
+        return absent;
+    return n;
 }
 
 bool BoundaryCells::fits(std::size_t primitives) const {

@@ -84,6 +84,8 @@ struct BoundaryCells {
     }
     // Whether p, a point in voxel n or on its border, is solid; patches count as slack_m wider.
     bool solid(std::size_t n, const Vec3& p, double slack_m) const;
+    // The first that is not before (vi, vj, vk, p), in the order in which they are sorted.
+    std::size_t first_from(std::int32_t vi, std::int32_t vj, std::int32_t vk, std::int32_t p) const;
     static constexpr std::size_t absent = ~std::size_t{0};
     std::size_t find(std::int32_t vi, std::int32_t vj, std::int32_t vk, std::int32_t p) const;
     // Whether all that it refers to is there: patches, and primitives of so many.

@@ -3,6 +3,12 @@
 
 namespace topple::io {
 
+std::optional<Correction::Kind> correction_kind(std::string_view name) {
+    for (const auto& [kind, known] : correction_kinds)
+        if (name == known) return kind;
+    return std::nullopt;
+}
+
 OrderedJson json_of_correction(const AppliedCorrection& applied) {
     using Kind = Correction::Kind;
     const Correction& c = applied.correction;
@@ -20,9 +26,8 @@ OrderedJson json_of_correction(const AppliedCorrection& applied) {
 AppliedCorrection correction_of(const OrderedJson& json) {
     AppliedCorrection out;
     Correction& c = out.correction;
-    const auto what = json.at("do").get<std::string>();
-    while (c.kind != Correction::Kind::one_thing && what != to_string(c.kind))  // from the last on
-        c.kind = static_cast<Correction::Kind>(static_cast<int>(c.kind) - 1);
+    c.kind =
+        correction_kind(json.at("do").get<std::string>()).value_or(Correction::Kind::one_thing);
     c.at_m = json.at("at_m").get<std::vector<Vec3>>();
     if (json.contains("from_m")) c.from_m = json.at("from_m").get<std::vector<Vec3>>();
     if (json.contains("wall_m")) c.wall_m = json.at("wall_m").get<double>();

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <array>
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "core/json.h"
+#include "io/corrections_json.h"
 #include "io/json_text.h"
 #include "io/text.h"
 #include "topple/corrections.h"
@@ -18,14 +17,6 @@ constexpr const char* corrections_schema = "topple.corrections/1";
 constexpr std::uint64_t largest_corrections_bytes = 10'000'000;
 constexpr std::size_t most_corrections = 1000, most_spots = 100, longest_name = 200;
 constexpr double farthest_m = 1e6, thickest_m = 10, heaviest_kg = 1e6;
-
-constexpr std::array kinds{std::pair{Kind::one_thing, "one_thing"},
-                           std::pair{Kind::apart, "apart"},
-                           std::pair{Kind::fixed, "fixed"},
-                           std::pair{Kind::not_there, "not_there"},
-                           std::pair{Kind::hollow, "hollow"},
-                           std::pair{Kind::mass, "mass"},
-                           std::pair{Kind::name, "name"}};
 
 std::string which(std::size_t n) {
     return "correction " + std::to_string(n + 1);
@@ -124,10 +115,9 @@ class Entry {
     }
     Kind kind() const {
         const std::string name = text("do");
-        for (const auto& [kind, known] : kinds)
-            if (name == known) return kind;
+        if (const auto kind = io::correction_kind(name)) return *kind;
         std::string known;
-        for (const auto& [kind, name_of] : kinds)
+        for (const auto& [kind, name_of] : io::correction_kinds)
             known.append(known.empty() ? "" : ", ").append(name_of);
         wrong("\"do\" is " + io::in_quotes(name) + "; there are " + known);
     }
@@ -161,7 +151,7 @@ class Entry {
 }  // namespace
 
 const char* to_string(Kind kind) {
-    for (const auto& [known, name] : kinds)
+    for (const auto& [known, name] : io::correction_kinds)
         if (kind == known) return name;
     return "";
 }

@@ -8,6 +8,8 @@
 #include <limits>
 #include <tuple>
 
+#include "physics/solid_pieces.h"
+
 namespace topple::physics {
 namespace {
 
@@ -23,36 +25,15 @@ struct HollowPiece {
 
 std::vector<HollowPiece> hollow_pieces(const SolidScene& solids,
                                        std::span<const std::int32_t> primitives) {
-    const SolidCells& cells = solids.cells();
-    const BoundaryCells& boundary = solids.boundary();
-    const double h = cells.voxel_m;
-    const auto place_of = [&](std::int32_t p) -> std::ptrdiff_t {
-        const auto at = std::ranges::lower_bound(primitives, p);
-        return at == primitives.end() || *at != p ? -1 : at - primitives.begin();
-    };
     std::vector<HollowPiece> out;
-    const auto add = [&](const HollowVoxel& at, std::ptrdiff_t primitive,
-                         double share) -> HollowPiece& {
-        const Vec3 middle{(at[0] + 0.5) * h, (at[1] + 0.5) * h, (at[2] + 0.5) * h};
-        return out.emplace_back(
-            HollowPiece{at, static_cast<std::size_t>(primitive), share, middle});
-    };
-    for (std::size_t n = 0; n < cells.size(); ++n) {
-        const std::ptrdiff_t own = place_of(cells.primitive[n]);
-        if (own < 0 || boundary.find(cells.i[n], cells.j[n], cells.k[n], cells.primitive[n]) !=
-                           BoundaryCells::absent)
-            continue;
-        add({cells.i[n], cells.j[n], cells.k[n]}, own, 1);
-    }
-    for (std::size_t b = 0; b < boundary.size(); ++b) {
-        const std::ptrdiff_t own = place_of(boundary.primitive[b]);
-        if (own < 0 || boundary.share[b] == 0) continue;
-        const auto share = static_cast<double>(boundary.share[b]);
-        HollowPiece& piece =
-            add({boundary.i[b], boundary.j[b], boundary.k[b]}, own, share / BoundaryCells::whole);
-        for (std::size_t a = 0; a < 3; ++a)
-            piece.center[a] += h / 4 * boundary.moment[a][b] / share;
-    }
+    each_solid_piece(solids.cells(), solids.boundary(), [&](const SolidPiece& piece) {
+        const auto own = std::ranges::lower_bound(primitives, piece.primitive);
+        if (own == primitives.end() || *own != piece.primitive) return;
+        out.push_back({{piece.i, piece.j, piece.k},
+                       static_cast<std::size_t>(own - primitives.begin()),
+                       piece.share,
+                       piece.centre});
+    });
     return out;
 }
 

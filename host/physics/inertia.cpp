@@ -3,7 +3,8 @@
 
 #include <cmath>
 #include <cstddef>
-#include <tuple>
+
+#include "physics/solid_pieces.h"
 
 namespace topple::physics {
 namespace {
@@ -23,30 +24,10 @@ void add(const Vec3& at, double share, double h, Symmetric& to) {
 std::vector<Symmetric> second_moments(const SolidCells& cells, std::int32_t count,
                                       const BoundaryCells& boundary) {
     std::vector<Symmetric> out(static_cast<std::size_t>(count), Symmetric{});
-    const double h = cells.voxel_m;
-    const auto middle = [&](std::int32_t i, std::int32_t j, std::int32_t k) {
-        return Vec3{(i + 0.5) * h, (j + 0.5) * h, (k + 0.5) * h};
-    };
-    std::size_t b = 0;
-    for (std::size_t n = 0; n < cells.size(); ++n) {
-        const std::int32_t p = cells.primitive[n];
-        if (p < 0) continue;
-        const std::tuple at(cells.i[n], cells.j[n], cells.k[n], p);
-        const auto part = [&] {
-            return std::tie(boundary.i[b], boundary.j[b], boundary.k[b], boundary.primitive[b]);
-        };
-        while (b < boundary.size() && part() < at) ++b;
-        if (b < boundary.size() && part() == at) continue;  // not as a whole: below
-        add(middle(cells.i[n], cells.j[n], cells.k[n]), 1, h, out[static_cast<std::size_t>(p)]);
-    }
-    for (b = 0; b < boundary.size(); ++b) {
-        if (boundary.share[b] == 0) continue;
-        Vec3 at = middle(boundary.i[b], boundary.j[b], boundary.k[b]);
-        for (std::size_t a = 0; a < 3; ++a)
-            at[a] += h / 4 * boundary.moment[a][b] / static_cast<double>(boundary.share[b]);
-        add(at, static_cast<double>(boundary.share[b]) / BoundaryCells::whole, h,
-            out[static_cast<std::size_t>(boundary.primitive[b])]);
-    }
+    each_solid_piece(cells, boundary, [&](const SolidPiece& piece) {
+        add(piece.centre, piece.share, cells.voxel_m,
+            out[static_cast<std::size_t>(piece.primitive)]);
+    });
     return out;
 }
 

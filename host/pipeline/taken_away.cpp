@@ -13,20 +13,13 @@ std::int32_t heir_of(const BoundaryCells& boundary, const std::vector<bool>& kep
     const auto place = [&](std::size_t n) {
         return std::array{boundary.i[n], boundary.j[n], boundary.k[n]};
     };
-    std::size_t low = 0, high = boundary.size();
-    while (low < high) {
-        const std::size_t middle = (low + high) / 2;
-        if (place(middle) < at)
-            low = middle + 1;
-        else
-            high = middle;
-    }
     std::int32_t heir = -1;
     std::uint32_t most = BoundaryCells::whole / 2 - 1;
-    for (; low < boundary.size() && place(low) == at; ++low) {
-        const std::int32_t p = boundary.primitive[low];
-        if (!kept[static_cast<std::size_t>(p)] || boundary.share[low] <= most) continue;
-        most = boundary.share[low];
+    for (std::size_t n = boundary.first_from(at[0], at[1], at[2], 0);
+         n < boundary.size() && place(n) == at; ++n) {
+        const std::int32_t p = boundary.primitive[n];
+        if (!kept[static_cast<std::size_t>(p)] || boundary.share[n] <= most) continue;
+        most = boundary.share[n];
         heir = p;
     }
     return heir;
