@@ -13,8 +13,6 @@ namespace {
 // about each other, and a jump counts as one between two surfaces.
 constexpr double grazing_tangent = 7.1;  // tan 82 degrees
 
-constexpr double parts = 65536;
-
 // Where `count` readings lie along one axis, in the camera's row of the pose, m: those that are
 // beyond the grid's reach are marked in `inside`. Plain arrays, which compilers vectorise.
 void project(const double* m, double dy, double depth_scale, double per_cell, const double* columns,
@@ -29,7 +27,7 @@ void project(const double* m, double dy, double depth_scale, double per_cell, co
         const double safe = in ? at : 1.0;
         const auto whole = static_cast<std::int32_t>(safe);
         cell[u] = whole;
-        part[u] = static_cast<std::int32_t>((safe - whole) * parts);
+        part[u] = static_cast<std::int32_t>((safe - whole) * cell_parts);
         inside[u] &= static_cast<std::uint32_t>(in);
     }
 }

@@ -10,6 +10,8 @@
 namespace topple::geometry {
 
 inline constexpr std::int64_t key_bias = std::int64_t{1} << 20;
+// Offsets within a cell are told in so many parts of its edge.
+inline constexpr double cell_parts = 65536;
 
 // The readings of one row of a depth frame, an array for each quantity, an entry for each pixel.
 struct RowReadings {

@@ -12,8 +12,8 @@ struct BlockPlace {
     const CellTable* table;
 };
 
-// Bits 0 to 20, 21 to 41 and 42 to 62 of a block's key are its z, y and x.
-constexpr unsigned y_bits = 21, x_bits = 42;
+// Blocks' keys hold their indices where cells' do.
+constexpr unsigned y_bits = key_shift[1], x_bits = key_shift[0];
 
 // A cell's place in its block, and a block's in its cube.
 std::size_t place_in_block(std::uint64_t key) {

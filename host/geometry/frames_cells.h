@@ -14,6 +14,17 @@
 
 namespace topple::geometry {
 
+// A cell's key holds 21 bits of each axis' index, so that keys ascend by x, then y, then z.
+inline constexpr std::array<unsigned, 3> key_shift{42, 21, 0};
+inline constexpr std::uint64_t key_mask = 0x1FFFFF;
+inline std::uint64_t key_of(const std::array<std::uint64_t, 3>& index) {
+    return index[0] << key_shift[0] | index[1] << key_shift[1] | index[2] << key_shift[2];
+}
+// From the grid's lowest corner.
+inline std::int64_t index_in(std::uint64_t key, std::size_t axis) {
+    return static_cast<std::int64_t>(key >> key_shift[axis] & key_mask);
+}
+
 // One reading, where it waits for its table: 20 bytes.
 struct Reading {
     std::array<std::uint32_t, 2> key_halves{};  // of its cell, the lower one first
@@ -56,6 +67,11 @@ inline void CellSums::add(const Reading& reading, std::uint32_t frame) {
     add_colour({coarse * (reading.rgb & 0xFF), coarse * (reading.rgb >> 8 & 0xFF),
                 coarse * (reading.rgb >> 16 & 0xFF)},
                coarse);
+}
+
+// Of a cell's readings along one axis, in cell_parts from its lowest corner.
+inline double mean_offset(const CellSums& cell, std::size_t axis) {
+    return static_cast<double>(cell.offset[axis]) / static_cast<double>(cell.weight);
 }
 
 // Occupied cells and their sums, found through cubes of 8 x 8 x 8 blocks of 4 x 4 x 4 cells: the

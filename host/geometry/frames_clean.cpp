@@ -13,7 +13,6 @@
 namespace topple::geometry {
 namespace {
 
-constexpr std::array<unsigned, 3> key_shift{42, 21, 0};
 constexpr std::uint8_t most_fused_levels = 3, stays = 255;
 constexpr std::uint64_t fused_chunk = 1 << 15;  // cells handed to a thread at once
 
@@ -89,11 +88,8 @@ CellGrid grid_of(const FusedCells& fused, ThreadPool& pool) {
         const CellSums& cell = fused.cells[i];
         const std::array<std::int32_t*, 3> index{&grid.x[i], &grid.y[i], &grid.z[i]};
         for (std::size_t a = 0; a < 3; ++a) {
-            *index[a] = static_cast<std::int32_t>(
-                static_cast<std::int64_t>(cell.key >> key_shift[a] & 0x1FFFFF) - key_bias);
-            grid.mean[a][i] = static_cast<float>(static_cast<double>(cell.offset[a]) /
-                                                     static_cast<double>(cell.weight) / 65536 -
-                                                 0.5);
+            *index[a] = static_cast<std::int32_t>(index_in(cell.key, a) - key_bias);
+            grid.mean[a][i] = static_cast<float>(mean_offset(cell, a) / cell_parts - 0.5);
         }
         grid.weight[i] = static_cast<float>(static_cast<double>(cell.weight) / 65535);
     });
@@ -104,19 +100,19 @@ CellGrid grid_of(const FusedCells& fused, ThreadPool& pool) {
 std::array<double, 3> mean_of(const CellSums& cell) {
     std::array<double, 3> at{};
     for (std::size_t a = 0; a < 3; ++a) {
-        at[a] = static_cast<double>(cell.key >> key_shift[a] & 0x1FFFFF) +
-                static_cast<double>(cell.offset[a]) / static_cast<double>(cell.weight) / 65536;
+        at[a] = static_cast<double>(index_in(cell.key, a)) + mean_offset(cell, a) / cell_parts;
     }
     return at;
 }
 
 void move_to(CellSums& cell, const std::array<double, 3>& at) {
-    cell.key = 0;
+    std::array<std::uint64_t, 3> index{};
     for (std::size_t a = 0; a < 3; ++a) {
         const double whole = std::floor(at[a]);
-        cell.key |= static_cast<std::uint64_t>(whole) << key_shift[a];
-        cell.offset[a] = cell.weight * static_cast<std::uint64_t>((at[a] - whole) * 65536);
+        index[a] = static_cast<std::uint64_t>(whole);
+        cell.offset[a] = cell.weight * static_cast<std::uint64_t>((at[a] - whole) * cell_parts);
     }
+    cell.key = key_of(index);
 }
 
 // Moves the cells `which` onto the planes fitted in the grid of one level, whose cell is cell_of

@@ -59,12 +59,13 @@ void hand_on(const RowReadings& row, const std::uint8_t* rgb, std::uint32_t fram
             ++outside;
             continue;
         }
-        std::uint64_t key = 0;
+        std::array<std::uint64_t, 3> index{};
         Reading reading;
         for (std::size_t a = 0; a < 3; ++a) {
-            key = key << 21 | static_cast<std::uint32_t>(row.cell[a][u]);
+            index[a] = static_cast<std::uint32_t>(row.cell[a][u]);
             reading.part[a] = static_cast<std::uint16_t>(row.part[a][u]);
         }
+        const std::uint64_t key = key_of(index);
         reading.key_halves = {static_cast<std::uint32_t>(key),
                               static_cast<std::uint32_t>(key >> 32)};
         reading.weight = static_cast<std::uint16_t>(row.weight[u]);
@@ -157,17 +158,15 @@ FusedCloud FrameFusion::finish(const std::function<void()>& poll) {
             result.cloud.green.push_back(mean(1));
             result.cloud.blue.push_back(mean(2));
         }
-        const auto at = [&](unsigned shift, std::size_t axis) {
-            const auto index = static_cast<std::int64_t>(cell.key >> shift & 0x1FFFFF) - key_bias;
+        const auto at = [&](std::size_t axis) {
+            const std::int64_t index = index_in(cell.key, axis) - key_bias;
             // Half a unit: fractions were cut off, not rounded.
-            const double fraction =
-                (static_cast<double>(cell.offset[axis]) / static_cast<double>(cell.weight) + 0.5) /
-                65536;
+            const double fraction = (mean_offset(cell, axis) + 0.5) / cell_parts;
             return static_cast<float>((static_cast<double>(index) + fraction) * cell_m_);
         };
-        result.cloud.x.push_back(at(42, 0));
-        result.cloud.y.push_back(at(21, 1));
-        result.cloud.z.push_back(at(0, 2));
+        result.cloud.x.push_back(at(0));
+        result.cloud.y.push_back(at(1));
+        result.cloud.z.push_back(at(2));
         result.viewpoint_of_point.push_back(cell.best_frame);
     }
     return result;

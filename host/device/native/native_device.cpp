@@ -68,8 +68,8 @@ std::string cpu_name() {
 }
 
 constexpr std::uint64_t least_items = 4096;  // 1 to 100 microseconds of work
-// Copies from so many bytes on are shared out: memory that is touched first has to be cleared.
-constexpr std::uint64_t least_shared_bytes = 4u << 20, copied_at_once = 1u << 20;
+// Larger copies are shared out: memory that is touched first has to be cleared.
+constexpr std::uint64_t copied_at_once = 2u << 20;
 
 class NativeDevice final : public Device {
   public:
@@ -133,9 +133,7 @@ class NativeDevice final : public Device {
 
   private:
     void copy(std::byte* to, const std::byte* from, std::uint64_t bytes) {
-        if (bytes == 0) return;
-        const std::uint64_t at_once = bytes < least_shared_bytes ? bytes : copied_at_once;
-        pool_.run(bytes, at_once, [&](std::uint64_t first, std::uint64_t last) {
+        pool_.run(bytes, copied_at_once, [&](std::uint64_t first, std::uint64_t last) {
             std::memcpy(to + first, from + first, last - first);
         });
     }
