@@ -20,9 +20,9 @@ import sys
 SKIPPED = 77
 
 
-def run(*command):
+def run(*command, **options):
     """What the command prints; it must succeed."""
-    done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **options)
     if done.returncode == SKIPPED and os.environ.get('TOPPLE_REQUIRE_BACKENDS') != '1':
         print(done.stdout)
         sys.exit(SKIPPED)

@@ -16,7 +16,8 @@ import subprocess
 import sys
 import zipfile
 
-SKIPPED = 77
+from package_test import SKIPPED, check, run
+
 LARGEST_MB = 40
 RUNTIME = re.compile(r'(linux-vdso|/.*/ld-linux-.*|ld-linux-.*|lib(c|m|mvec|dl|rt|pthread|util|resolv|gcc_s|stdc\+\+))\.so(\.\d+)?')
 SCRIPT = '''
@@ -35,18 +36,6 @@ with open('floor.obj', 'w') as file:  # by topple-reader, and the volume by topp
 for path in ('floor.obj', os.path.join(out, 'volume.vdb')):
     assert topple.parse(path, device='native', disturbances=[]).objects, path
 '''
-
-
-def run(*command, **options):
-    done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **options)
-    if done.returncode:
-        sys.exit(f'{" ".join(map(str, command))}: exit code {done.returncode}\n{done.stdout}')
-    return done.stdout
-
-
-def check(holds, message):
-    if not holds:
-        sys.exit(message)
 
 
 def environment(folder, wheel):

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import topple
+from exported import Exported
 
 
 def quick(points, device, **options):
@@ -115,17 +116,6 @@ def fields(points):
     for axis, name in enumerate('xyz'):
         records[name] = points[:, axis]
     return records
-
-
-class Exported:
-    def __init__(self, array):
-        self.array = array
-
-    def __dlpack__(self, **options):
-        return self.array.__dlpack__(**options)
-
-    def __dlpack_device__(self):
-        return self.array.__dlpack_device__()
 
 
 @pytest.mark.parametrize('layout', [wide, fields, np.asfortranarray, np.float64, Exported,

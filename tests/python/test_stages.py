@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import topple
+from exported import Exported
 from topple import stages
 
 GRAVITY = 9.80665
@@ -20,17 +21,6 @@ def grid(step=0.01, side=40):
     """A level square of points, (side * side, 3), float32."""
     x, y = np.meshgrid(np.arange(side) * step, np.arange(side) * step)
     return np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], 1).astype(np.float32)
-
-
-class Exported:
-    def __init__(self, array):
-        self.array = array
-
-    def __dlpack__(self, **options):
-        return self.array.__dlpack__(**options)
-
-    def __dlpack_device__(self):
-        return self.array.__dlpack_device__()
 
 
 class OnAnotherDevice:

@@ -2,6 +2,7 @@
 """Spots of a result's parts, by which corrections name them (docs/corrections.md)."""
 import numpy as np
 
+from . import geometry
 from ._arrays import usage
 
 # A spot stands for the part of the nearest solid voxel: one of the part's own, as far as that from voxels of others.
@@ -16,9 +17,8 @@ class Parts:
         solid = result.solid
         self._part = np.asarray(solid['primitive'])
         self._seen = np.asarray(solid['state']) == 0
-        self._at = np.stack([solid[axis] for axis in 'xyz'], axis=1).astype(float)
-        axes = np.array(result.manhattan_from_input, float).reshape(4, 4)[:3, :3]
-        turned = self._at @ axes.T
+        self._at = geometry.solid_points(result)[0].astype(float)
+        turned = self._at @ geometry.room_axes(result).T
         cells = np.rint((turned - turned.min(axis=0)) / result.voxel_size_m).astype(np.int64) if len(turned) else np.zeros((0, 3), np.int64)
         margin = _CLEAR_VOXELS + 1
         self._cells = cells + margin

@@ -6,6 +6,7 @@ import os
 import numpy as np
 
 from . import geometry
+from ._optional import needed
 
 FRAME, ROOM = 'scan', 'room'
 TIME_NS = 1_000_000_000  # all is of one time: a parse has none
@@ -20,7 +21,7 @@ def to_mcap(result, path):
 
     The file appears whole or not at all, and replaces an older one. Raises topple.Error of kind "usage", or OSError."""
     schemas = _Schemas()
-    writer_of = geometry.needed('mcap_protobuf.writer', 'mcap-protobuf-support', 'to_mcap')
+    writer_of = needed('mcap_protobuf.writer', 'mcap-protobuf-support', 'to_mcap')
     path = os.fspath(path)
     unfinished = os.path.join(os.path.dirname(path), f'.topple-{os.getpid()}-{os.path.basename(path)}')
     try:
@@ -38,7 +39,7 @@ class _Schemas:
     """Messages of foxglove-schemas-protobuf by their names."""
 
     def __getattr__(self, name):
-        module = geometry.needed(f'foxglove_schemas_protobuf.{name}_pb2', 'foxglove-schemas-protobuf', 'to_mcap')
+        module = needed(f'foxglove_schemas_protobuf.{name}_pb2', 'foxglove-schemas-protobuf', 'to_mcap')
         return getattr(module, name)
 
 

@@ -5,23 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._arrays import usage
-
 
 class Box(NamedTuple):
     """The box of an object's solid, along the room's axes, in the scan's frame, metres."""
     object: int
     centre: np.ndarray  # (3,)
     size: np.ndarray  # (3,)
-
-
-def needed(module, package, what):
-    """The module of an optional package, or an Error of kind "usage" that says how to install it."""
-    import importlib
-    try:
-        return importlib.import_module(module)
-    except ImportError:
-        raise usage(f"{what} takes the Python package {package}: pip install '{package}'") from None
 
 
 def room_axes(result):

@@ -6,12 +6,14 @@ import math
 import numpy as np
 
 from . import geometry
+from ._arrays import usage
+from ._optional import needed
 
 
 def _axes(axes, **options):
     if axes is not None:
         return axes
-    return geometry.needed('matplotlib.pyplot', 'matplotlib', 'topple.plot').subplots(layout='constrained', **options)[1]
+    return needed('matplotlib.pyplot', 'matplotlib', 'topple.plot').subplots(layout='constrained', **options)[1]
 
 
 def plan(result, *, by='unsafety', labels=True, axes=None):
@@ -21,10 +23,10 @@ def plan(result, *, by='unsafety', labels=True, axes=None):
     "earthquake": its risk in J. labels: writes objects' ids. Raises topple.Error of kind "usage"."""
     names = sorted(result.fields)
     if by != 'unsafety' and by not in names:
-        raise geometry.usage(f"plan: by={by!r}; expected 'unsafety'" + ''.join(f' or {name!r}' for name in names))
+        raise usage(f"plan: by={by!r}; expected 'unsafety'" + ''.join(f' or {name!r}' for name in names))
     points, owners = geometry.solid_points(result)
     if len(points) == 0:
-        raise geometry.usage('plan: the result has no solids to draw')
+        raise usage('plan: the result has no solids to draw')
     axes = _axes(axes)
     turned = points @ geometry.room_axes(result).T
     step = result.voxel_size_m
@@ -87,7 +89,7 @@ def instability(item, *, axes=None):
     """S(W) of an Object: the energy that it can release, J, once a disturbance has given it W, J; both of scene.json's `instability`."""
     steps = np.asarray(item.instability)
     if len(steps) == 0:
-        raise geometry.usage(f'instability: object {item.id} has no S(W): it can\'t move, or was not seen enough')
+        raise usage(f'instability: object {item.id} has no S(W): it can\'t move, or was not seen enough')
     axes = _axes(axes)
     last = steps[-1, 0] * 1.2 if steps[-1, 0] > 0 else 1.0
     axes.step([0, *steps[:, 0], last], [0, *steps[:, 1], steps[-1, 1]], where='post', label=f'object {item.id}')
@@ -100,7 +102,7 @@ def fragility(item, *, axes=None):
     """The chance that an earthquake upsets an Object by the ground's peak acceleration: what was counted, and the lognormal fit."""
     counted, median, spread = np.asarray(item.fragility.counted), item.fragility.pga_g, item.fragility.pga_dispersion
     if len(counted) == 0:
-        raise geometry.usage(f'fragility: object {item.id} has none: no earthquake was parsed for, or it can\'t move')
+        raise usage(f'fragility: object {item.id} has none: no earthquake was parsed for, or it can\'t move')
     axes = _axes(axes)
     axes.plot(counted[:, 0], counted[:, 1], 'o', label=f'object {item.id}, counted')
     if math.isfinite(median) and spread > 0:
@@ -117,7 +119,7 @@ def barriers(item, *, axes=None):
     y, clockwise as seen from above (`barrier_by_direction` of docs/output.md). What does not fall there has no point."""
     push = np.asarray(item.barrier_by_direction.push_J)
     if len(push) == 0 or not np.isfinite(push).any():
-        raise geometry.usage(f'barriers: object {item.id} falls in no direction, or was not seen enough')
+        raise usage(f'barriers: object {item.id} falls in no direction, or was not seen enough')
     axes = _axes(axes, subplot_kw={'projection': 'polar'})
     angles = np.arange(len(push) + 1) * 2 * np.pi / len(push)
     axes.set_theta_zero_location('N')

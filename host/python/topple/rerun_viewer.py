@@ -5,6 +5,8 @@ import os
 import numpy as np
 
 from . import geometry
+from ._arrays import usage
+from ._optional import needed
 
 RELATIONS = {'fixed': (90, 90, 90), 'support': (60, 130, 240), 'adjacent': (200, 200, 120)}
 ARROW_M = 0.15  # of the field's greatest speed
@@ -18,8 +20,8 @@ def to_rerun(result, *, save=None, spawn=False, recording=None):
     save: the .rrd file to write. spawn: opens the viewer. recording: a rerun.RecordingStream to log to, else one of its own;
     returns it. One of the three has to be given. Raises topple.Error of kind "usage"."""
     if save is None and not spawn and recording is None:
-        raise geometry.usage("to_rerun: say where to: save='scene.rrd', spawn=True, or recording=...")
-    rr = geometry.needed('rerun', 'rerun-sdk', 'to_rerun')
+        raise usage("to_rerun: say where to: save='scene.rrd', spawn=True, or recording=...")
+    rr = needed('rerun', 'rerun-sdk', 'to_rerun')
     stream = recording if recording is not None else rr.RecordingStream('topple')
     if spawn:
         stream.spawn()

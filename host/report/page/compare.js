@@ -23,12 +23,16 @@ function readScene(name, text) {
   return scene;
 }
 
+// Where a point of the other scene lies in this scene's view.
+function otherPlace(scene, other, point) {
+  return viewPlace(scene, point.map((value, k) => value + ((other.offset_m || [])[k] || 0) - ((scene.offset_m || [])[k] || 0)));
+}
+
 // The box of an object in this scene's view: its size along the room's axes, about its middle of mass; null where it has none.
 function comparedBox(scene, other, object) {
   const {size_m: size, center_of_mass_m: middle} = object;
   if (!Array.isArray(size) || !Array.isArray(middle) || ![...size, ...middle].every(Number.isFinite)) return null;
-  const shift = [0, 1, 2].map(k => ((other.offset_m || [])[k] || 0) - ((scene.offset_m || [])[k] || 0));
-  const at = viewPlace(scene, middle.map((value, k) => value + shift[k]));
+  const at = otherPlace(scene, other, middle);
   // A voxel at least: thin things that moved by less are still the same.
   return at.map((value, k) => {
     const half = Math.max(size[k], scene.voxel_size_m, 0.01) / 2;
@@ -84,10 +88,9 @@ function verdict(before, after) {
 
 // Whether a later parse was told that what stood in an object's place is fixed to the building.
 function fixedBy(corrections, scene, other, box) {
-  const shift = [0, 1, 2].map(k => ((other.offset_m || [])[k] || 0) - ((scene.offset_m || [])[k] || 0));
   const margin = 2 * scene.voxel_size_m;
   return !!box && (corrections || []).some(one => one.do === 'fixed' && one.held !== false && (one.at_m || []).some(spot => {
-    const at = viewPlace(scene, spot.map((value, k) => value + shift[k]));
+    const at = otherPlace(scene, other, spot);
     return at.every((value, k) => value >= box[k][0] - margin && value <= box[k][1] + margin);
   }));
 }

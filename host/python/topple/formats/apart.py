@@ -12,6 +12,7 @@ import sys
 
 import numpy as np
 
+from .._arrays import error as error_of
 from .errors import Error, reading, wrong
 
 # Address space and processor time by the size of what is read: several times what sound files take.
@@ -59,9 +60,7 @@ def convert(module, path, folder, options, cancelled=None):
     said = json.loads(answer.read_text())
     answer.unlink()
     if 'error' in said:
-        error = Error(said['error'].replace(task['path'], str(path)))
-        error.kind = said['kind']
-        raise error
+        raise error_of(said['kind'], said['error'].replace(task['path'], str(path)))
     return pathlib.Path(said['place']), said['notes'], np.array(said['offset'])
 
 

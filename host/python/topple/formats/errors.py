@@ -1,27 +1,20 @@
 # SPDX-License-Identifier: MIT
 """What goes wrong with files in other programs' formats, told as topple tells it: one line that names the file."""
 import contextlib
-import importlib
 
+from .._arrays import error
+from .._optional import needed
 from .._topple import Error
 
 
 def wrong(path, message, kind='input'):
     """The topple.Error to raise: what is wrong with the file, and the mend."""
-    error = Error(f'{path}: {message}')
-    error.kind = kind
-    return error
+    return error(kind, f'{path}: {message}')
 
 
 def needs(module, package, path):
     """The module of an optional package, or an Error of kind "usage" that says how to install it."""
-    try:
-        return importlib.import_module(module)
-    except ImportError as error:
-        top = module.split('.')[0]
-        if isinstance(error, ModuleNotFoundError) and (error.name or '').split('.')[0] == top:
-            raise wrong(path, f"reading it takes the Python package {package}: pip install '{package}'", 'usage') from None
-        raise wrong(path, f'the Python package {package} can\'t be loaded: {error}', 'usage') from error
+    return needed(module, package, f'{path}: reading it')
 
 
 @contextlib.contextmanager
@@ -33,10 +26,10 @@ def reading(path, what):
         raise
     except MemoryError:
         raise wrong(path, 'does not fit into memory; thin it, or check that it is not damaged') from None
-    except OSError as error:
-        raise wrong(path, error.strerror or str(error)) from error
-    except Exception as error:  # each library has its own
-        said = ' '.join(str(error).split())[:200] or type(error).__name__
-        if isinstance(error, KeyError):
-            said = f'it has no {error}'
-        raise wrong(path, f'is no {what}, cut short or damaged: {said}') from error
+    except OSError as failed:
+        raise wrong(path, failed.strerror or str(failed)) from failed
+    except Exception as failed:  # each library has its own
+        said = ' '.join(str(failed).split())[:200] or type(failed).__name__
+        if isinstance(failed, KeyError):
+            said = f'it has no {failed}'
+        raise wrong(path, f'is no {what}, cut short or damaged: {said}') from failed
