@@ -2,10 +2,12 @@
 #include "geometry/virtual_views.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <queue>
 #include <utility>
 
 #include "geometry/free_places.h"
@@ -22,6 +24,8 @@ constexpr double side_cos = 0.25, behind_cos = 0.1;
 constexpr float one_surface_cos = 0.8f;
 // Of the surface around a surfel, what must be seen with it.
 constexpr float least_share = 0.3f;
+// What an eye that sees half of a surface around says of its side; less may be a leak.
+constexpr float least_word = 0.25f;
 constexpr std::uint64_t witness_chunk = 1 << 14;  // surfels handed to a thread at once
 // Rougher than this share of its cell, a surfel may be both faces of a thin board, or an edge.
 constexpr double two_sided_cells = 0.25;
@@ -51,7 +55,7 @@ class Looking {
           witness_(surfels.size(), 0),
           in_view_(places_.size(), 0) {
         if (options.sides_known) know_sides();
-        out_.eye_of_surfel.assign(surfels.size(), no_eye);
+        out_.viewpoint_of_surfel.assign(surfels.size(), no_eye);
         out_.intrinsics = {CubeView::side,
                            CubeView::side,
                            CubeView::focal,
@@ -76,13 +80,18 @@ class Looking {
 
     VirtualViews finish() {
         if (out_.eyes.empty()) {
-            out_.eye_of_surfel.clear();
+            out_.viewpoint_of_surfel.clear();
             return std::move(out_);
         }
         if (!sides_known_) agree_on_sides();
         spread_sides();
+        out_.viewpoints = out_.eyes;
         for (std::size_t i = 0; i < s_.size(); ++i) {
-            if (out_.eye_of_surfel[i] == no_eye) out_.eye_of_surfel[i] = nearest_eye(i);
+            std::uint32_t& from = out_.viewpoint_of_surfel[i];
+            if (from == no_eye) from = nearest_eye(i);
+            if (from != no_eye) continue;
+            from = static_cast<std::uint32_t>(out_.viewpoints.size());
+            out_.viewpoints.push_back(in_front_of(i));
         }
         return std::move(out_);
     }
@@ -100,6 +109,22 @@ class Looking {
     }
     float cosine(std::size_t i, std::size_t j) const {
         return s_.nx[i] * s_.nx[j] + s_.ny[i] * s_.ny[j] + s_.nz[i] * s_.nz[j];
+    }
+    // How much two surfels that belong together have their normals on one side: 1 in one plane, and
+    // where an edge or the thickness of a board parts them; -1 with one of the normals turned
+    // round. Koenig and Gumhold (2009) mirror one normal across the middle between both, which is
+    // where the other would be if the surface went on as an arc.
+    float agreement(std::size_t i, std::size_t j) const {
+        const std::array<float, 3> d{s_.x[j] - s_.x[i], s_.y[j] - s_.y[i], s_.z[j] - s_.z[i]},
+            n{s_.nx[i], s_.ny[i], s_.nz[i]}, m{s_.nx[j], s_.ny[j], s_.nz[j]};
+        float cosine = 0, n_along = 0, m_along = 0, square = 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+            cosine += n[a] * m[a];
+            n_along += n[a] * d[a];
+            m_along += m[a] * d[a];
+            square += d[a] * d[a];
+        }
+        return square > 0 ? cosine - 2 * n_along * m_along / square : cosine;
     }
     // Cosine between the surfel's normal and the direction to the eye.
     double facing(std::size_t i, const Vec3& eye) const {
@@ -181,7 +206,7 @@ class Looking {
         for (unsigned n = 0; n < eyes; ++n) {
             std::vector<std::size_t> unseen;
             for (std::size_t i = 0; i < s_.size(); ++i)
-                if (out_.eye_of_surfel[i] == no_eye && one_sided(i)) unseen.push_back(i);
+                if (out_.viewpoint_of_surfel[i] == no_eye && one_sided(i)) unseen.push_back(i);
             if (static_cast<double>(unseen.size()) < least_unseen * static_cast<double>(s_.size()))
                 return;
             const std::size_t step = unseen.size() / most_surfels + 1,
@@ -197,7 +222,7 @@ class Looking {
             const std::size_t place = static_cast<std::size_t>(best - facing_it.begin()) * stride;
             look(view_surfels(s_, places_.middle(place), pool_));
             std::size_t left = 0;
-            for (const std::size_t i : unseen) left += out_.eye_of_surfel[i] == no_eye;
+            for (const std::size_t i : unseen) left += out_.viewpoint_of_surfel[i] == no_eye;
             const double gain = static_cast<double>(unseen.size() - left);
             if (gain < least_unseen * static_cast<double>(s_.size())) return;
         }
@@ -262,11 +287,11 @@ class Looking {
         out_.eyes.push_back(view.eye);
         for (const auto& image : view.surfel) {
             for (const std::uint32_t i : image) {
-                if (i == CubeView::nothing || out_.eye_of_surfel[i] != no_eye) continue;
+                if (i == CubeView::nothing || out_.viewpoint_of_surfel[i] != no_eye) continue;
                 const double f = facing(i, view.eye);
                 if (has_normal(i) && std::abs(f) < side_cos) continue;
                 if (side_[i] == 0) side_[i] = f > 0 ? 1 : -1;
-                if (side_[i] * f >= 0) out_.eye_of_surfel[i] = eye;
+                if (side_[i] * f >= 0) out_.viewpoint_of_surfel[i] = eye;
             }
         }
         for (std::size_t image = 0; image < 6; ++image) add_frame(view, image);
@@ -328,7 +353,7 @@ class Looking {
             std::uint32_t around = 1, agree = 1;
             for (std::uint32_t k = s_.neighbour_first[i]; k < s_.neighbour_first[i + 1]; ++k) {
                 const std::uint32_t j = s_.neighbours[k];
-                const float along = cosine(i, j);
+                const float along = agreement(i, j);
                 if (std::abs(along) < one_surface_cos) continue;
                 ++around;
                 agree += seen[j] == (along > 0 ? seen[i] : -seen[i]);
@@ -342,57 +367,78 @@ class Looking {
         }
     }
 
-    // The side of a surfel is that for which it and its neighbours in one surface have more words.
+    // The side of a surfel is that for which it and its neighbours in one surface have more words;
+    // what only leaks speak of is not known.
     void agree_on_sides() {
         for (std::size_t i = 0; i < s_.size(); ++i) {
             if (!has_normal(i)) continue;
-            float sum = witness_[i];
+            float sum = witness_[i], words = 1;
             for (std::uint32_t k = s_.neighbour_first[i]; k < s_.neighbour_first[i + 1]; ++k) {
                 const std::uint32_t j = s_.neighbours[k];
-                const float along = cosine(i, j);
-                if (std::abs(along) > one_surface_cos)
-                    sum += along > 0 ? witness_[j] : -witness_[j];
+                const float along = agreement(i, j);
+                if (std::abs(along) <= one_surface_cos) continue;
+                sum += along > 0 ? witness_[j] : -witness_[j];
+                ++words;
             }
-            if (sum == 0) continue;
-            side_[i] = sum > 0 ? 1 : -1;
-            std::uint32_t& eye = out_.eye_of_surfel[i];
-            if (eye != no_eye && side_[i] * facing(i, out_.eyes[eye]) < 0) eye = no_eye;
+            const bool known = std::abs(sum) >= least_word * words;
+            side_[i] = static_cast<std::int8_t>(known ? (sum > 0 ? 1 : -1) : 0);
+            std::uint32_t& eye = out_.viewpoint_of_surfel[i];
+            if (eye != no_eye && side_[i] * facing(i, out_.eyes[eye]) <= 0) eye = no_eye;
         }
     }
 
-    // From the surfels whose side is known to their neighbours, nearest first.
+    // From the surfels whose side is known to the others, first to those of which the known ones
+    // around say most, all together: where a face stands on a floor that goes on below it, those
+    // before it and behind it cancel, and the other edges tell.
     void spread_sides() {
-        std::vector<std::uint32_t> queue;
-        for (std::size_t i = 0; i < s_.size(); ++i) {
-            if (side_[i] != 0) queue.push_back(static_cast<std::uint32_t>(i));
-        }
-        for (std::size_t at = 0; at < queue.size(); ++at) {
-            const std::uint32_t i = queue[at];
+        struct Reached {
+            float said;
+            std::uint32_t surfel;
+            bool operator<(const Reached& o) const {
+                return said != o.said ? said < o.said : surfel > o.surfel;
+            }
+        };
+        std::vector<float> said(s_.size(), 0);  // for the normal's side, less for the other
+        std::priority_queue<Reached> next;
+        const auto tell = [&](std::uint32_t i) {
             for (std::uint32_t k = s_.neighbour_first[i]; k < s_.neighbour_first[i + 1]; ++k) {
                 const std::uint32_t j = s_.neighbours[k];
                 if (side_[j] != 0 || !has_normal(j)) continue;
-                side_[j] = static_cast<std::int8_t>(cosine(i, j) < 0 ? -side_[i] : side_[i]);
-                queue.push_back(j);
+                said[j] += static_cast<float>(side_[i]) * std::abs(cosine(i, j)) * agreement(i, j);
+                next.push({std::abs(said[j]), j});
             }
+        };
+        for (std::size_t i = 0; i < s_.size(); ++i)
+            if (side_[i] != 0) tell(static_cast<std::uint32_t>(i));
+        while (!next.empty()) {
+            const Reached top = next.top();
+            next.pop();
+            if (side_[top.surfel] != 0 || top.said != std::abs(said[top.surfel])) continue;
+            side_[top.surfel] = said[top.surfel] < 0 ? -1 : 1;
+            tell(top.surfel);
         }
     }
 
-    // The nearest eye on the surfel's side; the nearest of all where none is.
+    // The nearest eye on the surfel's side; no_eye where none is.
     std::uint32_t nearest_eye(std::size_t i) const {
-        std::uint32_t best = 0;
+        std::uint32_t best = no_eye;
         double best_distance = std::numeric_limits<double>::infinity();
-        bool best_fits = false;
         for (std::size_t e = 0; e < out_.eyes.size(); ++e) {
             const Vec3& eye = out_.eyes[e];
-            const bool fits = side_[i] * facing(i, eye) >= 0;
+            if (side_[i] * facing(i, eye) < 0) continue;
             const double distance =
                 std::hypot(eye[0] - s_.x[i], eye[1] - s_.y[i], eye[2] - s_.z[i]);
-            if (fits == best_fits ? distance >= best_distance : !fits) continue;
+            if (distance >= best_distance) continue;
             best = static_cast<std::uint32_t>(e);
             best_distance = distance;
-            best_fits = fits;
         }
         return best;
+    }
+
+    // Right in front of a surfel that no eye has in front.
+    Vec3 in_front_of(std::size_t i) const {
+        const double away = side_[i] * s_.cell_m;
+        return {s_.x[i] + away * s_.nx[i], s_.y[i] + away * s_.ny[i], s_.z[i] + away * s_.nz[i]};
     }
 
     const Surfels& s_;

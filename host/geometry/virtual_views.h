@@ -23,8 +23,11 @@ struct VirtualViews {
     Intrinsics intrinsics;
     std::vector<DepthFrame> frames;
     std::vector<Vec3> eyes;
-    // For each surfel an eye on the side from which it is seen; empty where no eye was found.
-    std::vector<std::uint32_t> eye_of_surfel;
+    // The eyes, and after them places right in front of surfels that no eye has in front: their
+    // sides are known from what is around them.
+    std::vector<Vec3> viewpoints;
+    // For each surfel a viewpoint in front of it; empty where no eye was found.
+    std::vector<std::uint32_t> viewpoint_of_surfel;
 };
 
 // For a cloud without poses. The first place is the one with the most free space around it that

@@ -26,9 +26,17 @@
 namespace topple {
 namespace {
 
-// Virtual views are drawn with surfels this wide: coarse enough that noise does not blur which side
-// of a surface is which.
-constexpr double view_cells = 3;
+// Virtual views are drawn with surfels of so many cells, coarse enough that noise does not blur
+// which side of a surface is which. But both faces of a board in one of them would have one side,
+// so that they are finer where points allow it, down to half a board of that thickness; where
+// points are sparser than boards are thick, that gains nothing, and each holds some two points.
+constexpr double view_cells = 3, board_m = 0.02, most_points = 1.5;
+
+geometry::SurfelScale view_surfels(const geometry::PointSpacing& spacing, double cell_m) {
+    const double pitch_m = spacing.around_m,
+                 fine_m = pitch_m * std::clamp(pitch_m / board_m, 1.0, most_points);
+    return {std::min(view_cells * cell_m, std::max(board_m / 2, fine_m)), pitch_m};
+}
 
 class SequenceStream final : public FrameStream {
   public:
@@ -117,7 +125,7 @@ Ingested ingest_frames(device::Device& device, io::FrameSequence sequence,
 
 // Virtual views of a cloud without poses, and which side of its surfaces was seen.
 void look_from_free_places(device::Device& device, const std::optional<geometry::SingleScan>& scan,
-                           Ingested& out) {
+                           const geometry::SurfelScale& scale, Ingested& out) {
     geometry::VirtualViewOptions options;
     if (scan) {
         options.known_eyes = {scan->eye};
@@ -131,7 +139,7 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
     }
     options.sides_known = !options.known_eyes.empty() || !out.cloud.nx.empty();
     const geometry::Surfels surfels =
-        geometry::make_surfels(device, out.cloud, view_cells * out.cell_m, options.known_eyes, {});
+        geometry::make_surfels(device, out.cloud, scale, options.known_eyes, {});
     geometry::VirtualViews views = geometry::virtual_views(surfels, options, device.threads());
     if (views.frames.empty()) {
         out.notes.push_back(
@@ -144,9 +152,9 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
     } else if (out.cloud.has_viewpoint) {
         out.viewpoints = {out.cloud.viewpoint};
     } else if (out.cloud.nx.empty()) {
-        out.viewpoints = std::move(views.eyes);
+        out.viewpoints = std::move(views.viewpoints);
         for (const std::uint32_t s : surfels.of_point)
-            out.viewpoint_of_point.push_back(views.eye_of_surfel[s]);
+            out.viewpoint_of_point.push_back(views.viewpoint_of_surfel[s]);
     }
     if (!scan) {
         out.notes.push_back(
@@ -222,6 +230,7 @@ void look_at_cloud(device::Device& device, Ingested& out, bool from_file) {
         out.notes.push_back(io::counted(cloud.dropped, "point") + " of " +
                             std::to_string(cloud.dropped + cloud.size()) +
                             " were not finite and are left out.");
+    if (cloud.height <= 1) note_spacing(spacing.around_m, out.notes);
     Intrinsics intrinsics;
     DepthFrame frame;
     if (cloud.height > 1 && geometry::frame_of_organised_cloud(cloud, intrinsics, frame)) {
@@ -235,7 +244,7 @@ void look_at_cloud(device::Device& device, Ingested& out, bool from_file) {
     }
     const auto scan = geometry::find_single_scan(
         cloud, cloud.has_viewpoint ? cloud.viewpoint : Vec3{0, 0, 0}, spacing.nearest_m);
-    look_from_free_places(device, scan, out);
+    look_from_free_places(device, scan, view_surfels(spacing, out.cell_m), out);
 }
 
 }  // namespace
@@ -270,7 +279,7 @@ Ingested ingest_part(device::Device& device, PointCloud cloud, double cell_m) {
     out.cell_m = cell_m;
     out.own = std::move(cloud);
     out.cloud = out.own;
-    look_from_free_places(device, std::nullopt, out);
+    look_from_free_places(device, std::nullopt, view_cells * cell_m, out);
     return out;
 }
 

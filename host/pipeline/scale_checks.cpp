@@ -73,6 +73,22 @@ void note_small_extent(double extent_m, const std::string& source,
     notes.push_back(note + ".");
 }
 
+void note_spacing(double spacing_m, std::vector<std::string>& notes) {
+    // Boards of fewer distances are seen with one side or with both now here, now there; a foot of
+    // fewer has a border of a few points (docs/limits.md has figures). Closer points leave open
+    // what is thinner than boards of furniture.
+    constexpr double thin = 2.5, narrow = 10, board_m = 0.018;
+    if (thin * spacing_m <= board_m) return;
+    const auto mm = [](double metres) {
+        return std::to_string(static_cast<long>(std::lround(1000 * metres))) + " mm";
+    };
+    notes.push_back("The points are about " + mm(spacing_m) + " apart: boards thinner than " +
+                    mm(thin * spacing_m) +
+                    " may come out too thick or too thin, and what stands on less than " +
+                    mm(narrow * spacing_m) +
+                    " more or less firmly, by more than their errors say. A denser scan tells.");
+}
+
 std::string depth_scale_hint(std::size_t frames, double depth_scale, double typical_depth_m) {
     const std::string of = io::counted(frames, "depth frame");
     if (typical_depth_m <= 0) return of + " without any reading";

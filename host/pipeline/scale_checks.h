@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "topple/cloud_view.h"
 #include "topple/scene.h"
@@ -26,6 +27,10 @@ void check_spacing(const CloudView& cloud, double spacing_m, bool from_file = tr
 std::string small_extent_hint(double extent_m, const std::filesystem::path& source);
 // The same as a note of a scene from that source, which else shows shards of nothing in particular.
 void note_small_extent(double extent_m, const std::string& source, std::vector<std::string>& notes);
+
+// Says what points of a cloud that are so far apart leave open, where that matters for things in
+// rooms: thin boards, and what stands on little.
+void note_spacing(double spacing_m, std::vector<std::string>& notes);
 
 // Of frames whose typical reading is this far away: "at the depth_scale of intrinsics.json, 1, the
 // readings of 4 depth frames lie about 1500 m away: check it ...".

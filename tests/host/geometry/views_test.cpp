@@ -186,7 +186,7 @@ TEST_F(Views, EyesStayInFreeSpaceAndFaceWhatTheySee) {
         EXPECT_TRUE(eye[0] > 0 && eye[0] < 4 && eye[1] > 0 && eye[1] < 3 && eye[2] > 0 &&
                     eye[2] < 2.5);
     }
-    ASSERT_EQ(views.eye_of_surfel.size(), s.size());
+    ASSERT_EQ(views.viewpoint_of_surfel.size(), s.size());
     EXPECT_TRUE(virtual_views({}, {}, pool).frames.empty());
 }
 
@@ -239,7 +239,7 @@ TEST_F(Views, GapsDoNotTurnTheFacesOfABox) {
             for (const double side : {low[a], high[a]}) {
                 if (std::abs(p[a] - side) > 0.005 || std::abs(p[1 - a]) > 0.1) continue;
                 ++sides;
-                const Vec3& eye = views.eyes[views.eye_of_surfel[i]];
+                const Vec3& eye = views.viewpoints[views.viewpoint_of_surfel[i]];
                 const double front = s.nx[i] * (eye[0] - p[0]) + s.ny[i] * (eye[1] - p[1]) +
                                      s.nz[i] * (eye[2] - p[2]);
                 turned += front * (a == 0 ? s.nx[i] : s.ny[i]) * side < 0;
@@ -248,6 +248,58 @@ TEST_F(Views, GapsDoNotTurnTheFacesOfABox) {
     }
     EXPECT_GT(sides, 300u);
     EXPECT_LT(turned, sides / 50);
+}
+
+// A table top of 4 cm, whose faces are both seen, on a closed box whose back no eye gets in front
+// of, and within which floor and top go on. Points are 1 cm apart, give or take.
+TEST_F(Views, EveryFaceOfAThingFacesOutwards) {
+    test::Random random(7);
+    PointCloud cloud;
+    const auto face = [&](std::size_t axis, double at, const Vec3& from, const Vec3& to) {
+        const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
+        for (double u = from[a]; u < to[a]; u += 0.01) {
+            for (double v = from[b]; v < to[b]; v += 0.01) {
+                Vec3 p{};
+                p[a] = u + 0.003 * random.uniform();
+                p[b] = v + 0.003 * random.uniform();
+                p[axis] = at + 0.001 * random.normal();
+                add(cloud, p);
+            }
+        }
+    };
+    const Vec3 low{0.15, 0.6, 0}, high{0.55, 1.1, 0.4};
+    const Vec3 top_low{0.15, 0.2, 0.4}, top_high{0.55, 1.5, 0.44};
+    face(2, 0, {0, 0, 0}, {2, 2, 0});
+    face(0, 0, {0, 0, 0}, {0, 2, 1});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (const Vec3& at : {low, high})
+            if (axis < 2) face(axis, at[axis], low, high);
+        for (const Vec3& at : {top_low, top_high}) face(axis, at[axis], top_low, top_high);
+    }
+    const Surfels s = make_surfels(*device, cloud, 0.02, {}, {});
+    const VirtualViews views = virtual_views(s, {}, pool);
+    const auto turned = [&](std::size_t axis, double at, const Vec3& from, const Vec3& to) {
+        int faces = 0, wrong = 0;
+        for (std::size_t i = 0; i < s.size(); ++i) {
+            const Vec3 p{s.x[i], s.y[i], s.z[i]}, n{s.nx[i], s.ny[i], s.nz[i]};
+            bool inside = std::abs(p[axis] - at) < 0.005 && std::abs(n[axis]) > 0.9;
+            for (std::size_t a = 0; a < 3; ++a)
+                inside = inside && (a == axis || (p[a] > from[a] + 0.05 && p[a] < to[a] - 0.05));
+            if (!inside) continue;
+            const Vec3& eye = views.viewpoints[views.viewpoint_of_surfel[i]];
+            const double outwards = at > (from[axis] + to[axis]) / 2 ? 1 : -1;
+            double front = 0;
+            for (std::size_t a = 0; a < 3; ++a) front += n[a] * (eye[a] - p[a]);
+            ++faces;
+            wrong += front * n[axis] * outwards < 0;
+        }
+        EXPECT_GT(faces, 100);
+        return static_cast<double>(wrong) / faces;
+    };
+    EXPECT_LT(turned(0, low[0], low, high), 0.02);  // 15 cm before the wall
+    EXPECT_LT(turned(0, high[0], low, high), 0.02);
+    EXPECT_LT(turned(2, top_high[2], top_low, top_high), 0.02);
+    EXPECT_LT(turned(2, top_low[2], top_low, {top_high[0], low[1], top_high[2]}), 0.05);
 }
 
 // Nothing leads from the one to the other.

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "core/random.h"
+#include "device/devices.h"
+#include "topple/parse.h"
+
+// Bare points a centimetre apart, of a thing whose measures are known.
+namespace topple {
+namespace {
+
+constexpr double spacing_m = 0.01, noise_m = 0.001;
+
+class SparseCloud : public ::testing::Test {
+  protected:
+    // A rectangle across `axis` at `at`; a tenth of the points is left out.
+    void face(std::size_t axis, double at, const Vec3& from, const Vec3& to) {
+        const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
+        for (double u = from[a]; u < to[a] + spacing_m / 2; u += spacing_m) {
+            for (double v = from[b]; v < to[b] + spacing_m / 2; v += spacing_m) {
+                Vec3 p{};
+                p[a] = u, p[b] = v, p[axis] = at;
+                // The sum of twelve is as good as normal.
+                for (double& x : p) {
+                    double sum = -6;
+                    for (int n = 0; n < 12; ++n) sum += random.uniform();
+                    x += noise_m * sum;
+                }
+                if (random.uniform() < 0.1) continue;
+                cloud.x.push_back(static_cast<float>(p[0]));
+                cloud.y.push_back(static_cast<float>(p[1]));
+                cloud.z.push_back(static_cast<float>(p[2]));
+            }
+        }
+    }
+    void box(const Vec3& low, const Vec3& high) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            for (const Vec3& at : {low, high}) face(axis, at[axis], low, high);
+        double volume = 1;
+        for (std::size_t a = 0; a < 3; ++a) volume *= high[a] - low[a];
+        volume_m3 += volume;
+    }
+    Random random{5};
+    PointCloud cloud;
+    double volume_m3 = 0;
+};
+
+// Both faces of its top are seen, of which each needs its own side.
+TEST_F(SparseCloud, ATableHasItsMass) {
+    face(2, 0, {0, 0, 0}, {2.4, 2, 0});
+    face(0, 0, {0, 0, 0}, {0, 2, 1.5});
+    face(1, 0, {0, 0, 0}, {2.4, 0, 1.5});
+    box({0.8, 0.7, 0.56}, {1.6, 1.3, 0.6});
+    for (const double x : {0.8, 1.55})
+        for (const double y : {0.7, 1.25}) box({x, y, 0}, {x + 0.05, y + 0.05, 0.56});
+    ParseOptions options;
+    options.device = device::open_native(2);
+    options.disturbances = {};
+    const Scene scene = parse(cloud, options).scene;
+    EXPECT_TRUE(std::ranges::any_of(scene.notes, [](const std::string& note) {
+        return note.find("mm apart") != std::string::npos;
+    }));
+    const Object* table = nullptr;
+    for (const Object& object : scene.objects)
+        if (!object.grounded && (!table || object.mass_kg > table->mass_kg)) table = &object;
+    ASSERT_TRUE(table);
+    const double mass = volume_m3 * options.density_kg_m3;
+    EXPECT_NEAR(table->mass_kg, mass, 0.05 * mass);
+    EXPECT_NEAR(table->mass_kg, mass, 2 * table->mass_error_kg);
+}
+
+}  // namespace
+}  // namespace topple
