@@ -20,6 +20,8 @@
 #define LANES {
 #define END_LANES } memoryBarrierBuffer(); barrier();
 
+#define EACH_ITEM(i) for (int i = 0; i < ITEMS; i++)
+
 #define GLOBAL_ID gl_GlobalInvocationID.x
 #define LOCAL_ID gl_LocalInvocationID.x
 #define GROUP_ID gl_WorkGroupID.x

@@ -74,6 +74,11 @@ using uint = std::uint32_t;
 #define EACH_LANE_(lane) _Pragma("GCC ivdep") for (uint lane = 0; lane < group_size_; ++lane)
 #endif
 
+// Runs over the ITEMS of a work-item, none of which touches what another does: in vectors. GCC would unroll
+// so short a loop before it looks for vectors, and then find none; and it doesn't see that arrays of the
+// work-item's own overlap no buffer.
+#define EACH_ITEM(i) _Pragma("GCC unroll 1") _Pragma("GCC ivdep") for (int i = 0; i < ITEMS; i++)
+
 #define GLOBAL_ID global_id_
 #define LOCAL_ID local_id_
 #define GROUP_ID group_id_
