@@ -18,9 +18,11 @@ int height(int x, int y) {
     return (x / 3 + y / 5 + (x % 64 < 32 ? x % 32 : 32 - x % 32) / 4) % 1024;
 }
 
-// A sheet of 448 x 448 cells, as surfaces are: each finds its 25 columns in a few cache lines.
+// A sheet of 449 x 449 cells, as surfaces are: each finds its 25 columns in a few cache lines. An
+// odd side, so that the planes of cells do not lie whole pages apart, where they meet in one set of
+// a cache.
 struct Sheet {
-    static constexpr int side = 448, radius = 2, width = 2 * radius + 1;
+    static constexpr int side = 449, radius = 2, width = 2 * radius + 1;
     static constexpr std::uint32_t count = side * side;
     std::vector<std::int32_t> cell_z;
     std::vector<std::uint32_t> columns, query_cell;
@@ -78,9 +80,10 @@ Prepared voxel_normals(device::Device& device) {
                                                 upload(device, query, "query"),
                                                 upload(device, prior, "prior"),
                                                 {device, 6 * std::uint64_t{count}, "fit"}});
-    // 50 operations for each cell in reach; 15 rotations of 45 and 60 more for each query.
+    // 50 operations for each cell in reach; 15 rotations of 45 and 60 more for each query, of them
+    // 5 and 4 divisions or roots. Cells beside each other are no gathers; only the query's own is.
     return {{count, "queries", count * 4.0 * (10 + 1 + Sheet::width * Sheet::width + 1 + 3 + 6),
-             50 * sheet.pairs + (15 * 45 + 60.0) * count},
+             50 * sheet.pairs + (15 * 45 + 60.0) * count, 79.0 * count, 1.0 * count},
             [on](device::Queue& queue) {
                 constexpr float reach = Sheet::radius + 0.5f;
                 queue.add<kernels::VoxelNormals>(count,
@@ -125,9 +128,10 @@ Prepared plane_mean(device::Device& device) {
     };
     auto on = std::make_shared<Buffers>(
         Buffers{{device, sheet}, upload(device, planes, "planes"), {device, count, "offsets"}});
-    // 30 operations for each cell in reach.
+    // 30 operations for each cell in reach, one of them a division; the query's own cell is
+    // gathered.
     return {{count, "queries", count * 4.0 * (8 + 1 + Sheet::width * Sheet::width + 1 + 1),
-             30 * sheet.pairs},
+             30 * sheet.pairs, sheet.pairs + count, 7.0 * count},
             [on](device::Queue& queue) {
                 constexpr float reach = Sheet::radius + 0.5f;
                 queue.add<kernels::PlaneMean>(count,
