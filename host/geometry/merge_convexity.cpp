@@ -13,10 +13,10 @@ namespace topple::geometry {
 namespace {
 
 // How far the ends of segments are set back from the border into their regions, in cells: beyond
-// what the edge rounds, and not to the far side of a narrow face. The number of segments of a pair
-// of regions and of points on each, and that of points which stand for a region: enough that a
-// share is known to a tenth. Set by hand.
+// what the edge rounds, and not to the far side of a narrow face. Set by hand.
 constexpr int set_back_cells = 3;
+// Segments of a pair of regions and points on each, and points that stand for a region: enough that
+// a share is known to about a tenth.
 constexpr std::uint32_t segments = 24, points_per_segment = 8;
 constexpr std::size_t region_samples = 48;
 

@@ -18,9 +18,10 @@ namespace topple::geometry {
 namespace {
 
 // Faces of different solids that happen to be flush are cut apart. All of these are set by hand,
-// and tried in scenes whose right cuts are known (tests/host/geometry/merge_test.cpp). How far in
-// front of a face a surfel can't belong to its solid, in cells beyond the noise: what the two
-// layers of cells that a face may take are thick, less their rounding.
+// and tried in scenes whose right cuts are known (tests/host/geometry/merge_test.cpp).
+
+// How far in front of a face a surfel can't belong to its solid, in cells beyond the noise, which
+// may spread a face over two layers of cells.
 constexpr double front_cells = 1.5;
 // Cosine of the angle (45 degrees) below which two faces bound a solid at an edge.
 constexpr double crease_cos = 0.7;

@@ -9,7 +9,7 @@ namespace topple::geometry {
 namespace {
 
 // How far before the face what covers a gap begins at most, and how far behind it nothing may be,
-// cells: the surfels of two layers, and one for noise. Set by hand.
+// cells. Set by hand.
 constexpr double gap_cover_cells = 3;
 
 // The surfel among `members` closest to p.

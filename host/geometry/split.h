@@ -14,8 +14,8 @@
 namespace topple::geometry {
 
 // Bounds of how far a surfel's normal may be off its model's, degrees; between them the scan's own
-// noise decides. Below the one, rounded edges and warped boards fall apart; above the other, the
-// surfels that lie across the edge of a box fit both of its faces. Set by hand.
+// noise decides. The one is for clean scans; the other stays well below the 45 degrees by which
+// surfels on a box's edge are off both of its faces. Set by hand.
 inline constexpr double least_angle_deg = 18, most_angle_deg = 35;
 
 // What the thresholds are measured in; from the surfels themselves.
