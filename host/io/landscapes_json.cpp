@@ -24,19 +24,19 @@ double rounded(double value, int digits) {
     return std::round(value * scale) / scale;
 }
 
-Json six_digits(double value) {
+Json rounded_number(double value) {
     return std::isfinite(value) ? Json(rounded(value, 6)) : Json(nullptr);
 }
 
-Json four_decimals(const Vec3& v) {
+Json rounded_vector(const Vec3& v) {
     auto json = Json::array();
     for (const double x : v) json.push_back(std::round(x * 1e4) / 1e4);
     return json;
 }
 
-Json vectors(const std::vector<Vec3>& all) {
+Json rounded_vectors(const std::vector<Vec3>& all) {
     auto json = Json::array();
-    for (const Vec3& v : all) json.push_back(four_decimals(v));
+    for (const Vec3& v : all) json.push_back(rounded_vector(v));
     return json;
 }
 
@@ -54,24 +54,24 @@ Json places_json(const Landscape::Places& places) {
     return {{"side", places.side}, {"step_m", places.step_m}, {"energy_J", std::move(energy)}};
 }
 
-Json to_json(const Object& object) {
+Json landscape_json(const Object& object) {
     const Landscape& l = object.landscape;
     auto poses = Json::array(), passes = Json::array();
     for (const Landscape::Pose& pose : l.poses) {
-        poses.push_back({{"up", four_decimals(pose.up)},
-                         {"energy_J", six_digits(pose.energy_J)},
-                         {"joins_at_J", six_digits(pose.joins_at_J)},
+        poses.push_back({{"up", rounded_vector(pose.up)},
+                         {"energy_J", rounded_number(pose.energy_J)},
+                         {"joins_at_J", rounded_number(pose.joins_at_J)},
                          {"joins", pose.joins},
-                         {"probability", six_digits(pose.probability)}});
+                         {"probability", rounded_number(pose.probability)}});
     }
     for (const Landscape::Pass& pass : l.passes) {
-        passes.push_back({{"up", four_decimals(pass.up)},
-                          {"energy_J", six_digits(pass.energy_J)},
+        passes.push_back({{"up", rounded_vector(pass.up)},
+                          {"energy_J", rounded_number(pass.energy_J)},
                           {"poses", pass.poses},
-                          {"border", vectors(pass.border)}});
+                          {"border", rounded_vectors(pass.border)}});
     }
     return {{"id", object.id},
-            {"hull_m", vectors(l.hull_m)},
+            {"hull_m", rounded_vectors(l.hull_m)},
             {"now", l.now},
             {"poses", std::move(poses)},
             {"passes", std::move(passes)},
@@ -152,7 +152,7 @@ Landscape landscape_of(const Json& json, const std::filesystem::path& file) {
 void write_landscapes_json(const std::filesystem::path& file, const Scene& scene) {
     auto objects = Json::array();
     for (const Object& object : scene.objects) {
-        if (!object.grounded) objects.push_back(to_json(object));
+        if (!object.grounded) objects.push_back(landscape_json(object));
     }
     const Json json{{"schema", landscapes_schema}, {"objects", std::move(objects)}};
     write_file(file, json.dump() + "\n");

@@ -26,7 +26,7 @@ Arrows pack_arrows(const FieldSamples& field, const std::array<Vec3, 3>& view_fr
                    double edge_m, std::size_t most) {
     Arrows out;
     out.total = field.x.size();
-    ViewBox box;
+    Extent box;
     std::vector<Arrow> all;
     for (std::size_t i = 0; i < field.x.size(); ++i) {
         const Vec3 p = turned(view_from_input, field.x[i], field.y[i], field.z[i]);

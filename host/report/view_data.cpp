@@ -412,7 +412,7 @@ class ViewPacker::Work {
     std::set<std::int32_t> grounded_;
     std::map<std::int32_t, std::uint64_t> voxels_of_object_;
     Bounds<float> bounds_;
-    ViewBox solid_box_;
+    Extent solid_box_;
     double lattice_shift_ = 0.5;
     std::vector<Cell> cells_;                  // what is drawn, cubes of view_.cube_m
     CellTable table_;                          // finds them

@@ -71,7 +71,7 @@ bool finite(const Vec3& p) {
     return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
-void ViewBox::add(const Vec3& p) {
+void Extent::add(const Vec3& p) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         low[axis] = std::min(low[axis], p[axis]);
         high[axis] = std::max(high[axis], p[axis]);

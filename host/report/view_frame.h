@@ -19,7 +19,7 @@ Vec3 turned_back(const std::array<Vec3, 3>& view_from_input, const Vec3& p);
 bool finite(const Vec3& p);
 
 // Around places of the view.
-struct ViewBox {
+struct Extent {
     Vec3 low{1e30, 1e30, 1e30}, high{-1e30, -1e30, -1e30};
     void add(const Vec3& p);
     bool empty() const { return low[0] > high[0]; }
