@@ -15,7 +15,7 @@ namespace {
 
 using Json = OrderedJson;
 
-constexpr const char* schema = "topple.landscapes/1";
+constexpr const char* landscapes_schema = "topple.landscapes/1";
 
 double rounded(double value, int digits) {
     if (value == 0 || !std::isfinite(value)) return value;
@@ -23,19 +23,19 @@ double rounded(double value, int digits) {
     return std::round(value * scale) / scale;
 }
 
-Json number(double value) {
+Json rounded_number(double value) {
     return std::isfinite(value) ? Json(rounded(value, 6)) : Json(nullptr);
 }
 
-Json vector(const Vec3& v) {
+Json rounded_vector(const Vec3& v) {
     auto json = Json::array();
     for (const double x : v) json.push_back(std::round(x * 1e4) / 1e4);
     return json;
 }
 
-Json vectors(const std::vector<Vec3>& all) {
+Json rounded_vectors(const std::vector<Vec3>& all) {
     auto json = Json::array();
-    for (const Vec3& v : all) json.push_back(vector(v));
+    for (const Vec3& v : all) json.push_back(rounded_vector(v));
     return json;
 }
 
@@ -53,24 +53,24 @@ Json places_json(const Landscape::Places& places) {
     return {{"side", places.side}, {"step_m", places.step_m}, {"energy_J", std::move(energy)}};
 }
 
-Json to_json(const Object& object) {
+Json landscape_json(const Object& object) {
     const Landscape& l = object.landscape;
     auto poses = Json::array(), passes = Json::array();
     for (const Landscape::Pose& pose : l.poses) {
-        poses.push_back({{"up", vector(pose.up)},
-                         {"energy_J", number(pose.energy_J)},
-                         {"joins_at_J", number(pose.joins_at_J)},
+        poses.push_back({{"up", rounded_vector(pose.up)},
+                         {"energy_J", rounded_number(pose.energy_J)},
+                         {"joins_at_J", rounded_number(pose.joins_at_J)},
                          {"joins", pose.joins},
-                         {"probability", number(pose.probability)}});
+                         {"probability", rounded_number(pose.probability)}});
     }
     for (const Landscape::Pass& pass : l.passes) {
-        passes.push_back({{"up", vector(pass.up)},
-                          {"energy_J", number(pass.energy_J)},
+        passes.push_back({{"up", rounded_vector(pass.up)},
+                          {"energy_J", rounded_number(pass.energy_J)},
                           {"poses", pass.poses},
-                          {"border", vectors(pass.border)}});
+                          {"border", rounded_vectors(pass.border)}});
     }
     return {{"id", object.id},
-            {"hull_m", vectors(l.hull_m)},
+            {"hull_m", rounded_vectors(l.hull_m)},
             {"now", l.now},
             {"poses", std::move(poses)},
             {"passes", std::move(passes)},
@@ -155,9 +155,9 @@ Landscape landscape_of(const Json& json, const std::filesystem::path& file) {
 void write_landscapes_json(const std::filesystem::path& file, const Scene& scene) {
     auto objects = Json::array();
     for (const Object& object : scene.objects) {
-        if (!object.grounded) objects.push_back(to_json(object));
+        if (!object.grounded) objects.push_back(landscape_json(object));
     }
-    const Json json{{"schema", schema}, {"objects", std::move(objects)}};
+    const Json json{{"schema", landscapes_schema}, {"objects", std::move(objects)}};
     write_file(file, json.dump() + "\n");
 }
 
@@ -167,7 +167,8 @@ void read_landscapes_json(const std::filesystem::path& file, Scene& scene) {
     check_json_nesting(file, text);
     try {
         const auto json = Json::parse(text.begin(), text.end());
-        if (json.at("schema") != schema) fail(file, "its schema is not " + std::string(schema));
+        if (json.at("schema") != landscapes_schema)
+            fail(file, "its schema is not " + std::string(landscapes_schema));
         for (const Json& object : json.at("objects")) {
             const auto id = object.at("id").get<std::int64_t>();
             if (id < 0 || id >= static_cast<std::int64_t>(scene.objects.size()))

@@ -15,7 +15,7 @@ namespace {
 
 using Json = OrderedJson;
 
-constexpr const char* schema = "topple.scene/1";
+constexpr const char* scene_schema = "topple.scene/1";
 
 Json number(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -441,7 +441,7 @@ Scene scene_of(const Json& json) {
 
 OrderedJson scene_document(const Scene& scene) {
     Json json = Json::object();
-    json["schema"] = schema;
+    json["schema"] = scene_schema;
     json["source"] = scene.source;
     json["topple_version"] = scene.topple_version;
     json["backend"] = scene.backend;
@@ -490,8 +490,8 @@ Scene read_scene_json(const std::filesystem::path& file) {
     check_json_nesting(file, text);
     try {
         const auto json = Json::parse(text.begin(), text.end());
-        if (json.at("schema") != schema) {
-            fail(file, "its schema is not " + std::string(schema));
+        if (json.at("schema") != scene_schema) {
+            fail(file, "its schema is not " + std::string(scene_schema));
         }
         return scene_of(json);
     } catch (const Json::exception& error) {

@@ -179,7 +179,7 @@ Json drawing_json(const Drawing& d) {
     for (const Drawing::Dot& dot : d.dots)
         dots.push_back({style(dot.style), point_json(dot.at), dot.radius});
     for (const Drawing::Label& label : d.labels) {
-        labels.push_back({anchors[static_cast<std::size_t>(label.align)], point_json(label.at),
+        labels.push_back({anchors[static_cast<std::size_t>(label.anchor)], point_json(label.at),
                           label.strong, label.text});
     }
     for (const Drawing::Swatch& s : d.swatches)

@@ -18,7 +18,7 @@
 namespace topple::report {
 namespace {
 
-struct Box {
+struct Extent {
     Vec3 low{1e30, 1e30, 1e30}, high{-1e30, -1e30, -1e30};
     void add(const Vec3& p) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -419,7 +419,7 @@ class ViewPacker::Work {
     // few enough are left.
     void pack_field(const FieldSamples& field, Arrows& out) const {
         out.total = field.x.size();
-        Box box;
+        Extent box;
         std::vector<std::array<float, 7>> all;
         for (std::size_t i = 0; i < field.x.size(); ++i) {
             const auto p = place(field, i);
@@ -461,7 +461,7 @@ class ViewPacker::Work {
     std::set<std::int32_t> grounded_;
     std::map<std::int32_t, std::uint64_t> voxels_of_object_;
     Bounds<float> bounds_;
-    Box solid_box_;
+    Extent solid_box_;
     double lattice_shift_ = 0.5;
     std::vector<Cell> cells_;                  // what is drawn, cubes of view_.cube_m
     CellTable table_;                          // finds them
