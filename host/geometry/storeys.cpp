@@ -5,13 +5,15 @@
 #include <cmath>
 #include <limits>
 
+#include "core/room_measures.h"
+
 namespace topple::geometry {
 namespace {
 
 // A level holds at least this share of the largest one's surface.
 constexpr double least_peak_share = 0.3;
-// Nobody builds lower rooms, nor thicker or thinner slabs.
-constexpr double lowest_room_m = 2.0, thickest_slab_m = 0.8, thinnest_slab_m = 0.08;
+// Nobody builds thicker or thinner slabs.
+constexpr double thickest_slab_m = 0.8, thinnest_slab_m = 0.08;
 // A level's surface spreads over its noise.
 constexpr double spread_m = 0.05;
 

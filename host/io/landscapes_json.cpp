@@ -8,6 +8,7 @@
 #include "core/json.h"
 #include "io/file_writer.h"
 #include "io/json_text.h"
+#include "io/json_values.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -77,18 +78,14 @@ Json landscape_json(const Object& object) {
             {"places", places_json(l.places)}};
 }
 
-Vec3 vector_of(const Json& json) {
+Vec3 finite_vector_of(const Json& json) {
     return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
 
 std::vector<Vec3> vectors_of(const Json& json) {
     std::vector<Vec3> out;
-    for (const Json& v : json) out.push_back(vector_of(v));
+    for (const Json& v : json) out.push_back(finite_vector_of(v));
     return out;
-}
-
-double number_of(const Json& json, double missing) {
-    return json.is_null() ? missing : json.get<double>();
 }
 
 // A number of a pose, of which there are `poses`, or -1.
@@ -117,7 +114,7 @@ Landscape landscape_of(const Json& json, const std::filesystem::path& file) {
     l.now = pose_of(json.at("now"), poses.size(), file);
     for (const Json& pose : poses) {
         l.poses.push_back(
-            {vector_of(pose.at("up")), number_of(pose.at("energy_J"), nan),
+            {finite_vector_of(pose.at("up")), number_of(pose.at("energy_J"), nan),
              number_of(pose.at("joins_at_J"), std::numeric_limits<double>::infinity()),
              pose_of(pose.at("joins"), poses.size(), file),
              number_of(pose.at("probability"), nan)});
@@ -125,7 +122,7 @@ Landscape landscape_of(const Json& json, const std::filesystem::path& file) {
     check_joins(l, file);
     for (const Json& pass : json.at("passes")) {
         const Json& sides = pass.at("poses");
-        Landscape::Pass out{vector_of(pass.at("up")),
+        Landscape::Pass out{finite_vector_of(pass.at("up")),
                             number_of(pass.at("energy_J"), nan),
                             {},
                             vectors_of(pass.at("border"))};
