@@ -90,10 +90,12 @@ function heldText(scene, object, place) {
   return 'held by ' + listed(on.map(id => scene.objectById.get(id).grounded ? (low && scene.floor.known ? 'the floor' : 'what is built in') : objectName(scene, id)));
 }
 
-// The same for a table: east, north, heights.
+// The same for a table: east and north, then heights.
 function placeCell(scene, object) {
   const place = planPlace(scene, object);
-  return !place || object.grounded ? '\u2013' : `${metreText(place.east)} E, ${metreText(place.north)} N, ${metreText(place.from)}\u2013${metreText(place.to)} up`;
+  if (!place || object.grounded) return ['\u2013'];
+  return [`${metreText(place.east)} E, ${metreText(place.north)} N,`, `${metreText(place.from)}\u2013${metreText(place.to)} up`]
+    .map(text => element('span', {className: 'whole', text: text + ' '}));
 }
 
 // How far around it nobody should stay: where its middle lands, and half its longest side beyond. null where that is not known.

@@ -30,7 +30,7 @@ function objectColumns(scene) {
   if (scene.objects.some(object => object.advice && object.advice.kind)) {
     columns.push({name: 'Advice', term: 'advice', text: true, value: adviceText, cell: object => [adviceText(object)]});
   }
-  columns.push({name: 'Where (m)', text: true, value: object => { const at = planPlace(scene, object); return at && at.east; }, cell: object => [placeCell(scene, object)]});
+  columns.push({name: 'Where (m)', text: true, value: object => { const at = planPlace(scene, object); return at && at.east; }, cell: object => placeCell(scene, object)});
   columns.push({name: 'Unsafety', term: 'unsafety', value: object => object.unsafety, cell: object => [object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]});
   // Within one by unsafety, which is 10 at most.
   columns.push({name: 'Category', term: 'category', text: true, value: object => object.grounded || !object.unsafety_category ? null
