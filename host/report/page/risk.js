@@ -136,9 +136,9 @@ function rankedText(scene, shown, movable) {
   const of = riskiestOf(shown, movable - uncertain, uncertain ? 'whose barrier is above its error' : 'that can move');
   const listed = `${of}.` + (unseen ? ` ${unseen} more ${unseen === 1 ? 'has' : 'have'} no rank, since nothing was seen to hold ${unseen === 1 ? 'it' : 'them'}.` : '');
   if (!doubtful.length) return listed;
-  const risky = doubtful.some(object => largestRisk(object) > 0);
+  const atRisk = doubtful.filter(object => largestRisk(object) > 0), urgent = atRisk.filter(object => /medium|high/.test(object.unsafety_category)).length;
   return `${listed} ${doubtful.length} more stand${doubtful.length === 1 ? 's' : ''} on edge, or the scan hardly shows the support: ` +
-    (risky ? 'below, under \u201cTo be looked at\u201d.' : 'nothing puts them at risk.');
+    (atRisk.length ? `below, under \u201cTo be looked at\u201d${urgent ? `, ${urgent} of them perhaps medium or high` : ''}.` : 'nothing puts them at risk.');
 }
 
 function fillRiskiest(panel, scene, worst, movable, choose) {
