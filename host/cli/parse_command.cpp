@@ -8,6 +8,8 @@
 #include <sstream>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "cli/choice.h"
 #include "cli/commands.h"
@@ -229,9 +231,10 @@ int run(ParseArguments& a) {
 
 }  // namespace
 
-Command add_parse(CLI::App& app, const Team& team) {
+Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& team) {
     auto a = std::make_shared<ParseArguments>();
     a->team = team;
+    a->output.command = std::move(typed);
     app.add_option(
            "INPUT", a->input,
            "A point cloud (.ply, .pcd, .xyz), a mesh (.obj, .stl, .glb, .gltf, .ply with faces),\n"
