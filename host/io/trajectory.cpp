@@ -12,7 +12,7 @@
 namespace topple::io {
 namespace {
 
-constexpr double farthest_m = 1e6;
+constexpr double farthest_pose_m = 1e6;
 // Matrices are printed with six digits or so; beyond this they are something else.
 constexpr double rotation_tolerance = 1e-3;
 
@@ -103,7 +103,7 @@ class TrajectoryParser {
     }
     void check_position(std::span<const double> position) const {
         for (const double value : position) {
-            if (std::abs(value) > farthest_m) {
+            if (std::abs(value) > farthest_pose_m) {
                 bad("position " + short_number(value) +
                     " is beyond the limit of 1e+06 m; use metres");
             }
