@@ -32,7 +32,8 @@ OrderedJson body_json(const ExportedBody& body) {
             {"parts_m3", finite(body.parts_m3)},
             {"excess_share",
              body.solid_m3 > 0 ? finite(body.parts_m3 / body.solid_m3 - 1) : OrderedJson(nullptr)},
-            {"lost_m3", finite(body.lost_m3)}};
+            {"lost_m3", finite(body.lost_m3)},
+            {"lost_share", body.solid_m3 > 0 ? finite(body.lost_share()) : OrderedJson(nullptr)}};
 }
 
 }  // namespace
@@ -45,6 +46,7 @@ std::string bodies_json(const ExportSummary& summary) {
                            {"floor_m", finite(summary.floor_m)},
                            {"free_place_m", finite(summary.free_place_m)},
                            {"free_radius_m", finite(summary.free_radius_m)},
+                           {"notes", summary.notes},
                            {"bodies", std::move(bodies)}};
     return json.dump(1) + "\n";
 }
