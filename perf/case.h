@@ -23,6 +23,9 @@ struct Work {
     double bytes = 0;
     // Float and integer operations of the kernel's inner loops, as its source spells them out.
     double operations = 0;
+    double divisions = 0;  // and square roots; they count among the operations, too
+    // Loads whose places differ from lane to lane and follow from data.
+    double gathers = 0;
 };
 
 // A case with its buffers on a device. The functions share them.
@@ -38,7 +41,7 @@ struct Case {
     Prepared (*prepare)(device::Device&);
 };
 
-// In the order in which data passes the kernels; the probes triad and multiply_add first.
+// In the order in which data passes the kernels; the four probes first.
 std::span<const Case> all_cases();
 
 // FNV-1a over 32-bit words.

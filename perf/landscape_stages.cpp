@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/thread_pool.h"
 #include "physics/hull_landscape.h"
 #include "physics/landscape.h"
 #include "scenes/random.h"
@@ -63,14 +64,16 @@ Hash& add(Hash& hash, double value) {
 Result measure_hulls(device::Device& device, unsigned runs) {
     const auto all = hull_points();
     Result result = named(device, "landscapes/hulls", {hulls, "hulls", 0, 0});
-    Hash hash;
+    std::vector<physics::HullLandscape> landscapes(all.size());
     sample(device, result, runs, [&] {
-        hash = Hash();
-        for (const auto& hull : all) {
-            for (const auto& pose : physics::hull_landscape(hull, {0, 0, 0}).poses)
-                add(hash, pose.barrier_m);
-        }
+        device.threads().each(all.size(), 1, [&](std::size_t n) {
+            landscapes[n] = physics::hull_landscape(all[n], {0, 0, 0});
+        });
     });
+    Hash hash;
+    for (const auto& landscape : landscapes) {
+        for (const auto& pose : landscape.poses) add(hash, pose.barrier_m);
+    }
     result.hash = hash.value();
     return result;
 }

@@ -101,15 +101,28 @@ void apply_roofline(std::vector<Result>& results) {
         }
         return nullptr;
     };
+    struct Side {
+        const char* probe;
+        double Work::*amount;
+        const char* bound;
+    };
+    static constexpr Side sides[] = {{"triad", &Work::bytes, "memory"},
+                                     {"multiply_add", &Work::operations, "arithmetic"},
+                                     {"divide", &Work::divisions, "divisions"},
+                                     {"gather", &Work::gathers, "gathers"}};
     for (Result& r : results) {
-        const Result* memory = probe(r.backend, "triad");
-        const Result* arithmetic = probe(r.backend, "multiply_add");
-        if (!memory || !arithmetic || r.work.bytes == 0) continue;
-        const double by_memory = r.work.bytes * memory->best() / memory->work.bytes;
-        const double by_arithmetic =
-            r.work.operations * arithmetic->best() / arithmetic->work.operations;
-        r.bound = by_memory >= by_arithmetic ? "memory" : "arithmetic";
-        r.share = std::max(by_memory, by_arithmetic) / r.best();
+        double least_s = 0;
+        bool all = r.work.bytes > 0;
+        for (const Side& side : sides) {
+            const Result* of = probe(r.backend, side.probe);
+            if (!of) all = false;
+            if (!all) break;
+            const double seconds = r.work.*side.amount * of->best() / (of->work.*side.amount);
+            if (seconds <= least_s) continue;
+            least_s = seconds;
+            r.bound = side.bound;
+        }
+        if (all) r.share = least_s / r.best();
     }
 }
 

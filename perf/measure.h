@@ -27,7 +27,8 @@ struct Result {
     std::uint64_t hash = 0;
     device::Counters counters;  // of one run: what can be gated exactly
     double share = 0;           // of the roofline; 0 where there is none
-    const char* bound = "";  // what the roofline's least time comes from: "memory" | "arithmetic"
+    // What the roofline's least time comes from: "memory" | "arithmetic" | "divisions" | "gathers".
+    const char* bound = "";
 
     void add(const Span& span, double runs = 1);
     double best() const;
@@ -50,8 +51,9 @@ device::Counters operator-(const device::Counters& a, const device::Counters& b)
 // each wait, so that a sample lasts at least 1 ms (where the case may repeat without a reset).
 Result measure(device::Device& device, const Case& test, const MeasureOptions& options);
 
-// Fills in share and bound: least time that the backend's own triad bandwidth and multiply-add rate
-// allow for the work, over the best time. Needs the backend's two probes among the results.
+// Fills in share and bound: least time that the backend's own rates allow for the work, over the
+// best time: its bandwidth (triad), its rates of multiply-adds, divisions and gathers. Needs the
+// backend's four probes among the results.
 void apply_roofline(std::vector<Result>& results);
 
 }  // namespace topple::perf

@@ -110,6 +110,8 @@ void write_json(const std::string& path, const std::vector<Result>& results) {
                         {"items", r.work.items},
                         {"bytes", r.work.bytes},
                         {"operations", r.work.operations},
+                        {"divisions", r.work.divisions},
+                        {"gathers", r.work.gathers},
                         {"samples_s", r.samples_s},
                         {"samples_cpu_s", r.samples_cpu_s},
                         {"best_s", r.best()},
@@ -137,17 +139,18 @@ void write_json(const std::string& path, const std::vector<Result>& results) {
 void write_csv(const std::string& path, const std::vector<Result>& results) {
     std::ostringstream out;
     out << "backend,device,driver,case,best_ms,median_ms,worst_ms,best_cpu_ms,samples,items,unit,"
-           "bytes,operations,share,bound,dispatches,submits,bytes_written,bytes_read,bytes_bound,"
+           "bytes,operations,divisions,gathers,share,bound,dispatches,submits,bytes_written,bytes_"
+           "read,bytes_bound,"
            "kernel_builds,hash\n";
     for (const Result& r : results) {
         out << r.backend << ',' << quoted(r.device) << ',' << quoted(r.driver) << ',' << r.name
             << ',' << 1e3 * r.best() << ',' << 1e3 * r.median() << ',' << 1e3 * r.worst() << ','
             << 1e3 * r.best_cpu() << ',' << r.samples_s.size() << ',' << r.work.items << ','
-            << r.work.unit << ',' << r.work.bytes << ',' << r.work.operations << ',' << r.share
-            << ',' << r.bound << ',' << r.counters.dispatches << ',' << r.counters.submits << ','
-            << r.counters.bytes_written << ',' << r.counters.bytes_read << ','
-            << r.counters.bytes_bound << ',' << r.counters.kernel_builds << ',' << hex(r.hash)
-            << '\n';
+            << r.work.unit << ',' << r.work.bytes << ',' << r.work.operations << ','
+            << r.work.divisions << ',' << r.work.gathers << ',' << r.share << ',' << r.bound << ','
+            << r.counters.dispatches << ',' << r.counters.submits << ',' << r.counters.bytes_written
+            << ',' << r.counters.bytes_read << ',' << r.counters.bytes_bound << ','
+            << r.counters.kernel_builds << ',' << hex(r.hash) << '\n';
     }
     write_text(path, out.str());
 }

@@ -18,7 +18,7 @@ namespace topple::perf {
 namespace {
 
 bool is_probe(const std::string& name) {
-    return name == "triad" || name == "multiply_add";
+    return name == "triad" || name == "multiply_add" || name == "divide" || name == "gather";
 }
 
 bool wanted(const SuiteOptions& a, const std::string& name) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "vdb/voxel_scene.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/scene_bounds.h"
@@ -52,26 +55,51 @@ void check(const VoxelFrame& frame, const CloudView& cloud, std::span<const std:
     }
 }
 
-// Grid coordinates in voxels, and their median.
+constexpr std::size_t point_chunk = std::size_t{1} << 14;  // points handed to a thread at once
+
+template <class Work>
+void each_point(std::size_t count, const Work& work) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, point_chunk),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t n = range.begin(); n < range.end(); ++n) work(n);
+                      });
+}
+
+// The upper median of whole numbers.
+double median(const std::vector<double>& values) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    const std::size_t middle = values.size() / 2;
+    if (!(*high - *low < window)) {
+        std::vector<double> sorted = values;
+        std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(middle),
+                         sorted.end());
+        return sorted[middle];
+    }
+    std::vector<std::size_t> count(static_cast<std::size_t>(*high - *low) + 1);
+    for (const double value : values) ++count[static_cast<std::size_t>(value - *low)];
+    std::size_t at = 0, below = 0;
+    while ((below += count[at]) <= middle) ++at;
+    return *low + static_cast<double>(at);
+}
+
+// The points' voxels, wherever they lie, and their median.
 struct Placed {
     std::array<std::vector<double>, 3> at;
     std::array<double, 3> median{0, 0, 0};
 };
 Placed place(const VoxelFrame& frame, const CloudView& cloud) {
     Placed placed;
-    for (int a = 0; a < 3; ++a) {
-        const Vec3& row = frame.grid_from_input[a];
-        auto& values = placed.at[a];
-        values.resize(cloud.size());
-        for (std::size_t n = 0; n < cloud.size(); ++n) {
-            values[n] =
-                (row[0] * cloud.x[n] + row[1] * cloud.y[n] + row[2] * cloud.z[n]) / frame.voxel_m;
+    for (auto& values : placed.at) values.resize(cloud.size());
+    each_point(cloud.size(), [&](std::size_t n) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            const Vec3& row = frame.grid_from_input[a];
+            placed.at[a][n] = std::floor(
+                (row[0] * cloud.x[n] + row[1] * cloud.y[n] + row[2] * cloud.z[n]) / frame.voxel_m);
         }
-        std::vector<double> sorted = values;
-        if (sorted.empty()) continue;
-        std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-        placed.median[a] = std::floor(sorted[sorted.size() / 2]);
-    }
+    });
+    if (cloud.size() == 0) return placed;
+    tbb::parallel_for(std::size_t{0}, std::size_t{3},
+                      [&](std::size_t a) { placed.median[a] = median(placed.at[a]); });
     return placed;
 }
 
@@ -142,21 +170,22 @@ VoxelScene::VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
                                               std::to_string(frame.voxel_m) + " m; move the cloud");
         }
     }
-    std::array<std::vector<std::int32_t>, 3> index;
-    std::vector<std::int32_t> labels;
+    std::vector<std::size_t> within;
+    within.reserve(cloud.size());
     for (std::size_t n = 0; n < cloud.size(); ++n) {
-        bool within = true;
+        bool all = true;
         for (int a = 0; a < 3; ++a)
-            within = within && std::abs(placed.at[a][n] - placed.median[a]) < window - 16;
-        if (!within) {
-            ++g.unplaced;
-            continue;
-        }
-        for (int a = 0; a < 3; ++a)
-            index[a].push_back(static_cast<std::int32_t>(std::floor(placed.at[a][n])));
-        labels.push_back(std::max(label[n], -1));
+            all = all && std::abs(placed.at[a][n] - placed.median[a]) < window - 16;
+        if (all) within.push_back(n);
     }
-    if (labels.empty()) return;
+    g.unplaced += cloud.size() - within.size();
+    if (within.empty()) return;
+    std::array<std::vector<std::int32_t>, 3> index;
+    for (auto& axis : index) axis.resize(within.size());
+    each_point(within.size(), [&](std::size_t n) {
+        for (std::size_t a = 0; a < 3; ++a)
+            index[a][n] = static_cast<std::int32_t>(placed.at[a][within[n]]);
+    });
     g.leaves = box_of(frame, index);
 
     std::array<std::int32_t, 3> corner;
@@ -165,13 +194,13 @@ VoxelScene::VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
         g.lowest[a] = *std::min_element(index[a].begin(), index[a].end());
         g.highest[a] = *std::max_element(index[a].begin(), index[a].end());
     }
-    std::vector<Sample> samples(labels.size());
-    for (std::size_t n = 0; n < samples.size(); ++n) {
+    std::vector<Sample> samples(within.size());
+    each_point(within.size(), [&](std::size_t n) {
         samples[n].key = make_key({static_cast<std::uint32_t>(index[0][n] - corner[0]),
                                    static_cast<std::uint32_t>(index[1][n] - corner[1]),
                                    static_cast<std::uint32_t>(index[2][n] - corner[2])});
-        samples[n].label = labels[n];
-    }
+        samples[n].label = std::max(label[within[n]], -1);
+    });
     tbb::parallel_sort(samples.begin(), samples.end());
 
     StateLeaf* state = nullptr;

@@ -2,7 +2,6 @@
 #include "physics/hull_polytope.h"
 
 #include <algorithm>
-#include <map>
 #include <sstream>
 
 #include "physics/qhull.h"
@@ -126,7 +125,11 @@ HullPolytope hull_polytope(std::span<const Vec3> all, const Vec3& center) {
         hull.point.push_back(n);
     }
     hull.beside.resize(hull.corner.size());
-    std::map<std::array<std::uint32_t, 2>, std::uint32_t> left;  // face of each directed edge
+    struct Side {
+        std::array<std::uint32_t, 2> ends;
+        std::uint32_t face;  // to the left of the way from the first end to the second
+    };
+    std::vector<Side> sides;
     for (std::vector<std::uint32_t> loop : found->faces) {
         for (std::uint32_t& n : loop) n = corner_of[n];
         HullPolytope::Face face;
@@ -136,15 +139,18 @@ HullPolytope hull_polytope(std::span<const Vec3> all, const Vec3& center) {
             face.height = std::max(face.height, dot(hull.corner[n], face.normal));
         }
         for (std::size_t n = 0; n < loop.size(); ++n) {
-            left[{loop[n], loop[(n + 1) % loop.size()]}] =
-                static_cast<std::uint32_t>(hull.face.size());
+            sides.push_back({{loop[n], loop[(n + 1) % loop.size()]},
+                             static_cast<std::uint32_t>(hull.face.size())});
         }
         hull.face.push_back(std::move(face));
     }
-    for (const auto& [ends, face] : left) {
-        const auto twin = left.find({ends[1], ends[0]});
-        if (twin == left.end()) refuse("the hull of the points does not close");
-        if (ends[0] < ends[1]) add_edge(hull, ends[0], ends[1], face, twin->second);
+    std::ranges::sort(sides, {}, &Side::ends);
+    for (const auto& [ends, face] : sides) {
+        const std::array<std::uint32_t, 2> back{ends[1], ends[0]};
+        const auto twin = std::ranges::lower_bound(sides, back, {}, &Side::ends);
+        if (twin == sides.end() || twin->ends != back)
+            refuse("the hull of the points does not close");
+        if (ends[0] < ends[1]) add_edge(hull, ends[0], ends[1], face, twin->face);
     }
     for (std::size_t f = 0; f < hull.face.size(); ++f) {
         HullPolytope::Face& face = hull.face[f];

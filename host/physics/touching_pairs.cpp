@@ -4,6 +4,8 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "core/thread_pool.h"
+#include "device/device.h"
 #include "physics/bodies.h"
 #include "topple/error.h"
 
@@ -67,6 +69,18 @@ void sweep(const SolidCells& c, std::size_t axis, unsigned gap, Sums& sums) {
     }
 }
 
+// What the later axes met comes after it: of ends that are as far the first stands.
+void add(const PairSums& more, PairSums& pair) {
+    for (std::size_t e = 0; e < 4; ++e) {
+        const std::int64_t sign = e % 2 ? 1 : -1;
+        if (pair.count == 0 || sign * more.ends[e][e / 2] > sign * pair.ends[e][e / 2])
+            pair.ends[e] = more.ends[e];
+    }
+    for (std::size_t k = 0; k < 3; ++k) pair.twice[k] += more.twice[k];
+    for (std::size_t d = 0; d < 6; ++d) pair.faces[d] += more.faces[d];
+    pair.count += more.count;
+}
+
 TouchingPair finish(std::uint64_t key, const PairSums& sums, double voxel_m) {
     TouchingPair pair;
     pair.a = static_cast<std::int32_t>(key >> 32);
@@ -90,7 +104,7 @@ TouchingPair finish(std::uint64_t key, const PairSums& sums, double voxel_m) {
 
 }  // namespace
 
-std::vector<TouchingPair> touching_pairs(device::Device&, const SolidCells& cells,
+std::vector<TouchingPair> touching_pairs(device::Device& device, const SolidCells& cells,
                                          std::int32_t count, unsigned gap) {
     for (std::size_t n = 0; n < cells.size(); ++n) {
         if (cells.primitive[n] >= count) {
@@ -103,8 +117,12 @@ std::vector<TouchingPair> touching_pairs(device::Device&, const SolidCells& cell
                                               " is not after the one before it; sort by (i, j, k)");
         }
     }
-    Sums sums;
-    for (std::size_t axis = 0; axis < 3; ++axis) sweep(cells, axis, gap, sums);
+    std::array<Sums, 3> along;
+    device.threads().each(3, 1, [&](std::size_t axis) { sweep(cells, axis, gap, along[axis]); });
+    Sums& sums = along[0];
+    for (const std::size_t axis : {1UL, 2UL}) {
+        for (const auto& [key, value] : along[axis]) add(value, sums[key]);
+    }
     std::vector<TouchingPair> pairs;
     pairs.reserve(sums.size());
     for (const auto& [key, value] : sums) pairs.push_back(finish(key, value, cells.voxel_m));

@@ -73,15 +73,17 @@ class Part {
     void add_edges(const SurfacePatch& patch) {
         std::array<double, 8> value{};  // at the corners
         for (unsigned c = 0; c < 8; ++c) value[c] = patch.value(at(c & 1, c >> 1 & 1, c >> 2));
-        const bool flat = patch.flat();
+        Vec3 bent{};
+        for (std::size_t a = 0; a < 3; ++a) bent[a] = std::abs(patch.c[4 + a]) * edge_ * edge_;
         for (unsigned axis = 0; axis < 3; ++axis) {
             const unsigned u = (axis + 1) % 3, v = (axis + 2) % 3;
             for (unsigned c = 0; c < 4; ++c) {
                 const unsigned first = (c & 1) << u | (c >> 1) << v;
                 const double f0 = value[first], f1 = value[first | 1U << axis];
-                // Most edges lie to one side of a plane.
-                if (flat && f0 * f1 > 0 &&
-                    std::min(std::abs(f0), std::abs(f1)) > 2 * slack * std::abs(f1 - f0))
+                // Most edges lie to one side: between its ends a patch's value is off the straight
+                // line by a quarter of the second difference at most.
+                if (f0 * f1 > 0 && std::min(std::abs(f0), std::abs(f1)) >
+                                       2 * slack * std::abs(f1 - f0) + 0.5 * bent[axis])
                     continue;
                 Vec3 from = low_;
                 from[u] += (c & 1) * edge_;
@@ -112,6 +114,14 @@ class Part {
         if (q != 0) visit(c / q);
     }
 
+    // Whether a patch passes no point of the side around `middle` along axes u and v: by its Taylor
+    // series, and a hundredth of the side for what lies on its rim.
+    bool passes_by(const SurfacePatch& patch, const Vec3& middle, std::size_t u,
+                   std::size_t v) const {
+        const Vec3 g = patch.gradient(middle);
+        const double reach = 0.51 * (std::abs(g[u]) + std::abs(g[v])) + bend(patch) * edge_ + 0.01;
+        return std::abs(patch.value(middle)) > reach * edge_;
+    }
     // Newton's method from the middle of a side, within its plane.
     void add_sides(const SurfacePatch& p, const SurfacePatch& q) {
         const bool flat = p.flat() && q.flat();
@@ -120,6 +130,7 @@ class Part {
                 Vec3 x = at(0.5, 0.5, 0.5);
                 x[axis] = low_[axis] + end * edge_;
                 const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+                if (passes_by(p, x, u, v) || passes_by(q, x, u, v)) continue;
                 for (int round = 0; round < 4; ++round) {
                     const Vec3 before = x;
                     const Vec3 gp = p.gradient(x), gq = q.gradient(x);

@@ -7,6 +7,8 @@ std::span<const Case> all_cases() {
     static constexpr Case cases[] = {
         {"triad", triad},
         {"multiply_add", multiply_add},
+        {"divide", divide},
+        {"gather", gather},
         {"voxel_normals", voxel_normals},
         {"plane_mean", plane_mean},
         {"normal_cluster", normal_cluster},

@@ -8,6 +8,8 @@ namespace topple::perf {
 // One for each kernel, in the file of its name or of its group.
 Prepared triad(device::Device& device);
 Prepared multiply_add(device::Device& device);
+Prepared divide(device::Device& device);
+Prepared gather(device::Device& device);
 Prepared voxel_normals(device::Device& device);
 Prepared plane_mean(device::Device& device);
 Prepared normal_cluster(device::Device& device);

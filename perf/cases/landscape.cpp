@@ -170,7 +170,7 @@ Prepared steepest_descent(device::Device& device) {
                                                 upload(device, neighbour, "neighbour"),
                                                 {device, energy.size(), "down"}});
     const double all = double{candidates} * padded;
-    return {{all, "directions", 8 * all + 24.0 * padded, 7 * all},
+    return {{all, "directions", 8 * all + 24.0 * padded, 7 * all, 0, 6 * all},
             [on](device::Queue& queue) {
                 queue.add<kernels::SteepestDescent>(
                     std::uint64_t{candidates} * padded,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
 
+#include "divide.hpp"
+#include "gather.hpp"
 #include "multiply_add.hpp"
 #include "perf/cases/cases.h"
 #include "triad.hpp"
@@ -42,6 +44,40 @@ Prepared multiply_add(device::Device& device) {
             },
             [on, x] { on->upload(std::span<const float>(x)); },
             [on] { return Hash().add(on->download()).value(); }};
+}
+
+Prepared divide(device::Device& device) {
+    constexpr std::uint32_t count = 1u << 18, rounds = 256;
+    std::vector<float> x(count);
+    for (std::uint32_t n = 0; n < count; ++n) x[n] = 0.5f + static_cast<float>(n) * 1e-6f;
+    auto on = std::make_shared<device::Buffer<float>>(upload(device, x, "x"));
+    const double divisions = double{count} * rounds;
+    return {{.items = count, .unit = "elements", .bytes = 8.0 * count, .divisions = divisions},
+            [on](device::Queue& queue) {
+                queue.add<kernels::Divide>(count, {.x = *on}, {.count = count, .rounds = rounds});
+            },
+            [on, x] { on->upload(std::span<const float>(x)); },
+            [on] { return Hash().add(on->download()).value(); }};
+}
+
+// 16 KiB: in the nearest cache of the machines this is meant for.
+Prepared gather(device::Device& device) {
+    constexpr std::uint32_t count = 1u << 18, rounds = 128, words = 1u << 12, shift = 20;
+    std::vector<std::uint32_t> table(words);
+    for (std::uint32_t n = 0; n < words; ++n) table[n] = n;
+    struct Buffers {
+        device::Buffer<std::uint32_t> table, sum;
+    };
+    auto on =
+        std::make_shared<Buffers>(Buffers{upload(device, table, "table"), {device, count, "sum"}});
+    const double gathers = double{count} * rounds;
+    return {{.items = count, .unit = "elements", .bytes = 4.0 * count, .gathers = gathers},
+            [on](device::Queue& queue) {
+                queue.add<kernels::Gather>(count, {.table = on->table, .sum = on->sum},
+                                           {.count = count, .rounds = rounds, .shift = shift});
+            },
+            {},
+            [on] { return Hash().add(on->sum.download()).value(); }};
 }
 
 }  // namespace topple::perf

@@ -70,7 +70,7 @@ Prepared rocking(device::Device& device) {
     // 185 operations a step: 17 of them the sine and the cosine, one a division.
     return {{steps, "steps",
              4.0 * (8.0 * ShakenBlocks::events + static_cast<double>(on_host.shaking.size())),
-             185 * steps},
+             185 * steps, steps},
             [on](device::Queue& queue) {
                 queue.add<kernels::Rocking>(
                     ShakenBlocks::events,

@@ -126,11 +126,11 @@ void enqueue_leaves(device::Queue& queue, const LeafBuffers& on) {
 Prepared carve_leaves(device::Device& device) {
     const RoomLeaves room = room_leaves();
     auto on = leaf_buffers(device, room);
-    // Eight corners of 40 operations and 40 more for each leaf and frame.
+    // Eight corners of 40 operations, two of them divisions, and 40 more for each leaf and frame.
     const double asked = static_cast<double>(room.params.leaf_count) * room.params.frame_count;
     return {{asked, "leaf frames",
              4.0 * (static_cast<double>(room.pyramid.size()) + 6.0 * room.params.leaf_count),
-             360 * asked},
+             360 * asked, 16 * asked},
             [on](device::Queue& queue) { enqueue_leaves(queue, *on); },
             {},
             [on] { return Hash().add(on->mixed.download()).add(on->front.download()).value(); }};
@@ -172,9 +172,10 @@ Prepared carve(device::Device& device) {
     double asked = 0;
     for (const std::uint32_t bits : mixed) asked += 512.0 * std::popcount(bits);
     const double voxels = 512.0 * static_cast<double>(mixed.size());
-    // 35 operations where a frame is asked about a voxel, 3 where it isn't.
+    // 35 operations where a frame is asked about a voxel, two of them divisions, and a word of the
+    // frame; 3 where it isn't.
     return {{asked, "voxel frames", 8 * voxels + 4.0 * static_cast<double>(room.pyramid.size()),
-             35 * asked + 3 * (32 * voxels - asked)},
+             35 * asked + 3 * (32 * voxels - asked), 2 * asked, asked},
             [on](device::Queue& queue) {
                 const LeafBuffers& l = *on->leaves;
                 queue.add<kernels::Carve>(std::uint64_t{512} * l.params.leaf_count,
@@ -341,9 +342,11 @@ Prepared cell_share(device::Device& device) {
                                                 upload(device, surface, "surface"),
                                                 {device, count, "share"},
                                                 {device, 3 * count, "moment"}});
-    // Of a slot 64 samples of 21 operations; of a voxel 64 of 11.
-    const double operations = (1.125 * 64 * 21 + 64 * 11) * count;
-    return {{count, "voxels", (5 + 4 + 4 * 1.125) * 4.0 * count, operations},
+    // Of a slot 64 samples of 21 operations, a division, a root, and its patch's numbers; of a
+    // voxel 64 of 11.
+    const double slots = 1.125 * count, operations = 64 * 21 * slots + 64.0 * 11 * count;
+    return {{count, "voxels", 4 * ((5 + 4.0) * count + 4 * slots), operations, 2 * slots,
+             numbers * slots},
             [on, voxel_m](device::Queue& queue) {
                 queue.add<kernels::CellShare>(
                     count,
@@ -388,7 +391,7 @@ Prepared segmented_sum(device::Device& device) {
                                                 upload(device, order, "order"),
                                                 upload(device, first, "first"),
                                                 {device, 3 * labels, "sum"}});
-    return {{count, "cells", 16.0 * count, 6.0 * count},
+    return {{count, "cells", 16.0 * count, 6.0 * count, 0, 3.0 * count},
             [on](device::Queue& queue) {
                 queue.add<kernels::SegmentedSum>(
                     labels,

@@ -73,7 +73,11 @@ Inputs inputs_for(const std::vector<PlaneCell>& cells, std::size_t queries, int 
     for (const PlaneCell& c : cells) in.z.push_back(c.index[2]);
     in.query.resize(3 * queries);
     for (std::size_t q = 0; q < queries; ++q) {
-        in.home.push_back(static_cast<std::uint32_t>(random.word() % n));
+        // An even number of them stand at the first cells and at the last ones in a row, as on a
+        // surface.
+        const std::size_t in_row = q < queries / 2 ? q : n - queries + q;
+        in.home.push_back(
+            static_cast<std::uint32_t>(queries % 2 == 0 ? in_row : random.word() % n));
         for (std::size_t a = 0; a < 3; ++a) in.query[a * queries + q] = random.uniform(-0.5f, 0.5f);
     }
     in.columns = columns_by_trial(cells, in.home, radius);

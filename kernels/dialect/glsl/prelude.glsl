@@ -20,6 +20,11 @@
 #define LANES {
 #define END_LANES } memoryBarrierBuffer(); barrier();
 
+#define EACH_ITEM(i) for (int i = 0; i < ITEMS; i++)
+// Nothing is gained here, so nothing counts as near.
+#define NEAR_WORDS 0
+#define LOAD_NEAR(to, from, base, place) EACH_ITEM(i) { to[i] = from[(base) + place[i]]; }
+
 #define GLOBAL_ID gl_GlobalInvocationID.x
 #define LOCAL_ID gl_LocalInvocationID.x
 #define GROUP_ID gl_WorkGroupID.x

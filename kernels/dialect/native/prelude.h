@@ -74,6 +74,17 @@ using uint = std::uint32_t;
 #define EACH_LANE_(lane) _Pragma("GCC ivdep") for (uint lane = 0; lane < group_size_; ++lane)
 #endif
 
+// Runs over the ITEMS of a work-item, none of which touches what another does: in vectors. GCC would unroll
+// so short a loop before it looks for vectors, and then find none; and it doesn't see that arrays of the
+// work-item's own overlap no buffer.
+#define EACH_ITEM(i) _Pragma("GCC unroll 1") _Pragma("GCC ivdep") for (int i = 0; i < ITEMS; i++)
+
+// to[i] = from[base + place[i]], with place[i] from 0 to NEAR_WORDS - 1, all of which can be read: processors
+// that choose among two vectors need no gather for that.
+#define NEAR_WORDS (2 * ITEMS)
+#define LOAD_NEAR(to, from, base, place) \
+    ::topple::kernels::load_near_<ITEMS>(to, (from) + (base), place);
+
 #define GLOBAL_ID global_id_
 #define LOCAL_ID local_id_
 #define GROUP_ID group_id_
@@ -131,6 +142,24 @@ FN T shared_max_(volatile T& place, std::type_identity_t<T> value) {
     const T seen = place;
     place = seen < value ? value : seen;
     return seen;
+}
+template <int items, class T>
+FN void load_near_(T (&to)[items], const T* from, const int (&place)[items]) {
+#ifdef __AVX512F__
+    if constexpr (items == 16) {
+        typedef T Words __attribute__((vector_size(64)));
+        typedef int Places __attribute__((vector_size(64)));
+        Words low, high;
+        Places at;
+        std::memcpy(&low, from, 64);
+        std::memcpy(&high, from + 16, 64);
+        std::memcpy(&at, place, 64);
+        low = __builtin_shuffle(low, high, at);
+        std::memcpy(to, &low, 64);
+        return;
+    }
+#endif
+    for (int i = 0; i < items; i++) to[i] = from[place[i]];
 }
 // NaN-free inputs are the kernels' contract. Of two zeros the first is taken, on every backend; both
 // operands are evaluated once.

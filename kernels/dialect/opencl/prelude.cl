@@ -21,6 +21,11 @@
 #define LANES {
 #define END_LANES } barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
 
+#define EACH_ITEM(i) for (int i = 0; i < ITEMS; i++)
+// Nothing is gained here, so nothing counts as near.
+#define NEAR_WORDS 0
+#define LOAD_NEAR(to, from, base, place) EACH_ITEM(i) { to[i] = from[(base) + place[i]]; }
+
 #define GLOBAL_ID ((uint)get_global_id(0))
 #define LOCAL_ID ((uint)get_local_id(0))
 #define GROUP_ID ((uint)get_group_id(0))
