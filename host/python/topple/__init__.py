@@ -259,7 +259,7 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     corrections: what you know of the room beside the scan: a file, or a list of dicts such as {"do": "fixed", "at_m":
     [[x, y, z]]} (docs/corrections.md); Result.corrections says what became of each. cache_file: keeps what does not
     depend on them, so that the next parse of that file or folder is quick; of what is in memory nothing is kept, and it is
-    refused. tile_m: has a cloud in a file parsed in blocks (docs/scale.md), of which as many are read together as lie in a tile
+    refused. tile_m: 5 or more has a cloud in a file parsed in blocks (docs/scale.md), of which as many are read together as lie in a tile
     of that edge, metres. name: of points or frames in memory, what messages, the report and Result.source call them; "points"
     or "frames" without.
     cancelled() is polled, and True stops the parse with an Error of kind "cancelled". Ctrl-C stops it, too, with
