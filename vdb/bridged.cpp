@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "core/scan_gaps.h"
 #include "vdb/completion.h"
 
 namespace topple::vdb {
@@ -67,9 +68,9 @@ class Bridging {
 
 }  // namespace
 
-std::vector<Claim> bridged(const VolumeView& view, std::int32_t longest_gap) {
+std::vector<Claim> bridged(const VolumeView& view) {
     Bridging bridging(view);
-    for (int axis = 0; axis < 3; ++axis) bridging.along(axis, longest_gap);
+    for (int axis = 0; axis < 3; ++axis) bridging.along(axis, noise_gap);
     return bridging.claims();
 }
 

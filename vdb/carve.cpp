@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "carve_leaves.hpp"
+#include "core/depth_noise.h"
 #include "core/thread_pool.h"
 #include "device/buffer.h"
 #include "device/queue.h"
@@ -23,6 +24,15 @@ constexpr std::uint64_t resident_bytes = std::uint64_t{1} << 28;  // frames on t
 constexpr std::uint64_t leaf_chunk = std::uint64_t{1} << 18;      // leaves classified at a time
 constexpr std::uint64_t voxel_chunk = std::uint64_t{1} << 14;     // leaves counted at a time
 constexpr std::size_t max_slots = std::size_t{1} << 21;
+
+// When a voxel counts as seen through. It is in front of a reading where it is closer by half its
+// diagonal and so many standard deviations of the reading, beyond which one in 44 is.
+constexpr double noise_sigmas = 2;
+// One frame that sees through a voxel without points makes it empty, as in the paper. One that
+// holds points takes some, and more than so many times as many as see a surface in it: then they
+// are flying points. Set by hand.
+constexpr std::uint32_t least_through = 1, least_through_points = 3;
+constexpr double flying_ratio = 2;
 
 // Up to 32 frames on the device.
 struct Batch {
@@ -65,13 +75,8 @@ void check(const Intrinsics& k, std::span<const DepthFrame> frames, const device
 // One call of VoxelScene::carve.
 class Carver {
   public:
-    Carver(device::Device& device, VoxelScene::Grids& grids, const Intrinsics& intrinsics,
-           const CarveOptions& options)
-        : device_(device),
-          g_(grids),
-          intrinsics_(intrinsics),
-          options_(options),
-          words_(pyramid_words(intrinsics)) {
+    Carver(device::Device& device, VoxelScene::Grids& grids, const Intrinsics& intrinsics)
+        : device_(device), g_(grids), intrinsics_(intrinsics), words_(pyramid_words(intrinsics)) {
         auto& p = params_;
         p.width = intrinsics.width - 1;
         p.height = intrinsics.height - 1;
@@ -80,9 +85,9 @@ class Carver {
         p.metres_per_unit = static_cast<float>(1 / intrinsics.depth_scale);
         p.margin_m = static_cast<float>(g_.frame.voxel_m * std::sqrt(3.0) / 2 +
                                         0.5 / intrinsics.depth_scale);
-        p.noise_base_m = static_cast<float>(options.noise_sigmas * options.noise_base_m);
-        p.noise_growth = static_cast<float>(options.noise_sigmas * options.noise_growth_per_m);
-        p.noise_from_m = static_cast<float>(options.noise_from_m);
+        p.noise_base_m = static_cast<float>(noise_sigmas * least_depth_sigma);
+        p.noise_growth = static_cast<float>(noise_sigmas * depth_sigma_growth);
+        p.noise_from_m = static_cast<float>(depth_sigma_grows_from);
         p.slack_m = static_cast<float>(g_.frame.voxel_m * 0.02);
     }
 
@@ -116,7 +121,6 @@ class Carver {
     device::Device& device_;
     VoxelScene::Grids& g_;
     const Intrinsics& intrinsics_;
-    const CarveOptions& options_;
     std::uint64_t words_;
     kernels::CarveParams params_{};
     std::vector<Batch> batches_;
@@ -217,7 +221,7 @@ void Carver::classify(std::span<const std::uint64_t> leaves) {
         }
         const bool changed = through != e.front[leaf];
         e.front[leaf] = static_cast<std::uint16_t>(std::min(through, 65535u));
-        if (through >= options_.through && !holds[n]) {
+        if (through >= least_through && !holds[n]) {
             make_empty(leaf);
         } else if (any != 0 || (changed && (holds[n] || e.slot[leaf] >= 0))) {
             detailed.push_back(leaf);
@@ -294,7 +298,7 @@ void Carver::judge(std::uint64_t leaf, std::span<const std::uint32_t> evidence) 
     if (!points) {
         std::size_t empty = 0, seen = 0;
         for (const std::uint32_t word : evidence) {
-            empty += front + (word & 0xffff) >= options_.through;
+            empty += front + (word & 0xffff) >= least_through;
             seen += (word & 0xffff) != 0;
         }
         if (empty == evidence.size()) return make_empty(leaf);
@@ -321,15 +325,14 @@ void Carver::judge(std::uint64_t leaf, std::span<const std::uint32_t> evidence) 
     for (openvdb::Index v = 0; v < 512; ++v) {
         const std::uint32_t through = front + (evidence[v] & 0xffff), hit = evidence[v] >> 16;
         if (points && points->isValueOn(v)) {
-            const bool flying =
-                through >= options_.surface_through && through > options_.surface_ratio * hit;
+            const bool flying = through >= least_through_points && through > flying_ratio * hit;
             if (flying) {
                 state->setValueOff(v, static_cast<std::int32_t>(State::empty));
             } else {
                 state->setValueOn(v, static_cast<std::int32_t>(State::surface));
             }
         } else {
-            const bool empty = through >= options_.through;
+            const bool empty = through >= least_through;
             state->setValueOff(v,
                                static_cast<std::int32_t>(empty ? State::empty : State::invisible));
         }
@@ -339,12 +342,8 @@ void Carver::judge(std::uint64_t leaf, std::span<const std::uint32_t> evidence) 
 }  // namespace
 
 void VoxelScene::carve(device::Device& device, const Intrinsics& intrinsics,
-                       std::span<const DepthFrame> frames, const CarveOptions& options) {
+                       std::span<const DepthFrame> frames) {
     check(intrinsics, frames, device);
-    if (options.through < 1 || options.surface_through < 1) {
-        throw Error(ErrorKind::usage,
-                    "carving: at least one frame must see through a voxel to make it empty");
-    }
     Grids& g = *grids_;
     clear_completed();
     const auto size = g.leaves.size();
@@ -356,7 +355,7 @@ void VoxelScene::carve(device::Device& device, const Intrinsics& intrinsics,
     const std::uint64_t frame_bytes = pyramid_words(intrinsics) * 4;
     const std::size_t step =
         static_cast<std::size_t>(std::max<std::uint64_t>(1, resident_bytes / frame_bytes));
-    Carver carver(device, g, intrinsics, options);
+    Carver carver(device, g, intrinsics);
     for (std::size_t first = 0; first < frames.size(); first += step) {
         carver.carve(frames.subspan(first, std::min(step, frames.size() - first)));
     }

@@ -81,8 +81,8 @@ void complete(device::Device& device, const CompletionOptions& options, VoxelSce
     round([&](const VolumeView& view) { return settled(view, options.ledges); });
     round([&](const VolumeView& view) { return extended(view); });
     round([&](const VolumeView& view) { return backed(view); });
-    round([&](const VolumeView& view) { return bridged(view, options.longest_gap); });
-    round([&](const VolumeView& view) { return detached(view, options.longest_gap); });
+    round([&](const VolumeView& view) { return bridged(view); });
+    round([&](const VolumeView& view) { return detached(view); });
     if (options.map) commit(told(volume, *options.map), volume, cells);
     device.threads().poll();
 }

@@ -103,16 +103,16 @@ std::vector<Claim> extended(const VolumeView& view);
 // nothing seen between: fronts of what is built in, which reaches to the wall.
 std::vector<Claim> backed(const VolumeView& view);
 
-// Joins neighbouring primitives through what no frame saw: gaps of up to `longest_gap`
+// Joins neighbouring primitives through what no frame saw: gaps of up to noise_gap
 // invisible voxels along an axis between two primitives are completed, each voxel by the nearer
 // of the two. Legs meet their table top where the edge above hides it. A gap with a voxel that
 // was seen to be empty stays; so does one beside, not below or above, a wall or ceiling.
-std::vector<Claim> bridged(const VolumeView& view, std::int32_t longest_gap);
+std::vector<Claim> bridged(const VolumeView& view);
 
 // What was completed of a thing but hangs together with nothing that was seen of it or of others,
-// not even across a hidden gap of `longest_gap` voxels up or down, is not solid after all: rays
+// not even across a hidden gap of noise_gap voxels up or down, is not solid after all: rays
 // went on past space that was seen to be empty. What is the room's is left as it is.
-std::vector<Claim> detached(const VolumeView& view, std::int32_t longest_gap);
+std::vector<Claim> detached(const VolumeView& view);
 
 // What a map says to be solid within its surfaces: from here on as if it was seen. Such voxels
 // belong to the primitive that they were completed to, if any. Throws as VoxelScene::set_free().
@@ -129,9 +129,6 @@ std::uint64_t fill(device::Device& device, VoxelScene& volume, const FillOptions
 struct CompletionOptions {
     FillOptions fill;
     std::vector<StandsOn> ledges;
-    // Hidden gaps up to this long are taken for joints: what occlusion and dropped edge pixels
-    // leave open.
-    std::int32_t longest_gap = 3;
     const SpaceMap* map = nullptr;  // what it tells to be solid
 };
 void complete(device::Device& device, const CompletionOptions& options, VoxelScene& volume,

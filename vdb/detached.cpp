@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/scan_gaps.h"
 #include "core/touching_cells.h"
 #include "core/union_find.h"
 #include "vdb/completion.h"
@@ -14,10 +15,10 @@ namespace {
 // primitive. What is of the room, or of no primitive, hangs together with nothing.
 class Pieces {
   public:
-    Pieces(const VolumeView& view, std::int32_t longest_gap)
+    explicit Pieces(const VolumeView& view)
         : view_(view), cells_(view.cells()), sets_(cells_.size()), seen_(cells_.size(), false) {
         each_touching(cells_, [&](std::size_t m, std::size_t n) { join(m, n); });
-        each_across_gaps(cells_, longest_gap, [&](std::size_t m, std::size_t n) {
+        each_across_gaps(cells_, noise_gap, [&](std::size_t m, std::size_t n) {
             if (cells_.primitive[m] == cells_.primitive[n]) join(m, n);
         });
         for (std::size_t n = 0; n < cells_.size(); ++n)
@@ -44,9 +45,9 @@ class Pieces {
 
 }  // namespace
 
-std::vector<Claim> detached(const VolumeView& view, std::int32_t longest_gap) {
+std::vector<Claim> detached(const VolumeView& view) {
     const SolidCells& cells = view.cells();
-    Pieces pieces(view, longest_gap);
+    Pieces pieces(view);
     std::vector<Claim> out;
     for (std::size_t n = 0; n < cells.size(); ++n)
         if (pieces.is_thing(n) && !pieces.seen(n))

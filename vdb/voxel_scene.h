@@ -36,19 +36,6 @@ struct Tiles {
     std::size_t size() const { return x.size(); }
 };
 
-// When a voxel counts as seen through. Depth noise: base + growth * max(depth - from, 0)^2, metres
-// (the defaults are those of structured-light cameras); a voxel is in front of a reading where it
-// is closer by half its diagonal and `noise_sigmas` of that noise.
-struct CarveOptions {
-    unsigned through = 1;  // frames that must see through a voxel without points
-    // A voxel that holds points becomes empty where at least `surface_through` frames see through
-    // it, and more than `surface_ratio` times as many as see a surface in it: a flying point.
-    unsigned surface_through = 3;
-    double surface_ratio = 2;
-    double noise_base_m = 0.0012, noise_growth_per_m = 0.0019, noise_from_m = 0.4;
-    double noise_sigmas = 2;
-};
-
 using Voxel = std::array<std::int32_t, 3>;
 
 // A scene's voxels as plain arrays, but for the fields that were added and the objects.
@@ -104,11 +91,11 @@ class VoxelScene {
 
     // Visibility carving (paper, 2.2.2; kernels carve_leaves, carve): voxels in front of a depth
     // reading become empty, those that no frame saw stay invisible. May be called for as many
-    // batches of frames as there are, with the same options. Leaves that are all empty or all
+    // batches of frames as there are. Leaves that are all empty or all
     // invisible are stored as one value. Undoes an earlier completion. Throws Error(input) for
     // frames that don't match the intrinsics or whose pose is not finite.
     void carve(device::Device& device, const Intrinsics& intrinsics,
-               std::span<const DepthFrame> frames, const CarveOptions& options = {});
+               std::span<const DepthFrame> frames);
 
     // Free space that a map tells, instead of frames or, after carve(), beside them: voxels whose
     // centre it says to be free become empty, those with points stay surface. Where the map's

@@ -29,7 +29,7 @@ Writer::Writer(int descriptor) : descriptor_(descriptor) {
         std::_Exit(1);
 }
 
-void Writer::write(const void* data, std::size_t size) {
+void Writer::put(const void* data, std::size_t size) {
     if (waiting_.size() + size > piece_bytes) flush();
     if (size > piece_bytes) return write_all(descriptor_, static_cast<const char*>(data), size);
     waiting_.append(static_cast<const char*>(data), size);

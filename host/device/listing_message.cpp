@@ -33,20 +33,15 @@ std::vector<Listing> list_backend(const std::string& backend) {
 
 void write_listings(const std::vector<Listing>& listings) {
     child::Writer out;
-    out(static_cast<std::uint64_t>(listings.size()));
-    for (const Listing& listing : listings) fields(out, listing);
+    list_fields(out, listings, [](auto& io, auto& listing) { fields(io, listing); });
     out.finish();
 }
 
 std::vector<Listing> take_listings(const child::Answer& answer, Backend backend) {
     child::Reader in(answer);
-    std::uint64_t count = 0;
-    in(count);
-    constexpr std::uint64_t most = 1000;
-    if (count > most) throw child::BadAnswer();
-    std::vector<Listing> listings(count);
+    std::vector<Listing> listings;
+    list_fields(in, listings, [](auto& io, auto& listing) { fields(io, listing); });
     for (Listing& listing : listings) {
-        fields(in, listing);
         listing.backend = listing.info.backend = backend;
         make_printable(listing.problem);
         make_printable(listing.info.name);

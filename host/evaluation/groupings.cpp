@@ -48,7 +48,7 @@ std::vector<Support> supports_between(const graph::ContactGraph& contacts,
     for (const graph::Carrying& c : contacts.carryings) {
         if (c.supporter < 0) continue;
         const auto pair = std::pair(object(c.supporter), object(c.supported));
-        // The ground carries, and nothing carries it, though scraps of it may lie on things.
+        // The ground carries, and nothing carries it, though fragments of it may lie on things.
         if (pair.first != pair.second && !grounded[static_cast<std::size_t>(pair.second)])
             carried[pair] += c.area_m2;
     }

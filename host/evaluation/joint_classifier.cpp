@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <string>
 
+#include "core/union_find.h"
 #include "topple/error.h"
 
 namespace topple::evaluation {
@@ -92,31 +92,21 @@ std::vector<std::int32_t> join_by_probability(const graph::ContactGraph& contact
                                               std::span<const JointFeatures> joints,
                                               const JointWeights& weights,
                                               const std::vector<bool>& pinned) {
-    std::vector<std::int32_t> root(pinned.size());
-    std::iota(root.begin(), root.end(), 0);
-    const auto root_of = [&](std::int32_t n) {
-        while (root[static_cast<std::size_t>(n)] != n) n = root[static_cast<std::size_t>(n)];
-        return n;
-    };
-    const auto join = [&](std::int32_t a, std::int32_t b) {
-        const std::int32_t x = root_of(a), y = root_of(b);
-        root[static_cast<std::size_t>(std::max(x, y))] = std::min(x, y);
-    };
-    std::int32_t ground = -1;
-    for (std::int32_t n = 0; n < static_cast<std::int32_t>(pinned.size()); ++n) {
-        if (!pinned[static_cast<std::size_t>(n)]) continue;
-        if (ground >= 0) join(ground, n);
-        ground = n;
-    }
+    UnionFind sets(pinned.size());
+    const auto ground = static_cast<std::size_t>(std::ranges::find(pinned, true) - pinned.begin());
+    for (std::size_t n = ground; n < pinned.size(); ++n)
+        if (pinned[n]) sets.join(ground, n);
     for (std::size_t j = 0; j < joints.size(); ++j) {
-        if (probability(weights, joints[j]) > 0.5) join(contacts.pairs[j].a, contacts.pairs[j].b);
+        const physics::TouchingPair& pair = contacts.pairs[j];
+        if (probability(weights, joints[j]) > 0.5)
+            sets.join(static_cast<std::size_t>(pair.a), static_cast<std::size_t>(pair.b));
     }
-    std::map<std::int32_t, std::int32_t> label;
-    if (ground >= 0) label[root_of(ground)] = -1;
+    std::map<std::size_t, std::int32_t> label;
+    if (ground < pinned.size()) label[sets.root(ground)] = -1;
     std::int32_t next = 0;
     std::vector<std::int32_t> out;
-    for (std::int32_t n = 0; n < static_cast<std::int32_t>(pinned.size()); ++n) {
-        const auto [at, fresh] = label.try_emplace(root_of(n), next);
+    for (std::size_t n = 0; n < pinned.size(); ++n) {
+        const auto [at, fresh] = label.try_emplace(sets.root(n), next);
         next += fresh;
         out.push_back(at->second);
     }

@@ -10,7 +10,7 @@ namespace {
 
 // Ridge on the second-degree coefficients, relative to the data's weight: a term that the points do
 // not determine (a short piece of a tube says nothing of its ends) stays zero, the lower degree.
-constexpr double kSecondDegreeRidge = 1e-3;
+constexpr double second_degree_ridge = 1e-3;
 
 using Monomials = Eigen::Matrix<double, 10, 1>;
 
@@ -103,7 +103,7 @@ AlgebraicModel fit_quadric(std::span<const Eigen::Vector3d> points,
             rhs += layer * e * m;
         }
     }
-    const double ridge = kSecondDegreeRidge * static_cast<double>(points.size());
+    const double ridge = second_degree_ridge * static_cast<double>(points.size());
     for (int k = 4; k < 10; ++k) lhs(k, k) += ridge * e * e;
     for (int k = 0; k < 4; ++k) lhs(k, k) += 1e-9 * static_cast<double>(points.size());
     const Monomials c = lhs.selfadjointView<Eigen::Lower>().ldlt().solve(rhs);

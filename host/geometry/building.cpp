@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/room_measures.h"
 #include "geometry/shell_faces.h"
 #include "geometry/storeys.h"
 
@@ -14,8 +15,8 @@ namespace {
 constexpr double histogram_step_m = 0.025;
 // A kilometre of steps: no building is higher.
 constexpr double most_height_m = 1000;
-// A storey has a floor of this area at its height.
-constexpr double floor_m2 = 4, floor_off_m = 0.1;
+// A storey's floor lies within this much of its height.
+constexpr double floor_off_m = 0.1;
 // A wall's two faces: how thin it is, how well they look away from each other, and the area of each
 // where they end at a ceiling; without one, where a shelf between two parts of a room may be as
 // high, more.
@@ -45,7 +46,7 @@ bool has_floor(const std::vector<Face>& face, const Vec3& up, const Storey& stor
             std::abs(f.height_m(up) - storey.floor_m) < floor_off_m)
             area += f.area_m2;
     }
-    return area >= floor_m2;
+    return area >= least_floor_m2;
 }
 
 // An upright face that may be a wall's, and how far it reaches along the wall.

@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "core/union_find.h"
 #include "geometry/algebraic_model.h"
+#include "geometry/face_limits.h"
 #include "geometry/split.h"
 
 namespace topple::geometry {
@@ -57,22 +58,19 @@ std::vector<std::uint32_t> steps_from_solids(const Surfels& s,
 }
 
 // The fragments that a thin thing breaks into, a leg seen by few rays, as one primitive: each
-// connected piece of surfels further from all solids than scraps along a crease are, with all of
+// connected piece of surfels further from all solids than noise along a crease is, with all of
 // the fragments that take part in it. It takes the place of the largest of them.
 void join_protrusions(const Surfels& s, std::vector<bool>& solid, PrimitiveSet& primitives) {
-    constexpr std::uint32_t beyond_scraps = 2, stands_off = 4;  // steps
-    constexpr std::size_t least = 8;                            // surfels, those of a region
+    constexpr std::uint32_t beyond_crease = 2, stands_off = 4;  // steps
     std::vector<std::int32_t>& label = primitives.label;
     const std::vector<std::uint32_t> steps = steps_from_solids(s, label, solid);
     std::vector<bool> seen(s.size());
-    std::vector<std::int32_t> joined(solid.size());  // what each primitive becomes part of
-    std::iota(joined.begin(), joined.end(), 0);
+    UnionFind joined(solid.size());
     const auto root = [&](std::int32_t p) {
-        while (joined[static_cast<std::size_t>(p)] != p) p = joined[static_cast<std::size_t>(p)];
-        return p;
+        return static_cast<std::int32_t>(joined.root(static_cast<std::size_t>(p)));
     };
     for (std::uint32_t first = 0; first < s.size(); ++first) {
-        if (seen[first] || steps[first] < beyond_scraps) continue;
+        if (seen[first] || steps[first] < beyond_crease) continue;
         std::vector<std::uint32_t> piece{first};
         std::set<std::int32_t> fragments;
         std::uint32_t furthest = 0;
@@ -83,23 +81,24 @@ void join_protrusions(const Surfels& s, std::vector<bool>& solid, PrimitiveSet& 
             if (label[n] >= 0) fragments.insert(root(label[n]));
             for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {
                 const std::uint32_t m = s.neighbours[k];
-                if (seen[m] || steps[m] < beyond_scraps) continue;
+                if (seen[m] || steps[m] < beyond_crease) continue;
                 seen[m] = true;
                 piece.push_back(m);
             }
         }
-        if (furthest < stands_off || piece.size() < least || fragments.empty()) continue;
+        if (furthest < stands_off || piece.size() < least_region || fragments.empty()) continue;
         // Ids go by falling size.
         const std::int32_t whole = *fragments.begin();
-        for (const std::int32_t f : fragments) joined[static_cast<std::size_t>(f)] = whole;
+        for (const std::int32_t f : fragments)
+            joined.join(static_cast<std::size_t>(whole), static_cast<std::size_t>(f));
         solid[static_cast<std::size_t>(whole)] = true;
         for (const std::uint32_t n : piece)
             if (label[n] < 0) label[n] = whole;
     }
     for (std::int32_t& l : label)
         if (l >= 0) l = root(l);
-    for (std::size_t p = 0; p < joined.size(); ++p) {
-        const auto whole = static_cast<std::size_t>(root(static_cast<std::int32_t>(p)));
+    for (std::size_t p = 0; p < solid.size(); ++p) {
+        const std::size_t whole = joined.root(p);
         if (whole == p) continue;
         solid[p] = false;
         auto& to = primitives.regions[whole];
@@ -112,19 +111,17 @@ void join_protrusions(const Surfels& s, std::vector<bool>& solid, PrimitiveSet& 
 // rounding of an edge over a cell bring the points of a crease.
 bool explained(const Surfels& s, std::uint32_t n, const Regions& faces,
                const std::set<std::int32_t>& among) {
-    constexpr double noise_sigmas = 2, rounding_cells = 0.25;
     return std::ranges::any_of(among, [&](std::int32_t f) {
         const Region& face = faces.regions[static_cast<std::size_t>(f)];
         return std::abs(distance(face.model, position(s, n))) <=
-               noise_sigmas * face.residual_m + rounding_cells * s.cell_m;
+               own_surface_m(face.residual_m, s.cell_m);
     });
 }
 
-// A fragment is a small thing rather than a scrap where the faces of solids around it leave more
+// A fragment is a small thing rather than noise where the faces of solids around it leave more
 // than a part of it unexplained: a book on a table stands out of it by its thickness, however few
 // surfels it shows. It must have as many surfels as a region.
 void keep_small_things(const Surfels& s, std::vector<bool>& solid, const PrimitiveSet& primitives) {
-    constexpr std::size_t least = 8;
     constexpr double unexplained_share = 0.3;
     const std::vector<std::int32_t>& label = primitives.label;
     const Regions& faces = primitives.faces;
@@ -134,7 +131,7 @@ void keep_small_things(const Surfels& s, std::vector<bool>& solid, const Primiti
             members[static_cast<std::size_t>(label[n])].push_back(n);
     std::vector<std::size_t> things;
     for (std::size_t p = 0; p < members.size(); ++p) {
-        if (members[p].size() < least) continue;
+        if (members[p].size() < least_region) continue;
         std::set<std::int32_t> around;
         for (const std::uint32_t n : members[p])
             for (std::uint32_t k = s.neighbour_first[n]; k < s.neighbour_first[n + 1]; ++k) {

@@ -4,9 +4,9 @@
 #include <numeric>
 #include <utility>
 
+#include "core/depth_noise.h"
 #include "device/devices.h"
 #include "geometry/cell_grid.h"
-#include "geometry/depth_noise.h"
 #include "geometry/frames_cells.h"
 #include "geometry/plane_fit.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/depth_noise.h"
+#include "core/depth_noise.h"
 
 namespace topple::geometry {
 namespace {

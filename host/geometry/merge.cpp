@@ -3,28 +3,29 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "core/union_find.h"
 #include "geometry/region_facts.h"
 
 namespace topple::geometry {
 
 namespace {
 
+// Largest share of point pairs, one of each of two regions, that no convex solid has both on its
+// surface. Not 0, since noise and rounded edges put some there. Set by hand.
+constexpr double most_concavity = 0.12;
+
 // Regions joined so far. The root of a set is its lowest region.
 class Merger {
   public:
-    Merger(const Surfels& surfels, const Vec3& up, const CutRegions& cuts, RegionFacts& facts,
-           const MergeOptions& options)
+    Merger(const Surfels& surfels, const Vec3& up, const CutRegions& cuts, RegionFacts& facts)
         : s_(surfels),
           up_(up),
           cuts_(cuts),
           facts_(facts),
           r_(cuts.regions),
-          options_(options),
-          parent_(r_.regions.size()),
+          sets_(r_.regions.size()),
           members_(r_.regions.size()) {
-        std::iota(parent_.begin(), parent_.end(), 0);
         for (std::size_t k = 0; k < members_.size(); ++k)
             members_[k].assign(1, static_cast<std::int32_t>(k));
     }
@@ -38,13 +39,13 @@ class Merger {
     // The solid of each region: its root.
     std::vector<std::int32_t> solids() {
         std::vector<std::int32_t> out;
-        for (std::size_t k = 0; k < parent_.size(); ++k)
+        for (std::size_t k = 0; k < members_.size(); ++k)
             out.push_back(root(static_cast<std::int32_t>(k)));
         return out;
     }
 
     PrimitiveSet result() {
-        std::vector<std::uint64_t> size(parent_.size(), 0);
+        std::vector<std::uint64_t> size(members_.size(), 0);
         for (const std::int32_t label : r_.label)
             if (label >= 0) ++size[static_cast<std::size_t>(root(label))];
         std::vector<std::int32_t> order;
@@ -82,7 +83,7 @@ class Merger {
         for (const auto& [pair, border] : facts_.borders()) {
             const auto a = static_cast<std::size_t>(border.a),
                        b = static_cast<std::size_t>(border.b);
-            if (border.length < options_.border_share || border.inside_share <= options_.delta2 ||
+            if (border.length < least_border || border.inside_share <= least_inside_share ||
                 cuts_.parted(a, b))
                 continue;
             candidates.push_back(
@@ -93,12 +94,12 @@ class Merger {
             [](const Candidate& x, const Candidate& y) { return x.confidence > y.confidence; });
         for (const Candidate& c : candidates) {
             const std::int32_t a = root(c.a), b = root(c.b);
-            if (a != b && convex(a, b, options_.concavity_max)) join(a, b);
+            if (a != b && convex(a, b, most_concavity)) join(a, b);
         }
     }
 
     void merge_level_pieces() {
-        for (const auto& [i, j] : find_level_pieces(s_, up_, r_, facts_.samples(), options_)) {
+        for (const auto& [i, j] : find_level_pieces(s_, up_, r_, facts_.samples())) {
             const std::int32_t a = root(i), b = root(j);
             if (a != b) join(a, b);
         }
@@ -107,22 +108,17 @@ class Merger {
     void merge_face_pieces() {
         for (const auto& [i, j] : facts_.face_pieces()) {
             const std::int32_t a = root(i), b = root(j);
-            if (a != b && convex(a, b, options_.concavity_max)) join(a, b);
+            if (a != b && convex(a, b, most_concavity)) join(a, b);
         }
     }
 
     std::int32_t root(std::int32_t k) {
-        while (parent_[static_cast<std::size_t>(k)] != k) {
-            auto& up = parent_[static_cast<std::size_t>(k)];
-            up = parent_[static_cast<std::size_t>(up)];
-            k = up;
-        }
-        return k;
+        return static_cast<std::int32_t>(sets_.root(static_cast<std::size_t>(k)));
     }
 
     void join(std::int32_t a, std::int32_t b) {
         if (b < a) std::swap(a, b);
-        parent_[static_cast<std::size_t>(b)] = a;
+        sets_.join(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
         auto& from = members_[static_cast<std::size_t>(b)];
         auto& to = members_[static_cast<std::size_t>(a)];
         std::vector<std::int32_t> both;
@@ -167,8 +163,7 @@ class Merger {
     const CutRegions& cuts_;
     RegionFacts& facts_;
     const Regions& r_;
-    const MergeOptions& options_;
-    std::vector<std::int32_t> parent_;
+    UnionFind sets_;
     std::vector<std::vector<std::int32_t>> members_;  // of each root, by falling size
 };
 
@@ -176,16 +171,15 @@ class Merger {
 
 PrimitiveSet merge_convex(const Surfels& surfels, const Regions& regions, const Vec3& up,
                           const FreeSpace& free, ThreadPool& threads) {
-    const MergeOptions options;
     CutRegions cuts(regions);
-    RegionFacts facts(surfels, cuts, free, options, threads);
-    cut_flush_faces(surfels, up, {}, options, cuts, facts);
+    RegionFacts facts(surfels, cuts, free, threads);
+    cut_flush_faces(surfels, up, {}, cuts, facts);
     // What the faces of a merged solid tell of one another may part some more.
     for (;;) {
         const std::uint32_t before = cuts.count;
-        Merger merger(surfels, up, cuts, facts, options);
+        Merger merger(surfels, up, cuts, facts);
         merger.merge_all();
-        cut_flush_faces(surfels, up, merger.solids(), options, cuts, facts);
+        cut_flush_faces(surfels, up, merger.solids(), cuts, facts);
         if (cuts.count > before) continue;
         if (cut_at_ledges(surfels, up, merger.solids(), cuts, facts, threads) == 0)
             return merger.result();

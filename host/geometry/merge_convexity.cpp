@@ -4,12 +4,21 @@
 #include <cmath>
 
 #include "geometry/algebraic_model.h"
+#include "geometry/face_limits.h"
 #include "geometry/merge.h"
 #include "geometry/split.h"
 
 namespace topple::geometry {
 
 namespace {
+
+// How far the ends of segments are set back from the border into their regions, in cells: beyond
+// what the edge rounds, and not to the far side of a narrow face. Set by hand.
+constexpr int set_back_cells = 3;
+// Segments of a pair of regions and points on each, and points that stand for a region: enough that
+// a share is known to about a tenth.
+constexpr std::uint32_t segments = 24, points_per_segment = 8;
+constexpr std::size_t region_samples = 48;
 
 // Surfels, each once, in the order in which they were added.
 class Reached {
@@ -68,13 +77,12 @@ Eigen::Vector3d onto(const AlgebraicModel& model, const Eigen::Vector3d& p) {
 
 }  // namespace
 
-RegionSamples sample_region(const Surfels& surfels, const CutRegions& cuts, std::size_t region,
-                            const MergeOptions& options) {
+RegionSamples sample_region(const Surfels& surfels, const CutRegions& cuts, std::size_t region) {
     const Region& of = cuts.regions.regions[region];
     const std::vector<std::uint32_t>& members = cuts.members[region];
     RegionSamples out;
-    out.tolerance_m = 2 * of.residual_m + 0.25 * surfels.cell_m;
-    const std::size_t count = std::min<std::size_t>(members.size(), options.samples);
+    out.tolerance_m = own_surface_m(of.residual_m, surfels.cell_m);
+    const std::size_t count = std::min(members.size(), region_samples);
     for (std::size_t n = 1; n <= count; ++n) {
         const std::size_t m = (n * members.size() + count - 1) / count - 1;
         const Eigen::Vector3d p = onto(of.model, position(surfels, members[m]));
@@ -85,24 +93,23 @@ RegionSamples sample_region(const Surfels& surfels, const CutRegions& cuts, std:
 }
 
 double inside_share(const Surfels& surfels, const Regions& regions, const Border& border,
-                    const std::array<double, 2>& tolerance_m, const MergeOptions& options) {
+                    const std::array<double, 2>& tolerance_m) {
     const auto a = static_cast<std::size_t>(border.a), b = static_cast<std::size_t>(border.b);
     const AlgebraicModel& fa = regions.regions[a].model;
     const AlgebraicModel& fb = regions.regions[b].model;
-    const auto side = static_cast<std::size_t>(2 * options.set_back_cells + 1);
+    const auto side = static_cast<std::size_t>(2 * set_back_cells + 1);
     Reached reached(side * side * side);
     std::uint64_t inside = 0, all = 0;
-    const std::size_t lines = std::min<std::size_t>(options.segments, border.pairs.size());
+    const std::size_t lines = std::min<std::size_t>(segments, border.pairs.size());
     for (std::size_t line = 0; line < lines; ++line) {
         const auto [i, j] = border.pairs[line * border.pairs.size() / lines];
         const Eigen::Vector3d middle = 0.5 * (position(surfels, i) + position(surfels, j));
-        const int steps = options.set_back_cells;
-        const Eigen::Vector3d p =
-            onto(fa, position(surfels, set_back(surfels, regions, i, middle, steps, reached)));
-        const Eigen::Vector3d q =
-            onto(fb, position(surfels, set_back(surfels, regions, j, middle, steps, reached)));
-        for (std::uint32_t k = 1; k <= options.points_per_segment; ++k) {
-            const double t = k / (options.points_per_segment + 1.0);
+        const Eigen::Vector3d p = onto(
+            fa, position(surfels, set_back(surfels, regions, i, middle, set_back_cells, reached)));
+        const Eigen::Vector3d q = onto(
+            fb, position(surfels, set_back(surfels, regions, j, middle, set_back_cells, reached)));
+        for (std::uint32_t k = 1; k <= points_per_segment; ++k) {
+            const double t = k / (points_per_segment + 1.0);
             const Eigen::Vector3d r = p + t * (q - p);
             ++all;
             inside +=

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/algebraic_model.h"
+#include "geometry/face_limits.h"
 #include "geometry/merge.h"
 #include "geometry/minimum_cut.h"
 #include "geometry/region_facts.h"
@@ -15,6 +16,25 @@
 namespace topple::geometry {
 
 namespace {
+
+// Faces of different solids that happen to be flush are cut apart. All of these are set by hand,
+// and tried in scenes whose right cuts are known (tests/host/geometry/merge_test.cpp).
+
+// How far in front of a face a surfel can't belong to its solid, in cells beyond the noise, which
+// may spread a face over two layers of cells.
+constexpr double front_cells = 1.5;
+// Cosine of the angle (45 degrees) below which two faces bound a solid at an edge.
+constexpr double crease_cos = 0.7;
+// How many times its own surfels a face may have in front of it: else it is a fragment beside them.
+constexpr double most_in_front = 4;
+// The longest cut, over the side of a square as large as the smaller part; unless that part is so
+// many cells thick, and this share of it lies in front of the face.
+constexpr double longest_neck = 1.5, least_thickness_cells = 4, least_proven_share = 0.8;
+// How much shorter a level cut counts: things stand on one another.
+constexpr double level_bias = 0.15;
+// What a surfel that nothing speaks against costs when it is cut off, in cells of cut times the
+// side of a square as large as the whole face.
+constexpr double kept_weight = 2;
 
 using Members = std::vector<std::uint32_t>;
 // What is known of a face that meets a solid in a convex edge: the solid lies behind all of its
@@ -33,10 +53,9 @@ struct Division {
 class Cutter {
   public:
     Cutter(const Surfels& surfels, const Vec3& up, const std::vector<std::int32_t>& solid,
-           const MergeOptions& options, CutRegions& cuts, RegionFacts& facts)
+           CutRegions& cuts, RegionFacts& facts)
         : s_(surfels),
           up_(up[0], up[1], up[2]),
-          options_(options),
           out_(cuts),
           facts_(facts),
           solid_(solid),
@@ -65,8 +84,7 @@ class Cutter {
     }
 
     bool cut(std::size_t k) {
-        if (region(k).model.degree != 1 || out_.members[k].size() < 2 * options_.piece_min)
-            return false;
+        if (region(k).model.degree != 1 || out_.members[k].size() < 2 * least_piece) return false;
         const std::vector<Contradiction> all = contradictions(k);
         if (all.empty()) return false;
         std::optional<Division> best;
@@ -74,11 +92,11 @@ class Cutter {
         for (const Contradiction& c : all) {
             facts_.threads().poll();
             Division d = divide(face, c);
-            if (std::min(d.inside.size(), d.outside.size()) < options_.piece_min) continue;
-            const bool block = d.thickness >= options_.thickness_min &&
+            if (std::min(d.inside.size(), d.outside.size()) < least_piece) continue;
+            const bool block = d.thickness >= least_thickness_cells &&
                                static_cast<double>(c.outside.size()) >=
-                                   options_.proven_min * static_cast<double>(d.outside.size());
-            if (d.neck > options_.neck_max && !block) continue;
+                                   least_proven_share * static_cast<double>(d.outside.size());
+            if (d.neck > longest_neck && !block) continue;
             if (!best || d.neck < best->neck) best = std::move(d);
         }
         if (best) apply(k, std::move(*best));
@@ -108,18 +126,18 @@ class Cutter {
     }
 
     bool convex_edge(const Border& border, std::size_t a, std::size_t b) const {
-        if (region(b).model.degree != 1 || region(b).surfels < options_.piece_min) return false;
-        if (std::abs(direction(a).dot(direction(b))) > options_.crease_cos) return false;
+        if (region(b).model.degree != 1 || region(b).surfels < least_piece) return false;
+        if (std::abs(direction(a).dot(direction(b))) > crease_cos) return false;
         const double side = std::sqrt(static_cast<double>(region(b).surfels));
-        return static_cast<double>(border.pairs.size()) >= options_.border_share * side &&
-               border.inside_share > options_.delta2;
+        return static_cast<double>(border.pairs.size()) >= least_border * side &&
+               border.inside_share > least_inside_share;
     }
 
     double tolerance(std::size_t k) const { return facts_.samples()[k].tolerance_m; }
-    double reach(std::size_t k) const { return tolerance(k) + options_.front_cells * s_.cell_m; }
+    double reach(std::size_t k) const { return tolerance(k) + front_cells * s_.cell_m; }
 
     bool same_plane(std::size_t a, std::size_t b) const {
-        if (direction(a).dot(direction(b)) < 0.97) return false;
+        if (direction(a).dot(direction(b)) < parallel_cos) return false;
         const auto& o = region(b).model.origin;
         const double off = distance(region(a).model, {o[0], o[1], o[2]});
         return std::abs(off) < tolerance(a) + tolerance(b);
@@ -142,7 +160,7 @@ class Cutter {
         if (neighbour >= solid_.size()) return {neighbour};
         std::vector<std::size_t> out;
         for (const std::size_t f : faces_[static_cast<std::size_t>(solid_[neighbour])])
-            if (f != k && region(f).model.degree == 1 && region(f).surfels >= options_.piece_min)
+            if (f != k && region(f).model.degree == 1 && region(f).surfels >= least_piece)
                 out.push_back(f);
         return out;
     }
@@ -163,7 +181,7 @@ class Cutter {
             Contradiction c;
             for (std::uint32_t m = 0; m < own.size(); ++m)
                 if (front[m]) c.outside.push_back(m);
-            if (c.outside.size() < options_.piece_min) continue;
+            if (c.outside.size() < least_piece) continue;
             for (std::size_t f = e; f < edges.size(); ++f) {
                 if (!same_solid(neighbour, edges[f].neighbour)) continue;
                 used[f] = true;
@@ -176,7 +194,7 @@ class Cutter {
     }
 
     // A face that is not itself at the edge tells of surfels in front of it only where it is no
-    // scrap beside them.
+    // fragment beside them.
     void mark_front(const Members& own, std::size_t f, bool at_edge,
                     std::vector<bool>& front) const {
         const AlgebraicModel& plane = region(f).model;
@@ -185,7 +203,7 @@ class Cutter {
         for (std::uint32_t m = 0; m < own.size(); ++m)
             if (distance(plane, position(s_, own[m])) > far) found.push_back(m);
         if (!at_edge && static_cast<double>(found.size()) >
-                            options_.front_share * static_cast<double>(region(f).surfels))
+                            most_in_front * static_cast<double>(region(f).surfels))
             return;
         for (const std::uint32_t m : found) front[m] = true;
     }
@@ -229,7 +247,7 @@ class Cutter {
     // The shortest cut through the face that parts the one from the other.
     Division divide(Face& face, const Contradiction& c) const {
         const std::vector<double>& area = face.area;
-        const double pull = (solid_.empty() ? 0 : options_.pull) /
+        const double pull = (solid_.empty() ? 0 : kept_weight) /
                             std::sqrt(std::accumulate(area.begin(), area.end(), 0.0));
         std::vector<CutNode> nodes(area.size());
         for (std::size_t m = 0; m < nodes.size(); ++m) nodes[m].from_source = pull * area[m];
@@ -264,7 +282,7 @@ class Cutter {
     double weight(std::uint32_t i, std::uint32_t j) const {
         const Eigen::Vector3d d = position(s_, i) - position(s_, j);
         const double length = std::max(d.norm(), 0.5 * s_.cell_m);
-        const double level = options_.level_bias * std::abs(d.dot(up_)) / length;
+        const double level = level_bias * std::abs(d.dot(up_)) / length;
         return s_.cell_m / length / (1 + EIGEN_PI / 2 - 0.15) * (1 - level);
     }
 
@@ -279,7 +297,6 @@ class Cutter {
 
     const Surfels& s_;
     Eigen::Vector3d up_;
-    const MergeOptions& options_;
     CutRegions& out_;
     RegionFacts& facts_;
     std::vector<std::int32_t> solid_;              // of each region, as merged before
@@ -291,8 +308,8 @@ class Cutter {
 }  // namespace
 
 void cut_flush_faces(const Surfels& surfels, const Vec3& up, const std::vector<std::int32_t>& solid,
-                     const MergeOptions& options, CutRegions& cuts, RegionFacts& facts) {
-    Cutter(surfels, up, solid, options, cuts, facts).run();
+                     CutRegions& cuts, RegionFacts& facts) {
+    Cutter(surfels, up, solid, cuts, facts).run();
 }
 
 }  // namespace topple::geometry

@@ -12,8 +12,8 @@
 namespace topple::geometry {
 namespace {
 
-// Below this a part of a region is noise at the ledge.
-constexpr std::size_t least_piece = 6;
+// Below this a part of a region, in surfels, is noise at the ledge: less than half of a face.
+constexpr std::size_t least_ledge_part = least_piece / 2;
 
 }  // namespace
 
@@ -43,7 +43,7 @@ std::uint32_t cut_at_ledges(const Surfels& s, const Vec3& upwards,
             for (const std::uint32_t i : cuts.members[k])
                 if (up.dot(position(s, i)) > *ledge[n]) above.push_back(i);
             const std::size_t below = cuts.members[k].size() - above.size();
-            if (std::min(above.size(), below) < least_piece) {
+            if (std::min(above.size(), below) < least_ledge_part) {
                 cuts.ledges[k].emplace_back(cuts.count, above.size() > below);
                 continue;
             }

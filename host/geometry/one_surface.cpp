@@ -4,11 +4,20 @@
 #include <tuple>
 
 #include "geometry/algebraic_model.h"
+#include "geometry/face_limits.h"
 #include "geometry/merge.h"
 #include "geometry/split.h"
 
 // Whether what several regions or surfels show is one surface.
 namespace topple::geometry {
+namespace {
+
+// Pieces of a level plane that bounds the scene (a floor, or a table among things) are one where at
+// most this share of the surfels around them lies below it, strays, and each holds at least this
+// share of all surfels. Set by hand.
+constexpr double most_behind_share = 0.01, least_level_share = 0.002;
+
+}  // namespace
 
 // Surfels are sorted by cell.
 std::int64_t surfel_at(const Surfels& s, const Eigen::Vector3d& p) {
@@ -31,8 +40,7 @@ bool coplanar(const Regions& regions, const std::vector<RegionSamples>& samples,
               std::size_t b, double slack_m) {
     if (regions.regions[a].model.degree != 1 || regions.regions[b].model.degree != 1) return false;
     if (samples[a].points.empty() || samples[b].points.empty()) return false;
-    constexpr double parallel = 0.97;  // cosine
-    if (samples[a].normals.front().dot(samples[b].normals.front()) < parallel) return false;
+    if (samples[a].normals.front().dot(samples[b].normals.front()) < parallel_cos) return false;
     const auto off = [&](std::size_t points, std::size_t plane) {
         double sum = 0;
         for (const auto& p : samples[points].points)
@@ -52,7 +60,6 @@ bool ledge_between(const PrimitiveSet& primitives, std::size_t i, std::size_t j)
 
 bool in_one_surface(const Surfels& surfels, const PrimitiveSet& primitives, std::size_t i,
                     std::size_t j) {
-    constexpr double parallel = 0.97;  // cosine
     const Regions& regions = primitives.faces;
     const std::int32_t a = regions.label[i], b = regions.label[j];
     if (a < 0 || b < 0) return false;
@@ -61,23 +68,22 @@ bool in_one_surface(const Surfels& surfels, const PrimitiveSet& primitives, std:
     if (a == b) return true;
     if (ledge_between(primitives, i, j)) return false;
     const Eigen::Vector3d p = position(surfels, i), q = position(surfels, j);
-    if (gradient(ra.model, p).normalized().dot(gradient(rb.model, q).normalized()) < parallel)
+    if (gradient(ra.model, p).normalized().dot(gradient(rb.model, q).normalized()) < parallel_cos)
         return false;
-    const double bound = 2 * std::max(ra.residual_m, rb.residual_m) + 0.25 * surfels.cell_m;
+    const double bound = own_surface_m(std::max(ra.residual_m, rb.residual_m), surfels.cell_m);
     return std::abs(distance(ra.model, q)) <= bound && std::abs(distance(rb.model, p)) <= bound;
 }
 
 std::vector<std::pair<std::int32_t, std::int32_t>> find_level_pieces(
     const Surfels& surfels, const Vec3& up, const Regions& regions,
-    const std::vector<RegionSamples>& samples, const MergeOptions& options) {
-    constexpr double level = 0.97;  // cosine
+    const std::vector<RegionSamples>& samples) {
     const Eigen::Vector3d upwards(up[0], up[1], up[2]);
     std::vector<std::size_t> large;
     for (std::size_t k = 0; k < regions.regions.size(); ++k)
         if (regions.regions[k].model.degree == 1 && !samples[k].normals.empty() &&
-            samples[k].normals.front().dot(upwards) > level &&
+            samples[k].normals.front().dot(upwards) > parallel_cos &&
             static_cast<double>(regions.regions[k].surfels) >=
-                options.level_piece_min * static_cast<double>(surfels.size()))
+                least_level_share * static_cast<double>(surfels.size()))
             large.push_back(k);
     const std::size_t step = surfels.size() / 20000 + 1;
 
@@ -101,7 +107,7 @@ std::vector<std::pair<std::int32_t, std::int32_t>> find_level_pieces(
             ++all;
             behind += distance(plane, p) < -tolerance;
         }
-        return static_cast<double>(behind) <= options.behind_max * static_cast<double>(all);
+        return static_cast<double>(behind) <= most_behind_share * static_cast<double>(all);
     };
 
     std::vector<std::pair<std::int32_t, std::int32_t>> pieces;

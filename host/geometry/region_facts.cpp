@@ -10,8 +10,8 @@
 namespace topple::geometry {
 
 RegionFacts::RegionFacts(const Surfels& surfels, const CutRegions& cuts, const FreeSpace& free,
-                         const MergeOptions& options, ThreadPool& threads)
-    : s_(surfels), cuts_(cuts), free_(free), options_(options), threads_(threads) {
+                         ThreadPool& threads)
+    : s_(surfels), cuts_(cuts), free_(free), threads_(threads) {
     std::vector<std::int32_t> all(cuts.members.size());
     std::iota(all.begin(), all.end(), 0);
     update(all);
@@ -25,7 +25,7 @@ void RegionFacts::update(const std::vector<std::int32_t>& changed) {
     for (const std::int32_t k : changed) forget(k);
     threads_.each(changed.size(), 4, [&](std::size_t n) {
         const auto k = static_cast<std::size_t>(changed[n]);
-        samples_[k] = sample_region(s_, cuts_, k, options_);
+        samples_[k] = sample_region(s_, cuts_, k);
         box_[k].setEmpty();
         for (const std::uint32_t i : cuts_.members[k]) box_[k].extend(position(s_, i));
     });
@@ -83,29 +83,26 @@ void RegionFacts::find_borders(const std::vector<std::int32_t>& changed) {
             std::min(cuts_.regions.regions[a].surfels, cuts_.regions.regions[b].surfels);
         border.length =
             static_cast<double>(border.pairs.size()) / std::sqrt(static_cast<double>(smaller));
-        if (border.length < options_.border_share) return;
-        border.inside_share =
-            inside_share(s_, cuts_.regions, border,
-                         {samples_[a].tolerance_m, samples_[b].tolerance_m}, options_);
+        if (border.length < least_border) return;
+        border.inside_share = inside_share(s_, cuts_.regions, border,
+                                           {samples_[a].tolerance_m, samples_[b].tolerance_m});
     });
 }
 
 void RegionFacts::find_face_pieces(const std::vector<std::int32_t>& changed) {
-    constexpr std::size_t least = 12;  // surfels that a piece must have
     std::vector<bool> among(cuts_.members.size(), false);
     for (const std::int32_t k : changed) among[static_cast<std::size_t>(k)] = true;
     // The widest gap that is looked into, and a little for rounding.
-    const double reach = 1.001 * (options_.gap_m + s_.cell_m);
+    const double reach = 1.001 * (widest_face_gap_m + s_.cell_m);
     std::vector<std::vector<std::int32_t>> found(changed.size());
     threads_.each(changed.size(), 4, [&](std::size_t n) {
         const auto k = static_cast<std::size_t>(changed[n]);
-        if (cuts_.members[k].size() < least) return;
+        if (cuts_.members[k].size() < least_piece) return;
         for (std::size_t other = 0; other < cuts_.members.size(); ++other) {
-            if (other == k || cuts_.members[other].size() < least) continue;
+            if (other == k || cuts_.members[other].size() < least_piece) continue;
             if (among[other] && other < k) continue;  // its own turn finds the pair
             if (box_[k].exteriorDistance(box_[other]) > reach) continue;
-            if (are_face_pieces(s_, cuts_, samples_, std::min(k, other), std::max(k, other),
-                                options_))
+            if (are_face_pieces(s_, cuts_, samples_, std::min(k, other), std::max(k, other)))
                 found[n].push_back(static_cast<std::int32_t>(other));
         }
     });

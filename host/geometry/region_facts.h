@@ -20,7 +20,7 @@ class RegionFacts {
 
     // Keeps references to all arguments.
     RegionFacts(const Surfels& surfels, const CutRegions& cuts, const FreeSpace& free,
-                const MergeOptions& options, ThreadPool& threads);
+                ThreadPool& threads);
 
     // To be told after these regions changed; new regions count.
     void update(const std::vector<std::int32_t>& changed);
@@ -49,7 +49,6 @@ class RegionFacts {
     const Surfels& s_;
     const CutRegions& cuts_;
     const FreeSpace& free_;
-    const MergeOptions& options_;
     ThreadPool& threads_;
     std::vector<RegionSamples> samples_;
     std::vector<Eigen::AlignedBox3d> box_;

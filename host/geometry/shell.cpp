@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/room_measures.h"
 #include "fitted/boosted_trees.h"
 #include "geometry/primitive_shapes.h"
 #include "geometry/shell_features.h"
@@ -15,9 +16,8 @@ namespace {
 // What is flat has normals whose mean is no shorter, and a wall even: a cupboard's front and one of
 // its sides are none, and are filled, while the floor of a coarse scan is rough. What is level is
 // no more than 45 degrees from it; and a floor no higher above the lowest than a platform is, or as
-// large as a gallery.
-constexpr double flat_face = 0.7, wall_face = 0.9, level_cos = 0.7, platform_m = 0.5,
-                 gallery_m2 = 4;
+// large as that of a room, a gallery.
+constexpr double flat_face = 0.7, wall_face = 0.9, level_cos = 0.7, platform_m = 0.5;
 
 Role role_of_shape(const PrimitiveShape& p, double floor_m, double top_m) {
     const double level = p.face()[2];
@@ -27,7 +27,7 @@ Role role_of_shape(const PrimitiveShape& p, double floor_m, double top_m) {
     const double height = p.center[2] - floor_m;
     // Of a sheet whose sides are confused, the nearer end of the room tells.
     if (level < 0 && top_m - p.center[2] < height) return Role::ceiling;
-    if (height < platform_m || (level > 0 && p.area_m2 >= gallery_m2)) return Role::floor;
+    if (height < platform_m || (level > 0 && p.area_m2 >= least_floor_m2)) return Role::floor;
     return Role::fixture;
 }
 

@@ -4,6 +4,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "core/room_measures.h"
+
 namespace topple::geometry {
 
 std::vector<Face> faces(const Surfels& s, const std::vector<std::int32_t>& label, std::size_t count,
@@ -83,7 +85,7 @@ double ceiling_height(const std::vector<Face>& faces, const Vec3& up, double flo
     double height = -INFINITY;
     for (const Face& f : faces) {
         if (f.level(up) < -horizontal_cos && f.area_m2 >= wall_area_m2 &&
-            f.lowest_m - floor_m >= lowest_ceiling_m && f.highest_m < top_m)
+            f.lowest_m - floor_m >= lowest_room_m && f.highest_m < top_m)
             height = std::max({height, f.lowest_m, f.height_m(up) - below_ceiling_m});
     }
     return std::isfinite(height) ? height : INFINITY;

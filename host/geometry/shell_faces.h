@@ -22,8 +22,8 @@ inline constexpr double wall_area_m2 = 0.3;
 inline constexpr double high_wall_m2 = 1.5;
 // A wall has its other face no farther behind, and goes on beyond a door of this width.
 inline constexpr double thickest_wall_m = 0.5, door_m = 1.5;
-// Ceilings hang no lower above the floor, and walls end no lower below them.
-inline constexpr double lowest_ceiling_m = 2.0, below_ceiling_m = 0.2;
+// Walls end no lower below ceilings.
+inline constexpr double below_ceiling_m = 0.2;
 
 inline double component(const Vec3& a, double x, double y, double z) {
     return a[0] * x + a[1] * y + a[2] * z;

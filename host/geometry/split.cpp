@@ -21,6 +21,15 @@ float quantile(std::vector<float> values, double q) {
 
 constexpr std::uint64_t split_chunk = 1 << 13;  // surfels handed to a thread at once
 
+// How far a surfel may be from a model, in standard deviations of its noise: of Gaussian noise one
+// surfel in 370 is further.
+constexpr double tolerance_sigmas = 3;
+// Share of a cell that counts as noise even where the scan is clean: the error of resampling to
+// cells. Set by hand.
+constexpr double cell_noise_share = 0.1;
+// How many times the typical angle between neighbouring normals is allowed: as tolerance_sigmas.
+constexpr double angle_noises = tolerance_sigmas;
+
 // The lower quartile of each surfel's neighbourhood, itself included: at most 27 values.
 std::vector<float> lower_neighbours(const Surfels& s, const std::vector<float>& value,
                                     ThreadPool& threads) {
@@ -62,23 +71,22 @@ double normal_noise(const Surfels& s, float smooth_m) {
 
 }  // namespace
 
-SplitScale measure_scale(const Surfels& surfels, const SplitOptions& options, ThreadPool& threads) {
+SplitScale measure_scale(const Surfels& surfels, ThreadPool& threads) {
     SplitScale scale;
-    scale.layer_m = options.layer_cells * surfels.cell_m;
+    scale.layer_m = surfels.cell_m;
     const float typical = quantile(surfels.roughness_m, 0.5);
     const float rough = quantile(surfels.roughness_m, 0.75);
     std::vector<float> noise = lower_neighbours(surfels, surfels.roughness_m, threads);
     noise = lower_neighbours(surfels, noise, threads);
-    const double floor_m = options.cell_noise_share * surfels.cell_m;
+    const double floor_m = cell_noise_share * surfels.cell_m;
     scale.tolerance_m.resize(surfels.size());
     threads.each(surfels.size(), split_chunk, [&](std::size_t i) {
         const double sigma = std::clamp(noise[i], 0.5f * typical, rough);
-        scale.tolerance_m[i] =
-            static_cast<float>(options.tolerance_sigma * std::hypot(sigma, floor_m));
+        scale.tolerance_m[i] = static_cast<float>(tolerance_sigmas * std::hypot(sigma, floor_m));
     });
     const double degree = EIGEN_PI / 180;
-    scale.angle_rad = std::clamp(options.angle_factor * normal_noise(surfels, typical),
-                                 options.angle_min_deg * degree, options.angle_max_deg * degree);
+    scale.angle_rad = std::clamp(angle_noises * normal_noise(surfels, typical),
+                                 least_angle_deg * degree, most_angle_deg * degree);
     return scale;
 }
 
@@ -129,12 +137,11 @@ void refit_regions(const Surfels& surfels, const SplitScale& scale, ThreadPool& 
 }
 
 Regions split(const Surfels& surfels, ThreadPool& threads) {
-    const SplitOptions options;
     if (surfels.size() == 0) return {};
-    const SplitScale scale = measure_scale(surfels, options, threads);
-    Regions regions = grow_regions(surfels, scale, options, threads);
+    const SplitScale scale = measure_scale(surfels, threads);
+    Regions regions = grow_regions(surfels, scale, threads);
     refit_regions(surfels, scale, threads, regions);
-    clean_regions(surfels, scale, options, threads, regions);
+    clean_regions(surfels, scale, threads, regions);
     return regions;
 }
 

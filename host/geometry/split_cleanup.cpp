@@ -7,27 +7,33 @@
 #include <tuple>
 
 #include "geometry/algebraic_model.h"
+#include "geometry/face_limits.h"
 #include "geometry/split.h"
 
 namespace topple::geometry {
 
 namespace {
 
-constexpr double kReach = 2.0;  // tolerances within which a leftover still belongs to a model
-constexpr double kNeighbourVote = 2.0;  // weight of all neighbours agreeing, against the fit's cost
-constexpr int kSmoothingPasses = 3;
-constexpr std::uint64_t kChunk = 1 << 13;  // surfels handed to a thread at once
-constexpr std::uint32_t kAbsorbBelow =
-    40;  // surfels under which a region may be taken by a neighbour
+// Misfits (below) are in what growing allows: 1 is its bound. All of these are set by hand.
+constexpr double leftover_reach = 2;  // of distance alone, within which a leftover joins a model
+constexpr double absorbed_misfit = 1.25;  // mean over a small region that a neighbour takes
+constexpr double most_misfit = 4;         // so that a stray counts no more than its neighbours do
+constexpr double angle_weight = 0.5;      // of the normal's misfit beside the distance's
+// Surfels under which a region may be taken by a neighbour: some of the least regions.
+constexpr std::uint32_t absorbed_below = 5 * least_region;
+// The smoothing of borders: what all neighbours that agree count against a misfit, and how often it
+// is done.
+constexpr double neighbour_vote = 2;
+constexpr int smoothing_passes = 3;
+constexpr std::uint64_t cleanup_chunk = 1 << 13;  // surfels handed to a thread at once
 
 class Cleaner {
   public:
-    Cleaner(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
-            ThreadPool& threads, Regions& regions)
-        : s_(surfels), scale_(scale), options_(options), threads_(threads), r_(regions) {}
+    Cleaner(const Surfels& surfels, const SplitScale& scale, ThreadPool& threads, Regions& regions)
+        : s_(surfels), scale_(scale), threads_(threads), r_(regions) {}
 
     void run() {
-        hand_out(kReach);
+        hand_out(leftover_reach);
         make_regions_of_leftovers();
         refit_regions(s_, scale_, threads_, r_);
         absorb_small();
@@ -48,7 +54,7 @@ class Cleaner {
         const Eigen::Vector3d g = gradient(model(label), p);
         const double length = g.norm();
         const double c = length > 0 ? normal(s_, i).dot(g) / length : 0;
-        return d + 0.5 * std::acos(std::clamp(c, -1.0, 1.0)) / scale_.angle_rad;
+        return d + angle_weight * std::acos(std::clamp(c, -1.0, 1.0)) / scale_.angle_rad;
     }
 
     // Surfels without a region go to adjacent regions, best fits first, so that a border between
@@ -104,7 +110,7 @@ class Cleaner {
     void place(const std::vector<std::uint32_t>& piece,
                const std::map<std::int32_t, std::uint32_t>& touches) {
         std::int32_t label = -1;
-        if (piece.size() >= options_.region_min) {
+        if (piece.size() >= least_region) {
             label = static_cast<std::int32_t>(r_.regions.size());
             Region region;
             region.model.degree = 2;
@@ -124,7 +130,7 @@ class Cleaner {
             if (r_.label[i] >= 0) members[static_cast<std::size_t>(r_.label[i])].push_back(i);
         std::vector<std::int32_t> order;
         for (std::size_t k = 0; k < members.size(); ++k)
-            if (members[k].size() < kAbsorbBelow) order.push_back(static_cast<std::int32_t>(k));
+            if (members[k].size() < absorbed_below) order.push_back(static_cast<std::int32_t>(k));
         std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
             return members[std::size_t(a)].size() < members[std::size_t(b)].size();
         });
@@ -137,7 +143,7 @@ class Cleaner {
                     if (other >= 0 && other != k) ++touches[other];
                 }
             std::int32_t best = -1;
-            double best_cost = 1.25;
+            double best_cost = absorbed_misfit;
             for (const auto& [other, count] : touches) {
                 double cost = 0;
                 for (const std::uint32_t i : mine) cost += misfit(other, i);
@@ -155,8 +161,8 @@ class Cleaner {
     // Each surfel at a border takes the label that fits best given its neighbours, all at once.
     void smooth_borders() {
         std::vector<std::int32_t> next(r_.label.size());
-        for (int pass = 0; pass < kSmoothingPasses; ++pass) {
-            threads_.each(s_.size(), kChunk, [&](std::size_t i) {
+        for (int pass = 0; pass < smoothing_passes; ++pass) {
+            threads_.each(s_.size(), cleanup_chunk, [&](std::size_t i) {
                 next[i] = smoothed_label(static_cast<std::uint32_t>(i));
             });
             r_.label.swap(next);
@@ -181,8 +187,8 @@ class Cleaner {
         double best = 1e9;
         for (std::size_t k = 0; k < labels; ++k) {
             const auto [label, count] = votes[k];
-            const double cost = std::min(misfit(label, i), 4.0) -
-                                kNeighbourVote * count / static_cast<double>(last - first);
+            const double cost = std::min(misfit(label, i), most_misfit) -
+                                neighbour_vote * count / static_cast<double>(last - first);
             if (cost < best) best = cost, chosen = label;
         }
         return chosen;
@@ -190,16 +196,15 @@ class Cleaner {
 
     const Surfels& s_;
     const SplitScale& scale_;
-    const SplitOptions& options_;
     ThreadPool& threads_;
     Regions& r_;
 };
 
 }  // namespace
 
-void clean_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
-                   ThreadPool& threads, Regions& regions) {
-    Cleaner(surfels, scale, options, threads, regions).run();
+void clean_regions(const Surfels& surfels, const SplitScale& scale, ThreadPool& threads,
+                   Regions& regions) {
+    Cleaner(surfels, scale, threads, regions).run();
 }
 
 }  // namespace topple::geometry

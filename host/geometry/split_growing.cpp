@@ -4,26 +4,32 @@
 #include <numeric>
 
 #include "geometry/algebraic_model.h"
+#include "geometry/face_limits.h"
 #include "geometry/split.h"
 
 namespace topple::geometry {
 
 namespace {
 
-constexpr std::size_t kFitSample = 2000;  // points that a quadric's fit looks at
-constexpr int kQuadricRounds = 8;
+constexpr std::size_t fit_sample = 2000;  // points that a quadric's fit looks at: for its time
+constexpr int quadric_rounds = 8;         // of growing and fitting, at most
+
+// A plane whose own surfels turn less than this under a quadric (degrees from their mean, 90th
+// percentile) is flat: then no two of them differ by more than surfels of a plane always may.
+constexpr double flat_turn_deg = least_angle_deg / 2;
+// What a quadric must gain over the plane that it grew from, in surfels. Set by hand.
+constexpr double least_quadric_gain = 1.25;
+// Largest rms angle between a quadric and its surfels' normals, as a share of the angle that is
+// allowed: angles that are spread evenly up to that, as of a quadric bent through the faces of a
+// box, have 1 / sqrt(3) = 0.58.
+constexpr double most_quadric_angle_share = 0.55;
 
 using Members = std::vector<std::uint32_t>;
 
 class Grower {
   public:
-    Grower(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
-           ThreadPool& threads)
-        : s_(surfels),
-          scale_(scale),
-          options_(options),
-          threads_(threads),
-          cos_angle_(std::cos(scale.angle_rad)) {
+    Grower(const Surfels& surfels, const SplitScale& scale, ThreadPool& threads)
+        : s_(surfels), scale_(scale), threads_(threads), cos_angle_(std::cos(scale.angle_rad)) {
         out_.label.assign(s_.size(), -1);
         seen_.assign(s_.size(), 0);
     }
@@ -46,12 +52,12 @@ class Grower {
     void grow_from(std::uint32_t seed) {
         AlgebraicModel model;
         Members members = grow_plane(seed, model);
-        if (members.size() < options_.region_min) return;
+        if (members.size() < least_region) return;
         if (bends(members)) {
             AlgebraicModel quadric;
             const Members curved = grow_quadric(members, quadric);
             if (static_cast<double>(curved.size()) >
-                    options_.quadric_gain * static_cast<double>(members.size()) &&
+                    least_quadric_gain * static_cast<double>(members.size()) &&
                 follows_normals(curved, quadric)) {
                 members = curved;
                 model = quadric;
@@ -113,7 +119,7 @@ class Grower {
     AlgebraicModel fit(const Members& members) {
         points_.clear();
         normals_.clear();
-        const std::size_t step = members.size() / kFitSample + 1;
+        const std::size_t step = members.size() / fit_sample + 1;
         for (std::size_t k = 0; k < members.size(); k += step) {
             points_.push_back(position(s_, members[k]));
             normals_.push_back(normal(s_, members[k]));
@@ -135,12 +141,12 @@ class Grower {
         for (const auto& d : direction) cosine.push_back(d.dot(mean));
         const auto low = cosine.begin() + static_cast<std::ptrdiff_t>(cosine.size() / 10);
         std::nth_element(cosine.begin(), low, cosine.end());
-        return *low < std::cos(options_.flat_turn_deg * EIGEN_PI / 180);
+        return *low < std::cos(flat_turn_deg * EIGEN_PI / 180);
     }
 
     Members grow_quadric(const Members& start, AlgebraicModel& model) {
         Members members = start;
-        for (int round = 0; round < kQuadricRounds; ++round) {
+        for (int round = 0; round < quadric_rounds; ++round) {
             model = fit(members);
             Members grown = flood(members, model, [](std::uint32_t) {});
             const bool settled = grown.size() < members.size() + members.size() / 50 + 1;
@@ -159,12 +165,11 @@ class Grower {
             sum += angle * angle;
         }
         const double rms = std::sqrt(sum / static_cast<double>(members.size()));
-        return rms < options_.quadric_angle_share * scale_.angle_rad;
+        return rms < most_quadric_angle_share * scale_.angle_rad;
     }
 
     const Surfels& s_;
     const SplitScale& scale_;
-    const SplitOptions& options_;
     ThreadPool& threads_;
     double cos_angle_;
     Regions out_;
@@ -175,9 +180,8 @@ class Grower {
 
 }  // namespace
 
-Regions grow_regions(const Surfels& surfels, const SplitScale& scale, const SplitOptions& options,
-                     ThreadPool& threads) {
-    return Grower(surfels, scale, options, threads).run();
+Regions grow_regions(const Surfels& surfels, const SplitScale& scale, ThreadPool& threads) {
+    return Grower(surfels, scale, threads).run();
 }
 
 }  // namespace topple::geometry

@@ -5,13 +5,15 @@
 #include <cmath>
 #include <limits>
 
+#include "core/room_measures.h"
+
 namespace topple::geometry {
 namespace {
 
 // A level holds at least this share of the largest one's surface.
-constexpr double least_share = 0.3;
-// Nobody builds lower rooms, nor thicker or thinner slabs.
-constexpr double lowest_room_m = 2.0, thickest_slab_m = 0.8, thinnest_slab_m = 0.08;
+constexpr double least_peak_share = 0.3;
+// Nobody builds thicker or thinner slabs.
+constexpr double thickest_slab_m = 0.8, thinnest_slab_m = 0.08;
 // A level's surface spreads over its noise.
 constexpr double spread_m = 0.05;
 
@@ -41,7 +43,7 @@ std::vector<Level> find_levels(const std::vector<double>& area, double low, doub
     std::vector<Level> levels;
     for (std::ptrdiff_t n = 0; n < count; ++n) {
         const double here = at(window, n);
-        if (here < least_share * most || here <= 0) continue;
+        if (here < least_peak_share * most || here <= 0) continue;
         bool peak = true;
         for (std::ptrdiff_t m = n - 2 * reach - 1; m <= n + 2 * reach + 1 && peak; ++m) {
             if (m < 0 || m >= count || m == n) continue;

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/scan_gaps.h"
 #include "core/thread_pool.h"
 #include "graph/outline.h"
 #include "physics/tipping.h"
@@ -258,7 +259,7 @@ void find_outlines(std::span<const Carrier> carriers,
 
 // Solid that belongs to no primitive is mostly noise: it carries what rests on it with this share
 // of its columns.
-constexpr double least_on_scraps = 0.15;
+constexpr double least_on_fragments = 0.15;
 
 // What is not seen to hang, and is not seen to stand either, stands on the highest level surface
 // under it: others hide its foot, and it hides its shadow on the table.
@@ -364,8 +365,7 @@ std::span<const Leaning> ContactGraph::leanings_of(std::int32_t primitive) const
 }
 
 ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells,
-                                 std::int32_t primitives, unsigned gap,
-                                 const BoundaryCells& boundary) {
+                                 std::int32_t primitives, const BoundaryCells& boundary) {
     ContactGraph graph;
     graph.primitives = primitives;
     graph.voxel_m = cells.voxel_m;
@@ -375,7 +375,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
     graph.lowest_m.assign(count, std::numeric_limits<double>::infinity());
     graph.highest_m.assign(count, -std::numeric_limits<double>::infinity());
     graph.section_m2.assign(count, 0.0);
-    graph.pairs = physics::touching_pairs(device, cells, primitives, gap);
+    graph.pairs = physics::touching_pairs(device, cells, primitives);
     add_silhouettes(cells, cells.j, cells.k, 0, graph);
     add_silhouettes(cells, cells.i, cells.k, 1, graph);
     add_silhouettes(cells, cells.i, cells.j, 2, graph);
@@ -413,7 +413,7 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         ++gaps[{upper, lower, empty}];
         if (cells.unseen_below.empty() || cells.unseen_below[n] >= empty)
             ++hidden[std::minmax(upper, lower)];
-        if (empty > static_cast<std::int32_t>(gap)) continue;
+        if (empty > static_cast<std::int32_t>(contact_gap)) continue;
         carried[{upper, lower}].push_back({cells.i[n], cells.j[n], cells.k[n], cells.k[n - 1] + 1});
     }
     for (std::size_t p = 0; p < count; ++p)
@@ -423,13 +423,13 @@ ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells
         const auto& [supported, supporter] = key;
         const Extent& load = extents[static_cast<std::size_t>(supported)];
         const auto met = static_cast<double>(columns.size());
-        const bool scraps = supporter < 0;
-        if (scraps && met < least_on_scraps * static_cast<double>(load.columns)) continue;
-        const double area = scraps ? met : upward_faces(graph.pairs, supporter, supported);
+        const bool fragments = supporter < 0;
+        if (fragments && met < least_on_fragments * static_cast<double>(load.columns)) continue;
+        const double area = fragments ? met : upward_faces(graph.pairs, supporter, supported);
         if (area <= 0) continue;
         // A surface at least half as wide may go on where it is hidden; a leg does not.
         const bool wide =
-            !scraps && 2 * extents[static_cast<std::size_t>(supporter)].columns >= load.columns;
+            !fragments && 2 * extents[static_cast<std::size_t>(supporter)].columns >= load.columns;
         carriers.push_back({supporter, supported, area * h * h, wide, columns});
     }
     find_outlines(carriers, undersides, h, shapes, device.threads(), graph);

@@ -57,11 +57,9 @@ struct ContactGraph {
     std::span<const Leaning> leanings_of(std::int32_t primitive) const;
 };
 
-// Gaps of up to `gap` empty voxels count as contact: sensor noise leaves such gaps. Heights and
-// outlines of contacts are those of the surfaces in `boundary`, where there are any, else of
-// voxels.
+// Gaps of up to contact_gap empty voxels count as contact. Heights and outlines of contacts are
+// those of the surfaces in `boundary`, where there are any, else of voxels.
 ContactGraph build_contact_graph(device::Device& device, const SolidCells& cells,
-                                 std::int32_t primitives, unsigned gap = 1,
-                                 const BoundaryCells& boundary = {});
+                                 std::int32_t primitives, const BoundaryCells& boundary = {});
 
 }  // namespace topple::graph

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/scan_gaps.h"
 #include "core/touching_cells.h"
 #include "core/union_find.h"
 #include "graph/rest.h"

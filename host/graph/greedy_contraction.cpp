@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/union_find.h"
+
 namespace topple::graph {
 namespace {
 
@@ -15,12 +17,14 @@ class Contraction {
   public:
     Contraction(std::int32_t nodes, std::span<const Joint> joints, const std::vector<bool>& pinned,
                 std::span<const double> to_pinned, std::span<const std::vector<std::int32_t>> apart)
-        : between_(static_cast<std::size_t>(nodes)), apart_(apart.size()) {
+        : sets_(static_cast<std::size_t>(nodes)),
+          between_(static_cast<std::size_t>(nodes)),
+          apart_(apart.size()) {
         std::int32_t ground = -1;
         for (std::int32_t n = 0; n < nodes; ++n) {
-            const bool held = pinned[static_cast<std::size_t>(n)];
-            if (held && ground < 0) ground = n;
-            parent_.push_back(held ? ground : n);
+            if (!pinned[static_cast<std::size_t>(n)]) continue;
+            if (ground < 0) ground = n;
+            sets_.join(static_cast<std::size_t>(ground), static_cast<std::size_t>(n));
         }
         for (std::size_t n = 0; n < apart.size(); ++n) {
             for (const std::int32_t other : apart[n])
@@ -48,7 +52,7 @@ class Contraction {
             join(a, b);
         }
         std::vector<std::int32_t> label;
-        for (std::int32_t n = 0; n < static_cast<std::int32_t>(parent_.size()); ++n)
+        for (std::int32_t n = 0; n < static_cast<std::int32_t>(between_.size()); ++n)
             label.push_back(root(n));
         return label;
     }
@@ -58,8 +62,7 @@ class Contraction {
         return between_[static_cast<std::size_t>(n)];
     }
     std::int32_t root(std::int32_t n) {
-        while (parent_[static_cast<std::size_t>(n)] != n) n = parent_[static_cast<std::size_t>(n)];
-        return n;
+        return static_cast<std::int32_t>(sets_.root(static_cast<std::size_t>(n)));
     }
     void add(std::int32_t a, std::int32_t b, double log_odds) {
         if (a == b) return;
@@ -74,7 +77,7 @@ class Contraction {
     }
     // b joins a, which is the lower.
     void join(std::int32_t a, std::int32_t b) {
-        parent_[static_cast<std::size_t>(b)] = a;
+        sets_.join(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
         if (!apart_.empty()) {
             for (const std::int32_t other : apart_[static_cast<std::size_t>(b)]) {
                 apart_[static_cast<std::size_t>(other)].erase(b);
@@ -93,7 +96,7 @@ class Contraction {
         at(b).clear();
     }
 
-    std::vector<std::int32_t> parent_;
+    UnionFind sets_;
     std::vector<std::map<std::int32_t, double>> between_;
     std::vector<std::set<std::int32_t>> apart_;  // by root, other roots; or empty
     // (sum, -a, -b): the largest sum first, then the lowest nodes.

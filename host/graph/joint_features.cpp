@@ -51,7 +51,7 @@ class Rows {
           threads_(threads),
           borders_(find_borders(samples, threads)),
           nodes_(shapes.of.size()) {
-        for (const float p : shell) ground_.push_back(p > 0.5f);
+        for (const float p : shell) in_shell_.push_back(p > 0.5f);
         for (const Border& b : borders_) {
             at_[{b.a, b.b}].border = &b;
             add(b.a, b.near_a);
@@ -69,8 +69,8 @@ class Rows {
             const Vector3d box = (shapes.of[p].high - shapes.of[p].low).cwiseMax(samples.spacing_m);
             node.fill = node.volume_m3 / box.prod();
             if (bodies[p].voxels > 0)
-                node.stands =
-                    margin(candidate_of(contacts, bodies, ground_, {static_cast<std::int32_t>(p)}));
+                node.stands = margin(
+                    candidate_of(contacts, bodies, in_shell_, {static_cast<std::int32_t>(p)}));
         });
     }
 
@@ -115,7 +115,7 @@ class Rows {
     ThreadPool& threads_;
     std::vector<Border> borders_;
     std::vector<Node> nodes_;
-    std::vector<bool> ground_;
+    std::vector<bool> in_shell_;
     std::map<std::pair<std::int32_t, std::int32_t>, Evidence> at_;
 };
 
@@ -310,7 +310,8 @@ void Rows::add_row(std::int32_t a, std::int32_t b, const Evidence& e, float* row
     in.small_shell = shell_[at(small)];
     in.big_shell = shell_[at(big)];
     const std::array<std::int32_t, 2> both{std::min(a, b), std::max(a, b)};
-    in.union_stands = margin(candidate_of(contacts_, bodies_, ground_, {both.begin(), both.end()}));
+    in.union_stands =
+        margin(candidate_of(contacts_, bodies_, in_shell_, {both.begin(), both.end()}));
     if (e.touching) {
         const auto axis = static_cast<std::size_t>(
             std::max_element(e.touching->normal.begin(), e.touching->normal.end(),

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/scan_gaps.h"
 #include "core/solid_cells.h"
 #include "graph/contact_graph.h"
 #include "physics/bodies.h"
@@ -14,9 +15,6 @@
 // Standing is evidence: what was scanned stood. Where an object would fall off what was seen to
 // hold it, it is likelier that the scan missed some of that than that it was just falling.
 namespace topple::graph {
-
-// Empty voxels that noise leaves under a thing.
-inline constexpr std::int32_t noise_gap = 3;
 
 // A column of an object's cells: where it ends below, and what is under it. Voxels.
 struct Underside {

@@ -31,7 +31,7 @@ std::vector<Edge> edges_of(std::span<const Joint> joints) {
 }  // namespace
 
 physics::Candidate candidate_of(const ContactGraph& graph, std::span<const physics::Body> bodies,
-                                const std::vector<bool>& ground,
+                                const std::vector<bool>& shell,
                                 std::vector<std::int32_t> primitives) {
     physics::Candidate candidate;
     std::sort(primitives.begin(), primitives.end());
@@ -51,7 +51,7 @@ physics::Candidate candidate_of(const ContactGraph& graph, std::span<const physi
     for (const std::int32_t p : primitives) {
         if (points.empty()) break;
         for (const Leaning& l : graph.leanings_of(p)) {
-            if (!ground[static_cast<std::size_t>(l.against)]) continue;
+            if (!shell[static_cast<std::size_t>(l.against)]) continue;
             if (l.height_m < candidate.body.center[2]) continue;
             if (std::binary_search(primitives.begin(), primitives.end(), l.against)) continue;
             for (const auto& at : l.outline)
@@ -68,7 +68,7 @@ physics::Candidate candidate_of(const ContactGraph& graph, std::span<const physi
 }
 
 double free_fall_m(const ContactGraph& graph, std::span<const std::int32_t> primitives) {
-    // A scrap under one corner does not stop a fall.
+    // A fragment under one corner does not stop a fall.
     constexpr double least_share = 0.15;  // of the body, seen from below
     std::vector<Clearance> under;
     double lowest = std::numeric_limits<double>::infinity(), area = 0;

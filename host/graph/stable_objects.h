@@ -41,9 +41,8 @@ struct Grouping {
 // The rigid body that a set of primitives makes: its mass properties, and where it is held up by
 // what is not part of it. What something below carries is held as well where it touches the room's
 // shell at a height no less than its centre of mass: a ladder leans on its wall.
-// ground: by primitive, true for the shell.
 physics::Candidate candidate_of(const ContactGraph& graph, std::span<const physics::Body> bodies,
-                                const std::vector<bool>& ground,
+                                const std::vector<bool>& shell,
                                 std::vector<std::int32_t> primitives);
 
 // Height that the body falls before it meets something, metres, where nothing holds it up.

@@ -36,7 +36,7 @@ std::map<Pair, Evidence> gather(const ContactGraph& contacts,
     for (const Carrying& c : contacts.carryings) {
         if (c.supporter < 0) continue;
         const Pair pair{object(c.supporter), object(c.supported)};
-        // The ground carries, and nothing carries it, though scraps of it may lie on things.
+        // The ground carries, and nothing carries it, though fragments of it may lie on things.
         if (pair.first != pair.second && !objects[static_cast<std::size_t>(pair.second)].grounded)
             found[pair].contact += c.area_m2 / (contacts.voxel_m * contacts.voxel_m);
     }

@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "io/corrections_json.h"
 
+#include "io/text.h"
+
 namespace topple::io {
 
 std::optional<Correction::Kind> correction_kind(std::string_view name) {
     for (const auto& [kind, known] : correction_kinds)
         if (name == known) return kind;
     return std::nullopt;
+}
+
+std::string known_corrections() {
+    std::string known;
+    for (const auto& [kind, name] : correction_kinds)
+        known.append(known.empty() ? "" : ", ").append(name);
+    return known;
 }
 
 OrderedJson json_of_correction(const AppliedCorrection& applied) {
@@ -26,8 +35,14 @@ OrderedJson json_of_correction(const AppliedCorrection& applied) {
 AppliedCorrection correction_of(const OrderedJson& json) {
     AppliedCorrection out;
     Correction& c = out.correction;
-    c.kind =
-        correction_kind(json.at("do").get<std::string>()).value_or(Correction::Kind::one_thing);
+    const auto name = json.at("do").get<std::string>();
+    const auto kind = correction_kind(name);
+    if (!kind)
+        throw OrderedJson::other_error::create(
+            501,
+            "\"do\" of a correction is " + in_quotes(name) + "; there are " + known_corrections(),
+            &json);
+    c.kind = *kind;
     c.at_m = json.at("at_m").get<std::vector<Vec3>>();
     if (json.contains("from_m")) c.from_m = json.at("from_m").get<std::vector<Vec3>>();
     if (json.contains("wall_m")) c.wall_m = json.at("wall_m").get<double>();

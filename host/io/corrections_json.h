@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -21,6 +22,8 @@ inline constexpr std::array correction_kinds{std::pair{Correction::Kind::one_thi
                                              std::pair{Correction::Kind::mass, "mass"},
                                              std::pair{Correction::Kind::name, "name"}};
 std::optional<Correction::Kind> correction_kind(std::string_view name);
+// "one_thing, apart, ..."
+std::string known_corrections();
 
 OrderedJson json_of_correction(const AppliedCorrection& applied);
 // Throws nlohmann's exceptions for what is none.

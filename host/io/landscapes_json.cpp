@@ -8,6 +8,7 @@
 #include "core/json.h"
 #include "io/file_writer.h"
 #include "io/json_text.h"
+#include "io/json_values.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -15,7 +16,7 @@ namespace {
 
 using Json = OrderedJson;
 
-constexpr const char* schema = "topple.landscapes/1";
+constexpr const char* landscapes_schema = "topple.landscapes/1";
 
 double rounded(double value, int digits) {
     if (value == 0 || !std::isfinite(value)) return value;
@@ -23,19 +24,19 @@ double rounded(double value, int digits) {
     return std::round(value * scale) / scale;
 }
 
-Json number(double value) {
+Json rounded_number(double value) {
     return std::isfinite(value) ? Json(rounded(value, 6)) : Json(nullptr);
 }
 
-Json vector(const Vec3& v) {
+Json rounded_vector(const Vec3& v) {
     auto json = Json::array();
     for (const double x : v) json.push_back(std::round(x * 1e4) / 1e4);
     return json;
 }
 
-Json vectors(const std::vector<Vec3>& all) {
+Json rounded_vectors(const std::vector<Vec3>& all) {
     auto json = Json::array();
-    for (const Vec3& v : all) json.push_back(vector(v));
+    for (const Vec3& v : all) json.push_back(rounded_vector(v));
     return json;
 }
 
@@ -53,42 +54,38 @@ Json places_json(const Landscape::Places& places) {
     return {{"side", places.side}, {"step_m", places.step_m}, {"energy_J", std::move(energy)}};
 }
 
-Json to_json(const Object& object) {
+Json landscape_json(const Object& object) {
     const Landscape& l = object.landscape;
     auto poses = Json::array(), passes = Json::array();
     for (const Landscape::Pose& pose : l.poses) {
-        poses.push_back({{"up", vector(pose.up)},
-                         {"energy_J", number(pose.energy_J)},
-                         {"joins_at_J", number(pose.joins_at_J)},
+        poses.push_back({{"up", rounded_vector(pose.up)},
+                         {"energy_J", rounded_number(pose.energy_J)},
+                         {"joins_at_J", rounded_number(pose.joins_at_J)},
                          {"joins", pose.joins},
-                         {"probability", number(pose.probability)}});
+                         {"probability", rounded_number(pose.probability)}});
     }
     for (const Landscape::Pass& pass : l.passes) {
-        passes.push_back({{"up", vector(pass.up)},
-                          {"energy_J", number(pass.energy_J)},
+        passes.push_back({{"up", rounded_vector(pass.up)},
+                          {"energy_J", rounded_number(pass.energy_J)},
                           {"poses", pass.poses},
-                          {"border", vectors(pass.border)}});
+                          {"border", rounded_vectors(pass.border)}});
     }
     return {{"id", object.id},
-            {"hull_m", vectors(l.hull_m)},
+            {"hull_m", rounded_vectors(l.hull_m)},
             {"now", l.now},
             {"poses", std::move(poses)},
             {"passes", std::move(passes)},
             {"places", places_json(l.places)}};
 }
 
-Vec3 vector_of(const Json& json) {
+Vec3 finite_vector_of(const Json& json) {
     return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
 
 std::vector<Vec3> vectors_of(const Json& json) {
     std::vector<Vec3> out;
-    for (const Json& v : json) out.push_back(vector_of(v));
+    for (const Json& v : json) out.push_back(finite_vector_of(v));
     return out;
-}
-
-double number_of(const Json& json, double missing) {
-    return json.is_null() ? missing : json.get<double>();
 }
 
 // A number of a pose, of which there are `poses`, or -1.
@@ -117,7 +114,7 @@ Landscape landscape_of(const Json& json, const std::filesystem::path& file) {
     l.now = pose_of(json.at("now"), poses.size(), file);
     for (const Json& pose : poses) {
         l.poses.push_back(
-            {vector_of(pose.at("up")), number_of(pose.at("energy_J"), nan),
+            {finite_vector_of(pose.at("up")), number_of(pose.at("energy_J"), nan),
              number_of(pose.at("joins_at_J"), std::numeric_limits<double>::infinity()),
              pose_of(pose.at("joins"), poses.size(), file),
              number_of(pose.at("probability"), nan)});
@@ -125,7 +122,7 @@ Landscape landscape_of(const Json& json, const std::filesystem::path& file) {
     check_joins(l, file);
     for (const Json& pass : json.at("passes")) {
         const Json& sides = pass.at("poses");
-        Landscape::Pass out{vector_of(pass.at("up")),
+        Landscape::Pass out{finite_vector_of(pass.at("up")),
                             number_of(pass.at("energy_J"), nan),
                             {},
                             vectors_of(pass.at("border"))};
@@ -155,9 +152,9 @@ Landscape landscape_of(const Json& json, const std::filesystem::path& file) {
 void write_landscapes_json(const std::filesystem::path& file, const Scene& scene) {
     auto objects = Json::array();
     for (const Object& object : scene.objects) {
-        if (!object.grounded) objects.push_back(to_json(object));
+        if (!object.grounded) objects.push_back(landscape_json(object));
     }
-    const Json json{{"schema", schema}, {"objects", std::move(objects)}};
+    const Json json{{"schema", landscapes_schema}, {"objects", std::move(objects)}};
     write_file(file, json.dump() + "\n");
 }
 
@@ -167,7 +164,8 @@ void read_landscapes_json(const std::filesystem::path& file, Scene& scene) {
     check_json_nesting(file, text);
     try {
         const auto json = Json::parse(text.begin(), text.end());
-        if (json.at("schema") != schema) fail(file, "its schema is not " + std::string(schema));
+        if (json.at("schema") != landscapes_schema)
+            fail(file, "its schema is not " + std::string(landscapes_schema));
         for (const Json& object : json.at("objects")) {
             const auto id = object.at("id").get<std::int64_t>();
             if (id < 0 || id >= static_cast<std::int64_t>(scene.objects.size()))

@@ -116,10 +116,7 @@ class Entry {
     Kind kind() const {
         const std::string name = text("do");
         if (const auto kind = io::correction_kind(name)) return *kind;
-        std::string known;
-        for (const auto& [kind, name_of] : io::correction_kinds)
-            known.append(known.empty() ? "" : ", ").append(name_of);
-        wrong("\"do\" is " + io::in_quotes(name) + "; there are " + known);
+        wrong("\"do\" is " + io::in_quotes(name) + "; there are " + io::known_corrections());
     }
     std::vector<Vec3> spots(const char* name) const {
         const auto due = [&] {

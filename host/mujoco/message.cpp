@@ -1,29 +1,25 @@
 // SPDX-License-Identifier: MIT
 #include "mujoco/message.h"
 
-#include <cstdint>
-
 namespace topple::mujoco {
 namespace {
 
-template <class Visitor, class Of>
-void settled_fields(Visitor& visit, Of& settled) {
-    visit(settled.problem);
-    visit(settled.cut_short);
-    visit(settled.version);
-    visit(settled.contacts);
-    visit(settled.deepest_m);
-    visit(settled.left_out);
-    visit(settled.simulated_s);
-    visit(settled.wall_s);
-}
-
-template <class Visitor, class Of>
-void motion_fields(Visitor& visit, Of& motion) {
-    visit(motion.body);
-    visit(motion.moved_m);
-    visit(motion.turned_deg);
-    visit(motion.fastest_m_s);
+template <class Io, class Of>
+void settled_fields(Io& io, Of& settled) {
+    io(settled.problem);
+    io(settled.cut_short);
+    io(settled.version);
+    io(settled.contacts);
+    io(settled.deepest_m);
+    io(settled.left_out);
+    io(settled.simulated_s);
+    io(settled.wall_s);
+    list_fields(io, settled.motions, [](auto& each, auto& motion) {
+        each(motion.body);
+        each(motion.moved_m);
+        each(motion.turned_deg);
+        each(motion.fastest_m_s);
+    });
 }
 
 }  // namespace
@@ -31,8 +27,6 @@ void motion_fields(Visitor& visit, Of& motion) {
 void write_settled(const Settled& settled) {
     child::Writer writer;
     settled_fields(writer, settled);
-    writer(static_cast<std::uint64_t>(settled.motions.size()));
-    for (const Motion& motion : settled.motions) motion_fields(writer, motion);
     writer.finish();
 }
 
@@ -40,9 +34,6 @@ Settled read_settled(const child::Answer& answer) {
     child::Reader reader(answer);
     Settled out;
     settled_fields(reader, out);
-    std::uint64_t motions = 0;
-    reader(motions);
-    for (std::uint64_t n = 0; n < motions; ++n) motion_fields(reader, out.motions.emplace_back());
     reader.finish();
     return out;
 }

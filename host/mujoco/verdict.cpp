@@ -1,35 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include "mujoco/verdict.h"
 
-#include <cmath>
 #include <cstdio>
 #include <map>
 #include <utility>
 
 #include "core/json.h"
+#include "io/json_values.h"
 
 namespace topple::mujoco {
 namespace {
 
 constexpr Says all_says[] = {Says::stable, Says::unsure, Says::falls};
 
-OrderedJson number_json(double value) {
-    return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr);
-}
-
 OrderedJson object_json(const ObjectVerdict& o) {
     OrderedJson json{{"id", o.object},
                      {"says", to_string(o.says)},
-                     {"barrier_J", number_json(o.barrier_J)},
-                     {"barrier_error_J", number_json(o.barrier_error_J)},
+                     {"barrier_J", io::number(o.barrier_J)},
+                     {"barrier_error_J", io::number(o.barrier_error_J)},
                      {"on_pad", o.on_pad},
                      {"held", o.held},
                      {"free", o.motion.has_value()}};
     if (o.motion) {
         json["stays"] = o.stays();
-        json["moved_m"] = number_json(o.motion->moved_m);
-        json["turned_deg"] = number_json(o.motion->turned_deg);
-        json["fastest_m_s"] = number_json(o.motion->fastest_m_s);
+        json["moved_m"] = io::number(o.motion->moved_m);
+        json["turned_deg"] = io::number(o.motion->turned_deg);
+        json["fastest_m_s"] = io::number(o.motion->fastest_m_s);
     }
     const std::optional<bool> agrees = o.agrees();
     json["agrees"] = agrees ? OrderedJson(*agrees) : OrderedJson(nullptr);
@@ -129,13 +125,13 @@ std::string verdict_json(const Verdict& verdict) {
     const OrderedJson json{{"schema", "topple.verify/1"},
                            {"simulator", "MuJoCo " + run.version},
                            {"asked_s", verdict.asked_s},
-                           {"simulated_s", number_json(run.simulated_s)},
+                           {"simulated_s", io::number(run.simulated_s)},
                            {"cut_short", run.cut_short},
-                           {"real_time_factor", number_json(real_time_factor(run))},
+                           {"real_time_factor", io::number(real_time_factor(run))},
                            {"stays_within_m", stays_m},
                            {"stays_within_deg", stays_deg},
                            {"contacts_at_start", run.contacts},
-                           {"deepest_contact_m", number_json(run.deepest_m)},
+                           {"deepest_contact_m", io::number(run.deepest_m)},
                            {"steps_without_room", run.left_out},
                            {"counts", std::move(counts)},
                            {"objects", std::move(objects)}};

@@ -2,7 +2,7 @@
 #pragma once
 
 // What a level blow does to a rigid body that stands on level ground: seen from the side, along the
-// way of the blow. docs/algorithms.md derives the equations. Metres, seconds; per kilogram of the
+// way of the blow. docs/risk.md derives the equations. Metres, seconds; per kilogram of the
 // body.
 namespace topple::physics {
 

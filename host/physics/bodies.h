@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/boundary_cells.h"
+#include "core/scan_gaps.h"
 #include "core/solid_cells.h"
 #include "device/device.h"
 #include "topple/input.h"
@@ -41,8 +42,8 @@ struct TouchingPair {
 };
 
 // All touching pairs, sorted by (a, b). Gaps of up to `gap` empty voxels along an axis count as
-// contact (noise leaves one-voxel gaps).
+// contact.
 std::vector<TouchingPair> touching_pairs(device::Device& device, const SolidCells& cells,
-                                         std::int32_t count, unsigned gap = 1);
+                                         std::int32_t count, unsigned gap = contact_gap);
 
 }  // namespace topple::physics

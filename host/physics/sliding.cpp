@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "core/scan_gaps.h"
 #include "core/thread_pool.h"
 #include "physics/slide_map.h"
 #include "physics/vectors.h"
@@ -37,8 +38,7 @@ std::vector<Footprint> footprints(const SolidCells& cells, std::span<const std::
 // The level that most of the columns rest on; of equals the higher, where the object would land
 // first.
 void find_support(const SolidCells& cells, const CellColumns& columns,
-                  std::span<const std::int32_t> object, std::int32_t self, unsigned gap,
-                  Footprint& foot) {
+                  std::span<const std::int32_t> object, std::int32_t self, Footprint& foot) {
     std::map<std::int32_t, std::size_t> votes;
     for (const Footprint::Column& c : foot.columns) {
         const auto [first, last] = columns.at(c.i, c.j);
@@ -46,7 +46,8 @@ void find_support(const SolidCells& cells, const CellColumns& columns,
         for (std::size_t n = first; n < last && cells.k[n] < c.low; ++n) {
             if (object[n] != self) below = n;
         }
-        if (below == last || std::int64_t{c.low} - cells.k[below] > std::int64_t{gap} + 1) continue;
+        if (below == last || std::int64_t{c.low} - cells.k[below] > std::int64_t{contact_gap} + 1)
+            continue;
         ++votes[cells.k[below]];
     }
     std::size_t most = 0;
@@ -326,12 +327,12 @@ SlideResult slide_one(const SolidCells& cells, const CellColumns& columns,
                       std::span<const std::int32_t> object, std::int32_t self,
                       const Footprint& foot, const Body& body, double friction,
                       const SlideOptions& options) {
-    SlideMap map(cells, columns, object, self, foot, body.center, options.reach_m);
+    SlideMap map(cells, columns, object, self, foot, body.center, longest_slide_m);
     if (!options.stances.empty()) map.stand(options.stances[static_cast<std::size_t>(self)]);
     const double x = body.center[0] / cells.voxel_m, y = body.center[1] / cells.voxel_m;
     const Search::Way way = Search(map, x, y).run();
     SlideResult result;
-    const bool found = way.found && way.length * cells.voxel_m <= options.reach_m;
+    const bool found = way.found && way.length * cells.voxel_m <= longest_slide_m;
     if (options.places)
         result.places = places_around(
             map, body, std::clamp(1.3 * (found ? way.length * cells.voxel_m : 0), 0.3, 1.5),
@@ -400,7 +401,7 @@ std::vector<SlideResult> slide_all(const SolidCells& cells,
     std::vector<SlideResult> results(objects.size());
     const auto slide = [&](std::size_t o) {
         const auto self = static_cast<std::int32_t>(o);
-        find_support(cells, columns, object, self, options.gap, feet[o]);
+        find_support(cells, columns, object, self, feet[o]);
         if (!feet[o].stands && !options.stances.empty() && !options.stances[o].polygon.empty()) {
             feet[o].support = static_cast<std::int32_t>(
                                   std::lround(options.stances[o].height_m / cells.voxel_m)) -
@@ -431,7 +432,7 @@ std::vector<Landscape::Places> places_of(const SolidCells& cells,
     std::vector<Landscape::Places> out;
     for (const std::size_t o : chosen) {
         const auto self = static_cast<std::int32_t>(o);
-        find_support(cells, columns, object, self, SlideOptions{}.gap, feet[o]);
+        find_support(cells, columns, object, self, feet[o]);
         out.emplace_back();
         if (!feet[o].stands || !(objects[o].mass_kg > 0)) continue;
         SlideMap map(cells, columns, object, self, feet[o], objects[o].center, reach_m);

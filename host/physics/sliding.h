@@ -47,9 +47,10 @@ struct Stance {
     bool unseen = false;
 };
 
+// Ways longer than this are no longer one push, metres. Set by hand.
+inline constexpr double longest_slide_m = 3;
+
 struct SlideOptions {
-    unsigned gap = 1;                      // empty voxels that still count as contact
-    double reach_m = 3;                    // ways longer than this are no longer one push
     bool places = false;                   // whether to look at all places around the object
     std::span<const Stance> stances = {};  // by object; empty: none of any
     std::span<const std::array<double, 2>> ways = {};  // unit, horizontal: to look straight along

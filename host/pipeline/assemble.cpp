@@ -243,18 +243,16 @@ void note_crowded_objects(Scene& scene) {
     }
 }
 
-// A gale inside takes an open window.
-void note_wind_indoors(const SolidParts& parts, const SafetyStage& safety, Scene& scene) {
+// What comes in only where something is open.
+void note_indoors(const SolidParts& parts, const SafetyStage& safety, Scene& scene) {
     const auto roles = parts.solids->primitives();
     bool ceiling = false;
     for (std::size_t p = 0; p < roles; ++p)
         ceiling = ceiling || parts.solids->role(static_cast<std::int32_t>(p)) == Role::ceiling;
-    const bool wind = std::ranges::any_of(
-        safety.disturbances, [](const safety::Disturbance& d) { return d.name == "wind"; });
-    if (ceiling && wind)
-        scene.notes.push_back(
-            "A ceiling was scanned, and the wind is taken to blow as outside: where windows "
-            "and doors are closed in gales leave wind out of the disturbances.");
+    if (!ceiling) return;
+    for (const safety::Disturbance& d : safety.disturbances)
+        if (const char* note = safety::disturbance_kind(d.name).below_ceiling)
+            scene.notes.emplace_back(note);
 }
 
 void note_corrections(Scene& scene) {
@@ -317,7 +315,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     note_unsettled_search(scene);
     note_crowded_objects(scene);
     note_uncertain_barriers(scene);
-    note_wind_indoors(parts, safety, scene);
+    note_indoors(parts, safety, scene);
     scene.swc_energy = objects.grouping.energy_curve;
     explain(parts, objects, to_input, scene);
     foretell(objects, safety, to_input, scene);

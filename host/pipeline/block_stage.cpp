@@ -66,6 +66,29 @@ struct SeamRecord {
     std::uint64_t pairs = 0, flush = 0, ledge = 0;
 };
 
+template <class Io, class Parts, class Seams>
+void block_fields(Io& io, Parts& parts, Seams& seams) {
+    io(parts.primitives);
+    auto& c = parts.cells;
+    for (auto* values : {&c.i, &c.j, &c.k, &c.primitive}) io(*values);
+    io(c.basis);
+    io(c.unseen_below);
+    io(seams);
+    auto& samples = parts.samples;
+    io(samples.edge_m);
+    io(samples.spacing_m);
+    for (auto* values : geometry::columns_of(samples)) io(*values);
+    io(samples.primitive);
+    io(parts.empty_leaves);
+    io(parts.leaves);
+    io(parts.states);
+    list_fields(io, parts.labels, [](auto& each, auto& labels) {
+        each(labels.bin);
+        each(labels.cells);
+        each(labels.primitive);
+    });
+}
+
 }  // namespace
 
 BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
@@ -117,12 +140,6 @@ std::filesystem::path block_file(const std::filesystem::path& folder, std::size_
 }
 
 void write_block(const std::filesystem::path& folder, std::size_t block, const BlockParts& parts) {
-    tiles::BinaryWriter out(block_file(folder, block));
-    out.array(parts.primitives);
-    const SolidCells& c = parts.cells;
-    for (const auto* values : {&c.i, &c.j, &c.k, &c.primitive}) out.array(*values);
-    out.array(c.basis);
-    out.array(c.unseen_below);
     std::vector<SeamRecord> seams;
     for (std::size_t p = 0; p < parts.seams.inside.size(); ++p) {
         const graph::Seam& s = parts.seams.inside[p];
@@ -131,32 +148,18 @@ void write_block(const std::filesystem::path& folder, std::size_t block, const B
     }
     for (const auto& [pair, s] : parts.seams.between)
         seams.push_back({pair.first, pair.second, s.variation, s.pairs, s.flush, s.ledge});
-    out.array(seams);
-    const geometry::SurfaceSamples& samples = parts.samples;
-    out.value(samples.edge_m);
-    out.value(samples.spacing_m);
-    for (const auto* values : geometry::columns_of(samples)) out.array(*values);
-    out.array(samples.primitive);
-    for (const auto* values : {&parts.empty_leaves, &parts.leaves}) out.array(*values);
-    out.array(parts.states);
-    out.value(static_cast<std::uint64_t>(parts.labels.size()));
-    for (const BlockParts::Labels& labels : parts.labels) {
-        out.value(labels.bin);
-        out.array(labels.cells);
-        out.array(labels.primitive);
-    }
+    tiles::BinaryWriter out(block_file(folder, block));
+    block_fields(out, parts, seams);
     out.finish();
 }
 
 BlockParts read_block(const std::filesystem::path& folder, std::size_t block) {
     tiles::BinaryReader in(block_file(folder, block));
     BlockParts out;
-    out.primitives = in.array<BlockParts::Primitive>();
-    SolidCells& c = out.cells;
-    for (auto* values : {&c.i, &c.j, &c.k, &c.primitive}) *values = in.array<std::int32_t>();
-    c.basis = in.array<Basis>();
-    c.unseen_below = in.array<std::uint8_t>();
+    std::vector<SeamRecord> seams;
+    block_fields(in, out, seams);
     const auto count = static_cast<std::int32_t>(out.primitives.size());
+    const SolidCells& c = out.cells;
     if (c.j.size() != c.size() || c.k.size() != c.size() || c.primitive.size() != c.size() ||
         c.basis.size() != c.size() || c.unseen_below.size() != c.size())
         in.damaged();
@@ -165,7 +168,7 @@ BlockParts read_block(const std::filesystem::path& folder, std::size_t block) {
     const auto is_primitive = [&](std::int32_t p) { return p >= -1 && p < count; };
     if (!std::ranges::all_of(c.primitive, is_primitive)) in.damaged();
     out.seams.inside.resize(out.primitives.size());
-    for (const SeamRecord& s : in.array<SeamRecord>()) {
+    for (const SeamRecord& s : seams) {
         if (s.a < 0 || s.b < s.a || s.b >= count) in.damaged();
         const graph::Seam seam{s.variation, s.pairs, s.flush, s.ledge};
         if (s.a == s.b) {
@@ -174,31 +177,19 @@ BlockParts read_block(const std::filesystem::path& folder, std::size_t block) {
             out.seams.between[{s.a, s.b}] = seam;
         }
     }
-    geometry::SurfaceSamples& samples = out.samples;
-    samples.edge_m = in.value<double>();
-    samples.spacing_m = in.value<double>();
-    for (auto* values : geometry::columns_of(samples)) *values = in.array<float>();
-    samples.primitive = in.array<std::int32_t>();
+    const geometry::SurfaceSamples& samples = out.samples;
     for (const auto* values : geometry::columns_of(samples)) {
         if (!values->empty() && values->size() != samples.primitive.size()) in.damaged();
     }
     if (!std::ranges::all_of(samples.primitive,
                              [&](std::int32_t p) { return p >= 0 && p < count; }))
         in.damaged();
-    for (auto* values : {&out.empty_leaves, &out.leaves}) *values = in.array<std::int32_t>();
-    out.states = in.array<std::uint8_t>();
     if (out.empty_leaves.size() % 3 || out.states.size() != out.leaves.size() / 3 * 512)
         in.damaged();
-    const auto lists = in.value<std::uint64_t>();
-    for (std::uint64_t n = 0; n < lists; ++n) {
-        BlockParts::Labels labels;
-        labels.bin = in.value<std::uint64_t>();
-        labels.cells = in.array<std::uint32_t>();
-        labels.primitive = in.array<std::int32_t>();
+    for (const BlockParts::Labels& labels : out.labels) {
         if (labels.primitive.size() != labels.cells.size() ||
             !std::ranges::all_of(labels.primitive, is_primitive))
             in.damaged();
-        out.labels.push_back(std::move(labels));
     }
     return out;
 }

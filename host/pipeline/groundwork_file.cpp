@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Changes with what is written below.
-constexpr std::string_view groundwork_mark = "topple groundwork 1";
+constexpr std::string_view groundwork_mark = "topple groundwork 2";
 
 // --- What it depends on ---
 
@@ -101,134 +101,29 @@ void add_options(Checksum& sum, const ParseOptions& options) {
 
 // --- How it is written: one list of fields for both ways ---
 
-class ToFile {
-  public:
-    explicit ToFile(tiles::BinaryWriter& file) : file_(file) {}
-    template <class T>
-    void operator()(const T& value) {
-        if constexpr (std::is_same_v<T, bool>)
-            file_.value(static_cast<std::uint8_t>(value));
-        else
-            file_.value(value);
-    }
-    template <class T>
-    void operator()(const std::vector<T>& values) {
-        if constexpr (std::is_same_v<T, bool>) {
-            (*this)(std::vector<std::uint8_t>(values.begin(), values.end()));
-        } else if constexpr (std::is_trivially_copyable_v<T>) {
-            file_.array(values);
-        } else {
-            (*this)(static_cast<std::uint64_t>(values.size()));
-            for (const T& value : values) fields(*this, value);
-        }
-    }
-
-  private:
-    tiles::BinaryWriter& file_;
-};
-
-class FromFile {
-  public:
-    explicit FromFile(tiles::BinaryReader& file) : file_(file) {}
-    template <class T>
-    void operator()(T& value) {
-        if constexpr (std::is_same_v<T, bool>)
-            value = file_.value<std::uint8_t>() != 0;
-        else
-            value = file_.value<T>();
-    }
-    template <class T>
-    void operator()(std::vector<T>& values) {
-        if constexpr (std::is_same_v<T, bool>) {
-            const auto bytes = file_.array<std::uint8_t>();
-            values.assign(bytes.begin(), bytes.end());
-        } else if constexpr (std::is_trivially_copyable_v<T>) {
-            values = file_.array<T>();
-        } else {
-            const auto count = file_.value<std::uint64_t>();
-            values.clear();
-            for (std::uint64_t n = 0; n < count; ++n) fields(*this, values.emplace_back());
-        }
-    }
-
-  private:
-    tiles::BinaryReader& file_;
-};
-
-void fields(ToFile& io, const std::string& text) {
-    io(std::vector<char>(text.begin(), text.end()));
-}
-void fields(FromFile& io, std::string& text) {
-    std::vector<char> letters;
-    io(letters);
-    text.assign(letters.begin(), letters.end());
-}
 // Structs with gaps between their members go by members: equal groundwork is equal files.
-void fields(ToFile& io, const std::vector<graph::Clearance>& clearances) {
-    std::vector<std::int32_t> below;
-    std::vector<std::array<double, 2>> rest;
-    for (const graph::Clearance& c : clearances) {
-        below.push_back(c.below);
-        rest.push_back({c.gap_m, c.area_m2});
-    }
-    io(below);
-    io(rest);
-}
-void fields(FromFile& io, std::vector<graph::Clearance>& clearances) {
-    std::vector<std::int32_t> below;
-    std::vector<std::array<double, 2>> rest;
-    io(below);
-    io(rest);
-    for (std::size_t n = 0; n < std::min(below.size(), rest.size()); ++n)
-        clearances.push_back({below[n], rest[n][0], rest[n][1]});
-}
-void patch_fields(ToFile& io, const std::vector<SurfacePatch>& patches) {
-    std::vector<std::int32_t> primitive;
-    std::vector<std::array<double, 15>> form;
-    for (const SurfacePatch& p : patches) {
-        primitive.push_back(p.primitive);
-        auto to = form.emplace_back().begin();
-        to = std::ranges::copy(p.origin, to).out;
-        to = std::ranges::copy(p.c, to).out;
-        *to++ = p.noise_m;
-        *to = p.offset_m;
-    }
-    io(primitive);
-    io(form);
-}
-void patch_fields(FromFile& io, std::vector<SurfacePatch>& patches) {
-    std::vector<std::int32_t> primitive;
-    std::vector<std::array<double, 15>> form;
-    io(primitive);
-    io(form);
-    for (std::size_t n = 0; n < std::min(primitive.size(), form.size()); ++n) {
-        SurfacePatch& p = patches.emplace_back();
-        std::copy_n(form[n].begin(), 3, p.origin.begin());
-        std::copy_n(form[n].begin() + 3, 10, p.c.begin());
-        p.noise_m = form[n][13];
-        p.offset_m = form[n][14];
-        p.primitive = primitive[n];
-    }
-}
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, graph::Carrying>
-void fields(Io& io, T& c) {
-    io(c.supporter);
-    io(c.supported);
-    io(c.area_m2);
-    io(c.height_m);
-    io(c.outline);
-    io(c.border_error_m);
-}
 template <class Io, class Contacts>
 void contact_fields(Io& io, Contacts& c) {
     io(c.primitives);
     io(c.voxel_m);
     io(c.pairs);
-    io(c.carryings);
+    list_fields(io, c.carryings, [](auto& each, auto& carrying) {
+        each(carrying.supporter);
+        each(carrying.supported);
+        each(carrying.area_m2);
+        each(carrying.height_m);
+        each(carrying.outline);
+        each(carrying.border_error_m);
+    });
     io(c.leanings);
     io(c.silhouette_m2);
-    io(c.clearances);
+    list_fields(io, c.clearances, [](auto& each, auto& of_primitive) {
+        list_fields(each, of_primitive, [](auto& one, auto& clearance) {
+            one(clearance.below);
+            one(clearance.gap_m);
+            one(clearance.area_m2);
+        });
+    });
     io(c.lowest_m);
     io(c.highest_m);
     io(c.section_m2);
@@ -269,7 +164,13 @@ void solid_fields(Io& io, Solids& s) {
         io(cells->unseen_below);
     }
     auto& b = s.boundary;
-    patch_fields(io, b.patches);
+    list_fields(io, b.patches, [](auto& each, auto& patch) {
+        each(patch.primitive);
+        each(patch.origin);
+        each(patch.c);
+        each(patch.noise_m);
+        each(patch.offset_m);
+    });
     for (auto* array : {&b.i, &b.j, &b.k, &b.primitive}) io(*array);
     for (auto& slot : b.slot) io(slot);
     io(b.form);
@@ -292,8 +193,8 @@ void ground_fields(Io& io, Ground& g) {
     auto& f = g.parts.frame;
     io(f.axes);
     io(f.found);
-    fields(io, f.up_method);
-    fields(io, f.note);
+    io(f.up_method);
+    io(f.note);
     io(f.up_share);
     io(g.parts.model);
     io(g.parts.shell_log_odds);
@@ -348,13 +249,12 @@ bool coherent(const Groundwork& g, const FlatSolids& solids) {
 }
 
 Groundwork read_whole(tiles::BinaryReader& file) {
-    FromFile io(file);
     Groundwork out;
     FlatSolids solids;
     vdb::SavedVoxels voxels;
-    ground_fields(io, out);
-    solid_fields(io, solids);
-    voxel_fields(io, voxels);
+    ground_fields(file, out);
+    solid_fields(file, solids);
+    voxel_fields(file, voxels);
     if (!coherent(out, solids)) file.damaged();
     try {
         out.parts.solids = std::make_shared<const SolidScene>(
@@ -403,13 +303,12 @@ void GroundworkFile::write(const Groundwork& ground) const {
     std::error_code error;
     try {
         tiles::BinaryWriter file(file_);
-        file.value(*key_);
-        ToFile io(file);
+        file(*key_);
         const FlatSolids solids = flat(*ground.parts.solids);
         const vdb::SavedVoxels voxels = ground.voxels->saved();
-        ground_fields(io, ground);
-        solid_fields(io, solids);
-        voxel_fields(io, voxels);
+        ground_fields(file, ground);
+        solid_fields(file, solids);
+        voxel_fields(file, voxels);
         file.finish(false);
     } catch (const Error& failed) {
         fs::remove(part, error);

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "geometry/depth_noise.h"
+#include "core/depth_noise.h"
 #include "geometry/frames_fusion.h"
 #include "geometry/single_scan.h"
 #include "geometry/surfels.h"
@@ -171,7 +171,7 @@ double cell_for_frames(const Intrinsics& k, std::size_t count,
                        const std::function<DepthFrame(std::size_t)>& load) {
     const double z = typical_depth(k, count, load);
     if (z <= 0) return 0.01;
-    const double noise = geometry::depth_sigma(z);
+    const double noise = depth_sigma(z);
     return std::clamp(std::max(1.5 * z / k.fx, 1.2 * noise), least_cell_m, 0.015);
 }
 

@@ -276,7 +276,7 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
     // The models of joints know contacts of whole voxels; what follows takes their true borders.
     const auto count = static_cast<std::int32_t>(solid.model.size());
     out.contacts = stage(
-        "borders", [&] { return graph::build_contact_graph(device, cells, count, 1, boundary); });
+        "borders", [&] { return graph::build_contact_graph(device, cells, count, boundary); });
     out.pair_probability =
         graph::pair_probabilities(out.contacts, parts.joints, parts.shell, hand.links());
     const physics::SupportTable table = stage("supports", [&] {

@@ -167,6 +167,18 @@ void bind_stages(py::module_& parent) {
             unlocked([&] { stages::support_functions(*device->device, v, starts, d, values); });
         });
     module.def("barriers", barriers);
+    module.def("label_spots", [](const std::vector<py::array>& cells, const py::array& label,
+                                 const py::array& state) {
+        const auto copied = [](const auto& values) {
+            return std::vector(values.begin(), values.end());
+        };
+        const stages::Voxels solid{copied(row<const std::int32_t>(cells.at(0), "i")),
+                                   copied(row<const std::int32_t>(cells.at(1), "j")),
+                                   copied(row<const std::int32_t>(cells.at(2), "k")),
+                                   copied(row<const std::int32_t>(label, "label")),
+                                   copied(row<const std::uint8_t>(state, "state"))};
+        return owned(unlocked([&] { return stages::label_spots(solid); }));
+    });
     module.def("convolve", [](const py::array& primary, const std::array<std::uint32_t, 3>& shape,
                               const std::vector<py::array>& footprint, const py::array& first,
                               const Device& device, const py::array& density) {

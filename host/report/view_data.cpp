@@ -10,6 +10,7 @@
 #include "core/scene_bounds.h"
 #include "report/cell_colours.h"
 #include "report/cells.h"
+#include "report/field_arrows.h"
 #include "report/open_sides.h"
 #include "report/part_spots.h"
 #include "report/surface_packer.h"
@@ -17,17 +18,6 @@
 
 namespace topple::report {
 namespace {
-
-struct Box {
-    Vec3 low{1e30, 1e30, 1e30}, high{-1e30, -1e30, -1e30};
-    void add(const Vec3& p) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            low[axis] = std::min(low[axis], p[axis]);
-            high[axis] = std::max(high[axis], p[axis]);
-        }
-    }
-    bool empty() const { return low[0] > high[0]; }
-};
 
 // The pairs of primitive and object that occur, numbered as they come. Group 0 is (-1, -1); what
 // does not fit into 16 bits joins it.
@@ -73,7 +63,9 @@ class ViewPacker::Work {
         measure();
         pack_voxels();
         pack_points();
-        for (const auto& [name, field] : scene_.fields) pack_field(field, view_.fields[name]);
+        for (const auto& [name, field] : scene_.fields)
+            view_.fields[name] =
+                pack_arrows(field, view_.view_from_input, 2 * view_.cube_m, limits_.arrows);
         view_.walks = pack_walks(scene_.walks, view_.view_from_input, limits_.walk_cells);
     }
 
@@ -92,9 +84,6 @@ class ViewPacker::Work {
     template <class Cloud>
     Vec3 place(const Cloud& cloud, std::size_t i) const {
         return turned(view_.view_from_input, cloud.x[i], cloud.y[i], cloud.z[i]);
-    }
-    static bool finite(const Vec3& p) {
-        return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
     }
 
     // Whether a place is drawn: strays far from all others would leave the rest no steps.
@@ -415,44 +404,6 @@ class ViewPacker::Work {
         return {double{n[0]}, double{n[1]}, double{n[2]}};
     }
 
-    // The densest sample, and of these the strongest, of each cube of a grid that is widened until
-    // few enough are left.
-    void pack_field(const FieldSamples& field, Arrows& out) const {
-        out.total = field.x.size();
-        Box box;
-        std::vector<std::array<float, 7>> all;
-        for (std::size_t i = 0; i < field.x.size(); ++i) {
-            const auto p = place(field, i);
-            const auto v = turned(view_.view_from_input, field.vx[i], field.vy[i], field.vz[i]);
-            if (!finite(p) || !finite(v)) continue;
-            box.add(p);
-            const float density = std::isfinite(field.density[i]) ? field.density[i] : 0.0f;
-            all.push_back({float(p[0]), float(p[1]), float(p[2]), float(v[0]), float(v[1]),
-                           float(v[2]), density});
-        }
-        out.arrow = all;
-        for (double edge = 2 * view_.cube_m; out.arrow.size() > limits_.arrows; edge *= 1.25) {
-            CellTable table;
-            out.arrow.clear();
-            for (const auto& a : all) {
-                std::array<std::int32_t, 3> index{};
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    index[axis] = static_cast<std::int32_t>(
-                        std::min((double(a[axis]) - box.low[axis]) / edge, 1e6));
-                }
-                const auto at = table.insert(index, static_cast<std::uint32_t>(out.arrow.size()));
-                if (at == out.arrow.size()) {
-                    out.arrow.push_back(a);
-                } else if (strength(a) > strength(out.arrow[at])) {
-                    out.arrow[at] = a;
-                }
-            }
-        }
-    }
-    static std::pair<float, float> strength(const std::array<float, 7>& a) {
-        return {a[6], a[3] * a[3] + a[4] * a[4] + a[5] * a[5]};
-    }
-
     const Scene& scene_;
     ViewLimits limits_;
     bool with_surfaces_;
@@ -461,7 +412,7 @@ class ViewPacker::Work {
     std::set<std::int32_t> grounded_;
     std::map<std::int32_t, std::uint64_t> voxels_of_object_;
     Bounds<float> bounds_;
-    Box solid_box_;
+    Extent solid_box_;
     double lattice_shift_ = 0.5;
     std::vector<Cell> cells_;                  // what is drawn, cubes of view_.cube_m
     CellTable table_;                          // finds them

@@ -52,9 +52,12 @@ Rows view_frame(const Scene& scene) {
     return {x, cross(up, x), up};
 }
 
-Vec3 turned(const Rows& r, double x, double y, double z) {
-    const Vec3 p{x, y, z};
+Vec3 turned(const Rows& r, const Vec3& p) {
     return {dot(r[0], p), dot(r[1], p), dot(r[2], p)};
+}
+
+Vec3 turned(const Rows& r, double x, double y, double z) {
+    return turned(r, Vec3{x, y, z});
 }
 
 Vec3 turned_back(const Rows& r, const Vec3& p) {
@@ -62,6 +65,17 @@ Vec3 turned_back(const Rows& r, const Vec3& p) {
     for (std::size_t axis = 0; axis < 3; ++axis)
         out[axis] = r[0][axis] * p[0] + r[1][axis] * p[1] + r[2][axis] * p[2];
     return out;
+}
+
+bool finite(const Vec3& p) {
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+void Extent::add(const Vec3& p) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], p[axis]);
+        high[axis] = std::max(high[axis], p[axis]);
+    }
 }
 
 }  // namespace topple::report

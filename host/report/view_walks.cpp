@@ -4,19 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/view_frame.h"
+
 namespace topple::report {
 namespace {
-
-Vec3 turned(const std::array<Vec3, 3>& rows, const Vec3& p) {
-    Vec3 out{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        out[axis] = rows[axis][0] * p[0] + rows[axis][1] * p[1] + rows[axis][2] * p[2];
-    return out;
-}
-
-bool finite(const Vec3& p) {
-    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-}
 
 bool fits(const Walks& walks) {
     if (walks.nx <= 0 || walks.ny <= 0 || walks.nx > (1 << 20) || walks.ny > (1 << 20))

@@ -50,7 +50,8 @@ struct DisturbanceKind {
                                                const ParseOptions& options);
     // What it reckons with, by names.
     std::map<std::string, double> (*events)(const ParseOptions& options);
-    bool everyday = false;  // such events have happened before the scan
+    bool everyday = false;                // such events have happened before the scan
+    const char* below_ceiling = nullptr;  // what to note where the scan has a ceiling
 };
 
 // In the order in which they are reckoned and shown.

@@ -7,7 +7,9 @@
 #include <string>
 
 #include "core/random.h"
+#include "core/scan_gaps.h"
 #include "physics/landscape.h"
+#include "physics/sliding.h"
 #include "safety/columns.h"
 #include "topple/error.h"
 
@@ -123,17 +125,18 @@ double half_base(const RiskObject& object, const Stance& stance, double dx, doub
 }
 
 double support_reach(const Stance& stance, const Columns& columns, double dx, double dy) {
-    constexpr double furthest_m = 3;
     const double voxel = columns.voxel_m();
-    // The two layers below its base: contacts may have a gap of one.
-    const auto below = static_cast<std::int64_t>(std::lround(stance.bottom_m / voxel)) - 2;
+    // The layers below its base that it may rest on.
+    constexpr std::int64_t layers = contact_gap + 1;
+    constexpr std::uint64_t in_layers = (std::uint64_t{1} << layers) - 1;
+    const auto below = static_cast<std::int64_t>(std::lround(stance.bottom_m / voxel)) - layers;
     double way = 0;
-    for (; way < furthest_m; way += voxel / 2) {
+    for (; way < physics::longest_slide_m; way += voxel / 2) {
         const double x = stance.center[0] + way * dx, y = stance.center[1] + way * dy;
         const std::uint64_t solid =
             columns.solid(static_cast<std::int64_t>(std::floor(x / voxel)),
                           static_cast<std::int64_t>(std::floor(y / voxel)), below);
-        if ((solid & 3) == 0) return way;
+        if ((solid & in_layers) == 0) return way;
     }
     return INFINITY;
 }

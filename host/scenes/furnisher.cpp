@@ -214,6 +214,18 @@ std::optional<Furnisher::Spot> Furnisher::spot_on(const Placed& base, const Surf
     return {};
 }
 
+void Furnisher::each_place_on(std::size_t placed, double clutter,
+                              const std::function<void(const Surface&)>& put) {
+    const std::vector<Surface> surfaces = placed_[placed].blueprint.surfaces;  // put() places more
+    for (const Surface& surface : surfaces) {
+        if (surface.half_x <= 0 || surface.half_y <= 0) continue;
+        const double area = 4 * surface.half_x * surface.half_y;
+        const int most = std::clamp(static_cast<int>(std::lround(area / 0.15)), 1, 5);
+        const int count = static_cast<int>(std::lround(clutter * random_.integer(0, most)));
+        for (int k = 0; k < count; ++k) put(surface);
+    }
+}
+
 std::string Furnisher::where(const Surface& surface, double edge) {
     if (surface.where != "table") return surface.where;
     return edge < 0.12 ? "table-edge" : "table-middle";

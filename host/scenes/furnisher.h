@@ -64,6 +64,10 @@ class Furnisher {
     using Reach = std::function<std::array<double, 2>(double yaw)>;
     std::optional<Spot> spot_on(const Placed& base, const Surface& surface, const Reach& reach,
                                 const std::function<bool(const Pose&)>& free);
+    // Calls put(surface) for each surface of what was placed, as often as its area, chance and
+    // `clutter` have it.
+    void each_place_on(std::size_t placed, double clutter,
+                       const std::function<void(const Surface&)>& put);
     // Where a thing at a spot is said to be.
     static std::string where(const Surface& surface, double edge);
 

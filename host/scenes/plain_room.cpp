@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -85,14 +84,8 @@ class PlainRoom {
     }
 
     void fill_surfaces(std::size_t index) {
-        const std::vector<Surface> surfaces = room_.placed()[index].blueprint.surfaces;
-        for (const Surface& surface : surfaces) {
-            if (surface.half_x <= 0 || surface.half_y <= 0) continue;
-            const double area = 4 * surface.half_x * surface.half_y;
-            const int most = std::clamp(static_cast<int>(std::lround(area / 0.15)), 1, 5);
-            const int count = static_cast<int>(std::lround(clutter_ * random_.integer(0, most)));
-            for (int k = 0; k < count; ++k) put_on(index, surface);
-        }
+        room_.each_place_on(index, clutter_,
+                            [&](const Surface& surface) { put_on(index, surface); });
     }
 
     // One item, or a stack, at a random place of the surface where all of its foot is carried.

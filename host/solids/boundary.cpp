@@ -116,7 +116,7 @@ std::vector<BorderVoxel> shared(const SolidCells& cells, const SeenCells& seen) 
 }
 
 // What mates reach, or bound of their primitive's own cells.
-std::vector<BorderVoxel> mated(const SolidCells& cells, std::span<const Mate> mates) {
+std::vector<BorderVoxel> border_of_mates(const SolidCells& cells, std::span<const Mate> mates) {
     std::vector<BorderVoxel> out;
     std::size_t n = 0;
     for (const Mate& m : mates) {
@@ -231,8 +231,8 @@ std::vector<Combination> combine_all(const SolidCells& cells, const SeenCells& s
         for (std::uint64_t n = first; n < last; ++n) {
             const BorderVoxel& c = candidates[n];
             while (mate != mates.end() && key_of(*mate) < c.key()) ++mate;
-            const bool mated = mate != mates.end() && key_of(*mate) == c.key();
-            if (sheet[static_cast<std::size_t>(c.primitive)] && !mated) continue;
+            const bool mates_here = mate != mates.end() && key_of(*mate) == c.key();
+            if (sheet[static_cast<std::size_t>(c.primitive)] && !mates_here) continue;
             around.gather(c.i, c.j, c.k, c.primitive, found, others);
             const Vec3 middle{(c.i + 0.5) * h, (c.j + 0.5) * h, (c.k + 0.5) * h};
             Combination& sum = out[n];
@@ -348,7 +348,7 @@ BoundaryCells find_boundary(device::Device& device, const SolidCells& cells, con
     unite(candidates, shared(cells, seen));
     const std::vector<Mate> mates =
         find_mates(cells, seen, faced, rests, patches, device.threads());
-    unite(candidates, mated(cells, mates));
+    unite(candidates, border_of_mates(cells, mates));
     std::vector<WallSide> walls;
     std::vector<Combination> sums =
         combine_all(cells, seen, patches, mates, sheet, candidates, walls, device.threads());

@@ -12,11 +12,12 @@
 #include <vector>
 
 #include "core/checksum.h"
+#include "core/fields.h"
 #include "io/file_writer.h"
 #include "io/text.h"
 
-// Files of the work folder: arrays of plain values in this machine's byte order, between a mark
-// that says whose they are and a checksum. They are ours, but a run may have been killed while it
+// Files of the work folder: fields (core/fields.h) between a mark that says whose they are and a
+// checksum. They are ours, but a run may have been killed while it
 // wrote them, or a disk may have turned a bit: what is read is what was written, or is refused.
 namespace topple::tiles {
 
@@ -28,22 +29,11 @@ inline constexpr std::string_view file_mark = "topple.w";
 }
 
 // Writes beside the file and renames: it is there whole or not at all, after a loss of power, too.
-class BinaryWriter {
+class BinaryWriter : public FieldWriter<BinaryWriter> {
   public:
     explicit BinaryWriter(std::filesystem::path file)
         : file_(std::move(file)), part_(file_.native() + ".part"), writer_(part_) {
         put(file_mark.data(), file_mark.size());
-    }
-    template <class T>
-    void value(const T& v) {
-        static_assert(std::is_trivially_copyable_v<T>);
-        put(&v, sizeof(T));
-    }
-    template <class T>
-    void array(const std::vector<T>& values) {
-        static_assert(std::is_trivially_copyable_v<T>);
-        value(static_cast<std::uint64_t>(values.size()));
-        put(values.data(), values.size() * sizeof(T));
     }
     // durable: whether it must be there after a loss of power.
     void finish(bool durable = true) {
@@ -58,6 +48,7 @@ class BinaryWriter {
     }
 
   private:
+    friend FieldWriter<BinaryWriter>;
     void put(const void* bytes, std::size_t count) {
         writer_.write(bytes, count);
         sum_.add(bytes, count);
@@ -68,7 +59,7 @@ class BinaryWriter {
     Checksum sum_;
 };
 
-class BinaryReader {
+class BinaryReader : public FieldReader<BinaryReader> {
   public:
     explicit BinaryReader(const std::filesystem::path& file)
         : file_(file), bytes_(io::read_file(file)), rest_(bytes_.text()) {
@@ -80,28 +71,19 @@ class BinaryReader {
         if (Checksum::of(rest_.data(), summed) != sum) damaged();
         rest_ = rest_.substr(0, summed).substr(file_mark.size());
     }
-    template <class T>
-    T value() {
-        T v;
-        take(&v, sizeof(T));
-        return v;
-    }
-    template <class T>
-    std::vector<T> array() {
-        const auto count = value<std::uint64_t>();
-        if (count > rest_.size() / sizeof(T)) damaged();
-        std::vector<T> values(count);
-        take(values.data(), count * sizeof(T));
-        return values;
-    }
     [[noreturn]] void damaged() const { damaged_file(file_); }
 
   private:
-    void take(void* to, std::size_t size) {
-        if (size > rest_.size()) damaged();
-        if (size > 0) std::memcpy(to, rest_.data(), size);
-        rest_.remove_prefix(size);
+    friend FieldReader<BinaryReader>;
+    std::uint64_t left() const { return rest_.size(); }
+    [[noreturn]] void refuse() const { damaged(); }
+    const std::byte* take(std::uint64_t count, std::size_t each) {
+        if (count > left() / each) refuse();
+        const char* from = rest_.data();
+        rest_.remove_prefix(count * each);
+        return reinterpret_cast<const std::byte*>(from);
     }
+    void taken() const {}
 
     std::filesystem::path file_;
     io::FileBytes bytes_;

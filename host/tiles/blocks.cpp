@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A block with fewer cells in its core shows no surface: scraps of what lies in the next.
+// A block with fewer cells in its core shows no surface: the rim of what lies in the next.
 constexpr std::uint64_t least_cells = 64;
 
 double height_of(const geometry::SceneFrame& frame, float x, float y, float z) {
@@ -114,32 +114,32 @@ Layout cut_into_blocks(const fs::path& folder, std::span<const Bin> bins,
     return out;
 }
 
+namespace {
+
+template <class Io, class Of>
+void layout_fields(Io& io, Of& layout) {
+    io(layout.cell_m);
+    io(layout.voxel_m);
+    io(layout.halo);
+    io(layout.frame.axes);
+    io(layout.frame.found);
+    io(layout.frame.up_method);
+    io(layout.frame.note);
+    io(layout.blocks);
+}
+
+}  // namespace
+
 void write_layout(const fs::path& folder, const Layout& layout) {
     BinaryWriter out(folder / layout_name);
-    out.value(layout.cell_m);
-    out.value(layout.voxel_m);
-    out.value(layout.halo);
-    out.value(layout.frame.axes);
-    out.value(layout.frame.found);
-    for (const std::string* text : {&layout.frame.up_method, &layout.frame.note})
-        out.array(std::vector<char>(text->begin(), text->end()));
-    out.array(layout.blocks);
+    layout_fields(out, layout);
     out.finish();
 }
 
 Layout read_layout(const fs::path& folder) {
     BinaryReader in(folder / layout_name);
     Layout out;
-    out.cell_m = in.value<double>();
-    out.voxel_m = in.value<double>();
-    out.halo = in.value<std::int32_t>();
-    out.frame.axes = in.value<std::array<Vec3, 3>>();
-    out.frame.found = in.value<bool>();
-    for (std::string* text : {&out.frame.up_method, &out.frame.note}) {
-        const std::vector<char> characters = in.array<char>();
-        text->assign(characters.begin(), characters.end());
-    }
-    out.blocks = in.array<Block>();
+    layout_fields(in, out);
     return out;
 }
 

@@ -26,24 +26,27 @@ std::uint64_t key_of(const Bin& bin) {
     return key;
 }
 
+// Of the file of bins.
+template <class Io, class Bins>
+void bin_fields(Io& io, Bins& bins) {
+    list_fields(io, bins, [](auto& each, auto& bin) {
+        each(bin.bin);
+        each(bin.points);
+        each(bin.portions);
+    });
+}
+
 }  // namespace
 
 SpilledPoints::SpilledPoints(const fs::path& folder)
     : file_(folder / "points.bin"), colour_file_(folder / "colours.bin") {
     BinaryReader in(folder / "bins.bin");
-    points_ = in.value<std::uint64_t>();
-    dropped_ = in.value<std::uint64_t>();
-    offset_m_ = in.value<Vec3>();
-    coloured_ = in.value<std::uint8_t>() != 0;
-    const auto count = in.value<std::uint64_t>();
-    if (count > most_bins) in.damaged();
-    for (std::uint64_t n = 0; n < count; ++n) {
-        BinPoints bin;
-        bin.bin = in.value<Bin>();
-        bin.points = in.value<std::uint64_t>();
-        bin.portions = in.array<Portion>();
-        bins_.push_back(std::move(bin));
-    }
+    in(points_);
+    in(dropped_);
+    in(offset_m_);
+    in(coloured_);
+    bin_fields(in, bins_);
+    if (bins_.size() > most_bins) in.damaged();
     if (!PortionReader::holds<Point>(file_, points_)) damaged_file(file_);
     if (coloured_ && !PortionReader::holds<Rgb8>(colour_file_, points_)) damaged_file(colour_file_);
 }
@@ -148,16 +151,13 @@ void PointSpill::finish(const Vec3& offset_m) {
     if (colour_writer_) colour_writer_->finish();
     std::ranges::sort(bins_, {}, [](const Open& bin) { return bin.written.bin; });
     BinaryWriter out(folder_ / "bins.bin");
-    out.value(points_);
-    out.value(dropped_);
-    out.value(offset_m);
-    out.value(static_cast<std::uint8_t>(any_colour_));
-    out.value(static_cast<std::uint64_t>(bins_.size()));
-    for (const Open& bin : bins_) {
-        out.value(bin.written.bin);
-        out.value(bin.written.points);
-        out.array(bin.written.portions);
-    }
+    out(points_);
+    out(dropped_);
+    out(offset_m);
+    out(any_colour_);
+    std::vector<SpilledPoints::BinPoints> written;
+    for (const Open& bin : bins_) written.push_back(bin.written);
+    bin_fields(out, written);
     out.finish();
 }
 

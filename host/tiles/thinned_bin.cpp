@@ -30,6 +30,13 @@ fs::path cells_file(const fs::path& folder, const Bin& bin) {
     return folder / thinned_name(bin);
 }
 
+template <class Io, class Cells>
+void cell_fields(Io& io, Cells& cells) {
+    for (auto* values : {&cells.x, &cells.y, &cells.z}) io(*values);
+    io(cells.points);
+    for (auto* channel : {&cells.red, &cells.green, &cells.blue}) io(*channel);
+}
+
 // Points whose cells are read at a time.
 constexpr std::size_t thinned_portion = 1u << 13;
 
@@ -175,25 +182,21 @@ void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const
         out.blue.push_back(colour[2]);
     }
     BinaryWriter order_out(order_file(folder, at));
-    order_out.array(rank);
-    order_out.value(places.points());
-    order_out.array(places.sums());
+    order_out(rank);
+    order_out(places.points());
+    order_out(places.sums());
     order_out.finish();
     BinaryWriter file(cells_file(folder, at));
-    file.array(out.x);
-    file.array(out.y);
-    file.array(out.z);
-    file.array(out.points);
-    for (const auto* channel : {&out.red, &out.green, &out.blue}) file.array(*channel);
+    cell_fields(file, out);
     file.finish();
 }
 
 CellsOfPoints::CellsOfPoints(const fs::path& folder, const Bin& bin)
     : file_(places_file(folder, bin)) {
     BinaryReader order(order_file(folder, bin));
-    cell_of_place_ = order.array<std::uint32_t>();
-    points_ = order.value<std::uint64_t>();
-    sums_ = order.array<PortionWriter::Sum>();
+    order(cell_of_place_);
+    order(points_);
+    order(sums_);
     if (sums_.size() != (points_ + thinned_portion - 1) / thinned_portion) order.damaged();
     if (!PortionReader::holds<std::uint32_t>(file_, points_)) damaged_file(file_);
 }
@@ -235,12 +238,10 @@ void remove_thinned(const fs::path& folder, const Bin& bin) {
 
 ThinnedBin read_thinned(const fs::path& folder, const Bin& bin) {
     BinaryReader in(cells_file(folder, bin));
-    ThinnedBin out{in.array<float>(), in.array<float>(), in.array<float>(),
-                   in.array<std::uint32_t>()};
-    for (auto* channel : {&out.red, &out.green, &out.blue}) {
-        *channel = in.array<std::uint8_t>();
+    ThinnedBin out;
+    cell_fields(in, out);
+    for (const auto* channel : {&out.red, &out.green, &out.blue})
         if (!channel->empty() && channel->size() != out.size()) in.damaged();
-    }
     if (out.y.size() != out.size() || out.z.size() != out.size() || out.points.size() != out.size())
         in.damaged();
     return out;

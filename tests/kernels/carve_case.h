@@ -18,7 +18,7 @@ namespace topple::test {
 struct CarveCase {
     vdb::VoxelFrame grid;
     Intrinsics intrinsics{41, 31, 38.5, 37, 19.8, 15.3, 1000};
-    vdb::CarveOptions options;
+    oracle::CarveNoise noise;
     std::vector<DepthFrame> frames;
     std::array<std::vector<std::int32_t>, 3> origin;  // lowest voxel of each leaf
     kernels::CarveParams params{};
@@ -53,9 +53,9 @@ struct CarveCase {
         params.metres_per_unit = static_cast<float>(1 / intrinsics.depth_scale);
         params.margin_m =
             static_cast<float>(grid.voxel_m * std::sqrt(3.0) / 2 + 0.5 / intrinsics.depth_scale);
-        params.noise_base_m = static_cast<float>(options.noise_sigmas * options.noise_base_m);
-        params.noise_growth = static_cast<float>(options.noise_sigmas * options.noise_growth_per_m);
-        params.noise_from_m = static_cast<float>(options.noise_from_m);
+        params.noise_base_m = static_cast<float>(noise.sigmas * noise.base_m);
+        params.noise_growth = static_cast<float>(noise.sigmas * noise.growth_per_m);
+        params.noise_from_m = static_cast<float>(noise.from_m);
         params.slack_m = static_cast<float>(grid.voxel_m * 0.02);
     }
 

@@ -64,7 +64,7 @@ TEST_P(CarveLeaves, NeverContradictsAVoxel) {
                     front ? oracle::CarveVerdict::through : oracle::CarveVerdict::nothing;
                 for (std::uint32_t v = 0; v < 512; ++v) {
                     const auto verdict = oracle::carve_voxel(c.grid, c.intrinsics, c.frames[f],
-                                                             c.options, c.voxel(leaf, v));
+                                                             c.noise, c.voxel(leaf, v));
                     if (verdict.kind == expected || verdict.close) continue;
                     // Where there are no points, nobody asks who sees a surface.
                     const bool hit = verdict.kind == oracle::CarveVerdict::hit;

@@ -53,8 +53,8 @@ TEST_P(Carve, MatchesTheOracle) {
             std::uint32_t through = 0, hit = 0, close = 0;
             for (std::uint32_t f = 0; f < c.params.frame_count; ++f) {
                 if (!(bits[n / 512] >> f & 1)) continue;
-                const auto verdict = oracle::carve_voxel(c.grid, c.intrinsics, c.frames[f],
-                                                         c.options, c.voxel(n / 512, n % 512));
+                const auto verdict = oracle::carve_voxel(c.grid, c.intrinsics, c.frames[f], c.noise,
+                                                         c.voxel(n / 512, n % 512));
                 through += verdict.kind == oracle::CarveVerdict::through;
                 hit += verdict.kind == oracle::CarveVerdict::hit;
                 close += verdict.close;

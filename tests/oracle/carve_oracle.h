@@ -13,6 +13,11 @@
 // straight from the depth images: no hierarchy, no packing, no folded matrices.
 namespace topple::oracle {
 
+// Of a reading: base + growth * max(depth - from, 0)^2, metres, so many times.
+struct CarveNoise {
+    double base_m = 0.0012, growth_per_m = 0.0019, from_m = 0.4, sigmas = 2;
+};
+
 struct CarveVerdict {
     enum Kind { nothing, through, hit } kind = nothing;
     bool close =
@@ -20,7 +25,7 @@ struct CarveVerdict {
 };
 
 inline CarveVerdict carve_voxel(const vdb::VoxelFrame& grid, const Intrinsics& k,
-                                const DepthFrame& frame, const vdb::CarveOptions& options,
+                                const DepthFrame& frame, const CarveNoise& noise,
                                 const std::array<std::int32_t, 3>& voxel) {
     CarveVerdict verdict;
     double world[3] = {0, 0, 0};
@@ -56,10 +61,9 @@ inline CarveVerdict carve_voxel(const vdb::VoxelFrame& grid, const Intrinsics& k
     }
     if (low == 0) return verdict;
     const auto margin = [&](double depth) {
-        const double far = std::max(depth - options.noise_from_m, 0.0);
+        const double far = std::max(depth - noise.from_m, 0.0);
         return grid.voxel_m * std::sqrt(3.0) / 2 + 0.5 / k.depth_scale +
-               options.noise_sigmas *
-                   (options.noise_base_m + options.noise_growth_per_m * far * far);
+               noise.sigmas * (noise.base_m + noise.growth_per_m * far * far);
     };
     verdict.close = verdict.close || near(z, low - margin(low), 1e-5 * low) ||
                     near(z, high + margin(high), 1e-5 * high);

@@ -4,7 +4,7 @@
 
 Every relative link and picture in README.md, CHANGELOG.md, SECURITY.md, docs and kernels/README.md leads to a file, and to a heading
 of it where it names one; every page of docs is linked from README.md. With the program TOPPLE, every option that a page gives to a command
-of topple is one that the command's --help lists.
+of topple is one that the command's --help lists. docs/parameters.md has the constants of the stages as they stand in the code, and all of them.
 """
 import glob
 import os
@@ -114,9 +114,40 @@ def check_options(source, program):
     return problems
 
 
+def constants_of(source):
+    """By file, the constants with a fraction of the stages and their values, as they are written."""
+    found = {}
+    for folder in ('host/core', 'host/geometry', 'host/graph', 'host/solids', 'host/physics', 'host/safety', 'host/pipeline', 'vdb'):
+        for path in sorted(glob.glob(os.path.join(source, folder, '**', '*.[ch]*'), recursive=True)):
+            with open(path, encoding='utf-8') as file:
+                text = re.sub('//.*', '', file.read())
+            for listed in re.findall(r'^(?:inline )?constexpr (?:double|float) ([^;]*);', text, re.MULTILINE):
+                for name, _, value in (one.partition('=') for one in listed.split(',')):
+                    if 'numeric_limits' not in value:
+                        found.setdefault(os.path.relpath(path, source), {})[name.strip()] = ' '.join(value.split()).rstrip('fF')
+    return found
+
+
+def check_parameters(source):
+    page, problems, told = 'docs/parameters.md', [], 0
+    left = constants_of(source)
+    with open(os.path.join(source, page), encoding='utf-8') as file:
+        rows = re.findall(r'^\| `((?:host|vdb)/[^`]+)` \| (`[^|]*) \|', file.read(), re.MULTILINE)
+    for path, listed in rows:
+        for name, value in re.findall(r'`(\w+)` ([^`]*?)(?=, `|$)', listed):
+            told += 1
+            known = left.get(path, {}).pop(name, None)
+            if known != value:
+                problems.append(f'{page}: {path}: {name} is {value}, but {known or "not there, or told twice"} in the code')
+    problems += [f'{page}: {path}: {name} {value} is missing' for path, names in left.items() for name, value in names.items()]
+    if told < 100:
+        problems.append(f'only {told} constants were found in {page}: the search for them is broken')
+    return problems
+
+
 def main():
     source = sys.argv[1]
-    problems = check_links(source)
+    problems = check_links(source) + check_parameters(source)
     if len(sys.argv) > 2:
         problems += check_options(source, sys.argv[2])
     sys.exit('\n'.join(problems) if problems else 0)

@@ -159,12 +159,11 @@ TEST_P(Scenes, FillEqualsTheWalkOnADenseGrid) {
 TEST_P(Scenes, BatchesOfFramesAddUp) {
     const Boxes boxes = Boxes::on_a_floor();
     VoxelScene whole({}, boxes.cloud, boxes.label), parts({}, boxes.cloud, boxes.label);
-    const CarveOptions options{.through = 2};
-    whole.carve(*device, boxes.intrinsics, boxes.frames, options);
+    whole.carve(*device, boxes.intrinsics, boxes.frames);
     const std::span<const DepthFrame> frames = boxes.frames;
-    parts.carve(*device, boxes.intrinsics, frames.first(3), options);
+    parts.carve(*device, boxes.intrinsics, frames.first(3));
     fill(*device, parts, {.votes = 2, .roles = {}});  // undone by the next frames
-    parts.carve(*device, boxes.intrinsics, frames.subspan(3), options);
+    parts.carve(*device, boxes.intrinsics, frames.subspan(3));
     const auto tiles = whole.tiles(true);
     EXPECT_EQ(whole.states(tiles), parts.states(tiles));
     EXPECT_EQ(whole.primitives(tiles), parts.primitives(tiles));

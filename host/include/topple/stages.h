@@ -74,6 +74,13 @@ struct Voxels {
     std::vector<std::uint8_t> state;  // 1: seen surface, 3: completed
 };
 
+// By label, the voxel (its place in the arrays) that names it best to corrections
+// (docs/corrections.md): deep among its own, four voxels from those of others or as far as it gets,
+// of these the one nearest to their middle, and one that was seen where any was; -1: it has none.
+// Throws Error(usage) for arrays of different lengths, labels above 65533, and voxels further than
+// 2^20 from 0.
+std::vector<std::int64_t> label_spots(const Voxels& solid);
+
 // A voxel grid, carved and filled (paper, 2.2). z up.
 class Volume {
   public:

@@ -202,7 +202,7 @@ Disturbance earthquake_field(device::Device& device, const Surroundings& surroun
     check_option("friction", friction, 0);
     if (options.record) check_option("record.step_s", options.record->step_s, 1e-6);
     Disturbance out;
-    out.name = "earthquake";
+    out.name = earthquake_kind().name;
     out.work.resize(objects.size());
     out.response.resize(objects.size());
     out.strongest.resize(objects.size());

@@ -41,6 +41,7 @@ inline constexpr std::array<BodyPart, 8> body_parts{{
     {"shoulder", 0.680, 0.880, 0.135, 0.07, 0.07, 1.0, 0.078, 1.00},       // arms' roots
     {"reaching hand", 0.400, 0.800, 0.280, 0.00, 0.20, 1.3, 0.022, 0.05},  // forearm + hand
 }};
+inline constexpr const BodyPart& hip = body_parts[2];
 inline constexpr const BodyPart& reaching_hand = body_parts.back();
 
 }  // namespace topple::safety

@@ -190,7 +190,7 @@ HumanField::~HumanField() = default;
 Disturbance HumanField::disturbance() {
     Parts& p = *parts_;
     Disturbance out;
-    out.name = "human";
+    out.name = human_kind().name;
     out.work.resize(p.objects.size());
     out.exposure.assign(p.object_of_cell.size(), 0.0f);
     out.notes = p.map.notes;

@@ -58,7 +58,7 @@ constexpr std::array<Segment, 13> segments{{
     {right_knee, right_ankle, 0.0965, 0.036},
     {right_ankle, right_toes, 0.03775, 0.029},
 }};
-constexpr double trunk_mass = 0.142;  // the pelvis, as in body_parts.h
+constexpr double trunk_mass = hip.mass;
 
 // The trunk comes after them.
 constexpr std::size_t segment_count = segments.size() + 1;

@@ -7,14 +7,13 @@
 #include <limits>
 #include <string>
 
+#include "core/room_measures.h"
 #include "safety/human/human_field.h"
 #include "safety/objects.h"
 
 namespace topple::safety {
 namespace {
 
-// Table tops are smaller, and rooms larger.
-constexpr double small_floor_m2 = 4;
 constexpr float no_floor = -std::numeric_limits<float>::infinity();
 
 struct Offset {
@@ -232,7 +231,7 @@ WalkableMap walkable_map(const Surroundings& surroundings, const HumanOptions& o
         return map;
     }
     const double area = static_cast<double>(map.walkable.size()) * map.cell_m * map.cell_m;
-    if (area < small_floor_m2) {
+    if (area < least_floor_m2) {
         char text[32];
         std::snprintf(text, sizeof(text), "%.1f", area);
         map.notes.push_back(std::string("People walk on only ") + text +

@@ -272,7 +272,7 @@ Disturbance wind_field(device::Device& device, const Surroundings& surroundings,
     check_option("friction", options.friction, 0);
     check_option("shelter_m", options.shelter_m, 0);
     Disturbance out;
-    out.name = "wind";
+    out.name = wind_kind().name;
     if (options.from_deg && !std::isfinite(*options.from_deg))
         throw Error(ErrorKind::usage, "disturbance option from_deg is not a number");
     const std::vector<std::array<double, 2>> blown = ways(options);

@@ -36,7 +36,11 @@ const DisturbanceKind& wind_kind() {
                 std::map<std::string, double> out{{"wind_m_s", options.wind_m_s}};
                 if (options.wind_from_deg) out["wind_from_deg"] = *options.wind_from_deg;
                 return out;
-            }};
+            },
+        // A gale inside takes an open window.
+        .below_ceiling =
+            "A ceiling was scanned, and the wind is taken to blow as outside: where "
+            "windows and doors are closed in gales leave wind out of the disturbances."};
     return kind;
 }
 

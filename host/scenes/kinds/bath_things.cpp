@@ -4,6 +4,7 @@
 
 #include "scenes/catalogue/profiles.h"
 #include "scenes/catalogue/varied.h"
+#include "scenes/kinds/stacks.h"
 #include "scenes/kinds/things.h"
 
 namespace topple::scenes {
@@ -75,7 +76,7 @@ Blueprint make_towel_rail(Random& random) {
 }
 
 Stack make_bath_item(Random& random, double clearance) {
-    for (int attempt = 0; attempt < 12; ++attempt) {
+    return any_that_fits(clearance, [&] {
         Stack stack;
         switch (random.integer(0, 4)) {
             case 0: {
@@ -106,11 +107,8 @@ Stack make_bath_item(Random& random, double clearance) {
             default:
                 stack = make_turned_item(random, clearance);
         }
-        double high = 0;
-        for (const Blueprint& b : stack) high += b.height();
-        if (!stack.empty() && high < clearance) return stack;
-    }
-    return {};
+        return stack;
+    });
 }
 
 Stack make_turned_item(Random& random, double clearance) {

@@ -5,6 +5,7 @@
 
 #include "scenes/catalogue/profiles.h"
 #include "scenes/catalogue/varied.h"
+#include "scenes/kinds/stacks.h"
 #include "scenes/kinds/things.h"
 
 namespace topple::scenes {
@@ -102,12 +103,6 @@ Blueprint candle_or_vase(Random& random) {
     return b;
 }
 
-double stack_height(const Stack& stack) {
-    double high = 0;
-    for (const Blueprint& b : stack) high += b.height();
-    return high;
-}
-
 }  // namespace
 
 Blueprint make_television(Random& random) {
@@ -193,7 +188,7 @@ Blueprint make_lamp_on_pole(Random& random) {
 }
 
 Stack make_desk_item(Random& random, double clearance) {
-    for (int attempt = 0; attempt < 12; ++attempt) {
+    return any_that_fits(clearance, [&] {
         Stack stack;
         switch (random.integer(0, 11)) {
             case 0:
@@ -228,13 +223,12 @@ Stack make_desk_item(Random& random, double clearance) {
             default:
                 stack = make_turned_item(random, clearance);
         }
-        if (!stack.empty() && stack_height(stack) < clearance) return stack;
-    }
-    return {};
+        return stack;
+    });
 }
 
 Stack make_home_item(Random& random, double clearance) {
-    for (int attempt = 0; attempt < 12; ++attempt) {
+    return any_that_fits(clearance, [&] {
         Stack stack;
         switch (random.integer(0, 7)) {
             case 0:
@@ -258,9 +252,8 @@ Stack make_home_item(Random& random, double clearance) {
             default:
                 stack = make_turned_item(random, clearance);
         }
-        if (!stack.empty() && stack_height(stack) < clearance) return stack;
-    }
-    return {};
+        return stack;
+    });
 }
 
 Stack make_soft_item(Random& random, double clearance) {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "scenes/catalogue/profiles.h"
+#include "scenes/kinds/stacks.h"
 #include "scenes/kinds/things.h"
 
 namespace topple::scenes {
@@ -326,7 +327,7 @@ Blueprint toaster(Random& random) {
 }  // namespace
 
 Stack make_kitchen_item(Random& random, double clearance) {
-    for (int attempt = 0; attempt < 12; ++attempt) {
+    return any_that_fits(clearance, [&] {
         Stack stack;
         switch (random.integer(0, 10)) {
             case 0:
@@ -357,11 +358,8 @@ Stack make_kitchen_item(Random& random, double clearance) {
             default:
                 stack = make_turned_item(random, clearance);
         }
-        double high = 0;
-        for (const Blueprint& b : stack) high += b.height();
-        if (!stack.empty() && high < clearance) return stack;
-    }
-    return {};
+        return stack;
+    });
 }
 
 }  // namespace topple::scenes

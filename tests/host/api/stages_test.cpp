@@ -4,6 +4,7 @@
 #include <CL/cl.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -294,6 +295,38 @@ TEST_F(CallersOpenCl, ConvolvesInTheirBuffers) {
     EXPECT_THROW(convolve(*device, shape, {primary, wide.size()}, walks.footprint, walks.first,
                           {density, density.bytes / 4}),
                  Error);
+}
+
+// A slab of label 1, seen for x < 8, with a block of label 0 on its middle.
+TEST(Stages, SpotsLieDeepInWhatWasSeen) {
+    Voxels solid;
+    const auto add = [&](int i, int j, int k, int label, int state) {
+        solid.i.push_back(i);
+        solid.j.push_back(j);
+        solid.k.push_back(k);
+        solid.label.push_back(label);
+        solid.state.push_back(static_cast<std::uint8_t>(state));
+    };
+    for (int i = 0; i < 21; ++i)
+        for (int j = 0; j < 11; ++j) add(i, j, 0, 1, i < 8 ? 1 : 3);
+    for (int i = 8; i < 13; ++i)
+        for (int j = 3; j < 8; ++j) add(i, j, 1, 0, 1);
+    add(30, 0, 0, 3, 3);
+    const std::vector<std::int64_t> spots = label_spots(solid);
+    ASSERT_EQ(spots.size(), 4u);
+    const auto at = [&](std::size_t label) {
+        const auto n = static_cast<std::size_t>(spots[label]);
+        return std::array{solid.i[n], solid.j[n], solid.k[n]};
+    };
+    EXPECT_EQ(at(0), (std::array{10, 5, 1}));
+    EXPECT_EQ(at(1), (std::array{3, 5, 0})) << "in the middle of what was seen, clear of the block";
+    EXPECT_EQ(spots[2], -1);
+    EXPECT_EQ(at(3), (std::array{30, 0, 0}));
+    solid.label[0] = 65534;
+    EXPECT_THROW(label_spots(solid), Error);
+    solid.label.pop_back();
+    EXPECT_THROW(label_spots(solid), Error);
+    EXPECT_TRUE(label_spots({}).empty());
 }
 
 }  // namespace

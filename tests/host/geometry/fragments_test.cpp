@@ -72,7 +72,7 @@ TEST(Fragments, PiecesOfAThinLegAreOnePrimitive) {
     for (const auto& [c, l] : scene.label) EXPECT_EQ(primitives.label[n++], c[2] > 0 ? 1 : 0);
 }
 
-TEST(Fragments, ScrapsAlongACreaseJoinWhatTheyLieOn) {
+TEST(Fragments, NoiseAlongACreaseJoinsWhatItLiesOn) {
     FragmentedScene scene = floor_of_20();
     for (std::int32_t x = 0; x < 20; ++x) scene.label[{x, 5, 1}] = 1;
     scene.labels = 2;

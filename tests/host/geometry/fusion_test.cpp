@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/depth_noise.h"
+#include "core/depth_noise.h"
 #include "geometry/frames_fusion.h"
 #include "geometry/frames_witnesses.h"
 #include "geometry_random.h"

@@ -196,6 +196,10 @@ TEST_F(Write, scene_json_that_is_none) {
     expect_input_error([&] { read_scene_json(write("a.json", R"({"schema": "other/1"})")); },
                        {"topple.scene/1"});
     expect_input_error([&] { read_scene_json(write("a.json", "nonsense")); }, {"a.json"});
+    auto json = nlohmann::json::parse(scene_json(some_scene()));
+    json["corrections"] = {{{"do", "melt"}, {"at_m", {{0, 0, 0}}}}};
+    expect_input_error([&] { read_scene_json(write("a.json", json.dump())); },
+                       {"a.json", "\"melt\"", "one_thing, apart"});
 }
 
 TEST_F(Write, points_ply) {

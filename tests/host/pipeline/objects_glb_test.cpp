@@ -33,7 +33,7 @@ void expect_closed(const aiMesh& mesh) {
 
 class ObjectsGlb : public test::Files {};
 
-// Two blocks of voxels and a scrap, on a grid that is turned and whose up is the input's -y.
+// Two blocks of voxels and a fragment, on a grid that is turned and whose up is the input's -y.
 TEST_F(ObjectsGlb, each_object_is_a_closed_mesh_around_its_voxels) {
     const double c = std::cos(0.3), s = std::sin(0.3), h = 0.04;
     const vdb::VoxelFrame frame{h, {Vec3{c, 0, s}, Vec3{-s, 0, c}, Vec3{0, -1, 0}}};

@@ -339,7 +339,7 @@ TEST_F(Outputs, of_depth_frames_obey_their_description) {
     std::fill(count.begin(), count.end(), 0);
     for (std::size_t n = 0; n < solid.at("x").size(); ++n) {
         ASSERT_TRUE(solid.at("state")[n] == 0 || solid.at("state")[n] == 1) << n;
-        // Scraps too small to be solids belong to no primitive.
+        // Fragments too small to be solids belong to no primitive.
         if (solid.at("primitive")[n] >= 0)
             ++count[static_cast<std::size_t>(solid.at("primitive")[n])];
     }

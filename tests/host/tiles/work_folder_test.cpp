@@ -35,7 +35,7 @@ class WorkFolders : public ::testing::Test {
     }
     void put_block(const std::string& name) const {
         BinaryWriter out(path_ / name);
-        out.array(std::vector<int>{1, 2, 3});
+        out(std::vector<int>{1, 2, 3});
         out.finish();
     }
     // Makes the folder as a run leaves it that was killed.

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+// Measures of the rooms that people build. Set by hand.
+namespace topple {
+
+// Floors are larger, and table tops smaller, m^2.
+inline constexpr double least_floor_m2 = 4;
+
+// Ceilings hang no lower above their floors, metres.
+inline constexpr double lowest_room_m = 2.0;
+
+}  // namespace topple
