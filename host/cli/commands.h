@@ -62,8 +62,9 @@ struct Team {
     unsigned threads = 0;           // unless --threads says otherwise; 0: all cores
     std::function<bool()> stopped;  // polled; true: another process has failed
 };
+// typed: the whole command, which the report shows for parsing once more.
 inline constexpr const char* parse_purpose = "Parse a scan into solid objects, supports and risks";
-Command add_parse(CLI::App& app, const Team& team = {});
+Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& team = {});
 Command add_devices(CLI::App& app);
 Command add_generate(CLI::App& app);
 Command add_evaluate(CLI::App& app);

@@ -19,7 +19,7 @@
 namespace topple::cli {
 namespace {
 
-struct Arguments {
+struct EstimateArguments {
     std::string input, backend = "auto";
     unsigned threads = 0;
     bool quiet = false, json = false;
@@ -69,7 +69,7 @@ void print_json(const Estimate& e) {
     std::printf("%s\n", json.dump(1).c_str());
 }
 
-int run(Arguments& a) {
+int run(EstimateArguments& a) {
     catch_interrupts();
     a.options.device = device::open_device(a.backend, a.threads);
     a.options.cancelled = [] { return interrupted() != 0; };
@@ -103,7 +103,7 @@ int run(Arguments& a) {
 }  // namespace
 
 Command add_estimate(CLI::App& app) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<EstimateArguments>();
     app.add_option("INPUT", a->input, "What `topple parse` would be given")->required();
     app.add_option("--backend", a->backend, "As for parse")->capture_default_str();
     app.add_option("--voxel", a->options.voxel_m, "Edge of a solid voxel in metres, as for parse")

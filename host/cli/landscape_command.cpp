@@ -40,7 +40,7 @@ const Object& chosen(const Scene& scene, std::int64_t id) {
     if (object.grounded) {
         throw Error(ErrorKind::usage,
                     "--object " + std::to_string(id) +
-                        ": it is the ground, or fixed to it, and has no landscape");
+                        ": it is the building, or fixed to it, and has no landscape");
     }
     return object;
 }

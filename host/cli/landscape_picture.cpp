@@ -76,7 +76,7 @@ class Painter {
             const Point at = place(label.at);
             constexpr report::Align align[]{report::Align::left, report::Align::middle,
                                             report::Align::right};
-            canvas_.text(at[0], at[1], label.text, align[static_cast<std::size_t>(label.align)],
+            canvas_.text(at[0], at[1], label.text, align[static_cast<std::size_t>(label.anchor)],
                          {.size = 11 * scale, .bold = label.strong});
         }
     }

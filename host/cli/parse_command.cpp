@@ -8,6 +8,8 @@
 #include <sstream>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "cli/choice.h"
 #include "cli/commands.h"
@@ -36,7 +38,7 @@ std::string joined(const std::vector<std::string>& names, const char* between) {
     return out;
 }
 
-struct Arguments {
+struct ParseArguments {
     std::optional<std::string> accelerogram, accelerogram_across, accelerogram_up;
     std::optional<double> accelerogram_unit_m_s2;
     std::optional<std::string> hazard, corrections, cache;
@@ -104,7 +106,7 @@ std::filesystem::path default_output(const std::filesystem::path& input) {
 }
 
 // Everything that can be wrong with the options is told before a long parse.
-void read_options(Arguments& a) {
+void read_options(ParseArguments& a) {
     if (a.voxel_m) {
         // In the library 0 means "from the data"; who writes it here hardly means that.
         if (*a.voxel_m == 0)
@@ -144,7 +146,7 @@ void read_options(Arguments& a) {
 }
 
 // What all processes of a team do before their part of the parse.
-void get_ready(Arguments& a) {
+void get_ready(ParseArguments& a) {
     a.output.threads = a.threads > 0 ? a.threads : a.team.threads;
     a.options.device = device::open_device(a.backend, a.output.threads);
     a.output.cancelled = [] { return interrupted() != 0; };
@@ -156,7 +158,7 @@ void get_ready(Arguments& a) {
     };
 }
 
-int help(Arguments& a) {
+int help(ParseArguments& a) {
     read_options(a);
     catch_interrupts();
     get_ready(a);
@@ -165,7 +167,7 @@ int help(Arguments& a) {
 }
 
 // What stays of a parse that a signal ended.
-std::string left_behind(const Arguments& a) {
+std::string left_behind(const ParseArguments& a) {
     const std::optional<WorkLeft> left = work_left(a.input, a.options);
     if (!left) return "";
     return " but " + io::path_text(a.options.work_folder) + ", which holds " + to_text(*left) +
@@ -173,7 +175,7 @@ std::string left_behind(const Arguments& a) {
 }
 
 // The cache of an earlier output there is used, and replaced with it.
-void keep_cache(const io::OutputFolder& room, Arguments& a) {
+void keep_cache(const io::OutputFolder& room, ParseArguments& a) {
     a.output.cache_file = a.options.cache_file = room.folder() / "parse.cache";
     std::error_code error;
     const std::filesystem::path earlier = room.destination() / "parse.cache";
@@ -181,7 +183,7 @@ void keep_cache(const io::OutputFolder& room, Arguments& a) {
     if (error) std::filesystem::copy_file(earlier, a.options.cache_file, error);
 }
 
-int run(Arguments& a) {
+int run(ParseArguments& a) {
     read_options(a);
     const std::filesystem::path out =
         a.out ? std::filesystem::path(*a.out) : default_output(a.input);
@@ -229,9 +231,10 @@ int run(Arguments& a) {
 
 }  // namespace
 
-Command add_parse(CLI::App& app, const Team& team) {
-    auto a = std::make_shared<Arguments>();
+Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& team) {
+    auto a = std::make_shared<ParseArguments>();
     a->team = team;
+    a->output.command = std::move(typed);
     app.add_option(
            "INPUT", a->input,
            "A point cloud (.ply, .pcd, .xyz), a mesh (.obj, .stl, .glb, .gltf, .ply with faces),\n"

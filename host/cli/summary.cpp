@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/urgency.h"
 #include "core/listed.h"
 #include "io/text.h"
 #include "safety/disturbances.h"
@@ -38,7 +39,7 @@ std::string category_text(const Object& o) {
 // The lowest unsafety is no risk worth a sentence, where there are others.
 bool at_risk(const Object* o) {
     constexpr double printed_as_lowest = 1.05;
-    return rank_of(*o) >= printed_as_lowest;
+    return o->seen_enough && o->unsafety >= printed_as_lowest;
 }
 
 // What stands above the columns of risks: no harm to people, but what comes of one event.
@@ -139,9 +140,10 @@ void print_objects(const Scene& scene) {
     for (const Object& o : scene.objects) {
         if (!o.grounded) movable.push_back(&o);
     }
-    std::stable_sort(movable.begin(), movable.end(),
-                     [](const Object* a, const Object* b) { return rank_of(*a) > rank_of(*b); });
-    std::printf("\n%6s %8s %8s %8s %9s %9s %6s ", "object", "unsafety", "category", "mass kg",
+    std::stable_sort(movable.begin(), movable.end(), [](const Object* a, const Object* b) {
+        return urgency_of(*a) > urgency_of(*b);
+    });
+    std::printf("\n%6s %8s %8s %8s %9s %9s %6s ", "object", "category", "unsafety", "mass kg",
                 "barrier J", "release J", "mode");
     for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
         std::printf("%8s J ", kind->words.column);
@@ -154,7 +156,7 @@ void print_objects(const Scene& scene) {
             std::snprintf(barrier, sizeof(barrier), "0-%.2g", o.barrier_J + o.barrier_error_J);
         else
             std::snprintf(barrier, sizeof(barrier), "%.3g", o.barrier_J);
-        std::printf("%6d %8s %8s %8.3g %9s %9.3g %6s ", o.id, unsafety, category_text(o).c_str(),
+        std::printf("%6d %8s %8s %8.3g %9s %9.3g %6s ", o.id, category_text(o).c_str(), unsafety,
                     o.mass_kg, barrier, o.release_J, o.mode.c_str());
         for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
             std::printf("%10s ", risk_text(o, kind->name).c_str());
@@ -165,10 +167,12 @@ void print_objects(const Scene& scene) {
         std::printf("   ... and %zu more in scene.json\n", movable.size() - rows_shown);
     if (!movable.empty())
         std::printf(
-            "   Unsafety ranks the things of this scene, 10 the worst; category is by itself: how "
-            "often it falls, and how hard,\n   at the worse end of its error; ? where the better "
-            "end says less. Barrier, release and mode are those of the\n   easiest way out of its "
-            "place. %s\n",
+            "   Act from the top: by category, which is how often the thing falls and how hard, at "
+            "the worse end of its error\n   (? where the better end says less), and within one by "
+            "unsafety, its risk from 1 to 10 within this scene, where\n   10 is the worst, however "
+            "harmless. Barrier, release and mode are those of the easiest way out of its\n   "
+            "place. "
+            "%s\n",
             risks_text(scene).c_str());
     print_sentences(movable);
 }

@@ -12,7 +12,7 @@
 namespace topple::evaluation {
 namespace {
 
-constexpr double reach_m = 0.06;  // of a point's true object
+constexpr double truth_reach_m = 0.06;  // of a point's true object
 constexpr std::uint32_t least_points = 30;
 constexpr double least_seen_m2 = 0.015;
 
@@ -109,7 +109,7 @@ class Judge {
         for (std::size_t n = 0; n < places.size(); ++n)
             places[n] = {p.x[n] + scene.offset_m[0], p.y[n] + scene.offset_m[1],
                          p.z[n] + scene.offset_m[2]};
-        return scenes::nearest_objects(places, scan.truth, reach_m);
+        return scenes::nearest_objects(places, scan.truth, truth_reach_m);
     }
     bool is_grounded(Id found) const { return grounded_.contains(found); }
     // Everything that is fixed to the building is object 0; every grounded found object is -2.

@@ -71,7 +71,7 @@ bool edges_apart(const ConvexPart& a, const ConvexPart& b, const Vec3& best) {
 }
 
 // A plane between two parts, normal from the first to the second, and what it costs.
-struct Plane {
+struct CuttingPlane {
     HalfSpace of_first;
     double cost = physics::infinity;
 };
@@ -84,7 +84,7 @@ struct Overlap {
 
 // The cheapest place of a plane of that normal. The parts' hulls overlap along it, their solids
 // hardly.
-Plane best_place(const Overlap& two, const Vec3& n) {
+CuttingPlane best_place(const Overlap& two, const Vec3& n) {
     std::vector<std::pair<double, double>> steps;  // at a place, what more is lost from there on
     const double low = extent_along(two.b, n).low, high = extent_along(two.a, n).high;
     const double each_a = two.a_costs * two.a.solid_each_m3;
@@ -100,7 +100,7 @@ Plane best_place(const Overlap& two, const Vec3& n) {
         if (const double at = dot(n, p) + on_plane_m; at < high) steps.emplace_back(at, each_b);
     std::ranges::sort(steps);
     // Of places that cost the same, where the first part ends, or the second begins, or between.
-    Plane best{{n, low}, lost};
+    CuttingPlane best{{n, low}, lost};
     double last = low;
     for (const auto& [at, more] : steps) {
         const double place = std::clamp(at, low, high);
@@ -117,11 +117,11 @@ double lost_m3(const ConvexPart& part, const HalfSpace& to) {
     return part.volume_m3 - (left ? left->volume_m3 : 0);
 }
 
-HalfSpace of_second(const Plane& plane) {
+HalfSpace of_second(const CuttingPlane& plane) {
     return {opposite(plane.of_first.normal), -plane.of_first.offset_m};
 }
 
-Plane best_plane(const Overlap& two) {
+CuttingPlane best_plane(const Overlap& two) {
     std::vector<std::pair<double, Vec3>> ways;
     each_direction(two.a, two.b, [&](const Vec3& n, double gap) { ways.emplace_back(gap, n); });
     std::ranges::stable_sort(ways, [](const auto& p, const auto& q) { return p.first > q.first; });
@@ -134,9 +134,9 @@ Plane best_plane(const Overlap& two) {
             ways.emplace_back(gap_along(two.a, two.b, n), n);
         }
     }
-    Plane best;
+    CuttingPlane best;
     for (const auto& [gap, n] : ways) {
-        Plane plane = best_place(two, n);
+        CuttingPlane plane = best_place(two, n);
         if (plane.cost >= best.cost) continue;
         plane.cost += hollow * (two.a_costs * lost_m3(two.a, plane.of_first) +
                                 two.b_costs * lost_m3(two.b, of_second(plane)));
@@ -221,7 +221,7 @@ void separate(Body& below, Body& above) {
         for (std::size_t q = 0; q < above.parts.size(); ++q) {
             const ConvexPart &a = below.parts[p], &b = above.parts[q];
             if (!near(a, b, 0) || !overlap(a, b)) continue;
-            const Plane plane = best_plane({a, b, below_costs, above_costs});
+            const CuttingPlane plane = best_plane({a, b, below_costs, above_costs});
             auto a_left = pieces_in(a, plane.of_first), b_left = pieces_in(b, of_second(plane));
             const bool ends = (a_left.empty() && below.parts.size() == 1) ||
                               (b_left.empty() && above.parts.size() == 1);

@@ -12,7 +12,7 @@ namespace topple::geometry {
 namespace {
 
 constexpr double surfels_per_cell = 2.5;  // along an axis
-constexpr double most_cells = 64e6;
+constexpr double most_free_cells = 64e6;
 constexpr std::size_t most_lines = 100'000;
 // A line ends this many cells before its surfel: noise, and surfaces that it only grazes.
 constexpr double stop_cells = 1.5;
@@ -48,7 +48,7 @@ FreeSpace::FreeSpace(const Surfels& s, const CloudView& cloud, std::span<const V
         for (int a = 0; a < 3; ++a) all *= std::floor(extent[a] / cell_m_) + 1;
         return all;
     };
-    while (cells() > most_cells) cell_m_ *= 1.25;
+    while (cells() > most_free_cells) cell_m_ *= 1.25;
     for (int a = 0; a < 3; ++a)
         size_[static_cast<std::size_t>(a)] = static_cast<std::int64_t>(extent[a] / cell_m_) + 1;
     cell_.assign(static_cast<std::size_t>(cells()), 0);

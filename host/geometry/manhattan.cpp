@@ -21,7 +21,7 @@ constexpr std::size_t most_normals = 60'000;
 constexpr double near_degrees = 10;
 // Directions spread evenly over the sphere leave 1 - cos(10 degrees) = 1.5 % near each axis. An
 // axis of the scene must hold twice that, and all three a quarter of the surface.
-constexpr double least_share = 0.03, least_total_share = 0.25;
+constexpr double least_axis_share = 0.03, least_total_share = 0.25;
 
 struct Triple {
     std::array<Vec3, 3> axes{};
@@ -143,7 +143,7 @@ SceneFrame find_scene_frame(device::Device& device, const Surfels& surfels,
     const Triple triple = best_triple(normals, directions);
     const bool manhattan =
         triple.total >= least_total_share &&
-        *std::min_element(triple.share.begin(), triple.share.end()) >= least_share;
+        *std::min_element(triple.share.begin(), triple.share.end()) >= least_axis_share;
 
     SceneFrame frame;
     const UpChoice up = choose_up(
@@ -166,7 +166,7 @@ SceneFrame find_scene_frame(device::Device& device, const Surfels& surfels,
         total += near;
         least = std::min(least, near);
     }
-    frame.found = total >= least_total_share && least >= least_share;
+    frame.found = total >= least_total_share && least >= least_axis_share;
     if (frame.up_method == "dominant-plane" && frame.found) frame.up_method = "manhattan";
     if (frame.up_method == "manhattan" && !frame.found) frame.up_method = "dominant-plane";
     frame.up_share =

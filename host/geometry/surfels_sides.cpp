@@ -15,7 +15,7 @@ constexpr std::uint64_t sides_chunk = 1 << 14;  // points handed to a thread at 
 
 // How far apart both sides must lie, in standard deviations of either and in cells, and how
 // directly their sensors must have looked at the cell's plane, as the mean cosine.
-constexpr double least_sigmas = 4, least_cells = 0.1, least_cosine = 0.5;
+constexpr double least_sigmas = 4, least_cells = 0.1, least_side_cosine = 0.5;
 
 using Axes = std::array<FloatColumn, 3>;
 
@@ -29,15 +29,15 @@ bool is_behind(const SensorSides& sides, const PlaneFit& planes, std::size_t poi
 }
 
 // The points of one side of a cell, along the normal of its plane, in cells.
-struct Side {
+struct CloudSide {
     double mean = 0, variance = 0, cosine = 0;
 };
 
-Side side_of(const Axes& cloud, const SensorSides& sides, const PlaneFit& planes,
-             const CellGrid& grid, std::size_t cell, std::span<const std::uint32_t> points) {
+CloudSide side_of(const Axes& cloud, const SensorSides& sides, const PlaneFit& planes,
+                  const CellGrid& grid, std::size_t cell, std::span<const std::uint32_t> points) {
     const auto [mean, c] = moments_of(cloud, points, grid.index(cell), grid.cell_m);
     const double x = planes.normal[0][cell], y = planes.normal[1][cell], z = planes.normal[2][cell];
-    Side out;
+    CloudSide out;
     out.mean = x * mean[0] + y * mean[1] + z * mean[2];
     out.variance = x * x * c[0] + y * y * c[1] + z * z * c[2] +
                    2 * (x * y * c[3] + x * z * c[4] + y * z * c[5]);
@@ -50,9 +50,10 @@ Side side_of(const Axes& cloud, const SensorSides& sides, const PlaneFit& planes
     return out;
 }
 
-bool apart(const Side& front, const Side& back) {
+bool apart(const CloudSide& front, const CloudSide& back) {
     const double gap = std::abs(front.mean - back.mean);
-    return front.cosine >= least_cosine && back.cosine <= -least_cosine && gap >= least_cells &&
+    return front.cosine >= least_side_cosine && back.cosine <= -least_side_cosine &&
+           gap >= least_cells &&
            gap * gap >= least_sigmas * least_sigmas * std::max(front.variance, back.variance);
 }
 

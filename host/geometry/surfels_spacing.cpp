@@ -81,10 +81,10 @@ std::vector<std::size_t> sample_area(const CloudView& cloud, std::size_t samples
 
 // How far it is from a point to the first and to the last of the `around` other places around it,
 // squared; infinite where there are fewer. A place counts once, however often it is stored.
-struct Around {
+struct Spacings {
     float first = 0, last = 0;
 };
-Around distances_around(const CloudView& cloud, std::size_t point) {
+Spacings distances_around(const CloudView& cloud, std::size_t point) {
     struct Place {
         float distance = std::numeric_limits<float>::infinity();
         std::size_t point = 0;
@@ -111,9 +111,9 @@ Around distances_around(const CloudView& cloud, std::size_t point) {
 }
 
 // The distance that this share of those found has at most; 0 where none was.
-double share_of(const std::vector<Around>& all, float Around::*which, double share) {
+double share_of(const std::vector<Spacings>& all, float Spacings::*which, double share) {
     std::vector<float> distances;
-    for (const Around& a : all)
+    for (const Spacings& a : all)
         if (std::isfinite(a.*which)) distances.push_back(a.*which);
     if (distances.empty()) return 0;
     const auto at = distances.begin() +
@@ -122,8 +122,8 @@ double share_of(const std::vector<Around>& all, float Around::*which, double sha
     return std::sqrt(static_cast<double>(*at));
 }
 
-std::vector<Around> look_around(const CloudView& cloud, const std::vector<std::size_t>& points) {
-    std::vector<Around> out;
+std::vector<Spacings> look_around(const CloudView& cloud, const std::vector<std::size_t>& points) {
+    std::vector<Spacings> out;
     for (const std::size_t i : points) out.push_back(distances_around(cloud, i));
     return out;
 }
@@ -136,13 +136,13 @@ PointSpacing point_spacing(const CloudView& cloud) {
     if (n < 2) return out;
     // Brute force over a sample: the clouds that come here have at most some 10^7 points.
     const std::size_t samples = std::clamp<std::size_t>(100'000'000 / n, 64, 256);
-    const std::vector<Around> of_points = look_around(cloud, sample_places(cloud, samples));
-    out.nearest_m = share_of(of_points, &Around::first, 0.5);
+    const std::vector<Spacings> of_points = look_around(cloud, sample_places(cloud, samples));
+    out.nearest_m = share_of(of_points, &Spacings::first, 0.5);
     if (out.nearest_m <= 0) return out;
-    out.around_m = share_of(of_points, &Around::last, 0.5);
-    const std::vector<Around> of_area =
+    out.around_m = share_of(of_points, &Spacings::last, 0.5);
+    const std::vector<Spacings> of_area =
         look_around(cloud, sample_area(cloud, samples, area_spacings * out.nearest_m));
-    const double of_surface = share_of(of_area, &Around::last, surface_part);
+    const double of_surface = share_of(of_area, &Spacings::last, surface_part);
     out.surface_m = std::max(out.around_m, of_surface);
     out.nearest_m = std::max(out.nearest_m, around_share * of_surface);
     return out;

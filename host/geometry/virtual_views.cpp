@@ -21,7 +21,7 @@ constexpr double side_cos = 0.25, behind_cos = 0.1;
 // Neighbours whose normals' cosine is more lie in one surface.
 constexpr float one_surface_cos = 0.8f;
 // Of the surface around a surfel, what must be seen with it.
-constexpr float least_share = 0.3f;
+constexpr float least_pixel_share = 0.3f;
 constexpr std::uint64_t witness_chunk = 1 << 14;  // surfels handed to a thread at once
 // Rougher than this share of its cell, a surfel may be both faces of a thin board, or an edge.
 constexpr double two_sided_cells = 0.25;
@@ -338,7 +338,7 @@ class Looking {
         });
         for (auto& image : view.surfel) {
             for (std::uint32_t& i : image)
-                if (i != CubeView::nothing && share[i] < least_share) i = CubeView::nothing;
+                if (i != CubeView::nothing && share[i] < least_pixel_share) i = CubeView::nothing;
         }
     }
 

@@ -31,7 +31,7 @@ constexpr std::int32_t uneven_foot = 2;  // voxels
 constexpr double least_error_m = 1e-4;   // no border is known better
 
 // A mean of heights.
-struct MeanHeight {
+struct MeanOfHeights {
     double sum = 0, count = 0;
     void add(double height_m) {
         sum += height_m;
@@ -44,7 +44,7 @@ struct MeanHeight {
 using Corners = std::vector<solids::UndersideCorner>;
 
 void add_corners(const Corners& corners, std::vector<BorderPoint>& points,
-                 MeanHeight* height = nullptr) {
+                 MeanOfHeights* height = nullptr) {
     for (const solids::UndersideCorner& c : corners) {
         points.push_back({{c.at[0], c.at[1]}, c.error_m});
         if (height) height->add(c.at[2]);
@@ -161,7 +161,7 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
     std::vector<BorderPoint> seen;
     add_points(c.support_polygon, c.border_error_m, seen);
     std::vector<BorderPoint> near = seen, hidden = seen;
-    MeanHeight foot, met;  // of its lowest columns, and of what they nearly stand on
+    MeanOfHeights foot, met;  // of its lowest columns, and of what they nearly stand on
     std::int32_t lowest_met = std::numeric_limits<std::int32_t>::max();
     for (std::size_t n = 0; n < columns.size(); ++n) {
         const Underside& u = columns[n];

@@ -41,20 +41,20 @@ void on_message(j_common_ptr jpeg, int level) {
 }
 
 // The decompressor, destroyed when it goes.
-struct Reader {
+struct JpegReader {
     jpeg_decompress_struct jpeg{};
     Jump jump{};
-    Reader() {
+    JpegReader() {
         jpeg.err = jpeg_std_error(&jump.manager);
         jump.manager.error_exit = on_error;
         jump.manager.emit_message = on_message;
     }
-    ~Reader() { jpeg_destroy_decompress(&jpeg); }
-    Reader(const Reader&) = delete;
-    Reader& operator=(const Reader&) = delete;
+    ~JpegReader() { jpeg_destroy_decompress(&jpeg); }
+    JpegReader(const JpegReader&) = delete;
+    JpegReader& operator=(const JpegReader&) = delete;
 };
 
-bool read_header(Reader* reader, const unsigned char* bytes, unsigned long size) {
+bool read_header(JpegReader* reader, const unsigned char* bytes, unsigned long size) {
     if (setjmp(reader->jump.back)) return false;
     jpeg_create_decompress(&reader->jpeg);
     jpeg_mem_src(&reader->jpeg, bytes, size);
@@ -62,7 +62,7 @@ bool read_header(Reader* reader, const unsigned char* bytes, unsigned long size)
     return true;
 }
 
-bool read_rows(Reader* reader, unsigned char* to, std::size_t row_bytes) {
+bool read_rows(JpegReader* reader, unsigned char* to, std::size_t row_bytes) {
     if (setjmp(reader->jump.back)) return false;
     reader->jpeg.out_color_space = JCS_RGB;
     // The same bits whatever the machine's vector instructions are.
@@ -80,7 +80,7 @@ bool read_rows(Reader* reader, unsigned char* to, std::size_t row_bytes) {
 
 ColourImage decode_colour_jpeg(const std::filesystem::path& file, std::string_view bytes,
                                const SizeCheck& check) {
-    Reader reader;
+    JpegReader reader;
     const auto refuse = [&] {
         const std::string why = printable(reader.jump.message, sizeof(reader.jump.message));
         fail(file,

@@ -22,7 +22,7 @@ bool turn_to_rgb(png_structp png, png_infop info, std::size_t* row_bytes) {
     return true;
 }
 
-bool read_pixels(png_structp png, png_infop info, png_bytepp rows) {
+bool read_colour_rows(png_structp png, png_infop info, png_bytepp rows) {
     if (setjmp(png_jmpbuf(png))) return false;
     png_read_image(png, rows);
     png_read_end(png, info);
@@ -50,7 +50,7 @@ ColourImage decode_colour_png(const std::filesystem::path& file, std::string_vie
     image.rgb.resize(row_bytes * shape.height);
     std::vector<png_bytep> rows(shape.height);
     for (std::uint32_t v = 0; v < shape.height; ++v) rows[v] = image.rgb.data() + v * row_bytes;
-    if (!read_pixels(reader.png, reader.info, rows.data())) refuse();
+    if (!read_colour_rows(reader.png, reader.info, rows.data())) refuse();
     return image;
 }
 

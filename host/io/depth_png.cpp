@@ -9,7 +9,7 @@
 namespace topple::io {
 namespace {
 
-bool read_pixels(png_structp png, png_infop info, png_bytepp rows) {
+bool read_depth_rows(png_structp png, png_infop info, png_bytepp rows) {
     if (setjmp(png_jmpbuf(png))) return false;
     if (std::endian::native == std::endian::little) png_set_swap(png);
     png_read_image(png, rows);
@@ -60,7 +60,7 @@ std::vector<std::uint16_t> read_depth_png(const std::filesystem::path& file, std
     for (std::uint32_t v = 0; v < height; ++v) {
         rows[v] = reinterpret_cast<png_bytep>(depth.data() + std::size_t(v) * width);
     }
-    if (!read_pixels(reader.png, reader.info, rows.data())) {
+    if (!read_depth_rows(reader.png, reader.info, rows.data())) {
         fail(file, printable(source.message, sizeof(source.message)));
     }
     return depth;

@@ -9,7 +9,7 @@ namespace topple::io {
 namespace {
 
 constexpr std::size_t none = SIZE_MAX;
-constexpr std::size_t most_columns = 4096;
+constexpr std::size_t most_table_columns = 4096;
 
 std::vector<std::string_view> split(std::string_view line) {
     std::vector<std::string_view> out;
@@ -19,7 +19,7 @@ std::vector<std::string_view> split(std::string_view line) {
         while (!token.empty() && (token.back() == '"' || token.back() == '\''))
             token.remove_suffix(1);
         out.push_back(token);
-        if (out.size() > most_columns) break;
+        if (out.size() > most_table_columns) break;
     }
     return out;
 }

@@ -28,18 +28,18 @@ T value_at(std::string_view bytes, std::size_t at) {
     return load_as<T>(bytes.data() + at, std::endian::native == std::endian::big);
 }
 
-struct Header {
+struct LasHeader {
     unsigned minor = 0, format = 0;
     std::uint64_t first = 0, record = 0, points = 0;
     std::array<double, 3> scale{}, offset{};
 };
 
-Header read_header(const std::filesystem::path& file, std::string_view bytes) {
+LasHeader read_header(const std::filesystem::path& file, std::string_view bytes) {
     if (bytes.size() < least_header) {
         fail(file, "is cut short: a LAS header has " + std::to_string(least_header) +
                        " bytes, the file " + std::to_string(bytes.size()));
     }
-    Header h;
+    LasHeader h;
     const unsigned major = value_at<std::uint8_t>(bytes, 24);
     h.minor = value_at<std::uint8_t>(bytes, 25);
     if (major != 1 || h.minor > 4) {
@@ -104,7 +104,7 @@ PointCloud parse_las(const std::filesystem::path& file, std::string_view bytes, 
         fail(file, "starts with " + in_quotes(bytes.substr(0, 4)) +
                        ", where a LAS file starts with \"LASF\"");
     }
-    const Header h = read_header(file, bytes);
+    const LasHeader h = read_header(file, bytes);
     // Coordinates are whole multiples of the scale, from an offset: nothing of it is lost in
     // doubles. As floats they must lie near the origin.
     std::array<double, 3> shift{};

@@ -28,7 +28,7 @@ struct Field {
     std::uint64_t column = 0;  // in a point, values
 };
 
-struct Header {
+struct PcdHeader {
     std::vector<Field> fields;
     std::optional<std::uint64_t> width, height, points;
     std::array<double, 7> viewpoint{0, 0, 0, 1, 0, 0, 0};  // position, then quaternion w x y z
@@ -40,7 +40,7 @@ struct Header {
 };
 
 // A point of more than this many values or bytes is no point.
-constexpr std::uint64_t most_columns = 1'000'000, most_fields = 10'000;
+constexpr std::uint64_t most_pcd_columns = 1'000'000, most_fields = 10'000;
 
 std::optional<Scalar> scalar_of(char type, std::uint64_t size) {
     if (type == 'F' && size == 4) return Scalar::f32;
@@ -66,7 +66,7 @@ class HeaderParser {
     HeaderParser(const std::filesystem::path& file, std::string_view bytes)
         : file_(file), lines_(bytes) {}
 
-    Header parse() {
+    PcdHeader parse() {
         std::string_view line;
         while (lines_.next(line)) {
             auto rest = line;
@@ -170,7 +170,8 @@ class HeaderParser {
                                 " and SIZE " + std::to_string(field.size) +
                                 "; F may have 4 or 8, I and U 1, 2, 4 or 8");
             }
-            if (field.count > most_columns || header_.columns + field.count > most_columns) {
+            if (field.count > most_pcd_columns ||
+                header_.columns + field.count > most_pcd_columns) {
                 fail(file_, "field " + printable(field.name) + " has COUNT " +
                                 std::to_string(field.count) +
                                 "; a point may have 1000000 values in all");
@@ -203,11 +204,11 @@ class HeaderParser {
 
     const std::filesystem::path& file_;
     Lines lines_;
-    Header header_;
+    PcdHeader header_;
 };
 
-// The fields to read, by place in Header::fields.
-struct Wanted {
+// The fields to read, by place in the header.
+struct PcdWanted {
     std::array<const Field*, 3> point{}, normal{};
     const Field* colour = nullptr;  // four bytes that hold 0xAARRGGBB
     bool has_normal = false;
@@ -216,7 +217,7 @@ struct Wanted {
     }
 };
 
-const Field* find_field(const std::filesystem::path& file, const Header& header,
+const Field* find_field(const std::filesystem::path& file, const PcdHeader& header,
                         std::string_view name) {
     const Field* found = nullptr;
     for (const auto& field : header.fields) {
@@ -227,11 +228,11 @@ const Field* find_field(const std::filesystem::path& file, const Header& header,
     return found;
 }
 
-Wanted find_wanted(const std::filesystem::path& file, const Header& header) {
+PcdWanted find_wanted(const std::filesystem::path& file, const PcdHeader& header) {
     static constexpr std::array<const char*, 3> point{"x", "y", "z"};
     static constexpr std::array<const char*, 3> normal{"normal_x", "normal_y", "normal_z"},
         short_normal{"nx", "ny", "nz"};
-    Wanted wanted;
+    PcdWanted wanted;
     wanted.has_normal = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         wanted.point[axis] = find_field(file, header, point[axis]);
@@ -273,8 +274,8 @@ std::uint32_t packed_colour(const Field& field, double value) {
                    " are left in the file; it is cut short, or its header is wrong");
 }
 
-void read_ascii(const std::filesystem::path& file, std::string_view bytes, const Header& header,
-                const Wanted& wanted, CloudBuilder& cloud) {
+void read_ascii(const std::filesystem::path& file, std::string_view bytes, const PcdHeader& header,
+                const PcdWanted& wanted, CloudBuilder& cloud) {
     Lines lines(bytes, header.data_offset, header.lines);
     const auto bad = [&](const std::string& message) {
         fail(file, "line " + std::to_string(lines.number()) + ": " + message);
@@ -316,8 +317,8 @@ void read_ascii(const std::filesystem::path& file, std::string_view bytes, const
 }
 
 // Points one after another, or, where the data was compressed, field after field.
-void read_binary(std::string_view data, const Header& header, const Wanted& wanted, bool by_field,
-                 CloudBuilder& cloud) {
+void read_binary(std::string_view data, const PcdHeader& header, const PcdWanted& wanted,
+                 bool by_field, CloudBuilder& cloud) {
     const bool swapped = must_swap(false);
     const auto points = *header.points;
     const auto bytes_at = [&](const Field& field, std::uint64_t i) {
@@ -383,7 +384,7 @@ FileBytes decompress(const std::filesystem::path& file, std::string_view data,
     return out;
 }
 
-void set_viewpoint(const Header& header, PointCloud& cloud) {
+void set_viewpoint(const PcdHeader& header, PointCloud& cloud) {
     const auto& v = header.viewpoint;
     const bool given = v != std::array<double, 7>{0, 0, 0, 1, 0, 0, 0};
     cloud.has_viewpoint = given || cloud.height > 1;

@@ -16,7 +16,7 @@ namespace topple::io {
 namespace {
 
 // Where in a vertex the coordinates, the normal and the colour are: indices into its properties.
-struct Wanted {
+struct PlyWanted {
     std::array<std::size_t, 3> point{}, normal{}, colour{};
     CloudFields fields;
     std::optional<SplatFields> splats;  // then colour is where theirs are
@@ -50,7 +50,7 @@ bool coloured_by_object(const PlyElement& vertex) {
 }
 
 // The three channels, under the first of their names of which there are all, and of one type.
-void find_colour(const std::filesystem::path& file, const PlyElement& vertex, Wanted& wanted) {
+void find_colour(const std::filesystem::path& file, const PlyElement& vertex, PlyWanted& wanted) {
     if (coloured_by_object(vertex)) return;
     static constexpr std::array<std::array<const char*, 3>, 3> names{
         {{"red", "green", "blue"},
@@ -69,8 +69,8 @@ void find_colour(const std::filesystem::path& file, const PlyElement& vertex, Wa
     }
 }
 
-Wanted find_wanted(const std::filesystem::path& file, const PlyElement& vertex) {
-    Wanted wanted;
+PlyWanted find_wanted(const std::filesystem::path& file, const PlyElement& vertex) {
+    PlyWanted wanted;
     wanted.splats = splat_fields(file, vertex);
     static constexpr std::array<const char*, 3> point{"x", "y", "z"};
     static constexpr std::array<const char*, 3> normal{"nx", "ny", "nz"},
@@ -115,7 +115,7 @@ std::vector<const PlyElement*> after(const PlyHeader& header, const PlyElement& 
 // Passes vertices on to a cloud; of splats those that hide what lies behind.
 class Vertices {
   public:
-    Vertices(const std::filesystem::path& file, std::uint64_t promised, const Wanted& wanted,
+    Vertices(const std::filesystem::path& file, std::uint64_t promised, const PlyWanted& wanted,
              const CloudSink* sink)
         : file_(file), splats_(wanted.splats), cloud_(file, promised, wanted.fields, sink) {}
 

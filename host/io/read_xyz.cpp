@@ -13,18 +13,18 @@
 namespace topple::io {
 namespace {
 
-constexpr std::size_t none = SIZE_MAX;
+constexpr std::size_t no_column = SIZE_MAX;
 // Columns beyond this one are not looked at.
 constexpr std::size_t most_columns = 256;
 
 // Which columns hold what.
 struct Columns {
     using Three = std::array<std::size_t, 3>;
-    static constexpr Three nowhere{none, none, none};
+    static constexpr Three nowhere{no_column, no_column, no_column};
     Three point{0, 1, 2}, normal = nowhere, colour = nowhere;
     bool by_name = false;
     static bool found(const Three& three) {
-        return three[0] != none && three[1] != none && three[2] != none;
+        return three[0] != no_column && three[1] != no_column && three[2] != no_column;
     }
 };
 
@@ -51,7 +51,7 @@ bool parse_names(const std::array<std::string_view, most_columns>& tokens, std::
     static constexpr std::array<const char*, 12> names{"x", "y", "z", "nx",  "ny",    "nz",
                                                        "r", "g", "b", "red", "green", "blue"};
     std::array<std::size_t, names.size()> at;
-    at.fill(none);
+    at.fill(no_column);
     for (std::size_t i = 0; i < count; ++i) {
         std::string name;
         for (const char c : tokens[i]) {
@@ -60,10 +60,11 @@ bool parse_names(const std::array<std::string_view, most_columns>& tokens, std::
         }
         if (name.empty() || !((name[0] >= 'a' && name[0] <= 'z') || name[0] == '_')) return false;
         for (std::size_t k = 0; k < names.size(); ++k) {
-            if (name == names[k] && at[k] == none) at[k] = i;
+            if (name == names[k] && at[k] == no_column) at[k] = i;
         }
     }
-    if (at[0] == none || at[1] == none || at[2] == none) return true;  // the first three columns
+    if (at[0] == no_column || at[1] == no_column || at[2] == no_column)
+        return true;  // the first three columns
     columns.point = {at[0], at[1], at[2]};
     columns.normal = {at[3], at[4], at[5]};
     columns.colour = {at[6], at[7], at[8]};

@@ -87,9 +87,9 @@ std::vector<Role> roles_of(const SolidScene& solids) {
     return out;
 }
 
-class Reader {
+class SolidsReader {
   public:
-    Reader(const std::filesystem::path& file, std::string_view bytes)
+    SolidsReader(const std::filesystem::path& file, std::string_view bytes)
         : file_(file), bytes_(bytes) {}
 
     std::shared_ptr<const SolidScene> read() {
@@ -195,7 +195,7 @@ void write_solids(const std::filesystem::path& file, const SolidScene& solids) {
 
 std::shared_ptr<const SolidScene> read_solids(const std::filesystem::path& file) {
     const FileBytes bytes = read_file(file);
-    return Reader(file, bytes.text()).read();
+    return SolidsReader(file, bytes.text()).read();
 }
 
 }  // namespace topple::io

@@ -31,9 +31,10 @@ int main(int argc, char** argv) {
             [[maybe_unused]] const auto* nowhere =
                 leads ? stdout : std::freopen("/dev/null", "w", stdout);
             const cli::Team team{crew, leads, crew->cores(), [&] { return crew->stopped(); }};
-            const cli::CommandEntry commands[] = {{"parse", cli::parse_purpose, [&](CLI::App& app) {
-                                                       return cli::add_parse(app, team);
-                                                   }}};
+            const cli::CommandEntry commands[] = {
+                {"parse", cli::parse_purpose, [&](CLI::App& app) {
+                     return cli::add_parse(app, {argv, argv + argc}, team);
+                 }}};
             code = cli::run_command_line(commands, argc, argv,
                                          [&](const Error& error) { failed = error; });
             if (leads && failed) {

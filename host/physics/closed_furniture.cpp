@@ -19,7 +19,7 @@ constexpr double least_fill = 0.2;
 
 using Point = std::array<double, 2>;
 
-struct Footprint {
+struct FootOutline {
     std::vector<Point> corners;  // of its columns
     std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
     std::int32_t highest = std::numeric_limits<std::int32_t>::min();
@@ -33,7 +33,7 @@ class Sight {
 
     // Of a rectangle's side the share of what the object has within reach of it that has the room
     // within reach of that.
-    double backed(const Rectangle& r, std::size_t axis, int way, const Footprint& of,
+    double backed(const Rectangle& r, std::size_t axis, int way, const FootOutline& of,
                   std::int32_t object) const {
         const double h = cells_.voxel_m, step = 2 * h;  // along the side
         const auto reach = static_cast<int>(std::max<double>(1, std::lround(backing_reach_m / h)));
@@ -83,15 +83,15 @@ class Sight {
     const std::vector<bool>& room_;
 };
 
-std::vector<Footprint> footprints(const SolidCells& cells,
-                                  std::span<const std::int32_t> object_of_primitive,
-                                  const std::vector<bool>& room, std::size_t objects) {
-    std::vector<Footprint> out(objects);
+std::vector<FootOutline> foot_outlines(const SolidCells& cells,
+                                       std::span<const std::int32_t> object_of_primitive,
+                                       const std::vector<bool>& room, std::size_t objects) {
+    std::vector<FootOutline> out(objects);
     const double h = cells.voxel_m;
     for (std::size_t n = 0; n < cells.size(); ++n) {
         const std::int32_t p = cells.primitive[n];
         if (p < 0 || room[static_cast<std::size_t>(p)]) continue;
-        Footprint& f =
+        FootOutline& f =
             out[static_cast<std::size_t>(object_of_primitive[static_cast<std::size_t>(p)])];
         f.lowest = std::min(f.lowest, cells.k[n]);
         f.highest = std::max(f.highest, cells.k[n]);
@@ -114,7 +114,8 @@ std::vector<FurnitureLooks> furniture_looks(const SolidScene& solids,
     const SolidCells& cells = solids.cells();
     const std::vector<bool> room = solids.shell();
     const Sight sight(cells, solids.columns(), object_of_primitive, room);
-    std::vector<Footprint> of = footprints(cells, object_of_primitive, room, volumes_m3.size());
+    std::vector<FootOutline> of =
+        foot_outlines(cells, object_of_primitive, room, volumes_m3.size());
     std::vector<FurnitureLooks> out(volumes_m3.size());
     for (std::size_t o = 0; o < out.size(); ++o) {
         if (of[o].corners.empty()) continue;

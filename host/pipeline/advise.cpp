@@ -110,20 +110,6 @@ class Mover {
     const CellColumns& columns_;
 };
 
-// Whether there is any place to move to, safe or not: a hand's breadth away or more.
-bool leaves_room(const Landscape::Places& around) {
-    const std::int32_t half = around.side / 2;
-    for (std::int32_t b = 0; b < around.side; ++b) {
-        for (std::int32_t a = 0; a < around.side; ++a) {
-            const float energy = around.energy_J[static_cast<std::size_t>(b * around.side + a)];
-            if (std::isfinite(energy) && energy >= 0 &&
-                around.step_m * std::hypot(a - half, b - half) > 0.1)
-                return true;
-        }
-    }
-    return false;
-}
-
 // Nearly every event of a kind that has happened before would have upset it, and yet it stood
 // there.
 bool fell_before(std::span<const safety::Disturbance> disturbances,
@@ -197,8 +183,6 @@ std::vector<Suggestion> advise(const SolidScene& solids,
     std::vector<safety::Placement> placements;
     std::vector<double> all_J;  // the largest risk there
     for (std::size_t n = 0; n < chosen.size(); ++n) {
-        out[chosen[n]].places =
-            leaves_room(around[n]) ? Suggestion::Places::unsafe : Suggestion::Places::none;
         for (Place& place : mover.places(chosen[n], around[n])) {
             all_J.push_back(place.risk_J);
             placements.push_back({chosen[n], place.di, place.dj, std::move(place.there)});

@@ -20,9 +20,6 @@ struct Suggestion {
     Vec3 move_m{};        // move: horizontal
     double risk_J = 0;    // its largest afterwards
     safety::Push hold{};  // fix: what a fixing must take, at the top of the object
-    // fix: whether places were looked for, and whether any was found to move to, safe or not.
-    enum class Places { not_asked, none, unsafe };
-    Places places = Places::not_asked;
 };
 
 // `move` is the smallest way on the object's support to a place from where all disturbances bring

@@ -12,6 +12,8 @@
 
 #include "io/text.h"
 #include "pipeline/explain.h"
+#include "pipeline/object_sizes.h"
+#include "pipeline/sentences.h"
 #include "safety/directions.h"
 #include "safety/disturbances.h"
 #include "topple/version.h"
@@ -67,35 +69,10 @@ DirectedBarrier directed(const physics::Toppling& toppling) {
     return out;
 }
 
-// Of each object, along the grid's axes.
-std::vector<Vec3> sizes_m(const SolidCells& cells, const ObjectStage& objects) {
-    constexpr std::int32_t far = std::numeric_limits<std::int32_t>::max();
-    struct Ends {
-        std::array<std::int32_t, 3> low{far, far, far}, high{-far, -far, -far};
-    };
-    std::vector<Ends> ends(objects.objects.size());
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-        if (cells.primitive[c] < 0) continue;
-        const std::int32_t o =
-            objects.object_of_primitive[static_cast<std::size_t>(cells.primitive[c])];
-        if (o < 0) continue;
-        Ends& e = ends[static_cast<std::size_t>(o)];
-        const std::array at{cells.i[c], cells.j[c], cells.k[c]};
-        for (std::size_t a = 0; a < 3; ++a) {
-            e.low[a] = std::min(e.low[a], at[a]);
-            e.high[a] = std::max(e.high[a], at[a]);
-        }
-    }
-    std::vector<Vec3> out(ends.size());
-    for (std::size_t o = 0; o < ends.size(); ++o)
-        for (std::size_t a = 0; a < 3 && ends[o].high[a] >= ends[o].low[a]; ++a)
-            out[o][a] = (ends[o].high[a] - ends[o].low[a] + 1) * cells.voxel_m;
-    return out;
-}
-
-void add_objects(const SolidCells& cells, const ObjectStage& objects, const SafetyStage& safety,
+void add_objects(const SolidScene& solids, const ObjectStage& objects, const SafetyStage& safety,
                  const ToInput& to_input, Scene& scene) {
-    const std::vector<Vec3> size_m = sizes_m(cells, objects);
+    const std::vector<Vec3> size_m =
+        object_sizes_m(solids, objects.object_of_primitive, objects.objects.size());
     for (std::size_t o = 0; o < objects.objects.size(); ++o) {
         const StableObject& from = objects.objects[o];
         Object to;
@@ -306,7 +283,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
         axes[0][0], axes[0][1], axes[0][2], 0, axes[1][0], axes[1][1], axes[1][2], 0,
         axes[2][0], axes[2][1], axes[2][2], 0, 0,          0,          0,          1};
     add_primitives(parts, objects, to_input, scene);
-    add_objects(parts.solids->cells(), objects, safety, to_input, scene);
+    add_objects(*parts.solids, objects, safety, to_input, scene);
     add_contacts(objects, to_input, scene);
     add_fields(safety, to_input, scene);
     add_walks(safety, to_input, scene);
@@ -317,8 +294,10 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     note_uncertain_barriers(scene);
     note_indoors(parts, safety, scene);
     scene.swc_energy = objects.grouping.energy_curve;
-    explain(parts, objects, to_input, scene);
+    explain(objects, to_input, scene);
     foretell(objects, safety, to_input, scene);
+    tell_why(parts, objects, safety.landings, scene);
+    tell_advice(safety.advice, scene);
 }
 
 void add_exposures(const SafetyStage& safety, const SolidCells& cells, vdb::VoxelScene& voxels) {

@@ -6,7 +6,6 @@
 
 #include "pipeline/object_stage.h"
 #include "pipeline/safety_stage.h"
-#include "pipeline/solid_parts.h"
 #include "topple/scene.h"
 
 namespace topple {
@@ -45,9 +44,12 @@ class ToInput {
     const std::array<Vec3, 3>& axes_;
 };
 
-// Fills in each object's `why`, but for what it stands on: that and the energies are there already.
-void explain(const SolidParts& parts, const ObjectStage& objects, const ToInput& to_input,
-             Scene& scene);
+// Clockwise from north, +y of the grid frame, from 0 to 360.
+double azimuth_deg(const Vec3& way);
+
+// Fills in each object's `why`, but for what it stands on: that and the energies are there already;
+// and but for its sentence, as that of `advice` (sentences.h).
+void explain(const ObjectStage& objects, const ToInput& to_input, Scene& scene);
 
 // Fills in each object's `fall` and `advice`, from `why` and the supports.
 void foretell(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,

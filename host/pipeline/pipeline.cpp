@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "device/device.h"
+#include "io/scan_notes.h"
 #include "pipeline/assemble.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/groundwork.h"
@@ -157,9 +158,9 @@ std::vector<std::string> known_disturbances() {
     return names;
 }
 
-ParseResult parse(const std::filesystem::path& input, const ParseOptions& callers) {
-    check_options(callers);
-    ParseOptions options = callers;
+namespace {
+
+ParseResult parse_scan(const std::filesystem::path& input, ParseOptions options) {
     GroundworkFile cache;
     Timings timings;
     if (keeps_groundwork(options) && !options.device) options.device = device::open_device("auto");
@@ -177,6 +178,18 @@ ParseResult parse(const std::filesystem::path& input, const ParseOptions& caller
     }
     if (std::optional<ParseResult> tiled = parse_tiled(input, options)) return *std::move(tiled);
     return parse_whole(input, options, std::move(cache), std::move(timings));
+}
+
+}  // namespace
+
+ParseResult parse(const std::filesystem::path& input, const ParseOptions& options) {
+    check_options(options);
+    // First, as it is told early what can't be read.
+    std::vector<std::string> notes = io::scan_notes(input);
+    ParseResult result = parse_scan(input, options);
+    std::vector<std::string>& all = result.scene.notes;
+    all.insert(all.begin(), notes.begin(), notes.end());
+    return result;
 }
 
 ParseResult parse(const CloudView& cloud, const ParseOptions& options) {

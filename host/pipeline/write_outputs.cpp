@@ -2,6 +2,7 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <string>
 #include <system_error>
 #include <vector>
 
@@ -59,9 +60,23 @@ std::vector<ObjectSurface> surfaces_of(const ParseResult& result, const vdb::Vox
                            voxels.frame(), threads);
 }
 
-// The files of an output, each written by itself: what takes longest first.
+// What parses so again, as far as the result tells: what was reckoned with is asked for again.
+std::vector<std::string> command_for(const Scene& scene, const std::filesystem::path& folder) {
+    std::vector<std::string> words{"topple", "parse", scene.source};
+    std::string disturbances;
+    for (const auto& [name, field] : scene.fields)
+        disturbances.append(disturbances.empty() ? "" : ",").append(name);
+    if (!scene.fields.empty() && scene.fields.size() < known_disturbances().size())
+        words.insert(words.end(), {"--disturbance", disturbances});
+    words.insert(words.end(), {"-o", folder.string()});
+    return words;
+}
+
+// The files of an output, each written by itself: what takes longest first. folder: where they are
+// made; command: of the report.
 std::vector<std::function<void()>> writers(const std::filesystem::path& folder,
                                            const ParseResult& result, const OutputOptions& options,
+                                           const std::vector<std::string>& command,
                                            const Poll& poll) {
     const Scene& scene = result.scene;
     // Of a building they are read from disk, by the first that wants them.
@@ -76,7 +91,8 @@ std::vector<std::function<void()>> writers(const std::filesystem::path& folder,
     // What the page shows beside them another thread makes meanwhile.
     const std::shared_future<std::shared_ptr<report::Report>> page =
         std::async(std::launch::deferred, [=, &scene] {
-            return std::make_shared<report::Report>(scene, with_surfaces && !scene.solid.x.empty());
+            return std::make_shared<report::Report>(scene, with_surfaces && !scene.solid.x.empty(),
+                                                    command);
         });
     std::vector<std::function<void()>> out;
     out.emplace_back([=, &result, &options, &scene, &poll] {
@@ -119,7 +135,9 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
         if (options.cancelled && options.cancelled())
             throw Error(ErrorKind::cancelled, "cancelled");
     };
-    const auto files = writers(out.folder(), result, options, poll);
+    const auto files = writers(
+        out.folder(), result, options,
+        options.command.empty() ? command_for(result.scene, folder) : options.command, poll);
     // Surfaces have threads of their own.
     ThreadPool(options.threads == 1 ? 1 : 2).each(files.size(), 1, [&](std::size_t n) {
         poll();

@@ -6,15 +6,10 @@
 #include <numbers>
 #include <vector>
 
+#include "report/vectors.h"
+
 namespace topple::report {
 namespace {
-
-double dot(const Vec3& a, const Vec3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec3 plus(const Vec3& a, double share, const Vec3& b) {
-    return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
-}
 
 // The nearest upper corner belongs to walls and a ceiling that are looked through.
 std::vector<Vec3> corners_of(const Vec3& low, const Vec3& high) {

@@ -28,7 +28,7 @@ struct Drawing {
         Point at;
         double radius;
     };
-    enum class Align : std::uint8_t { start, middle, end };
+    enum class Anchor : std::uint8_t { start, middle, end };
     struct Swatch {
         Point corner;
         double width, height;
@@ -36,7 +36,7 @@ struct Drawing {
     };
     struct Label {
         Point at;  // of the base line
-        Align align;
+        Anchor anchor;
         bool strong;
         std::string text;
     };

@@ -8,7 +8,7 @@ namespace topple::report {
 namespace {
 
 using Style = Drawing::Style;
-using Align = Drawing::Align;
+using Anchor = Drawing::Anchor;
 
 // A round number at or above `value`.
 double nice_ceiling(double value) {
@@ -52,12 +52,12 @@ Drawing draw_curve(const Object& object) {
     }
     curve.points.push_back(at(end_W, S));
     out.strokes.push_back(std::move(curve));
-    out.labels = {{{left - 5, top + 6}, Align::end, false, joules(end_S)},
-                  {{left - 5, height - bottom + 4}, Align::end, false, "0"},
-                  {{left, height - bottom + 15}, Align::start, false, "0"},
-                  {{width - right, height - bottom + 15}, Align::end, false, joules(end_W)},
-                  {{width / 2, height - 6}, Align::middle, false, "energy absorbed W"},
-                  {{left + 6, top + 6}, Align::start, false, "can release S(W)"}};
+    out.labels = {{{left - 5, top + 6}, Anchor::end, false, joules(end_S)},
+                  {{left - 5, height - bottom + 4}, Anchor::end, false, "0"},
+                  {{left, height - bottom + 15}, Anchor::start, false, "0"},
+                  {{width - right, height - bottom + 15}, Anchor::end, false, joules(end_W)},
+                  {{width / 2, height - 6}, Anchor::middle, false, "energy absorbed W"},
+                  {{left + 6, top + 6}, Anchor::start, false, "can release S(W)"}};
     return out;
 }
 

@@ -11,7 +11,7 @@ namespace topple::report {
 namespace {
 
 using Style = Drawing::Style;
-using Align = Drawing::Align;
+using Anchor = Drawing::Anchor;
 
 // Codes of the palette: not known, in the way, then work, then falls.
 constexpr std::uint8_t unknown = 0, blocked = 1, work = 2, steps = 16, falls = work + steps;
@@ -64,11 +64,11 @@ Drawing draw_places(const Landscape::Places& places) {
     char across[64];
     std::snprintf(across, sizeof(across), "%.2g m across, north at the top",
                   places.side * places.step_m);
-    out.labels.push_back({{left, bottom + 16}, Align::start, false, across});
+    out.labels.push_back({{left, bottom + 16}, Anchor::start, false, across});
     double y = top + 4;
     const auto key = [&](std::uint8_t code, const std::string& text) {
         out.swatches.push_back({{right + 12, y}, 14, 12, raster.palette[code]});
-        out.labels.push_back({{right + 32, y + 10}, Align::start, false, text});
+        out.labels.push_back({{right + 32, y + 10}, Anchor::start, false, text});
         y += 20;
     };
     key(work, "0 J, as it is");

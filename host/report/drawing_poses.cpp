@@ -11,7 +11,7 @@ namespace topple::report {
 namespace {
 
 using Style = Drawing::Style;
-using Align = Drawing::Align;
+using Anchor = Drawing::Anchor;
 
 Vec3 in_view(const Scene& scene, const Vec3& v) {
     const Mat4& m = scene.manhattan_from_input;
@@ -59,10 +59,10 @@ class SphereMap {
                                                        {{-radius - 18, 4}, "W"}};
         for (const auto& [at, text] : sides)
             out_.labels.push_back(
-                {{middle[0] + at[0], middle[1] + at[1]}, Align::middle, false, text});
+                {{middle[0] + at[0], middle[1] + at[1]}, Anchor::middle, false, text});
         out_.labels.push_back(
             {{width / 2, out_.height - 24},
-             Align::middle,
+             Anchor::middle,
              false,
              "middle (+): as it is \xc2\xb7 rim: upside down \xc2\xb7 lines: basins"});
         key();
@@ -91,9 +91,9 @@ class SphereMap {
         const Drawing::Sphere& s = *out_.sphere;
         const double now_m = -lowest_of(s.corners, {0, 0, 1});
         const auto energy = [&](double height_m) { return joules(weight_N_ * (height_m - now_m)); };
-        out_.labels.push_back({{x - 5, y + 9}, Align::end, false, energy(s.lowest_m)});
+        out_.labels.push_back({{x - 5, y + 9}, Anchor::end, false, energy(s.lowest_m)});
         out_.labels.push_back(
-            {{x + step * bands + 5, y + 9}, Align::start, false, energy(s.highest_m)});
+            {{x + step * bands + 5, y + 9}, Anchor::start, false, energy(s.highest_m)});
     }
 
     // Arcs of great circles as short strokes. Past the rim's point they go on at its other side.
@@ -149,7 +149,7 @@ class SphereMap {
             const bool now = static_cast<std::int32_t>(n) == l_.now;
             out_.dots.push_back({now ? Style::now : Style::pose, at, 8});
             out_.labels.push_back(
-                {{at[0], at[1] + 4}, Align::middle, now, std::to_string(number[n])});
+                {{at[0], at[1] + 4}, Anchor::middle, now, std::to_string(number[n])});
         }
     }
 

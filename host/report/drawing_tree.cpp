@@ -12,7 +12,7 @@ namespace topple::report {
 namespace {
 
 using Style = Drawing::Style;
-using Align = Drawing::Align;
+using Anchor = Drawing::Anchor;
 
 // The merge tree: leaves are poses and, where its easiest step leads off its support, the place
 // below.
@@ -153,15 +153,15 @@ class Tree {
         }
         const double least = broken_ ? 0 : low_;
         for (const double energy : {least, high_})
-            out_.labels.push_back({{left - 12, y(energy) + 4}, Align::end, false, joules(energy)});
+            out_.labels.push_back({{left - 12, y(energy) + 4}, Anchor::end, false, joules(energy)});
         if (least < 0 && std::abs(y(0) - y(low_)) > 14 && std::abs(y(0) - y(high_)) > 14)
-            out_.labels.push_back({{left - 12, y(0) + 4}, Align::end, false, "0 J"});
+            out_.labels.push_back({{left - 12, y(0) + 4}, Anchor::end, false, "0 J"});
         for (std::size_t n = 0; n < energy_.size(); ++n) {
             if (name_[n].empty()) continue;
             const bool now = static_cast<std::int32_t>(n) == l_.now;
             out_.dots.push_back(
                 {now ? Style::now : Style::pose, {leaf_[n], y(energy_[n])}, now ? 5.0 : 3.5});
-            out_.labels.push_back({{leaf_[n], y(energy_[n]) + 18}, Align::middle, now, name_[n]});
+            out_.labels.push_back({{leaf_[n], y(energy_[n]) + 18}, Anchor::middle, now, name_[n]});
         }
     }
 

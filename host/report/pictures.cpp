@@ -11,6 +11,7 @@
 
 #include "io/palette.h"
 #include "report/scene_image.h"
+#include "report/vectors.h"
 #include "safety/disturbances.h"
 
 namespace topple::report {
@@ -22,12 +23,6 @@ constexpr int width = 1280, height = 800;
 constexpr std::array<double, 4> margin{24, 24, 76, 24};
 constexpr std::size_t labelled = 10;
 
-Vec3 plus(const Vec3& a, double share, const Vec3& b) {
-    return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 double length_of(const Vec3& v) {
     return std::hypot(v[0], v[1], v[2]);
 }

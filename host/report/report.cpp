@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/json.h"
@@ -179,7 +180,7 @@ Json drawing_json(const Drawing& d) {
     for (const Drawing::Dot& dot : d.dots)
         dots.push_back({style(dot.style), point_json(dot.at), dot.radius});
     for (const Drawing::Label& label : d.labels) {
-        labels.push_back({anchors[static_cast<std::size_t>(label.align)], point_json(label.at),
+        labels.push_back({anchors[static_cast<std::size_t>(label.anchor)], point_json(label.at),
                           label.strong, label.text});
     }
     for (const Drawing::Swatch& s : d.swatches)
@@ -316,7 +317,7 @@ struct Report::Parts {
     Json data, points;
 };
 
-Report::Report(const Scene& scene, bool with_surfaces)
+Report::Report(const Scene& scene, bool with_surfaces, std::vector<std::string> command)
     : parts_(new Parts{scene.source, {scene, {}, with_surfaces}, io::scene_document(scene), {}}) {
     parts_->points = points_json(parts_->view.points());
     Json& json = parts_->data;
@@ -329,6 +330,8 @@ Report::Report(const Scene& scene, bool with_surfaces)
     json["disturbance_kinds"] = disturbances_json();
     json["unsafety_ramp"] = unsafety_ramp;
     json["unranked_colour"] = unranked_colour;
+    if (command.empty()) command = {"topple", "parse", scene.source, "-o", "OUT"};
+    json["command"] = std::move(command);
 }
 Report::~Report() = default;
 
@@ -355,8 +358,8 @@ void Report::write(const std::filesystem::path& file, std::span<const ObjectSurf
 }
 
 void write_report(const std::filesystem::path& file, const Scene& scene,
-                  std::span<const ObjectSurface> surfaces) {
-    Report(scene, !surfaces.empty()).write(file, surfaces, 0);
+                  std::span<const ObjectSurface> surfaces, std::vector<std::string> command) {
+    Report(scene, !surfaces.empty(), std::move(command)).write(file, surfaces, 0);
 }
 
 }  // namespace topple::report

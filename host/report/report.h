@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "core/object_surface.h"
 #include "topple/scene.h"
@@ -17,14 +19,17 @@ namespace topple::report {
 // written.
 //
 // surfaces: of the scene's solids; without them, and where they are too large, voxels are shown.
+// command: the words that parse so again, OutputOptions::command; without, `topple parse` of the
+// scene's source.
 void write_report(const std::filesystem::path& file, const Scene& scene,
-                  std::span<const ObjectSurface> surfaces = {});
+                  std::span<const ObjectSurface> surfaces = {},
+                  std::vector<std::string> command = {});
 
 // The same in two steps, the first of which needs no surfaces.
 class Report {
   public:
     // with_surfaces: whether there will be some. The scene must outlive it.
-    Report(const Scene& scene, bool with_surfaces);
+    Report(const Scene& scene, bool with_surfaces, std::vector<std::string> command);
     ~Report();
     Report(const Report&) = delete;
     Report& operator=(const Report&) = delete;

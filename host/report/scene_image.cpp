@@ -5,17 +5,13 @@
 #include <cmath>
 #include <map>
 
+#include "report/vectors.h"
+
 namespace topple::report {
 namespace {
 
 constexpr int fine = 2;  // pixels are means of fine x fine
 
-double dot(const Vec3& a, const Vec3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec3 plus(const Vec3& a, double share, const Vec3& b) {
-    return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
-}
 bool unit(Vec3& v) {
     const double length = std::sqrt(dot(v, v));
     if (!(length > 1e-9)) return false;

@@ -4,17 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/vectors.h"
+
 namespace topple::report {
 namespace {
 
 using Rows = std::array<Vec3, 3>;
-
-double dot(const Vec3& a, const Vec3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 Rows rows_of(const Mat4& m) {
     return {Vec3{m[0], m[1], m[2]}, Vec3{m[4], m[5], m[6]}, Vec3{m[8], m[9], m[10]}};

@@ -29,7 +29,7 @@ struct Vertex {
 static_assert(sizeof(Vertex) == 16 && std::endian::native == std::endian::little,
               "vertices are written as they lie in memory");
 
-constexpr std::uint64_t block = 1'000'000;  // points that are in memory at a time
+constexpr std::uint64_t block_points = 1'000'000;  // points that are in memory at a time
 constexpr std::uint64_t noise_stream = 5ULL << 40;
 
 // A file that gets its name when it is complete, and else goes away.
@@ -195,7 +195,7 @@ class CloudWriter {
         for (std::size_t patch = 0; patch < scan.patches();) {
             first_patch_ = patch;
             starts_.assign(1, 0);
-            while (patch < scan.patches() && starts_.back() < block) {
+            while (patch < scan.patches() && starts_.back() < block_points) {
                 sum += scan.area(patch);
                 const bool last = patch + 1 == scan.patches();
                 const std::uint64_t up_to = last ? end : std::min(end, points_up_to(before + sum));

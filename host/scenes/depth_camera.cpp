@@ -9,6 +9,7 @@
 #include "core/thread_pool.h"
 #include "scenes/furnished_room.h"
 #include "scenes/random.h"
+#include "scenes/vectors.h"
 #include "topple/error.h"
 
 namespace topple::scenes {
@@ -21,12 +22,6 @@ constexpr std::uint32_t tile = 16;  // pixels, for culling
 Vec3 unit(const Vec3& v) {
     const double length = std::hypot(v[0], v[1], v[2]);
     return {v[0] / length, v[1] / length, v[2] / length};
-}
-double dot(const Vec3& a, const Vec3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 struct Ray {

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "solids/boundary.h"
+#include "solids/sort_unique.h"
 
 namespace topple::solids {
 namespace {
@@ -55,11 +56,6 @@ struct Side {
     std::vector<std::int32_t> others;  // in whatever order, some more than once
     Box box;
 };
-
-void sort_unique(auto& values) {
-    std::ranges::sort(values);
-    values.erase(std::unique(values.begin(), values.end()), values.end());
-}
 
 class MateFinder {
   public:

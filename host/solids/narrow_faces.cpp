@@ -69,7 +69,7 @@ SurfacePatch patch_through(std::span<const Eigen::Vector3d> points) {
 }
 
 // A narrow face that may be, and how much of its primitive lies before and behind it nearby.
-struct Face {
+struct NarrowFace {
     SurfacePatch patch;
     std::int32_t primitive;
     std::vector<std::uint32_t> points;
@@ -92,10 +92,10 @@ using FaceNear = std::pair<Key, std::size_t>;
 // Counts for each face the points of its primitive nearby that lie before and behind it.
 void count_sides(const CloudView& cloud, const std::array<Vec3, 3>& axes, const PatchMap& map,
                  std::span<const FaceNear> beside, std::span<const std::int32_t> primitive_of_point,
-                 std::span<const std::int32_t> patch_of_point, std::span<Face> faces,
+                 std::span<const std::int32_t> patch_of_point, std::span<NarrowFace> faces,
                  ThreadPool& threads) {
     std::vector<bool> asked;  // by primitive
-    for (const Face& face : faces) {
+    for (const NarrowFace& face : faces) {
         const auto p = static_cast<std::size_t>(face.primitive);
         if (asked.size() <= p) asked.resize(p + 1, false);
         asked[p] = true;
@@ -171,7 +171,7 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
     const std::vector<std::size_t> piece = pieces_of(left);
     std::map<std::size_t, std::vector<std::size_t>> members;
     for (std::size_t n = 0; n < left.size(); ++n) members[piece[n]].push_back(n);
-    std::vector<Face> faces;
+    std::vector<NarrowFace> faces;
     std::vector<FaceNear> beside;
     std::vector<std::int32_t> room;
     for (const auto& [number, all] : members) {
@@ -179,7 +179,7 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
         constexpr double enough = 0.8;  // share of the points that the plane explains
         std::vector<Eigen::Vector3d> points;
         for (const std::size_t n : all) points.push_back(left[n].at);
-        Face face{patch_through(points), left[number].primitive, {}};
+        NarrowFace face{patch_through(points), left[number].primitive, {}};
         for (const std::size_t n : all)
             if (std::abs(distance_to(face.patch, left[n].at)) <= outlier * face.patch.noise_m)
                 face.points.push_back(left[n].point);
@@ -201,7 +201,7 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
     std::ranges::sort(beside);
     beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
     count_sides(cloud, axes, map, beside, primitive_of_point, patch_of_point, faces, threads);
-    for (Face& face : faces) {
+    for (NarrowFace& face : faces) {
         constexpr double most_before = 0.05;  // share
         if (face.before > face.behind) {
             for (double& c : face.patch.c) c = -c;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "solids/grid_points.h"
+#include "solids/sort_unique.h"
 
 namespace topple::solids {
 namespace {
@@ -20,11 +21,6 @@ std::uint64_t cell_key(const std::array<std::int32_t, 3>& at) {
     std::uint64_t out = 0;
     for (const std::int32_t a : at) out = out << 21 | (static_cast<std::uint32_t>(a) & 0x1fffff);
     return out;
-}
-
-void sort_unique(auto& values) {
-    std::ranges::sort(values);
-    values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
 // Parts in their order.

@@ -15,7 +15,7 @@ namespace {
 // How far from its corner a vertex of which not all patches are known goes along each axis; along
 // one in which there is but one voxel, so that sticks and boards don't wither.
 constexpr double farthest_unknown = 0.4, farthest_thin = 0.15;
-constexpr double slack = 0.002;  // what is no further outside is not
+constexpr double place_slack = 0.002;  // what is no further outside is not
 
 // The faces at each vertex, in rows.
 struct VertexFaces {
@@ -108,8 +108,8 @@ class Places {
         double nearest = std::numeric_limits<double>::infinity();
         for (const std::uint32_t n : around) nearest = std::min(nearest, distance(n, p));
         return std::ranges::any_of(around, [&](std::uint32_t n) {
-            return distance(n, p) <= nearest + slack * h_ &&
-                   entries_.solid(voxels_[n], p, slack * h_);
+            return distance(n, p) <= nearest + place_slack * h_ &&
+                   entries_.solid(voxels_[n], p, place_slack * h_);
         });
     }
     double distance(std::uint32_t n, const Vec3& p) const {

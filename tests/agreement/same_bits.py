@@ -3,15 +3,16 @@
 """The same input gives the same bytes, whatever computes it: backends, numbers of threads, builds, and orders of points.
 
     same_bits.py PROGRAM [PROGRAM ...] [--backends native vulkan opencl] [--threads 1 2 7] [--large]
-                 [--also PROGRAM]
+                 [--also PROGRAM] [--every]
 
-Parses small scans of each kind with every program (builds of another type, compiler or sanitizer) on every backend with
-each number of threads, and compares all that is written, but for what tells of the run itself: times, and the names of
+Parses small scans of each kind with every program (builds of another type, compiler or sanitizer) on every backend, the
+first of both with each number of threads and the others with one of them (--every: with each), and compares all that is written, but for what tells of the run itself: times, and the names of
 the device and of the input. Of a cloud whose points come in another order, all but points.ply must be the same, and that
 as a set of lines. Prints one hash for each input; leaves with 1 where a run differs.
 """
 import argparse
 import hashlib
+import itertools
 import json
 import random
 import struct
@@ -72,11 +73,21 @@ def shuffled(path, out, seed):
     out.write_bytes(data[:end] + b''.join(rows))
 
 
+def ways(args, all_threads):
+    """Programs, backends and numbers of threads; the first two with each number, if all are asked for."""
+    for n, (program, backend) in enumerate(itertools.product(args.programs, args.backends)):
+        if args.every or (all_threads and n == 0):
+            yield from ((program, backend, threads) for threads in args.threads)
+        else:
+            yield program, backend, args.threads[n % len(args.threads)]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('programs', nargs='+', metavar='PROGRAM', type=lambda p: Path(p).resolve())
     parser.add_argument('--backends', nargs='+', default=['native'])
     parser.add_argument('--threads', nargs='+', type=int, default=[1, 2, 7])
+    parser.add_argument('--every', action='store_true', help='each program and backend with each number of threads')
     parser.add_argument('--large', action='store_true', help='a generated kitchen and a walk through it, too')
     parser.add_argument('--also', type=Path, help='one more program, where it is there')
     args = parser.parse_args()
@@ -102,20 +113,18 @@ def main():
                 orders = [(scan, False), (folder / 'shuffled.ply', False)]
             first, runs = None, 0
             for file, ordered in orders:
-                for program in args.programs:
-                    for backend in args.backends:
-                        for threads in args.threads:
-                            out = folder / 'out'
-                            command = [program, 'parse', file, '-o', out, '--backend', backend, '--threads', str(threads),
-                                       '--quiet', '--no-cache', *options]
-                            subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-                            got = hashes(out, ordered)
-                            runs += 1
-                            first = first or got
-                            for part in sorted(first.keys() | got.keys()):
-                                if first.get(part) != got.get(part):
-                                    different += 1
-                                    print('%s: %s differs: %s' % (name, part, ' '.join(map(str, command))))
+                for program, backend, threads in ways(args, all_threads=file == scan):
+                    out = folder / 'out'
+                    command = [program, 'parse', file, '-o', out, '--backend', backend, '--threads', str(threads),
+                               '--quiet', '--no-cache', *options]
+                    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+                    got = hashes(out, ordered)
+                    runs += 1
+                    first = first or got
+                    for part in sorted(first.keys() | got.keys()):
+                        if first.get(part) != got.get(part):
+                            different += 1
+                            print('%s: %s differs: %s' % (name, part, ' '.join(map(str, command))))
             text = json.dumps(first, sort_keys=True).encode()
             print('%-8s %3d runs  %s' % (name, runs, hashlib.sha256(text).hexdigest()[:16]), flush=True)
     sys.exit(1 if different else 0)

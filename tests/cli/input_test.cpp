@@ -172,7 +172,9 @@ TEST_F(Input, in_another_unit_than_metres) {
         refused("room.xyz", told);
         expect_failure(1, {"estimate", "room.xyz", "--quiet"}, told);
         std::filesystem::remove_all(in("out"));
-        EXPECT_EQ(run({"parse", "room.xyz", "-o", "out", "--quiet", "--unit", unit}).code, 0);
+        const Finished done = run(
+            {"parse", "room.xyz", "-o", "out", "--quiet", "--unit", unit, "--disturbance", "wind"});
+        EXPECT_EQ(done.code, 0) << done.err;
         // Metres again.
         const auto scene = nlohmann::json::parse(bytes_of_file(in("out/scene.json")));
         ASSERT_FALSE(scene.at("primitives").empty());

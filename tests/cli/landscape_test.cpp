@@ -23,7 +23,7 @@ TEST_F(DrawLandscape, refuses_what_has_none) {
     put_plane("plane.xyz");
     ASSERT_EQ(run({"parse", "plane.xyz", "-o", "out", "--quiet"}).code, 0);
     expect_failure(1, {"landscape", "out"}, {"no object that can move"});
-    expect_failure(2, {"landscape", "out", "--object", "0"}, {"--object 0", "ground"});
+    expect_failure(2, {"landscape", "out", "--object", "0"}, {"--object 0", "building"});
     expect_failure(2, {"landscape", "out", "--object", "99"}, {"--object 99"});
     expect_failure(2, {"landscape", "out", "--object", "-1"}, {"--object"});
     for (const char* name : {"one.jpg", "one", ".png", "one.PNG.txt"})
@@ -39,7 +39,7 @@ void expect_told_summary(const std::string& out) {
     for (std::string line; std::getline(lines, line);) {
         char id[16], barrier[16], carriers[64];
         std::array<char[16], 3> risks;
-        if (std::sscanf(line.c_str(), " %15[0-9] %*f %*s %*f %15s %*f %*s %15s %15s %15s %63s", id,
+        if (std::sscanf(line.c_str(), " %15[0-9] %*s %*f %*f %15s %*f %*s %15s %15s %15s %63s", id,
                         barrier, risks[0], risks[1], risks[2], carriers) == 6) {
             ++rows;
             for (const char* risk : risks)  // "-": not reckoned

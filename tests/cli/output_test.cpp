@@ -109,6 +109,20 @@ TEST_F(Output, stages_then_the_summary_unless_quiet) {
     EXPECT_EQ(everything(), whole_output);
 }
 
+// For parsing once more: what was typed, and no more than that.
+TEST_F(Output, the_report_knows_the_command_and_the_notes_of_the_scan) {
+    put_plane("plane.xyz");
+    put("plane.xyz.topple-notes.txt", "The phone's poses drift.\n");
+    const Finished loud = run({"parse", "plane.xyz", "-o", "out", "--voxel", "0.05"});
+    EXPECT_EQ(loud.code, 0) << loud.err;
+    EXPECT_NE(loud.out.find("\nNote: The phone's poses drift.\n"), std::string::npos) << loud.out;
+    const std::string report = bytes_of_file(in("out/report.html"));
+    EXPECT_NE(report.find(R"(","parse","plane.xyz","-o","out","--voxel","0.05"])"),
+              std::string::npos);
+    EXPECT_NE(report.find(R"("notes":["The phone's poses drift.")"), std::string::npos);
+    EXPECT_EQ(report.find(in("plane.xyz").string()), std::string::npos) << "nobody gave that path";
+}
+
 TEST_F(Output, pictures_where_they_are_asked_for) {
     put_plane("plane.xyz");
     EXPECT_EQ(run({"parse", "plane.xyz", "-o", "out", "--png", "--quiet"}).code, 0);

@@ -29,6 +29,15 @@ TEST_F(Readers, a_driver_that_ends_whoever_loads_it_is_not_usable) {
     EXPECT_EQ(run({"estimate", "box.obj", "--backend", "auto", "--quiet"}).code, 0);
 }
 
+TEST_F(Readers, that_of_points_does_not_load_openvdb) {
+    const auto beside = std::filesystem::path(TOPPLE_PROGRAM).parent_path();
+    const auto loads = [&](const char* reader) {
+        return bytes_of_file(beside / reader).find("libopenvdb.so") != std::string::npos;
+    };
+    EXPECT_TRUE(loads("topple-volume-reader"));
+    EXPECT_FALSE(loads("topple-reader"));
+}
+
 TEST_F(Readers, without_them_it_says_what_to_do) {
     put("box.obj", box_obj());
     put("empty/x", "x");

@@ -17,15 +17,15 @@ using oracle::ShareVoxel;
 
 constexpr float voxel_m = 0.02F;
 
-struct Inputs {
+struct ShareInputs {
     std::array<std::vector<std::int32_t>, 3> index;
     std::vector<std::uint32_t> slot, form;
     std::vector<float> surface;
 };
 
 // The kernel's form of these voxels, each with patches of its own.
-Inputs inputs_for(const std::vector<ShareVoxel>& voxels) {
-    Inputs in;
+ShareInputs inputs_for(const std::vector<ShareVoxel>& voxels) {
+    ShareInputs in;
     const std::size_t n = voxels.size();
     in.slot.resize(BoundaryCells::slots * n);
     std::uint32_t patches = 0;
@@ -56,7 +56,7 @@ struct Measured {
     std::vector<std::int32_t> moment;
 };
 
-Measured run(device::Device& device, const Inputs& in) {
+Measured run(device::Device& device, const ShareInputs& in) {
     const std::size_t n = in.form.size();
     const device::Buffer<std::int32_t> i(device, in.index[0], "i"), j(device, in.index[1], "j"),
         k(device, in.index[2], "k");
@@ -136,7 +136,7 @@ TEST_P(CellShare, MatchesTheOracleAndNativeToTheBit) {
         Random random(count);
         std::vector<ShareVoxel> voxels;
         for (std::size_t n = 0; n < count; ++n) voxels.push_back(voxel(random));
-        const Inputs in = inputs_for(voxels);
+        const ShareInputs in = inputs_for(voxels);
         const Measured got = run(*device, in), same_as = run(*native, in);
         EXPECT_EQ(got.share, same_as.share);
         EXPECT_EQ(got.moment, same_as.moment);

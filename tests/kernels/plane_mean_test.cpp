@@ -45,15 +45,15 @@ std::vector<FittedCell> sheet(std::size_t count, Random& random) {
     return list;
 }
 
-struct Inputs {
+struct MeanInputs {
     std::vector<float> planes;
     std::vector<std::int32_t> z;
     std::vector<std::uint32_t> columns, home;
 };
 
 // Queries at some of the cells that have planes, the columns by trying all cells.
-Inputs inputs_for(const std::vector<FittedCell>& cells, std::size_t queries, int radius) {
-    Inputs in;
+MeanInputs inputs_for(const std::vector<FittedCell>& cells, std::size_t queries, int radius) {
+    MeanInputs in;
     for (int plane = 0; plane < 8; ++plane) {
         for (const FittedCell& c : cells) {
             const std::array<double, 8> values{c.weight,    c.query[0],  c.query[1],  c.query[2],
@@ -69,7 +69,7 @@ Inputs inputs_for(const std::vector<FittedCell>& cells, std::size_t queries, int
     return in;
 }
 
-std::vector<float> run(device::Device& device, const Inputs& in, int radius) {
+std::vector<float> run(device::Device& device, const MeanInputs& in, int radius) {
     const std::size_t queries = in.home.size();
     const device::Buffer<float> d_planes(device, in.planes, "planes");
     const device::Buffer<std::int32_t> d_z(device, in.z, "cell_z");
@@ -104,7 +104,7 @@ TEST_P(PlaneMean, MatchesTheOracleAndNativeToTheBit) {
             SCOPED_TRACE(testing::Message() << "radius " << radius << " queries " << queries);
             Random random(queries + static_cast<std::size_t>(radius));
             const std::vector<FittedCell> cells = sheet(300, random);
-            const Inputs in = inputs_for(cells, queries, radius);
+            const MeanInputs in = inputs_for(cells, queries, radius);
             const std::vector<float> got = run(*device, in, radius);
             EXPECT_TRUE(same(got, run(*native, in, radius)));
             std::vector<double> want, bound;

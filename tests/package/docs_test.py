@@ -4,13 +4,15 @@
 
 Every relative link and picture in README.md, CHANGELOG.md, SECURITY.md, docs and kernels/README.md leads to a file, and to a heading
 of it where it names one; every page of docs is linked from README.md. With the program TOPPLE, every option that a page gives to a command
-of topple is one that the command's --help lists. docs/parameters.md has the constants of the stages as they stand in the code, and all of them.
+of topple is one that the command's --help lists, and the files that docs/disturbances.md and docs/corrections.md show are read.
+docs/parameters.md has the constants of the stages as they stand in the code, and all of them.
 """
 import glob
 import os
 import re
 import subprocess
 import sys
+import tempfile
 
 # Options of topple stand alone in code in these pages; elsewhere such code may be another program's.
 OPTIONS_ALONE = {'README.md', 'docs/output.md', 'docs/formats.md', 'docs/corrections.md', 'docs/scale.md', 'docs/glossary.md', 'docs/how-it-works.md',
@@ -114,6 +116,24 @@ def check_options(source, program):
     return problems
 
 
+def check_examples(source, program):
+    """Files that pages show, which `topple parse` reads before it looks for the scan."""
+    problems = []
+    for name, option in (('docs/disturbances.md', '--hazard'), ('docs/corrections.md', '--corrections')):
+        with open(os.path.join(source, name), encoding='utf-8') as file:
+            blocks = re.findall(r'^<!-- example: \S+ -->\n```\w*\n(.*?)^```$', file.read(), re.MULTILINE | re.DOTALL)
+        if len(blocks) != 1:
+            problems.append(f'{name}: {len(blocks)} example blocks')
+            continue
+        with tempfile.NamedTemporaryFile('w', encoding='utf-8') as example:
+            example.write(blocks[0])
+            example.flush()
+            done = subprocess.run([program, 'parse', 'no scan', option, example.name], stderr=subprocess.PIPE, text=True, timeout=60)
+        if not done.stderr.startswith('topple: no scan: '):
+            problems.append(f'{name}: its example is refused: {done.stderr}')
+    return problems
+
+
 def constants_of(source):
     """By file, the constants with a fraction of the stages and their values, as they are written."""
     found = {}
@@ -149,7 +169,7 @@ def main():
     source = sys.argv[1]
     problems = check_links(source) + check_parameters(source)
     if len(sys.argv) > 2:
-        problems += check_options(source, sys.argv[2])
+        problems += check_options(source, sys.argv[2]) + check_examples(source, sys.argv[2])
     sys.exit('\n'.join(problems) if problems else 0)
 
 

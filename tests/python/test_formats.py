@@ -332,14 +332,22 @@ def command(*arguments):
     return subprocess.run([sys.executable, '-m', 'topple.formats', 'convert', *map(str, arguments)], capture_output=True, text=True)
 
 
-def test_command_converts(points, walk, ply, sequence, device, tmp_path):
+def test_command_converts(points, walk, photographs, ply, sequence, device, tmp_path):
     model = colmap_model(tmp_path / 'model', POSES[:1], ['a.jpg'], True, points)
     done = command(model, tmp_path / 'room.ply')
     assert done.returncode == 0 and 'room.ply' in done.stdout and 'sparse' in done.stdout, done.stderr
-    same_objects(parsed(tmp_path / 'room.ply', device), ply)
+    result = parsed(tmp_path / 'room.ply', device)
+    same_objects(result, ply)
+    # What was said of it goes with it, and into what is parsed.
+    assert 'sparse' in (tmp_path / 'room.ply.topple-notes.txt').read_text() and 'sparse' in result.notes[0]
+    assert sum('sparse' in note for note in result.notes) == 1
     dense = colmap_dense(tmp_path / 'dense', walk)
     assert command(dense, tmp_path / 'walk').returncode == 0
     same_objects(parsed(tmp_path / 'walk', device), sequence, within=0.02)
+    drifting = polycam(tmp_path / 'raw', walk, photographs)
+    (drifting / 'keyframes' / 'corrected_cameras').rename(drifting / 'keyframes' / 'cameras')
+    assert command(drifting, tmp_path / 'phone').returncode == 0
+    assert 'drift' in parsed(tmp_path / 'phone', device).notes[0]
     for wrong, parts in [((model, tmp_path / 'room.ply'), 'there already'), ((model, tmp_path / 'folder'), '.ply'),
                          ((dense, tmp_path / 'walk.ply'), 'folder'), ((tmp_path / 'missing.laz', tmp_path / 'a.las'), 'not there')]:
         failed = command(*wrong)

@@ -8,7 +8,10 @@ int main(int argc, char** argv) {
     using namespace topple::cli;
     std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit (ulimit -f) is an error of its write
     const CommandEntry commands[] = {
-        {"parse", parse_purpose, [](CLI::App& app) { return add_parse(app); }},
+        {"parse", parse_purpose,
+         [&](CLI::App& app) {
+             return add_parse(app, {argv, argv + argc});
+         }},
         {"estimate", "Say what memory, disk and time a parse would take", add_estimate},
         {"landscape", "Draw the energy landscapes of an object that a parse has found",
          add_landscape},

@@ -143,6 +143,9 @@ struct OutputOptions {
     bool octomap = false;   // what was seen to be free and occupied, too: map.bt
     // ParseOptions::cache_file, to be moved into the folder as parse.cache. Empty: none.
     std::filesystem::path cache_file;
+    // The words of the command that parses so again, which the report shows for a parse with
+    // corrections. Empty: `topple parse` of the scene's source into the folder.
+    std::vector<std::string> command;
     unsigned threads = 0;  // 1: no thread but the caller's
     // Polled now and then, from any thread; true ends the writing with Error(cancelled).
     std::function<bool()> cancelled;

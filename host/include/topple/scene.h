@@ -172,7 +172,7 @@ struct Object {
     // Share of the sampler's chains that found it, but for a tenth of its parts; 1 for the ground.
     double agreement = 1;
     double mass_kg = 0;
-    // Its box along the room's axes (Scene::manhattan_from_input), the third upright; to a voxel.
+    // Its box along the room's axes (Scene::manhattan_from_input), the third upright: end to end.
     Vec3 size_m{};
     // "solid", of the density that was given all through; "closed": furniture that is boards of
     // that density around ParseOptions::contents_kg_m3; or "hollow": a shell, as a correction says.

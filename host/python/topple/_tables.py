@@ -82,9 +82,13 @@ def _row(o):
     return f'<tr>{"".join(cells)}</tr>'
 
 
+def riskiest_first(o):
+    return math.isnan(o.unsafety), -('none', 'low', 'medium', 'high').index(o.unsafety_category or 'none'), -o.unsafety, o.id
+
+
 def page(result):
-    """The riskiest first; last what was not seen enough."""
-    loose = sorted((o for o in result.objects if not o.grounded), key=lambda o: (math.isnan(o.unsafety), -o.unsafety, o.id))
+    """The riskiest first: by category, and within one by risk; last what was not seen enough."""
+    loose = sorted((o for o in result.objects if not o.grounded), key=riskiest_first)
     head = ''.join(f'<th>{name}</th>' for name in ('id', 'unsafety, 1 to 10', 'category', 'mass, kg', 'barrier, J', 'why'))
     more = f'<p>{len(loose) - _SHOWN} more objects in <code>Result.objects</code></p>' if len(loose) > _SHOWN else ''
     return (f'<div><p>topple: {html.escape(result.source)}, {len(result.objects)} objects, of which {len(loose)} may move; '

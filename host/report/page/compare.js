@@ -113,7 +113,9 @@ function compareScenes(scene, other, otherIsBefore) {
 }
 
 class ComparePanel {
-  constructor(scene, choose, say) {
+  // recolour(): objects have other colours.
+  constructor(scene, choose, say, recolour) {
+    this.recolour = recolour;
     this.scene = scene;
     this.choose = choose;
     this.say = say;
@@ -163,7 +165,24 @@ class ComparePanel {
       element('div', {className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': 'Objects of both parses'}, [
         element('table', {}, [element('thead', {}, [element('tr', {}, head)]), element('tbody', {}, body)])]),
       element('p', {className: 'hint', text: `Objects are the same where their boxes overlap by a tenth or more. Risk is the largest of ` +
-        `${listed(names.map(causeOf)) || 'none that both parses have'}, in joules per event; a change within two standard errors is none.`}));
+        `${listed(names.map(causeOf)) || 'none that both parses have'}, in joules per event; a change within two standard errors is none. They have the colours of ${this.name} now, whose numbers are beside theirs.`}));
     this.say(line + counts);
+    this.takeColours(rows);
+  }
+
+  // What is the same thing has the colour that it has in the other report; what is not, one that none of those has.
+  takeColours(rows) {
+    const {scene} = this, taken = new Map(rows.filter(row => row.mine && row.theirs && scene.colours[row.theirs.id]).map(row => [row.mine.id, row.theirs.id]));
+    const used = new Set([...taken.values(), ...rows.filter(row => row.theirs).map(row => row.theirs.id)]);
+    const free = scene.colours.map((colour, id) => id).filter(id => !used.has(id));
+    for (const {mine} of rows) {
+      if (!mine || taken.has(mine.id)) continue;
+      const own = free.includes(mine.id) ? mine.id : free[0];
+      if (own === undefined) continue;
+      taken.set(mine.id, own);
+      free.splice(free.indexOf(own), 1);
+    }
+    scene.colourFrom = taken;
+    this.recolour();
   }
 }

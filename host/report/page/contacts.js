@@ -68,10 +68,10 @@ function contactGraph(scene, id, choose) {
   }
   if (shown.length <= 14) for (const [x, y, text, anchor] of numbers) say(x, y, anchor, text, 'halo');
   const node = (x, y, object, primitive, own) => {
-    const dot = svgElement('circle', {cx: x, cy: y, r: 6, fill: css(colourOf(scene, own ? primitive : object)), class: 'node'});
+    const dot = svgElement('circle', {cx: x, cy: y, r: 6, fill: css(own ? colourOf(scene, primitive) : objectColour(scene, object)), class: 'node'});
     svg.append(dot);
     const other = scene.objectById.get(object);
-    const text = own ? `part ${primitive}` : object < 0 || !other ? 'no object' : other.grounded ? `ground, part ${primitive}` : `${objectName(scene, object)}, part ${primitive}`;
+    const text = own ? `part ${primitive}` : object < 0 || !other ? 'no object' : other.grounded ? `building, part ${primitive}` : `${objectName(scene, object)}, part ${primitive}`;
     say(own ? x - 11 : x + 10, y + 4, own ? 'end' : 'start', text, own ? '' : 'reach');
     if (!own && other) {
       dot.addEventListener('click', () => choose(object));

@@ -25,17 +25,25 @@ class Corrections {
     return parts.filter(part => this.spots.has(part));
   }
 
-  // Where parts are told by, as many as a correction may have: of more the first ones.
+  // Where parts are told by.
   at(parts) {
-    return this.told(parts).slice(0, mostSpots).map(part => this.spots.get(part));
+    return this.told(parts).map(part => this.spots.get(part));
   }
 
-  // The same of the parts that are nearest to others.
-  near(parts, others) {
-    const from = this.at(others);
-    const distance = part => Math.min(...from.map(spot => Math.hypot(...spot.map((value, k) => value - this.spots.get(part)[k]))));
-    const distances = new Map(this.told(parts).map(part => [part, distance(part)]));
-    return this.at([...distances.keys()].sort((a, b) => distances.get(a) - distances.get(b) || a - b));
+  // What is said of parts, of however many: in as many corrections as it takes.
+  of(kind, parts, more = {}) {
+    return chunks(this.at(parts)).map(at_m => ({do: kind, at_m, ...more}));
+  }
+
+  // That parts are one thing: each correction begins with the spot that all share.
+  oneThing(parts) {
+    const [first, ...others] = this.at(parts);
+    return chunks(others, mostSpots - 1).map(at_m => ({do: 'one_thing', at_m: [first, ...at_m]}));
+  }
+
+  // That no part is in one object with any of the others.
+  apart(parts, others) {
+    return this.of('apart', parts).flatMap(one => chunks(this.at(others)).map(from_m => ({...one, from_m})));
   }
 
   // One step; text: what it says.
@@ -63,14 +71,23 @@ class Corrections {
     this.changed();
   }
 
-  // For a POSIX shell.
+  // That which made this report, with the corrections; for a POSIX shell.
   command() {
-    const source = this.scene.source || 'INPUT', safe = /^[\w./@%+=:,-]+$/.test(source) ? source : `'${source.replace(/'/g, `'\\''`)}'`;
-    // What was reckoned with is asked for again, or the second report would be of another question.
-    const kinds = this.scene.disturbances || [], all = ['human', 'wind', 'earthquake'];
-    const asked = all.every(kind => kinds.includes(kind)) || !kinds.length ? '' : ` --disturbance ${kinds.join(',')}`;
-    return `topple parse ${safe}${asked} --corrections corrections.json -o OUT`;
+    const words = [], given = this.scene.command;
+    for (let n = 0; n < given.length; ++n) {
+      if (given[n] === '--corrections') ++n;  // these go on from those
+      else if (!given[n].startsWith('--corrections=')) words.push(given[n]);
+    }
+    const quoted = word => /^[\w./@%+=:,-]+$/.test(word) ? word : `'${word.replace(/'/g, `'\\''`)}'`;
+    return [...words, '--corrections', 'corrections.json'].map(quoted).join(' ');
   }
+}
+
+// A list in pieces of so many.
+function chunks(list, most = mostSpots) {
+  const out = [];
+  for (let n = 0; n < list.length; n += most) out.push(list.slice(n, n + most));
+  return out;
 }
 
 // A correction of scene.json without what became of it.

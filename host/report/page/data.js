@@ -26,6 +26,7 @@ async function loadScene() {
   view.walks.floor_mm = new Int16Array(bytesOf(view.walks.floor_mm).buffer);
   scene.verified = JSON.parse(document.getElementById('verified').textContent);
   scene.objectById = new Map(scene.objects.map(object => [object.id, object]));
+  scene.colourFrom = new Map();  // objects that have another's colour: of which number
   const reckoned = new Set(scene.objects.flatMap(object => Object.keys(object.risk_J)));
   disturbanceKinds.push(...scene.disturbance_kinds);
   scene.disturbances = [...new Set([...disturbanceNames(), ...reckoned])].filter(name => reckoned.has(name));
@@ -75,8 +76,18 @@ function bytesOf(base64) {
 
 const noColour = [168, 172, 178];
 
+// Of a part, or of an object, which may have taken that of the same thing in another parse.
 function colourOf(scene, id) {
   return id >= 0 && scene.colours[id] ? scene.colours[id] : noColour;
+}
+function objectColour(scene, id) {
+  return colourOf(scene, scene.colourFrom.has(id) ? scene.colourFrom.get(id) : id);
+}
+
+function objectSwatch(scene, id) {
+  const swatch = element('span', {className: 'swatch', style: {background: css(objectColour(scene, id))}});
+  swatch.dataset.object = id;
+  return swatch;
 }
 
 // Share 0 to 1 of the way along colours.
@@ -85,10 +96,14 @@ function colourAlong(colours, share) {
   return colours[low].map((value, c) => Math.round(value + (colours[low + 1][c] - value) * (at - low)));
 }
 
-// What may move and was not ranked has a colour of its own.
-function riskColour(scene, unsafety) {
-  if (unsafety === null) return scene.unranked_colour;
-  return colourAlong(scene.unsafety_ramp, (unsafety - 1) / 9);
+const categories = ['none', 'low', 'medium', 'high'];
+const harmlessColour = [222, 226, 230];
+
+// That of its category, by which one acts; what may move and was not seen enough to have one has a colour of its own.
+function categoryColour(scene, category) {
+  if (!category) return scene.unranked_colour;
+  const ramp = scene.unsafety_ramp;
+  return {none: harmlessColour, low: ramp[0], medium: ramp[2], high: ramp[ramp.length - 1]}[category];
 }
 
 function css(colour) {

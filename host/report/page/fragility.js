@@ -23,12 +23,12 @@ function fragilityText(object) {
     ` as long as it can slide; where it can't, half of those with peaks of ${round(f.firm_pga_g)} g do` : '';
   if (f.pga_g === null) {
     return strongest.chance > 0 ?
-      `Of earthquakes with peaks of ${round(strongest.pga_g)} g, ${Math.round(100 * strongest.chance)} % turn it over or move it off${slides}.${rate}` :
-      `No earthquake with peaks of up to ${round(strongest.pga_g)} g turns it over or moves it off${slides}.`;
+      `Of earthquakes with peaks of ${round(strongest.pga_g)} g${shakingText('pga_g', strongest.pga_g)}, ${Math.round(100 * strongest.chance)} % turn it over or move it off${slides}.${rate}` :
+      `No earthquake with peaks of up to ${round(strongest.pga_g)} g${shakingText('pga_g', strongest.pga_g)} turns it over or moves it off${slides}.`;
   }
   const speed = f.pgv_m_s === null ? '' : ` or peak velocities of ${round(f.pgv_m_s)} m/s`;
   const less = f.pga_dispersion === null && f.counted.length && f.pga_g <= f.counted[0].pga_g ? ', and perhaps less,' : '';
-  return `Half of all earthquakes with peaks of ${round(f.pga_g)} g${less}${speed} turn it over or move it off${slides}.${rate}`;
+  return `Half of all earthquakes with peaks of ${round(f.pga_g)} g${shakingText('pga_g', f.pga_g)}${less}${speed} turn it over or move it off${slides}.${rate}`;
 }
 
 // The curve; null where nothing was counted.

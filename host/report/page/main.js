@@ -8,7 +8,7 @@ function fillHeader(scene) {
   document.getElementById('title').textContent = scene.source || 'scene';
   const loose = scene.objects.filter(object => !object.grounded).length;
   document.getElementById('summary').textContent =
-    `${plural(loose, 'object')} that can move` + (loose < scene.objects.length ? ', and the ground with all that is fixed to it' : '') +
+    `${plural(loose, 'object')} that can move` + (loose < scene.objects.length ? ', and the building with all that is fixed to it' : '') +
     `; ${plural(scene.primitives.length, 'part')} in all.`;
   if (scene.verified) {
     const line = document.getElementById('verification');
@@ -40,7 +40,7 @@ function eventFacts(scene) {
   const known = [...disturbanceKinds.map(({figure}) => [figure.key, figure.name, figure.unit]),
     ['tolerable_J', 'tolerated risk', 'J per event']];
   const events = scene.events || {};
-  return known.filter(([key]) => events[key] !== undefined).map(([key, name, unit]) => [name, number(events[key], unit)]);
+  return known.filter(([key]) => events[key] !== undefined).map(([key, name, unit]) => [name, number(events[key], unit) + shakingText(key, events[key])]);
 }
 
 function fillBottom(scene) {
@@ -54,7 +54,7 @@ function fillBottom(scene) {
   for (const note of scene.notes) notes.append(element('li', {text: note}));
   if (!scene.notes.length) document.getElementById('notes-panel').hidden = true;
   document.getElementById('table-note').textContent =
-    'Click a heading to sort. Barrier: the least energy that moves an object; release: what it then can set free. ' +
+    'Click a heading to sort. Where: as on the plan, and how high above ' + (scene.floor.known ? 'the floor' : 'the lowest that was scanned') + '. Barrier: the least energy that moves an object; release: what it then can set free. ' +
     'For each disturbance: joules expected per event, \u00b1 one standard error, of the sampling of events and of what is not known of barrier and mass (not of what the grouping may have got wrong), and how often an event upsets the object.';
 }
 
@@ -79,11 +79,9 @@ function legend(scene, state, view) {
   const bar = colours => element('div', {className: 'bar', style: {background: `linear-gradient(90deg, ${colours.map(css).join(',')})`}});
   const ends = (low, high) => element('div', {className: 'ends'}, [element('span', {text: low}), element('span', {text: high})]);
   if (state.mode === 'risk') {
-    box.append(element('div', {text: 'Unsafety'}), bar(scene.unsafety_ramp), ends('1 safest', '10'));
-    if (scene.objects.some(object => !object.grounded && object.unsafety === null)) {
-      const swatch = element('span', {className: 'swatch', style: {background: css(scene.unranked_colour)}});
-      box.append(element('div', {}, [swatch, element('span', {text: 'not ranked: nothing was seen to hold it'})]));
-    }
+    const line = (category, text) => element('div', {}, [element('span', {className: 'swatch', style: {background: css(categoryColour(scene, category))}}), text]);
+    box.append(element('div', {text: 'Category'}), ...[...categories].reverse().map(category => line(category, category)));
+    if (scene.objects.some(object => !object.grounded && !object.unsafety_category)) box.append(line('', 'not known: nothing was seen to hold it'));
   }
   if (state.fieldsOn.includes('walks')) {
     box.append(element('div', {text: 'Floor: how many of 100 walks pass there'}), bar(scene.ramp.colours), ends('0', number(100 * scene.view.walks.most)));
@@ -203,7 +201,7 @@ function connectPointer(scene, view, parts, choose) {
       if (!group) return;
       const [part, id] = group, object = scene.objectById.get(id);
       tip.textContent = !object ? 'not part of an object'
-        : objectName(scene, id) + (part >= 0 ? `, part ${part}` : '') + (object.grounded ? ', grounded' : `, unsafety ${object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)}`);
+        : objectName(scene, id) + (part >= 0 ? `, part ${part}` : '') + (object.grounded ? ', fixed' : `, category ${categoryText(object)}`);
       tip.style.left = x + 'px';
       tip.style.top = y + 'px';
     }, 60);
@@ -228,11 +226,12 @@ function setLink(id) {
 }
 
 // On paper the view is a picture, and all pictures are there.
-function preparePrint(scene, state) {
+function preparePrint(scene, state, plan) {
   addEventListener('beforeprint', () => {
     // Paper has no tooltips.
-    for (const folded of document.querySelectorAll('#glossary, #risk details')) folded.open = true;
+    for (const folded of document.querySelectorAll('#glossary, #risk details, header details')) folded.open = true;
     paintPictures(scene, true);
+    plan.paint();
     const stage = document.getElementById('canvas');
     for (const old of stage.querySelectorAll('.on-paper')) old.remove();
     if (!scene.painter.draws || stage.querySelector('.still')) return;
@@ -286,7 +285,15 @@ async function start() {
     document.querySelector('.stage').scrollIntoView({block: 'nearest'});
     if (!panel.hidden) panel.querySelector('h2').focus({preventScroll: true});
   });
-  const compare = new ComparePanel(scene, visit, say);
+  const plan = new Plan(document.getElementById('plan'), scene, visit);
+  const recolour = () => {
+    for (const swatch of document.querySelectorAll('.swatch[data-object]')) swatch.style.background = css(objectColour(scene, Number(swatch.dataset.object)));
+    forgetPictures(scene);
+    plan.paint();
+    repaint();
+    paintPictures(scene);
+  };
+  const compare = new ComparePanel(scene, visit, say, recolour);
 
   if (view) {
     if (!scene.coloured) document.querySelector('#colour-by [data-value=photo]').remove();
@@ -311,7 +318,7 @@ async function start() {
   } else {
     showStill(scene);
   }
-  preparePrint(scene, state);
+  preparePrint(scene, state, plan);
   addEventListener('keydown', event => {
     if (event.key === 'Escape' && state.chosen !== null) choose(null);
   });
@@ -326,10 +333,12 @@ async function start() {
   addEventListener('hashchange', follow);
   follow();
   paintPictures(scene);
+  setTimeout(() => plan.paint(), 30);  // the page answers before
   window.toppleChoose = choose;
   window.toppleParts = parts;
   window.toppleCompare = compare;
   window.toppleScene = scene;
+  window.topplePlan = plan;
   document.body.dataset.rows = document.querySelectorAll('#objects tbody tr').length;
   document.body.dataset.ready = '1';
 }
@@ -337,7 +346,7 @@ async function start() {
 // For screen readers, when one is chosen.
 function chosenText(scene, object) {
   return `${capital(objectName(scene, object.id))} chosen: ${number(object.mass_kg, 'kg')}` +
-    (object.grounded ? ', grounded.' : `, unsafety ${object.unsafety === null ? 'not known' : object.unsafety.toFixed(1)}. ${upsetText(object)}`);
+    (object.grounded ? ', fixed.' : `, category ${object.unsafety_category ? categoryText(object) : 'not known'}. ${upsetText(object)}`);
 }
 
 window.toppleReady = start();

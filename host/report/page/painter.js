@@ -16,12 +16,13 @@ class Painter {
   }
 
   // A picture of a box from above: {width, height} in pixels; `chosen`: the id of an object that is drawn over all others, or null;
-  // colourOf(group): [red, green, blue] of what has no colour of its own. `own`: whether the scan's colours are shown.
+  // colourOf(group): [red, green, blue] of what has no colour of its own. `own`: whether the scan's colours are shown. `camera`: as
+  // paintersCamera() makes it of the box, the width and height, and `turn`.
   // Nothing (null) where the scene has no solids.
-  picture(box, {width, height, chosen, colourOf, own, turn = 0}) {
+  picture(box, {width, height, chosen, colourOf, own, turn = 0, camera: make = paintersCamera}) {
     if (!this.draws) return null;
     const fine = {width: 2 * width, height: 2 * height};  // four pixels make one
-    const camera = paintersCamera(box, fine.width, fine.height, turn);
+    const camera = make(box, fine.width, fine.height, turn);
     const image = new ImageData(fine.width, fine.height), nearness = new Float32Array(fine.width * fine.height);
     const colours = this.scene.view.groups.map((group, g) => colourOf(g));
     this.project(camera);
@@ -185,9 +186,16 @@ const pictureSize = {width: 256, height: 192};
 function pictureOf(scene, id) {
   if (!scene.painter.draws || !scene.boxes.has(id)) return null;
   const image = element('img', {className: 'picture', alt: `Picture of ${objectName(scene, id)}`, ...pictureSize});
+  image.dataset.object = id;
   if (scene.pictures.has(id)) image.src = scene.pictures.get(id);
   else image.dataset.awaits = id;
   return image;
+}
+
+// They are to be made anew, in other colours.
+function forgetPictures(scene) {
+  scene.pictures.clear();
+  for (const image of document.querySelectorAll('img.picture')) image.dataset.awaits = image.dataset.object;
 }
 
 // Fills in what pictureOf() left empty, one at a time so that the page goes on answering; at once with `now`.
@@ -210,7 +218,7 @@ function objectPicture(scene, id) {
   const box = {low: low.map(value => value - margin), high: high.map(value => value + margin)};
   const colours = g => {
     const object = scene.objectById.get(scene.view.groups[g][1]);
-    return !object || object.grounded && object.id !== id ? groundColour : colourOf(scene, object.id);
+    return !object || object.grounded && object.id !== id ? groundColour : objectColour(scene, object.id);
   };
   const {canvas} = scene.painter.picture(box, {...pictureSize, chosen: id, colourOf: colours, own: scene.coloured});
   const context = canvas.getContext('2d');
@@ -226,7 +234,7 @@ function paintScene(scene, canvas, mode, turn) {
   const colours = ([, id]) => {
     const object = scene.objectById.get(id);
     if (!object || object.grounded) return groundColour;
-    return mode === 'risk' ? riskColour(scene, object.unsafety) : colourOf(scene, id);
+    return mode === 'risk' ? categoryColour(scene, object.unsafety_category) : objectColour(scene, id);
   };
   const picture = scene.painter.picture(scene.boxes.get(null), {width, height, chosen: null,
     colourOf: g => colours(scene.view.groups[g]), own: mode === 'photo', turn});

@@ -121,8 +121,15 @@ class PartsPanel {
     const parts = this.parts(), meant = this.meant();
     if (!this.corrections.told(parts).length) return this.refuse(`Of ${meant || 'this'} no surface is drawn, by which it could be found again.`);
     if (kind === 'one_thing' && this.corrections.told(parts).length < 2) return this.refuse('Choose at least two parts, or two objects, first.');
-    this.corrections.add([{do: kind, at_m: this.corrections.at(parts), ...more}], `${capital(meant)}: ${what}`);
+    this.corrections.add(kind === 'one_thing' ? this.corrections.oneThing(parts) : this.corrections.of(kind, this.enoughOf(kind, parts), more), `${capital(meant)}: ${what}`);
     this.done();
+  }
+
+  // What is said of all of an object is said at a few of its parts.
+  enoughOf(kind, parts) {
+    if (!['hollow', 'mass', 'name'].includes(kind)) return parts;
+    const owners = [...new Set(parts.map(part => this.owner.get(part)))], each = Math.max(1, Math.floor(mostSpots / owners.length));
+    return owners.flatMap(owner => this.corrections.told(parts.filter(part => this.owner.get(part) === owner)).slice(0, each));
   }
 
   // One thing, and not one with any other part of the objects that it is in now.
@@ -131,8 +138,7 @@ class PartsPanel {
     const rest = this.scene.primitives.filter(part => owners.has(part.object) && !parts.includes(part.id)).map(part => part.id);
     if (!this.corrections.told(rest).length) return this.refuse(`${capital(meant)} is by itself already: choose some of its parts.`);
     if (!this.corrections.told(parts).length) return this.refuse(`Of ${meant} no surface is drawn, by which it could be found again.`);
-    const at_m = this.corrections.at(parts), apart = {do: 'apart', at_m, from_m: this.corrections.near(rest, parts)};
-    this.corrections.add(at_m.length > 1 ? [{do: 'one_thing', at_m}, apart] : [apart], `${capital(meant)}: a thing by itself`);
+    this.corrections.add([...this.corrections.oneThing(parts), ...this.corrections.apart(parts, rest)], `${capital(meant)}: a thing by itself`);
     this.done();
   }
 

@@ -61,15 +61,41 @@ function floorOf(scene, boxes) {
   return {height_m: heights[heights.length >> 1], known: true};
 }
 
-// "1.20 m east and 0.45 m north of the scene's south-west corner, 0.76 to 1.20 m above the floor"; '' where it is not drawn.
-function placeText(scene, object) {
+// Of an object's middle, in metres from the plan's south-west corner, and how high it reaches; null where it is not drawn.
+function planPlace(scene, object) {
   const box = scene.boxes.get(object.id), whole = scene.boxes.get(null);
-  if (!box) return '';
-  const middle = k => (box.low[k] + box.high[k]) / 2 - whole.low[k];
-  const metre = value => value.toFixed(2).replace('-', '\u2212');
-  const {height_m, known} = scene.floor;
-  return `${metre(middle(0))} m east and ${metre(middle(1))} m north of the scene\u2019s south-west corner; ` +
-    `from ${metre(box.low[2] - height_m)} to ${metre(box.high[2] - height_m)} m above ${known ? 'the floor' : 'the lowest that was scanned'}`;
+  if (!box) return null;
+  const middle = k => (box.low[k] + box.high[k]) / 2 - whole.low[k], {height_m} = scene.floor;
+  // What stands on the floor ends there, whatever strays below it.
+  const from = box.low[2] - height_m;
+  return {east: middle(0), north: middle(1), from: from > -0.15 && from < 1.5 * scene.voxel_size_m ? 0 : from, to: box.high[2] - height_m};
+}
+
+const metreText = value => (Math.abs(value) < 0.005 ? 0 : value).toFixed(2).replace('-', '\u2212');
+
+// "Held by object 3; on the plan 1.20 m east, 0.45 m north; 0.76 to 1.20 m above the floor"; '' where it is not drawn.
+function placeText(scene, object) {
+  const place = planPlace(scene, object);
+  if (!place) return '';
+  const held = heldText(scene, object, place);
+  return capital(`${held ? held + '; ' : ''}on the plan ${metreText(place.east)} m east, ${metreText(place.north)} m north; ` +
+    `${metreText(place.from)} to ${metreText(place.to)} m above ${scene.floor.known ? 'the floor' : 'the lowest that was scanned'}`);
+}
+
+// What carries it, the nearest word for what is fixed.
+function heldText(scene, object, place) {
+  const on = object.grounded ? [] : object.why.stands_on || [];
+  if (!on.length) return '';
+  const low = place.from < 0.15;
+  return 'held by ' + listed(on.map(id => scene.objectById.get(id).grounded ? (low && scene.floor.known ? 'the floor' : 'what is built in') : objectName(scene, id)));
+}
+
+// The same for a table: east and north, then heights.
+function placeCell(scene, object) {
+  const place = planPlace(scene, object);
+  if (!place || object.grounded) return ['\u2013'];
+  return [`${metreText(place.east)} E, ${metreText(place.north)} N,`, `${metreText(place.from)}\u2013${metreText(place.to)} up`]
+    .map(text => element('span', {className: 'whole', text: text + ' '}));
 }
 
 // How far around it nobody should stay: where its middle lands, and half its longest side beyond. null where that is not known.

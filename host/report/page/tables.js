@@ -18,7 +18,7 @@ function objectColumns(scene) {
   const columns = [
     {name: 'Object', value: object => object.id, cell: object => [
       element('button', {type: 'button', className: 'plain', 'aria-label': `choose ${objectName(scene, object.id)}`}, [
-        element('span', {className: 'swatch', style: {background: css(colourOf(scene, object.id))}}), object.name ? `${object.name} (${object.id})` : String(object.id)])]},
+        objectSwatch(scene, object.id), object.name ? `${object.name} (${object.id})` : String(object.id)])]},
     {name: 'Mass (kg)', value: object => object.mass_kg},
     {name: 'Barrier (J)', term: 'barrier', value: object => object.grounded ? Infinity : object.barrier_J, cell: object => [barrierText(object)]},
     {name: 'Release (J)', term: 'release', value: object => object.grounded ? -1 : object.release_J, number: object => object.grounded ? null : object.release_J},
@@ -30,15 +30,16 @@ function objectColumns(scene) {
   if (scene.objects.some(object => object.advice && object.advice.kind)) {
     columns.push({name: 'Advice', term: 'advice', text: true, value: adviceText, cell: object => [adviceText(object)]});
   }
-  const order = ['none', 'low', 'medium', 'high'];
-  columns.push({name: 'Category', term: 'category', text: true, value: object => object.grounded || !object.unsafety_category ? null : order.indexOf(object.unsafety_category),
-    cell: object => [object.grounded ? '\u2013' : categoryText(object)]});
-  columns.push({name: 'Unsafety', term: 'unsafety', value: object => object.unsafety, cell: object => [unsafetyBadge(scene, object)]});
+  columns.push({name: 'Where (m)', text: true, value: object => { const at = planPlace(scene, object); return at && at.east; }, cell: object => placeCell(scene, object)});
+  columns.push({name: 'Unsafety', term: 'unsafety', value: object => object.unsafety, cell: object => [object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]});
+  // Within one by unsafety, which is 10 at most.
+  columns.push({name: 'Category', term: 'category', text: true, value: object => object.grounded || !object.unsafety_category ? null
+    : 20 * categories.indexOf(object.unsafety_category) + object.unsafety, cell: object => [object.grounded ? '\u2013' : categoryBadge(scene, object)]});
   return columns;
 }
 
 function howText(object) {
-  return object.grounded ? 'ground' : {tip: 'tips', slide: 'slides'}[object.mode] || '\u2013';
+  return object.grounded ? 'fixed' : {tip: 'tips', slide: 'slides'}[object.mode] || '\u2013';
 }
 
 function adviceText(object) {
@@ -72,11 +73,12 @@ function textOn(colour) {
   return 0.2126 * red + 0.7152 * green + 0.0722 * blue > 0.179 ? '#000' : '#fff';
 }
 
-function unsafetyBadge(scene, object) {
-  if (object.unsafety === null) return '\u2013';
-  const colour = object.grounded ? noColour : riskColour(scene, object.unsafety);
+function categoryBadge(scene, object) {
+  if (!object.unsafety_category) return element('span', {className: 'category', text: 'not known', title: 'nothing was seen to hold it'});
+  const colour = categoryColour(scene, object.unsafety_category);
   return element('span', {
-    className: 'unsafety', title: `unsafety ${object.unsafety.toFixed(1)} of 10, category ${categoryText(object)}`, text: object.unsafety.toFixed(1), style: {background: css(colour), color: textOn(colour)},
+    className: 'category', title: 'category' + (object.unsafety_certain ? '' : ': its errors leave a lower one open'), text: categoryText(object),
+    style: {background: css(colour), color: textOn(colour)},
   });
 }
 
@@ -154,10 +156,13 @@ function figuresOf(scene, object) {
   for (const name of object.grounded ? [] : scene.disturbances) {
     pairs.push([element('span', {}, [term('risk', 'Risk'), ` from ${causeOf(name)}`]), riskText(object, name)]);
   }
-  pairs.push([element('span', {}, [term('unsafety', 'Unsafety'), ', 1 to 10 within this scene']), object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
   if (!object.grounded && object.unsafety_category) {
-    pairs.push([element('span', {}, [term('category', 'Category'), ', by itself']),
+    pairs.push([element('span', {}, [term('category', 'Category'), ', by which to act']),
       object.unsafety_category + (object.unsafety_certain ? '' : ', or lower: its errors leave it open')]);
+  }
+  if (!object.grounded) {
+    pairs.push([element('span', {}, [term('unsafety', 'Unsafety'), ', 1 to 10 within this scene']), object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
+    pairs.push(['Searches that found it so', `${Math.round(100 * object.agreement)} %`]);
   }
   return pairs;
 }
@@ -179,21 +184,22 @@ function showObject(panel, scene, id, choose, visit) {
       choose(null);
       (document.querySelector(`.item[data-object="${id}"]`) || document.getElementById('risk')).focus();
     }}),
-    element('button', {type: 'button', className: 'near', text: 'near by', title: 'The view goes there', onclick: () => visit(id)})]));
-  const heading = element('h2', {tabIndex: -1}, [element('span', {className: 'swatch', style: {background: css(colourOf(scene, id))}}),
-    capital(objectName(scene, id)) + (object.name ? ` (object ${id})` : '')]);
+    element('button', {type: 'button', className: 'near', text: 'show in the view', title: 'The view goes there', onclick: () => visit(id)})]));
+  const heading = element('h2', {tabIndex: -1}, [objectSwatch(scene, id), capital(objectName(scene, id)) + (object.name ? ` (object ${id})` : ''),
+    ...object.grounded ? [] : [' ', categoryBadge(scene, object)]]);
   panel.append(heading);
   const picture = pictureOf(scene, id);
   if (picture) panel.append(picture);
   const say = (text, className = 'why') => { if (text) panel.append(element('p', {className, text})); };
-  say(overturningText(object));
   if (!object.grounded) say(upsetText(object));
-  const curve = fragilityChart(object);
-  say(fragilityText(object));
   if (fallKnown(object)) say(happensText(scene, object));
   say(keepClearText(scene, object), 'clear');
-  say(object.advice && object.advice.sentence, 'advice');
+  if (!object.grounded && object.unsafety_category !== undefined) say(actionText(scene, object), isAdvised(object) ? 'advice' : 'why');
   say(object.why.sentence);
+  say(overturningText(object));
+  const curve = fragilityChart(object);
+  say(fragilityText(object));
+  say(agreementText(object));
   say(scene.verified ? verifiedObjectText(scene.verified, id) : '');
   panel.append(numberList(figuresOf(scene, object)));
 

@@ -71,8 +71,8 @@ class View {
     this.scene.view.groups.forEach(([primitive, id], i) => {
       const object = this.scene.objectById.get(id);
       const grounded = !object || object.grounded;
-      let colour = mode === 'primitive' ? colourOf(this.scene, primitive) : colourOf(this.scene, id);
-      if (mode === 'risk') colour = !object || grounded ? noColour : riskColour(this.scene, object.unsafety);
+      let colour = mode === 'primitive' ? colourOf(this.scene, primitive) : objectColour(this.scene, id);
+      if (mode === 'risk') colour = !object || grounded ? noColour : categoryColour(this.scene, object.unsafety_category);
       // What can't fall steps back: paler and greyer.
       let fade = grounded ? (mode === 'primitive' ? 0.45 : 0.8) : 0;
       // Of a photo the ground is what people recognise their room by.

@@ -78,12 +78,24 @@ function overturningText(object) {
     return `${value.toFixed(digits)} \u00b1 ${error.toFixed(digits)}`;
   };
   const hand = typeof o.hand_push_N === 'number' && o.hand_push_N > 1.05 * o.push_N ?
-    `, of ${about(o.hand_push_N, o.hand_push_error_N)} N ${metres(o.hand_height_m)} up` : '';
+    ` or of ${about(o.hand_push_N, o.hand_push_error_N)} N at ${metres(o.hand_height_m)} above its foot, where a hand pushes` : '';
   const gust = typeof o.gust_m_s === 'number' ? `, or in gusts of ${about(o.gust_m_s, o.gust_error_m_s)} m/s` : '';
-  const push = `a steady push of ${about(o.push_N, o.push_error_N)} N at its top${hand}${gust}`, slides = o.shake_g < 0.999 * Math.tan(o.tilt_deg * Math.PI / 180);
+  const push = `a steady push of ${about(o.push_N, o.push_error_N)} N at its top (the weight of ${round(o.push_N / 9.80665)} kg)${hand}${gust}`, slides = o.shake_g < 0.999 * Math.tan(o.tilt_deg * Math.PI / 180);
   return `Goes over once it leans ${about(o.tilt_deg, o.tilt_error_deg)}\u00b0, or at ${push}` +
     (o.slide_N < o.push_N ? `, if ${round(o.slide_N)} N don't slide it before` : '') +
-    `; begins to ${slides ? 'slide' : 'rock'} where the ground shakes with ${round(o.shake_g)} g.`;
+    `; begins to ${slides ? 'slide' : 'rock'} where the ground shakes with ${round(o.shake_g)} g${shakingText('pga_g', o.shake_g)}.`;
+}
+
+// What a peak acceleration of the ground means to people, by the scale of instrumental intensity (Wald and others 1999, Earthquake
+// Spectra 15, table 1): its upper end in g, and the word.
+const shakings = [[0.0017, 'not felt', 'I'], [0.014, 'weak', 'II to III'], [0.039, 'light', 'IV'], [0.092, 'moderate', 'V'], [0.18, 'strong', 'VI'],
+  [0.34, 'very strong', 'VII'], [0.65, 'severe', 'VIII'], [1.24, 'violent', 'IX'], [Infinity, 'extreme', 'X or more']];
+
+// " (very strong shaking, intensity VII)" for a figure of the key pga_g, in g, or pga_m_s2; '' for others.
+function shakingText(key, value) {
+  if (key !== 'pga_g' && key !== 'pga_m_s2') return '';
+  const [, word, intensity] = shakings.find(([end]) => (key === 'pga_g' ? value : value / 9.80665) <= end);
+  return ` (${word}${word === 'not felt' ? '' : ' shaking'}, intensity ${intensity})`;
 }
 
 // A mass is a guess from the volume, unless it was given.

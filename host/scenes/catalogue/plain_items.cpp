@@ -40,7 +40,7 @@ Blueprint ball(Random& random) {
     return b;
 }
 
-Blueprint carton(Random& random) {
+Blueprint plain_carton(Random& random) {
     Blueprint b("box");
     b.feet = {
         b.box("box", 0, 0, 0,
@@ -66,7 +66,7 @@ Blueprint pyramid(Random& random) {
     return b;
 }
 
-Blueprint desk_lamp(Random& random) {
+Blueprint plain_desk_lamp(Random& random) {
     Blueprint b("lamp");
     const double pole = random.uniform(0.2, 0.3), shade = random.uniform(0.12, 0.17);
     const int base = b.cylinder("base", 0, 0, 0, random.uniform(0.13, 0.18), 0.025);
@@ -135,13 +135,13 @@ std::vector<Blueprint> any_item(Random& random) {
         case 3:
             return {ball(random)};
         case 4:
-            return {carton(random)};
+            return {plain_carton(random)};
         case 5:
             return {vase(random)};
         case 6:
             return {pyramid(random)};
         case 7:
-            return {desk_lamp(random)};
+            return {plain_desk_lamp(random)};
         case 8:
             return {monitor(random)};
         case 9:

@@ -294,7 +294,7 @@ bool Composer::on_surface(std::size_t index, const Surface& surface,
                 const double slack = random_.chance(0.5) ? 0.0003 : random_.uniform(0, 0.006);
                 const Vec3 beside = moved(last.pose, Vec3{off + side * slack, 0, 0});
                 const Pose back{-base.pose.x, -base.pose.y, 0, 0};
-                const Vec3 local = moved({0, 0, 0, -base.pose.yaw}, moved(back, beside));
+                const Vec3 local = moved(Pose{0, 0, 0, -base.pose.yaw}, moved(back, beside));
                 if (std::abs(local[0] - surface.x) + (high_corner[0] - low[0]) / 2 <
                         surface.half_x &&
                     std::abs(local[1] - surface.y) + (high_corner[1] - low[1]) / 2 < surface.half_y)

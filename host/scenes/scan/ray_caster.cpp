@@ -9,7 +9,7 @@ namespace topple::scenes {
 namespace {
 
 constexpr std::size_t leaf_size = 2;
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -24,7 +24,7 @@ RayCaster::RayCaster(const std::vector<Part>& parts) : parts_(&parts), order_(pa
 }
 
 std::uint32_t RayCaster::build(std::size_t first, std::size_t last) {
-    Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    Box box{{unbounded, unbounded, unbounded}, {-unbounded, -unbounded, -unbounded}};
     Box middles = box;
     for (std::size_t k = first; k < last; ++k) {
         const Box& one = boxes_[order_[k]];
@@ -61,14 +61,14 @@ std::uint32_t RayCaster::build(std::size_t first, std::size_t last) {
 
 // Distance at which a ray enters a box, or infinity.
 double RayCaster::entry(const Box& box, const Vec3& origin, const Vec3& inverse) const {
-    double from = 0, to = infinity;
+    double from = 0, to = unbounded;
     for (std::size_t a = 0; a < 3; ++a) {
         const double t0 = (box.low[a] - origin[a]) * inverse[a],
                      t1 = (box.high[a] - origin[a]) * inverse[a];
         from = std::max(from, std::min(t0, t1));
         to = std::min(to, std::max(t0, t1));
     }
-    return from <= to ? from : infinity;
+    return from <= to ? from : unbounded;
 }
 
 RayCaster::Hit RayCaster::cast(const Vec3& origin, const Vec3& direction) const {
@@ -88,7 +88,7 @@ RayCaster::Hit RayCaster::cast(const Vec3& origin, const Vec3& direction) const 
     stack[depth++] = {0, entry(nodes_[0].box, origin, inverse)};
     while (depth > 0) {
         const Entry top = stack[--depth];
-        if (!(top.from <= best.distance) || top.from == infinity) continue;
+        if (!(top.from <= best.distance) || top.from == unbounded) continue;
         const Node& node = nodes_[top.node];
         if (node.count == 0) {
             Entry near{top.node + 1, entry(nodes_[top.node + 1].box, origin, inverse)};
@@ -102,7 +102,7 @@ RayCaster::Hit RayCaster::cast(const Vec3& origin, const Vec3& direction) const 
             const std::uint32_t id = order_[k];
             const double t = (*parts_)[id].hit(origin, direction, headings_[id]);
             const auto part = static_cast<std::int32_t>(id);
-            if (t < best.distance || (t == best.distance && t < infinity && part < best.part))
+            if (t < best.distance || (t == best.distance && t < unbounded && part < best.part))
                 best = {t, part};
         }
     }

@@ -5,13 +5,10 @@
 #include <cmath>
 
 #include "scenes/scan/smooth.h"
+#include "scenes/vectors.h"
 
 namespace topple::scenes {
 namespace {
-
-double dot(const Vec3& a, const Vec3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // From -1 to 1, constant in cells of some centimetres: patterns and wear.
 double mottle(const Vec3& p) {

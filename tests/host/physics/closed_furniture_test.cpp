@@ -12,7 +12,7 @@
 namespace topple::physics {
 namespace {
 
-constexpr double edge_m = 0.02;
+constexpr double cell_m = 0.02;
 
 // A wall behind y = 0 and a box of 0.8 x 0.4 x 1.2 m that stands `away` in front of it.
 struct BesideWall {
@@ -32,7 +32,7 @@ struct BesideWall {
         };
         const SolidScene scene(
             test::voxelise({{0, turned(test::box({-1, -0.1, 0}, {1, 0, 2}))}, {1, turned(thing)}},
-                           {-1.5, -1.5, 0}, {1.5, 1.5, 2}, edge_m),
+                           {-1.5, -1.5, 0}, {1.5, 1.5, 2}, cell_m),
             {Role::wall, Role::none});
         return furniture_looks(scene, std::vector<std::int32_t>{0, 1},
                                std::vector<double>{1, half ? 0.75 * 0.384 : 0.384})[1];

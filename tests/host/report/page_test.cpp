@@ -112,7 +112,7 @@ TEST_F(Page, takes_a_part_out_of_an_object_in_four_clicks) {
     EXPECT_EQ(
         page.data("command"),
         "topple parse 'made-up &lt;room&gt; &amp; &quot;hall&quot; &lt;/script&gt;&lt;b&gt;.ply' "
-        "--corrections corrections.json -o OUT");
+        "-o OUT --corrections corrections.json");
     const Json said = unescaped(page.data("said"));
     ASSERT_TRUE(said.is_object()) << page.data("said");
     EXPECT_EQ(said["schema"], "topple.corrections/1");
@@ -211,7 +211,7 @@ TEST_F(Page, keeps_corrections_of_this_parse) {
     EXPECT_EQ(test::text(page.data("list")),
               "Fridge: 4\u00a0kg (of this parse: held) undo"
               "1 place: apart from others (of this parse: nothing is there) undo");
-    EXPECT_EQ(test::text(page.data("card")).find("Fridge8.7object 2, 0.4\u00a0kg"), 0u)
+    EXPECT_EQ(test::text(page.data("card")).find("Fridgehighobject 2, 0.4\u00a0kg"), 0u)
         << page.data("card");
     EXPECT_EQ(test::text(page.data("mass")), "0.4\u00a0kg, as given by hand");
     EXPECT_EQ(unescaped(page.data("said")),
@@ -278,10 +278,9 @@ TEST_F(Page, turns_by_keys_and_can_be_reached_by_them) {
     EXPECT_EQ(page.data("deaf"), "0");
     EXPECT_EQ(page.data("columns"), "6");
     EXPECT_EQ(page.data("headings"), "0");
-    EXPECT_EQ(
-        test::text(page.data("spoken")),
-        "Object 3 chosen: 6.2\u00a0kg, unsafety 10.0. Upset by 1 walk in 40 or 1 earthquake in "
-        "40.");
+    EXPECT_EQ(test::text(page.data("spoken")),
+              "Object 3 chosen: 6.2\u00a0kg, category high?. Upset by 1 walk in 40 or 1 earthquake "
+              "in 40.");
 }
 
 TEST_F(Page, tells_what_became_safer) {
@@ -317,6 +316,10 @@ TEST_F(Page, tells_what_became_safer) {
         out.line = text('p');
         toppleCompare.read('before.html', html);
         out.same = rows() === out.rows;
+        // Object 4 was object 1 there, whose colour it has now; no two have the same.
+        out.taken = String(objectColour(toppleScene, 4)) === String(toppleScene.colours[1]);
+        const colours = toppleScene.objects.filter(object => !object.grounded).map(object => String(objectColour(toppleScene, object.id)));
+        out.distinct = new Set(colours).size === colours.length;
         document.getElementById('compare-order').value = 'after';
         toppleCompare.show();
         out.turned = text('tbody tr th');
@@ -334,6 +337,8 @@ TEST_F(Page, tells_what_became_safer) {
     EXPECT_EQ(page.data("line"),
               "1 safer, 1 less safe, 2 as before within the errors, 1 new, 1 gone.");
     EXPECT_EQ(page.data("same"), "true");
+    EXPECT_EQ(page.data("taken"), "true") << "the same thing has the same colour in both";
+    EXPECT_EQ(page.data("distinct"), "true");
     EXPECT_EQ(page.data("turned"), "object 3") << "which is less safe now";
     EXPECT_EQ(page.data("fixed"), "true");
     EXPECT_EQ(page.data("wrong"), "x.html is a web page, but no report of topple.");
@@ -354,11 +359,15 @@ TEST_F(Page, has_pictures_on_paper_and_without_webgl) {
         out.empty = [...document.querySelectorAll('img.picture')].filter(image => !image.src).length;
         out.pictures = document.querySelectorAll('img.picture').length;
         out.scene = colours(document.querySelector('.on-paper')) > 20;
+        out.about = document.querySelector('header details').open;
+        out.plan = document.querySelectorAll('#plan svg image').length;
     )");
     EXPECT_EQ(paper.data("error"), "(none)") << paper.log;
     EXPECT_EQ(paper.data("pictures"), "4");
     EXPECT_EQ(paper.data("empty"), "0");
     EXPECT_EQ(paper.data("scene"), "true");
+    EXPECT_EQ(paper.data("about"), "true") << "what the run was of";
+    EXPECT_EQ(paper.data("plan"), "1");
     const auto still = open(folder_ / "report.html", coloured + R"(
         const canvas = document.querySelector('.still');
         out.scene = colours(canvas) > 20;
@@ -373,6 +382,78 @@ TEST_F(Page, has_pictures_on_paper_and_without_webgl) {
     for (const char* key : {"scene", "turned"}) EXPECT_EQ(still.data(key), "true") << key;
     EXPECT_EQ(still.data("empty"), "0");
     EXPECT_EQ(still.data("error"), "(none)") << still.log;
+}
+
+TEST_F(Page, shows_the_command_that_made_it) {
+    NEEDS_BROWSER();
+    write_report(folder_ / "report.html", test::SyntheticScene(0.2).make(), {},
+                 {"build/topple", "parse", "a room", "--corrections", "old.json", "--voxel", "0.02",
+                  "--corrections=older.json", "-o", "it's"});
+    const auto page = open(folder_ / "report.html", R"(
+        document.body.dataset.command = document.getElementById('mend-command').textContent;
+    )");
+    EXPECT_EQ(page.data("command"),
+              "build/topple parse 'a room' --voxel 0.02 -o 'it'\\''s' --corrections "
+              "corrections.json");
+}
+
+// A correction takes 100 spots.
+TEST_F(Page, tells_every_part_however_many) {
+    NEEDS_BROWSER();
+    write_report(folder_ / "report.html", test::SyntheticScene(0.2).make());
+    const auto page = open(folder_ / "report.html", R"(
+        const out = document.body.dataset, told = toppleParts.corrections, key = spot => spot.join(' ');
+        for (let part = 1000; part < 1230; ++part) told.spots.set(part, [part, 0, 0]);
+        const many = [...Array(210)].map((none, n) => 1000 + n), few = [...Array(20)].map((none, n) => 1210 + n);
+        const one = told.oneThing(many), apart = told.apart(many, few), both = told.apart(few, many);
+        const spots = list => new Set(list.flatMap(c => c.at_m.map(key))).size;
+        out.one = `${one.length} ${spots(one)} ${one.every(c => key(c.at_m[0]) === key(one[0].at_m[0]) && c.at_m.length <= 100)}`;
+        const pairs = list => new Set(list.flatMap(c => c.at_m.flatMap(a => c.from_m.map(b => key(a) + '/' + key(b))))).size;
+        out.apart = `${apart.length} ${pairs(apart)}, ${both.length} ${pairs(both)}`;
+        out.fixed = spots(told.of('fixed', many));
+    )");
+    EXPECT_EQ(page.data("error"), "(none)") << page.log;
+    EXPECT_EQ(page.data("one"), "3 210 true");
+    EXPECT_EQ(page.data("apart"), "3 4200, 3 4200");
+    EXPECT_EQ(page.data("fixed"), "210");
+}
+
+TEST_F(Page, has_one_order_in_which_to_act) {
+    NEEDS_BROWSER();
+    Scene scene = test::SyntheticScene(0.2).make();
+    scene.events["tolerable_J"] = 0.1;
+    // The riskiest is harmless, and the one of the highest category tolerated.
+    scene.objects[3].unsafety_category = "none";
+    scene.objects[4].unsafety_category = "high";
+    scene.objects[4].unsafety = 9;
+    scene.objects[4].agreement = 0.5;
+    write_report(folder_ / "report.html", scene);
+    const auto page = open(folder_ / "report.html", R"(
+        const out = document.body.dataset, card = id => document.querySelector(`.item[data-object="${id}"]`).textContent;
+        out.listed = [...document.querySelectorAll('.item')].map(item => item.dataset.object).join(' ');
+        out.rows = [...document.querySelectorAll('#objects tbody tr')].map(row => row.cells[0].textContent).join(' ');
+        out.harmless = card(3);
+        out.high = card(4);
+        topplePlan.paint();
+        out.plan = document.querySelectorAll('#plan .chip').length;
+        out.red = [...document.querySelectorAll('#objects .category, .item .category')].filter(badge => badge.textContent === 'none?')
+            .map(badge => badge.style.background).join(' ');
+    )");
+    EXPECT_EQ(page.data("error"), "(none)") << page.log;
+    EXPECT_EQ(page.data("listed"), "4 2 1 3");
+    EXPECT_EQ(page.data("rows").substr(0, 7), "4 2 1 3");
+    const auto holds = [&](const char* card, std::initializer_list<const char*> parts) {
+        for (const char* part : parts)
+            EXPECT_NE(test::text(page.data(card)).find(part), std::string::npos)
+                << part << " in " << page.data(card);
+    };
+    holds("harmless", {"none?", "Risk 6.5 \u00b1 1.3 J per walk",
+                       "No need to act. To bring its risk below the 0.1\u00a0J per event that this "
+                       "run tolerates all the same: fix it where it stands"});
+    holds("high", {"high", "Uncertain: only 50 % of the searches found it so",
+                   "Its risk is below the 0.1", "m above the floor"});
+    EXPECT_EQ(page.data("red"), "rgb(222, 226, 230) rgb(222, 226, 230)");
+    EXPECT_EQ(page.data("plan"), "4");
 }
 
 // axe-core as ./dev setup installs it for Python; empty where it is not.

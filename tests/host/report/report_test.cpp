@@ -204,7 +204,7 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
     EXPECT_EQ(page.data("found"), "0 1 2 3 4 5") << "every object is seen, through the walls";
     EXPECT_NE(page.data("middle"), "null") << "the scene is in the middle of the view";
     EXPECT_EQ(page.data("heaviest"), "0");
-    EXPECT_EQ(page.data("listed"), "3 4 2 1") << "what is at risk, the largest risk first";
+    EXPECT_EQ(page.data("listed"), "3 2 4 1") << "by category, then by risk";
     for (const char* part :
          {"Object 3", "6.2\u00a0kg", "Upset by 1 walk in 40 or 1 earthquake in 40.",
           "It tips over to the north, falls 76 cm to the floor",
@@ -212,15 +212,17 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
           "the room, with 44\u00a0J.",
           "Goes over once it leans 15.2 \u00b1 0.4\u00b0, or at a steady push of 31 \u00b1 1 N at "
           "its top",
-          "if 18 N don't slide it before; begins to rock where the ground shakes with 0.27 g.",
-          "Fix it where it stands: 12 N"}) {
+          "(the weight of 3.2 kg), if 18 N don't slide it before; begins to rock where the ground "
+          "shakes with 0.27 g (very strong shaking, intensity VII).",
+          "Risk 6.5 \u00b1 1.3 J per walk", "Fix it where it stands: 12 N"}) {
         EXPECT_NE(test::text(page.data("first")).find(part), std::string::npos)
             << part << " in " << page.data("first");
     }
     for (const char* part : {"Object 3", "Barrier: energy that moves it", "1.4\u00a0J",
                              "Risk from people walking by", "6.5\u00a0J \u00b1 1.3", "Contacts",
                              "Category", "high, or lower: its errors leave it open",
-                             "Half of all earthquakes with peaks of 0.41 g or peak velocities of "
+                             "Half of all earthquakes with peaks of 0.41 g (severe shaking, "
+                             "intensity VIII) or peak velocities of "
                              "0.52 m/s turn it over or "
                              "move it off as long as it can slide; where it can't, half of those "
                              "with peaks of 0.36 g do. Where it stands, it "
@@ -347,7 +349,7 @@ TEST_F(Report, says_so_where_disturbances_are_missing) {
     EXPECT_NE(page.data("risk").find("No floor was found on which people could walk"),
               std::string::npos);
     for (const char* part : {"The 3 objects whose barrier is above its error, the riskiest first",
-                             "2 more stand on edge",
+                             "2 more stand on edge", "1 of them perhaps medium or high",
                              "As scanned, 1 more object at risk would fall at the slightest push"})
         EXPECT_NE(page.data("risk").find(part), std::string::npos) << part << page.data("risk");
     EXPECT_EQ(page.data("off"), "human wind walks");

@@ -18,6 +18,7 @@ from . import apart, colmap, e57, laz, polycam, record3d, ros_bag
 from .errors import Error, wrong
 
 FORMATS = (laz, e57, ros_bag, colmap, polycam, record3d)
+NOTES = 'topple-notes.txt'  # as host/io/scan_notes.h has it
 
 
 @dataclasses.dataclass(frozen=True)
@@ -95,8 +96,9 @@ def opened(path, options=Options(), cancelled=None):
 
 def convert(path, out, options=Options()):
     """Writes the scan at a path as topple reads it: to a file of a cloud (.ply, .pcd, which keeps the sensor's place, or .las of a
-    .laz), or a folder of depth frames, whichever the format has. Returns the Converted. Raises topple.Error; out must not be there
-    yet, and appears whole or not at all."""
+    .laz), or a folder of depth frames, whichever the format has. Its notes go into topple-notes.txt within the folder, or into
+    OUT.topple-notes.txt beside the file, where each parse of the scan takes them from. Returns the Converted. Raises topple.Error; out
+    must not be there yet, and appears whole or not at all."""
     path, out = pathlib.Path(path), pathlib.Path(out)
     if out.exists():
         raise wrong(out, 'is there already; name another, or delete it', 'usage')
@@ -112,10 +114,21 @@ def convert(path, out, options=Options()):
         try:
             kept = pathlib.Path(beside) / 'scan'
             (shutil.copytree if converted.is_sequence else shutil.copyfile)(converted.path, kept)
+            _keep_notes(kept, out, converted)
             kept.rename(out)
         finally:
             shutil.rmtree(beside)
         return dataclasses.replace(converted, path=out)
+
+
+def _keep_notes(kept, out, converted):
+    """The notes, a line each, where topple looks for them: before the scan is there, so that no parse of it misses them."""
+    text = ''.join(' '.join(note.split()) + '\n' for note in converted.notes)
+    file = kept / NOTES if converted.is_sequence else out.with_name(f'{out.name}.{NOTES}')
+    if text:
+        file.write_text(text, encoding='utf-8')
+    else:
+        file.unlink(missing_ok=True)  # of another scan that had this name
 
 
 def _check_ending(out, converted):

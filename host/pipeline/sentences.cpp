@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/sentences.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "io/text.h"
+#include "physics/drop.h"
+#include "pipeline/explain.h"
+#include "safety/disturbances.h"
+
+namespace topple {
+namespace {
+
+std::string length(double metres) {
+    return metres < 0.1 ? io::two_digits(100 * metres) + " cm" : io::two_digits(metres) + " m";
+}
+std::string energy(double joules) {
+    return joules < 0.01 && joules > 5e-7 ? io::two_digits(1000 * joules) + " mJ"
+                                          : io::two_digits(joules) + " J";
+}
+
+std::string compass(double azimuth_deg) {
+    constexpr std::array names{"north", "north-east", "east", "south-east",
+                               "south", "south-west", "west", "north-west"};
+    return names[static_cast<std::size_t>(std::lround(azimuth_deg / 45)) % names.size()];
+}
+
+// "object 3", or "object 3 (fridge)".
+std::string numbered_object(const Object& o) {
+    const std::string text = "object " + std::to_string(o.id);
+    return o.name.empty() ? text : text + " (" + o.name + ")";
+}
+
+// What a primitive is to those in the room; of the building, which part of it.
+std::string what(const Scene& scene, const SolidParts& parts, std::int32_t primitive) {
+    if (primitive < 0) return "what is there";
+    const auto at = static_cast<std::size_t>(primitive);
+    const Object& object = scene.objects[static_cast<std::size_t>(scene.primitives[at].object)];
+    if (!object.grounded) return numbered_object(object);
+    switch (parts.solids->role(primitive)) {
+        case Role::floor:
+            return "the floor";
+        case Role::wall:
+            return "a wall";
+        case Role::ceiling:
+            return "the ceiling";
+        default:
+            return "what is built in";
+    }
+}
+
+class Sentence {
+  public:
+    Sentence(const Scene& scene, const SolidParts& parts, const ObjectStage& objects,
+             const physics::Swept& swept, std::size_t o)
+        : scene_(scene),
+          parts_(parts),
+          objects_(objects),
+          swept_(swept),
+          from_(objects.objects[o]),
+          object_(scene.objects[o]),
+          why_(object_.why) {}
+
+    std::string text() const {
+        if (object_.grounded) return "It is the building, or fixed to it: it can't fall.";
+        if (!from_.seen_enough()) {
+            return "The scan does not show what holds it up: it is taken to stand there, and is "
+                   "not ranked.";
+        }
+        if (object_.mode == "slide") return slides();
+        return tips();
+    }
+
+  private:
+    std::string slides() const {
+        if (!(why_.way_m > 0)) {
+            return "Its centre of mass is past the edge of what carries it: it falls " + dropped() +
+                   " and releases " + energy(why_.S_J) + ".";
+        }
+        return "Slides " + to() + "off " + carrier() + " at " + barrier() + ", over " +
+               length(why_.way_m) + "; falls " + dropped() + " and releases " + energy(why_.S_J) +
+               ".";
+    }
+    std::string tips() const {
+        const bool stands = from_.tipping.margin_m > 0;
+        std::string text;
+        if (!why_.edge_m.empty() && !stands && why_.W_J > 0) {
+            // It would come to rest no lower there: the first step that releases is another one.
+            text = "Its centre of mass is " + length(-from_.tipping.margin_m) +
+                   " beyond the edge of what is seen to carry it, but falling there it would rest "
+                   "no lower. Tips over its " +
+                   edge() + " at " + barrier();
+        } else if (!why_.edge_m.empty() && !stands) {
+            text = "Falls " + to() + "as it stands: its centre of mass is " +
+                   length(-from_.tipping.margin_m) + " beyond the edge of what carries it";
+        } else if (!why_.edge_m.empty()) {
+            text = "Tips over its " + edge() + " at " + barrier();
+        } else {
+            text = "Rolls or turns " + to() + "by itself";
+        }
+        if (!(object_.release_J > 0))
+            return text + ", but then rests no lower: it releases nothing" + later() + ".";
+        if (swept_.stopped) return text + leans();
+        return text + "; " + (why_.drop_m > 0 ? "falls " + dropped() : "comes to rest lower") +
+               " and releases " + energy(why_.S_J) + ".";
+    }
+    // What more energy sets free, which its risk reckons with.
+    std::string later() const {
+        const auto first = std::ranges::find_if(
+            object_.instability, [](const InstabilityStep& step) { return step.S_J > 0; });
+        if (first == object_.instability.end()) return "";
+        return "; from " + energy(first->W_J) + " on it may release up to " +
+               energy(object_.instability.back().S_J);
+    }
+    // Its release and risk are those of a fall with room.
+    std::string leans() const {
+        return "; comes to lean on " + what(scene_, parts_, swept_.by) + ", with " +
+               energy(object_.fall.hits_J) + ". If that gave way it would " +
+               (why_.drop_m > 0 ? "fall " + dropped() : "come to rest lower") + " and release " +
+               energy(why_.S_J) + ", which its risk reckons with.";
+    }
+    // What it slides off. Of the building the part that carries most of it.
+    std::string carrier() const {
+        if (why_.stands_on.size() != 1) return "what carries it";
+        const Object& on = scene_.objects[static_cast<std::size_t>(why_.stands_on[0])];
+        if (!on.grounded) return numbered_object(on);
+        const auto object_of = [&](std::int32_t p) {
+            return p < 0 ? -1 : objects_.object_of_primitive[static_cast<std::size_t>(p)];
+        };
+        const graph::Carrying* most = nullptr;
+        for (const graph::Carrying& c : objects_.contacts.carryings) {
+            if (object_of(c.supported) == object_.id && object_of(c.supporter) == on.id &&
+                (!most || c.area_m2 > most->area_m2))
+                most = &c;
+        }
+        return most ? what(scene_, parts_, most->supporter) : "what carries it";
+    }
+    std::string barrier() const {
+        if (!barrier_within_error(object_)) return energy(why_.W_J);
+        return "between 0 and " + energy(object_.barrier_J + object_.barrier_error_J);
+    }
+    std::string to() const {
+        return std::isnan(why_.azimuth_deg) ? "" : "to the " + compass(why_.azimuth_deg) + " ";
+    }
+    // An edge no longer than a voxel or two is a corner, or one of a round thing's many.
+    std::string edge() const {
+        const std::string side =
+            std::isnan(why_.azimuth_deg) ? "" : compass(why_.azimuth_deg) + " ";
+        const Vec3 &a = why_.edge_m[0], &b = why_.edge_m[1];
+        const double size = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+        if (size <= 2.5 * scene_.voxel_size_m) return side + "rim";
+        return side + "edge, " + length(size) + " long,";
+    }
+    std::string dropped() const {
+        return length(why_.drop_m) + " to " + what(scene_, parts_, from_.instability.onto);
+    }
+
+    const Scene& scene_;
+    const SolidParts& parts_;
+    const ObjectStage& objects_;
+    const physics::Swept& swept_;
+    const StableObject& from_;
+    const Object& object_;
+    const Why& why_;
+};
+
+constexpr double light_kg = 5;  // one carries it away rather than fastens it
+
+std::string joules(double value) {
+    return value < 0.0005 ? "nothing" : energy(value) + " per event";
+}
+
+// Against what brings it the most risk, the first of equals.
+std::string mend_of(const Object& object) {
+    const auto kinds = safety::disturbance_kinds();
+    const auto risk = [&](const safety::DisturbanceKind* kind) {
+        const auto at = object.risk_J.find(kind->name);
+        return at == object.risk_J.end() ? 0.0 : at->second;
+    };
+    return (*std::ranges::max_element(kinds, {}, risk))->words.mend;
+}
+
+// The least of 1, 2, 5, 10, 20, ... kilograms whose weight is no less than the force: how straps
+// and brackets are sold.
+std::string rated_for(double force_N) {
+    const double kg = force_N / physics::gravity;
+    double decade = 1;
+    while (10 * decade < kg) decade *= 10;
+    for (const double step : {1, 2, 5})
+        if (step * decade >= kg) return io::short_number(step * decade) + " kg";
+    return io::short_number(10 * decade) + " kg";
+}
+
+std::string fix_sentence(const Object& object, const Suggestion& what) {
+    const std::string text =
+        object.mass_kg < light_kg ? "Put it elsewhere, or fasten it" : mend_of(object);
+    if (!(what.hold.force_N > 0)) return text + ".";
+    return text + ", with a strap or bracket rated for " + rated_for(what.hold.force_N) +
+           " or more (it must hold " + io::two_digits(what.hold.force_N) + " N sideways), " +
+           length(what.hold.height_m) + " above what it stands on.";
+}
+
+std::string advice_sentence(const Object& object, const Suggestion& what) {
+    double worst = 0;
+    for (const auto& [name, risk] : object.risk_J) worst = std::max(worst, risk);
+    switch (what.kind) {
+        case Suggestion::Kind::nothing:
+            break;
+        case Suggestion::Kind::see:
+            return "See what holds it: the scan does not show it, and its risk is not known.";
+        case Suggestion::Kind::check:
+            return "Look whether it stands firm: what the scan shows of its support would hardly "
+                   "hold it, and its risk follows from that.";
+        case Suggestion::Kind::move: {
+            std::string text = "Move it " + length(std::hypot(what.move_m[0], what.move_m[1])) +
+                               " to the " + compass(azimuth_deg(what.move_m));
+            if (!object.fall.takes_along.empty()) text += ", with what stands on it";
+            return text + ": its risk falls from " + joules(worst) + " to " + joules(what.risk_J) +
+                   ".";
+        }
+        case Suggestion::Kind::fix:
+            return fix_sentence(object, what);
+    }
+    return "";
+}
+
+}  // namespace
+
+void tell_why(const SolidParts& parts, const ObjectStage& objects,
+              std::span<const Landing> landings, Scene& scene) {
+    const physics::Swept free{};
+    for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+        const physics::Swept& swept = o < landings.size() ? landings[o].swept : free;
+        scene.objects[o].why.sentence = Sentence(scene, parts, objects, swept, o).text();
+    }
+}
+
+void tell_advice(std::span<const Suggestion> suggestions, Scene& scene) {
+    for (std::size_t o = 0; o < scene.objects.size(); ++o)
+        if (!scene.objects[o].grounded)
+            scene.objects[o].advice.sentence = advice_sentence(scene.objects[o], suggestions[o]);
+}
+
+}  // namespace topple
