@@ -56,11 +56,14 @@ volume.carve(depth, poses, camera, device=device)
 volume.fill(3, hollow=[0], device=device)
 solid = volume.solid()
 crate = solid.label == 1
-print(f'{np.count_nonzero(crate) * voxel_m**3:.3f} m3 are solid, the crate has {np.prod(high - low):.3f}')
+# The surface passes through the voxels that it was seen in: of those about half is solid.
+share = np.where(solid.state[crate] == stages.State.SURFACE, 0.5, 1.0)
+volume_m3 = share.sum() * voxel_m**3
+print(f'{volume_m3:.3f} m3 are solid, the crate has {np.prod(high - low):.3f}')
 
 # %% How hard it is to tip: its barrier, and all that more energy could release
 centers = np.stack([solid.i, solid.j, solid.k], 1)[crate] * voxel_m + voxel_m / 2
-body = stages.StandingBody(points[label == 1].astype(float), 700 * np.count_nonzero(crate) * voxel_m**3, centers.mean(0))
+body = stages.StandingBody(points[label == 1].astype(float), 700 * volume_m3, np.average(centers, 0, share))
 barrier, = stages.barriers([body], voxel_m, device=device)
 print(f'{body.mass_kg:.0f} kg, tips at {barrier.barrier_J:.1f} J and then releases {barrier.release_J:.1f} J')
 

@@ -33,6 +33,20 @@ int set(topple_status* status, int code, std::string_view message) noexcept {
     return code;
 }
 
+int code_of(ErrorKind kind) noexcept {
+    switch (kind) {
+        case ErrorKind::input:
+            return TOPPLE_ERROR_INPUT;
+        case ErrorKind::usage:
+            return TOPPLE_ERROR_USAGE;
+        case ErrorKind::device:
+            return TOPPLE_ERROR_DEVICE;
+        case ErrorKind::cancelled:
+            return TOPPLE_ERROR_CANCELLED;
+    }
+    return TOPPLE_ERROR_INTERNAL;
+}
+
 CloudView view_of(const topple_cloud* cloud) {
     topple_cloud defaults{};
     topple_cloud_init(&defaults, sizeof(defaults));

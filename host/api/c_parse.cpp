@@ -35,8 +35,8 @@ std::optional<double> given(double value) {
     return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 
-// The callbacks must not outlive `o`, nor `cancelled`, which becomes true where the caller's does.
-ParseOptions parse_options(const topple_options& o, bool& cancelled) {
+// The callbacks must not outlive `o`.
+ParseOptions parse_options(const topple_options& o) {
     ParseOptions to;
     if (o.device) to.device = o.device->device;
     to.voxel_m = o.voxel_m;
@@ -86,12 +86,7 @@ ParseOptions parse_options(const topple_options& o, bool& cancelled) {
             if (o.log && done == 0) o.log(TOPPLE_LOG_INFO, stage.c_str(), o.user);
         };
     }
-    if (o.cancelled) {
-        to.cancelled = [&o, &cancelled] {
-            cancelled = cancelled || o.cancelled(o.user) != 0;
-            return cancelled;
-        };
-    }
+    if (o.cancelled) to.cancelled = [&o] { return o.cancelled(o.user) != 0; };
     return to;
 }
 
@@ -101,15 +96,7 @@ int parsed(const topple_options* given_options, topple_result** result, topple_s
     return guarded(status, [&] {
         needed(result, "result") = nullptr;
         const topple_options o = known(given_options, defaults(), "options");
-        bool cancelled = false;
-        const ParseOptions options = parse_options(o, cancelled);
-        ParseResult done;
-        try {
-            done = parse_with(options);
-        } catch (const Error&) {
-            if (cancelled) throw Cancelled{};
-            throw;
-        }
+        ParseResult done = parse_with(parse_options(o));
         for (const std::string& note : done.scene.notes)
             if (o.log) o.log(TOPPLE_LOG_WARNING, note.c_str(), o.user);
         *result = new topple_result(std::move(done), o.allocator);
@@ -186,6 +173,12 @@ int topple_parse_cloud(const topple_cloud* cloud, const topple_options* options,
                        topple_result** result, topple_status* status) {
     return parsed(options, result, status,
                   [&](const ParseOptions& o) { return parse(view_of(cloud), o); });
+}
+
+int topple_parse_frames(const topple_frames* frames, const topple_options* options,
+                        topple_result** result, topple_status* status) {
+    return parsed(options, result, status,
+                  [&](const ParseOptions& o) { return parse(frames_of(frames), o); });
 }
 
 void topple_result_release(topple_result* result) {

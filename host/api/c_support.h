@@ -22,14 +22,13 @@ struct topple_device {
 
 namespace topple::c_api {
 
-// A parse that its callback stopped.
-struct Cancelled {};
 // The caller's allocator gave nothing.
 struct OutOfMemory {
     std::size_t bytes;
 };
 
 int set(topple_status* status, int code, std::string_view message) noexcept;
+int code_of(ErrorKind kind) noexcept;
 
 // Runs `body`, and makes a code and a message of what it throws.
 template <class Body>
@@ -37,18 +36,12 @@ int guarded(topple_status* status, const Body& body) noexcept {
     try {
         body();
         return set(status, TOPPLE_OK, {});
-    } catch (const Cancelled&) {
-        return set(status, TOPPLE_ERROR_CANCELLED, "cancelled");
     } catch (const OutOfMemory& e) {
         std::array<char, 64> text{};
         std::snprintf(text.data(), text.size(), "the allocator gave no %zu bytes", e.bytes);
         return set(status, TOPPLE_ERROR_MEMORY, text.data());
     } catch (const Error& e) {
-        return set(status,
-                   e.kind() == ErrorKind::usage    ? TOPPLE_ERROR_USAGE
-                   : e.kind() == ErrorKind::device ? TOPPLE_ERROR_DEVICE
-                                                   : TOPPLE_ERROR_INPUT,
-                   e.what());
+        return set(status, code_of(e.kind()), e.what());
     } catch (const std::bad_alloc&) {
         return set(status, TOPPLE_ERROR_MEMORY, "memory ran out");
     } catch (const std::exception& e) {
@@ -102,5 +95,7 @@ void give(const Struct& from, Struct* to, const char* name) {
 
 // Throws Error(usage) for a cloud without points to read.
 CloudView view_of(const topple_cloud* cloud);
+// Throws Error(usage) for frames without images to read.
+FramesView frames_of(const topple_frames* frames);
 
 }  // namespace topple::c_api

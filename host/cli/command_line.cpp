@@ -86,6 +86,7 @@ int run(std::span<const CommandEntry> entries, int argc, char** argv) {
 int exit_code(ErrorKind kind) {
     switch (kind) {
         case ErrorKind::input:
+        case ErrorKind::cancelled:
             return 1;
         case ErrorKind::usage:
             return 2;

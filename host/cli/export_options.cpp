@@ -28,36 +28,12 @@ bool wants_export(const ExportOptions& options) {
     });
 }
 
-namespace {
-
-// What a body became, where that is not what was parsed.
-void print_misfits(const ExportSummary& summary) {
-    constexpr double much = 0.5, most_named = 5;
-    std::string names;
-    std::size_t count = 0;
-    for (const ExportedBody& body : summary.bodies) {
-        const bool fits = body.fixed || body.lost_m3 <= much * body.solid_m3;
-        if (fits || ++count > most_named) continue;
-        if (!names.empty()) names += ", ";
-        names += body.name;
-    }
-    if (count > most_named) names += ", ...";
-    if (count > 0)
-        std::printf("%llu lay in others so deep that more than half of each was cut off: %s\n",
-                    static_cast<unsigned long long>(count), names.c_str());
-}
-
-}  // namespace
-
 void print_export(const ExportSummary& summary) {
-    std::uint64_t free = 0, pads = 0, held = 0, struts = 0, parts = 0;
+    std::uint64_t free = 0, parts = 0;
     double furthest_m = 0;
     for (const ExportedBody& body : summary.bodies) {
         parts += body.parts;
         free += !body.fixed;
-        pads += body.on_pad;
-        held += body.held;
-        struts += body.struts;
         furthest_m = std::max(furthest_m, std::abs(body.moved_m[2]));
     }
     std::printf(
@@ -65,13 +41,7 @@ void print_export(const ExportSummary& summary) {
         "%.1f mm\n",
         static_cast<unsigned long long>(free), static_cast<unsigned long long>(parts),
         1e3 * summary.deepest_overlap_m, 1e3 * furthest_m);
-    if (pads + held + struts > 0)
-        std::printf(
-            "Without a footing, which was not seen or lay in others: %llu stand on pads made for "
-            "them, %llu are held where they are; %llu struts stand for feet\n",
-            static_cast<unsigned long long>(pads), static_cast<unsigned long long>(held),
-            static_cast<unsigned long long>(struts));
-    print_misfits(summary);
+    for (const std::string& note : summary.notes) std::printf("%s\n", note.c_str());
     if (!std::isfinite(summary.floor_m)) return;
     std::printf("The floor lies at z = %.3f m", summary.floor_m);
     if (summary.free_radius_m > 0)

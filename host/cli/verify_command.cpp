@@ -70,7 +70,7 @@ mujoco::Verdict verify(const VerifyArguments& a, Progress& progress) {
     progress("MuJoCo", 0);
     mujoco::Settled run =
         mujoco::settle_apart(scratch.folder() / "scene.xml", a.seconds, a.time_limit_s, [] {
-            if (interrupted() != 0) throw Error(ErrorKind::input, "cancelled");
+            if (interrupted() != 0) throw Error(ErrorKind::cancelled, "cancelled");
         });
     return mujoco::judge(scene, exported, std::move(run), a.seconds);
 }

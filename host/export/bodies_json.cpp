@@ -19,20 +19,22 @@ OrderedJson json_or_null(const Vec3& v) {
 }
 
 OrderedJson body_json(const ExportedBody& body) {
-    return {{"name", body.name},
-            {"object", body.object},
-            {"fixed", body.fixed},
-            {"on_pad", body.on_pad},
-            {"held", body.held},
-            {"struts", body.struts},
-            {"moved_m", json_or_null(body.moved_m)},
-            {"parts", body.parts},
-            {"mass_kg", json_or_null(body.mass_kg)},
-            {"solid_m3", json_or_null(body.solid_m3)},
-            {"parts_m3", json_or_null(body.parts_m3)},
-            {"excess_share", body.solid_m3 > 0 ? json_or_null(body.parts_m3 / body.solid_m3 - 1)
-                                               : OrderedJson(nullptr)},
-            {"lost_m3", json_or_null(body.lost_m3)}};
+    return {
+        {"name", body.name},
+        {"object", body.object},
+        {"fixed", body.fixed},
+        {"on_pad", body.on_pad},
+        {"held", body.held},
+        {"struts", body.struts},
+        {"moved_m", json_or_null(body.moved_m)},
+        {"parts", body.parts},
+        {"mass_kg", json_or_null(body.mass_kg)},
+        {"solid_m3", json_or_null(body.solid_m3)},
+        {"parts_m3", json_or_null(body.parts_m3)},
+        {"excess_share", body.solid_m3 > 0 ? json_or_null(body.parts_m3 / body.solid_m3 - 1)
+                                           : OrderedJson(nullptr)},
+        {"lost_m3", json_or_null(body.lost_m3)},
+        {"lost_share", body.solid_m3 > 0 ? json_or_null(body.lost_share()) : OrderedJson(nullptr)}};
 }
 
 }  // namespace
@@ -45,6 +47,7 @@ std::string bodies_json(const ExportSummary& summary) {
                            {"floor_m", json_or_null(summary.floor_m)},
                            {"free_place_m", json_or_null(summary.free_place_m)},
                            {"free_radius_m", json_or_null(summary.free_radius_m)},
+                           {"notes", summary.notes},
                            {"bodies", std::move(bodies)}};
     return json.dump(1) + "\n";
 }

@@ -11,7 +11,8 @@
 namespace topple::exports {
 namespace {
 
-bool finite(const Vec3& v) {
+template <class Values>
+bool finite(const Values& v) {
     return std::ranges::all_of(v, [](double each) { return std::isfinite(each); });
 }
 
@@ -19,17 +20,25 @@ bool finite(const Vec3& v) {
 std::string fault_of(const Body& body) {
     if (!finite(body.center_m)) return "its centre of mass is not known";
     for (const ConvexPart& part : body.parts)
-        if (!std::ranges::all_of(part.corner, finite)) return "its shape is not finite";
+        if (!std::ranges::all_of(part.corner, finite<Vec3>)) return "its shape is not finite";
     if (body.fixed) return {};
-    if (!(body.mass_kg > 0 && std::isfinite(body.mass_kg))) return "it has no mass";
-    if (!std::ranges::all_of(body.inertia_kg_m2, [](double v) { return std::isfinite(v); }))
-        return "its inertia is not known";
-    const Eigen::Matrix3d inertia(body.inertia_kg_m2.data());
-    if (inertia.llt().info() != Eigen::Success) return "its inertia is not positive";
+    if (!has_mass(body)) return "it has no mass";
+    if (!finite(body.inertia_kg_m2)) return "its inertia is not known";
+    if (!has_inertia(body)) return "its inertia is not positive";
     return {};
 }
 
 }  // namespace
+
+bool has_mass(const Body& body) {
+    return body.mass_kg > 0 && std::isfinite(body.mass_kg);
+}
+
+bool has_inertia(const Body& body) {
+    if (!has_mass(body) || !finite(body.inertia_kg_m2)) return false;
+    const Eigen::Matrix3d inertia(body.inertia_kg_m2.data());
+    return inertia.llt().info() == Eigen::Success;
+}
 
 std::vector<NamedBody> named_bodies(const SimScene& scene) {
     std::vector<NamedBody> out;

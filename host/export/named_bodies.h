@@ -21,6 +21,10 @@ struct NamedBody {
     std::vector<NamedPart> parts;
 };
 
+// Whether a simulator may take its mass; and its inertia, too.
+bool has_mass(const Body& body);
+bool has_inertia(const Body& body);
+
 // The bodies that have a shape, as every format names them. Throws Error(input) that names the one
 // that no simulator takes: mass and inertia must be positive, and all numbers finite.
 std::vector<NamedBody> named_bodies(const SimScene& scene);

@@ -49,17 +49,25 @@ struct GeomOf {
     std::string place(const Vec3& at) const { return attribute("pos", text(minus(at, center_m))); }
 };
 
+// Of what is fixed, too: MuJoCo would make up a mass of its parts.
+std::string inertial(const Body& body) {
+    std::string out = "      <inertial pos=\"0 0 0\"";
+    append(out, attribute("mass", number(has_mass(body) ? body.mass_kg : 0)));
+    const Mat3& i = body.inertia_kg_m2;
+    if (has_inertia(body))
+        append(out, attribute("fullinertia", numbers({i[0], i[4], i[8], i[1], i[2], i[5]})));
+    else
+        append(out, attribute("diaginertia", "0 0 0"));
+    return joined(out, "/>\n");
+}
+
 // Of one body; meshes that it takes go to `assets`.
 void add_body(const NamedBody& named, std::string& assets, std::string& out) {
     const Body& body = *named.body;
     append(out, "    <body", attribute("name", named.name), attribute("pos", text(body.center_m)),
            ">\n");
-    if (!body.fixed) {
-        const Mat3& i = body.inertia_kg_m2;
-        append(out, "      <freejoint/>\n      <inertial pos=\"0 0 0\"",
-               attribute("mass", number(body.mass_kg)),
-               attribute("fullinertia", numbers({i[0], i[4], i[8], i[1], i[2], i[5]})), "/>\n");
-    }
+    if (!body.fixed) out += "      <freejoint/>\n";
+    out += inertial(body);
     for (const NamedPart& each : named.parts) {
         if (is_mesh(each.shape)) add_mesh(each, body.center_m, assets);
         append(out, "      <geom", attribute("name", each.name), attribute("class", "collision"),
@@ -101,6 +109,9 @@ void write_mjcf(const std::filesystem::path& folder, const SimScene& scene) {
     std::string assets, world;
     for (const NamedBody& body : bodies) add_body(body, assets, world);
     std::string out(xml_mark);
+    out +=
+        "<!-- For MuJoCo 2.3 or later. Earlier ones have room for 100 contacts, and leave out the "
+        "others: they take\n     <size nconmax=\"1000\" njmax=\"4000\"/> within <mujoco>. -->\n";
     out += "<mujoco model=\"scan\">\n  <compiler angle=\"radian\"";
     if (visuals)
         append(out, attribute("meshdir", files.beside()), attribute("texturedir", files.beside()));

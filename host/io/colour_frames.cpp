@@ -138,40 +138,42 @@ ColourFrames ColourFrames::open(const fs::path& folder, const std::vector<fs::pa
                              std::to_string(depth_images.size()) +
                              " has no image of its name in color/.");
     }
-    out.depth_ = depth;
-    out.own_ = read_colour_intrinsics(folder);
+    out.camera_ = {depth, read_colour_intrinsics(folder)};
     return out;
 }
 
-void ColourFrames::check_size(const fs::path& image, std::uint32_t width,
-                              std::uint32_t height) const {
+std::optional<std::string> ColourCamera::size_fault(std::uint32_t width, std::uint32_t height,
+                                                    const std::string& mend) const {
     const std::string is =
         "is " + std::to_string(width) + " x " + std::to_string(height) + " pixels, but ";
     const auto size = [](const Intrinsics& k) {
         return std::to_string(k.width) + " x " + std::to_string(k.height);
     };
-    if (own_) {
-        if (width != own_->width || height != own_->height)
-            fail(image, is + "its intrinsics say " + size(*own_));
-        return;
+    if (own) {
+        if (width == own->width && height == own->height) return std::nullopt;
+        return is + "its intrinsics say " + size(*own);
     }
     const double ratio =
-        (static_cast<double>(width) * depth_.height) / (static_cast<double>(height) * depth_.width);
-    if (std::abs(ratio - 1) > same_proportions) {
-        fail(image, is + "the depth images are " + size(depth_) +
-                        ", of other proportions; give the colour camera's intrinsics as "
-                        "\"color_intrinsics\" in intrinsics.json, or move color/ away");
-    }
+        (static_cast<double>(width) * depth.height) / (static_cast<double>(height) * depth.width);
+    if (std::abs(ratio - 1) <= same_proportions) return std::nullopt;
+    return is + "the depth images are " + size(depth) + ", of other proportions; " + mend;
+}
+
+std::vector<std::uint8_t> ColourCamera::seen_by_depth(const ColourImage& image) const {
+    return seen_by(depth, own ? *own : scaled(depth, image.width, image.height), image);
 }
 
 std::vector<std::uint8_t> ColourFrames::load(std::size_t index) const {
     if (images_.empty() || images_.at(index).empty()) return {};
     const fs::path& file = images_[index];
+    const char* const mend =
+        "give the colour camera's intrinsics as \"color_intrinsics\" in intrinsics.json, or move "
+        "color/ away";
     const ColourImage image =
-        decode_colour_image(file, read_file(file).text(),
-                            [&](std::uint32_t w, std::uint32_t h) { check_size(file, w, h); });
-    const Intrinsics camera = own_ ? *own_ : scaled(depth_, image.width, image.height);
-    return seen_by(depth_, camera, image);
+        decode_colour_image(file, read_file(file).text(), [&](std::uint32_t w, std::uint32_t h) {
+            if (const auto fault = camera_.size_fault(w, h, mend)) fail(file, *fault);
+        });
+    return camera_.seen_by_depth(image);
 }
 
 }  // namespace topple::io

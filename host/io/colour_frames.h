@@ -13,6 +13,21 @@
 
 namespace topple::io {
 
+// What took the colour images: the camera `own`, or, without it, one with the depth images'
+// intrinsics, scaled to their size.
+struct ColourCamera {
+    Intrinsics depth;
+    std::optional<Intrinsics> own;
+
+    // What is wrong with an image of that size, if anything: "is 4 x 3 pixels, but ..". `mend`:
+    // what to do where it has other proportions than the depth images.
+    std::optional<std::string> size_fault(std::uint32_t width, std::uint32_t height,
+                                          const std::string& mend) const;
+    // What the pixels of the depth image look like, sRGB, 3 bytes each: the mean of what falls into
+    // each; 0, 0, 0 where the image is black or does not reach.
+    std::vector<std::uint8_t> seen_by_depth(const ColourImage& image) const;
+};
+
 // The colour images of a sequence folder: color/NAME.png, .jpg or .jpeg beside depth/NAME.png, seen
 // from the same place in the same direction. They have the depth images' intrinsics, scaled to
 // their size, or their own: an object "color_intrinsics" in intrinsics.json, or the file
@@ -27,21 +42,16 @@ class ColourFrames {
 
     bool empty() const { return images_.empty(); }  // no frame has one
 
-    // What the pixels of depth image `index` look like, sRGB, 3 bytes each: the mean of what falls
-    // into each; 0, 0, 0 where its image is black or does not reach. Empty where it has no image.
-    // May be called from several threads at once. Throws Error(input) naming the image where it is
-    // damaged, or of another size than its intrinsics or other proportions than the depth images.
+    // What the pixels of depth image `index` look like; empty where it has no image. May be called
+    // from several threads at once. Throws Error(input) naming the image where it is damaged, or of
+    // another size than its intrinsics or other proportions than the depth images.
     std::vector<std::uint8_t> load(std::size_t index) const;
 
     // What looks odd, in sentences.
     const std::vector<std::string>& notes() const { return notes_; }
 
   private:
-    void check_size(const std::filesystem::path& image, std::uint32_t width,
-                    std::uint32_t height) const;
-
-    Intrinsics depth_;
-    std::optional<Intrinsics> own_;
+    ColourCamera camera_;
     std::vector<std::filesystem::path> images_;  // by frame; an empty path: it has none
     std::vector<std::string> notes_;
 };

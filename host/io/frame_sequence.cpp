@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <string>
 #include <system_error>
 
 #include "io/folder_names.h"
+#include "io/rigid_pose.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -96,13 +96,7 @@ DepthFrame FrameSequence::load(std::size_t index) const {
 }
 
 std::optional<Vec3> FrameSequence::mean_camera_up() const {
-    Vec3 sum{};
-    for (const auto& pose_of_camera : poses_) {
-        for (std::size_t row = 0; row < 3; ++row) sum[row] -= pose_of_camera[row * 4 + 1];
-    }
-    const double length = std::hypot(sum[0], sum[1], sum[2]);
-    if (length < 1e-3 * static_cast<double>(poses_.size())) return std::nullopt;
-    return Vec3{sum[0] / length, sum[1] / length, sum[2] / length};
+    return io::mean_camera_up(poses_);
 }
 
 bool looks_like_sequence(const fs::path& path) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "io/colour_frames.h"
@@ -36,8 +37,7 @@ class FrameSequence {
     // The colour images of the same frames.
     const ColourFrames& colours() const { return colours_; }
 
-    // Unit mean of the cameras' upward axes (-y), world frame: where people hold cameras level, up
-    // is near. Empty where the axes cancel out. Without a trajectory it is the one camera's.
+    // Of all poses; without a trajectory it is the one camera's. See io/rigid_pose.h.
     std::optional<Vec3> mean_camera_up() const;
 
   private:
@@ -50,6 +50,10 @@ class FrameSequence {
 
 // Whether the path is a folder with depth/ or intrinsics.json in it. open() says what is missing.
 bool looks_like_sequence(const std::filesystem::path& path);
+
+// What is wrong with the intrinsics of a depth camera, if anything; of any pinhole camera.
+std::optional<std::string> depth_intrinsics_fault(const Intrinsics& intrinsics);
+std::optional<std::string> pinhole_fault(const Intrinsics& intrinsics);
 
 // The parts of open() and load(), for tests.
 Intrinsics read_intrinsics(const std::filesystem::path& file);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/json.h"
 #include "io/colour_frames.h"
@@ -60,38 +61,55 @@ Intrinsics pinhole(const fs::path& file, const Json& json) {
     intrinsics.fy = positive_number(file, json, "fy");
     intrinsics.cx = positive_number(file, json, "cx", true);
     intrinsics.cy = positive_number(file, json, "cy", true);
-    if (intrinsics.cx > intrinsics.width || intrinsics.cy > intrinsics.height) {
-        fail(file, "the principal point (" + short_number(intrinsics.cx) + ", " +
-                       short_number(intrinsics.cy) + ") lies outside of the image of " +
-                       std::to_string(intrinsics.width) + " x " +
-                       std::to_string(intrinsics.height) + " pixels");
-    }
+    if (const auto fault = pinhole_fault(intrinsics)) fail(file, *fault);
     return intrinsics;
 }
 
 }  // namespace
 
+std::optional<std::string> pinhole_fault(const Intrinsics& k) {
+    for (const auto& [key, value] : {std::pair("width", k.width), {"height", k.height}}) {
+        if (value < 1 || value > most_pixels_a_side)
+            return in_quotes(key) + " is " + std::to_string(value) +
+                   ", but must be a whole number from 1 to " + std::to_string(most_pixels_a_side);
+    }
+    for (const auto& [key, value] :
+         {std::pair("fx", k.fx), {"fy", k.fy}, {"cx", k.cx}, {"cy", k.cy}}) {
+        const bool may_be_zero = key[0] == 'c';
+        if (!std::isfinite(value) || value < 0 || (value == 0 && !may_be_zero))
+            return in_quotes(key) + " is " + short_number(value) + ", but must be " +
+                   (may_be_zero ? "0 or more" : "above 0");
+    }
+    if (k.cx > k.width || k.cy > k.height)
+        return "the principal point (" + short_number(k.cx) + ", " + short_number(k.cy) +
+               ") lies outside of the image of " + std::to_string(k.width) + " x " +
+               std::to_string(k.height) + " pixels";
+    return std::nullopt;
+}
+
+std::optional<std::string> depth_intrinsics_fault(const Intrinsics& k) {
+    if (auto fault = pinhole_fault(k)) return fault;
+    if (std::uint64_t{k.width} * k.height > most_depth_pixels)
+        return "says " + std::to_string(k.width) + " x " + std::to_string(k.height) +
+               " pixels, more than the " + std::to_string(most_depth_pixels) +
+               " that a depth image may have; scale the images down";
+    // At these ends 16 bits reach 65 km and 6.5 cm: beyond them the unit is wrong.
+    if (!(k.depth_scale >= 1 && k.depth_scale <= 1e6))
+        return "\"depth_scale\" is " + short_number(k.depth_scale) +
+               ", but must be from 1 (depth in metres) to 1e+06 (micrometres)";
+    return std::nullopt;
+}
+
 Intrinsics read_intrinsics(const fs::path& file) {
     const Json json = read_object(file);
     Intrinsics intrinsics = pinhole(file, json);
-    const std::uint64_t pixels = std::uint64_t{intrinsics.width} * intrinsics.height;
-    if (pixels > most_depth_pixels) {
-        fail(file, "says " + std::to_string(intrinsics.width) + " x " +
-                       std::to_string(intrinsics.height) + " pixels, more than the " +
-                       std::to_string(most_depth_pixels) +
-                       " that a depth image may have; scale the images down");
-    }
     if (!json.contains("depth_scale")) {
         fail(file,
              "has no \"depth_scale\"; add it: metres = value / depth_scale, so 1000 for "
              "depth in millimetres");
     }
     intrinsics.depth_scale = positive_number(file, json, "depth_scale");
-    // At these ends 16 bits reach 65 km and 6.5 cm: beyond them the unit is wrong.
-    if (intrinsics.depth_scale < 1 || intrinsics.depth_scale > 1e6) {
-        fail(file, "\"depth_scale\" is " + short_number(intrinsics.depth_scale) +
-                       ", but must be from 1 (depth in metres) to 1e+06 (micrometres)");
-    }
+    if (const auto fault = depth_intrinsics_fault(intrinsics)) fail(file, *fault);
     return intrinsics;
 }
 

@@ -112,6 +112,7 @@ void scale(PointCloud& cloud, double unit_m) {
         for (float& v : *values) v = static_cast<float>(v * unit_m);
     }
     for (double& v : cloud.viewpoint) v *= unit_m;
+    for (double& v : cloud.origin_m) v *= unit_m;
     for (double& v : cloud.offset_m) v *= unit_m;
 }
 

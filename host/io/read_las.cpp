@@ -137,6 +137,8 @@ PointCloud parse_las(const std::filesystem::path& file, std::string_view bytes, 
     }
     PointCloud out = cloud.finish();
     out.offset_m = shift;
+    if (shift != std::array<double, 3>{})
+        for (std::size_t a = 0; a < 3; ++a) out.origin_m[a] = h.offset[a] - shift[a];
     return out;
 }
 

@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include <Eigen/Dense>
 #include <array>
 #include <cmath>
 #include <span>
 #include <string>
 
 #include "io/frame_sequence.h"
+#include "io/rigid_pose.h"
 #include "io/text.h"
 
 // Poses of cameras as TUM, KITTI and Open3D write them.
 namespace topple::io {
 namespace {
-
-constexpr double farthest_pose_m = 1e6;
-// Matrices are printed with six digits or so; beyond this they are something else.
-constexpr double rotation_tolerance = 1e-3;
 
 // Camera to world from a position and a unit quaternion x y z w, row-major.
 Mat4 pose(const std::array<double, 3>& p, const std::array<double, 4>& q) {
@@ -101,19 +97,10 @@ class TrajectoryParser {
         }
         if (!next_token(line).empty()) bad("more than " + all);
     }
-    void check_position(std::span<const double> position) const {
-        for (const double value : position) {
-            if (std::abs(value) > farthest_pose_m) {
-                bad("position " + short_number(value) +
-                    " is beyond the limit of 1e+06 m; use metres");
-            }
-        }
-    }
-
     Mat4 tum(std::string_view line) const {
         std::array<double, 8> v{};
         numbers(line, v, "t x y z qx qy qz qw");
-        check_position(std::span(v).subspan(1, 3));
+        if (const auto fault = position_fault({v[1], v[2], v[3]})) bad(*fault);
         const double norm = std::hypot(std::hypot(v[4], v[5]), std::hypot(v[6], v[7]));
         if (!std::isfinite(norm) || norm < 1e-6) {
             bad("the quaternion has length " + short_number(norm) + " and gives no rotation");
@@ -148,36 +135,12 @@ class TrajectoryParser {
             }
             numbers(line, std::span(m).subspan(row * 4, 4), "of a row of the matrix");
         }
-        const double off = std::abs(m[12]) + std::abs(m[13]) + std::abs(m[14]);
-        if (off + std::abs(m[15] - 1) > rotation_tolerance)
-            bad("the last row of a pose's matrix must be 0 0 0 1");
         return rigid(m);
     }
 
-    // The pose with the rotation next to its matrix, which is rounded in the file.
     Mat4 rigid(const Mat4& m) const {
-        check_position(std::array{m[3], m[7], m[11]});
-        Eigen::Matrix3d r;
-        for (int row = 0; row < 3; ++row) {
-            for (int column = 0; column < 3; ++column)
-                r(row, column) = m[static_cast<std::size_t>(row * 4 + column)];
-        }
-        const double error =
-            (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-        if (!(error <= rotation_tolerance) || !(r.determinant() > 0)) {
-            bad("the matrix is no rotation: its columns are off from orthonormal by " +
-                short_number(error) + " (at most 0.001), its determinant is " +
-                short_number(r.determinant()));
-        }
-        const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
-        const Eigen::Matrix3d nearest = svd.matrixU() * svd.matrixV().transpose();
         Mat4 out = m;
-        for (int row = 0; row < 3; ++row) {
-            for (int column = 0; column < 3; ++column)
-                out[static_cast<std::size_t>(row * 4 + column)] = nearest(row, column);
-        }
-        for (std::size_t i = 12; i < 15; ++i) out[i] = 0;
-        out[15] = 1;
+        if (const auto fault = make_rigid(out)) bad(*fault);
         return out;
     }
 

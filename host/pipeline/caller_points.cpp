@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/caller_points.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "io/cloud_builder.h"
+#include "io/text.h"
 #include "topple/error.h"
 
 namespace topple {
@@ -23,6 +25,35 @@ void check_column(const CloudView& view, const char* name, const Column<T>& colu
                          " values, but x has " + std::to_string(view.size()));
     }
     if (!column.data() && view.size() > 0) refuse(view, std::string(name) + " is a null pointer");
+}
+
+// That an organised cloud has the pixels that it names.
+void check_image(const CloudView& view) {
+    if (view.width == 0 && view.height == 0) {
+        if (view.pixel.empty()) return;
+        refuse(view, "pixel is given, but width and height are 0; give those of the image");
+    }
+    const std::uint64_t pixels = std::uint64_t{view.width} * view.height;
+    const std::string image = std::to_string(view.width) + " x " + std::to_string(view.height);
+    if (view.pixel.empty() && pixels != view.size()) {
+        refuse(view, "an organised cloud of " + image + " pixels has as many points, but x has " +
+                         std::to_string(view.size()) +
+                         " values; give `pixel`, or 0 for both where it is none");
+    }
+    const auto beyond =
+        std::ranges::find_if(view.pixel, [&](std::uint64_t p) { return p >= pixels; });
+    if (beyond != view.pixel.end())
+        refuse(view, "pixel " + std::to_string(*beyond) + " lies outside of its " + image);
+}
+
+void check_viewpoint(const CloudView& view) {
+    if (!view.has_viewpoint) return;
+    for (const double value : view.viewpoint) {
+        if (!(std::abs(value) <= io::farthest_m))
+            refuse(view, "its viewpoint has a coordinate of " + io::short_number(value) +
+                             "; expected metres up to " + io::short_number(io::farthest_m) +
+                             ", or none");
+    }
 }
 
 void check_arrays(const CloudView& view) {
@@ -44,6 +75,8 @@ void check_arrays(const CloudView& view) {
         refuse(view, "pixel has " + std::to_string(view.pixel.size()) + " values, but x has " +
                          std::to_string(view.size()));
     }
+    check_image(view);
+    check_viewpoint(view);
 }
 
 bool finite(const FloatColumn& a, const FloatColumn& b, const FloatColumn& c, std::size_t i) {

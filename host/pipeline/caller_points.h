@@ -18,7 +18,8 @@ struct FinitePoints {
 
 // None where every point is finite, and so is every normal: then the caller's arrays will do. A
 // normal that is not finite becomes 0, 0, 0. Throws Error(input) where arrays differ in length or
-// are null, where no point is finite, or for a coordinate beyond 1e6 m.
+// are null, where an image has another number of pixels, where no point is finite, or for a
+// coordinate or viewpoint beyond 1e6 m.
 std::optional<FinitePoints> finite_points(const CloudView& view);
 
 }  // namespace topple

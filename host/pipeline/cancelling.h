@@ -8,9 +8,9 @@
 
 namespace topple {
 
-// Throws Error(input) "cancelled" where the parse was cancelled.
+// Throws Error(cancelled) where the parse was cancelled.
 inline void end_if_cancelled(const ParseOptions& options) {
-    if (options.cancelled && options.cancelled()) throw Error(ErrorKind::input, "cancelled");
+    if (options.cancelled && options.cancelled()) throw Error(ErrorKind::cancelled, "cancelled");
 }
 
 // While it lives, a parse that is cancelled ends within its stages, too: wherever they share out

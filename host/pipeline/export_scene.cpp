@@ -9,6 +9,8 @@
 #include "export/names.h"
 #include "export/separate.h"
 #include "export/sim_scene.h"
+#include "export/summary_notes.h"
+#include "io/frame_sequence.h"
 #include "io/output_folder.h"
 #include "io/points_colours.h"
 #include "io/replace_file.h"
@@ -22,7 +24,7 @@ namespace topple {
 namespace {
 
 void stop_where_cancelled(const ExportOptions& options) {
-    if (options.cancelled && options.cancelled()) throw Error(ErrorKind::input, "cancelled");
+    if (options.cancelled && options.cancelled()) throw Error(ErrorKind::cancelled, "cancelled");
 }
 
 ExportSummary summary_of(const exports::SimScene& scene) {
@@ -50,11 +52,29 @@ ExportSummary summary_of(const exports::SimScene& scene) {
         out.free_place_m = scene.free_place->at;
         out.free_radius_m = scene.free_place->radius_m;
     }
+    out.notes = exports::notes_of(out);
     return out;
+}
+
+// The folder that an export writes into.
+std::filesystem::path folder_of(const exports::Format& format, const std::filesystem::path& path) {
+    return format.file ? path : path.has_parent_path() ? path.parent_path() : ".";
+}
+
+// Throws where an export would lie among the files of the scan that was parsed.
+void check_apart_from(const std::string& source, const ExportOptions& options) {
+    for (const exports::Format& format : exports::formats()) {
+        const std::filesystem::path& path = options.*format.path;
+        std::error_code error;
+        if (!path.empty() && std::filesystem::equivalent(folder_of(format, path), source, error))
+            io::fail(folder_of(format, path),
+                     "is the scan that was parsed; choose another folder for the export");
+    }
 }
 
 ExportSummary write_formats(const Scene& scene, const SolidScene& solids,
                             const ExportOptions& options) {
+    check_apart_from(scene.source, options);
     const exports::SimScene made =
         make_sim_scene(scene, solids, {.visuals = options.visuals, .threads = options.threads});
     stop_where_cancelled(options);
@@ -111,6 +131,9 @@ void check_export(const ExportOptions& options) {
         const std::filesystem::path& path = options.*format.path;
         if (path.empty()) continue;
         any = true;
+        if (io::looks_like_sequence(folder_of(format, path)))
+            io::fail(folder_of(format, path),
+                     "holds a scan's depth frames; choose another folder for the export");
         exports::check_ours(exports::scene_file(format, path));
         io::check_own_file(exports::bodies_file(format, path), exports::bodies_schema);
     }

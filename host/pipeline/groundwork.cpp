@@ -3,47 +3,45 @@
 
 #include <utility>
 
-#include "io/frame_sequence.h"
-#include "io/octomap.h"
 #include "io/text.h"
 #include "pipeline/parse_memory.h"
 #include "pipeline/scale_checks.h"
 #include "pipeline/surface_extent.h"
 #include "pipeline/voxel_size.h"
 #include "pipeline/voxel_stage.h"
-#include "vdb/read_volume.h"
 
 namespace topple {
 namespace {
 
-void check_memory(const CloudView& cloud, const std::string& source, double voxel_m,
+void check_memory(const CloudView& cloud, ScanOrigin origin, double voxel_m,
                   const ParseOptions& options) {
     if (options.max_memory_bytes == 0) return;
     const SurfaceExtent surface = extent_of(cloud);
     const std::uint64_t need = one_piece_bytes(static_cast<double>(cloud.size()), surface.area_m2(),
                                                surface.bounds(), voxel_m);
     if (need > options.max_memory_bytes) {
-        throw Error(ErrorKind::input,
-                    std::to_string(cloud.size()) + " points at voxels of " +
-                        io::short_number(voxel_m) + " m may need " + io::bytes_text(need) +
-                        ", more than the " + io::bytes_text(options.max_memory_bytes) +
-                        " of --max-memory; use a larger --voxel" +
-                        (io::looks_like_sequence(source) || io::looks_like_octomap(source) ||
-                                 vdb::looks_like_volume(source)
-                             ? ""
-                             : ", or --tile 5 to have it parsed in blocks"));
+        throw Error(
+            ErrorKind::input,
+            std::to_string(cloud.size()) + " points at voxels of " + io::short_number(voxel_m) +
+                " m may need " + io::bytes_text(need) + ", more than the " +
+                io::bytes_text(options.max_memory_bytes) +
+                (in_memory(origin) ? " of max_memory_bytes; use a larger voxel_m"
+                                   : " of --max-memory; use a larger --voxel") +
+                (origin == ScanOrigin::cloud_file ? ", or --tile 5 to have it parsed in blocks"
+                                                  : ""));
     }
 }
 
 [[noreturn]] void no_surface(const Ingested& input, const std::string& source, double extent_m) {
-    const std::string scale = io::looks_like_sequence(source) && input.frames
-                                  ? depth_scale_hint(*input.frames)
-                                  : small_extent_hint(extent_m, source);
+    const std::string scale = of_frames(input.origin) && input.frames
+                                  ? depth_scale_hint(*input.frames, input.origin)
+                                  : small_extent_hint(extent_m, input.origin);
     throw Error(ErrorKind::input,
                 source + ": " + io::counted(input.cloud.size(), "point") +
                     (input.cloud.size() == 1 ? " was" : " were") +
                     " found, but no surface of them fills the " + std::to_string(least_voxels) +
-                    " voxels that a solid takes; give a denser scan, or a smaller --voxel" +
+                    " voxels that a solid takes; give a denser scan, or a smaller " +
+                    (in_memory(input.origin) ? "voxel_m" : "--voxel") +
                     (scale.empty() ? "" : "; " + scale));
 }
 
@@ -88,11 +86,11 @@ Groundwork lay_groundwork(device::Device& device, Ingested input, const ParseOpt
                           const std::string& source, StageClock& stage) {
     Groundwork out;
     out.voxel_m = voxel_for_input(input, options);
-    check_memory(input.cloud, source, out.voxel_m, options);
+    check_memory(input.cloud, input.origin, out.voxel_m, options);
     out.offset_m = input.own.offset_m;
     out.notes = input.notes;
     const double extent = extent_m({input.cloud.x, input.cloud.y, input.cloud.z});
-    note_small_extent(extent, source, out.notes);
+    note_small_extent(extent, input.origin, out.notes);
 
     const GeometryStage geometry = find_primitives(device, input, options, stage);  // 2.1
     if (!geometry.frame.note.empty()) out.notes.push_back(geometry.frame.note);

@@ -15,7 +15,9 @@
 #include "geometry/virtual_views.h"
 #include "io/frame_sequence.h"
 #include "io/octomap.h"
+#include "io/rigid_pose.h"
 #include "io/text.h"
+#include "pipeline/caller_frames.h"
 #include "pipeline/caller_points.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/scale_checks.h"
@@ -95,13 +97,8 @@ double typical_depth(const Intrinsics& k, std::size_t count,
     return depths[depths.size() / 2];
 }
 
-Ingested ingest_frames(device::Device& device, io::FrameSequence sequence,
-                       const ParseOptions& options) {
-    Ingested out;
-    const bool posed = sequence.posed();
-    out.camera_up = sequence.mean_camera_up();
-    out.notes = sequence.colours().notes();
-    out.frames = std::make_unique<SequenceStream>(std::move(sequence));
+// Fuses out.frames. posed: whether they have poses, and are no single frame.
+void fuse_frames(device::Device& device, bool posed, const ParseOptions& options, Ingested& out) {
     out.cell_m = cell_for_frames(out.frames->intrinsics(), out.frames->size(),
                                  [&](std::size_t f) { return out.frames->load(f); });
     geometry::FrameFusion fusion(out.frames->intrinsics(), out.cell_m, device.threads().threads());
@@ -120,6 +117,18 @@ Ingested ingest_frames(device::Device& device, io::FrameSequence sequence,
     out.viewpoint_of_point = std::move(fused.viewpoint_of_point);
     if (!posed)
         out.notes.push_back("A single frame: what it does not show is completed by shape alone.");
+}
+
+Ingested ingest_folder(device::Device& device, const std::filesystem::path& folder,
+                       const ParseOptions& options) {
+    io::FrameSequence sequence = io::FrameSequence::open(folder);
+    Ingested out;
+    out.origin = ScanOrigin::frames_folder;
+    out.camera_up = sequence.mean_camera_up();
+    out.notes = sequence.colours().notes();
+    const bool posed = sequence.posed();
+    out.frames = std::make_unique<SequenceStream>(std::move(sequence));
+    fuse_frames(device, posed, options, out);
     return out;
 }
 
@@ -174,15 +183,22 @@ double cell_for_frames(const Intrinsics& k, std::size_t count,
     return std::clamp(std::max(1.5 * z / k.fx, 1.2 * noise), least_cell_m, 0.015);
 }
 
-std::string depth_scale_hint(const FrameStream& frames) {
+std::string depth_scale_hint(const FrameStream& frames, ScanOrigin origin) {
     const Intrinsics& k = frames.intrinsics();
     return depth_scale_hint(
         frames.size(), k.depth_scale,
-        typical_depth(k, frames.size(), [&](std::size_t f) { return frames.load(f); }));
+        typical_depth(k, frames.size(), [&](std::size_t f) { return frames.load(f); }), origin);
 }
 
 void for_each_frame(const FrameStream& frames, ThreadPool& threads,
                     const std::function<void(DepthFrame, std::size_t)>& use, bool coloured) {
+    const auto load = [&](std::size_t i) {
+        return coloured ? frames.load_coloured(i) : frames.load(i);
+    };
+    if (frames.one_by_one()) {
+        for (std::size_t i = 0; i < frames.size(); ++i) use(load(i), i);
+        return;
+    }
     struct Decoded {
         DepthFrame frame;
         std::exception_ptr error;
@@ -191,8 +207,7 @@ void for_each_frame(const FrameStream& frames, ThreadPool& threads,
         std::vector<Decoded> batch(std::min<std::size_t>(threads.threads(), frames.size() - first));
         threads.each(batch.size(), 1, [&](std::size_t i) {
             try {
-                batch[i].frame =
-                    coloured ? frames.load_coloured(first + i) : frames.load(first + i);
+                batch[i].frame = load(first + i);
             } catch (...) {
                 batch[i].error = std::current_exception();
             }
@@ -216,11 +231,11 @@ void check_count(const CloudView& cloud) {
 }
 
 // All that follows from the points.
-void look_at_cloud(device::Device& device, Ingested& out, bool from_file) {
+void look_at_cloud(device::Device& device, Ingested& out) {
     const CloudView& cloud = out.cloud;
     check_count(cloud);
     const geometry::PointSpacing spacing = geometry::point_spacing(cloud);
-    check_spacing(cloud, spacing.nearest_m, from_file);
+    check_spacing(cloud, spacing.nearest_m, out.origin);
     // A little above the spacing, so that a surface has no holes at this resolution.
     out.cell_m = std::clamp(1.25 * spacing.nearest_m, least_cell_m, largest_cell_m);
     out.surfels = geometry::surfels_for(spacing, surfel_cells * out.cell_m);
@@ -243,7 +258,7 @@ void look_at_cloud(device::Device& device, Ingested& out, bool from_file) {
         return;
     }
     const auto scan = geometry::find_single_scan(
-        cloud, cloud.has_viewpoint ? cloud.viewpoint : Vec3{0, 0, 0}, spacing.nearest_m);
+        cloud, cloud.has_viewpoint ? cloud.viewpoint : out.own.origin_m, spacing.nearest_m);
     look_from_free_places(device, scan, view_surfels(spacing, out.cell_m), out);
 }
 
@@ -253,7 +268,7 @@ Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptio
     Ingested out;
     out.own = std::move(cloud);
     out.cloud = out.own;
-    look_at_cloud(device, out, true);
+    look_at_cloud(device, out);
     return out;
 }
 
@@ -263,6 +278,7 @@ Ingested ingest_view(device::Device& device, const CloudView& cloud, const Parse
                     "unit_m is for files; scale a cloud in memory to metres before it is parsed");
     }
     Ingested out;
+    out.origin = ScanOrigin::cloud_in_memory;
     out.cloud = cloud;
     if (out.cloud.source.empty()) out.cloud.source = "cloud";
     if (std::optional<FinitePoints> finite = finite_points(out.cloud)) {
@@ -270,7 +286,28 @@ Ingested ingest_view(device::Device& device, const CloudView& cloud, const Parse
         out.index = std::move(finite->index);
         out.cloud = out.own;
     }
-    look_at_cloud(device, out, false);
+    look_at_cloud(device, out);
+    return out;
+}
+
+Ingested ingest_frames_view(device::Device& device, const FramesView& frames,
+                            const ParseOptions& options) {
+    if (options.unit_m != 1) {
+        throw Error(ErrorKind::usage,
+                    "unit_m is for files; depth frames have their unit in their intrinsics, as "
+                    "depth_scale");
+    }
+    auto stream = std::make_unique<CallerFrames>(frames);
+    const CallerFrames& given = *stream;  // lives as long as what is returned
+    Ingested out;
+    out.origin = ScanOrigin::frames_in_memory;
+    out.camera_up = io::mean_camera_up(given.poses());
+    out.notes = given.notes();
+    out.frames = std::move(stream);
+    fuse_frames(device, given.posed(), options, out);
+    if (out.cloud.size() == 0)
+        throw Error(ErrorKind::input, given.source() + ": no points were found; " +
+                                          depth_scale_hint(given, out.origin));
     return out;
 }
 
@@ -305,9 +342,10 @@ std::optional<geometry::SceneFrame> frame_of_map(const std::optional<Vec3>& give
 // A volume's surface, and its free space beside what virtual views of the surface find.
 Ingested ingest_volume(device::Device& device, ScannedMap map) {
     Ingested out;
+    out.origin = ScanOrigin::map_file;
     out.own = std::move(map.cloud);
     out.cloud = out.own;
-    look_at_cloud(device, out, true);
+    look_at_cloud(device, out);
     if (!map.space.free.empty()) out.space = std::move(map.space);
     return out;
 }
@@ -315,6 +353,7 @@ Ingested ingest_volume(device::Device& device, ScannedMap map) {
 // An OctoMap: what is free and what nobody saw is known, and its voxels are the grid's.
 Ingested ingest_octomap(ScannedMap map, const ParseOptions& options) {
     Ingested out;
+    out.origin = ScanOrigin::map_file;
     out.own = std::move(map.cloud);
     out.cloud = out.own;
     check_count(out.cloud);
@@ -351,9 +390,9 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
                 "--unit is for point clouds, meshes and maps; depth frames have their unit in "
                 "intrinsics.json, as depth_scale");
         }
-        Ingested out = ingest_frames(device, io::FrameSequence::open(input), options);
+        Ingested out = ingest_folder(device, input, options);
         if (out.cloud.size() == 0)
-            io::fail(input, "no points were found; " + depth_scale_hint(*out.frames));
+            io::fail(input, "no points were found; " + depth_scale_hint(*out.frames, out.origin));
         return out;
     }
     ScannedMap map = read_input(input, options);

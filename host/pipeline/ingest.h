@@ -13,6 +13,8 @@
 #include "device/device.h"
 #include "geometry/manhattan.h"
 #include "geometry/storeys.h"
+#include "pipeline/frame_stream.h"
+#include "pipeline/scale_checks.h"
 #include "topple/cloud_view.h"
 #include "topple/parse.h"
 
@@ -23,18 +25,8 @@ namespace topple {
 inline constexpr double least_cell_m = 0.003, largest_cell_m = 0.05;
 inline constexpr double sparsest_m = 5 * largest_cell_m;
 
-// Depth frames that can be walked through more than once without holding them all.
-class FrameStream {
-  public:
-    virtual ~FrameStream() = default;
-    virtual const Intrinsics& intrinsics() const = 0;
-    virtual std::size_t size() const = 0;
-    virtual DepthFrame load(std::size_t i) const = 0;
-    // With its colours, where it has any.
-    virtual DepthFrame load_coloured(std::size_t i) const { return load(i); }
-};
-
-// Calls use(frame, i) for each frame in order. Frames are decoded by all threads, as many at once.
+// Calls use(frame, i) for each frame in order. Frames are decoded by all threads, as many at once,
+// unless they must be loaded one by one.
 void for_each_frame(const FrameStream& frames, ThreadPool& threads,
                     const std::function<void(DepthFrame, std::size_t)>& use, bool coloured = false);
 
@@ -45,6 +37,7 @@ constexpr double surfel_cells = 1.85;
 
 // What every later stage starts from, whatever the input was.
 struct Ingested {
+    ScanOrigin origin = ScanOrigin::cloud_file;
     // The points, in the caller's memory or in `own`: what came from a file or from frames, or lost
     // points that were not finite; then `index` holds the place of each in the caller's arrays.
     CloudView cloud;
@@ -70,7 +63,7 @@ double cell_for_frames(const Intrinsics& intrinsics, std::size_t frames,
                        const std::function<DepthFrame(std::size_t)>& load);
 
 // What to look at where frames show nothing that makes sense; see scale_checks.h.
-std::string depth_scale_hint(const FrameStream& frames);
+std::string depth_scale_hint(const FrameStream& frames, ScanOrigin origin);
 
 // A file that is no sequence of frames: its points, and of a map its free space. What libraries of
 // others read, they read in a process of their own, unless options.isolate is off.
@@ -82,6 +75,10 @@ Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptio
 // The cloud must stay as long as what is returned. Without points that are not finite, no copy of
 // it is made.
 Ingested ingest_view(device::Device& device, const CloudView& cloud, const ParseOptions& options);
+
+// The frames must stay as long as what is returned.
+Ingested ingest_frames_view(device::Device& device, const FramesView& frames,
+                            const ParseOptions& options);
 
 // A part of a larger cloud, thinned to one point a cell, whose sides are not known.
 Ingested ingest_part(device::Device& device, PointCloud cloud, double cell_m);

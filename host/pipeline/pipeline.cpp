@@ -201,6 +201,16 @@ ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
     });
 }
 
+ParseResult parse(const FramesView& frames, const ParseOptions& options) {
+    check_options(options);
+    const std::string source = frames.source.empty() ? "frames" : frames.source;
+    return run(source, options, [&](device::Device& device, StageClock& stage) {
+        Ingested input =
+            stage("ingest", [&] { return ingest_frames_view(device, frames, options); });
+        return lay_groundwork(device, std::move(input), options, source, stage);
+    });
+}
+
 void add_coordinates(const CloudView& cloud, ParseResult& result) {
     ScenePoints& points = result.scene.points;
     const std::size_t count = points.primitive.size();

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <utility>
 
-#include "io/frame_sequence.h"
 #include "io/text.h"
 #include "pipeline/ingest.h"
 #include "topple/error.h"
@@ -39,7 +38,8 @@ double extent_m(const std::array<FloatColumn, 3>& axes) {
     return extent;
 }
 
-void check_spacing(const CloudView& cloud, double spacing_m, bool from_file) {
+void check_spacing(const CloudView& cloud, double spacing_m, ScanOrigin origin) {
+    const bool from_file = !in_memory(origin);
     if (spacing_m <= sparsest_m) return;
     const double extent = extent_m({cloud.x, cloud.y, cloud.z});
     std::string units, options;
@@ -59,15 +59,18 @@ void check_spacing(const CloudView& cloud, double spacing_m, bool from_file) {
                                          ", else give a denser scan"));
 }
 
-std::string small_extent_hint(double extent_m, const std::filesystem::path& source) {
+std::string small_extent_hint(double extent_m, ScanOrigin origin) {
     if (extent_m <= 0 || extent_m >= least_scan_m) return {};
-    return "it all extends over " + text_of(extent_m) + " m: check " +
-           (io::looks_like_sequence(source) ? "depth_scale in intrinsics.json" : "--unit");
+    const char* check = origin == ScanOrigin::frames_folder      ? "depth_scale in intrinsics.json"
+                        : origin == ScanOrigin::frames_in_memory ? "depth_scale of the intrinsics"
+                        : origin == ScanOrigin::cloud_in_memory
+                            ? "that the coordinates are metres, which they must be in memory"
+                            : "--unit";
+    return "it all extends over " + text_of(extent_m) + " m: check " + check;
 }
 
-void note_small_extent(double extent_m, const std::string& source,
-                       std::vector<std::string>& notes) {
-    std::string note = small_extent_hint(extent_m, source);
+void note_small_extent(double extent_m, ScanOrigin origin, std::vector<std::string>& notes) {
+    std::string note = small_extent_hint(extent_m, origin);
     if (note.empty()) return;
     note[0] = 'I';
     notes.push_back(note + ".");
@@ -89,12 +92,14 @@ void note_spacing(double spacing_m, std::vector<std::string>& notes) {
                     " more or less firmly, by more than their errors say. A denser scan tells.");
 }
 
-std::string depth_scale_hint(std::size_t frames, double depth_scale, double typical_depth_m) {
+std::string depth_scale_hint(std::size_t frames, double depth_scale, double typical_depth_m,
+                             ScanOrigin origin) {
     const std::string of = io::counted(frames, "depth frame");
     if (typical_depth_m <= 0) return of + " without any reading";
-    return "at the depth_scale of intrinsics.json, " + io::short_number(depth_scale) +
-           ", the readings of " + of + " lie about " + text_of(typical_depth_m) +
-           " m away: check it (metres = stored value / depth_scale)";
+    return std::string("at the depth_scale of ") +
+           (origin == ScanOrigin::frames_folder ? "intrinsics.json, " : "the intrinsics, ") +
+           io::short_number(depth_scale) + ", the readings of " + of + " lie about " +
+           text_of(typical_depth_m) + " m away: check it (metres = stored value / depth_scale)";
 }
 
 }  // namespace topple

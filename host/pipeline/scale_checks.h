@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,19 +13,29 @@
 // none, gets it too large or too small by 25 to 1000 times, and then rather nonsense than an error.
 namespace topple {
 
+// Where a scan came from, and so what of it, and which option, would mend it.
+enum class ScanOrigin { cloud_file, map_file, frames_folder, cloud_in_memory, frames_in_memory };
+inline bool in_memory(ScanOrigin origin) {
+    return origin == ScanOrigin::cloud_in_memory || origin == ScanOrigin::frames_in_memory;
+}
+inline bool of_frames(ScanOrigin origin) {
+    return origin == ScanOrigin::frames_folder || origin == ScanOrigin::frames_in_memory;
+}
+
 // The longest edge of the box around points with these coordinates, metres; 0 of none.
 double extent_m(const std::array<FloatColumn, 3>& axes);
 
 // Refuses a cloud whose points are `spacing_m` apart where that is too far for surfaces at the
 // coarsest resolution, which is what a room looks like in another unit than metres. Throws
 // Error(input), which names the units in which it would be a room.
-void check_spacing(const CloudView& cloud, double spacing_m, bool from_file = true);
+void check_spacing(const CloudView& cloud, double spacing_m,
+                   ScanOrigin origin = ScanOrigin::cloud_file);
 
 // Of what extends over less than things in a room do: "it all extends over X m: check --unit", or
 // what else gives the unit of such an input; else "".
-std::string small_extent_hint(double extent_m, const std::filesystem::path& source);
-// The same as a note of a scene from that source, which else shows shards of nothing in particular.
-void note_small_extent(double extent_m, const std::string& source, std::vector<std::string>& notes);
+std::string small_extent_hint(double extent_m, ScanOrigin origin);
+// The same as a note of a scene from there, which else shows shards of nothing in particular.
+void note_small_extent(double extent_m, ScanOrigin origin, std::vector<std::string>& notes);
 
 // Says what points of a cloud that are so far apart leave open, where that matters for things in
 // rooms: thin boards, and what stands on little.
@@ -34,6 +43,7 @@ void note_spacing(double spacing_m, std::vector<std::string>& notes);
 
 // Of frames whose typical reading is this far away: "at the depth_scale of intrinsics.json, 1, the
 // readings of 4 depth frames lie about 1500 m away: check it ...".
-std::string depth_scale_hint(std::size_t frames, double depth_scale, double typical_depth_m);
+std::string depth_scale_hint(std::size_t frames, double depth_scale, double typical_depth_m,
+                             ScanOrigin origin);
 
 }  // namespace topple

@@ -270,8 +270,8 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
                                         objects.object_of_primitive);
         tiled->set_objects(objects.object_of_primitive);
         scene.points = tiled->sample(sampled_points);
-        note_small_extent(extent_m({scene.points.x, scene.points.y, scene.points.z}), scene.source,
-                          scene.notes);
+        note_small_extent(extent_m({scene.points.x, scene.points.y, scene.points.z}),
+                          ScanOrigin::cloud_file, scene.notes);
         std::vector<TiledResult::Exposure> exposures;
         for (safety::Disturbance& d : safety.disturbances)
             if (!d.exposure.empty()) exposures.push_back({d.name, std::move(d.exposure)});

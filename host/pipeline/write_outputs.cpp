@@ -132,7 +132,8 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
     io::check_not_replaced(result.scene.source, folder);
     io::OutputFolder out(folder);
     const Poll poll = [&] {
-        if (options.cancelled && options.cancelled()) throw Error(ErrorKind::input, "cancelled");
+        if (options.cancelled && options.cancelled())
+            throw Error(ErrorKind::cancelled, "cancelled");
     };
     const auto files = writers(
         out.folder(), result, options,

@@ -26,7 +26,7 @@ State& state() {
 
 Busy::Busy() {
     const std::lock_guard lock(state().mutex);
-    if (state().ending) throw Error(ErrorKind::input, "cancelled");
+    if (state().ending) throw Error(ErrorKind::cancelled, "cancelled");
     ++state().busy;
 }
 

@@ -9,7 +9,7 @@ namespace topple::python {
 // work, in threads that are daemons, and waits for it.
 class Busy {
   public:
-    Busy();  // throws Error(input) "cancelled" where the interpreter is ending
+    Busy();  // throws Error(cancelled) where the interpreter is ending
     ~Busy();
     Busy(const Busy&) = delete;
     Busy& operator=(const Busy&) = delete;

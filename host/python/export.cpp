@@ -11,10 +11,12 @@ namespace topple::python {
 namespace {
 
 py::tuple body_tuple(const ExportedBody& b) {
-    const py::object excess_share =
-        b.solid_m3 > 0 ? py::object(py::float_(b.parts_m3 / b.solid_m3 - 1)) : py::none();
+    const auto share = [&](double value) {
+        return b.solid_m3 > 0 ? py::object(py::float_(value)) : py::none();
+    };
     return py::make_tuple(b.name, b.object, b.fixed, b.on_pad, b.held, b.struts, b.moved_m, b.parts,
-                          b.mass_kg, b.solid_m3, b.parts_m3, b.lost_m3, excess_share);
+                          b.mass_kg, b.solid_m3, b.parts_m3, b.lost_m3,
+                          share(b.parts_m3 / b.solid_m3 - 1), share(b.lost_share()));
 }
 
 }  // namespace
@@ -48,7 +50,7 @@ void bind_export(py::module_& module) {
             return py::make_tuple(bodies, summary.deepest_overlap_m,
                                   floor ? py::object(py::float_(summary.floor_m)) : py::none(),
                                   place ? py::cast(summary.free_place_m) : py::none(),
-                                  summary.free_radius_m);
+                                  summary.free_radius_m, summary.notes);
         });
 }
 

@@ -12,7 +12,17 @@ namespace topple::python {
 namespace {
 
 const char* name_of(ErrorKind kind) {
-    return kind == ErrorKind::input ? "input" : kind == ErrorKind::usage ? "usage" : "device";
+    switch (kind) {
+        case ErrorKind::input:
+            return "input";
+        case ErrorKind::usage:
+            return "usage";
+        case ErrorKind::device:
+            return "device";
+        case ErrorKind::cancelled:
+            return "cancelled";
+    }
+    return "";
 }
 
 // topple::Error becomes topple.Error, with its kind.
@@ -26,10 +36,9 @@ void bind_error(py::module_& module) {
         try {
             if (thrown) std::rethrow_exception(thrown);
         } catch (const Error& error) {
-            const bool cancelled = std::string(error.what()) == "cancelled";
             py::object made =
                 py::reinterpret_borrow<py::object>(type)(with_own_names(error.what()));
-            made.attr("kind") = cancelled ? "cancelled" : name_of(error.kind());
+            made.attr("kind") = name_of(error.kind());
             PyErr_SetObject(type, made.ptr());
         }
     });
@@ -78,10 +87,11 @@ void bind_devices(py::module_& module) {
 }  // namespace
 
 std::string with_own_names(std::string text) {
-    static constexpr std::array<std::pair<const char*, const char*>, 21> names{
+    static constexpr std::array<std::pair<const char*, const char*>, 22> names{
         {{"--backend", "backend"},
          {"--voxel", "voxel_m"},
          {"--unit", "unit_m"},
+         {"--tile", "tile_m"},
          {"--up", "up"},
          {"--disturbance", "disturbances"},
          {"--seed", "seed"},

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <limits>
 #include <thread>
 
 #include "arrays.h"
@@ -106,6 +109,77 @@ Column<T> column(const py::array& from, const char* name) {
             from.strides(0)};
 }
 
+// An image where it lies; the Python side has seen to its type and to rows without gaps.
+template <class Pixel, class Value>
+ImageView<Pixel> image(const py::array& from, const char* name) {
+    const py::ssize_t values = sizeof(Pixel) / sizeof(Value);
+    const bool fits =
+        py::isinstance<py::array_t<Value>>(from) && from.ndim() == (values == 1 ? 2 : 3) &&
+        (values == 1 || (from.shape(2) == values && from.strides(2) == sizeof(Value)));
+    if (!fits || (from.shape(1) > 1 && from.strides(1) != sizeof(Pixel)) ||
+        std::max(from.shape(0), from.shape(1)) > std::numeric_limits<std::int32_t>::max())
+        throw Error(ErrorKind::usage, std::string(name) + " is no image with rows without gaps");
+    return {static_cast<const Pixel*>(from.data()), static_cast<std::uint32_t>(from.shape(1)),
+            static_cast<std::uint32_t>(from.shape(0)), from.shape(0) > 1 ? from.strides(0) : 0};
+}
+
+using PyFrame = std::pair<py::array, std::optional<py::array>>;  // depth, colour
+
+FrameView frame_view(const PyFrame& frame) {
+    FrameView out;
+    if (py::isinstance<py::array_t<float>>(frame.first))
+        out.depth_m = image<float, float>(frame.first, "frames");
+    else
+        out.depth = image<std::uint16_t, std::uint16_t>(frame.first, "frames");
+    if (frame.second) out.colour = image<Rgb, std::uint8_t>(*frame.second, "colours");
+    return out;
+}
+
+// frames: all of them; or none, and `load` gives that of a number. size: width and height. poses:
+// 16 numbers each. Cameras: fx, fy, cx, cy, depth_scale.
+std::shared_ptr<Parsed> parse_frames(const std::vector<PyFrame>& frames, const py::object& load,
+                                     const std::array<std::uint32_t, 2>& size,
+                                     const py::array& poses, const std::array<double, 5>& camera,
+                                     const std::optional<std::array<double, 5>>& colour_camera,
+                                     const std::string& name,
+                                     const std::shared_ptr<SharedDevice>& device,
+                                     const ParseOptions& options, py::object progress,
+                                     py::object cancelled) {
+    const auto intrinsics = [](std::uint32_t width, std::uint32_t height,
+                               const std::array<double, 5>& c) {
+        return Intrinsics{width, height, c[0], c[1], c[2], c[3], c[4]};
+    };
+    FramesView view;
+    view.source = name;
+    view.intrinsics = intrinsics(size[0], size[1], camera);
+    for (const PyFrame& frame : frames) view.images.push_back(frame_view(frame));
+    PyFrame last;  // stays until the next one is asked for
+    if (frames.empty()) {
+        view.image = [&](std::size_t number) {
+            const py::gil_scoped_acquire acquire;
+            last = load(number).cast<PyFrame>();
+            return frame_view(last);
+        };
+    }
+    if (colour_camera) {
+        // Theirs is the size of the first that there is.
+        const PyFrame* first = nullptr;
+        for (const PyFrame& frame : frames)
+            if (frame.second && !first) first = &frame;
+        if (frames.empty()) last = load(0).cast<PyFrame>();
+        if (frames.empty() && last.second) first = &last;
+        if (first)
+            view.colour_intrinsics =
+                intrinsics(static_cast<std::uint32_t>(first->second->shape(1)),
+                           static_cast<std::uint32_t>(first->second->shape(0)), *colour_camera);
+    }
+    const std::span<const double> values = row<const double>(poses, "camera_to_world");
+    for (std::size_t at = 0; at + 16 <= values.size(); at += 16)
+        std::ranges::copy(values.subspan(at, 16), view.camera_to_world.emplace_back().begin());
+    return run(device, options, std::move(progress), std::move(cancelled),
+               [&](const ParseOptions& o) { return parse(view, o); });
+}
+
 }  // namespace
 
 CloudView view_of(const std::vector<py::array>& points, const std::vector<py::array>& normals,
@@ -139,6 +213,7 @@ void bind_parse(py::module_& module) {
         .def_readwrite("disturbances", &ParseOptions::disturbances)
         .def_readwrite("isolate", &ParseOptions::isolate)
         .def_readwrite("seed", &ParseOptions::seed)
+        .def_readwrite("tile_m", &ParseOptions::tile_m)
         .def_readwrite("max_memory_bytes", &ParseOptions::max_memory_bytes)
         .def_readwrite("density_kg_m3", &ParseOptions::density_kg_m3)
         .def_readwrite("friction", &ParseOptions::friction)
@@ -188,6 +263,7 @@ void bind_parse(py::module_& module) {
                    return run(device, options, std::move(progress), std::move(cancelled),
                               [&](const ParseOptions& o) { return parse(view, o); });
                });
+    module.def("parse_frames", parse_frames);
     // Of a scan that was parsed from a copy in another format.
     module.def("came_from", [](Parsed& parsed, const std::string& source,
                                const std::vector<std::string>& notes, const Vec3& offset_m) {

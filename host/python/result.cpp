@@ -29,6 +29,35 @@ const Scene& scene_of(const py::object& self) {
     return self.cast<const Parsed&>().result.scene;
 }
 
+// A value of each pose, where it lies.
+template <class T>
+auto pose_array(T Landscape::Pose::*value) {
+    return [value](const py::object& self) {
+        const auto& poses = self.cast<const Landscape&>().poses;
+        return py::array_t<T>({static_cast<py::ssize_t>(poses.size())},
+                              {py::ssize_t{sizeof(Landscape::Pose)}},
+                              poses.empty() ? nullptr : &(poses.data()->*value), self);
+    };
+}
+
+void bind_landscape(py::module_& module) {
+    py::class_<Landscape>(module, "Landscape")
+        .def_readonly("now", &Landscape::now)
+        .def_property_readonly(
+            "up",
+            [](const py::object& self) {
+                const auto& poses = self.cast<const Landscape&>().poses;
+                return py::array_t<double>(
+                    {static_cast<py::ssize_t>(poses.size()), py::ssize_t{3}},
+                    {py::ssize_t{sizeof(Landscape::Pose)}, py::ssize_t{sizeof(double)}},
+                    poses.empty() ? nullptr : poses.data()->up.data(), self);
+            })
+        .def_property_readonly("energy_J", pose_array(&Landscape::Pose::energy_J))
+        .def_property_readonly("joins_at_J", pose_array(&Landscape::Pose::joins_at_J))
+        .def_property_readonly("joins", pose_array(&Landscape::Pose::joins))
+        .def_property_readonly("probability", pose_array(&Landscape::Pose::probability));
+}
+
 void bind_items(py::module_& module) {
     py::class_<Primitive>(module, "Primitive")
         .def_readonly("id", &Primitive::id)
@@ -101,6 +130,7 @@ void bind_items(py::module_& module) {
             if (std::isnan(fall.people_share)) return std::nullopt;
             return fall.people_share;
         });
+    bind_landscape(module);
     py::class_<Object>(module, "Object")
         .def_readonly("id", &Object::id)
         .def_readonly("primitives", &Object::primitives)
@@ -125,6 +155,8 @@ void bind_items(py::module_& module) {
         .def_readonly("overturning", &Object::overturning)
         .def_readonly("fragility", &Object::fragility)
         .def_readonly("barrier_by_direction", &Object::barrier_by_direction)
+        .def_readonly("landscape", &Object::landscape)
+        .def_property_readonly("drop_m", [](const Object& o) { return o.why.drop_m; })
         .def_readonly("mode", &Object::mode)
         .def_readonly("direction", &Object::direction)
         .def_readonly("risk_J", &Object::risk_J)

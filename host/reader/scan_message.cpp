@@ -25,6 +25,7 @@ void fields(Archive& a, Map& map) {
     a(cloud.pixel);
     a(cloud.has_viewpoint);
     a(cloud.viewpoint);
+    a(cloud.origin_m);
     a(cloud.offset_m);
     a(cloud.source);
     a(cloud.notes);
@@ -58,6 +59,7 @@ void check(const PointCloud& cloud) {
         expect_finite(*values, std::numeric_limits<float>::max());  // in metres, of any unit
     for (const auto* values : {&cloud.nx, &cloud.ny, &cloud.nz}) expect_finite(*values, 1.001);
     expect_finite(cloud.viewpoint, std::numeric_limits<double>::max());
+    expect_finite(cloud.origin_m, std::numeric_limits<double>::max());
     expect_finite(cloud.offset_m, std::numeric_limits<double>::max());
     const std::uint64_t pixels = std::uint64_t{cloud.width} * cloud.height;
     expect(cloud.pixel.size() == (pixels > 0 ? size : 0));

@@ -208,7 +208,7 @@ def polycam(folder, walk, photographs):
         trust = np.full(depth.shape, 255, np.uint8)
         trust[:3] = 0
         depth[:3] = 9000  # which nobody may believe
-        (folder / 'keyframes' / 'depth' / f'{stem}.png').write_bytes(frames.grey_png(depth))
+        (folder / 'keyframes' / 'depth' / f'{stem}.png').write_bytes(frames.png(depth))
         pytest.importorskip('PIL.Image').fromarray(trust).save(folder / 'keyframes' / 'confidence' / f'{stem}.png')
         camera = CAMERA.resized(2 * CAMERA.width, 2 * CAMERA.height)
         values = {'fx': camera.fx, 'fy': camera.fy, 'cx': camera.cx, 'cy': camera.cy, 'width': camera.width, 'height': camera.height}

@@ -165,7 +165,7 @@ def test_errors_say_what_is_wrong(given, words, device):
 
 def test_errors_of_options_and_devices(points):
     for option, value, words in (('friction', -1, '^friction -1: expected'), ('wind_from_deg', 400, '^wind_from_deg 400: '),
-                                 ('max_memory_bytes', 1, 'the 1 B of max_memory_bytes; use a larger voxel_m, or --tile'),
+                                 ('max_memory_bytes', 1, 'the 1 B of max_memory_bytes; use a larger voxel_m$'),
                                  ('disturbances', 'flood', '^disturbances flood: expected human, wind or')):
         with pytest.raises(topple.Error, match=words) as raised:
             topple.parse(points, **{option: value})
@@ -175,6 +175,10 @@ def test_errors_of_options_and_devices(points):
     assert raised.value.kind == 'usage'
     assert 'native' in {d.backend for d in topple.devices() if d.usable}
     assert repr(topple.open_device('native')).startswith('<topple.Device native')
+    with pytest.raises(TypeError, match='open_device: backend: expected "auto", "native", "opencl" or "vulkan", not 3'):
+        topple.open_device(3)
+    with pytest.raises(topple.Error, match='threads: expected a whole number, 0 for all cores, not -1'):
+        topple.open_device('native', -1)
 
 
 @pytest.mark.parametrize('name, value', [

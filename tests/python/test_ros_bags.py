@@ -9,7 +9,7 @@ import topple
 import topple.formats
 from made_scans import CAMERA, POSES, colours_of, parsed, quaternion, refused, same_objects, truncated
 from topple.formats import ros_bag
-from topple.formats.frames import grey_png
+from topple.formats.frames import png
 from topple.formats.transforms import Transforms
 
 rosbags = pytest.importorskip('rosbags')
@@ -52,7 +52,7 @@ def packed_image(time, depth, kind):
     else:  # of inverse depth, the finer the nearer
         a, b = 100 * (100 / 5 + 1), 1 - 100.0
         stored = np.round(a / depth + b)
-    data = struct.pack('<iff', 0, a, b) + grey_png(stored.astype(np.uint16))
+    data = struct.pack('<iff', 0, a, b) + png(stored.astype(np.uint16))
     return TYPES['sensor_msgs/msg/CompressedImage'](header=header(time, 'optical'), format=f'{kind}; compressedDepth png',
                                                     data=np.frombuffer(data, np.uint8))
 
@@ -113,6 +113,43 @@ def test_depth_images(walk, sequence, device, tmp_path, storage, encoding):
     assert any(f'{len(walk)} of the {len(walk)} depth images' in note and '"map"' in note for note in result.notes)
     alone = next(file for file in bag.iterdir() if file.suffix in ('.mcap', '.db3'))
     assert [o.mass_kg for o in parsed(alone, device).objects] == [o.mass_kg for o in result.objects]
+
+
+def picture(time, pixels, frame, encoding='bgr8'):
+    channels = pixels[:, :, ::-1] if encoding == 'bgr8' else pixels
+    return TYPES['sensor_msgs/msg/Image'](header=header(time, frame), height=pixels.shape[0], width=pixels.shape[1], encoding=encoding,
+                                          is_bigendian=0, step=3 * pixels.shape[1], data=np.ascontiguousarray(channels).ravel())
+
+
+@pytest.mark.parametrize('storage, beside', [('mcap', 0.0), ('sqlite3', 0.06)])
+def test_colours_are_laid_on_depth_images(walk, tmp_path, storage, beside):
+    """Of a camera of twice the size, in the same place or 6 cm to the right of it."""
+    image_of = pytest.importorskip('PIL.Image')
+    right = np.eye(4)
+    right[0, 3] = beside
+    messages = depth_messages(walk[:3], '16UC1')
+    frame = 'colour' if beside else 'optical'
+    messages[0][3].transforms.extend(tf((0, 'optical', 'colour', right)).transforms)
+    info = camera_info()
+    k = np.array([2 * CAMERA.fx, 0, 2 * CAMERA.cx + 0.5, 0, 2 * CAMERA.fy, 2 * CAMERA.cy + 0.5, 0, 0, 1])
+    info = TYPES['sensor_msgs/msg/CameraInfo'](**{name: getattr(info, name) for name in info.__dataclass_fields__ if name != '__msgtype__'}
+                                               | {'k': k, 'width': 2 * CAMERA.width, 'height': 2 * CAMERA.height})
+    columns = np.zeros((2 * CAMERA.height, 2 * CAMERA.width, 3), np.uint8)
+    columns[..., 0] = 1 + np.arange(2 * CAMERA.width) // 2  # red tells the column
+    columns[..., 2] = 9
+    for n in range(2):  # the third has none
+        time = (n + 1) * SECOND + 20_000_000
+        messages += [('/camera/color/camera_info', 'sensor_msgs/msg/CameraInfo', time, info),
+                     ('/camera/color/image_raw', 'sensor_msgs/msg/Image', time, picture(time, columns, frame)),
+                     ('/camera/color/image_raw', 'sensor_msgs/msg/Image', time + 200_000_000, picture(time + 200_000_000, 0 * columns, frame))]
+    messages.sort(key=lambda message: message[2])
+    done = topple.formats.convert(write_bag(tmp_path / 'bag', storage, messages), tmp_path / 'out')
+    assert any(note.startswith('2 of them have colours, of the images of /camera/color/image_raw') for note in done.notes)
+    assert sorted(file.name for file in (tmp_path / 'out' / 'color').iterdir()) == ['000000.png', '000001.png']
+    got = np.array(image_of.open(tmp_path / 'out' / 'color' / '000001.png')).astype(int)
+    expected = 1 + np.arange(CAMERA.width) - beside * CAMERA.fx / walk[1][1]
+    inside = (expected >= 2) & (expected < CAMERA.width - 1)
+    assert inside.mean() > 0.8 and np.abs(got[..., 0] - expected)[inside].max() <= 1 and set(got[inside][:, 2]) == {9}
 
 
 @pytest.mark.parametrize('kind, within', [('16UC1', 1e-9), ('32FC1', 0.02)])

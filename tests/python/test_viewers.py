@@ -150,8 +150,20 @@ def test_curves(shaken, pyplot):
     polar = compass.lines[0].get_data()[1]
     assert f'Object {item.id}' in compass.get_title() and '(J)' in compass.get_title()
     assert np.array_equal(polar[:-1], item.barrier_by_direction.push_J, equal_nan=True)
+    tree = topple.plot.disconnectivity(item)
+    poses = item.landscape
+    assert poses.up.shape == (len(poses.energy_J), 3) and np.linalg.norm(poses.up, axis=1) == pytest.approx(1)
+    assert np.all(np.diff(poses.energy_J) >= 0) and poses.joins[0] == -1 and np.isinf(poses.joins_at_J[0])
+    leaves = {note.get_text(): note.xy for note in tree.texts}
+    shown = [text for text in leaves if not text.startswith('fallen')]
+    assert sorted(shown, key=int) == [str(n + 1) for n in range(min(10, len(poses.energy_J)))]
+    heights = sorted(leaves[text][1] for text in shown)
+    assert set(np.round(heights, 9)) <= set(np.round(poses.energy_J, 9)) and f'Object {item.id}' in tree.get_title()
+    lines = np.concatenate([line.get_ydata() for line in tree.lines])
+    finite = poses.joins_at_J[np.isfinite(poses.joins_at_J)]
+    assert lines.max() >= (finite.min() if len(finite) else 0)
     ground = next(o for o in shaken.objects if o.grounded)
-    for plot in (topple.plot.instability, topple.plot.fragility, topple.plot.barriers):
+    for plot in (topple.plot.instability, topple.plot.fragility, topple.plot.barriers, topple.plot.disconnectivity):
         with pytest.raises(topple.Error, match=f'object {ground.id}'):
             plot(ground)
 

@@ -78,8 +78,9 @@ struct CloudView {
     FloatColumn x, y, z;
     FloatColumn nx, ny, nz;     // normals of about unit length, or empty
     std::uint64_t dropped = 0;  // points that were left out before
+    // Of an organised cloud, and row * width + column of each point; empty: point i is pixel i, and
+    // there are width * height.
     std::uint32_t width = 0, height = 0;
-    // Of an organised cloud, row * width + column of each point; empty: point i is pixel i.
     std::span<const std::uint32_t> pixel;
     bool has_viewpoint = false;
     Vec3 viewpoint{0, 0, 0};

@@ -23,8 +23,8 @@ struct ExportOptions {
     std::filesystem::path mjcf, urdf, sdf, usd;
     bool visuals = true;   // what bodies look like, in the scan's colours, beside what collides
     unsigned threads = 0;  // 0: all cores; the result is the same
-    // Polled between steps, which take seconds each; true ends the export with Error(input)
-    // "cancelled", before it has written anything.
+    // Polled between steps, which take seconds each; true ends the export with Error(cancelled),
+    // before it has written anything.
     std::function<bool()> cancelled;
 };
 
@@ -43,6 +43,9 @@ struct ExportedBody {
     double solid_m3 = 0;       // of the object as it was parsed
     double parts_m3 = 0;       // of its parts: more than solid_m3 by what their hulls add
     double lost_m3 = 0;        // cut off its parts, so that no two bodies overlap
+
+    // lost_m3 as a share of its solid, which may be above 1: parts are hulls. 0 for a pad.
+    double lost_share() const { return solid_m3 > 0 ? lost_m3 / solid_m3 : 0; }
 };
 
 struct ExportSummary {
@@ -53,21 +56,24 @@ struct ExportSummary {
     double floor_m = std::numeric_limits<double>::quiet_NaN();
     Vec3 free_place_m{floor_m, floor_m, floor_m};
     double free_radius_m = 0;
+    // What is not as it was parsed: whose parts were cut by more than half, and what is held or
+    // stands on pads, in sentences.
+    std::vector<std::string> notes;
 };
 
 // Writes the scene in each format that the options name, and what became of each body as
 // bodies.json in the same folder. Folders are made where they are missing; earlier exports are
-// replaced. Throws Error: usage (no format is named), input (a file there is no export of topple,
-// or can't be written: the path and why; the cloud was parsed in blocks, so that there are no
-// solids).
+// replaced, and nothing else is. Throws Error: usage (no format is named), input (a file there is
+// no export of topple, or can't be written: the path and why; the folder holds a scan, the one that
+// was parsed or another; the cloud was parsed in blocks, so that there are no solids).
 ExportSummary export_scene(const ParseResult& result, const ExportOptions& options);
 
 // The same of a folder that write_outputs() has made: of its scene.json and solids.bin. Throws
 // Error(input), too, where they are missing or damaged.
 ExportSummary export_output(const std::filesystem::path& output, const ExportOptions& options);
 
-// Throws what can be known before a long parse: that no format is named, or that a file of another
-// program is where an export shall be written.
+// Throws what can be known before a long parse: that no format is named, or that a scan or a file
+// of another program is where an export shall be written.
 void check_export(const ExportOptions& options);
 
 }  // namespace topple

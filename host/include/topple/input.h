@@ -35,6 +35,9 @@ struct PointCloud {
     // unorganised cloud, or any organised cloud).
     bool has_viewpoint = false;
     Vec3 viewpoint{0, 0, 0};
+    // Else where it may have been: the origin of the numbers that the file holds, which a scan of
+    // one sensor that was moved since has there still.
+    Vec3 origin_m{0, 0, 0};
     Vec3 offset_m{0, 0, 0};          // the file's coordinates are these points' plus this
     std::string source;              // path, for messages
     std::vector<std::string> notes;  // what looks odd but is no error (units), in sentences

@@ -13,6 +13,7 @@
 #include "topple/corrections.h"
 #include "topple/device.h"
 #include "topple/error.h"
+#include "topple/frames_view.h"
 #include "topple/input.h"
 #include "topple/motion.h"
 #include "topple/scene.h"
@@ -95,7 +96,7 @@ struct ParseOptions {
     // Called on the thread that called the parse, as `cancelled` is, when a stage starts and while
     // it goes on: its name, and how much of it is done, 0 to 1.
     std::function<void(const std::string&, double)> progress;
-    // Polled now and then; true stops the parse with Error(input) "cancelled".
+    // Polled now and then; true stops the parse with Error(cancelled).
     std::function<bool()> cancelled;
     // Called on the same thread with what a user may want to know while it runs, a line each: that
     // it goes on with what an earlier run has left in the work folder or the cache, or makes what
@@ -120,12 +121,17 @@ struct ParseResult {
 // Parses a scan: a point cloud (.ply, .pcd, .xyz, .las), a mesh (.obj, .stl, .glb, .gltf, .ply with
 // faces), a map (.bt, .ot, .vdb), a sequence folder of depth frames with poses, or
 // a folder with a single frame. The result does not hold the device. Throws Error: input (can't be
-// parsed into a scene), usage (an option is out of range), device (it can't be opened, or failed).
+// parsed into a scene), usage (an option is out of range), device (it can't be opened, or failed),
+// cancelled.
 ParseResult parse(const std::filesystem::path& input, const ParseOptions& options = {});
 
 // The same on a cloud in memory, a PointCloud or the caller's own arrays. No copy of the points is
 // made on the way in, unless some are not finite.
 ParseResult parse(const CloudView& cloud, const ParseOptions& options = {});
+
+// The same on depth frames in memory: bit for bit what a folder of them gives. Throws Error(input),
+// too, where an image, its size, its rows, the intrinsics or a pose make no sense.
+ParseResult parse(const FramesView& frames, const ParseOptions& options = {});
 
 // Puts the coordinates of the cloud that was parsed into the result. Throws Error(usage) where it
 // can't be that cloud, by its number of points.
@@ -141,7 +147,7 @@ struct OutputOptions {
     // corrections. Empty: `topple parse` of the scene's source into the folder.
     std::vector<std::string> command;
     unsigned threads = 0;  // 1: no thread but the caller's
-    // Polled now and then, from any thread; true ends the writing with Error(input) "cancelled".
+    // Polled now and then, from any thread; true ends the writing with Error(cancelled).
     std::function<bool()> cancelled;
 };
 

@@ -85,13 +85,50 @@ typedef struct topple_cloud {
     int64_t stride_bytes;              /* from one point to the next; 0: sizeof(float) */
     const float *nx, *ny, *nz;         /* unit normals, or NULL */
     int64_t normal_stride_bytes;       /* 0: sizeof(float) */
-    uint32_t width, height;            /* of an organised cloud, with all its pixels; else 0 */
+    uint32_t width, height;            /* of an organised cloud, of width * height points; else 0 */
     const double* viewpoint;           /* 3 numbers: where the sensor was; or NULL */
     const char* name;                  /* for messages; NULL: "cloud" */
     const uint8_t *red, *green, *blue; /* sRGB, 0, 0, 0 where it is not known; or NULL */
     int64_t colour_stride_bytes;       /* 0: 1 */
 } topple_cloud;
 void topple_cloud_init(topple_cloud* cloud, size_t size);
+
+typedef struct topple_intrinsics {
+    uint32_t width, height;
+    double fx, fy, cx, cy, depth_scale; /* pixels; metres = stored value / depth_scale */
+} topple_intrinsics;
+/* What a camera saw at one time, in the caller's memory: rows of pixels without gaps. Of depth and
+ * depth_m one is given, of the size that the intrinsics say; strides are from a row to the one
+ * below it, 0 where nothing lies between them. struct FrameView of topple/frames_view.h says more.
+ */
+typedef struct topple_frame {
+    size_t size;
+    const uint16_t* depth; /* metres = value / depth_scale; 0: no reading */
+    const float* depth_m;  /* metres; no reading: what is not finite, or not above 0 */
+    int64_t depth_stride_bytes;
+    const uint8_t* rgb;             /* sRGB, 3 bytes a pixel, 0, 0, 0: not known; or NULL */
+    uint32_t rgb_width, rgb_height; /* 0: those of depth */
+    int64_t rgb_stride_bytes;
+} topple_frame;
+void topple_frame_init(topple_frame* frame, size_t size);
+/* Depth frames of one camera, with poses. */
+typedef struct topple_frames {
+    size_t size;
+    topple_intrinsics intrinsics; /* of depth */
+    const topple_intrinsics*
+        colour_intrinsics; /* of rgb; NULL: those of depth, scaled to its size */
+    uint64_t count;
+    /* 16 numbers for each frame, row-major, metres; NULL: one frame, whose camera is the origin */
+    const double* camera_to_world;
+    /* `count` of them, each of the first one's `size`; or NULL, and what fills in one, which must
+     * stay until the next call. It is called with `user` on the thread that parses, more than once
+     * for each index, and returns 0, or what ends the parse with TOPPLE_ERROR_INPUT. */
+    const topple_frame* frames;
+    int (*load)(uint64_t index, topple_frame* frame, void* user);
+    void* user;
+    const char* name; /* for messages; NULL: "frames" */
+} topple_frames;
+void topple_frames_init(topple_frames* frames, size_t size);
 
 /* Where the memory of a result's arrays comes from. `release` gets the size that was asked for. */
 typedef struct topple_allocator {
@@ -151,11 +188,14 @@ void topple_options_init(topple_options* options, size_t size);
 
 typedef struct topple_result topple_result;
 
-/* options: NULL for the defaults. A file or folder as the command line takes it; or a cloud. */
+/* options: NULL for the defaults. A file or folder as the command line takes it; or a cloud; or
+ * depth frames. */
 int topple_parse(const char* path, const topple_options* options, topple_result** result,
                  topple_status* status);
 int topple_parse_cloud(const topple_cloud* cloud, const topple_options* options,
                        topple_result** result, topple_status* status);
+int topple_parse_frames(const topple_frames* frames, const topple_options* options,
+                        topple_result** result, topple_status* status);
 void topple_result_release(topple_result* result);
 
 /* --- Results ------------------------------------------------------------------------------- */
@@ -291,9 +331,10 @@ int topple_result_add_coordinates(topple_result* result, const topple_cloud* clo
 
 /* Writes the scene for a simulator, and what became of each body as bodies.json beside it
  * (docs/export.md). format and path: "mjcf", "urdf" or "sdf" and a folder, or "usd" and a file,
- * NAME.usda. Folders are made where they are missing; an earlier export is replaced.
- * TOPPLE_ERROR_USAGE: there is no such format; TOPPLE_ERROR_INPUT: a file there is no export of
- * topple, or can't be written, or the cloud was parsed in blocks. */
+ * NAME.usda. Folders are made where they are missing; an earlier export is replaced, and nothing
+ * else is. TOPPLE_ERROR_USAGE: there is no such format; TOPPLE_ERROR_INPUT: a file there is no
+ * export of topple, or can't be written, or the folder holds a scan, or the cloud was parsed in
+ * blocks. */
 int topple_result_export(const topple_result* result, const char* format, const char* path,
                          topple_status* status);
 
@@ -344,10 +385,6 @@ int topple_convolve(topple_device* device, uint32_t width, uint32_t height, uint
 
 /* A voxel grid to carve and fill, z up. */
 typedef struct topple_volume topple_volume;
-typedef struct topple_intrinsics {
-    uint32_t width, height;
-    double fx, fy, cx, cy, depth_scale; /* pixels; metres = stored value / depth_scale */
-} topple_intrinsics;
 /* label: of each point, -1 for none. */
 int topple_volume_create(const topple_cloud* cloud, const int32_t* label, double voxel_m,
                          topple_volume** volume, topple_status* status);

@@ -21,13 +21,15 @@ import numpy as np
 
 from . import _described, _snapshot, _spots, _tables, _topple, formats, plot, stages
 from ._arrays import channels as _channels, columns as _columns, usage as _usage
+from ._device import open_device
+from ._frames import Frames as _Frames
 from ._options import option as _option
 from ._program import generate
-from ._topple import AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Object, Overturning, Primitive, Support, __version__, open_device
+from ._topple import AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Landscape, Object, Overturning, Primitive, Support, __version__
 from .foxglove import to_mcap
 from .rerun_viewer import to_rerun
 
-__all__ = ['AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Object', 'Overturning', 'Primitive', 'Result',
+__all__ = ['AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Landscape', 'Object', 'Overturning', 'Primitive', 'Result',
            'Support', '__version__', 'devices', 'formats', 'generate', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
 
 _described.items()
@@ -60,6 +62,7 @@ class ExportedBody(NamedTuple):
     parts_m3: float  # of its parts: more by what their hulls add
     lost_m3: float  # cut off its parts, so that no two bodies overlap
     excess_share: float  # how much more parts_m3 is than solid_m3, as a share; None for a pad
+    lost_share: float  # lost_m3 as a share of solid_m3, which may be above 1; None for a pad
 
 
 class ExportSummary(NamedTuple):
@@ -69,6 +72,7 @@ class ExportSummary(NamedTuple):
     floor_m: float  # height of the main level floor; None: there is none
     free_place_m: list  # the middle of the widest place on it where nothing stands, x, y, z; None: there is none
     free_radius_m: float  # of that place; 0: there is none
+    notes: list  # of str: what is not as it was parsed, such as bodies that were cut to half
 
 
 def devices():
@@ -223,10 +227,11 @@ def _components(accelerogram):
     return [None if file is None else os.fspath(file) for file in given + [None] * (3 - len(given))]
 
 
-def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=None,
+def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=None,
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, wind_m_s=12.0,
           wind_from_deg=None, pga_m_s2=None, accelerogram=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, grouping_time_s=None, corrections=None, cache_file=None, normals=None,
-          name=None, viewpoint=None, colours=None, isolate=True, progress=None, cancelled=None):
+          name=None, viewpoint=None, colours=None, frames=None, camera_to_world=None, intrinsics=None, colour_intrinsics=None,
+          tile_m=0.0, isolate=True, progress=None, cancelled=None):
     """Parses a scan into a Result.
 
     source: a path, as the command line takes it, or of what topple.formats converts (docs/formats.md: .laz, .e57, bags of ROS,
@@ -235,6 +240,13 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     strides, and must not change meanwhile; float64 is converted, which takes 12 bytes a point, and integers are
     refused: hardly ever are they metres. Points that are not finite are left out: Result.point_index then says
     where the others are.
+
+    frames: instead of a source, depth frames in memory, of which the result is that of the same in a folder: an array of shape (F, H, W),
+    a list of (H, W) arrays, or what has a length and gives one for each number, and is asked again where it is needed again. uint16 are
+    metres times depth_scale, 0: no reading; floats are metres, and what is not finite, or not above 0, is no reading. float32 and uint16
+    are read where they lie. camera_to_world: (F, 4, 4), metres, camera x right, y down, z forward; None for a single frame. intrinsics:
+    a topple.stages.Intrinsics. colours: (F, H, W, 3) uint8 sRGB, or a list with None where there is none, seen from the same places;
+    colour_intrinsics: of these, where they are not those of depth.
 
     disturbances: a list of "human", "wind", "earthquake", which may be empty; or one of these names; or None for
     all that there are.
@@ -246,8 +258,10 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     contents_kg_m3: of closed furniture, or None where all is solid.
     corrections: what you know of the room beside the scan: a file, or a list of dicts such as {"do": "fixed", "at_m":
     [[x, y, z]]} (docs/corrections.md); Result.corrections says what became of each. cache_file: keeps what does not
-    depend on them, so that the next parse of that file or folder is quick; of points in memory nothing is kept, and it is
-    refused. name: of points in memory, what messages, the report and Result.source call them; "points" without.
+    depend on them, so that the next parse of that file or folder is quick; of what is in memory nothing is kept, and it is
+    refused. tile_m: 5 or more has a cloud in a file parsed in blocks (docs/scale.md), of which as many are read together as lie in a tile
+    of that edge, metres. name: of points or frames in memory, what messages, the report and Result.source call them; "points"
+    or "frames" without.
     cancelled() is polled, and True stops the parse with an Error of kind "cancelled". Ctrl-C stops it, too, with
     KeyboardInterrupt. isolate=False: meshes, OctoMaps and OpenVDB files are read in this process, not in one of
     its own with limits of memory and time; for large files that you trust. Other threads of Python run meanwhile. The other options
@@ -257,7 +271,7 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
     given = {'voxel_m': voxel_m, 'unit_m': unit_m, 'up': up, 'seed': seed, 'isolate': isolate, 'max_memory_bytes': max_memory_bytes,
              'density_kg_m3': density_kg_m3, 'friction': friction, 'contents_kg_m3': contents_kg_m3, 'walks': walks,
              'wind_m_s': wind_m_s, 'wind_from_deg': wind_from_deg, 'pga_m_s2': pga_m_s2,
-             'floor_amplification': floor_amplification, 'tolerable_J': tolerable_J, 'grouping_time_s': grouping_time_s}
+             'floor_amplification': floor_amplification, 'tolerable_J': tolerable_J, 'grouping_time_s': grouping_time_s, 'tile_m': tile_m}
     if disturbances is not None:
         given['disturbances'] = disturbances
     for option, value in given.items():
@@ -278,6 +292,10 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
         options.set_cache_file(_file('cache_file', cache_file))
     if isinstance(device, str):
         device = open_device(device)
+    if (source is None) == (frames is None):
+        raise _usage('parse: expected one of a source, which is a path or points, and frames')
+    if frames is None and not (camera_to_world is None and intrinsics is None and colour_intrinsics is None):
+        raise _usage('camera_to_world, intrinsics and colour_intrinsics are for frames in memory')
     if isinstance(source, (str, os.PathLike)):
         if normals is not None or viewpoint is not None or colours is not None or name is not None:
             raise _usage('normals, colours, viewpoint and name are for points in memory; a file brings its own')
@@ -291,11 +309,17 @@ def parse(source, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances
             converted.needed_by = result = Result(parsed, None)
             return result
     if cache_file is not None:
-        raise _usage(f'cache_file: {cache_file}: a cache is kept of a file or folder, and the source is points in memory; leave it out, '
+        raise _usage(f'cache_file: {cache_file}: a cache is kept of a file or folder, and the source is in memory; leave it out, '
                      'or parse their file')
-    name = 'points' if name is None else name
+    if name is None:
+        name = 'points' if frames is None else 'frames'
     if not isinstance(name, str) or not name.isprintable() or not name.strip():
         raise _usage(f'name: expected a line of text, not {name!r}'[:200])
+    if frames is not None:
+        if normals is not None or viewpoint is not None:
+            raise _usage('normals and viewpoint are for points; frames have camera_to_world')
+        given = _Frames(frames, camera_to_world, intrinsics, colours, colour_intrinsics)
+        return Result(given.parse(name, device, options, progress, cancelled), None)
     points = _columns(source, ('x', 'y', 'z'), 'points')
     directions = [] if normals is None else _columns(normals, ('nx', 'ny', 'nz'), 'normals')
     channels = [] if colours is None else _channels(colours)

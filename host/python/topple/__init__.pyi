@@ -50,6 +50,7 @@ class ExportedBody(NamedTuple):
     parts_m3: float
     lost_m3: float
     excess_share: Optional[float]
+    lost_share: Optional[float]
 
 class ExportSummary(NamedTuple):
     bodies: list[ExportedBody]
@@ -57,6 +58,7 @@ class ExportSummary(NamedTuple):
     floor_m: Optional[float]
     free_place_m: Optional[list[float]]
     free_radius_m: float
+    notes: list[str]
 
 class Device:
     @property
@@ -138,6 +140,20 @@ class Fragility:  # of earthquakes; NaN: few fall at the strongest that is tried
     @property
     def return_years(self) -> float: ...
 
+class Landscape:  # by pose, by rising energy
+    @property
+    def now(self) -> int: ...
+    @property
+    def up(self) -> NDArray[np.float64]: ...  # (poses, 3)
+    @property
+    def energy_J(self) -> NDArray[np.float64]: ...
+    @property
+    def joins_at_J(self) -> NDArray[np.float64]: ...
+    @property
+    def joins(self) -> NDArray[np.int32]: ...
+    @property
+    def probability(self) -> NDArray[np.float64]: ...
+
 class Fall:
     @property
     def falls(self) -> bool: ...
@@ -207,6 +223,10 @@ class Object:
     def fragility(self) -> Fragility: ...
     @property
     def barrier_by_direction(self) -> DirectedBarrier: ...
+    @property
+    def landscape(self) -> Landscape: ...
+    @property
+    def drop_m(self) -> float: ...  # of its easiest way; 0: it stays on its support
     @property
     def mode(self) -> Literal["tip", "slide", "none"]: ...
     @property
@@ -328,7 +348,7 @@ def devices() -> list[DeviceInfo]: ...
 def open_device(backend: _Backend = ..., threads: int = ...) -> Device: ...
 def generate(folder: _Path, *, seed: int = ..., kind: Optional[str] = ..., frames: int = ..., single: bool = ...) -> str: ...
 def parse(
-    source: Union[_Path, _Points],
+    source: Union[_Path, _Points, None] = ...,
     *,
     device: Union[Device, _Backend, None] = ...,
     voxel_m: float = ...,
@@ -355,7 +375,12 @@ def parse(
     normals: Optional[_Points] = ...,
     name: Optional[str] = ...,
     viewpoint: Optional[_Vec3] = ...,
-    colours: Optional[_Points] = ...,
+    colours: Union[_Points, Sequence[Optional[NDArray[np.uint8]]], None] = ...,
+    frames: Union[NDArray[Any], Sequence[NDArray[Any]], None] = ...,
+    camera_to_world: Optional[NDArray[np.floating[Any]]] = ...,
+    intrinsics: Optional[stages.Intrinsics] = ...,
+    colour_intrinsics: Optional[stages.Intrinsics] = ...,
+    tile_m: float = ...,
     isolate: bool = ...,
     progress: Optional[Callable[[str, float], object]] = ...,
     cancelled: Optional[Callable[[], bool]] = ...,

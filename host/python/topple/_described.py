@@ -50,6 +50,8 @@ _ITEMS = {
         'barrier_J': 'Least energy, joules, that moves it out of its place. 0: it falls by itself.',
         'barrier_error_J': 'One standard error of the barrier; one that is not above it can\'t be told from 0.',
         'release_J': 'What it can release then, joules.',
+        'landscape': 'Landscape: the poses in which it could lie on level ground, and what keeps them apart.',
+        'drop_m': 'Metres that its easiest way leads down beyond its support; 0: it stays on that.',
         'mode': 'str: its easiest way, "tip", "slide" or "none".',
         'direction': '[x, y, z]: horizontal unit vector of that way; zeros for "none".',
         'instability': '(steps, 2): W_J and S_J, the energy that it can release once it was given W.',
@@ -126,6 +128,14 @@ _ITEMS = {
                             'push_J': '(16,): work of a slow push.',
                             'blow_J': '(16, heights): energy that a level blow would give to the object if nothing held it.',
                         }),
+    'Landscape': ('The energy landscape of an object on level ground: its stable poses, by rising energy. Empty where nothing is known.', {
+        'now': 'int: the pose that it is in; -1: none of them.',
+        'up': '(poses, 3): unit vectors of the object, as it was scanned, that point up then.',
+        'energy_J': '(poses,): potential energy less that as it was scanned, joules.',
+        'joins_at_J': '(poses,): the energy at which its basin joins that of a deeper pose; inf for the deepest.',
+        'joins': '(poses,) int32: that deeper pose; -1 for the deepest.',
+        'probability': '(poses,): of coming to rest in it when tossed.',
+    }),
     'Fall': ('Where an object comes to lie, and what that takes along.', {
         'falls': 'bool: whether any disturbance can upset it.',
         'lands_m': '[x, y, z]: about its centre of mass at its first landing, metres.',

@@ -55,7 +55,7 @@ def _names(value):
 
 
 _KINDS = {
-    'a number': (_number, ('voxel_m', 'unit_m', 'density_kg_m3', 'friction', 'wind_m_s', 'floor_amplification', 'tolerable_J')),
+    'a number': (_number, ('voxel_m', 'unit_m', 'density_kg_m3', 'friction', 'wind_m_s', 'floor_amplification', 'tolerable_J', 'tile_m')),
     'a number, or None': (_number, ('contents_kg_m3', 'wind_from_deg', 'pga_m_s2', 'grouping_time_s')),
     'a whole number from 0': (_whole(64), ('seed', 'max_memory_bytes')),
     'a whole number, 1 or more': (_whole(32), ('walks',)),

@@ -129,3 +129,83 @@ def barriers(item, *, axes=None):
                    fontsize='medium')
     axes.set_ylim(bottom=0)
     return axes
+
+
+_MOST_POSES = 10  # the deepest basins; others would not be told apart
+
+
+class _Tree:
+    """A disconnectivity graph, being joined: clusters of leaves, each with the place and energy that its line has got to."""
+
+    def __init__(self, item):
+        poses = item.landscape
+        self.energy = [float(e) for e in poses.energy_J]
+        depth = np.where(np.arange(len(self.energy)) == poses.now, np.inf, poses.joins_at_J - poses.energy_J)
+        deepest = sorted(np.argsort(-depth, kind='stable')[:_MOST_POSES].tolist())
+        self.name = {pose: str(number) for number, pose in enumerate(deepest, 1)}
+        joins = [(float(at), pose, int(into), False) for pose, (at, into) in enumerate(zip(poses.joins_at_J, poses.joins)) if into >= 0]
+        self.fallen = None
+        if item.drop_m > 0:
+            # Work against friction is no height to fall from.
+            self.fallen = len(self.energy)
+            self.energy.append((0 if item.mode == 'slide' else item.barrier_J) - item.release_J)
+            self.name[self.fallen] = f'fallen: {self.energy[-1]:.3g} J'
+            joins.append((item.barrier_J, self.fallen, poses.now, True))
+        self.joins = sorted(joins, key=lambda join: join[0])
+        self.root = list(range(len(self.energy)))
+
+    def root_of(self, leaf):
+        while self.root[leaf] != leaf:
+            leaf = self.root[leaf]
+        return leaf
+
+    def leaves(self):
+        """Those that are shown, side by side in the order of the joins."""
+        below = [[leaf] if leaf in self.name else [] for leaf in range(len(self.energy))]
+        for _, a, b, _ in self.joins:
+            a, b = self.root_of(a), self.root_of(b)
+            below[b] += below[a]
+            below[a], self.root[a] = [], b
+        self.root = list(range(len(self.energy)))
+        return [leaf for leaves in below for leaf in leaves]
+
+
+def disconnectivity(item, *, axes=None):
+    """The disconnectivity graph of an Object: poses in which it could lie on level ground, as leaves at their energy, J, above or below that as
+    it was scanned; two join at the energy that takes it from one to the other. Of many poses those of the deepest basins. The pose that it
+    is in is filled; where its easiest way leads down from its support, that is a leaf, too, joined in red at its barrier."""
+    if len(item.landscape.energy_J) == 0 or item.landscape.now < 0:
+        raise usage(f'disconnectivity: object {item.id} has no poses: it can\'t move, or its shape is not known')
+    tree = _Tree(item)
+    axes = _axes(axes)
+    leaves = tree.leaves()
+    at = {leaf: (float(n), tree.energy[leaf]) for n, leaf in enumerate(leaves)}
+    poses = [tree.energy[leaf] for leaf in leaves if leaf != tree.fallen]
+    high = max([join[0] for join in tree.joins] + poses)
+    low, room = min(poses), max(high - min(poses), 1e-9)
+    # A fall that dwarfs the poses would leave them no room: its name says how deep it is.
+    floor = low - 0.6 * room if tree.fallen is not None and low - tree.energy[tree.fallen] > room else -math.inf
+    line = {'color': 'black', 'linewidth': 1.2}
+    for energy, a, b, falls in tree.joins:
+        a, b = tree.root_of(a), tree.root_of(b)
+        tree.root[a] = b
+        if a not in at:
+            continue
+        if b not in at:
+            at[b] = at[a]
+            continue
+        for x, below in (at[a], at[b]):
+            axes.plot([x, x], [max(below, floor), energy], **line)
+        axes.plot([at[a][0], at[b][0]], [energy, energy], **(line | {'color': 'tab:red'} if falls else line))
+        at[b] = (at[a][0] + at[b][0]) / 2, energy
+    for leaf in {tree.root_of(leaf) for leaf in leaves}:
+        x, below = at[leaf]
+        axes.plot([x, x], [max(below, floor), high + 0.12 * room], **line)
+    for n, leaf in enumerate(leaves):
+        y = max(tree.energy[leaf], floor)
+        axes.plot([n], [y], 'o', color='black', markerfacecolor='tab:blue' if leaf == item.landscape.now else 'white', zorder=3)
+        axes.annotate(tree.name[leaf], (n, y), (0, -8), textcoords='offset points', ha='center', va='top',
+                      fontweight='bold' if leaf == item.landscape.now else 'normal')
+    axes.set(xticks=[], xlim=(-0.7, len(leaves) - 0.3), ylabel='energy (J)', title=f'Object {item.id}: poses and what keeps them apart')
+    axes.margins(y=0.12)
+    return axes

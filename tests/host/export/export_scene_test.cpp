@@ -4,6 +4,7 @@
 #include "core/json.h"
 #include "export/bodies_json.h"
 #include "export/formats.h"
+#include "export/summary_notes.h"
 #include "host/export/blocks.h"
 #include "host/io/files.h"
 #include "io/scene_json.h"
@@ -84,6 +85,35 @@ TEST_F(ExportScene, SaysWhatBecameOfEachBody) {
     EXPECT_NEAR(json.at("bodies").at(1).at("excess_share").get<double>(), 0, 1e-3);
 }
 
+// What is fixed has its mass, too, and not what MuJoCo makes of its parts.
+TEST_F(ExportScene, EachBodyHasTheMassThatItWasParsedWith) {
+    export_scene(result_, to("made"));
+    const std::string xml = topple::test::bytes_of_file(path("made/scene.xml"));
+    EXPECT_NE(xml.find("<!-- For MuJoCo 2.3 or later."), std::string::npos);
+    EXPECT_NE(xml.find("mass=\"70\""), std::string::npos) << xml;
+    EXPECT_NE(xml.find("mass=\"8.4\""), std::string::npos) << xml;
+}
+
+TEST(ExportNotes, NameWhatWasCutToHalf) {
+    ExportSummary made;
+    made.bodies.resize(8);
+    for (std::size_t n = 0; n < made.bodies.size(); ++n) {
+        ExportedBody& body = made.bodies[n];
+        body.name = "object_" + std::to_string(n);
+        body.solid_m3 = 0.02;
+        body.lost_m3 = n == 0 ? 0.01 : 0.01 * static_cast<double>(n + 1);
+    }
+    made.bodies[7].solid_m3 = 0;  // a pad
+    EXPECT_EQ(notes_of(made), std::vector<std::string>{
+                                  "6 lay in others so deep that more than half of each was cut "
+                                  "off, as a share of its solid: object_6 350 %, object_5 300 %, "
+                                  "object_4 250 %, object_3 200 %, object_2 150 %, ..."});
+    made.bodies.resize(1);
+    EXPECT_EQ(notes_of(made), std::vector<std::string>{});
+    made.bodies[0].held = true;
+    EXPECT_NE(notes_of(made).at(0).find("1 are held where they are"), std::string::npos);
+}
+
 TEST_F(ExportScene, OfAFolderIsTheSameAsOfTheResult) {
     put_output(result_.scene);
     export_scene(result_, to("direct"));
@@ -116,6 +146,17 @@ TEST_F(ExportScene, AnothersFilesStay) {
     EXPECT_NE(refused(to("a"), ErrorKind::input).find("a/scene.xml: exists"), std::string::npos);
     EXPECT_NE(refused(to("b"), ErrorKind::input).find("b/bodies.json: exists"), std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(path("b/scene.xml")));
+    // A scan's own folder.
+    write("scan/intrinsics.json", "{}");
+    EXPECT_NE(refused(to("scan"), ErrorKind::input).find("scan: holds a scan's depth frames"),
+              std::string::npos);
+    ExportOptions beside;
+    beside.usd = path("scan/scene.usda");
+    EXPECT_NE(refused(beside, ErrorKind::input).find("scan: holds"), std::string::npos);
+    write("d/other.txt", "by someone");
+    result_.scene.source = path("d");
+    EXPECT_THROW(export_scene(result_, to("d")), Error);
+    EXPECT_FALSE(std::filesystem::exists(path("d/scene.xml")));
     write("c", "no folder");
     EXPECT_NE(refused(to("c"), ErrorKind::input).find("c: can't be made"), std::string::npos);
 }

@@ -44,6 +44,9 @@ TEST_F(Las, coordinates_far_away_keep_their_precision) {
     }
     ASSERT_EQ(cloud.notes.size(), 1u);
     EXPECT_NE(cloud.notes[0].find("offset_m"), std::string::npos);
+    // Where its numbers begin, as a scanner that was moved there still has its own place.
+    EXPECT_NEAR(cloud.origin_m[0] + cloud.offset_m[0], 500000, 1e-6);
+    EXPECT_NEAR(cloud.origin_m[1] + cloud.offset_m[1], 5400000, 1e-6);
     // Feet, or what they may be.
     const auto scaled = read_cloud(path("a.las"), 0.3048);
     EXPECT_NEAR(scaled.x[0] + scaled.offset_m[0], 0.3048 * (500000 + 123456.789), 1e-6);

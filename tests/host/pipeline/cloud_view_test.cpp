@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <thread>
 #include <vector>
@@ -166,6 +167,76 @@ TEST(CloudView, RefusesWhatIsNoCloud) {
     SmallRoom far = room;
     far.cloud.x[8] = 3e6f;
     EXPECT_EQ(refusal(far.cloud).substr(0, 44), "room: point 8 has a coordinate of 3e+06, bey");
+}
+
+TEST(CloudView, RefusesAnImageOfAnotherSizeAndAPlaceThatIsNone) {
+    const SmallRoom room = SmallRoom::scattered();
+    const std::string size = std::to_string(room.cloud.size());
+    CloudView view = room.cloud;
+    view.width = 20;
+    view.height = 10;
+    EXPECT_EQ(refusal(view),
+              "room: an organised cloud of 20 x 10 pixels has as many points, but x has " + size +
+                  " values; give `pixel`, or 0 for both where it is none");
+    std::vector<std::uint32_t> pixel(room.cloud.size(), 199);
+    view.pixel = pixel;
+    pixel[5] = 200;
+    EXPECT_EQ(refusal(view), "room: pixel 200 lies outside of its 20 x 10");
+    view.width = view.height = 0;
+    EXPECT_NE(refusal(view).find("width and height are 0"), std::string::npos);
+    // As other libraries write that it is not organised.
+    view.pixel = {};
+    view.width = static_cast<std::uint32_t>(room.cloud.size());
+    view.height = 1;
+    EXPECT_EQ(refusal(view), "parsed");
+    for (const double wrong : {std::nan(""), double{INFINITY}, 2e6}) {
+        view = room.cloud;
+        view.has_viewpoint = true;
+        view.viewpoint[2] = wrong;
+        EXPECT_EQ(refusal(view).substr(0, 39), "room: its viewpoint has a coordinate of");
+        view.has_viewpoint = false;
+        view.viewpoint[2] = 0;
+    }
+}
+
+// What is in memory has no options of the command line.
+TEST(CloudView, AdviceIsOfItsOwnOptions) {
+    const SmallRoom room = SmallRoom::scattered();
+    ParseOptions options = quick();
+    options.max_memory_bytes = 1 << 20;
+    const auto said = [&](const CloudView& cloud) -> std::string {
+        try {
+            const Scene scene = parse(cloud, options).scene;
+            std::string notes;
+            for (const std::string& note : scene.notes) notes += note;
+            return notes;
+        } catch (const Error& error) {
+            return error.what();
+        }
+    };
+    const std::string large = said(room.cloud);
+    EXPECT_NE(large.find("of max_memory_bytes; use a larger voxel_m"), std::string::npos) << large;
+    EXPECT_EQ(large.find("--"), std::string::npos) << large;
+    options = quick();
+    SmallRoom tiny = room;
+    for (auto* axis : {&tiny.cloud.x, &tiny.cloud.y, &tiny.cloud.z})
+        for (float& value : *axis) value *= 0.1f;
+    const std::string small = said(tiny.cloud);
+    EXPECT_NE(small.find("check that the coordinates are metres"), std::string::npos) << small;
+    EXPECT_EQ(small.find("--"), std::string::npos) << small;
+}
+
+TEST(CloudView, ACancelledParseSaysSo) {
+    const SmallRoom room = SmallRoom::scattered();
+    ParseOptions options = quick();
+    options.cancelled = [] { return true; };
+    try {
+        parse(room.cloud, options);
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::cancelled);
+        EXPECT_STREQ(error.what(), "cancelled");
+    }
 }
 
 // Two parses at once, each on a device of its own, share nothing that they write.

@@ -26,16 +26,18 @@ class Camera:
         return Camera(width, height, self.fx * x, self.fy * y, (self.cx + 0.5) * x - 0.5, (self.cy + 0.5) * y - 0.5)
 
 
-def grey_png(values):
-    """A uint16 image as the bytes of a PNG."""
-    height, width = values.shape
-    rows = np.zeros((height, 1 + 2 * width), np.uint8)  # each begins with its filter, none
-    rows[:, 1:] = np.ascontiguousarray(values.astype('>u2')).view(np.uint8).reshape(height, 2 * width)
+def png(values):
+    """An image as the bytes of a PNG: (height, width) uint16 grey, or (height, width, 3) uint8 sRGB."""
+    height, width = values.shape[:2]
+    depth, colour = (16, 0) if values.ndim == 2 else (8, 2)
+    data = np.ascontiguousarray(values.astype('>u2') if depth == 16 else values).view(np.uint8).reshape(height, -1)
+    rows = np.zeros((height, 1 + data.shape[1]), np.uint8)  # each begins with its filter, none
+    rows[:, 1:] = data
 
     def chunk(kind, data):
         return struct.pack('>I', len(data)) + kind + data + struct.pack('>I', zlib.crc32(kind + data))
 
-    return (b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', struct.pack('>IIBBBBB', width, height, 16, 0, 0, 0, 0)) +
+    return (b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', struct.pack('>IIBBBBB', width, height, depth, colour, 0, 0, 0)) +
             chunk(b'IDAT', zlib.compress(rows.tobytes(), 1)) + chunk(b'IEND', b''))
 
 
@@ -80,7 +82,7 @@ class FrameFolder:
         stored = np.round(as_seen_by(camera, depth_m, self.camera) * self.depth_scale)
         name = f'{len(self.poses):06d}'
         # What 16 bits can't hold is no reading, as it is with sensors.
-        (self.folder / 'depth' / f'{name}.png').write_bytes(grey_png(np.where(stored > 65535, 0, stored).astype(np.uint16)))
+        (self.folder / 'depth' / f'{name}.png').write_bytes(png(np.where(stored > 65535, 0, stored).astype(np.uint16)))
         if colour is not None:
             (self.folder / 'color').mkdir(exist_ok=True)
             ending = 'png' if colour.startswith(b'\x89PNG') else 'jpg'

@@ -11,7 +11,8 @@ import numpy as np
 
 from .cloud import Cloud, write_cloud
 from .errors import needs, reading, wrong
-from .frames import Camera, FrameFolder
+from .frames import Camera, FrameFolder, png
+from .ros_colour import ColourImages, is_colour
 from .transforms import Transforms
 
 FORMAT = 'ROS bag'
@@ -66,6 +67,13 @@ class Bag:
             for connection, _, data in self.reader.messages(connections=chosen):
                 yield connection.topic, self.reader.deserialize(data, connection.msgtype)
 
+    def between(self, topic, start=None, stop=None):
+        """(time of recording in ns, message) of a topic, from start to before stop."""
+        chosen = [c for c in self.connections if c.topic == topic]
+        with reading(self.path, FORMAT):
+            for connection, time, data in self.reader.messages(connections=chosen, start=start, stop=stop):
+                yield time, self.reader.deserialize(data, connection.msgtype)
+
 
 def _transforms(bag):
     found = Transforms()
@@ -93,6 +101,35 @@ def _depth_topics(bag):
     return found
 
 
+def _colours(bag, depth_topic, depth_frame, transforms):
+    """The pictures to take: of the depth images' own frame, or else of one that tf has a place for; of several, those of most messages.
+    None: there are none."""
+    found = []
+    for kind in (IMAGE, PACKED):
+        for topic, count in bag.topics(kind).items():
+            first = next((message for _, message in bag.messages(topic)), None)
+            if first is None or topic == depth_topic or not is_colour(first):
+                continue
+            frame = first.header.frame_id.lstrip('/')
+            placed = frame == depth_frame or transforms.root_of(frame) == transforms.root_of(depth_frame)
+            camera = _camera_beside(bag, topic)
+            if placed and (camera is not None or frame == depth_frame):
+                found.append((frame != depth_frame, -count, topic, frame, camera))
+    if not found:
+        return None
+    _, _, topic, frame, camera = min(found, key=lambda one: one[:3])
+    return ColourImages(Bag(bag.path), topic, frame, camera)  # a reader goes through one topic at a time
+
+
+def _camera_beside(bag, topic):
+    """The camera of a topic's pictures, None where nothing tells."""
+    name = _info_beside(bag, topic)
+    for _, info in bag.messages(name) if name else ():
+        with reading(bag.path, FORMAT):
+            return _camera(info, topic)[0]
+    return None
+
+
 def _most(counts, wanted, path, what):
     """The topic that is wanted, or else the one of most messages; the first by name of several."""
     if wanted is not None and wanted in counts:
@@ -102,16 +139,22 @@ def _most(counts, wanted, path, what):
     return min(counts, key=lambda topic: (-counts[topic], topic))
 
 
+def _info_beside(bag, topic):
+    """The topic of the CameraInfo that is an image's neighbour, None where there is none."""
+    topic = topic.removesuffix('/compressedDepth').removesuffix('/compressed')
+    place = topic.rsplit('/', 1)[0]
+    names = (f'{place}/camera_info', f'{topic}/camera_info', f'{place.rsplit("/", 1)[0]}/camera_info')
+    return next((name for name in names if name in bag.topics(INFO)), None)
+
+
 def _info_topic(bag, topic):
     """The topic of the CameraInfo that belongs to an image: its neighbour, by ROS' convention."""
-    topic = topic.removesuffix('/compressedDepth')
-    place = topic.rsplit('/', 1)[0]
     topics = bag.topics(INFO)
-    for name in (f'{place}/camera_info', f'{topic}/camera_info', f'{place.rsplit("/", 1)[0]}/camera_info'):
-        if name in topics:
-            return name
-    if len(topics) == 1:
-        return next(iter(topics))
+    found = _info_beside(bag, topic)
+    if found is None and len(topics) == 1:
+        found = next(iter(topics))
+    if found is not None:
+        return found
     raise wrong(bag.path, f'has depth images in {topic}, but no camera_info beside them; it has {", ".join(sorted(topics)) or "none"}')
 
 
@@ -175,6 +218,10 @@ class _Moved:
 
 def _frames(bag, folder, topic, others):
     transforms = _transforms(bag)
+    first = next((message for _, message in bag.messages(topic)), None)
+    if first is None:
+        raise wrong(bag.path, f'{topic} has no message')
+    pictures = _colours(bag, topic, first.header.frame_id.lstrip('/'), transforms)
     info_topic = _info_topic(bag, topic)
     camera = distorted = None
     for _, info in bag.messages(info_topic):
@@ -184,8 +231,8 @@ def _frames(bag, folder, topic, others):
     if camera is None:
         raise wrong(bag.path, f'{info_topic} has no message')
     frames, moved = FrameFolder(folder, bag.path), _Moved()
-    seen = unplaced = 0
-    for _, message in bag.messages(topic):
+    seen = unplaced = coloured = 0
+    for recorded, message in bag.between(topic):
         seen += 1
         frame = message.header.frame_id.lstrip('/')
         pose = transforms.to_root(frame, _time(message.header))
@@ -193,12 +240,17 @@ def _frames(bag, folder, topic, others):
             unplaced += 1
         elif moved(pose):
             depth = _depth(message, bag.path)
-            frames.add(camera.resized(depth.shape[1], depth.shape[0]), depth, pose)
+            own = camera.resized(depth.shape[1], depth.shape[0])
+            colours = pictures and pictures.of(depth, own, frame, transforms, _time(message.header), recorded)
+            coloured += colours is not None
+            frames.add(own, depth, pose, None if colours is None else png(colours))
     if unplaced == seen:
         raise wrong(bag.path, f'{topic}: tf does not say where {frame} was when any of its {seen} images was taken')
     notes = [f'{len(frames.poses)} of the {seen} depth images of {topic} were taken: those before which the camera had moved by '
              f'{STEP_M * 100:.0f} cm or turned by {np.rad2deg(TURN_RAD):.0f} degrees. Coordinates are in the frame '
              f'"{transforms.root_of(frame)}".']
+    if pictures:
+        notes.append(f'{coloured} of them have colours, of the images of {pictures.topic} that are nearest in time.')
     if unplaced:
         notes.append(f'{unplaced} depth images were left out, as tf does not say where the camera was.')
     if distorted:

@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: MIT
+"""Opening a device."""
+from . import _topple
+from ._options import option
+
+
+def open_device(backend='auto', threads=0):
+    """The best Device of a backend: "native", "opencl" or "vulkan", a GPU before a CPU; or, with "auto", a GPU if there is one, else
+    native. threads: of the native backend, 0 for all cores. Raises Error of kind "usage" or "device", and TypeError where the
+    backend is no name."""
+    if not isinstance(backend, str):
+        raise TypeError(f'open_device: backend: expected "auto", "native", "opencl" or "vulkan", not {backend!r}'[:300])
+    return _topple.open_device(backend, option('threads', threads))

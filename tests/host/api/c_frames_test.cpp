@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scenes/depth_camera.h"
+#include "scenes/furnished_room.h"
+#include "topple/parse.h"
+#include "topple/topple.h"
+
+namespace topple::test {
+namespace {
+
+TEST(CFrames, AreParsedAsThoseOfCpp) {
+    topple_status status{};
+    topple_device* device = nullptr;
+    ASSERT_EQ(topple_device_open("native", 2, &device, &status), TOPPLE_OK) << status.message;
+    topple_options options;
+    topple_options_init(&options, sizeof(options));
+    options.device = device;
+    topple_result* result = nullptr;
+    scenes::RoomOptions plan;
+    plan.seed = 3;
+    scenes::CameraOptions camera;
+    camera.intrinsics = {96, 72, 83, 83, 47.5, 35.5, 1000};
+    camera.frames = 4;
+    const scenes::Sequence walk = scenes::walk(scenes::furnished_room(plan), camera);
+    std::vector<topple_frame> images(walk.frames.size());
+    std::vector<double> poses;
+    FramesView expected;
+    expected.intrinsics = walk.intrinsics;
+    for (std::size_t n = 0; n < images.size(); ++n) {
+        const DepthFrame& frame = walk.frames[n];
+        topple_frame_init(&images[n], sizeof(topple_frame));
+        images[n].depth = frame.depth.data();
+        poses.insert(poses.end(), frame.camera_to_world.begin(), frame.camera_to_world.end());
+        expected.images.emplace_back().depth = {frame.depth.data(), 96, 72};
+        expected.camera_to_world.push_back(frame.camera_to_world);
+    }
+    topple_frames frames;
+    topple_frames_init(&frames, sizeof(frames));
+    frames.intrinsics = {96, 72, 83, 83, 47.5, 35.5, 1000};
+    frames.count = images.size();
+    frames.camera_to_world = poses.data();
+    EXPECT_EQ(topple_parse_frames(&frames, &options, &result, &status), TOPPLE_ERROR_USAGE);
+    frames.frames = images.data();
+    options.disturbances = 0;
+    ASSERT_EQ(topple_parse_frames(&frames, &options, &result, &status), TOPPLE_OK)
+        << status.message;
+    ParseOptions same;
+    same.device = device::open_device("native", 2);
+    same.disturbances = {};
+    const Scene scene = parse(expected, same).scene;
+    topple_scene got{};
+    got.size = sizeof(got);
+    ASSERT_EQ(topple_result_scene(result, &got, &status), TOPPLE_OK);
+    ASSERT_EQ(got.points, scene.points.x.size());
+    EXPECT_STREQ(got.source, "frames");
+    EXPECT_TRUE(std::ranges::equal(scene.points.object,
+                                   std::span(topple_result_point_objects(result), got.points)));
+    topple_result_release(result);
+    result = nullptr;
+
+    // One by one, up to one that can't be had.
+    frames.frames = nullptr;
+    frames.user = images.data();
+    frames.load = [](std::uint64_t n, topple_frame* frame, void* user) {
+        *frame = static_cast<topple_frame*>(user)[n];
+        return n == 3 ? 7 : 0;
+    };
+    EXPECT_EQ(topple_parse_frames(&frames, &options, &result, &status), TOPPLE_ERROR_INPUT);
+    EXPECT_STREQ(status.message, "frames: load() returned 7 for frame 3");
+    frames.camera_to_world = nullptr;
+    EXPECT_EQ(topple_parse_frames(&frames, &options, &result, &status), TOPPLE_ERROR_USAGE);
+    frames.count = 1;
+    EXPECT_EQ(topple_parse_frames(&frames, &options, &result, &status), TOPPLE_OK)
+        << status.message;
+    topple_result_release(result);
+    topple_device_release(device);
+}
+
+}  // namespace
+}  // namespace topple::test

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""parse(frames=...): depth frames of memory give what a folder of them gives."""
+import numpy as np
+import pytest
+
+import topple
+from made_scans import CAMERA, POSES
+
+INTRINSICS = topple.stages.Intrinsics(CAMERA.fx, CAMERA.fy, CAMERA.cx, CAMERA.cy)
+
+
+@pytest.fixture(scope='module')
+def depth(walk):
+    return np.stack([np.round(1000 * metres).astype(np.uint16) for _, metres in walk])
+
+
+def of_memory(depth, device, **options):
+    given = {'camera_to_world': np.array(POSES), 'intrinsics': INTRINSICS, 'disturbances': [], **options}
+    return topple.parse(frames=depth, device=device, **given)
+
+
+def same(result, expected):
+    for one, other in zip(result.xyz, expected.xyz):
+        assert np.array_equal(one, other)
+    assert np.array_equal(result.point_object, expected.point_object)
+    assert [(o.mass_kg, o.barrier_J) for o in result.objects] == [(o.mass_kg, o.barrier_J) for o in expected.objects]
+
+
+class OneByOne:
+    """Frames that are made when they are asked for."""
+
+    def __init__(self, frames):
+        self.frames, self.asked = frames, []
+
+    def __len__(self):
+        return len(self.frames)
+
+    def __getitem__(self, number):
+        self.asked.append(number)
+        return self.frames[number].copy()
+
+
+def test_arrays_lists_and_what_comes_one_by_one(depth, sequence, device, tmp_path):
+    result = of_memory(depth, device, name='head')
+    same(result, sequence)
+    assert result.source == 'head'
+    result.write(tmp_path / 'out')
+    metres = np.where(depth == 0, np.nan, depth / 1000)
+    same(of_memory([frame for frame in metres.astype(np.float32)], device), sequence)
+    same(of_memory(metres.transpose(0, 2, 1).copy().transpose(0, 2, 1), device), sequence)  # float64, of any strides
+    lazy = OneByOne(depth)
+    same(of_memory(lazy, device), sequence)
+    assert set(lazy.asked) == set(range(len(depth)))
+
+
+def test_colours(depth, device, tmp_path):
+    colours = np.zeros((*depth.shape, 3), np.uint8)
+    colours[:, :, :80] = [200, 30, 40]
+    result = of_memory(depth, device, colours=[None] + list(colours[1:]))
+    assert any('1 frame of 18 has no colours' in note for note in result.notes)
+    result.write(tmp_path / 'out')
+    head, _, body = (tmp_path / 'out' / 'points.ply').read_bytes().partition(b'end_header\n')
+    kinds = {'float': '<f4', 'int': '<i4', 'uchar': 'u1', 'double': '<f8', 'uint': '<u4', 'ushort': '<u2'}
+    fields = [line.split()[1:] for line in head.decode().splitlines() if line.startswith('property')]
+    count = int(next(line for line in head.decode().splitlines() if line.startswith('element vertex')).split()[2])
+    reds = np.frombuffer(body, [(name, kinds[kind]) for kind, name in fields], count)['red']
+    assert {0, 200} <= set(np.unique(reds).tolist())
+
+
+def refused(kind, *parts, **options):
+    with pytest.raises(topple.Error) as error:
+        topple.parse(**options)
+    assert error.value.kind == kind, error.value
+    for part in parts:
+        assert part in str(error.value), error.value
+
+
+def test_what_makes_no_sense(depth, points, device):
+    given = {'frames': depth, 'camera_to_world': np.array(POSES), 'intrinsics': INTRINSICS, 'device': device}
+    refused('usage', 'expected one of a source', source=points, frames=depth)
+    refused('usage', 'expected one of a source')
+    refused('usage', 'are for frames in memory', source=points, intrinsics=INTRINSICS)
+    refused('usage', 'intrinsics', **(given | {'intrinsics': None}))
+    refused('usage', 'fx, fy, cx, cy', **(given | {'intrinsics': 130.0}))
+    refused('input', 'intrinsics', '"fx" is 0', **(given | {'intrinsics': INTRINSICS._replace(fx=0)}))
+    refused('usage', "frames[0]: expected uint16", 'int64', "astype('uint16')", **(given | {'frames': depth.astype(int)}))
+    refused('usage', '(18, 4, 4)', '(17, 4, 4)', **(given | {'camera_to_world': np.array(POSES[1:])}))
+    refused('usage', 'camera_to_world', **(given | {'camera_to_world': None}))
+    poses = np.array(POSES)
+    poses[3, 0, 3] = np.nan
+    refused('input', 'pose of frame 3', **(given | {'camera_to_world': poses}))
+    refused('input', 'frames: there are none', **(given | {'frames': depth[:0], 'camera_to_world': np.empty((0, 4, 4))}))
+    refused('usage', 'colours', '17 images for 18', **(given | {'colours': list(np.zeros((17, 2, 2, 3), np.uint8))}))
+    refused('usage', 'colours[0]', '(H, W, 3)', **(given | {'colours': np.zeros((18, 12, 16), np.uint8)}))
+    refused('input', 'frame 0: colour is 12 x 16', **(given | {'colours': np.zeros((18, 16, 12, 3), np.uint8)}))
+    refused('usage', 'unit_m', **(given | {'unit_m': 0.001}))
+    refused('usage', 'cache_file', **(given | {'cache_file': 'cache'}))
+    refused('usage', 'viewpoint', **(given | {'viewpoint': [0, 0, 0]}))
+    refused('input', 'max_memory_bytes', **(given | {'max_memory_bytes': 1 << 20}))
+    refused('input', 'lie beyond 65.535 m', **(given | {'frames': depth.astype(np.float32)}))
+    refused('cancelled', 'cancelled', **(given | {'cancelled': lambda: True}))
+
+    class Broken(OneByOne):
+        def __getitem__(self, number):
+            if number == 7:
+                raise LookupError('frame 7 is lost')
+            return super().__getitem__(number)
+    with pytest.raises(LookupError, match='frame 7 is lost'):
+        topple.parse(**(given | {'frames': Broken(depth)}))
