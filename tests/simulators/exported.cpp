@@ -18,7 +18,7 @@
 namespace topple::exports::test {
 namespace {
 
-// Points on the sides of boxes, of a colour each: a room's corner, a crate and a box on it.
+// Points on the sides of boxes, of a colour each: a room, a crate and a box on it.
 void write_scan(const std::filesystem::path& file) {
     struct Painted {
         Vec3 low, high;
@@ -30,6 +30,8 @@ void write_scan(const std::filesystem::path& file) {
     for (const Painted& box : {Painted{{0, 0, 0}, {2, 2, 0}, "150 150 140"},
                                {{0, 0, 0}, {0, 2, 1}, "90 110 150"},
                                {{0, 0, 0}, {2, 0, 1}, "90 110 150"},
+                               {{2, 0, 0}, {2, 2, 1}, "90 110 150"},
+                               {{0, 2, 0}, {2, 2, 1}, "90 110 150"},
                                {{0.7, 0.7, 0}, {1.3, 1.2, 0.4}, "180 60 40"},
                                {{0.8, 0.8, 0.4}, {1.05, 1, 0.7}, "40 160 60"}}) {
         const Vec3 size = physics::minus(box.high, box.low);
