@@ -30,15 +30,32 @@ constexpr double cell_noise_share = 0.1;
 // How many times the typical angle between neighbouring normals is allowed: as tolerance_sigmas.
 constexpr double angle_noises = tolerance_sigmas;
 
-// The lower quartile of each surfel's neighbourhood, itself included: at most 27 values.
+// The value at place `kept - 1` of a surfel's neighbourhood, in ascending order.
+float nth_around(const Surfels& s, const std::vector<float>& value, std::size_t i,
+                 std::size_t kept) {
+    std::vector<float> around{value[i]};
+    for (auto e = s.neighbour_first[i]; e < s.neighbour_first[i + 1]; ++e)
+        around.push_back(value[s.neighbours[e]]);
+    const auto nth = around.begin() + static_cast<std::ptrdiff_t>(kept - 1);
+    std::nth_element(around.begin(), nth, around.end());
+    return *nth;
+}
+
+// The lower quartile of each surfel's neighbourhood, itself included: of 27 cells, of which those
+// that both sides of a thin wall share have two surfels, and of ties to farther ones.
 std::vector<float> lower_neighbours(const Surfels& s, const std::vector<float>& value,
                                     ThreadPool& threads) {
+    constexpr std::size_t of_a_surface = 7;  // kept of 27
     std::vector<float> out(value.size());
     threads.each(value.size(), split_chunk, [&](std::size_t i) {
         const auto first = s.neighbour_first[i], last = s.neighbour_first[i + 1];
         const std::size_t kept = (1 + last - first) / 4 + 1;
+        if (kept > of_a_surface) {
+            out[i] = nth_around(s, value, i, kept);
+            return;
+        }
         // The least ones so far, ascending.
-        std::array<float, 7> least{};
+        std::array<float, of_a_surface> least{};
         least.fill(std::numeric_limits<float>::infinity());
         const auto add = [&](float v) {
             if (!(v < least[kept - 1])) return;
