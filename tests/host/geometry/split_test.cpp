@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "geometry/split.h"
+
 #include <gtest/gtest.h>
 
 #include "host/geometry/split_scenes.h"
@@ -25,6 +27,30 @@ TEST(Split, OnePointHasNoRegion) {
     const Regions regions = split(scene.surfels());
     ASSERT_EQ(regions.label.size(), 1u);
     EXPECT_EQ(regions.label[0], -1);
+}
+
+// Where both sides of a thin wall have surfels, a neighbourhood holds more of them than cells.
+TEST(Split, NoiseOfLargeNeighbourhoodsIsTheirLowerQuartile) {
+    constexpr std::uint32_t count = 60;
+    Surfels s;
+    s.cell_m = 0.01;
+    s.neighbour_first = {0};
+    for (std::uint32_t i = 0; i < count; ++i) {
+        s.x.push_back(0.001f * static_cast<float>(i));
+        s.roughness_m.push_back(0.001f + 0.0001f * static_cast<float>(i));
+        for (auto* zero : {&s.y, &s.z, &s.nx, &s.ny}) zero->push_back(0);
+        s.nz.push_back(1);
+        s.weight.push_back(1);
+        for (auto* index : {&s.cx, &s.cy, &s.cz}) index->push_back(0);
+        for (std::uint32_t j = 0; j < count; ++j)
+            if (j != i) s.neighbours.push_back(j);
+        s.neighbour_first.push_back(static_cast<std::uint32_t>(s.neighbours.size()));
+    }
+    ThreadPool threads(1);
+    const SplitScale scale = measure_scale(s, threads);
+    // Three deviations of the sixteenth of 60, and of a tenth of a cell.
+    for (const float tolerance : scale.tolerance_m)
+        EXPECT_NEAR(tolerance, 3 * std::hypot(0.0025, 0.001), 0.001);
 }
 
 TEST(Split, CleanPlaneIsOneRegion) {
