@@ -27,6 +27,18 @@ bool before(const SolidCells& c, std::size_t n, std::int64_t i, std::int64_t j, 
     return c.k[n] < k;
 }
 
+// Of ends that are as far, the first stands.
+void add(const PairSums& more, PairSums& pair) {
+    for (std::size_t e = 0; e < 4; ++e) {
+        const std::int64_t sign = e % 2 ? 1 : -1;
+        if (pair.count == 0 || sign * more.ends[e][e / 2] > sign * pair.ends[e][e / 2])
+            pair.ends[e] = more.ends[e];
+    }
+    for (std::size_t k = 0; k < 3; ++k) pair.twice[k] += more.twice[k];
+    for (std::size_t d = 0; d < 6; ++d) pair.faces[d] += more.faces[d];
+    pair.count += more.count;
+}
+
 void record(const SolidCells& c, std::size_t n, std::size_t m, std::size_t axis, Sums& sums) {
     std::int32_t a = c.primitive[n], b = c.primitive[m];
     if (a < 0 || b < 0 || a == b) return;
@@ -36,18 +48,13 @@ void record(const SolidCells& c, std::size_t n, std::size_t m, std::size_t axis,
         direction -= 1;
     }
     const std::uint64_t key = (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint32_t>(b);
-    PairSums& pair = sums[key];
     const std::array<std::int64_t, 3> twice{std::int64_t{c.i[n]} + c.i[m] + 1,
                                             std::int64_t{c.j[n]} + c.j[m] + 1,
                                             std::int64_t{c.k[n]} + c.k[m] + 1};
-    for (std::size_t e = 0; e < 4; ++e) {
-        const std::int64_t sign = e % 2 ? 1 : -1;
-        if (pair.count == 0 || sign * twice[e / 2] > sign * pair.ends[e][e / 2])
-            pair.ends[e] = twice;
-    }
-    for (std::size_t k = 0; k < 3; ++k) pair.twice[k] += twice[k];
-    ++pair.faces[direction];
-    ++pair.count;
+    PairSums face{.twice = twice, .count = 1};
+    face.faces[direction] = 1;
+    face.ends.fill(twice);
+    add(face, sums[key]);
 }
 
 // Finds for every cell the next solid cell along +axis, at most gap empty voxels away. The cells
@@ -67,18 +74,6 @@ void sweep(const SolidCells& c, std::size_t axis, unsigned gap, Sums& sums) {
             record(c, n, m, axis, sums);
         }
     }
-}
-
-// What the later axes met comes after it: of ends that are as far the first stands.
-void add(const PairSums& more, PairSums& pair) {
-    for (std::size_t e = 0; e < 4; ++e) {
-        const std::int64_t sign = e % 2 ? 1 : -1;
-        if (pair.count == 0 || sign * more.ends[e][e / 2] > sign * pair.ends[e][e / 2])
-            pair.ends[e] = more.ends[e];
-    }
-    for (std::size_t k = 0; k < 3; ++k) pair.twice[k] += more.twice[k];
-    for (std::size_t d = 0; d < 6; ++d) pair.faces[d] += more.faces[d];
-    pair.count += more.count;
 }
 
 TouchingPair finish(std::uint64_t key, const PairSums& sums, double voxel_m) {
