@@ -12,7 +12,7 @@
 #include "export/footing.h"
 #include "export/separate.h"
 #include "export/stand.h"
-#include "physics/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::exports {
 namespace {

@@ -8,7 +8,8 @@
 #include "export/separate.h"
 #include "export/touching.h"
 #include "physics/tipping.h"
-#include "physics/vectors.h"
+#include "core/vectors.h"
+#include "physics/infinity.h"
 
 namespace topple::exports {
 namespace {

@@ -7,12 +7,11 @@
 #include "export/text.h"
 #include "export/turned.h"
 #include "export/write_obj.h"
-#include "physics/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::exports {
 namespace {
 
-using physics::minus;
 
 // Hulls are made of their corners by MuJoCo.
 void add_mesh(const NamedPart& each, const Vec3& center_m, std::string& out) {

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/vectors.h"
+
 namespace topple::geometry {
 namespace {
 
@@ -17,10 +19,6 @@ constexpr double radius_sides = 0.9;
 constexpr std::uint64_t disc_chunk = 1 << 12;  // handed to a thread at once
 
 using Vec2 = std::array<double, 2>;
-
-double dot(const Vec3& a, const Vec3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // Two unit vectors that stand on a unit normal and on one another.
 std::array<Vec3, 2> tangents(const Vec3& n) {

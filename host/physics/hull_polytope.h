@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "physics/landscape.h"
-#include "physics/vectors.h"
+#include "core/vectors.h"
 
 // The hull behind a HullLandscape, and the steepest ways over it. For this folder.
 //

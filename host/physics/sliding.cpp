@@ -11,7 +11,8 @@
 #include "core/scan_gaps.h"
 #include "core/thread_pool.h"
 #include "physics/slide_map.h"
-#include "physics/vectors.h"
+#include "core/vectors.h"
+#include "physics/infinity.h"
 #include "topple/error.h"
 
 namespace topple::physics {

@@ -7,7 +7,8 @@
 
 #include "physics/blow.h"
 #include "physics/tipping.h"
-#include "physics/vectors.h"
+#include "core/vectors.h"
+#include "physics/infinity.h"
 
 namespace topple::physics {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "solids/meeting_point.h"
-#include "solids/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::solids {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "solids/error_quadric.h"
 #include "solids/mesh_pieces.h"
-#include "solids/vectors.h"
+#include "core/vectors.h"
 #include "solids/vertex_rings.h"
 
 namespace topple::solids {

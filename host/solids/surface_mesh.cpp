@@ -6,7 +6,7 @@
 
 #include "solids/block_surface.h"
 #include "solids/refine_mesh.h"
-#include "solids/vectors.h"
+#include "core/vectors.h"
 #include "solids/vertex_places.h"
 
 namespace topple::solids {

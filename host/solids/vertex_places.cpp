@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "solids/meeting_point.h"
-#include "solids/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::solids {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "scenes/scan/smooth.h"
-#include "scenes/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::scenes {
 namespace {

@@ -14,7 +14,7 @@
 #include "solids/boundary.h"
 #include "solids/shaded_mesh.h"
 #include "solids/simplify_mesh.h"
-#include "solids/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::solids {
 namespace {
