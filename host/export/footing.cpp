@@ -5,11 +5,11 @@
 #include <cmath>
 #include <optional>
 
+#include "core/vectors.h"
 #include "export/separate.h"
 #include "export/touching.h"
-#include "physics/tipping.h"
-#include "core/vectors.h"
 #include "physics/infinity.h"
+#include "physics/tipping.h"
 
 namespace topple::exports {
 namespace {

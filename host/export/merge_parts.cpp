@@ -8,9 +8,9 @@
 #include <tuple>
 #include <utility>
 
+#include "core/vectors.h"
 #include "export/separate.h"
 #include "export/simplify.h"
-#include "core/vectors.h"
 
 namespace topple::exports {
 namespace {

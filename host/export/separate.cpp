@@ -13,7 +13,6 @@
 namespace topple::exports {
 namespace {
 
-
 constexpr double touching_m = 1e-6;  // what overlaps less, touches
 // What a part's hull holds beyond its solid costs so much of that.
 constexpr double hollow = 0.02;

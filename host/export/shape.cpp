@@ -11,7 +11,6 @@
 namespace topple::exports {
 namespace {
 
-
 // A round solid's radius may be off by that share of itself, too: small things keep their form.
 constexpr double radius_share = 0.05;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vectors.h"
 #include "export/balance.h"
 #include "export/brace.h"
 #include "export/decompose.h"
@@ -13,7 +14,6 @@
 #include "export/simplify.h"
 #include "export/stand.h"
 #include "physics/tipping.h"
-#include "core/vectors.h"
 #include "solids/cell_shape.h"
 #include "topple/error.h"
 

@@ -11,7 +11,6 @@
 namespace topple::exports {
 namespace {
 
-
 // Numbers of the corners that lie furthest along the axes and the diagonals between two or three.
 std::vector<std::size_t> ends_of(const ConvexPart& part) {
     std::vector<std::size_t> out;

@@ -5,13 +5,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "export/separate.h"
 #include "core/vectors.h"
+#include "export/separate.h"
 #include "physics/infinity.h"
 
 namespace topple::exports {
 namespace {
-
 
 constexpr double level_cosine = 0.9;  // of a side that carries
 

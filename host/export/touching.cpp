@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/vectors.h"
 #include "export/separate.h"
 #include "physics/tipping.h"
-#include "core/vectors.h"
 
 namespace topple::exports {
 namespace {
@@ -25,8 +25,7 @@ struct Plane {
     }
     Vec3 at(const std::array<double, 2>& p) const {
         return along(
-            along({offset_m * normal[0], offset_m * normal[1], offset_m * normal[2]}, p[0],
-                           u),
+            along({offset_m * normal[0], offset_m * normal[1], offset_m * normal[2]}, p[0], u),
             p[1], v);
     }
     // The outline of what of a part lies in the plane, counter-clockwise as seen against the

@@ -3,9 +3,9 @@
 
 #include <map>
 
+#include "core/vectors.h"
 #include "export/sim_scene.h"
 #include "io/palette.h"
-#include "core/vectors.h"
 
 namespace topple::exports {
 namespace {

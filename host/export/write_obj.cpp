@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
+#include "core/vectors.h"
 #include "export/colour_texture.h"
 #include "export/export_folder.h"
 #include "export/text.h"
-#include "core/vectors.h"
 
 namespace topple::exports {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <string>
 
+#include "core/vectors.h"
 #include "export/export_folder.h"
 #include "export/text.h"
 #include "export/turned.h"
-#include "core/vectors.h"
 
 namespace topple::exports {
 namespace {

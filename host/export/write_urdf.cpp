@@ -3,11 +3,11 @@
 
 #include <string>
 
+#include "core/vectors.h"
 #include "export/export_folder.h"
 #include "export/text.h"
 #include "export/turned.h"
 #include "export/write_obj.h"
-#include "core/vectors.h"
 
 namespace topple::exports {
 namespace {

@@ -6,15 +6,14 @@
 #include <cmath>
 #include <string>
 
+#include "core/vectors.h"
 #include "export/export_folder.h"
 #include "export/text.h"
 #include "export/turned.h"
 #include "io/text.h"
-#include "core/vectors.h"
 
 namespace topple::exports {
 namespace {
-
 
 // "(1, 2, 3)"
 std::string tuple(std::initializer_list<double> values) {

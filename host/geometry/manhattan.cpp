@@ -65,7 +65,8 @@ Triple best_triple(const WeightedNormals& normals, const std::vector<Vec3>& dire
     for (std::size_t i = 0; i < directions.size(); ++i) {
         for (std::size_t j = i + 1; j < directions.size(); ++j) {
             if (std::abs(dot(directions[i], directions[j])) > most_dot) continue;
-            consider(directions[i], directions[j], unit_or_zero(cross(directions[i], directions[j])));
+            consider(directions[i], directions[j],
+                     unit_or_zero(cross(directions[i], directions[j])));
             for (std::size_t k = j + 1; k < directions.size(); ++k) {
                 consider(directions[i], directions[j], directions[k]);
             }
@@ -78,8 +79,9 @@ Triple best_triple(const WeightedNormals& normals, const std::vector<Vec3>& dire
 // azimuth and refined; share: how much of the upright surface follows it.
 Vec3 horizontal_axis(const WeightedNormals& normals, const Vec3& up, const Vec3& guess,
                      double& share) {
-    const Vec3 e1 = unit_or_zero({guess[0] - dot(guess, up) * up[0], guess[1] - dot(guess, up) * up[1],
-                          guess[2] - dot(guess, up) * up[2]});
+    const Vec3 e1 =
+        unit_or_zero({guess[0] - dot(guess, up) * up[0], guess[1] - dot(guess, up) * up[1],
+                      guess[2] - dot(guess, up) * up[2]});
     const Vec3 e2 = cross(up, e1);
     FourfoldHistogram histogram;
     std::vector<std::array<double, 2>> azimuth;  // angle modulo 90 degrees, weight
@@ -130,7 +132,8 @@ Vec3 nearest_to_x(const Vec3& axis, const Vec3& up) {
 
 Vec3 any_horizontal(const Vec3& up) {
     const Vec3 e = std::abs(up[0]) < 0.8 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    return unit_or_zero({e[0] - dot(e, up) * up[0], e[1] - dot(e, up) * up[1], e[2] - dot(e, up) * up[2]});
+    return unit_or_zero(
+        {e[0] - dot(e, up) * up[0], e[1] - dot(e, up) * up[1], e[2] - dot(e, up) * up[2]});
 }
 
 }  // namespace

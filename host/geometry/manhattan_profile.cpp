@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "core/vectors.h"
 #include "geometry/manhattan_profile.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/vectors.h"
 #include "geometry/fourfold.h"
 
 namespace topple::geometry {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/landscape.h"
 #include "core/vectors.h"
 #include "physics/infinity.h"
+#include "physics/landscape.h"
 
 namespace topple::physics {
 namespace {

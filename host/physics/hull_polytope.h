@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "physics/landscape.h"
 #include "core/vectors.h"
+#include "physics/landscape.h"
 
 // The hull behind a HullLandscape, and the steepest ways over it. For this folder.
 //

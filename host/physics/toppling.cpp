@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/blow.h"
-#include "physics/tipping.h"
 #include "core/vectors.h"
+#include "physics/blow.h"
 #include "physics/infinity.h"
+#include "physics/tipping.h"
 
 namespace topple::physics {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "core/depth_noise.h"
 #include "geometry/frames_fusion.h"
+#include "geometry/sensor_places.h"
 #include "geometry/single_scan.h"
 #include "geometry/surfels.h"
 #include "geometry/virtual_views.h"
@@ -42,6 +43,9 @@ geometry::SurfelScale view_surfels(const geometry::PointSpacing& spacing, double
     return {std::min(view_cells * cell_m, std::max(board_m / 2, view_pitches * pitch_m)), pitch_m,
             2 * spacing.surface_m};
 }
+
+// Of the places that sensors are known to have been at, those looked from.
+constexpr std::size_t most_sensors = 24;
 
 class SequenceStream final : public FrameStream {
   public:
@@ -139,7 +143,11 @@ Ingested ingest_folder(device::Device& device, const std::filesystem::path& fold
 void look_from_free_places(device::Device& device, const std::optional<geometry::SingleScan>& scan,
                            const geometry::SurfelScale& scale, double gap_m, Ingested& out) {
     geometry::VirtualViewOptions options;
-    if (scan) {
+    geometry::SensorPlaces sensors = geometry::sensor_places(out.cloud);
+    const bool posed = !sensors.places.empty();
+    if (posed) {
+        options.known_eyes = geometry::places_apart(sensors, most_sensors);
+    } else if (scan) {
         options.known_eyes = {scan->eye};
         options.eyes = 1;
         out.camera_up = scan->up;
@@ -151,8 +159,8 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
     }
     options.sides_known = !options.known_eyes.empty() || !out.cloud.nx.empty();
     options.gap_m = gap_m;
-    const geometry::Surfels surfels =
-        geometry::make_surfels(device, out.cloud, scale, options.known_eyes, {});
+    const geometry::Surfels surfels = geometry::make_surfels(
+        device, out.cloud, scale, posed ? sensors.places : options.known_eyes, sensors.of_point);
     geometry::VirtualViews views = geometry::virtual_views(surfels, options, device.threads());
     if (views.frames.empty()) {
         out.notes.push_back(
@@ -160,7 +168,10 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
         return;
     }
     const std::size_t eyes = views.eyes.size();
-    if (scan) {
+    if (posed) {
+        out.viewpoints = std::move(sensors.places);
+        out.viewpoint_of_point = std::move(sensors.of_point);
+    } else if (scan) {
         out.viewpoints = {scan->eye};
     } else if (out.cloud.has_viewpoint) {
         out.viewpoints = {out.cloud.viewpoint};
@@ -169,7 +180,7 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
         for (const std::uint32_t s : surfels.of_point)
             out.viewpoint_of_point.push_back(views.viewpoint_of_surfel[s]);
     }
-    if (!scan) {
+    if (!scan && !posed) {
         out.notes.push_back(
             "The cloud has no sensor poses: free space was estimated from " + std::to_string(eyes) +
             " virtual views within it, and is less certain than from depth frames.");
@@ -263,8 +274,11 @@ void look_at_cloud(device::Device& device, Ingested& out) {
         out.frames = std::make_unique<MemoryStream>(intrinsics, std::move(frames));
         return;
     }
-    const auto scan = geometry::find_single_scan(
-        cloud, cloud.has_viewpoint ? cloud.viewpoint : out.own.origin_m, spacing.nearest_m);
+    std::optional<geometry::SingleScan> scan;
+    if (cloud.viewpoint_x.empty()) {
+        scan = geometry::find_single_scan(
+            cloud, cloud.has_viewpoint ? cloud.viewpoint : out.own.origin_m, spacing.nearest_m);
+    }
     look_from_free_places(device, scan, view_surfels(spacing, out.cell_m),
                           gap_pitches * spacing.surface_m, out);
 }

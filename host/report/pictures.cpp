@@ -9,9 +9,9 @@
 #include <numbers>
 #include <string>
 
+#include "core/vectors.h"
 #include "io/palette.h"
 #include "report/scene_image.h"
-#include "core/vectors.h"
 #include "safety/disturbances.h"
 
 namespace topple::report {
@@ -22,7 +22,6 @@ using Overlay = SceneImage::Overlay;
 constexpr int width = 1280, height = 800;
 constexpr std::array<double, 4> margin{24, 24, 76, 24};
 constexpr std::size_t labelled = 10;
-
 
 std::string text(const char* format, double value) {
     char digits[64];
@@ -143,8 +142,8 @@ class Pictures {
             if (walks.shade[at] == 0) continue;
             const auto x = static_cast<std::int64_t>(at) % walks.nx,
                        y = static_cast<std::int64_t>(at) / walks.nx;
-            Vec3 corner =
-                along(along(walks.corner_m, double(x), walks.along_x_m), double(y), walks.along_y_m);
+            Vec3 corner = along(along(walks.corner_m, double(x), walks.along_x_m), double(y),
+                                walks.along_y_m);
             corner[2] += walks.floor_mm[at] / 1000.0 + lift;
             quad(overlay, corner, walks.along_x_m, walks.along_y_m,
                  ramp_colour((walks.shade[at] - 1) / 254.0));
@@ -219,8 +218,8 @@ class Pictures {
         const auto place = [&](double radius, double z, int n) {
             const double angle = 2 * std::numbers::pi * n / sides;
             return along(along(along(from, (z - tip) * size, ahead),
-                             radius * thickness * std::cos(angle), side),
-                        radius * thickness * std::sin(angle), other);
+                               radius * thickness * std::cos(angle), side),
+                         radius * thickness * std::sin(angle), other);
         };
         const Bytes3 colour = ramp_colour(share);
         constexpr std::array<std::array<double, 2>, 4> rings{

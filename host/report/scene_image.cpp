@@ -120,7 +120,7 @@ void SceneImage::add_face(const Vec3& centre, const Vec3& normal, const Vec3& si
     std::array<Vec3, 4> corner;
     for (std::size_t n = 0; n < 4; ++n) {
         corner[n] = along(along(along(centre, half, normal), n == 0 || n == 3 ? -half : half, side),
-                         n < 2 ? -half : half, other);
+                          n < 2 ? -half : half, other);
     }
     const auto what = static_cast<std::uint32_t>(faces_.size());
     faces_.push_back(face);

@@ -7,8 +7,8 @@
 #include <span>
 #include <utility>
 
-#include "solids/meeting_point.h"
 #include "core/vectors.h"
+#include "solids/meeting_point.h"
 
 namespace topple::solids {
 namespace {

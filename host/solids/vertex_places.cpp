@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "solids/meeting_point.h"
 #include "core/vectors.h"
+#include "solids/meeting_point.h"
 
 namespace topple::solids {
 namespace {

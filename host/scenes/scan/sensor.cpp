@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenes/scan/smooth.h"
 #include "core/vectors.h"
+#include "scenes/scan/smooth.h"
 
 namespace topple::scenes {
 namespace {

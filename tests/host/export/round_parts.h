@@ -5,8 +5,8 @@
 #include <numbers>
 #include <vector>
 
-#include "export/shape.h"
 #include "core/vectors.h"
+#include "export/shape.h"
 
 // Corners of round solids.
 namespace topple::exports::test {

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <vector>
 
+#include "core/vectors.h"
 #include "host/physics/solids.h"
 #include "physics/qhull.h"
-#include "core/vectors.h"
 #include "scenes/random.h"
 
 // Convex hulls, for tests of pose landscapes.
@@ -93,8 +93,7 @@ inline Vec3 random_direction(scenes::Random& random) {
 
 // About the origin, by a random rotation.
 inline std::vector<Vec3> turned(std::vector<Vec3> points, scenes::Random& random) {
-    const Vec3 x = random_direction(random),
-               y = unit(cross(x, random_direction(random))),
+    const Vec3 x = random_direction(random), y = unit(cross(x, random_direction(random))),
                z = cross(x, y);
     for (Vec3& p : points) p = {dot(x, p), dot(y, p), dot(z, p)};
     return points;
@@ -148,9 +147,8 @@ inline Criticals critical_poses(const Hull& hull) {
     // Whether all points lie on this side of the plane through `foot`, across it.
     const auto carries = [&](const Vec3& foot) {
         const double height2 = dot(foot, foot);
-        return std::all_of(v.begin(), v.end(), [&](const Vec3& p) {
-            return dot(p, foot) <= height2 * (1 + 1e-9);
-        });
+        return std::all_of(v.begin(), v.end(),
+                           [&](const Vec3& p) { return dot(p, foot) <= height2 * (1 + 1e-9); });
     };
     Criticals found;
     for (std::size_t a = 0; a < v.size(); ++a) {
@@ -158,16 +156,14 @@ inline Criticals critical_poses(const Hull& hull) {
             const Vec3 ab = minus(v[b], v[a]);
             const double t = -dot(v[a], ab) / dot(ab, ab);
             const Vec3 foot = along(v[a], t, ab);
-            if (t > 0 && t < 1 && carries(foot))
-                found.passes.push_back(std::sqrt(dot(foot, foot)));
+            if (t > 0 && t < 1 && carries(foot)) found.passes.push_back(std::sqrt(dot(foot, foot)));
             for (std::size_t c = b + 1; c < v.size(); ++c) {
                 const Vec3 normal = unit(cross(ab, minus(v[c], v[a])));
                 const double height = dot(normal, v[a]);
                 const Vec3 under{height * normal[0], height * normal[1], height * normal[2]};
                 // Barycentric signs of the foot.
                 const auto side = [&](const Vec3& p, const Vec3& q) {
-                    return dot(normal, cross(minus(q, p),
-                                                               minus(under, p))) > 0;
+                    return dot(normal, cross(minus(q, p), minus(under, p))) > 0;
                 };
                 if (side(v[a], v[b]) && side(v[b], v[c]) && side(v[c], v[a]) && carries(under))
                     found.minima.push_back(std::abs(height));
@@ -204,8 +200,7 @@ inline std::size_t roll_down(const Hull& hull, const Vec3& up, const std::vector
                     lowest = &p;
                 }
             }
-            down =
-                unit(along(down, -step, along(*lowest, -height, down)));
+            down = unit(along(down, -step, along(*lowest, -height, down)));
         }
     }
     return rests.size();
