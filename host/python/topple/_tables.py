@@ -76,7 +76,10 @@ def _row(o):
     rank = 'not seen enough' if math.isnan(o.unsafety) else f'{o.unsafety:.1f}'
     hue = 'transparent' if math.isnan(o.unsafety) else f'hsl({120 - 120 * (o.unsafety - 1) / 9:.0f} 70% 60%)'
     barrier = f'{o.barrier_J:.2g} ± {o.barrier_error_J:.1g}' if o.barrier_J > o.barrier_error_J else f'below {o.barrier_J + o.barrier_error_J:.2g}'
-    cells = [f'{o.id} {o.name}'.strip(), rank, o.unsafety_category or '', f'{o.mass_kg:.3g}', barrier, o.why]
+    category = o.unsafety_category or ''
+    if category and not o.unsafety_certain:
+        category += '?'
+    cells = [f'{o.id} {o.name}'.strip(), rank, category, f'{o.mass_kg:.3g}', barrier, o.why]
     cells = [f'<td>{html.escape(cell)}</td>' for cell in cells]
     cells[1] = cells[1].replace('<td>', f'<td style="border-left: 0.6em solid {hue}">')
     return f'<tr>{"".join(cells)}</tr>'

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/vectors.h"
 #include "physics/landscape.h"
 #include "safety/columns.h"
 #include "safety/directions.h"
@@ -76,6 +77,11 @@ double slenderness(const ShakenObject& object) {
     return least;
 }
 
+// Whether it releases anything once it is over the edge that lies that way.
+bool rests_lower(const RiskObject& object, const Vec3& way) {
+    return !object.toppling || instability(object, {over_edge_J(object, way), 1, way}) > 0;
+}
+
 // A level way by the record's components.
 std::array<double, 2> in_record(const GroundEvent& event, const std::array<double, 2>& way) {
     return {way[0] * event.dx + way[1] * event.dy, way[1] * event.dx - way[0] * event.dy};
@@ -101,8 +107,16 @@ ShakenObject shaken_object(const RiskObject& object, const Stance& stance, const
     for (std::size_t p = 0; p < 2; ++p) {
         out.body[p] = profile(object, stance, columns, out.way[p][0], out.way[p][1]);
         out.held = out.held && out.body[p].least_base_m() > 0;
+        const Vec3 ahead{out.way[p][0], out.way[p][1], 0};
+        out.lower[p] = {rests_lower(object, ahead), rests_lower(object, opposite(ahead))};
     }
     return out;
+}
+
+bool falls(const ShakenObject& object, std::size_t plane, const Motion& motion) {
+    const auto [ahead, behind] = object.lower[plane];
+    return (ahead && motion.overturned_ahead()) || (behind && motion.overturned_behind()) ||
+           motion.slid_off(object.body[plane]);
 }
 
 Motions shake_objects(device::Device& device, std::span<const ShakenObject> objects,
@@ -166,15 +180,15 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
         for (const double g : levels_g) found.peaks.push_back({g, 0, 0});
         for (std::size_t e = 0; e < events.size(); e += direction_count) {
             const std::size_t level = e / direction_count % levels_g.size();
-            unsigned falls = 0;
+            unsigned fallen = 0;
             for (unsigned d = 0; d < direction_count; ++d) {
                 const auto& [weak, across] = motions[e + d].in;
-                falls += !object.held || weak.fell(object.body[0]) || across.fell(object.body[1]);
+                fallen += !object.held || falls(object, 0, weak) || falls(object, 1, across);
             }
-            found.peaks[level].falls += falls;
+            found.peaks[level].falls += fallen;
             found.peaks[level].of += direction_count;
             found.speeds.push_back(
-                {levels_g[level] * velocity[events[e].record], falls, direction_count});
+                {levels_g[level] * velocity[events[e].record], fallen, direction_count});
         }
         return found;
     };
