@@ -240,6 +240,7 @@ TEST_F(EarthquakeField, BringsNoMoreThanItTakesToOverturn) {
     room.floor(0, 3, 0, 3);
     const auto id = static_cast<std::size_t>(room.thing(1.5, 1.5, 0, 0.08, 0.4));
     RiskObject& object = room.objects[id];
+    constexpr double firm = 2;  // friction on which nothing slides
     const auto earthquake = [&](double first_m) {
         physics::Candidate body;
         body.primitives = {0};
@@ -255,10 +256,11 @@ TEST_F(EarthquakeField, BringsNoMoreThanItTakesToOverturn) {
         object.support_polygon = body.support_polygon;
         object.toppling = std::make_shared<physics::Toppling>(
             body, physics::Toppling::Body{{1, 1, 1, 0, 0, 0}, 0.4}, tipping,
-            std::vector<std::array<double, 2>>{}, physics::SlideResult{}, mu);
+            std::vector<std::array<double, 2>>{{1, 0}, {0, 1}, {-1, 0}, {0, -1}},
+            physics::SlideResult{}, firm);
         EarthquakeOptions strong;
         strong.pga_m_s2 = 20;
-        return earthquake_field(*device, room.surroundings(), room.objects, mu, strong);
+        return earthquake_field(*device, room.surroundings(), room.objects, firm, strong);
     };
     const Disturbance none = earthquake(0), some = earthquake(0.1);
     const double weight_N = object.mass_kg * gravity;
