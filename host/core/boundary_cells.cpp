@@ -16,7 +16,9 @@ bool BoundaryCells::solid(std::size_t n, const Vec3& p, double slack_m) const {
     bool own = false, all = true, one = false, group_all = true, group_one = false;
     for (std::size_t s = 0; s < slots_used(n); ++s) {
         const SlotUse u = use(n, s);
-        const bool in = patches[slot[s][n]].is_within(p, u.outside, slack_m);
+        double d = patches[slot[s][n]].distance(p);
+        if (u.outside) d = -d;
+        const bool in = d <= slack_m;
         if (u.bounds) {
             if (!in) return false;
             continue;

@@ -25,13 +25,7 @@ struct SurfacePatch {
     double value(const Vec3& p) const;
     Vec3 gradient(const Vec3& p) const;
     double distance(const Vec3& p) const;  // signed, to first order
-    // Whether distance(p), or where `outside` its negative, is at most most_m, 0 or more: mostly
-    // told without a root and a division.
-    bool is_within(const Vec3& p, bool outside, double most_m) const;
     bool flat() const;
-
-  private:
-    static constexpr double least_slope = 0.2;  // on a tube's axis the gradient vanishes
 };
 
 // Asked of every voxel and every point, so inline.
@@ -48,19 +42,10 @@ inline Vec3 SurfacePatch::gradient(const Vec3& p) const {
 }
 
 inline double SurfacePatch::distance(const Vec3& p) const {
+    // On a tube's axis the gradient vanishes.
+    constexpr double least = 0.2;
     const Vec3 g = gradient(p);
-    return value(p) / std::max(std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]), least_slope);
-}
-
-inline bool SurfacePatch::is_within(const Vec3& p, bool outside, double most_m) const {
-    const double f = outside ? -value(p) : value(p);
-    if (f <= 0) return true;
-    const Vec3 g = gradient(p);
-    const double slope2 = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
-    constexpr double beyond_rounding = 1.001;
-    if (f * f > beyond_rounding * most_m * most_m * std::max(slope2, least_slope * least_slope))
-        return false;
-    return f / std::max(std::sqrt(slope2), least_slope) <= most_m;
+    return value(p) / std::max(std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]), least);
 }
 
 // How one patch bounds what is solid in a voxel. Slots that are no bounds form groups, each of

@@ -13,10 +13,7 @@ namespace {
 
 constexpr std::uint32_t most_columns = 320;
 constexpr std::uint64_t points_at_once = 1 << 16;
-// Points go to the frames by what lies together, so that those that can't see it are left out, and
-// of the others few pixels are looked at.
-constexpr float together_m = 0.2F;
-constexpr std::size_t most_together = 1 << 10;
+constexpr std::size_t most_together = 1 << 10;  // of these, in one cube
 // Nearer to a camera no sensor reads.
 constexpr float nearest_m = 0.2F;
 // How far poses that agree are off, and deviations of a reading from the surface that it is of. A
@@ -25,11 +22,13 @@ constexpr float pose_error_m = 0.005F, on_surface = 2, beyond_surface = 3;
 // Deviations of the point's own best reading within which it may be a copy of what lies before it.
 constexpr float copy = 4;
 
-// In cubes of together_m, as far as they can be told apart.
+// Points go to the frames by what lies together, so that those that can't see it are left out, and
+// of the others few pixels are looked at. In cubes, as far as these can be told apart.
 std::uint64_t cube_of(float x, float y, float z) {
+    constexpr float edge_m = 0.2F;
     std::uint64_t key = 0;
     for (const float at : {x, y, z}) {
-        const float cube = std::clamp(std::floor(at / together_m), -1048576.0F, 1048575.0F);
+        const float cube = std::clamp(std::floor(at / edge_m), -1048576.0F, 1048575.0F);
         key = key << 21 | static_cast<std::uint64_t>(static_cast<std::int64_t>(cube) + 1048576);
     }
     return key;
@@ -104,8 +103,7 @@ Witnesses::Frame Witnesses::keep(const DepthFrame& frame) const {
     return kept;
 }
 
-Witnesses::Box Witnesses::box_of(const FusedPoints& points, std::size_t first,
-                                 std::size_t count) {
+Witnesses::Box Witnesses::box_of(const FusedPoints& points, std::size_t first, std::size_t count) {
     Box box;
     std::size_t a = 0;
     for (const std::vector<float>* values : {&points.x, &points.y, &points.z}) {
@@ -133,8 +131,8 @@ bool Witnesses::may_see(const Frame& frame, const Box& box) const {
     const auto reaches = [&](double x, double y, double z, double least) {
         double at = -least, length = 0;
         for (std::size_t a = 0; a < 3; ++a) {
-            const double along = x * double{m[4 * a]} + y * double{m[4 * a + 1]} +
-                                 z * double{m[4 * a + 2]};
+            const double along =
+                x * double{m[4 * a]} + y * double{m[4 * a + 1]} + z * double{m[4 * a + 2]};
             at += along * from[a] + std::abs(along) * box.half[a];
             length += along * along;
         }

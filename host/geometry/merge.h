@@ -59,8 +59,7 @@ struct Border {
     double length = 0, inside_share = 0;
 };
 
-// Share of the points on segments across the border that lie inside both models (Eq. 3); where
-// that is at most least_inside_share, any number between the two.
+// Share of the points on segments across the border that lie inside both models (Eq. 3).
 // tolerance_m: of the regions a and b, beyond what noise moves a point.
 double inside_share(const Surfels& surfels, const Regions& regions, const Border& border,
                     const std::array<double, 2>& tolerance_m);

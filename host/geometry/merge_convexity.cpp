@@ -102,9 +102,6 @@ double inside_share(const Surfels& surfels, const Regions& regions, const Border
     std::uint64_t inside = 0, all = 0;
     const std::size_t lines = std::min<std::size_t>(segments, border.pairs.size());
     for (std::size_t line = 0; line < lines; ++line) {
-        const std::uint64_t left = (lines - line) * points_per_segment;
-        const double at_most = static_cast<double>(inside + left) / static_cast<double>(all + left);
-        if (at_most <= least_inside_share) return at_most;
         const auto [i, j] = border.pairs[line * border.pairs.size() / lines];
         const Eigen::Vector3d middle = 0.5 * (position(surfels, i) + position(surfels, j));
         const Eigen::Vector3d p = onto(

@@ -21,46 +21,33 @@ double bend(const SurfacePatch& patch) {
     return most;
 }
 
-// The patches of a voxel, and of each whether it is flat.
-struct VoxelPatches {
-    std::array<const SurfacePatch*, BoundaryCells::slots> patch{};
-    std::array<bool, BoundaryCells::slots> flat{};
-    std::size_t count = 0;
-
-    VoxelPatches(const BoundaryCells& b, std::size_t n) : count(b.slots_used(n)) {
-        for (std::size_t s = 0; s < count; ++s) {
-            patch[s] = &b.patches[b.slot[s][n]];
-            flat[s] = patch[s]->flat();
-        }
-    }
-};
-
 // A part of a voxel, and the patches that pass it.
 class Part {
   public:
-    Part(const BoundaryCells& b, std::size_t n, const VoxelPatches& all, double voxel_m,
-         const Vec3& low, double edge, std::vector<Vec3>& out)
+    Part(const BoundaryCells& b, std::size_t n, double voxel_m, const Vec3& low, double edge,
+         std::vector<Vec3>& out)
         : b_(b), n_(n), slack_(slack * voxel_m), low_(low), edge_(edge), out_(out) {
         const Vec3 middle{low[0] + edge / 2, low[1] + edge / 2, low[2] + edge / 2};
-        for (std::size_t s = 0; s < all.count; ++s) {
+        for (std::size_t s = 0; s < b.slots_used(n); ++s) {
+            const SurfacePatch& patch = b.patches[b.slot[s][n]];
             // The cube's half diagonal, and as much again for what is curved.
-            if (std::abs(all.patch[s]->distance(middle)) < (all.flat[s] ? 0.87 : 1.3) * edge)
-                patches_[passing_++] = all.patch[s];
+            if (std::abs(patch.distance(middle)) < (patch.flat() ? 0.87 : 1.3) * edge)
+                patches_.push_back(&patch);
         }
     }
 
     void add_corners() {
         for (unsigned c = 0; c < 8; ++c) keep(at(c & 1, c >> 1 & 1, c >> 2));
-        for (std::size_t p = 0; p < passing_; ++p) {
+        for (std::size_t p = 0; p < patches_.size(); ++p) {
             add_edges(*patches_[p]);
-            for (std::size_t q = p + 1; q < passing_; ++q) {
+            for (std::size_t q = p + 1; q < patches_.size(); ++q) {
                 add_sides(*patches_[p], *patches_[q]);
-                for (std::size_t r = q + 1; r < passing_; ++r)
+                for (std::size_t r = q + 1; r < patches_.size(); ++r)
                     add_meeting(*patches_[p], *patches_[q], *patches_[r]);
             }
         }
     }
-    bool passed() const { return passing_ > 0; }
+    bool passed() const { return !patches_.empty(); }
 
   private:
     Vec3 at(double u, double v, double w) const {
@@ -191,8 +178,7 @@ class Part {
     Vec3 low_;
     double edge_;
     std::vector<Vec3>& out_;
-    std::array<const SurfacePatch*, BoundaryCells::slots> patches_{};
-    std::size_t passing_ = 0;
+    std::vector<const SurfacePatch*> patches_;
 };
 
 // The patch that bounds a voxel from below, if one does.
@@ -231,9 +217,9 @@ double error_beside(const BoundaryCells& b, std::size_t n, const Vec3& corner, d
 std::vector<Vec3> corners_of(const BoundaryCells& b, std::size_t n, double h) {
     std::vector<Vec3> out;
     if (b.share[n] == 0) return out;
-    const VoxelPatches all(b, n);
     double most = 0;
-    for (std::size_t s = 0; s < all.count; ++s) most = std::max(most, bend(*all.patch[s]));
+    for (std::size_t s = 0; s < b.slots_used(n); ++s)
+        most = std::max(most, bend(b.patches[b.slot[s][n]]));
     // A chord of an arc lies so far inside of it, in voxels, and what of that is too much.
     constexpr double tolerance = 0.005;
     constexpr int most_parts = 4;
@@ -243,7 +229,7 @@ std::vector<Vec3> corners_of(const BoundaryCells& b, std::size_t n, double h) {
     for (int u = 0; u < parts; ++u) {
         for (int v = 0; v < parts; ++v) {
             for (int w = 0; w < parts; ++w) {
-                Part part(b, n, all, h,
+                Part part(b, n, h,
                           {b.i[n] * h + u * edge, b.j[n] * h + v * edge, b.k[n] * h + w * edge},
                           edge, out);
                 if (parts == 1 || part.passed()) part.add_corners();

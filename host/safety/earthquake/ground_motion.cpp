@@ -94,8 +94,7 @@ Shaking shaking_in(const std::array<double, 2>& way, std::uint32_t body, const G
 // Friction is too little to lift its edges, by far more than rounding, and its support ends
 // nowhere: it only slides.
 bool can_fall(const Profile& body, const Shaking& shaking, double friction) {
-    const bool endless =
-        std::isinf(body.support_ahead_m) && std::isinf(body.support_behind_m);
+    const bool endless = std::isinf(body.support_ahead_m) && std::isinf(body.support_behind_m);
     return !endless || 1.001 * friction * shaking.grip > body.slenderness();
 }
 

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "core/thread_pool.h"
@@ -30,28 +28,6 @@ struct Sampled {
 
 double between(test::Random& random, double low, double high) {
     return low + (high - low) * random.uniform();
-}
-
-// Whether a point is within a patch is what its distance says, at whatever slope, and at the rim.
-TEST(Patches, WithinIsWhatTheDistanceSays) {
-    test::Random random(7);
-    std::size_t in = 0, near = 0;
-    for (int n = 0; n < 20'000; ++n) {
-        SurfacePatch patch;
-        for (std::size_t k = 0; k < patch.c.size(); ++k)
-            patch.c[k] = between(random, -1, 1) * (k == 0 ? 0.01 : n % 3 == 0 ? 0.1 : 1);
-        if (n % 2 == 0) std::fill(patch.c.begin() + 4, patch.c.end(), 0.0);
-        const Vec3 p{between(random, -0.02, 0.02), between(random, -0.02, 0.02), 0.01};
-        const bool outside = n % 5 == 0;
-        const double d = outside ? -patch.distance(p) : patch.distance(p);
-        for (const double most : {0.0, 1e-8, 0.01, std::abs(d), std::nextafter(std::abs(d), 0.0)}) {
-            EXPECT_EQ(patch.is_within(p, outside, most), d <= most) << n << ' ' << most;
-            in += d <= most;
-        }
-        near += std::abs(d) < 0.01;
-    }
-    EXPECT_GT(in, 40'000u);
-    EXPECT_GT(near, 3000u);
 }
 
 geometry::Region level_region(double height) {
