@@ -30,11 +30,11 @@ inline double one_piece_peak(const OnePiece& of) {
            a_patch_m * of.patches_m;
 }
 
-// While frames with readings in so many cells are fused: sums of each cell twice, and the readings
-// that wait.
-inline double fusion_peak(double cells) {
-    constexpr double fixed = 150e6, a_cell = 200;
-    return fixed + a_cell * cells;
+// While frames with readings in so many cells are fused: the sums of each cell twice, and readings
+// that wait, of four million pixels at most.
+inline double fusion_peak(double cells, double pixels) {
+    constexpr double fixed = 61e6, a_cell = 200, waiting = 20, most_waiting = 4.2e6;
+    return fixed + a_cell * cells + waiting * std::min(pixels, most_waiting);
 }
 
 // What a parse in one piece is sure to keep to, by the bounds along the input's own axes.
