@@ -63,6 +63,11 @@ CloudView view_of(const topple_cloud* cloud) {
     if (c.nx || c.ny || c.nz) all("nx, ny and nz, where one is given,", c.nx, c.ny, c.nz);
     if (c.red || c.green || c.blue)
         all("red, green and blue, where one is given,", c.red, c.green, c.blue);
+    const bool viewpoints = c.viewpoint_x || c.viewpoint_y || c.viewpoint_z;
+    if (viewpoints) {
+        all("viewpoint_x, viewpoint_y and viewpoint_z, where one is given,", c.viewpoint_x,
+            c.viewpoint_y, c.viewpoint_z);
+    }
     CloudView view;
     view.x = {c.x, c.count, stride(c.stride_bytes)};
     view.y = {c.y, c.count, stride(c.stride_bytes)};
@@ -78,6 +83,11 @@ CloudView view_of(const topple_cloud* cloud) {
         view.red = {c.red, c.count, step};
         view.green = {c.green, c.count, step};
         view.blue = {c.blue, c.count, step};
+    }
+    if (viewpoints) {
+        view.viewpoint_x = {c.viewpoint_x, c.count, stride(c.viewpoint_stride_bytes)};
+        view.viewpoint_y = {c.viewpoint_y, c.count, stride(c.viewpoint_stride_bytes)};
+        view.viewpoint_z = {c.viewpoint_z, c.count, stride(c.viewpoint_stride_bytes)};
     }
     view.width = c.width;
     view.height = c.height;

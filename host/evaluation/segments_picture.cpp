@@ -5,6 +5,7 @@
 #include <map>
 #include <span>
 
+#include "core/vectors.h"
 #include "evaluation/pictures.h"
 #include "io/palette.h"
 #include "report/canvas.h"
@@ -47,9 +48,6 @@ class View {
     static double nearness(const Vec3& p) { return dot(towards_, p); }
 
   private:
-    static double dot(const Vec3& a, const Vec3& b) {
-        return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    }
     // An orthonormal frame: to the viewer, to the right, down.
     static constexpr Vec3 towards_{-0.36, -0.48, 0.8}, right_{0.8, -0.6, 0},
         down_{-0.48, -0.64, -0.6};

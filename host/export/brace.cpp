@@ -9,10 +9,10 @@
 #include <set>
 #include <utility>
 
+#include "core/vectors.h"
 #include "export/footing.h"
 #include "export/separate.h"
 #include "export/stand.h"
-#include "physics/vectors.h"
 
 namespace topple::exports {
 namespace {

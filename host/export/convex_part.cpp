@@ -5,17 +5,12 @@
 #include <cmath>
 #include <utility>
 
+#include "core/vectors.h"
+#include "physics/infinity.h"
 #include "physics/qhull.h"
-#include "physics/vectors.h"
 
 namespace topple::exports {
 namespace {
-
-using physics::along;
-using physics::cross;
-using physics::dot;
-using physics::minus;
-using physics::unit;
 
 // Newell's normal, not of unit length: of a polygon that is flat only to within rounding.
 Vec3 newell(const std::vector<Vec3>& corner, const std::vector<std::uint32_t>& outline) {

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <optional>
 
+#include "core/vectors.h"
 #include "export/separate.h"
 #include "export/touching.h"
+#include "physics/infinity.h"
 #include "physics/tipping.h"
-#include "physics/vectors.h"
 
 namespace topple::exports {
 namespace {

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/vectors.h"
+#include "core/vectors.h"
+#include "physics/infinity.h"
 
 namespace topple::exports {
 namespace {

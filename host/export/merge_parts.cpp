@@ -8,9 +8,9 @@
 #include <tuple>
 #include <utility>
 
+#include "core/vectors.h"
 #include "export/separate.h"
 #include "export/simplify.h"
-#include "physics/vectors.h"
 
 namespace topple::exports {
 namespace {
@@ -55,7 +55,7 @@ double least_hull_m3(const Faced& one, const Faced& other) {
         double cone = 0;
         for (std::size_t n = 0; n < one.area_m2.size(); ++n) {
             const HalfSpace& side = one.part.face[n];
-            cone += std::max(0.0, physics::dot(side.normal, c) - side.offset_m) * one.area_m2[n];
+            cone += std::max(0.0, dot(side.normal, c) - side.offset_m) * one.area_m2[n];
         }
         most = std::max(most, cone);
     }

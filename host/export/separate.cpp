@@ -7,16 +7,11 @@
 #include <optional>
 #include <utility>
 
-#include "physics/vectors.h"
+#include "core/vectors.h"
+#include "physics/infinity.h"
 
 namespace topple::exports {
 namespace {
-
-using physics::along;
-using physics::cross;
-using physics::dot;
-using physics::minus;
-using physics::opposite;
 
 constexpr double touching_m = 1e-6;  // what overlaps less, touches
 // What a part's hull holds beyond its solid costs so much of that.
@@ -62,7 +57,7 @@ bool edges_apart(const ConvexPart& a, const ConvexPart& b, const Vec3& best) {
         for (const Vec3& v : edges_at_end(b, opposite(best))) {
             const Vec3 across = cross(u, v);
             if (dot(across, across) < 1e-12 * dot(u, u) * dot(v, v)) continue;
-            const Vec3 n = physics::unit(across);
+            const Vec3 n = unit(across);
             if (gap_along(a, b, n) >= -touching_m || gap_along(a, b, opposite(n)) >= -touching_m)
                 return true;
         }

@@ -5,17 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/vectors.h"
+#include "core/vectors.h"
+#include "physics/infinity.h"
 
 namespace topple::exports {
 namespace {
-
-using physics::along;
-using physics::cross;
-using physics::dot;
-using physics::minus;
-using physics::opposite;
-using physics::unit;
 
 // A round solid's radius may be off by that share of itself, too: small things keep their form.
 constexpr double radius_share = 0.05;

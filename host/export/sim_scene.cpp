@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vectors.h"
 #include "export/balance.h"
 #include "export/brace.h"
 #include "export/decompose.h"
@@ -13,7 +14,6 @@
 #include "export/simplify.h"
 #include "export/stand.h"
 #include "physics/tipping.h"
-#include "physics/vectors.h"
 #include "solids/cell_shape.h"
 #include "topple/error.h"
 
@@ -28,7 +28,7 @@ Rotation world_from_input(const Scene& scene) {
 }
 
 Vec3 turned(const Rotation& r, const Vec3& v) {
-    return {physics::dot(r[0], v), physics::dot(r[1], v), physics::dot(r[2], v)};
+    return {dot(r[0], v), dot(r[1], v), dot(r[2], v)};
 }
 
 Mat3 turned(const Rotation& r, const Mat3& inertia) {

@@ -6,12 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "physics/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::exports {
 namespace {
-
-using physics::dot;
 
 // Numbers of the corners that lie furthest along the axes and the diagonals between two or three.
 std::vector<std::size_t> ends_of(const ConvexPart& part) {

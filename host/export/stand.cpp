@@ -5,15 +5,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/vectors.h"
 #include "export/separate.h"
-#include "physics/vectors.h"
+#include "physics/infinity.h"
 
 namespace topple::exports {
 namespace {
-
-using physics::along;
-using physics::dot;
-using physics::opposite;
 
 constexpr double level_cosine = 0.9;  // of a side that carries
 

@@ -5,14 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "core/vectors.h"
 #include "export/separate.h"
 #include "physics/tipping.h"
-#include "physics/vectors.h"
 
 namespace topple::exports {
 namespace {
 
-using physics::dot;
 using Polygon = std::vector<std::array<double, 2>>;
 
 // Coordinates in a plane.
@@ -21,13 +20,12 @@ struct Plane {
     double offset_m = 0;
     Plane(const Vec3& n, double offset) : normal(n), offset_m(offset) {
         const Vec3 far = std::abs(n[0]) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-        u = physics::unit(physics::cross(far, n));
-        v = physics::cross(n, u);
+        u = unit(cross(far, n));
+        v = cross(n, u);
     }
     Vec3 at(const std::array<double, 2>& p) const {
-        return physics::along(
-            physics::along({offset_m * normal[0], offset_m * normal[1], offset_m * normal[2]}, p[0],
-                           u),
+        return along(
+            along({offset_m * normal[0], offset_m * normal[1], offset_m * normal[2]}, p[0], u),
             p[1], v);
     }
     // The outline of what of a part lies in the plane, counter-clockwise as seen against the

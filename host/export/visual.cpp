@@ -3,9 +3,9 @@
 
 #include <map>
 
+#include "core/vectors.h"
 #include "export/sim_scene.h"
 #include "io/palette.h"
-#include "physics/vectors.h"
 
 namespace topple::exports {
 namespace {
@@ -24,12 +24,12 @@ Rgb8 plain_colour(const Body& body) {
 
 Visual visual_of(const ObjectSurface& surface, const Body& body, const Mat4& world_from_input) {
     Visual out;
-    const Vec3 by = physics::minus(body.moved_m, body.center_m);
+    const Vec3 by = minus(body.moved_m, body.center_m);
     out.vertex.reserve(surface.vertex.size());
     out.normal.reserve(surface.normal.size());
     out.colour.reserve(surface.vertex.size());
     for (const Vec3& v : surface.vertex)
-        out.vertex.push_back(physics::along(in_world(world_from_input, v), 1, by));
+        out.vertex.push_back(along(in_world(world_from_input, v), 1, by));
     for (const Vec3& n : surface.normal) out.normal.push_back(in_world(world_from_input, n));
     const Rgb8 plain = plain_colour(body);
     for (std::size_t n = 0; n < surface.vertex.size(); ++n)
@@ -46,7 +46,7 @@ Visual visual_of_parts(const Body& body) {
             const auto first = static_cast<std::uint32_t>(out.vertex.size());
             const auto count = static_cast<std::uint32_t>(part.outline[side].size());
             for (const std::uint32_t c : part.outline[side])
-                out.vertex.push_back(physics::minus(part.corner[c], body.center_m));
+                out.vertex.push_back(minus(part.corner[c], body.center_m));
             for (std::uint32_t n = 1; n + 1 < count; ++n)
                 out.triangle.push_back({first, first + n, first + n + 1});
             out.normal.insert(out.normal.end(), count, part.face[side].normal);
@@ -59,7 +59,7 @@ Visual visual_of_parts(const Body& body) {
 double volume_m3(const Visual& visual) {
     double six = 0;
     for (const auto& [a, b, c] : visual.triangle)
-        six += physics::dot(visual.vertex[a], physics::cross(visual.vertex[b], visual.vertex[c]));
+        six += dot(visual.vertex[a], cross(visual.vertex[b], visual.vertex[c]));
     return six / 6;
 }
 

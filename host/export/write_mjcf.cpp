@@ -3,16 +3,14 @@
 
 #include <string>
 
+#include "core/vectors.h"
 #include "export/export_folder.h"
 #include "export/text.h"
 #include "export/turned.h"
 #include "export/write_obj.h"
-#include "physics/vectors.h"
 
 namespace topple::exports {
 namespace {
-
-using physics::minus;
 
 // Hulls are made of their corners by MuJoCo.
 void add_mesh(const NamedPart& each, const Vec3& center_m, std::string& out) {

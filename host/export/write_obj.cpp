@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
+#include "core/vectors.h"
 #include "export/colour_texture.h"
 #include "export/export_folder.h"
 #include "export/text.h"
-#include "physics/vectors.h"
 
 namespace topple::exports {
 namespace {
@@ -39,7 +39,7 @@ std::string part_obj(const ConvexPart& part, const Vec3& center_m) {
     std::string out(text_mark);
     for (const Vec3& c : part.corner) {
         out += "v ";
-        out += text(physics::minus(c, center_m));
+        out += text(minus(c, center_m));
         out += '\n';
     }
     for (const auto& outline : part.outline) {

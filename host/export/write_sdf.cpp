@@ -3,10 +3,10 @@
 
 #include <string>
 
+#include "core/vectors.h"
 #include "export/export_folder.h"
 #include "export/text.h"
 #include "export/turned.h"
-#include "physics/vectors.h"
 
 namespace topple::exports {
 namespace {
@@ -40,7 +40,7 @@ struct SdfShape {
         return joined(pose, element("geometry", element(kind, what)));
     }
     std::string pose(const Vec3& at, const Vec3& turn) const {
-        return element("pose", joined(text(physics::minus(at, center_m)), " ", text(turn)));
+        return element("pose", joined(text(minus(at, center_m)), " ", text(turn)));
     }
 };
 

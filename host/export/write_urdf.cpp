@@ -3,11 +3,11 @@
 
 #include <string>
 
+#include "core/vectors.h"
 #include "export/export_folder.h"
 #include "export/text.h"
 #include "export/turned.h"
 #include "export/write_obj.h"
-#include "physics/vectors.h"
 
 namespace topple::exports {
 namespace {
@@ -45,7 +45,7 @@ struct UrdfShape {
 
   private:
     std::string origin(const Vec3& at, const Vec3& turn) const {
-        return joined("<origin", attribute("xyz", text(physics::minus(at, center_m))),
+        return joined("<origin", attribute("xyz", text(minus(at, center_m))),
                       attribute("rpy", text(turn)), "/>");
     }
 };

@@ -6,16 +6,14 @@
 #include <cmath>
 #include <string>
 
+#include "core/vectors.h"
 #include "export/export_folder.h"
 #include "export/text.h"
 #include "export/turned.h"
 #include "io/text.h"
-#include "physics/vectors.h"
 
 namespace topple::exports {
 namespace {
-
-using physics::minus;
 
 // "(1, 2, 3)"
 std::string tuple(std::initializer_list<double> values) {
@@ -184,7 +182,7 @@ std::string usd_mass(const Body& body) {
         const auto column = solved.eigenvectors().col(static_cast<Eigen::Index>(a));
         axes[a] = {column[0], column[1], column[2]};
     }
-    axes[2] = physics::cross(axes[0], axes[1]);
+    axes[2] = cross(axes[0], axes[1]);
     const auto& moments = solved.eigenvalues();
     return joined("        float physics:mass = ", number(body.mass_kg),
                   "\n        point3f physics:centerOfMass = (0, 0, 0)\n"

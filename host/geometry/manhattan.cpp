@@ -36,8 +36,8 @@ std::array<Vec3, 3> orthogonalise(std::array<Vec3, 3> a) {
         if (dot(cross(a[0], a[1]), a[2]) < 0) a[2] = {-a[2][0], -a[2][1], -a[2][2]};
         std::array<Vec3, 3> next{};
         for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3 c = unit(cross(a[(i + 1) % 3], a[(i + 2) % 3]));
-            next[i] = unit({a[i][0] + c[0], a[i][1] + c[1], a[i][2] + c[2]});
+            const Vec3 c = unit_or_zero(cross(a[(i + 1) % 3], a[(i + 2) % 3]));
+            next[i] = unit_or_zero({a[i][0] + c[0], a[i][1] + c[1], a[i][2] + c[2]});
         }
         a = next;
     }
@@ -65,7 +65,8 @@ Triple best_triple(const WeightedNormals& normals, const std::vector<Vec3>& dire
     for (std::size_t i = 0; i < directions.size(); ++i) {
         for (std::size_t j = i + 1; j < directions.size(); ++j) {
             if (std::abs(dot(directions[i], directions[j])) > most_dot) continue;
-            consider(directions[i], directions[j], unit(cross(directions[i], directions[j])));
+            consider(directions[i], directions[j],
+                     unit_or_zero(cross(directions[i], directions[j])));
             for (std::size_t k = j + 1; k < directions.size(); ++k) {
                 consider(directions[i], directions[j], directions[k]);
             }
@@ -78,8 +79,9 @@ Triple best_triple(const WeightedNormals& normals, const std::vector<Vec3>& dire
 // azimuth and refined; share: how much of the upright surface follows it.
 Vec3 horizontal_axis(const WeightedNormals& normals, const Vec3& up, const Vec3& guess,
                      double& share) {
-    const Vec3 e1 = unit({guess[0] - dot(guess, up) * up[0], guess[1] - dot(guess, up) * up[1],
-                          guess[2] - dot(guess, up) * up[2]});
+    const Vec3 e1 =
+        unit_or_zero({guess[0] - dot(guess, up) * up[0], guess[1] - dot(guess, up) * up[1],
+                      guess[2] - dot(guess, up) * up[2]});
     const Vec3 e2 = cross(up, e1);
     FourfoldHistogram histogram;
     std::vector<std::array<double, 2>> azimuth;  // angle modulo 90 degrees, weight
@@ -130,7 +132,8 @@ Vec3 nearest_to_x(const Vec3& axis, const Vec3& up) {
 
 Vec3 any_horizontal(const Vec3& up) {
     const Vec3 e = std::abs(up[0]) < 0.8 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    return unit({e[0] - dot(e, up) * up[0], e[1] - dot(e, up) * up[1], e[2] - dot(e, up) * up[2]});
+    return unit_or_zero(
+        {e[0] - dot(e, up) * up[0], e[1] - dot(e, up) * up[1], e[2] - dot(e, up) * up[2]});
 }
 
 }  // namespace
@@ -158,7 +161,7 @@ SceneFrame find_scene_frame(device::Device& device, const Surfels& surfels,
     double share = 0;
     const Vec3 x = horizontal_axis(normals, up.up, any_horizontal(up.up), share);
     frame.axes[0] = nearest_to_x(x, up.up);
-    frame.axes[1] = unit(cross(frame.axes[2], frame.axes[0]));
+    frame.axes[1] = unit_or_zero(cross(frame.axes[2], frame.axes[0]));
     double total = 0, least = 1;
     for (const Vec3& axis : frame.axes) {
         const double near =

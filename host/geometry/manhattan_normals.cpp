@@ -11,11 +11,7 @@
 
 namespace topple::geometry {
 
-Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Vec3 unit(const Vec3& v) {
+Vec3 unit_or_zero(const Vec3& v) {
     const double length = std::sqrt(dot(v, v));
     if (!(length > 1e-12)) return {0, 0, 0};
     return {v[0] / length, v[1] / length, v[2] / length};
@@ -73,7 +69,7 @@ Vec3 refine_axis(const WeightedNormals& normals, const Vec3& axis) {
                 sum[1] += w * normals.y[i];
                 sum[2] += w * normals.z[i];
             }
-            const Vec3 next = unit(sum);
+            const Vec3 next = unit_or_zero(sum);
             if (next == Vec3{0, 0, 0}) return now;
             const bool still = dot(next, now) > 1 - 1e-12;
             now = next;
@@ -128,7 +124,7 @@ std::vector<Vec3> seeds(const WeightedNormals& normals, unsigned k) {
     // Smoothed over 6 degrees, so that a peak across a bin's border counts in full.
     std::vector<double> smooth(used.size());
     std::vector<Vec3> at(used.size());
-    for (std::size_t i = 0; i < used.size(); ++i) at[i] = unit(bins.sum[used[i]]);
+    for (std::size_t i = 0; i < used.size(); ++i) at[i] = unit_or_zero(bins.sum[used[i]]);
     const double near = std::cos(6 * std::numbers::pi / 180);
     for (std::size_t i = 0; i < used.size(); ++i) {
         for (std::size_t j = 0; j < used.size(); ++j) {
@@ -214,7 +210,7 @@ NormalClusters cluster_normals(device::Device& device, const Surfels& surfels, u
         sums = assign(device, nx, ny, nz, weight, axes);
         bool still = true;
         for (std::size_t i = 0; i < axes.size(); ++i) {
-            const Vec3 next = unit({sums[i][0], sums[i][1], sums[i][2]});
+            const Vec3 next = unit_or_zero({sums[i][0], sums[i][1], sums[i][2]});
             if (next == Vec3{0, 0, 0}) continue;  // an empty cluster stays where it is
             still &= dot(next, axes[i]) > 1 - 1e-10;
             axes[i] = next;

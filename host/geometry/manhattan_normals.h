@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "core/vectors.h"
 #include "geometry/surfels.h"
 
 namespace topple::geometry {
@@ -27,11 +28,7 @@ double weight_near(const WeightedNormals& normals, const Vec3& axis, double degr
 // is near.
 Vec3 refine_axis(const WeightedNormals& normals, const Vec3& axis);
 
-inline double dot(const Vec3& a, const Vec3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec3 cross(const Vec3& a, const Vec3& b);
 // The unit vector along v; zero where v is (nearly) zero.
-Vec3 unit(const Vec3& v);
+Vec3 unit_or_zero(const Vec3& v);
 
 }  // namespace topple::geometry

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/vectors.h"
 #include "geometry/fourfold.h"
 
 namespace topple::geometry {
@@ -38,7 +39,7 @@ struct Balance {
 };
 
 Vec3 across(const Vec3& axis) {
-    return unit(cross(axis, std::abs(axis[0]) < 0.8 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+    return unit_or_zero(cross(axis, std::abs(axis[0]) < 0.8 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
 }
 
 double turned_share(const WeightedNormals& normals, const Vec3& axis) {

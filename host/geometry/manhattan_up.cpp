@@ -153,7 +153,7 @@ bool up_from_uprights(const WeightedNormals& normals, Vec3& up) {
         const Eigen::Vector3d least =
             Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvectors().col(0);
         const double side = least.dot(c) < 0 ? -1 : 1;
-        up = unit({side * least[0], side * least[1], side * least[2]});
+        up = unit_or_zero({side * least[0], side * least[1], side * least[2]});
     }
     return share >= least_upright_share;
 }
@@ -167,7 +167,7 @@ std::optional<Vec3> implied_camera(const WeightedNormals& normals) {
         sum = {sum[0] + w * normals.x[i], sum[1] + w * normals.y[i], sum[2] + w * normals.z[i]};
         size += w * std::abs(normals.z[i]);
     }
-    const bool ahead = sum[2] < -camera_facing * size && unit(sum)[2] < -camera_axis_cos;
+    const bool ahead = sum[2] < -camera_facing * size && unit_or_zero(sum)[2] < -camera_axis_cos;
     return ahead ? std::optional(Vec3{0, -1, 0}) : std::nullopt;
 }
 
@@ -176,10 +176,10 @@ std::optional<Vec3> implied_camera(const WeightedNormals& normals) {
 UpChoice choose_up(const Surfels& surfels, const WeightedNormals& normals,
                    const std::vector<Vec3>& directions, const std::vector<Vec3>& manhattan,
                    const FrameHints& hints) {
-    if (hints.up && dot(*hints.up, *hints.up) > 0) return {unit(*hints.up), "given", ""};
+    if (hints.up && dot(*hints.up, *hints.up) > 0) return {unit_or_zero(*hints.up), "given", ""};
     std::optional<Vec3> camera;
     if (hints.camera_up && dot(*hints.camera_up, *hints.camera_up) > 0)
-        camera = unit(*hints.camera_up);
+        camera = unit_or_zero(*hints.camera_up);
     if (!camera && normals.size() > 0) camera = implied_camera(normals);
     const UpChoice assumed{camera.value_or(Vec3{0, 0, 1}), "assumed", not_found};
     if (normals.size() == 0) return assumed;

@@ -8,21 +8,15 @@
 namespace topple::geometry {
 namespace {
 
-// Half the diagonal of the square that a surfel stands for, and a little more: surfels lie anywhere
-// in their cells.
-constexpr double radius_sides = 0.9;
 // Nearer than this a surfel fills the view and tells nothing.
 constexpr double nearest_cells = 1.5;
 
 // One image while it is drawn.
 class Image {
   public:
-    Image(const Surfels& surfels, const Vec3& eye, std::size_t image)
-        : s_(surfels),
-          eye_(eye),
-          f_(image / 2),
-          sign_(image % 2 == 0 ? 1 : -1),
-          radius_(radius_sides * std::sqrt(surfels.area_m2)) {
+    Image(const Surfels& surfels, std::span<const float> radii_m, const Vec3& eye,
+          std::size_t image)
+        : s_(surfels), radii_(radii_m), eye_(eye), f_(image / 2), sign_(image % 2 == 0 ? 1 : -1) {
         depth.assign(std::size_t{CubeView::side} * CubeView::side,
                      std::numeric_limits<float>::infinity());
         surfel.assign(depth.size(), CubeView::nothing);
@@ -31,7 +25,7 @@ class Image {
     void draw(std::size_t i) {
         // In the image's axes: right, down, forward.
         const Vec3 p = turned({s_.x[i] - eye_[0], s_.y[i] - eye_[1], s_.z[i] - eye_[2]});
-        const double radius = radius_, near = nearest_cells * s_.cell_m;
+        const double radius = radii_[i], near = nearest_cells * s_.cell_m;
         if (!(p[2] > near) || std::abs(p[0]) > p[2] + 2 * radius ||
             std::abs(p[1]) > p[2] + 2 * radius) {
             return;
@@ -79,9 +73,10 @@ class Image {
     }
 
     const Surfels& s_;
+    std::span<const float> radii_;
     Vec3 eye_;
     std::size_t f_;
-    double sign_, radius_;
+    double sign_;
 };
 
 }  // namespace
@@ -123,12 +118,13 @@ Mat4 CubeView::pose(std::size_t image) const {
     return m;
 }
 
-CubeView view_surfels(const Surfels& surfels, const Vec3& eye, ThreadPool& pool) {
+CubeView view_surfels(const Surfels& surfels, std::span<const float> radii_m, const Vec3& eye,
+                      ThreadPool& pool) {
     CubeView view;
     view.eye = eye;
     pool.run(6, 1, [&](std::uint64_t first, std::uint64_t last) {
         for (std::uint64_t k = first; k < last; ++k) {
-            Image image(surfels, eye, static_cast<std::size_t>(k));
+            Image image(surfels, radii_m, eye, static_cast<std::size_t>(k));
             for (std::size_t i = 0; i < surfels.size(); ++i) image.draw(i);
             view.depth[k] = std::move(image.depth);
             view.surfel[k] = std::move(image.surfel);

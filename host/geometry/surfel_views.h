@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/thread_pool.h"
@@ -36,8 +37,9 @@ struct CubeView {
     Mat4 pose(std::size_t image) const;
 };
 
-// Draws surfels as discs in their planes, wide enough to leave no gaps between neighbours; those
-// without a normal as discs across the line of sight.
-CubeView view_surfels(const Surfels& surfels, const Vec3& eye, ThreadPool& pool);
+// Draws surfels as discs in their planes, of the given radii (covering_radii()); those without a
+// normal as discs across the line of sight.
+CubeView view_surfels(const Surfels& surfels, std::span<const float> radii_m, const Vec3& eye,
+                      ThreadPool& pool);
 
 }  // namespace topple::geometry

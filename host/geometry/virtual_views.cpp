@@ -11,24 +11,16 @@
 #include <utility>
 
 #include "geometry/free_places.h"
+#include "geometry/side_votes.h"
+#include "geometry/surfel_discs.h"
 #include "geometry/surfel_views.h"
 
 namespace topple::geometry {
 namespace {
 
 constexpr std::uint32_t no_eye = 0xffffffff;
-// A surfel's side shows where it is seen no more obliquely than this (cosine), and is known to be
-// seen from behind from here on.
-constexpr double side_cos = 0.25, behind_cos = 0.1;
-// Neighbours whose normals' cosine is more lie in one surface.
-constexpr float one_surface_cos = 0.8f;
-// Of the surface around a surfel, what must be seen with it.
-constexpr float least_pixel_share = 0.3f;
-// What an eye that sees half of a surface around says of its side; less may be a leak.
-constexpr float least_word = 0.25f;
-constexpr std::uint64_t witness_chunk = 1 << 14;  // surfels handed to a thread at once
-// Rougher than this share of its cell, a surfel may be both faces of a thin board, or an edge.
-constexpr double two_sided_cells = 0.25;
+// A view of a surfel counts where it is seen no more obliquely than this (cosine).
+constexpr double seen_cos = 0.25;
 // Places tried as the first, and the share of surfels that must face it.
 constexpr unsigned first_tries = 8;
 constexpr double least_facing = 0.5;
@@ -50,11 +42,12 @@ class Looking {
     Looking(const Surfels& surfels, const VirtualViewOptions& options, ThreadPool& pool)
         : s_(surfels),
           pool_(pool),
+          radii_(covering_radii(surfels, options.gap_m, pool)),
           places_(surfels),
-          side_(surfels.size(), 0),
-          witness_(surfels.size(), 0),
+          sides_(surfels, pool),
           in_view_(places_.size(), 0) {
-        if (options.sides_known) know_sides();
+        if (options.sides_known) sides_.believe_normals();
+        sides_known_ = options.sides_known;
         out_.viewpoint_of_surfel.assign(surfels.size(), no_eye);
         out_.intrinsics = {CubeView::side,
                            CubeView::side,
@@ -68,7 +61,7 @@ class Looking {
     }
 
     void look_around(const VirtualViewOptions& options) {
-        for (const Vec3& eye : options.known_eyes) look(view_surfels(s_, eye, pool_));
+        for (const Vec3& eye : options.known_eyes) look(view_from(eye));
         if (!options.known_eyes.empty()) return explore(options.eyes);
         look_first(options.sides_known);
         if (out_.eyes.empty()) return;
@@ -84,7 +77,8 @@ class Looking {
             return std::move(out_);
         }
         if (!sides_known_) agree_on_sides();
-        spread_sides();
+        sides_.spread();
+        leave_out_behind();
         out_.viewpoints = out_.eyes;
         for (std::size_t i = 0; i < s_.size(); ++i) {
             std::uint32_t& from = out_.viewpoint_of_surfel[i];
@@ -97,56 +91,20 @@ class Looking {
     }
 
   private:
+    CubeView view_from(const Vec3& eye) const { return view_surfels(s_, radii_, eye, pool_); }
     // As many rooms as the scene has room for.
     std::size_t rooms() const {
         const double count = std::round(places_.volume_m3() / room_m3);
         return static_cast<std::size_t>(std::clamp(count, 1.0, most_rooms));
     }
-    bool has_normal(std::size_t i) const { return s_.nx[i] != 0 || s_.ny[i] != 0 || s_.nz[i] != 0; }
-    void know_sides() {
-        for (std::size_t i = 0; i < s_.size(); ++i) side_[i] = has_normal(i) ? 1 : 0;
-        sides_known_ = true;
-    }
-    float cosine(std::size_t i, std::size_t j) const {
-        return s_.nx[i] * s_.nx[j] + s_.ny[i] * s_.ny[j] + s_.nz[i] * s_.nz[j];
-    }
-    // How much two surfels that belong together have their normals on one side: 1 in one plane, and
-    // where an edge or the thickness of a board parts them; -1 with one of the normals turned
-    // round. Koenig and Gumhold (2009) mirror one normal across the middle between both, which is
-    // where the other would be if the surface went on as an arc.
-    float agreement(std::size_t i, std::size_t j) const {
-        const std::array<float, 3> d{s_.x[j] - s_.x[i], s_.y[j] - s_.y[i], s_.z[j] - s_.z[i]},
-            n{s_.nx[i], s_.ny[i], s_.nz[i]}, m{s_.nx[j], s_.ny[j], s_.nz[j]};
-        float cosine = 0, n_along = 0, m_along = 0, square = 0;
-        for (std::size_t a = 0; a < 3; ++a) {
-            cosine += n[a] * m[a];
-            n_along += n[a] * d[a];
-            m_along += m[a] * d[a];
-            square += d[a] * d[a];
-        }
-        return square > 0 ? cosine - 2 * n_along * m_along / square : cosine;
-    }
-    // Cosine between the surfel's normal and the direction to the eye.
-    double facing(std::size_t i, const Vec3& eye) const {
-        const Vec3 d{eye[0] - s_.x[i], eye[1] - s_.y[i], eye[2] - s_.z[i]};
-        const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-        return length > 0 ? (s_.nx[i] * d[0] + s_.ny[i] * d[1] + s_.nz[i] * d[2]) / length : 0;
-    }
-    bool one_sided(std::size_t i) const {
-        return has_normal(i) && s_.roughness_m[i] <= two_sided_cells * s_.cell_m;
-    }
-    bool from_behind(std::size_t i, const Vec3& eye) const {
-        return one_sided(i) && side_[i] * facing(i, eye) < -behind_cos;
-    }
-
     // Share of the seen surfels with a side that face the eye.
     double share_facing(const CubeView& view) const {
         std::size_t front = 0, all = 0;
         for (const auto& image : view.surfel) {
             for (const std::uint32_t i : image) {
-                if (i == CubeView::nothing || !one_sided(i) || side_[i] == 0) continue;
+                if (i == CubeView::nothing || !sides_.one_sided(i) || sides_.side(i) == 0) continue;
                 ++all;
-                front += side_[i] * facing(i, view.eye) > 0;
+                front += sides_.side(i) * sides_.facing(i, view.eye) > 0;
             }
         }
         return all > 0 ? static_cast<double>(front) / static_cast<double>(all) : 0;
@@ -167,7 +125,7 @@ class Looking {
         while (out_.eyes.size() < eyes) {
             const std::size_t place = places_.choose_free();
             if (place == places_.size()) break;
-            look(view_surfels(s_, places_.middle(place), pool_));
+            look(view_from(places_.middle(place)));
         }
     }
 
@@ -178,7 +136,7 @@ class Looking {
         for (unsigned n = 0; n < most_closed; ++n) {
             const std::size_t place = places_.choose_closed(roomy_m);
             if (place == places_.size()) return;
-            const CubeView view = view_surfels(s_, places_.middle(place), pool_);
+            const CubeView view = view_from(places_.middle(place));
             pass_over_seen(view, place);
             if (share_behind(view) > most_behind) continue;
             look(view);
@@ -195,7 +153,7 @@ class Looking {
             const std::size_t place =
                 places_.choose_outside([&](std::size_t p) { return in_view_[p] > most; });
             if (place == places_.size()) return;
-            look(view_surfels(s_, places_.middle(place), pool_));
+            look(view_from(places_.middle(place)));
         }
     }
 
@@ -206,7 +164,8 @@ class Looking {
         for (unsigned n = 0; n < eyes; ++n) {
             std::vector<std::size_t> unseen;
             for (std::size_t i = 0; i < s_.size(); ++i)
-                if (out_.viewpoint_of_surfel[i] == no_eye && one_sided(i)) unseen.push_back(i);
+                if (out_.viewpoint_of_surfel[i] == no_eye && sides_.one_sided(i))
+                    unseen.push_back(i);
             if (static_cast<double>(unseen.size()) < least_unseen * static_cast<double>(s_.size()))
                 return;
             const std::size_t step = unseen.size() / most_surfels + 1,
@@ -220,7 +179,7 @@ class Looking {
             const auto best = std::ranges::max_element(facing_it);
             if (*best == 0) return;
             const std::size_t place = static_cast<std::size_t>(best - facing_it.begin()) * stride;
-            look(view_surfels(s_, places_.middle(place), pool_));
+            look(view_from(places_.middle(place)));
             std::size_t left = 0;
             for (const std::size_t i : unseen) left += out_.viewpoint_of_surfel[i] == no_eye;
             const double gain = static_cast<double>(unseen.size() - left);
@@ -233,8 +192,8 @@ class Looking {
         constexpr double near_m = 2, well = 0.4;  // cosine
         const double away = std::hypot(eye[0] - s_.x[i], eye[1] - s_.y[i], eye[2] - s_.z[i]);
         if (away > near_m) return false;
-        const double f = facing(i, eye);
-        return side_[i] == 0 ? std::abs(f) > well : side_[i] * f > well;
+        const double f = sides_.facing(i, eye);
+        return sides_.side(i) == 0 ? std::abs(f) > well : sides_.side(i) * f > well;
     }
 
     // Share of what is seen that shows its back.
@@ -244,7 +203,7 @@ class Looking {
             for (const std::uint32_t i : image) {
                 if (i == CubeView::nothing) continue;
                 ++all;
-                behind += side_[i] != 0 && from_behind(i, view.eye);
+                behind += sides_.side(i) != 0 && sides_.from_behind(i, view.eye);
             }
         }
         return all > 0 ? static_cast<double>(behind) / static_cast<double>(all) : 1;
@@ -263,7 +222,7 @@ class Looking {
         for (unsigned n = 0; n < first_tries; ++n) {
             const std::size_t place = places_.choose_first();
             if (place == places_.size()) break;
-            CubeView view = view_surfels(s_, places_.middle(place), pool_);
+            CubeView view = view_from(places_.middle(place));
             const double share = share_seen(view);
             const bool fits = sides_known
                                   ? share_facing(view) >= least_facing
@@ -276,46 +235,74 @@ class Looking {
             if (fits) return look(*std::move(best));
         }
         if (!best) return;
-        if (sides_known) std::fill(side_.begin(), side_.end(), std::int8_t{0});
+        if (sides_known) sides_.forget();
         sides_known_ = false;
         look(*std::move(best));
     }
 
     void look(CubeView view) {
-        if (!sides_known_) stop_leaks(view);
+        if (!sides_known_) sides_.count(view);
         const auto eye = static_cast<std::uint32_t>(out_.eyes.size());
         out_.eyes.push_back(view.eye);
         for (const auto& image : view.surfel) {
             for (const std::uint32_t i : image) {
                 if (i == CubeView::nothing || out_.viewpoint_of_surfel[i] != no_eye) continue;
-                const double f = facing(i, view.eye);
-                if (has_normal(i) && std::abs(f) < side_cos) continue;
-                if (side_[i] == 0) side_[i] = f > 0 ? 1 : -1;
-                if (side_[i] * f >= 0) out_.viewpoint_of_surfel[i] = eye;
+                const double f = sides_.facing(i, view.eye);
+                if (sides_.has_normal(i) && std::abs(f) < seen_cos) continue;
+                if (sides_.side(i) == 0) sides_.face(i, f);
+                if (sides_.side(i) * f >= 0) out_.viewpoint_of_surfel[i] = eye;
             }
         }
-        for (std::size_t image = 0; image < 6; ++image) add_frame(view, image);
         for (std::size_t p = 0; p < places_.size(); ++p) {
             if (!places_.is_free(p) && sees_through(view, places_.middle(p))) places_.set_free(p);
             if (!places_.is_within(p) && !hides(view, places_.middle(p))) ++in_view_[p];
         }
         places_.leave_out(view.eye);
+        for (std::size_t image = 0; image < 6; ++image) add_frame(view, image);
     }
 
-    void add_frame(const CubeView& view, std::size_t image) {
+    void add_frame(CubeView& view, std::size_t image) {
         DepthFrame frame;
         frame.camera_to_world = view.pose(image);
         frame.depth.assign(view.depth[image].size(), 0);
         bool any = false;
         for (std::size_t at = 0; at < frame.depth.size(); ++at) {
-            const std::uint32_t i = view.surfel[image][at];
-            if (i == CubeView::nothing || from_behind(i, view.eye)) continue;
+            if (view.surfel[image][at] == CubeView::nothing) continue;
             const double stored = std::round(view.depth[image][at] * out_.intrinsics.depth_scale);
             if (!(stored <= 65535)) continue;
             frame.depth[at] = static_cast<std::uint16_t>(std::max(stored, 1.0));
             any = true;
         }
-        if (any) out_.frames.push_back(std::move(frame));
+        if (!any) return;
+        out_.frames.push_back(std::move(frame));
+        shown_.push_back(std::move(view.surfel[image]));
+    }
+
+    void agree_on_sides() {
+        sides_.agree();
+        for (std::size_t i = 0; i < s_.size(); ++i) {
+            std::uint32_t& eye = out_.viewpoint_of_surfel[i];
+            if (sides_.has_normal(i) && eye != no_eye &&
+                sides_.side(i) * sides_.facing(i, out_.eyes[eye]) <= 0)
+                eye = no_eye;
+        }
+    }
+
+    // A surface that is seen from behind ends no ray: the way to it leads through what nobody
+    // scanned. Which are, only all eyes together tell.
+    void leave_out_behind() {
+        pool_.each(out_.frames.size(), 1, [&](std::size_t f) {
+            DepthFrame& frame = out_.frames[f];
+            const Mat4& m = frame.camera_to_world;
+            for (std::size_t at = 0; at < frame.depth.size(); ++at) {
+                if (frame.depth[at] != 0 && sides_.from_behind(shown_[f][at], {m[3], m[7], m[11]}))
+                    frame.depth[at] = 0;
+            }
+        });
+        shown_.clear();
+        std::erase_if(out_.frames, [](const DepthFrame& frame) {
+            return std::ranges::all_of(frame.depth, [](std::uint16_t d) { return d == 0; });
+        });
     }
 
     // Whether something lies before the point.
@@ -326,97 +313,30 @@ class Looking {
                                  view.depth[image][pixel.index] < pixel.depth);
     }
 
-    bool sees_through(const CubeView& view, const Vec3& point) const {
-        const std::size_t image = view.image_of(point);
-        const CubeView::Pixel pixel = view.pixel_of(image, point);
+    // Whether all of a place is seen through: not a line of sight alone, which may lead through a
+    // gap between surfels, but those to the rim of its cell, too.
+    bool sees_through(const CubeView& view, const Vec3& place) const {
+        const std::size_t image = view.image_of(place);
+        const CubeView::Pixel pixel = view.pixel_of(image, place);
         if (!pixel.inside) return false;
-        const std::uint32_t i = view.surfel[image][pixel.index];
-        return i != CubeView::nothing && !from_behind(i, view.eye) &&
-               pixel.depth + places_.cell_m() < view.depth[image][pixel.index];
-    }
-
-    // Sight leaks through gaps between surfels and meets the insides of faces, here and there one
-    // surfel: of which little of the surface around is seen, that is not seen at all. The word of
-    // an eye on a surfel's side counts by the square of the share that it sees of that surface.
-    void stop_leaks(CubeView& view) {
-        std::vector<std::int8_t> seen(s_.size(), 0);  // from its normal's side 1, from the other -1
-        for (const auto& image : view.surfel) {
-            for (const std::uint32_t i : image) {
-                if (i == CubeView::nothing) continue;
-                const double f = facing(i, view.eye);
-                if (!has_normal(i) || std::abs(f) >= side_cos) seen[i] = f > 0 ? 1 : -1;
-            }
-        }
-        std::vector<float> share(s_.size(), 1);
-        pool_.each(s_.size(), witness_chunk, [&](std::size_t i) {
-            if (seen[i] == 0) return;
-            std::uint32_t around = 1, agree = 1;
-            for (std::uint32_t k = s_.neighbour_first[i]; k < s_.neighbour_first[i + 1]; ++k) {
-                const std::uint32_t j = s_.neighbours[k];
-                const float along = agreement(i, j);
-                if (std::abs(along) < one_surface_cos) continue;
-                ++around;
-                agree += seen[j] == (along > 0 ? seen[i] : -seen[i]);
-            }
-            share[i] = static_cast<float>(agree) / static_cast<float>(around);
-            witness_[i] += static_cast<float>(seen[i]) * share[i] * share[i];
-        });
-        for (auto& image : view.surfel) {
-            for (std::uint32_t& i : image)
-                if (i != CubeView::nothing && share[i] < least_pixel_share) i = CubeView::nothing;
-        }
-    }
-
-    // The side of a surfel is that for which it and its neighbours in one surface have more words;
-    // what only leaks speak of is not known.
-    void agree_on_sides() {
-        for (std::size_t i = 0; i < s_.size(); ++i) {
-            if (!has_normal(i)) continue;
-            float sum = witness_[i], words = 1;
-            for (std::uint32_t k = s_.neighbour_first[i]; k < s_.neighbour_first[i + 1]; ++k) {
-                const std::uint32_t j = s_.neighbours[k];
-                const float along = agreement(i, j);
-                if (std::abs(along) <= one_surface_cos) continue;
-                sum += along > 0 ? witness_[j] : -witness_[j];
-                ++words;
-            }
-            const bool known = std::abs(sum) >= least_word * words;
-            side_[i] = static_cast<std::int8_t>(known ? (sum > 0 ? 1 : -1) : 0);
-            std::uint32_t& eye = out_.viewpoint_of_surfel[i];
-            if (eye != no_eye && side_[i] * facing(i, out_.eyes[eye]) <= 0) eye = no_eye;
-        }
-    }
-
-    // From the surfels whose side is known to the others, first to those of which the known ones
-    // around say most, all together: where a face stands on a floor that goes on below it, those
-    // before it and behind it cancel, and the other edges tell.
-    void spread_sides() {
-        struct Reached {
-            float said;
-            std::uint32_t surfel;
-            bool operator<(const Reached& o) const {
-                return said != o.said ? said < o.said : surfel > o.surfel;
-            }
+        const auto at = [](std::size_t n, double away) {
+            const double to = std::clamp(static_cast<double>(n) + away, 0.0, CubeView::side - 1.0);
+            return static_cast<std::size_t>(to);
         };
-        std::vector<float> said(s_.size(), 0);  // for the normal's side, less for the other
-        std::priority_queue<Reached> next;
-        const auto tell = [&](std::uint32_t i) {
-            for (std::uint32_t k = s_.neighbour_first[i]; k < s_.neighbour_first[i + 1]; ++k) {
-                const std::uint32_t j = s_.neighbours[k];
-                if (side_[j] != 0 || !has_normal(j)) continue;
-                said[j] += static_cast<float>(side_[i]) * std::abs(cosine(i, j)) * agreement(i, j);
-                next.push({std::abs(said[j]), j});
+        const double rim = std::ceil(CubeView::focal * places_.cell_m() / 2 / pixel.depth);
+        const std::size_t row = pixel.index / CubeView::side, column = pixel.index % CubeView::side;
+        for (const double down : {-rim, 0.0, rim}) {
+            for (const double right : {-rim, 0.0, rim}) {
+                const std::size_t n = at(row, down) * CubeView::side + at(column, right);
+                const std::uint32_t i = view.surfel[image][n];
+                const bool nothing = i == CubeView::nothing;
+                if (nothing && n == pixel.index) return false;
+                if (!nothing && (sides_.from_behind(i, view.eye) ||
+                                 pixel.depth + places_.cell_m() >= view.depth[image][n]))
+                    return false;
             }
-        };
-        for (std::size_t i = 0; i < s_.size(); ++i)
-            if (side_[i] != 0) tell(static_cast<std::uint32_t>(i));
-        while (!next.empty()) {
-            const Reached top = next.top();
-            next.pop();
-            if (side_[top.surfel] != 0 || top.said != std::abs(said[top.surfel])) continue;
-            side_[top.surfel] = said[top.surfel] < 0 ? -1 : 1;
-            tell(top.surfel);
         }
+        return true;
     }
 
     // The nearest eye on the surfel's side; no_eye where none is.
@@ -425,7 +345,7 @@ class Looking {
         double best_distance = std::numeric_limits<double>::infinity();
         for (std::size_t e = 0; e < out_.eyes.size(); ++e) {
             const Vec3& eye = out_.eyes[e];
-            if (side_[i] * facing(i, eye) < 0) continue;
+            if (sides_.side(i) * sides_.facing(i, eye) < 0) continue;
             const double distance =
                 std::hypot(eye[0] - s_.x[i], eye[1] - s_.y[i], eye[2] - s_.z[i]);
             if (distance >= best_distance) continue;
@@ -437,18 +357,18 @@ class Looking {
 
     // Right in front of a surfel that no eye has in front.
     Vec3 in_front_of(std::size_t i) const {
-        const double away = side_[i] * s_.cell_m;
+        const double away = sides_.side(i) * s_.cell_m;
         return {s_.x[i] + away * s_.nx[i], s_.y[i] + away * s_.ny[i], s_.z[i] + away * s_.nz[i]};
     }
 
     const Surfels& s_;
     ThreadPool& pool_;
+    std::vector<float> radii_;  // of the surfels as discs
     FreePlaces places_;
-    // 1: the normal points to the free side, -1: away from it, 0: not known.
-    std::vector<std::int8_t> side_;
-    std::vector<float> witness_;  // of the eyes for the normal's side, less those for the other
+    SideVotes sides_;
     bool sides_known_ = false;
     std::vector<std::uint32_t> in_view_;  // of each place outside: how many eyes have it in view
+    std::vector<std::vector<std::uint32_t>> shown_;  // surfels of the frames' pixels
     VirtualViews out_;
 };
 

@@ -16,6 +16,9 @@ struct VirtualViewOptions {
     // Places to look from: with the known ones, or where there are none in each 200 m^3.
     unsigned eyes = 12;
     bool sides_known = false;  // the surfels' normals point to the side that was free
+    // Gaps of less than this radius between surfels are surface that was hit by no point; 0: those
+    // alone that a surfel is wide.
+    double gap_m = 0;
 };
 
 // Depth images as a sensor would have taken them from free places of the scene.

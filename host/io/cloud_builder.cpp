@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 
 #include "io/text.h"
@@ -15,6 +16,10 @@ constexpr std::uint64_t portion = 1u << 20;
 
 bool finite(const std::array<double, 3>& v) {
     return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+std::array<std::vector<float>*, 3> viewpoints_of(PointCloud& cloud) {
+    return {&cloud.viewpoint_x, &cloud.viewpoint_y, &cloud.viewpoint_z};
 }
 
 // Distance between the 2nd and the 98th hundredth of the values, from at most ~10,000 of them:
@@ -43,6 +48,9 @@ CloudBuilder::CloudBuilder(const std::filesystem::path& file, std::uint64_t prom
         if (fields.normals) {
             for (auto* values : {&cloud_.nx, &cloud_.ny, &cloud_.nz}) values->reserve(promised);
         }
+        if (fields.viewpoints) {
+            for (auto* values : viewpoints_of(cloud_)) values->reserve(promised);
+        }
         if (fields.colours != ColourValues::none) {
             for (auto* values : {&cloud_.red, &cloud_.green, &cloud_.blue})
                 values->reserve(promised);
@@ -64,7 +72,8 @@ void CloudBuilder::pass_on() {
 }
 
 void CloudBuilder::add(const std::array<double, 3>& point, const std::array<double, 3>& normal,
-                       const std::array<double, 3>& colour) {
+                       const std::array<double, 3>& colour,
+                       const std::array<double, 3>& viewpoint) {
     if (sink_ && cloud_.size() == portion) pass_on();
     const auto index = seen_++;
     if (!finite(point)) {
@@ -80,6 +89,15 @@ void CloudBuilder::add(const std::array<double, 3>& point, const std::array<doub
     // Whether the cloud is organised shows at the end; 2^32 pixels and more are refused before.
     if (!sink_) cloud_.pixel.push_back(static_cast<std::uint32_t>(index));
     colours_.add(colour, cloud_);
+    if (fields_.viewpoints) {
+        const auto columns = viewpoints_of(cloud_);
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double value = std::abs(viewpoint[a]) <= farthest_m
+                                     ? viewpoint[a]
+                                     : std::numeric_limits<double>::quiet_NaN();
+            columns[a]->push_back(static_cast<float>(value));
+        }
+    }
     if (!fields_.normals) return;
     const double length =
         std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
@@ -103,6 +121,7 @@ PointCloud CloudBuilder::finish(std::uint32_t width, std::uint32_t height) {
     if (height > 1) {
         cloud_.width = width;
         cloud_.height = height;
+        for (auto* values : viewpoints_of(cloud_)) *values = {};  // an image has one
     } else {
         cloud_.pixel = {};
     }

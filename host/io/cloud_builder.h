@@ -19,6 +19,7 @@ using CloudSink = std::function<void(PointCloud)>;
 // What a file's points have beside coordinates.
 struct CloudFields {
     bool normals = false;
+    bool viewpoints = false;
     ColourValues colours = ColourValues::none;
 };
 
@@ -33,9 +34,10 @@ class CloudBuilder {
 
     // Adds point number seen(). `normal` is read with normals only; one that is not finite or has
     // no length is stored as 0, 0, 0. `colour` is read with colours only, red, green and blue as
-    // the file has them. Throws Error(input) for a coordinate beyond 1e6 m.
+    // the file has them; `viewpoint` with viewpoints only. Throws Error(input) for a coordinate
+    // beyond 1e6 m.
     void add(const std::array<double, 3>& point, const std::array<double, 3>& normal = {},
-             const std::array<double, 3>& colour = {});
+             const std::array<double, 3>& colour = {}, const std::array<double, 3>& viewpoint = {});
     std::uint64_t seen() const { return seen_; }
 
     // All points are in. `width`, `height` > 0: the points are the pixels of one image, row by row.

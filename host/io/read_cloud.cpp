@@ -111,6 +111,9 @@ void scale(PointCloud& cloud, double unit_m) {
     for (auto* values : {&cloud.x, &cloud.y, &cloud.z}) {
         for (float& v : *values) v = static_cast<float>(v * unit_m);
     }
+    for (auto* values : {&cloud.viewpoint_x, &cloud.viewpoint_y, &cloud.viewpoint_z}) {
+        for (float& v : *values) v = static_cast<float>(v * unit_m);
+    }
     for (double& v : cloud.viewpoint) v *= unit_m;
     for (double& v : cloud.origin_m) v *= unit_m;
     for (double& v : cloud.offset_m) v *= unit_m;

@@ -209,11 +209,12 @@ class HeaderParser {
 
 // The fields to read, by place in the header.
 struct PcdWanted {
-    std::array<const Field*, 3> point{}, normal{};
+    std::array<const Field*, 3> point{}, normal{}, viewpoint{};
     const Field* colour = nullptr;  // four bytes that hold 0xAARRGGBB
     bool has_normal = false;
+    bool has_viewpoint() const { return viewpoint[0] && viewpoint[1] && viewpoint[2]; }
     CloudFields fields() const {
-        return {has_normal, colour ? ColourValues::bytes : ColourValues::none};
+        return {has_normal, has_viewpoint(), colour ? ColourValues::bytes : ColourValues::none};
     }
 };
 
@@ -231,7 +232,7 @@ const Field* find_field(const std::filesystem::path& file, const PcdHeader& head
 PcdWanted find_wanted(const std::filesystem::path& file, const PcdHeader& header) {
     static constexpr std::array<const char*, 3> point{"x", "y", "z"};
     static constexpr std::array<const char*, 3> normal{"normal_x", "normal_y", "normal_z"},
-        short_normal{"nx", "ny", "nz"};
+        short_normal{"nx", "ny", "nz"}, viewpoint{"vp_x", "vp_y", "vp_z"};
     PcdWanted wanted;
     wanted.has_normal = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -242,6 +243,7 @@ PcdWanted find_wanted(const std::filesystem::path& file, const PcdHeader& header
         if (!wanted.normal[axis])
             wanted.normal[axis] = find_field(file, header, short_normal[axis]);
         wanted.has_normal = wanted.has_normal && wanted.normal[axis];
+        wanted.viewpoint[axis] = find_field(file, header, viewpoint[axis]);
     }
     for (const char* name : {"rgb", "rgba"}) {
         const Field* field = find_field(file, header, name);
@@ -281,12 +283,13 @@ void read_ascii(const std::filesystem::path& file, std::string_view bytes, const
         fail(file, "line " + std::to_string(lines.number()) + ": " + message);
     };
     // Where each value goes; null: nowhere.
-    std::array<double, 3> point{}, normal{};
+    std::array<double, 3> point{}, normal{}, viewpoint{};
     double colour = 0;
     std::vector<double*> place(header.columns, nullptr);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         place[wanted.point[axis]->column] = &point[axis];
         if (wanted.has_normal) place[wanted.normal[axis]->column] = &normal[axis];
+        if (wanted.has_viewpoint()) place[wanted.viewpoint[axis]->column] = &viewpoint[axis];
     }
     if (wanted.colour) place[wanted.colour->column] = &colour;
     std::string_view line;
@@ -308,7 +311,8 @@ void read_ascii(const std::filesystem::path& file, std::string_view bytes, const
             bad("more than the " + counted(place.size(), "value") + " that each point has");
         cloud.add(point, normal,
                   wanted.colour ? unpacked_colour(packed_colour(*wanted.colour, colour))
-                                : std::array<double, 3>{});
+                                : std::array<double, 3>{},
+                  viewpoint);
     }
     if (cloud.seen() != *header.points) {
         fail(file, "the header promises " + counted(*header.points, "point") + ", the file has " +
@@ -338,7 +342,8 @@ void read_binary(std::string_view data, const PcdHeader& header, const PcdWanted
     for (std::uint64_t i = 0; i < points; ++i) {
         cloud.add(load(wanted.point, i),
                   wanted.has_normal ? load(wanted.normal, i) : std::array<double, 3>{},
-                  wanted.colour ? load_colour(*wanted.colour, i) : std::array<double, 3>{});
+                  wanted.colour ? load_colour(*wanted.colour, i) : std::array<double, 3>{},
+                  wanted.has_viewpoint() ? load(wanted.viewpoint, i) : std::array<double, 3>{});
     }
 }
 

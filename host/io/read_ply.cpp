@@ -17,7 +17,7 @@ namespace {
 
 // Where in a vertex the coordinates, the normal and the colour are: indices into its properties.
 struct PlyWanted {
-    std::array<std::size_t, 3> point{}, normal{}, colour{};
+    std::array<std::size_t, 3> point{}, normal{}, colour{}, viewpoint{};
     CloudFields fields;
     std::optional<SplatFields> splats;  // then colour is where theirs are
 };
@@ -75,7 +75,8 @@ PlyWanted find_wanted(const std::filesystem::path& file, const PlyElement& verte
     static constexpr std::array<const char*, 3> point{"x", "y", "z"};
     static constexpr std::array<const char*, 3> normal{"nx", "ny", "nz"},
         long_normal{"normal_x", "normal_y", "normal_z"};
-    int normals = 0;
+    static constexpr std::array<const char*, 3> viewpoint{"vp_x", "vp_y", "vp_z"};
+    int normals = 0, viewpoints = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto at = find_property(file, vertex, point[axis]);
         if (!at)
@@ -88,11 +89,17 @@ PlyWanted find_wanted(const std::filesystem::path& file, const PlyElement& verte
             wanted.normal[axis] = *of_normal;
             ++normals;
         }
+        if (const auto eye = find_property(file, vertex, viewpoint[axis])) {
+            wanted.viewpoint[axis] = *eye;
+            ++viewpoints;
+        }
     }
     wanted.fields.normals = normals == 3;
+    wanted.fields.viewpoints = viewpoints == 3;
     if (wanted.splats) {
         wanted.colour = wanted.splats->colour;
-        wanted.fields = {.normals = false, .colours = ColourValues::bytes};  // normals are all 0
+        // Their normals are all 0.
+        wanted.fields = {.normals = false, .viewpoints = false, .colours = ColourValues::bytes};
     } else {
         find_colour(file, vertex, wanted);
     }
@@ -120,10 +127,11 @@ class Vertices {
         : file_(file), splats_(wanted.splats), cloud_(file, promised, wanted.fields, sink) {}
 
     void add(const std::array<double, 3>& point, const std::array<double, 3>& normal,
-             const std::array<double, 3>& colour, double opacity) {
+             const std::array<double, 3>& colour, const std::array<double, 3>& viewpoint,
+             double opacity) {
         ++seen_;
         if (!splats_) {
-            cloud_.add(point, normal, colour);
+            cloud_.add(point, normal, colour, viewpoint);
         } else if (hides(opacity)) {
             cloud_.add(point, normal, splat_colour(colour));
         }
@@ -169,13 +177,14 @@ PointCloud read_ascii(const std::filesystem::path& file, std::string_view bytes,
         Vertices cloud(file, element.count, wanted, sink);
         const bool coloured = wanted.fields.colours != ColourValues::none;
         // Where each value on the line goes; null: nowhere.
-        std::array<double, 3> point{}, normal{}, colour{};
+        std::array<double, 3> point{}, normal{}, colour{}, viewpoint{};
         double opacity = 0;
         std::vector<double*> place(element.properties.size(), nullptr);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             place[wanted.point[axis]] = &point[axis];
             if (wanted.fields.normals) place[wanted.normal[axis]] = &normal[axis];
             if (coloured) place[wanted.colour[axis]] = &colour[axis];
+            if (wanted.fields.viewpoints) place[wanted.viewpoint[axis]] = &viewpoint[axis];
         }
         if (wanted.splats) place[wanted.splats->opacity] = &opacity;
         const auto bad = [&](const std::string& message) {
@@ -209,7 +218,7 @@ PointCloud read_ascii(const std::filesystem::path& file, std::string_view bytes,
             if (!next_token(rest).empty()) {
                 bad("more than the " + counted(place.size(), "value") + " that each vertex has");
             }
-            cloud.add(point, normal, colour, opacity);
+            cloud.add(point, normal, colour, viewpoint, opacity);
         }
         for (const PlyElement* rest : after(header, element)) {
             for (std::uint64_t i = 0; i < rest->count; ++i) {
@@ -254,6 +263,7 @@ PointCloud read_binary(const std::filesystem::path& file, std::string_view bytes
             cloud.add(load(wanted.point),
                       wanted.fields.normals ? load(wanted.normal) : std::array<double, 3>{},
                       coloured ? load(wanted.colour) : std::array<double, 3>{},
+                      wanted.fields.viewpoints ? load(wanted.viewpoint) : std::array<double, 3>{},
                       wanted.splats ? load_one(wanted.splats->opacity) : 0);
         }
         if (fixed && element.count > 0) {

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vectors.h"
+#include "physics/infinity.h"
 #include "physics/landscape.h"
-#include "physics/vectors.h"
 
 namespace topple::physics {
 namespace {

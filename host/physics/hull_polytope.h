@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/vectors.h"
 #include "physics/landscape.h"
-#include "physics/vectors.h"
 
 // The hull behind a HullLandscape, and the steepest ways over it. For this folder.
 //

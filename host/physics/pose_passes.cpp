@@ -5,7 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "physics/vectors.h"
+#include "core/vectors.h"
+#include "physics/infinity.h"
 
 namespace topple::physics {
 namespace {

@@ -10,8 +10,9 @@
 
 #include "core/scan_gaps.h"
 #include "core/thread_pool.h"
+#include "core/vectors.h"
+#include "physics/infinity.h"
 #include "physics/slide_map.h"
-#include "physics/vectors.h"
 #include "topple/error.h"
 
 namespace topple::physics {

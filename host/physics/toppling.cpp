@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vectors.h"
 #include "physics/blow.h"
+#include "physics/infinity.h"
 #include "physics/tipping.h"
-#include "physics/vectors.h"
 
 namespace topple::physics {
 namespace {

@@ -66,6 +66,15 @@ void check_arrays(const CloudView& view) {
                                                                              {"nz", &view.nz}}};
     for (std::size_t c = 0; c < (normals ? 6 : 3); ++c)
         check_column(view, columns[c].first, *columns[c].second);
+    if (!view.viewpoint_x.empty() || !view.viewpoint_y.empty() || !view.viewpoint_z.empty()) {
+        check_column(view, "viewpoint_x", view.viewpoint_x);
+        check_column(view, "viewpoint_y", view.viewpoint_y);
+        check_column(view, "viewpoint_z", view.viewpoint_z);
+        if (view.height > 1)
+            refuse(view,
+                   "it is organised, of one image, but has a viewpoint for each point; leave "
+                   "out either width and height or viewpoint_x, viewpoint_y and viewpoint_z");
+    }
     if (!view.red.empty() || !view.green.empty() || !view.blue.empty()) {
         check_column(view, "red", view.red);
         check_column(view, "green", view.green);
@@ -118,6 +127,11 @@ std::optional<FinitePoints> finite_points(const CloudView& view) {
             to.red.push_back(view.red[i]);
             to.green.push_back(view.green[i]);
             to.blue.push_back(view.blue[i]);
+        }
+        if (!view.viewpoint_x.empty()) {
+            to.viewpoint_x.push_back(view.viewpoint_x[i]);
+            to.viewpoint_y.push_back(view.viewpoint_y[i]);
+            to.viewpoint_z.push_back(view.viewpoint_z[i]);
         }
         if (view.nx.empty()) continue;
         const bool usable = finite(view.nx, view.ny, view.nz, i);

@@ -10,6 +10,7 @@
 
 #include "core/depth_noise.h"
 #include "geometry/frames_fusion.h"
+#include "geometry/sensor_places.h"
 #include "geometry/single_scan.h"
 #include "geometry/surfels.h"
 #include "geometry/virtual_views.h"
@@ -30,16 +31,21 @@ namespace {
 
 // Virtual views are drawn with surfels of so many cells, coarse enough that noise does not blur
 // which side of a surface is which. But both faces of a board in one of them would have one side,
-// so that they are finer where points allow it, down to half a board of that thickness. Surfels of
-// two pitches cover a surface: of points scattered at random one disc of 1.8 pitches (surfel_views)
-// in 26,000 holds none, and a line of sight that leaks through a face would empty what is behind.
-constexpr double view_cells = 3, board_m = 0.02, covering_pitches = 2;
+// so that they are finer where points allow it, down to half a board of that thickness, or to what
+// holds two of points that are scattered at random.
+constexpr double view_cells = 3, board_m = 0.02, view_pitches = 1.5;
+// Gaps of this radius are no surface: of points at random, one place in 26,000 has none within 1.8
+// of their mean distances, so that parts of a sixth of the density still hide what is behind them.
+constexpr double gap_pitches = 4;
 
 geometry::SurfelScale view_surfels(const geometry::PointSpacing& spacing, double cell_m) {
     const double pitch_m = spacing.around_m;
-    return {std::min(view_cells * cell_m, std::max(board_m / 2, covering_pitches * pitch_m)),
-            pitch_m};
+    return {std::min(view_cells * cell_m, std::max(board_m / 2, view_pitches * pitch_m)), pitch_m,
+            2 * spacing.surface_m};
 }
+
+// Of the places that sensors are known to have been at, those looked from.
+constexpr std::size_t most_sensors = 24;
 
 class SequenceStream final : public FrameStream {
   public:
@@ -135,21 +141,28 @@ Ingested ingest_folder(device::Device& device, const std::filesystem::path& fold
 
 // Virtual views of a cloud without poses, and which side of its surfaces was seen.
 void look_from_free_places(device::Device& device, const std::optional<geometry::SingleScan>& scan,
-                           const geometry::SurfelScale& scale, Ingested& out) {
+                           const geometry::SurfelScale& scale, double gap_m, Ingested& out) {
     geometry::VirtualViewOptions options;
-    if (scan) {
+    geometry::SensorPlaces sensors = geometry::sensor_places(out.cloud);
+    const bool posed = !sensors.places.empty();
+    if (posed) {
+        options.known_eyes = geometry::places_apart(sensors, most_sensors);
+    } else if (scan) {
         options.known_eyes = {scan->eye};
         options.eyes = 1;
         out.camera_up = scan->up;
-        out.notes.push_back("The cloud has no sensor poses, but hides nothing from " +
-                            position_text(scan->eye) +
-                            ": it was taken for a single scan from there.");
+        out.notes.push_back(
+            out.cloud.has_viewpoint
+                ? "The cloud was seen from " + position_text(scan->eye) + ", as it says."
+                : "The cloud has no sensor poses, but hides nothing from " +
+                      position_text(scan->eye) + ": it was taken for a single scan from there.");
     } else if (out.cloud.has_viewpoint) {
         options.known_eyes = {out.cloud.viewpoint};
     }
     options.sides_known = !options.known_eyes.empty() || !out.cloud.nx.empty();
-    const geometry::Surfels surfels =
-        geometry::make_surfels(device, out.cloud, scale, options.known_eyes, {});
+    options.gap_m = gap_m;
+    const geometry::Surfels surfels = geometry::make_surfels(
+        device, out.cloud, scale, posed ? sensors.places : options.known_eyes, sensors.of_point);
     geometry::VirtualViews views = geometry::virtual_views(surfels, options, device.threads());
     if (views.frames.empty()) {
         out.notes.push_back(
@@ -157,7 +170,10 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
         return;
     }
     const std::size_t eyes = views.eyes.size();
-    if (scan) {
+    if (posed) {
+        out.viewpoints = std::move(sensors.places);
+        out.viewpoint_of_point = std::move(sensors.of_point);
+    } else if (scan) {
         out.viewpoints = {scan->eye};
     } else if (out.cloud.has_viewpoint) {
         out.viewpoints = {out.cloud.viewpoint};
@@ -166,10 +182,18 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
         for (const std::uint32_t s : surfels.of_point)
             out.viewpoint_of_point.push_back(views.viewpoint_of_surfel[s]);
     }
-    if (!scan) {
+    if (!scan && !posed) {
+        const std::string views_text = std::to_string(eyes) +
+                                       " virtual views within it, and is less certain than from "
+                                       "depth frames.";
         out.notes.push_back(
-            "The cloud has no sensor poses: free space was estimated from " + std::to_string(eyes) +
-            " virtual views within it, and is less certain than from depth frames.");
+            out.cloud.has_viewpoint
+                ? "From the sensor's place that was given, " + position_text(out.cloud.viewpoint) +
+                      ", points would hide others: it is off by some centimetres, or not all of "
+                      "the scan is from there. It tells the sides of surfaces, but free space was "
+                      "estimated from " +
+                      views_text
+                : "The cloud has no sensor poses: free space was estimated from " + views_text);
     }
     out.frames = std::make_unique<MemoryStream>(views.intrinsics, std::move(views.frames));
 }
@@ -238,14 +262,16 @@ void look_at_cloud(device::Device& device, Ingested& out) {
     const geometry::PointSpacing spacing = geometry::point_spacing(cloud);
     check_spacing(cloud, spacing.nearest_m, out.origin);
     // A little above the spacing, so that a surface has no holes at this resolution.
-    out.cell_m = std::clamp(1.25 * spacing.nearest_m, least_cell_m, largest_cell_m);
+    constexpr double cell_pitches = 1.25;
+    out.cell_m = std::clamp(cell_pitches * spacing.nearest_m, least_cell_m, largest_cell_m);
+    out.sparse_cell_m = std::max(out.cell_m, cell_pitches * spacing.surface_m);
     out.surfels = geometry::surfels_for(spacing, surfel_cells * out.cell_m);
     out.notes = cloud.notes;
     // A depth image's gaps are no news.
     if (cloud.dropped > 0 && cloud.height <= 1)
         out.notes.push_back(io::counted(cloud.dropped, "point") + " of " +
                             std::to_string(cloud.dropped + cloud.size()) +
-                            " were not finite and are left out.");
+                            (cloud.dropped == 1 ? " was" : " were") + " not finite and left out.");
     if (cloud.height <= 1) note_spacing(spacing.around_m, out.notes);
     Intrinsics intrinsics;
     DepthFrame frame;
@@ -258,9 +284,13 @@ void look_at_cloud(device::Device& device, Ingested& out) {
         out.frames = std::make_unique<MemoryStream>(intrinsics, std::move(frames));
         return;
     }
-    const auto scan = geometry::find_single_scan(
-        cloud, cloud.has_viewpoint ? cloud.viewpoint : out.own.origin_m, spacing.nearest_m);
-    look_from_free_places(device, scan, view_surfels(spacing, out.cell_m), out);
+    std::optional<geometry::SingleScan> scan;
+    if (cloud.viewpoint_x.empty()) {
+        scan = geometry::find_single_scan(
+            cloud, cloud.has_viewpoint ? cloud.viewpoint : out.own.origin_m, spacing.nearest_m);
+    }
+    look_from_free_places(device, scan, view_surfels(spacing, out.cell_m),
+                          gap_pitches * spacing.surface_m, out);
 }
 
 }  // namespace
@@ -317,7 +347,7 @@ Ingested ingest_part(device::Device& device, PointCloud cloud, double cell_m) {
     out.cell_m = cell_m;
     out.own = std::move(cloud);
     out.cloud = out.own;
-    look_from_free_places(device, std::nullopt, view_cells * cell_m, out);
+    look_from_free_places(device, std::nullopt, view_cells * cell_m, gap_pitches * cell_m, out);
     return out;
 }
 

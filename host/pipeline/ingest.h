@@ -51,8 +51,9 @@ struct Ingested {
     std::optional<geometry::SceneFrame> frame;
     std::vector<geometry::StoreyHint> storeys;  // of a part of a building
     std::optional<SpaceMap> space;              // what a map says to be free
-    double voxel_m = 0;  // voxels' edge that the input brings; 0: from cell_m
-    double cell_m = 0;   // working resolution, from the point spacing and the sensor's noise
+    double voxel_m = 0;        // voxels' edge that the input brings; 0: from cell_m
+    double cell_m = 0;         // working resolution, from the point spacing and the sensor's noise
+    double sparse_cell_m = 0;  // the same for the sparser parts of the surface; 0: no other
     std::optional<geometry::SurfelScale> surfels;  // none: cells of surfel_cells * cell_m
     std::vector<std::string> notes;
 };

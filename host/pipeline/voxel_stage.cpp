@@ -291,7 +291,7 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, const Geom
     geometry::GapPoints gaps;
     stage("voxels", [&] {
         // Larger voxels close gaps by themselves.
-        if (voxel_m < closing_cells * input.cell_m)
+        if (voxel_m < closing_cells * std::max(input.cell_m, input.sparse_cell_m))
             gaps = geometry::close_gaps(geometry.surfels, geometry.primitives.faces.label,
                                         geometry.primitives.label, voxel_m / 2);
         if (gaps.size() == 0) {

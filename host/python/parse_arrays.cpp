@@ -255,9 +255,15 @@ void bind_parse(py::module_& module) {
     module.def("parse_arrays",
                [](const std::vector<py::array>& points, const std::vector<py::array>& normals,
                   const std::vector<py::array>& colours, const std::optional<Vec3>& viewpoint,
-                  const std::string& name, const std::shared_ptr<SharedDevice>& device,
-                  ParseOptions options, py::object progress, py::object cancelled) {
+                  const std::vector<py::array>& viewpoints, const std::string& name,
+                  const std::shared_ptr<SharedDevice>& device, ParseOptions options,
+                  py::object progress, py::object cancelled) {
                    CloudView view = view_of(points, normals, colours, viewpoint);
+                   if (!viewpoints.empty()) {
+                       view.viewpoint_x = column<float>(viewpoints.at(0), "viewpoint x");
+                       view.viewpoint_y = column<float>(viewpoints.at(1), "viewpoint y");
+                       view.viewpoint_z = column<float>(viewpoints.at(2), "viewpoint z");
+                   }
                    view.source = name;
                    options.coordinates = false;
                    return run(device, options, std::move(progress), std::move(cancelled),

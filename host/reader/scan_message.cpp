@@ -18,6 +18,7 @@ template <class Archive, class Map>
 void fields(Archive& a, Map& map) {
     auto& cloud = map.cloud;
     for (auto* values : {&cloud.x, &cloud.y, &cloud.z, &cloud.nx, &cloud.ny, &cloud.nz}) a(*values);
+    for (auto* values : {&cloud.viewpoint_x, &cloud.viewpoint_y, &cloud.viewpoint_z}) a(*values);
     for (auto* values : {&cloud.red, &cloud.green, &cloud.blue}) a(*values);
     a(cloud.dropped);
     a(cloud.width);
@@ -53,6 +54,9 @@ void check(const PointCloud& cloud) {
     expect(size > 0 && cloud.y.size() == size && cloud.z.size() == size);
     each_or_none(cloud.nx);
     expect(cloud.ny.size() == cloud.nx.size() && cloud.nz.size() == cloud.nx.size());
+    each_or_none(cloud.viewpoint_x);
+    expect(cloud.viewpoint_y.size() == cloud.viewpoint_x.size() &&
+           cloud.viewpoint_z.size() == cloud.viewpoint_x.size());
     each_or_none(cloud.red);
     expect(cloud.green.size() == cloud.red.size() && cloud.blue.size() == cloud.red.size());
     for (const auto* values : {&cloud.x, &cloud.y, &cloud.z})

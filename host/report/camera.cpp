@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "report/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::report {
 namespace {
@@ -25,7 +25,7 @@ std::vector<Vec3> corners_of(const Vec3& low, const Vec3& high) {
 }  // namespace
 
 std::array<double, 3> Camera::project(const Vec3& p) const {
-    const Vec3 d = plus(p, -1, eye);
+    const Vec3 d = along(p, -1, eye);
     const double depth = dot(d, ahead);
     return {x0 + focal * dot(d, right) / depth, y0 - focal * dot(d, up) / depth, depth};
 }
@@ -50,7 +50,7 @@ Camera camera_on(const Vec3& low, const Vec3& high, int width, int height,
         std::max(std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 1e-3);
     double distance = reach;
     for (int round = 0; round < 60; ++round) {
-        camera.eye = plus(target, -distance, camera.ahead);
+        camera.eye = along(target, -distance, camera.ahead);
         double west = 1e300, east = -1e300, top = 1e300, bottom = -1e300;
         for (const Vec3& corner : corners) {
             const auto [x, y, depth] = camera.project(corner);
@@ -60,12 +60,12 @@ Camera camera_on(const Vec3& low, const Vec3& high, int width, int height,
             bottom = std::max(bottom, y);
         }
         const double metres = distance / camera.focal;  // of a pixel in the middle
-        target = plus(target, ((west + east) / 2 - camera.x0) * metres, camera.right);
-        target = plus(target, (camera.y0 - (top + bottom) / 2) * metres, camera.up);
+        target = along(target, ((west + east) / 2 - camera.x0) * metres, camera.right);
+        target = along(target, (camera.y0 - (top + bottom) / 2) * metres, camera.up);
         distance = std::max(distance * std::max((east - west) / wide, (bottom - top) / tall),
                             0.75 * reach);
     }
-    camera.eye = plus(target, -distance, camera.ahead);
+    camera.eye = along(target, -distance, camera.ahead);
     return camera;
 }
 

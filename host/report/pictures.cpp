@@ -9,9 +9,9 @@
 #include <numbers>
 #include <string>
 
+#include "core/vectors.h"
 #include "io/palette.h"
 #include "report/scene_image.h"
-#include "report/vectors.h"
 #include "safety/disturbances.h"
 
 namespace topple::report {
@@ -22,10 +22,6 @@ using Overlay = SceneImage::Overlay;
 constexpr int width = 1280, height = 800;
 constexpr std::array<double, 4> margin{24, 24, 76, 24};
 constexpr std::size_t labelled = 10;
-
-double length_of(const Vec3& v) {
-    return std::hypot(v[0], v[1], v[2]);
-}
 
 std::string text(const char* format, double value) {
     char digits[64];
@@ -146,8 +142,8 @@ class Pictures {
             if (walks.shade[at] == 0) continue;
             const auto x = static_cast<std::int64_t>(at) % walks.nx,
                        y = static_cast<std::int64_t>(at) / walks.nx;
-            Vec3 corner =
-                plus(plus(walks.corner_m, double(x), walks.along_x_m), double(y), walks.along_y_m);
+            Vec3 corner = along(along(walks.corner_m, double(x), walks.along_x_m), double(y),
+                                walks.along_y_m);
             corner[2] += walks.floor_mm[at] / 1000.0 + lift;
             quad(overlay, corner, walks.along_x_m, walks.along_y_m,
                  ramp_colour((walks.shade[at] - 1) / 254.0));
@@ -166,19 +162,19 @@ class Pictures {
         for (std::size_t n = 0; n + 1 < path.size(); ++n) {
             const Vec3 a{path[n][0], path[n][1], path[n][2] + lift};
             const Vec3 b{path[n + 1][0], path[n + 1][1], path[n + 1][2] + lift};
-            const Vec3 along = plus(b, -1, a);
-            const double level = std::hypot(along[0], along[1]);
+            const Vec3 step = minus(b, a);
+            const double level = std::hypot(step[0], step[1]);
             if (!(level > 0)) continue;
-            const Vec3 side{-along[1] / level * 2 * half, along[0] / level * 2 * half, 0};
-            quad(overlay, plus(a, -0.5, side), along, side, {255, 255, 255});
+            const Vec3 side{-step[1] / level * 2 * half, step[0] / level * 2 * half, 0};
+            quad(overlay, along(a, -0.5, side), step, side, {255, 255, 255});
         }
     }
 
     static void quad(Overlay& overlay, const Vec3& corner, const Vec3& a, const Vec3& b,
                      const Bytes3& colour) {
-        const Vec3 far = plus(plus(corner, 1, a), 1, b);
-        overlay.triangle(corner, plus(corner, 1, a), far, colour);
-        overlay.triangle(corner, far, plus(corner, 1, b), colour);
+        const Vec3 far = along(along(corner, 1, a), 1, b);
+        overlay.triangle(corner, along(corner, 1, a), far, colour);
+        overlay.triangle(corner, far, along(corner, 1, b), colour);
     }
 
     void write_field(const std::string& name, const std::vector<std::array<float, 7>>& arrows) {
@@ -188,7 +184,7 @@ class Pictures {
         const Arrows& style = kind->words.arrows;
         std::vector<double> strength;
         for (const auto& a : arrows) {
-            const double length = length_of({a[3], a[4], a[5]});
+            const double length = topple::length({a[3], a[4], a[5]});
             strength.push_back(style.strength == Arrows::Strength::visits ? a[6]
                                : style.strength == Arrows::Strength::mean ? length * a[6]
                                                                           : length);
@@ -208,24 +204,22 @@ class Pictures {
 
     // A shaft and a head with five sides; its place is at `tip`, from 0 at its foot to 1.
     void add_arrow(Overlay& overlay, const std::array<float, 7>& arrow, double share, double tip) {
-        Vec3 along{arrow[3], arrow[4], arrow[5]};
-        const double speed = length_of(along);
+        const Vec3 velocity{arrow[3], arrow[4], arrow[5]};
+        const double speed = length(velocity);
         if (!(speed > 0)) return;
-        for (double& c : along) c /= speed;
-        const Vec3 aside = std::abs(along[2]) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
-        Vec3 side = cross(along, aside);
-        const double norm = length_of(side);
-        for (double& c : side) c /= norm;
-        const Vec3 other = cross(along, side), from{arrow[0], arrow[1], arrow[2]};
+        const Vec3 ahead = topple::unit(velocity);
+        const Vec3 aside = std::abs(ahead[2]) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
+        const Vec3 side = topple::unit(cross(ahead, aside));
+        const Vec3 other = cross(ahead, side), from{arrow[0], arrow[1], arrow[2]};
         const double size =
             std::clamp(0.035 * image_.reach_m(), 0.05, 0.35) * (0.35 + 0.65 * share);
         const double thickness = 0.17 * size;
         constexpr int sides = 5;
         const auto place = [&](double radius, double z, int n) {
             const double angle = 2 * std::numbers::pi * n / sides;
-            return plus(plus(plus(from, (z - tip) * size, along),
-                             radius * thickness * std::cos(angle), side),
-                        radius * thickness * std::sin(angle), other);
+            return along(along(along(from, (z - tip) * size, ahead),
+                               radius * thickness * std::cos(angle), side),
+                         radius * thickness * std::sin(angle), other);
         };
         const Bytes3 colour = ramp_colour(share);
         constexpr std::array<std::array<double, 2>, 4> rings{

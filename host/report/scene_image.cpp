@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "report/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::report {
 namespace {
@@ -91,7 +91,7 @@ void SceneImage::draw_solids() {
         Vec3 centre{}, seen{double(aux[0]), double(aux[1]), double(aux[2])};
         for (std::size_t axis = 0; axis < 3; ++axis)
             centre[axis] = view_.origin_m[axis] + view_.step_m[axis] * cell[axis];
-        const Vec3 to_eye = plus(camera_.eye, -1, centre);
+        const Vec3 to_eye = along(camera_.eye, -1, centre);
         const std::int32_t object = view_.groups[cell[3]].second;
         const bool background = object < 0 || grounded_.contains(object);
         // A wall or ceiling that is seen from behind would hide the room.
@@ -102,7 +102,7 @@ void SceneImage::draw_solids() {
             if (!(aux[3] >> face & 1) || dot(normal, to_eye) <= 0) continue;
             // The mean normal of what was seen there smooths the voxels' steps.
             Vec3 facing = normal;
-            if (smooth) facing = plus(normal, dot(seen, normal) < 0 ? -2 : 2, seen);
+            if (smooth) facing = along(normal, dot(seen, normal) < 0 ? -2 : 2, seen);
             unit(facing);
             const Vec3& side = normals[(face + 2) % 6 / 2 * 2 + 1];
             const Vec3& other = normals[(face + 4) % 6 / 2 * 2 + 1];
@@ -119,8 +119,8 @@ void SceneImage::add_face(const Vec3& centre, const Vec3& normal, const Vec3& si
     const double half = 0.505 * view_.cube_m;
     std::array<Vec3, 4> corner;
     for (std::size_t n = 0; n < 4; ++n) {
-        corner[n] = plus(plus(plus(centre, half, normal), n == 0 || n == 3 ? -half : half, side),
-                         n < 2 ? -half : half, other);
+        corner[n] = along(along(along(centre, half, normal), n == 0 || n == 3 ? -half : half, side),
+                          n < 2 ? -half : half, other);
     }
     const auto what = static_cast<std::uint32_t>(faces_.size());
     faces_.push_back(face);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::report {
 namespace {

@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "core/thread_pool.h"
+#include "core/vectors.h"
 #include "scenes/furnished_room.h"
 #include "scenes/random.h"
-#include "scenes/vectors.h"
 #include "topple/error.h"
 
 namespace topple::scenes {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/vectors.h"
 #include "scenes/parallel.h"
 
 namespace topple::scenes {
@@ -16,13 +17,6 @@ constexpr double clearance = 0.003;   // between points and other solids
 constexpr double least_cosine = 0.1;  // flatter rays give no reading (84 degrees)
 constexpr double lift = 0.001;        // of a ray's end above the surface
 constexpr std::uint32_t ring_columns = 512;
-
-Vec3 minus(const Vec3& a, const Vec3& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-double product(const Vec3& a, const Vec3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // Grows with the angle from +x, from 0 to 4 for a turn: without a library's arc functions.
 double diamond_angle(double x, double y) {
@@ -36,7 +30,7 @@ double diamond_angle(double x, double y) {
 bool faces_any(const Sheet& sheet, const std::vector<Vec3>& stations) {
     return sheet.kind != Sheet::Kind::flat ||
            std::any_of(stations.begin(), stations.end(), [&](const Vec3& station) {
-               return product(minus(station, sheet.origin), sheet.axes[2]) > 0;
+               return dot(minus(station, sheet.origin), sheet.axes[2]) > 0;
            });
 }
 
@@ -122,7 +116,7 @@ RoomScan::Room RoomScan::room_at(const Vec3& p, double radius, std::int32_t part
 // `last`: what blocked the view the last time, tried first.
 bool RoomScan::blocked(const Vec3& from, const Vec3& to, std::size_t& last) const {
     const Vec3 way = minus(to, from);
-    const double length = std::sqrt(product(way, way));
+    const double length = std::sqrt(dot(way, way));
     const Vec3 d{way[0] / length, way[1] / length, way[2] / length};
     const Vec3 inverse{1 / d[0], 1 / d[1], 1 / d[2]};
     const auto meets = [&](const Box& box) {
@@ -161,7 +155,7 @@ bool RoomScan::find_station(const Sheet::Place& place, std::vector<std::size_t>&
                      p[2] + lift * place.normal[2]};
     for (std::size_t n = 0; n < stations_.size(); ++n) {
         const Vec3 way = minus(stations_[n], p);
-        if (product(way, place.normal) < least_cosine * std::sqrt(product(way, way))) continue;
+        if (dot(way, place.normal) < least_cosine * std::sqrt(dot(way, way))) continue;
         if (blocked(stations_[n], above, last[n])) continue;
         seen.station = static_cast<std::uint8_t>(n);
         seen.column =
@@ -185,7 +179,7 @@ void RoomScan::look(const Patch& patch, int depth, std::vector<std::size_t>& las
     for (const double u : patch.u) {
         for (const double v : patch.v) {
             const Vec3 way = minus(sheet.at(u, v).point, middle.point);
-            radius = std::max(radius, std::sqrt(product(way, way)));
+            radius = std::max(radius, std::sqrt(dot(way, way)));
         }
     }
     switch (room_at(middle.point, radius, sheet.part)) {
@@ -229,7 +223,7 @@ void RoomScan::sample(std::size_t patch, double noise_m, Random random,
             if (attempt == 8) break;
         }
         const Vec3 way = minus(point, station);
-        const double share = noise_m * random.normal() / std::sqrt(product(way, way));
+        const double share = noise_m * random.normal() / std::sqrt(dot(way, way));
         for (std::size_t k = 0; k < 3; ++k) point[k] += share * way[k];
     }
 }

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "solids/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::solids {
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-#include "solids/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::solids {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solids/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::solids {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "solids/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::solids {
 namespace {

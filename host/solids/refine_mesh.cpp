@@ -7,8 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "core/vectors.h"
 #include "solids/meeting_point.h"
-#include "solids/vectors.h"
 
 namespace topple::solids {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "solids/vectors.h"
+#include "core/vectors.h"
 
 namespace topple::solids {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/vectors.h"
 #include "solids/error_quadric.h"
 #include "solids/mesh_pieces.h"
-#include "solids/vectors.h"
 #include "solids/vertex_rings.h"
 
 namespace topple::solids {

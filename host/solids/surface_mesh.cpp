@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <map>
 
+#include "core/vectors.h"
 #include "solids/block_surface.h"
 #include "solids/refine_mesh.h"
-#include "solids/vectors.h"
 #include "solids/vertex_places.h"
 
 namespace topple::solids {

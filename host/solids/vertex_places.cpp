@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/vectors.h"
 #include "solids/meeting_point.h"
-#include "solids/vectors.h"
 
 namespace topple::solids {
 namespace {

@@ -12,7 +12,7 @@ import pytest
 
 import topple
 import topple.formats
-from made_scans import CAMERA, POSES, colours_of, graphics, parsed, quaternion, refused, same_objects, truncated
+from made_scans import CAMERA, POSES, colours_of, graphics, parsed, quaternion, refused, same_objects, seen_from, truncated
 from topple.formats import cloud, frames
 
 # With the packages that ./dev setup installs, or not at all: package/python_formats runs them.
@@ -78,15 +78,24 @@ def e57(path, scans):
     return path
 
 
-def test_e57(points, ply, device, tmp_path):
-    # The first half as a scanner at (1, 2, 0.5) saw it that was turned by a quarter about z; the other unturned.
-    turn, place = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]]), np.array([1, 2, 0.5])
-    first = (points[::2] - place) @ turn
-    file = e57(tmp_path / 'room.e57', [(first, [np.sqrt(0.5), 0, 0, np.sqrt(0.5)], place), (points[1::2], [1, 0, 0, 0], [0, 0, 0])])
+def test_e57(device, tmp_path):
+    # The room from nine places, of which each scan is in its scanner's own frame.
+    scans, seen, eyes = [], [], []
+    for pose in POSES[::2]:
+        depth = seen_from(pose)[0]
+        u, v = np.meshgrid(np.arange(CAMERA.width), np.arange(CAMERA.height))
+        own = np.stack([(u - CAMERA.cx) / CAMERA.fx * depth, (v - CAMERA.cy) / CAMERA.fy * depth, depth], axis=-1).reshape(-1, 3)
+        scans.append((own, np.roll(quaternion(pose[:3, :3]), 1), pose[:3, 3]))
+        seen.append(own @ pose[:3, :3].T + pose[:3, 3])
+        eyes.append(np.tile(pose[:3, 3], (len(own), 1)))
+    file, both, eyes = e57(tmp_path / 'room.e57', scans), np.concatenate(seen), np.concatenate(eyes)
     result = parsed(file, device)
-    cloud.write_cloud(tmp_path / 'order.ply', cloud.Cloud(np.concatenate([points[::2], points[1::2]]).astype(float)), file)
-    same_objects(result, parsed(tmp_path / 'order.ply', device), within=0.02)
-    assert any('2 scans' in note for note in result.notes)
+    for name in ('order.ply', 'order.pcd'):
+        cloud.write_cloud(tmp_path / name, cloud.Cloud(both, viewpoint=eyes), file)
+        same_objects(result, parsed(tmp_path / name, device), within=0.02)
+    same_objects(result, topple.parse(both, viewpoint=eyes, device=device, disturbances=[]), within=0.02)
+    assert any('9 scans' in note for note in result.notes)
+    assert not any('virtual views' in note for note in result.notes)
 
 
 def test_e57_of_one_scan_knows_its_scanner(points, device, tmp_path):

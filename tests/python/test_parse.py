@@ -192,6 +192,13 @@ def test_wrong_types_of_options_are_refused_by_name(points, name, value):
     assert raised.value.kind == 'usage' and repr(value) in str(raised.value) or name == 'corrections'
 
 
+def test_viewpoints_have_a_row_for_each_point(points, device):
+    with pytest.raises(topple.Error, match='viewpoint'):
+        quick(points, device, viewpoint=np.zeros((3, 2), 'float32'))
+    with pytest.raises(topple.Error, match=f'viewpoint_x has 3 values, but x has {len(points)}'):
+        quick(points, device, viewpoint=np.zeros((3, 3), 'float32'))
+
+
 def test_options_of_numpy_are_taken(points, result, device):
     parsed = quick(points, device, seed=np.int64(1), up=np.array([0, 0, 1]), friction=np.float32(0.3), walks=np.uint8(9))
     assert parsed.up == [0, 0, 1] and len(parsed.objects) == len(result.objects)

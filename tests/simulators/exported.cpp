@@ -34,7 +34,7 @@ void write_scan(const std::filesystem::path& file) {
                                {{0, 2, 0}, {2, 2, 1}, "90 110 150"},
                                {{0.7, 0.7, 0}, {1.3, 1.2, 0.4}, "180 60 40"},
                                {{0.8, 0.8, 0.4}, {1.05, 1, 0.7}, "40 160 60"}}) {
-        const Vec3 size = physics::minus(box.high, box.low);
+        const Vec3 size = minus(box.high, box.low);
         for (std::size_t across = 0; across < 3; ++across) {
             const std::size_t u = (across + 1) % 3, v = (across + 2) % 3;
             for (const bool upper : {false, true}) {

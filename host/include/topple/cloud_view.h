@@ -84,6 +84,8 @@ struct CloudView {
     std::span<const std::uint32_t> pixel;
     bool has_viewpoint = false;
     Vec3 viewpoint{0, 0, 0};
+    // Where the sensor was that saw each point, metres, or empty. What is not finite: not known.
+    FloatColumn viewpoint_x, viewpoint_y, viewpoint_z;
     std::string source;  // what messages call it; empty: "cloud"
     std::vector<std::string> notes;
     // sRGB, 0 to 255, or empty. 0, 0, 0: this point's is not known.
@@ -103,6 +105,9 @@ struct CloudView {
           pixel(cloud.pixel),
           has_viewpoint(cloud.has_viewpoint),
           viewpoint(cloud.viewpoint),
+          viewpoint_x(cloud.viewpoint_x),
+          viewpoint_y(cloud.viewpoint_y),
+          viewpoint_z(cloud.viewpoint_z),
           source(cloud.source),
           notes(cloud.notes),
           red(cloud.red),

@@ -35,6 +35,9 @@ struct PointCloud {
     // unorganised cloud, or any organised cloud).
     bool has_viewpoint = false;
     Vec3 viewpoint{0, 0, 0};
+    // Or of each point, of an unorganised cloud that several scans or a moving sensor made (PCL's
+    // vp_x, vp_y, vp_z), metres; or empty. NaN: not known.
+    std::vector<float> viewpoint_x, viewpoint_y, viewpoint_z;
     // Else where it may have been: the origin of the numbers that the file holds, which a scan of
     // one sensor that was moved since has there still.
     Vec3 origin_m{0, 0, 0};

@@ -90,6 +90,9 @@ typedef struct topple_cloud {
     const char* name;                  /* for messages; NULL: "cloud" */
     const uint8_t *red, *green, *blue; /* sRGB, 0, 0, 0 where it is not known; or NULL */
     int64_t colour_stride_bytes;       /* 0: 1 */
+    /* Of each point, where the sensor was that saw it, in place of `viewpoint`; or NULL */
+    const float *viewpoint_x, *viewpoint_y, *viewpoint_z;
+    int64_t viewpoint_stride_bytes; /* 0: sizeof(float) */
 } topple_cloud;
 void topple_cloud_init(topple_cloud* cloud, size_t size);
 

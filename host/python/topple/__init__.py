@@ -252,8 +252,9 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     all that there are.
 
     device: a Device of open_device(), or a backend's name. motion: a file, or a list of files; accelerogram: a file, or
-    a tuple of up to three with a record's components along, across and up, None for one that is not known; hazard: a file. normals, viewpoint: of
-    points, as they are given; where the sensor was. colours: of points, sRGB as uint8, an array of shape (N, 3),
+    a tuple of up to three with a record's components along, across and up, None for one that is not known; hazard: a file. normals: of
+    points, as they are given. viewpoint: where the sensor was, three numbers, or (N, 3) where each point was seen from, NaN where it is not
+    known: of several scans, or a sensor that moved. colours: of points, sRGB as uint8, an array of shape (N, 3),
     records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. progress(stage, done) is called as stages start and go on;
     contents_kg_m3: of closed furniture, or None where all is solid.
     corrections: what you know of the room beside the scan: a file, or a list of dicts such as {"do": "fixed", "at_m":
@@ -276,7 +277,11 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
         given['disturbances'] = disturbances
     for option, value in given.items():
         setattr(options, option, _option(option, value))
-    device, viewpoint = _option('device', device), _option('viewpoint', viewpoint)
+    device, viewpoints = _option('device', device), []
+    if isinstance(source, (str, os.PathLike)) or frames is not None or np.ndim(viewpoint) < 2:
+        viewpoint = _option('viewpoint', viewpoint)
+    else:
+        viewpoint, viewpoints = None, _columns(viewpoint, ('vp_x', 'vp_y', 'vp_z'), 'viewpoint')
     progress, cancelled = _option('progress', progress), _option('cancelled', cancelled)
     for file in _files(motion):
         options.read_motion(file)
@@ -323,5 +328,5 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     points = _columns(source, ('x', 'y', 'z'), 'points')
     directions = [] if normals is None else _columns(normals, ('nx', 'ny', 'nz'), 'normals')
     channels = [] if colours is None else _channels(colours)
-    parsed = _topple.parse_arrays(points, directions, channels, viewpoint, name, device, options, progress, cancelled)
+    parsed = _topple.parse_arrays(points, directions, channels, viewpoint, viewpoints, name, device, options, progress, cancelled)
     return Result(parsed, points, channels)

@@ -374,7 +374,7 @@ def parse(
     cache_file: Union[str, os.PathLike[str], None] = ...,
     normals: Optional[_Points] = ...,
     name: Optional[str] = ...,
-    viewpoint: Optional[_Vec3] = ...,
+    viewpoint: Union[_Vec3, _Points, None] = ...,
     colours: Union[_Points, Sequence[Optional[NDArray[np.uint8]]], None] = ...,
     frames: Union[NDArray[Any], Sequence[NDArray[Any]], None] = ...,
     camera_to_world: Optional[NDArray[np.floating[Any]]] = ...,

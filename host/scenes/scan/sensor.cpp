@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vectors.h"
 #include "scenes/scan/smooth.h"
-#include "scenes/vectors.h"
 
 namespace topple::scenes {
 namespace {

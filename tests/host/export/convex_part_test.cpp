@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/vectors.h"
 #include "host/export/blocks.h"
-#include "physics/vectors.h"
 
 namespace topple::exports::test {
 namespace {
@@ -40,11 +40,10 @@ TEST(ConvexPart, ManyCutsAreTheHullOfWhatTheyLeave) {
     for (int round = 0; round < 200; ++round) {
         ConvexPart part = block({-1, -1, -1}, {1, 1, 1});
         for (int n = 0; n < 12; ++n) {
-            Vec3 normal = physics::unit({number(), number(), number()});
+            Vec3 normal = unit({number(), number(), number()});
             if (n % 3 == 1) normal = {0, n % 2 == 1 ? 1.0 : -1.0, 0};
             double offset = 0.4 + 0.5 * std::abs(number());
-            if (n % 4 == 2)
-                offset = physics::dot(normal, part.corner[random() % part.corner.size()]);
+            if (n % 4 == 2) offset = dot(normal, part.corner[random() % part.corner.size()]);
             const auto left = cut(part, {normal, offset});
             if (!left) break;
             const auto hull = hull_part(left->corner);

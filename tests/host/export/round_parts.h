@@ -5,8 +5,8 @@
 #include <numbers>
 #include <vector>
 
+#include "core/vectors.h"
 #include "export/shape.h"
-#include "physics/vectors.h"
 
 // Corners of round solids.
 namespace topple::exports::test {
@@ -20,9 +20,9 @@ inline std::vector<Vec3> prism(const Vec3& center, const Vec3& axis, double radi
     for (const double at : {-half_m, half_m}) {
         for (int n = 0; n < sides; ++n) {
             const double angle = 2 * std::numbers::pi * n / sides;
-            Vec3 p = physics::along(center, at, axis);
-            p = physics::along(p, corner_m * std::cos(angle), frame[0]);
-            out.push_back(physics::along(p, corner_m * std::sin(angle), frame[1]));
+            Vec3 p = along(center, at, axis);
+            p = along(p, corner_m * std::cos(angle), frame[0]);
+            out.push_back(along(p, corner_m * std::sin(angle), frame[1]));
         }
     }
     return out;

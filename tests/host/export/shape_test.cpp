@@ -6,15 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/vectors.h"
 #include "export/turned.h"
 #include "host/export/blocks.h"
 #include "host/export/round_parts.h"
-#include "physics/vectors.h"
 
 namespace topple::exports::test {
 namespace {
-
-using physics::dot;
 
 TEST(Shape, APrismOfManySidesIsACylinderUprightOrNot) {
     for (const Vec3& axis : {Vec3{0, 0, 1}, Vec3{0.6, 0, 0.8}, Vec3{1, 0, 0}}) {

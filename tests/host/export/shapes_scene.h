@@ -46,7 +46,7 @@ inline SimScene shapes_scene() {
         Body& body = out.bodies.emplace_back(body_of(std::move(part), level, {}));
         body.object = static_cast<std::int32_t>(out.bodies.size()) - 1;
         // As of a box; turned a little, so that it is not diagonal.
-        const Vec3 size = physics::minus(body.parts[0].high, body.parts[0].low);
+        const Vec3 size = minus(body.parts[0].high, body.parts[0].low);
         const double m = body.mass_kg / 12;
         for (std::size_t a = 0; a < 3; ++a) {
             const double u = size[(a + 1) % 3], v = size[(a + 2) % 3];
@@ -60,7 +60,7 @@ inline SimScene shapes_scene() {
     const Vec3 half{0.1, 0.15, 0.1};
     for (const double z : {0.0, 0.2}) {
         Body& box = add(block({0, 0, z}, {0.2, 0.3, z + 0.2}), 1);
-        box.visual = painted_block(physics::opposite(half), half, {20, 100, 220});
+        box.visual = painted_block(opposite(half), half, {20, 100, 220});
     }
     add(*hull_part(prism({-0.5, 0, 0.1}, {0, 1, 0}, 0.1, 0.2, 64)), 1);
     add(*hull_part(ball({-0.5, 0.5, 0.05}, 0.05, 60)), 1);

@@ -128,6 +128,22 @@ TEST_F(Pcd, organised_clouds_keep_their_pixels) {
     EXPECT_TRUE(cloud.has_viewpoint);
 }
 
+TEST_F(Pcd, each_point_may_have_a_viewpoint) {
+    Head head;
+    head.fields = "x y z vp_x vp_y vp_z";
+    head.size = "4 4 4 4 4 4";
+    head.type = "F F F F F F";
+    head.count = "1 1 1 1 1 1";
+    const auto cloud = read_cloud(write("a.pcd", head.text() + "1 2 3 4 5 6\n1 2 4 nan 5 6\n"));
+    EXPECT_FALSE(cloud.has_viewpoint);
+    EXPECT_EQ(cloud.viewpoint_x[0], 4);
+    EXPECT_TRUE(std::isnan(cloud.viewpoint_x[1]));
+    EXPECT_EQ(cloud.viewpoint_z, (std::vector<float>{6, 6}));
+    EXPECT_EQ(
+        read_cloud(write("b.pcd", head.text() + "1 2 3 4 5 6\n1 2 4 1 5 6\n"), 0.5).viewpoint_y,
+        (std::vector<float>{2.5f, 2.5f}));
+}
+
 TEST_F(Pcd, the_viewpoint_counts_where_it_is_not_all_default) {
     Head head;
     head.viewpoint = "1 -2 0.5 1 0 0 0";

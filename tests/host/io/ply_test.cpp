@@ -33,6 +33,28 @@ TEST_F(Ply, ascii_with_comments_blank_ends_and_carriage_returns) {
     EXPECT_EQ(cloud.source, file.string());
 }
 
+TEST_F(Ply, each_vertex_may_have_a_viewpoint) {
+    const std::string rest =
+        "element vertex 2\nproperty float vp_x\nproperty float x\nproperty float y\nproperty float "
+        "z\n"
+        "property double vp_y\nproperty float vp_z\n";
+    const auto cloud =
+        read_cloud(write("a.ply", header("ascii", rest) + "7 1 2 3 8 9\n4 1 2 4 5 1e30\n"));
+    EXPECT_EQ(cloud.viewpoint_x, (std::vector<float>{7, 4}));
+    EXPECT_EQ(cloud.viewpoint_y, (std::vector<float>{8, 5}));
+    EXPECT_EQ(cloud.viewpoint_z[0], 9);
+    EXPECT_TRUE(std::isnan(cloud.viewpoint_z[1])) << "no metres";
+    std::string bytes = header("binary_little_endian", rest);
+    for (const float v : {7.0f, 1.0f, 2.0f, 3.0f}) append<float>(bytes, v);
+    append<double>(bytes, 8);
+    for (const float v : {9.0f, 4.0f, 1.0f, 2.0f, 4.0f}) append<float>(bytes, v);
+    append<double>(bytes, 5);
+    append<float>(bytes, 6);
+    const auto binary = read_cloud(write("b.ply", bytes));
+    EXPECT_EQ(binary.viewpoint_y, (std::vector<float>{8, 5}));
+    EXPECT_EQ(binary.viewpoint_z, (std::vector<float>{9, 6}));
+}
+
 TEST_F(Ply, properties_in_any_order_with_lists_and_elements_to_skip) {
     const auto text =
         header("ascii",

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <vector>
 
+#include "core/vectors.h"
 #include "host/physics/solids.h"
 #include "physics/qhull.h"
-#include "physics/vectors.h"
 #include "scenes/random.h"
 
 // Convex hulls, for tests of pose landscapes.
@@ -29,15 +29,15 @@ inline Hull uniform_hull(std::vector<Vec3> points) {
     Vec3 sum{};
     for (const auto& face : shape->faces) {
         for (std::size_t n = 1; n + 1 < face.size(); ++n) {
-            const Vec3 a = physics::minus(hull.points[face[0]], origin),
-                       b = physics::minus(hull.points[face[n]], origin),
-                       c = physics::minus(hull.points[face[n + 1]], origin);
-            const double volume = physics::dot(a, physics::cross(b, c)) / 6;
+            const Vec3 a = minus(hull.points[face[0]], origin),
+                       b = minus(hull.points[face[n]], origin),
+                       c = minus(hull.points[face[n + 1]], origin);
+            const double volume = dot(a, cross(b, c)) / 6;
             hull.volume_m3 += volume;
             for (std::size_t k = 0; k < 3; ++k) sum[k] += volume * (a[k] + b[k] + c[k]) / 4;
         }
     }
-    hull.center = physics::along(origin, 1 / hull.volume_m3, sum);
+    hull.center = along(origin, 1 / hull.volume_m3, sum);
     return hull;
 }
 
@@ -93,10 +93,9 @@ inline Vec3 random_direction(scenes::Random& random) {
 
 // About the origin, by a random rotation.
 inline std::vector<Vec3> turned(std::vector<Vec3> points, scenes::Random& random) {
-    const Vec3 x = random_direction(random),
-               y = physics::unit(physics::cross(x, random_direction(random))),
-               z = physics::cross(x, y);
-    for (Vec3& p : points) p = {physics::dot(x, p), physics::dot(y, p), physics::dot(z, p)};
+    const Vec3 x = random_direction(random), y = unit(cross(x, random_direction(random))),
+               z = cross(x, y);
+    for (Vec3& p : points) p = {dot(x, p), dot(y, p), dot(z, p)};
     return points;
 }
 
@@ -109,7 +108,7 @@ inline Hull random_hull(std::uint64_t seed, unsigned count, double stretch = 1) 
     while (points.size() < count) {
         Vec3 p{};
         for (double& x : p) x = random.uniform(-1, 1);
-        if (physics::dot(p, p) > 1) continue;
+        if (dot(p, p) > 1) continue;
         for (std::size_t a = 0; a < 3; ++a) p[a] *= size[a];
         points.push_back(p);
     }
@@ -144,30 +143,27 @@ struct Criticals {
 };
 inline Criticals critical_poses(const Hull& hull) {
     std::vector<Vec3> v;
-    for (const Vec3& p : hull.points) v.push_back(physics::minus(p, hull.center));
+    for (const Vec3& p : hull.points) v.push_back(minus(p, hull.center));
     // Whether all points lie on this side of the plane through `foot`, across it.
     const auto carries = [&](const Vec3& foot) {
-        const double height2 = physics::dot(foot, foot);
-        return std::all_of(v.begin(), v.end(), [&](const Vec3& p) {
-            return physics::dot(p, foot) <= height2 * (1 + 1e-9);
-        });
+        const double height2 = dot(foot, foot);
+        return std::all_of(v.begin(), v.end(),
+                           [&](const Vec3& p) { return dot(p, foot) <= height2 * (1 + 1e-9); });
     };
     Criticals found;
     for (std::size_t a = 0; a < v.size(); ++a) {
         for (std::size_t b = a + 1; b < v.size(); ++b) {
-            const Vec3 ab = physics::minus(v[b], v[a]);
-            const double t = -physics::dot(v[a], ab) / physics::dot(ab, ab);
-            const Vec3 foot = physics::along(v[a], t, ab);
-            if (t > 0 && t < 1 && carries(foot))
-                found.passes.push_back(std::sqrt(physics::dot(foot, foot)));
+            const Vec3 ab = minus(v[b], v[a]);
+            const double t = -dot(v[a], ab) / dot(ab, ab);
+            const Vec3 foot = along(v[a], t, ab);
+            if (t > 0 && t < 1 && carries(foot)) found.passes.push_back(std::sqrt(dot(foot, foot)));
             for (std::size_t c = b + 1; c < v.size(); ++c) {
-                const Vec3 normal = physics::unit(physics::cross(ab, physics::minus(v[c], v[a])));
-                const double height = physics::dot(normal, v[a]);
+                const Vec3 normal = unit(cross(ab, minus(v[c], v[a])));
+                const double height = dot(normal, v[a]);
                 const Vec3 under{height * normal[0], height * normal[1], height * normal[2]};
                 // Barycentric signs of the foot.
                 const auto side = [&](const Vec3& p, const Vec3& q) {
-                    return physics::dot(normal, physics::cross(physics::minus(q, p),
-                                                               physics::minus(under, p))) > 0;
+                    return dot(normal, cross(minus(q, p), minus(under, p))) > 0;
                 };
                 if (side(v[a], v[b]) && side(v[b], v[c]) && side(v[c], v[a]) && carries(under))
                     found.minima.push_back(std::abs(height));
@@ -185,27 +181,26 @@ inline std::size_t roll_down(const Hull& hull, const Vec3& up, const std::vector
     std::vector<Vec3> v;
     double radius2 = 0;
     for (const Vec3& p : hull.points) {
-        v.push_back(physics::minus(p, hull.center));
-        radius2 = std::max(radius2, physics::dot(v.back(), v.back()));
+        v.push_back(minus(p, hull.center));
+        radius2 = std::max(radius2, dot(v.back(), v.back()));
     }
     const double step = 0.005 / std::sqrt(radius2);
     Vec3 down{-up[0], -up[1], -up[2]};
     for (int round = 0; round < 2000; ++round) {
         for (std::size_t n = 0; n < rests.size(); ++n) {
-            if (physics::dot(down, rests[n]) < -0.9995) return n;
+            if (dot(down, rests[n]) < -0.9995) return n;
         }
         for (int n = 0; n < 10; ++n) {
             double height = -1;
             const Vec3* lowest = nullptr;
             for (const Vec3& p : v) {
-                const double h = physics::dot(p, down);
+                const double h = dot(p, down);
                 if (h > height) {
                     height = h;
                     lowest = &p;
                 }
             }
-            down =
-                physics::unit(physics::along(down, -step, physics::along(*lowest, -height, down)));
+            down = unit(along(down, -step, along(*lowest, -height, down)));
         }
     }
     return rests.size();

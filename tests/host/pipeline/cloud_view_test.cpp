@@ -197,6 +197,78 @@ TEST(CloudView, RefusesAnImageOfAnotherSizeAndAPlaceThatIsNone) {
         view.has_viewpoint = false;
         view.viewpoint[2] = 0;
     }
+    const std::vector<float> there(room.cloud.size(), 1), few(3, 1);
+    view = room.cloud;
+    view.viewpoint_x = view.viewpoint_y = FloatColumn(there);
+    view.viewpoint_z = FloatColumn(few);
+    EXPECT_EQ(refusal(view),
+              "room: viewpoint_z has 3 values, but x has " + std::to_string(room.cloud.size()));
+    view.viewpoint_z = FloatColumn(there);
+    view.width = static_cast<std::uint32_t>(room.cloud.size());
+    view.height = 1;
+    EXPECT_EQ(refusal(view), "parsed");
+    view.height = 2;
+    view.pixel = pixel = std::vector<std::uint32_t>(room.cloud.size(), 0);
+    EXPECT_NE(refusal(view).find("has a viewpoint for each point"), std::string::npos);
+}
+
+// Rather than two that get in one another's way.
+TEST(CloudView, ADeviceServesOneParseAtATime) {
+    const SmallRoom room = SmallRoom::scattered();
+    ParseOptions options = quick();
+    options.device = device::open_native(2);
+    std::string refused;
+    options.progress = [&](const std::string&, double) {
+        if (!refused.empty()) return;
+        ParseOptions second = quick();
+        second.device = options.device;
+        refused = "parsed";
+        try {
+            parse(room.cloud, second);
+        } catch (const Error& error) {
+            refused = error.what();
+        }
+    };
+    parse(room.cloud, options);
+    EXPECT_EQ(refused, "the device is in use by another parse or stage; open one for each thread");
+    options.progress = {};
+    EXPECT_FALSE(parse(room.cloud, options).scene.objects.empty());
+    options.cache_file = "parse.cache";
+    EXPECT_THROW(parse(room.cloud, options), Error);
+}
+
+// Whoever says where each point was seen from has the same of any order of the points, with or
+// without points that are not finite, and no free space is guessed.
+TEST(CloudView, EachPointMayHaveAViewpoint) {
+    const SmallRoom room = SmallRoom::scattered();
+    const std::array<Vec3, 2> eyes{{{0.4, 0.4, 1.2}, {1.4, 0.5, 0.9}}};
+    PointCloud cloud = room.cloud;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const Vec3& eye = eyes[i % 2];
+        cloud.viewpoint_x.push_back(static_cast<float>(eye[0]));
+        cloud.viewpoint_y.push_back(static_cast<float>(eye[1]));
+        cloud.viewpoint_z.push_back(static_cast<float>(eye[2]));
+    }
+    const ParseResult result = parse(CloudView(cloud), quick());
+    for (const std::string& note : result.scene.notes)
+        EXPECT_EQ(note.find("virtual views"), std::string::npos);
+    std::size_t turned = 0;
+    const ScenePoints& points = result.scene.points;
+    for (std::size_t i = 0; i < points.nx.size(); ++i) {
+        const Vec3& eye = eyes[i % 2];
+        turned += points.nx[i] * (eye[0] - cloud.x[i]) + points.ny[i] * (eye[1] - cloud.y[i]) +
+                      points.nz[i] * (eye[2] - cloud.z[i]) <
+                  -0.05;
+    }
+    EXPECT_LT(turned, points.nx.size() / 50);
+    PointCloud more = cloud;
+    for (auto* values : {&more.x, &more.y, &more.z}) values->push_back(NAN);
+    for (auto* values : {&more.viewpoint_x, &more.viewpoint_y, &more.viewpoint_z})
+        values->push_back(0);
+    const ParseResult same = parse(CloudView(more), quick());
+    ASSERT_EQ(same.scene.objects.size(), result.scene.objects.size());
+    for (std::size_t o = 0; o < same.scene.objects.size(); ++o)
+        EXPECT_EQ(same.scene.objects[o].mass_kg, result.scene.objects[o].mass_kg);
 }
 
 // What is in memory has no options of the command line.

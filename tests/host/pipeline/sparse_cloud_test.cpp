@@ -2,13 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <vector>
 
 #include "core/random.h"
 #include "device/devices.h"
 #include "topple/parse.h"
 
-// Bare points a centimetre apart, of a thing whose measures are known.
+// Bare points a centimetre apart, or at random, of things whose measures are known.
 namespace topple {
 namespace {
 
@@ -34,6 +36,20 @@ class SparseCloud : public ::testing::Test {
                 cloud.y.push_back(static_cast<float>(p[1]));
                 cloud.z.push_back(static_cast<float>(p[2]));
             }
+        }
+    }
+    // Points at random on a rectangle across `axis` at `at`.
+    void scatter(std::size_t axis, double at, const Vec3& from, const Vec3& to, double per_m2) {
+        const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
+        const double count = per_m2 * (to[a] - from[a]) * (to[b] - from[b]);
+        for (int n = 0; n < static_cast<int>(count); ++n) {
+            Vec3 p{};
+            p[a] = from[a] + random.uniform() * (to[a] - from[a]);
+            p[b] = from[b] + random.uniform() * (to[b] - from[b]);
+            p[axis] = at;
+            cloud.x.push_back(static_cast<float>(p[0]));
+            cloud.y.push_back(static_cast<float>(p[1]));
+            cloud.z.push_back(static_cast<float>(p[2]));
         }
     }
     void box(const Vec3& low, const Vec3& high) {
@@ -70,6 +86,32 @@ TEST_F(SparseCloud, ATableHasItsMass) {
     const double mass = volume_m3 * options.density_kg_m3;
     EXPECT_NEAR(table->mass_kg, mass, 0.05 * mass);
     EXPECT_NEAR(table->mass_kg, mass, 2 * table->mass_error_kg);
+}
+
+// A corner of a room, and in it a crate and a box on that, which were scanned half as densely: no
+// sight leads through their faces and empties them.
+TEST_F(SparseCloud, WhatIsScannedSparselyIsSolidAllTheSame) {
+    scatter(2, 0, {0, 0, 0}, {2, 2, 0}, 8000);
+    scatter(0, 0, {0, 0, 0}, {0, 2, 1}, 8000);
+    scatter(1, 0, {0, 0, 0}, {2, 0, 1}, 8000);
+    const std::array<Vec3, 2> crate{{{0.7, 0.7, 0}, {1.3, 1.2, 0.4}}};
+    const std::array<Vec3, 2> carton{{{0.8, 0.8, 0.4}, {1.05, 1, 0.7}}};
+    for (const auto& [low, high] : {crate, carton}) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            for (const Vec3& at : {low, high})
+                if (axis < 2 || at[2] > low[2]) scatter(axis, at[axis], low, high, 4000);
+    }
+    ParseOptions options;
+    options.device = device::open_native(2);
+    options.disturbances = {};
+    const Scene scene = parse(cloud, options).scene;
+    std::vector<double> masses;
+    for (const Object& object : scene.objects)
+        if (!object.grounded) masses.push_back(object.mass_kg / options.density_kg_m3);
+    std::ranges::sort(masses);
+    ASSERT_EQ(masses.size(), 2u);
+    EXPECT_NEAR(masses[0], 0.25 * 0.2 * 0.3, 0.05 * 0.25 * 0.2 * 0.3);
+    EXPECT_NEAR(masses[1], 0.6 * 0.5 * 0.4, 0.05 * 0.6 * 0.5 * 0.4);
 }
 
 }  // namespace

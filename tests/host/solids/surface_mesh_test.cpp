@@ -8,13 +8,13 @@
 #include <numbers>
 #include <set>
 
+#include "core/vectors.h"
 #include "device/devices.h"
 #include "host/solids/boxes.h"
 #include "solids/block_surface.h"
 #include "solids/boundary.h"
 #include "solids/shaded_mesh.h"
 #include "solids/simplify_mesh.h"
-#include "solids/vectors.h"
 
 namespace topple::solids {
 namespace {

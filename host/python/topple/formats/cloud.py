@@ -9,6 +9,8 @@ from .errors import wrong
 
 # Where 32-bit coordinates resolve less than half a millimetre, the points are moved, as those of LAS are.
 NEAR_M = 4096.0
+# Of each point, as PCL calls them.
+VIEWPOINT = ('vp_x', 'vp_y', 'vp_z')
 
 
 @dataclasses.dataclass
@@ -16,7 +18,7 @@ class Cloud:
     """Points of one file, in its frame and unit."""
     points: np.ndarray  # (N, 3) float64
     colours: Optional[np.ndarray] = None  # (N, 3) uint8, sRGB; 0, 0, 0 where it is not known
-    viewpoint: Optional[np.ndarray] = None  # (3,): where the sensor was
+    viewpoint: Optional[np.ndarray] = None  # (3,): where the sensor was; (N, 3): for each point, NaN where it is not known
     offset: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(3))  # the file's points are these plus this
     notes: List[str] = dataclasses.field(default_factory=list)
 
@@ -38,16 +40,21 @@ class Cloud:
 
 
 def write_cloud(path, cloud, source):
-    """Writes a binary .ply, or a binary .pcd, which has a place for the sensor's. source: the file to name in errors."""
+    """Writes a binary .ply, or a binary .pcd, which has a place for that of one sensor. source: the file to name in errors."""
     if len(cloud.points) == 0:
         raise wrong(source, 'has no points')
     fields = [('x', '<f4'), ('y', '<f4'), ('z', '<f4')]
     pcd = path.suffix == '.pcd'
+    seen_from = cloud.viewpoint is not None and cloud.viewpoint.ndim == 2
+    if seen_from:
+        fields += [(name, '<f4') for name in VIEWPOINT]
     if cloud.colours is not None:
         fields += [('rgb', '<u4')] if pcd else [('red', 'u1'), ('green', 'u1'), ('blue', 'u1')]
     records = np.empty(len(cloud.points), dtype=fields)
     for axis, name in enumerate('xyz'):
         records[name] = cloud.points[:, axis]
+        if seen_from:
+            records['vp_' + name] = cloud.viewpoint[:, axis]
     if cloud.colours is not None and pcd:
         red, green, blue = (cloud.colours[:, c].astype(np.uint32) for c in range(3))
         records['rgb'] = red << 16 | green << 8 | blue
@@ -62,6 +69,8 @@ def write_cloud(path, cloud, source):
 def _ply_header(cloud):
     lines = ['ply', 'format binary_little_endian 1.0', f'element vertex {len(cloud.points)}',
              *(f'property float {name}' for name in 'xyz')]
+    if cloud.viewpoint is not None and cloud.viewpoint.ndim == 2:
+        lines += [f'property float {name}' for name in VIEWPOINT]
     if cloud.colours is not None:
         lines += [f'property uchar {name}' for name in ('red', 'green', 'blue')]
     return '\n'.join([*lines, 'end_header', ''])
@@ -69,9 +78,11 @@ def _ply_header(cloud):
 
 def _pcd_header(cloud):
     colour = cloud.colours is not None
+    seen_from = cloud.viewpoint is not None and cloud.viewpoint.ndim == 2
     # A quaternion of 1 0 0 0 at the origin would say that the place is not known; its negative turns as little.
-    place = '0 0 0 1 0 0 0' if cloud.viewpoint is None else \
+    place = '0 0 0 1 0 0 0' if cloud.viewpoint is None or seen_from else \
         ' '.join(repr(float(v)) for v in cloud.viewpoint) + ' -1 0 0 0'
-    return '\n'.join(['# .PCD v0.7', 'VERSION 0.7', 'FIELDS x y z' + ' rgb' * colour, 'SIZE 4 4 4' + ' 4' * colour,
-                      'TYPE F F F' + ' U' * colour, 'COUNT 1 1 1' + ' 1' * colour, f'WIDTH {len(cloud.points)}', 'HEIGHT 1',
+    names = [*'xyz', *(VIEWPOINT if seen_from else ())]
+    return '\n'.join(['# .PCD v0.7', 'VERSION 0.7', 'FIELDS ' + ' '.join(names) + ' rgb' * colour, 'SIZE' + ' 4' * (len(names) + colour),
+                      'TYPE' + ' F' * len(names) + ' U' * colour, 'COUNT' + ' 1' * (len(names) + colour), f'WIDTH {len(cloud.points)}', 'HEIGHT 1',
                       f'VIEWPOINT {place}', f'POINTS {len(cloud.points)}', 'DATA binary', ''])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""E57 of laser scanners (pye57): all scans of the file in its frame, with colours, and the scanner's place where there is one."""
+"""E57 of laser scanners (pye57): all scans of the file in its frame, with colours, and the scanners' places where it tells them."""
 import numpy as np
 
 from .cloud import Cloud, write_cloud
@@ -48,12 +48,16 @@ def read(path, unit_m=1.0):
     colours = None
     if any(c is not None for _, c, _ in scans):
         colours = np.concatenate([np.zeros((len(p), 3), np.uint8) if c is None else c for p, c, _ in scans])
+    unplaced = sum(place is None for place in places)
     if len(scans) > 1:
-        notes.append(f'The file has {len(scans)} scans, which were put together by their poses; where each scanner stood is '
-                     'not used, as a cloud has one viewpoint at most.')
-    elif places[0] is None:
-        notes.append('The file does not say where the scanner stood.')
-    return Cloud(np.concatenate([p for p, _, _ in scans]), colours, places[0] if len(scans) == 1 else None,
+        notes.append(f'The file has {len(scans)} scans, which were put together by their poses.')
+    if unplaced:
+        notes.append(f'The file does not say where the scanner stood{f" of {unplaced} of them" if len(scans) > 1 else ""}.')
+    viewpoint = places[0]
+    if len(scans) > 1:
+        viewpoint = np.concatenate([np.tile(np.full(3, np.nan) if place is None else place, (len(p), 1))
+                                    for (p, _, _), place in zip(scans, places)])
+    return Cloud(np.concatenate([p for p, _, _ in scans]), colours, None if unplaced == len(scans) else viewpoint,
                  notes=notes).moved_near(unit_m)
 
 

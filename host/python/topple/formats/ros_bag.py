@@ -284,20 +284,19 @@ def _points(message, path):
     return points, np.stack([packed >> 16 & 255, packed >> 8 & 255, packed & 255], axis=1).astype(np.uint8)
 
 
-def _thinned(points, colours):
-    """The first point of each cell, in order."""
-    finite = np.isfinite(points).all(axis=1)
-    points, colours = points[finite], colours[finite]
-    _, first = np.unique(np.floor(points / CELL_M).astype(np.int64), axis=0, return_index=True)
-    first.sort()
-    return points[first], colours[first]
+def _thinned(points, *others):
+    """The first point of each cell, in order, and what else there is of it."""
+    kept = np.flatnonzero(np.isfinite(points).all(axis=1))
+    _, first = np.unique(np.floor(points[kept] / CELL_M).astype(np.int64), axis=0, return_index=True)
+    kept = kept[np.sort(first)]
+    return [values[kept] for values in (points, *others)]
 
 
 def _cloud(bag, topic, others):
     transforms = _transforms(bag)
-    points, colours = np.empty((0, 3)), np.empty((0, 3), np.uint8)
+    points, colours, places = np.empty((0, 3)), np.empty((0, 3), np.uint8), np.empty((0, 3), np.float32)
     thinned_to = taken = unplaced = 0
-    coloured, frame, place = False, '', None
+    coloured, frame, placed = False, '', False
     for _, message in bag.messages(topic):
         frame = message.header.frame_id.lstrip('/')
         pose = transforms.to_root(frame, _time(message.header))
@@ -311,23 +310,26 @@ def _cloud(bag, topic, others):
         colours = np.concatenate([colours, np.zeros((len(new), 3), np.uint8) if seen is None else seen])
         taken += 1
         # Only a frame that has a place in another is the sensor's.
-        place = pose[:3, 3] if frame in transforms.edges else None
+        place = pose[:3, 3] if frame in transforms.edges else np.full(3, np.nan)
+        placed = placed or frame in transforms.edges
+        places = np.concatenate([places, np.tile(place.astype(np.float32), (len(new), 1))])
         if taken > 1 and len(points) > 2 * thinned_to + 2_000_000:
-            points, colours = _thinned(points, colours)
+            points, colours, places = _thinned(points, colours, places)
             thinned_to = len(points)
     if taken == 0:
         raise wrong(bag.path, f'{topic}: tf does not say where "{frame}" was when any of its {unplaced} clouds was taken'
                     if unplaced else f'{topic} has no message')
     notes = []
     if taken > 1:
-        points, colours = _thinned(points, colours)
+        points, colours, places = _thinned(points, colours, places)
         notes.append(f'The {taken} clouds of {topic} were put together; each cell of {CELL_M * 100:.0f} cm keeps one point. Coordinates '
                      f'are in the frame "{transforms.root_of(frame)}".')
     if unplaced:
         notes.append(f'{unplaced} clouds were left out, as tf does not say where the sensor was.')
     if others:
         notes.append(f'Other topics with clouds were left out: {", ".join(others)}.')
-    return Cloud(points, colours if coloured else None, place if taken == 1 else None, notes=notes)
+    viewpoint = None if not placed else places[0].astype(float) if taken == 1 else places
+    return Cloud(points, colours if coloured else None, viewpoint, notes=notes)
 
 
 def convert(path, folder, options):
