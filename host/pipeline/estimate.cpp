@@ -300,8 +300,8 @@ Looked look_at_frames(const std::filesystem::path& input, const ParseOptions& op
         out.points = std::min(out.points, static_cast<std::uint64_t>(pixels_share * count.cells()));
     // The frames left out find as many cells anew as have one reading now, at most.
     const double left_out = 1 - 1 / static_cast<double>(step);
-    looked.fused_bytes = fusion_peak(count.cells() + left_out * count.once(),
-                                     static_cast<double>(out.pixels));
+    looked.fused_bytes =
+        fusion_peak(count.cells() + left_out * count.once(), static_cast<double>(out.pixels));
     return looked;
 }
 
