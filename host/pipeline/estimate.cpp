@@ -173,8 +173,8 @@ void find_resolution(const Looked& looked, const ParseOptions& options, Estimate
                                      static_cast<double>(out.points), options.max_memory_bytes);
 }
 
-// Calls use(key of the cell, position) for every step-th pixel each way that has a reading on a
-// surface.
+// Calls use(key of the cell, at) for every step-th pixel each way that has a reading on a surface;
+// at() is its position.
 template <class Use>
 void each_reading(const DepthFrame& frame, const Intrinsics& k,
                   const geometry::BackProjection& projection, double cell_m, std::uint32_t step,
@@ -185,14 +185,16 @@ void each_reading(const DepthFrame& frame, const Intrinsics& k,
         for (std::uint32_t u = 0; u < k.width; u += step) {
             if (row.kept[u] == 0 || row.inside[u] == 0) continue;
             std::uint64_t key = 0;
-            Vec3 at{};
-            for (std::size_t a = 0; a < 3; ++a) {
-                const std::int64_t cell = row.cell[a][u];
-                key = key << 21 | static_cast<std::uint64_t>(cell);
-                at[a] = (static_cast<double>(cell - geometry::key_bias) +
-                         row.part[a][u] / geometry::cell_parts) *
-                        cell_m;
-            }
+            for (std::size_t a = 0; a < 3; ++a)
+                key = key << 21 | static_cast<std::uint64_t>(row.cell[a][u]);
+            const auto at = [&] {
+                Vec3 p{};
+                for (std::size_t a = 0; a < 3; ++a)
+                    p[a] = (static_cast<double>(row.cell[a][u] - geometry::key_bias) +
+                            row.part[a][u] / geometry::cell_parts) *
+                           cell_m;
+                return p;
+            };
             use(key, at);
         }
     }
@@ -279,14 +281,16 @@ Looked look_at_frames(const std::filesystem::path& input, const ParseOptions& op
         const auto each = [&](std::uint32_t apart, const auto& use) {
             each_reading(frame, k, projection, out.cell_m, apart, use);
         };
-        each(3, [&](std::uint64_t, const Vec3& p) {
+        each(3, [&](std::uint64_t, const auto& at) {
+            const Vec3 p = at();
             if (looked.surface.has(p[0], p[1], p[2])) again.add(p[0], p[1], p[2]);
         });
-        each(3, [&](std::uint64_t cell, const Vec3& p) {
+        each(3, [&](std::uint64_t cell, const auto& at) {
+            const Vec3 p = at();
             means.add(cell, p);
             looked.surface.add(p[0], p[1], p[2]);
         });
-        each(1, [&](std::uint64_t cell, const Vec3&) { count.add(cell); });
+        each(1, [&](std::uint64_t cell, const auto&) { count.add(cell); });
         if (frames.size() == 1) looked.seen_m3 = seen_m3(frame, k);
         tell(options, static_cast<double>(f) / static_cast<double>(frames.size()));
     }
