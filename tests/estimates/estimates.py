@@ -17,6 +17,7 @@ is, and by the clock. Exit code 1 where a limit was not kept.
 import argparse
 import json
 import math
+import operator
 import os
 import pathlib
 import random
@@ -287,7 +288,7 @@ def report(file, names, start, columns, truth, known=None):
     known = known or [0] * len(truth)
 
     def told(c):
-        return [sum(map(float.__mul__, c, row)) + k for row, k in zip(columns, known)]
+        return [sum(map(operator.mul, c, row)) + k for row, k in zip(columns, known)]
 
     c = search(start, lambda c: loss(list(zip(told(c), truth))))
     values = [a / b for a, b in zip(told(c), truth)]
