@@ -38,7 +38,7 @@ constexpr double customary_degrees = 25;
 
 constexpr auto seen_from_above =
     "Up was taken to be across a plane that the camera looks straight at, as from above; if it is "
-    "a wall, give --up.";
+    "a wall, say where up is by --up.";
 constexpr auto by_looks =
     "Nothing in the input says where up is, and it is not z: it was chosen by how the surfaces "
     "lie; if it is wrong, say where up is by --up.";

@@ -71,8 +71,7 @@ class Looking {
             }
             look(std::move(view));
         }
-        if (said > 0)
-            out_.hidden_share = static_cast<double>(hidden) / static_cast<double>(said);
+        if (said > 0) out_.hidden_share = static_cast<double>(hidden) / static_cast<double>(said);
         if (!options.known_eyes.empty()) return explore(options.eyes);
         look_first(options.sides_known);
         if (out_.eyes.empty()) return;

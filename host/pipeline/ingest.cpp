@@ -215,9 +215,10 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
                             "been seen from: " +
                             places_must);
     } else if (lie_far_off(options.known_eyes, surfels)) {
-        out.notes.push_back("A sensor is said to have been farther from the points than they are "
-                            "from one another: " +
-                            places_must);
+        out.notes.push_back(
+            "A sensor is said to have been farther from the points than they are "
+            "from one another: " +
+            places_must);
     }
     const std::size_t eyes = views.eyes.size();
     if (posed) {
