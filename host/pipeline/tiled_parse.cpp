@@ -57,13 +57,6 @@ std::string manifest(const fs::path& input, const ParseOptions& options) {
            " " + std::to_string(changed) + options_text(options);
 }
 
-// A smaller file is none of a large cloud.
-bool may_be_tiled(const fs::path& input, const ParseOptions& options) {
-    std::error_code error;
-    return fs::is_regular_file(input, error) && io::can_stream(input) &&
-           (options.tile_m > 0 || fs::file_size(input, error) >= small_file);
-}
-
 // An eighth of what a run may take: the device, and the portion in hand, take theirs, too.
 std::uint64_t spill_bytes(const ParseOptions& options) {
     constexpr std::uint64_t most = std::uint64_t{256} << 20, least = std::uint64_t{16} << 20;
@@ -213,7 +206,8 @@ void add_notes(const tiles::SpilledPoints& points, const tiles::Layout& layout, 
     if (points.dropped() > 0)
         scene.notes.push_back(io::counted(points.dropped(), "point") + " of " +
                               std::to_string(points.dropped() + points.points()) +
-                              " were not finite and are left out.");
+                              (points.dropped() == 1 ? " was" : " were") +
+                              " not finite and left out.");
     scene.notes.push_back("The cloud of " + io::counted(points.points(), "point") +
                           " was parsed in " + io::counted(layout.blocks.size(), "block") +
                           ", thinned to one point per " +
@@ -283,6 +277,12 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
 
 }  // namespace
 
+bool may_be_tiled(const fs::path& input, const ParseOptions& options) {
+    std::error_code error;
+    return fs::is_regular_file(input, error) && io::can_stream(input) &&
+           (options.tile_m > 0 || fs::file_size(input, error) >= small_file);
+}
+
 std::string to_text(const WorkLeft& left) {
     if (left.blocks == 0) return "the points sorted on disk";
     return std::to_string(left.done) + " of " + io::counted(left.blocks, "block");
@@ -337,6 +337,7 @@ std::optional<ParseResult> parse_tiled(const fs::path& input, const ParseOptions
         return std::nullopt;
     }
     const auto device = options.device ? options.device : device::open_device("auto");
+    const device::InUse in_use(*device);
     const Cancelling cancelling(*device, options);
     const auto crew = options.crew ? options.crew : std::shared_ptr<Crew>(lone_crew());
     std::error_code error;
