@@ -58,7 +58,8 @@ struct SlideOptions {
 };
 
 // For every object, on the voxel columns of its support. The support is the level that most of the
-// object's columns rest on; it holds the object while the centre of mass stands over it, or inside
+// object's columns rest on, of those at its stance's height where that is known; it holds the
+// object while the centre of mass stands over it, or inside
 // the hull of the columns that still bear (a hole narrower than the foot is no edge). Solids at the
 // object's own height block its outline; what already reaches into its outline moves with it. An
 // edge counts where a surface at least two voxels lower is known beneath it: where the scan ends,
