@@ -48,14 +48,20 @@ function fragilityText(scene, object) {
   return text + half;
 }
 
-// How often it falls where it stands; '' without a hazard curve.
-function yearsText(scene, object) {
+// "once in about 500 years": how often an earthquake upsets it where it stands, at most if the curve begins too late for it; '' without a curve.
+function onceIn(scene, object) {
   const years = (object.fragility || {}).return_years;
   if (typeof years !== 'number') return '';
-  const text = Number(years.toPrecision(2)).toLocaleString('en');
-  return scene.below_hazard.includes(object.id)
-    ? `An earthquake upsets it once in at most ${text} years: the curve of the hazard begins at ${number(scene.events.hazard_from_g)} g, and weaker ones count as none.`
-    : `An earthquake upsets it once in about ${text} years.`;
+  return `once in ${scene.below_hazard.includes(object.id) ? 'at most' : 'about'} ${Number(years.toPrecision(2)).toLocaleString('en')} years`;
+}
+
+function curveText(scene) {
+  return `the curve of the hazard begins at ${number(scene.events.hazard_from_g)} g, and weaker earthquakes count as none`;
+}
+
+function yearsText(scene, object) {
+  const once = onceIn(scene, object);
+  return once && `An earthquake upsets it ${once}${scene.below_hazard.includes(object.id) ? `: ${curveText(scene)}` : ''}.`;
 }
 
 // The curve; null where nothing was counted.

@@ -18,6 +18,11 @@ function dangerText(scene, object) {
   return name ? `${upsetText(object).replace(/\.$/, '')}; sets free ${number(Number(releaseOf(object).toPrecision(2)), 'J')}` : '';
 }
 
+function sheetYears(scene, object) {
+  const once = onceIn(scene, object);
+  return once && `Upset by an earthquake ${once}`;
+}
+
 // What was said by hand: of this parse, and since.
 function correctionLines(scene, parts) {
   const unsaved = parts.corrections.list.filter(entry => entry.isNew).map(entry => `Noted, but not in these figures yet: ${entry.text}`);
@@ -30,8 +35,8 @@ function fillSheet(scene) {
   const list = (title, lines, left) => lines.length ? [node('h2', title), element('ol', {className: 'todo'}, lines),
     ...left > 0 ? [node('p', `And ${plural(left, 'more object')}: see the pages that follow.`, 'hint')] : []] : [];
   const doubtful = doubtfulOnes(scene), nearly = nearlyOnes(scene), unseen = unseenOnes(scene);
-  const doing = object => sheetLine(scene, object, object.advice.sentence, [dangerText(scene, object), yearsText(scene, object)]);
-  const looks = [...doubtful.slice(0, listedDoubts).map(object => sheetLine(scene, object, 'look whether it stands firm: as scanned a touch would upset it.', [yearsText(scene, object)])),
+  const doing = object => sheetLine(scene, object, object.advice.sentence, [dangerText(scene, object), sheetYears(scene, object)]);
+  const looks = [...doubtful.slice(0, listedDoubts).map(object => sheetLine(scene, object, 'look whether it stands firm: as scanned a touch would upset it.', [sheetYears(scene, object)])),
     ...nearly.slice(0, listedDoubts).map(object => sheetLine(scene, object, nearlyText(object))),
     ...calm.map(object => sheetLine(scene, object, actionText(scene, object), [dangerText(scene, object)]))];
   const holds = unseen.slice(0, listedUnseen).map(object => sheetLine(scene, object, 'go and look what holds it.'));
@@ -46,6 +51,6 @@ function fillSheet(scene) {
     node('p', `Reckoned with: ${listed(kinds.map(kind => {
       const {key, follows, unit} = kind.figure, value = (scene.events || {})[key];
       return kind.one_event + (follows && value !== undefined ? follows + number(value, unit) + shakingText(key, value) : '');
-    })) || 'nothing'}. Places are in metres east (E) of the plan\u2019s left edge and north (N) of its lower edge. A joule (J) lifts 1 kg by 10 cm; from about 40 J on injuries need more than first aid. ` +
+    })) || 'nothing'}.${scene.below_hazard.length ? ` \u201cAt most\u201d: ${curveText(scene)}.` : ''} Places are in metres east (E) of the plan\u2019s left edge and north (N) of its lower edge. A joule (J) lifts 1 kg by 10 cm; from about 40 J on injuries need more than first aid. ` +
       'Straps must hold what is said at least: no safety margin is in it.', 'hint'));
 }
