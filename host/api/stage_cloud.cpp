@@ -41,6 +41,7 @@ double point_spacing(const CloudView& cloud) {
 
 void normals(device::Device& device, const CloudView& cloud, double cell_m, const Vec3* eye_m,
              std::span<float> nx, std::span<float> ny, std::span<float> nz) {
+    const device::InUse in_use(device);
     for (const std::span<float>& out : {nx, ny, nz}) {
         require(out.size() == cloud.size(), "normals",
                 std::to_string(out.size()) + " values of output for " +
@@ -93,6 +94,7 @@ Volume& Volume::operator=(Volume&&) noexcept = default;
 
 void Volume::carve(device::Device& device, const Intrinsics& intrinsics,
                    std::span<const DepthView> frames) {
+    const device::InUse in_use(device);
     const std::uint64_t pixels = std::uint64_t{intrinsics.width} * intrinsics.height;
     std::vector<DepthFrame> batch;
     for (std::size_t f = 0; f < frames.size(); ++f) {
@@ -110,6 +112,7 @@ void Volume::carve(device::Device& device, const Intrinsics& intrinsics,
 
 std::uint64_t Volume::fill(device::Device& device, unsigned votes,
                            std::span<const std::int32_t> hollow) {
+    const device::InUse in_use(device);
     require(votes >= 1 && votes <= 6, "fill", std::to_string(votes) + " votes: from 1 to 6");
     vdb::FillOptions options;
     options.votes = votes;

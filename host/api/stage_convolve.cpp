@@ -118,6 +118,7 @@ void run(device::Device& device, const MapShape& s, const device::Slice<float>& 
 void convolve(device::Device& device, const MapShape& shape, const Array<const float>& primary,
               std::span<const FootprintEntry> footprint, std::span<const std::uint32_t> first,
               const Array<float>& density) {
+    const device::InUse in_use(device);
     const bool on_device = primary.on_device() || density.on_device();
     require(on_device == (shape.margin > 0), convolve_stage,
             on_device ? "arrays in a device's buffers take a margin"

@@ -61,6 +61,7 @@ std::vector<float> padded(const Array<const float>& axis, std::uint64_t count) {
 void support_functions(device::Device& device, const Coordinates& vertices,
                        std::span<const std::uint64_t> first, const Coordinates& directions,
                        const Array<float>& out) {
+    const device::InUse in_use(device);
     check(vertices, first, directions, out);
     const std::uint64_t sets = first.size() - 1, count = directions.x.count;
     const std::uint64_t row = (count + direction_block - 1) / direction_block * direction_block;
@@ -105,6 +106,7 @@ void support_functions(device::Device& device, const Coordinates& vertices,
 
 std::vector<Barrier> barriers(device::Device& device, std::span<const StandingBody> bodies,
                               double resolution_m) {
+    const device::InUse in_use(device);
     require(resolution_m >= 0 && std::isfinite(resolution_m), "barriers",
             "resolution_m must be 0 or above");
     std::vector<std::vector<Vec3>> points;

@@ -3,6 +3,7 @@
 
 #include "core/thread_pool.h"
 #include "device/queue.h"
+#include "topple/error.h"
 
 namespace topple::device {
 
@@ -20,6 +21,16 @@ const char* to_string(Backend backend) {
 
 const DeviceInfo& describe(const Device& device) {
     return device.info();
+}
+
+InUse::InUse(Device& device) : device_(device) {
+    if (device.in_use_.exchange(true))
+        throw Error(ErrorKind::usage,
+                    "the device is in use by another parse or stage; open one for each thread");
+}
+
+InUse::~InUse() {
+    device_.in_use_ = false;
 }
 
 Device::Device() = default;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -14,7 +15,7 @@
 // The whole device abstraction: a Device allocates Memory and runs lists of Dispatches. The typed
 // faces that the rest of the host uses are Buffer<T> (buffer.h) and Queue (queue.h).
 // Nothing here is global: every object belongs to the Device that made it, and a Device may be used
-// from one thread at a time.
+// from one thread at a time (InUse).
 namespace topple {
 class ThreadPool;
 }
@@ -93,7 +94,22 @@ class Device {
     Counters counters_;
 
   private:
+    friend class InUse;
     std::unique_ptr<ThreadPool> threads_;  // made when first asked for
+    std::atomic<bool> in_use_{false};
+};
+
+// Lives while a public function uses a device. Throws Error(usage) where another one does, on
+// another thread or further up on this one.
+class InUse {
+  public:
+    explicit InUse(Device& device);
+    ~InUse();
+    InUse(const InUse&) = delete;
+    InUse& operator=(const InUse&) = delete;
+
+  private:
+    Device& device_;
 };
 
 }  // namespace topple::device

@@ -14,6 +14,11 @@ namespace {
 // Matrices are printed with six digits or so; beyond this they are something else.
 constexpr double rotation_tolerance = 1e-3;
 
+bool last_column_is_unit(const Mat4& m) {
+    return std::abs(m[3]) + std::abs(m[7]) + std::abs(m[11]) + std::abs(m[15] - 1) <=
+           rotation_tolerance;
+}
+
 }  // namespace
 
 std::optional<std::string> position_fault(const Vec3& at_m) {
@@ -30,7 +35,8 @@ std::optional<std::string> make_rigid(Mat4& m) {
         if (!std::isfinite(value)) return short_number(value) + " is not a finite number";
     const double off = std::abs(m[12]) + std::abs(m[13]) + std::abs(m[14]);
     if (off + std::abs(m[15] - 1) > rotation_tolerance)
-        return "the last row of a pose's matrix must be 0 0 0 1";
+        return std::string("the last row of a pose's matrix must be 0 0 0 1") +
+               (last_column_is_unit(m) ? "; it looks transposed: matrices are row-major" : "");
     if (auto fault = position_fault({m[3], m[7], m[11]})) return fault;
     Eigen::Matrix3d r;
     for (int row = 0; row < 3; ++row) {
@@ -38,7 +44,9 @@ std::optional<std::string> make_rigid(Mat4& m) {
             r(row, column) = m[static_cast<std::size_t>(row * 4 + column)];
     }
     const double error = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-    if (!(error <= rotation_tolerance) || !(r.determinant() > 0)) {
+    if (error <= rotation_tolerance && r.determinant() < 0)
+        return "the matrix is no rotation: it mirrors, its determinant is -1";
+    if (!(error <= rotation_tolerance)) {
         return "the matrix is no rotation: its columns are off from orthonormal by " +
                short_number(error) + " (at most 0.001), its determinant is " +
                short_number(r.determinant());

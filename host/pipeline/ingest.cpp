@@ -151,9 +151,11 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
         options.known_eyes = {scan->eye};
         options.eyes = 1;
         out.camera_up = scan->up;
-        out.notes.push_back("The cloud has no sensor poses, but hides nothing from " +
-                            position_text(scan->eye) +
-                            ": it was taken for a single scan from there.");
+        out.notes.push_back(
+            out.cloud.has_viewpoint
+                ? "The cloud was seen from " + position_text(scan->eye) + ", as it says."
+                : "The cloud has no sensor poses, but hides nothing from " +
+                      position_text(scan->eye) + ": it was taken for a single scan from there.");
     } else if (out.cloud.has_viewpoint) {
         options.known_eyes = {out.cloud.viewpoint};
     }
@@ -181,9 +183,17 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
             out.viewpoint_of_point.push_back(views.viewpoint_of_surfel[s]);
     }
     if (!scan && !posed) {
+        const std::string views_text = std::to_string(eyes) +
+                                       " virtual views within it, and is less certain than from "
+                                       "depth frames.";
         out.notes.push_back(
-            "The cloud has no sensor poses: free space was estimated from " + std::to_string(eyes) +
-            " virtual views within it, and is less certain than from depth frames.");
+            out.cloud.has_viewpoint
+                ? "From the sensor's place that was given, " + position_text(out.cloud.viewpoint) +
+                      ", points would hide others: it is off by some centimetres, or not all of "
+                      "the scan is from there. It tells the sides of surfaces, but free space was "
+                      "estimated from " +
+                      views_text
+                : "The cloud has no sensor poses: free space was estimated from " + views_text);
     }
     out.frames = std::make_unique<MemoryStream>(views.intrinsics, std::move(views.frames));
 }
@@ -261,7 +271,7 @@ void look_at_cloud(device::Device& device, Ingested& out) {
     if (cloud.dropped > 0 && cloud.height <= 1)
         out.notes.push_back(io::counted(cloud.dropped, "point") + " of " +
                             std::to_string(cloud.dropped + cloud.size()) +
-                            " were not finite and are left out.");
+                            (cloud.dropped == 1 ? " was" : " were") + " not finite and left out.");
     if (cloud.height <= 1) note_spacing(spacing.around_m, out.notes);
     Intrinsics intrinsics;
     DepthFrame frame;

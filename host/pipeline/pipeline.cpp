@@ -74,6 +74,7 @@ ParseResult run(const std::string& source, const ParseOptions& options, Lay lay,
     const auto device = options.device ? options.device : device::open_device("auto");
     // The clock writes into a list of its own: the scene moves while stages are still running.
     StageClock stage(timings, options);
+    const device::InUse in_use(*device);
     const Cancelling cancelling(*device, options);
     Groundwork ground = lay(*device, stage);
     Scene scene;
@@ -81,6 +82,13 @@ ParseResult run(const std::string& source, const ParseOptions& options, Lay lay,
     ParseResult result = build_on(*device, std::move(ground), options, std::move(scene), stage);
     result.scene.timings_s = std::move(timings);
     return result;
+}
+
+void refuse_cache(const ParseOptions& options) {
+    if (options.cache_file.empty()) return;
+    throw Error(ErrorKind::usage, "cache_file " + options.cache_file.string() +
+                                      ": a cache is kept of a file or folder, and the scan is in "
+                                      "memory; leave it out, or parse its file");
 }
 
 bool keeps_groundwork(const ParseOptions& options) {
@@ -194,6 +202,7 @@ ParseResult parse(const std::filesystem::path& input, const ParseOptions& option
 
 ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
     check_options(options);
+    refuse_cache(options);
     const std::string source = cloud.source.empty() ? "cloud" : cloud.source;
     return run(source, options, [&](device::Device& device, StageClock& stage) {
         Ingested input = stage("ingest", [&] { return ingest_view(device, cloud, options); });
@@ -203,6 +212,7 @@ ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
 
 ParseResult parse(const FramesView& frames, const ParseOptions& options) {
     check_options(options);
+    refuse_cache(options);
     const std::string source = frames.source.empty() ? "frames" : frames.source;
     return run(source, options, [&](device::Device& device, StageClock& stage) {
         Ingested input =

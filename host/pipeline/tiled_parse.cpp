@@ -213,7 +213,8 @@ void add_notes(const tiles::SpilledPoints& points, const tiles::Layout& layout, 
     if (points.dropped() > 0)
         scene.notes.push_back(io::counted(points.dropped(), "point") + " of " +
                               std::to_string(points.dropped() + points.points()) +
-                              " were not finite and are left out.");
+                              (points.dropped() == 1 ? " was" : " were") +
+                              " not finite and left out.");
     scene.notes.push_back("The cloud of " + io::counted(points.points(), "point") +
                           " was parsed in " + io::counted(layout.blocks.size(), "block") +
                           ", thinned to one point per " +
@@ -337,6 +338,7 @@ std::optional<ParseResult> parse_tiled(const fs::path& input, const ParseOptions
         return std::nullopt;
     }
     const auto device = options.device ? options.device : device::open_device("auto");
+    const device::InUse in_use(*device);
     const Cancelling cancelling(*device, options);
     const auto crew = options.crew ? options.crew : std::shared_ptr<Crew>(lone_crew());
     std::error_code error;

@@ -69,7 +69,12 @@ void create_instance(VulkanContext& context) {
     features.enabledValidationFeatureCount = 1;
     features.pEnabledValidationFeatures = enable;
     VkDebugUtilsMessengerCreateInfoEXT messenger{};
-    if (validation_wanted() && validation_installed()) {
+    if (validation_wanted() && !validation_installed()) {
+        throw Error(ErrorKind::device,
+                    std::string("TOPPLE_VULKAN_VALIDATION: the layer ") + validation_layer +
+                        " is not installed; it is in the package vulkan-validationlayers");
+    }
+    if (validation_wanted()) {
         context.log = std::make_unique<ValidationLog>();
         messenger = messenger_info(*context.log);
         features.pNext = &messenger;  // also covers the instance's own creation

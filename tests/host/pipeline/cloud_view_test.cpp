@@ -212,6 +212,31 @@ TEST(CloudView, RefusesAnImageOfAnotherSizeAndAPlaceThatIsNone) {
     EXPECT_NE(refusal(view).find("has a viewpoint for each point"), std::string::npos);
 }
 
+// Rather than two that get in one another's way.
+TEST(CloudView, ADeviceServesOneParseAtATime) {
+    const SmallRoom room = SmallRoom::scattered();
+    ParseOptions options = quick();
+    options.device = device::open_native(2);
+    std::string refused;
+    options.progress = [&](const std::string&, double) {
+        if (!refused.empty()) return;
+        ParseOptions second = quick();
+        second.device = options.device;
+        refused = "parsed";
+        try {
+            parse(room.cloud, second);
+        } catch (const Error& error) {
+            refused = error.what();
+        }
+    };
+    parse(room.cloud, options);
+    EXPECT_EQ(refused, "the device is in use by another parse or stage; open one for each thread");
+    options.progress = {};
+    EXPECT_FALSE(parse(room.cloud, options).scene.objects.empty());
+    options.cache_file = "parse.cache";
+    EXPECT_THROW(parse(room.cloud, options), Error);
+}
+
 // Whoever says where each point was seen from has the same of any order of the points, with or
 // without points that are not finite, and no free space is guessed.
 TEST(CloudView, EachPointMayHaveAViewpoint) {

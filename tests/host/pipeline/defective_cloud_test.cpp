@@ -80,7 +80,7 @@ TEST(DefectiveCloud, what_was_left_out_is_told) {
     room.cloud.dropped = 1234;  // as readers leave out points that are not finite
     EXPECT_TRUE(noted(parsed(room.cloud), "1234 points of " +
                                               std::to_string(1234 + room.part.size()) +
-                                              " were not finite and are left out."));
+                                              " were not finite and left out."));
 }
 
 TEST(SlowDefectiveCloud, no_noise_at_all) {
