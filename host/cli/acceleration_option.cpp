@@ -5,6 +5,7 @@
 #include <map>
 
 #include "io/text.h"
+#include "physics/landscape.h"
 #include "safety/earthquake/intensity.h"
 #include "topple/error.h"
 
@@ -12,7 +13,7 @@ namespace topple::cli {
 
 Acceleration parse_acceleration(const char* option, const std::string& text) {
     static const std::map<std::string, double> units{
-        {"", 1}, {"g", safety::m_s2_per_g}, {"m/s2", 1}, {"m/s^2", 1}, {"cm/s2", 0.01}};
+        {"", 1}, {"g", physics::gravity}, {"m/s2", 1}, {"m/s^2", 1}, {"cm/s2", 0.01}};
     const std::size_t unit_at = std::min(text.size(), text.find_first_of("gmc"));
     const auto unit = units.find(text.substr(unit_at));
     double value = 0;
@@ -25,7 +26,7 @@ Acceleration parse_acceleration(const char* option, const std::string& text) {
 std::string weak_shaking_note(const Acceleration& pga) {
     constexpr double hardly_meant_m_s2 = 1;
     if (pga.with_unit || pga.m_s2 >= hardly_meant_m_s2) return "";
-    const double in_g = pga.m_s2 / safety::m_s2_per_g;
+    const double in_g = pga.m_s2 / physics::gravity;
     const std::string given = io::short_number(pga.m_s2);
     std::string note = given;
     note.append(" m/s\u00b2 is ").append(io::two_digits(in_g)).append(" g (");

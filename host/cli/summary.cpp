@@ -12,6 +12,7 @@
 #include "cli/urgency.h"
 #include "core/listed.h"
 #include "io/text.h"
+#include "physics/landscape.h"
 #include "safety/disturbances.h"
 #include "safety/earthquake/fragility.h"
 #include "safety/earthquake/intensity.h"
@@ -21,9 +22,13 @@ namespace {
 
 constexpr std::size_t rows_shown = 12, sentences_shown = 3;
 
+// Without powers of ten where that is long enough for it.
 std::string three_digits(double value) {
-    char text[32];
+    char text[64];
     std::snprintf(text, sizeof(text), "%.3g", value);
+    double rounded = 0;
+    if (std::abs(value) >= 1000 && std::abs(value) < 1e9 && io::parse_number(text, rounded))
+        std::snprintf(text, sizeof(text), "%.0f", rounded);
     return text;
 }
 
@@ -60,7 +65,7 @@ double release_of(const Object& o) {
 // " (0.31 g, very strong shaking, intensity VII)" of an earthquake's peak; "" of other figures.
 std::string shaking_of(std::string_view key, double value) {
     if (key != "pga_m_s2") return "";
-    const double in_g = value / safety::m_s2_per_g;
+    const double in_g = value / physics::gravity;
     std::string text = " (";
     text.append(io::two_digits(in_g)).append(" g, ");
     return text.append(safety::shaking_text(in_g)).append(")");
@@ -178,6 +183,14 @@ void print_sentences(const std::vector<const Object*>& riskiest_first, const Sce
     }
 }
 
+// "0-0.12" of a barrier that can't be told from 0.
+std::string barrier_text(const Object& o) {
+    if (!barrier_within_error(o)) return three_digits(o.barrier_J);
+    char text[32];
+    std::snprintf(text, sizeof(text), "0-%.2g", o.barrier_J + o.barrier_error_J);
+    return text;
+}
+
 void print_objects(const Scene& scene) {
     std::map<std::int32_t, std::string> rests_on;
     for (const Support& s : scene.supports) {
@@ -199,15 +212,12 @@ void print_objects(const Scene& scene) {
     std::printf(" rests on\n");
     for (std::size_t i = 0; i < std::min(rows_shown, movable.size()); ++i) {
         const Object& o = *movable[i];
-        char barrier[32], unsafety[32] = "-";
+        char unsafety[32] = "-";
         if (o.seen_enough) std::snprintf(unsafety, sizeof(unsafety), "%.1f", o.unsafety);
-        if (barrier_within_error(o))
-            std::snprintf(barrier, sizeof(barrier), "0-%.2g", o.barrier_J + o.barrier_error_J);
-        else
-            std::snprintf(barrier, sizeof(barrier), "%.3g", o.barrier_J);
-        std::printf("%-12s %8s %8s %8.3g %9s %9.3g %6s ",
-                    (std::to_string(o.id) + name_text(o)).c_str(), category_text(o).c_str(),
-                    unsafety, o.mass_kg, barrier, release_of(o), o.mode.c_str());
+        const std::string barrier = barrier_text(o);
+        std::printf("%-12s %8s %8s %8s %9s %9s %6s ", (std::to_string(o.id) + name_text(o)).c_str(),
+                    category_text(o).c_str(), unsafety, three_digits(o.mass_kg).c_str(),
+                    barrier.c_str(), three_digits(release_of(o)).c_str(), o.mode.c_str());
         for (const safety::DisturbanceKind* kind : kinds)
             std::printf("%10s ", risk_text(o, kind->name).c_str());
         std::printf(" %s\n", rests_on.contains(o.id) ? rests_on[o.id].c_str() : "-");

@@ -8,8 +8,6 @@
 // and others 1999, Earthquake Spectra 15, table 1).
 namespace topple::safety {
 
-inline constexpr double m_s2_per_g = 9.80665;
-
 struct Intensity {
     double up_to_g;  // the end of its range, included; infinity for the last
     const char *word, *number;
