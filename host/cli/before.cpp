@@ -25,14 +25,14 @@ const safety::DisturbanceKind* worst_kind(const Object& o) {
     return worst;
 }
 
-// That on which one would act first, and its risk; "" where nothing is at risk.
+// That on which one would act first, and its risk.
 std::string worst_text(const Scene& scene) {
     const Object* worst = nullptr;
     for (const Object& o : scene.objects) {
         if (o.grounded || !o.seen_enough || worst_kind(o) == nullptr) continue;
         if (worst == nullptr || urgency_of(o) > urgency_of(*worst)) worst = &o;
     }
-    if (worst == nullptr) return "";
+    if (worst == nullptr) return "nothing is at risk";
     const safety::DisturbanceKind& kind = *worst_kind(*worst);
     std::string text = "object " + std::to_string(worst->id);
     if (!worst->name.empty()) text.append(" (").append(io::printable(worst->name)).append(")");
@@ -47,18 +47,15 @@ std::optional<Worst> worst_of(const std::filesystem::path& scene_json) {
     std::error_code error;
     if (!std::filesystem::exists(scene_json, error)) return std::nullopt;
     try {
-        std::string text = worst_text(io::read_scene_json(scene_json));
-        if (text.empty()) return std::nullopt;
-        return Worst{std::move(text), scene_json};
+        return Worst{worst_text(io::read_scene_json(scene_json)), scene_json};
     } catch (const Error&) {
         return std::nullopt;  // of another version, or damaged: nothing to compare with
     }
 }
 
 void print_change(const Worst& before, const Scene& now) {
-    const std::string text = worst_text(now);
     std::printf("Worst before (%s): %s; now: %s.\n", io::path_text(before.of).c_str(),
-                before.text.c_str(), text.empty() ? "nothing is at risk" : text.c_str());
+                before.text.c_str(), worst_text(now).c_str());
 }
 
 }  // namespace topple::cli

@@ -15,7 +15,7 @@ struct Worst {
     std::filesystem::path of;  // the scene.json that tells
 };
 
-// Of an earlier output; none where there is none that can be read, or nothing in it is at risk.
+// Of an earlier output; none where there is none that can be read.
 std::optional<Worst> worst_of(const std::filesystem::path& scene_json);
 
 void print_change(const Worst& before, const Scene& now);
