@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
+
 namespace topple {
 
 // Standard deviation of one depth reading of a structured-light sensor, metres, at depth z metres:
@@ -12,8 +14,9 @@ inline constexpr double depth_sigma_grows_from = 0.4;  // m
 
 template <class Real>
 Real depth_sigma(Real z) {
-    const Real beyond =
-        z > Real(depth_sigma_grows_from) ? z - Real(depth_sigma_grows_from) : Real(0);
+    // Above 0 that, else 0: without a branch, so that compilers vectorise it.
+    const Real past = z - Real(depth_sigma_grows_from);
+    const Real beyond = Real(0.5) * (past + std::abs(past));
     return Real(least_depth_sigma) + Real(depth_sigma_growth) * beyond * beyond;
 }
 

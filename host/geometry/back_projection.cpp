@@ -15,14 +15,14 @@ constexpr double grazing_tangent = 7.1;  // tan 82 degrees
 
 // Where `count` readings lie along one axis, in the camera's row of the pose, m: those that are
 // beyond the grid's reach are marked in `inside`. Plain arrays, which compilers vectorise.
-void project(const double* m, double dy, double depth_scale, double per_cell, const double* columns,
-             const std::uint16_t* stored, std::size_t count, std::int32_t* cell, std::int32_t* part,
+void project(const double* m, double dy, double per_cell, const double* columns,
+             const double* depth_m, std::size_t count, std::int32_t* cell, std::int32_t* part,
              std::uint32_t* inside) {
     constexpr auto bias = static_cast<double>(key_bias);
     const double along = m[0], across = m[1] * dy, ahead = m[2], offset = m[3];
     for (std::size_t u = 0; u < count; ++u) {
-        const double z = static_cast<double>(stored[u]) / depth_scale;
-        const double at = ((along * columns[u] + across + ahead) * z + offset) * per_cell + bias;
+        const double at =
+            ((along * columns[u] + across + ahead) * depth_m[u] + offset) * per_cell + bias;
         const bool in = (at >= 1) & (at < 2 * bias - 1);
         const double safe = in ? at : 1.0;
         const auto whole = static_cast<std::int32_t>(safe);
@@ -34,7 +34,8 @@ void project(const double* m, double dy, double depth_scale, double per_cell, co
 
 }  // namespace
 
-RowReadings::RowReadings(std::size_t width) : kept(width), inside(width), weight(width) {
+RowReadings::RowReadings(std::size_t width)
+    : kept(width), inside(width), weight(width), depth_m(width) {
     for (auto* values : {&cell, &part}) {
         for (auto& axis : *values) axis.resize(width);
     }
@@ -51,7 +52,7 @@ BackProjection::BackProjection(const Intrinsics& intrinsics, double cell_m)
         by_depth_[stored] = {
             static_cast<float>(intrinsics.depth_scale *
                                (3 * std::sqrt(2.0) * sigma + z * grazing_tangent / focal)),
-            std::max(1u, static_cast<std::uint32_t>(std::lround(65535 * ratio * ratio)))};
+            std::max(1u, static_cast<std::uint32_t>(std::lround(65535 * ratio * ratio))), z};
     }
 }
 
@@ -72,6 +73,7 @@ void BackProjection::look(const DepthFrame& frame, std::uint32_t v, RowReadings&
         const DepthReading& reading = by_depth_[row[u]];
         limit[u] = reading.largest_jump;
         out.weight[u] = reading.weight;
+        out.depth_m[u] = reading.depth_m;
     }
     std::uint32_t* const kept = out.kept.data();
     const std::uint16_t* const left = padded.data();
@@ -91,11 +93,9 @@ void BackProjection::row(const DepthFrame& frame, std::uint32_t v, RowReadings& 
     look(frame, v, out);
     const double dy = (v - intrinsics_.cy) / intrinsics_.fy;
     std::fill(out.inside.begin(), out.inside.end(), 1u);
-    const std::uint16_t* stored = frame.depth.data() + std::size_t{v} * intrinsics_.width;
     for (std::size_t a = 0; a < 3; ++a) {
-        project(&frame.camera_to_world[4 * a], dy, intrinsics_.depth_scale, per_cell_,
-                columns_.data(), stored, columns_.size(), out.cell[a].data(), out.part[a].data(),
-                out.inside.data());
+        project(&frame.camera_to_world[4 * a], dy, per_cell_, columns_.data(), out.depth_m.data(),
+                columns_.size(), out.cell[a].data(), out.part[a].data(), out.inside.data());
     }
 }
 

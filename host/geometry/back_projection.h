@@ -18,6 +18,7 @@ struct RowReadings {
     std::vector<std::uint32_t> kept;    // 1: the pixel has a reading on a surface
     std::vector<std::uint32_t> inside;  // 1: that lies within the grid's reach
     std::vector<std::uint32_t> weight;  // inverse variance, in 65535ths of the best reading's
+    std::vector<double> depth_m;
     // Of those inside, by axis: cells, and 65536ths of one, from the grid's lowest corner.
     std::array<std::vector<std::int32_t>, 3> cell, part;
     explicit RowReadings(std::size_t width);
@@ -36,6 +37,7 @@ class BackProjection {
     struct DepthReading {
         float largest_jump = 0;  // to a neighbour on one surface, as stored
         std::uint32_t weight = 0;
+        double depth_m = 0;
     };
     void look(const DepthFrame& frame, std::uint32_t v, RowReadings& out) const;
 

@@ -31,12 +31,25 @@ std::size_t end_of_group(const std::vector<BlockPlace>& blocks, std::size_t begi
     return at;
 }
 
+// Asks for sums, which lie scattered, before they are read or added to.
+void prefetch(const CellSums& sums) {
+    const auto* bytes = reinterpret_cast<const char*>(&sums);
+    __builtin_prefetch(bytes);
+    __builtin_prefetch(bytes + sizeof(CellSums) - 1);
+}
+
 // Writes the cells of blocks [begin, end), which share their x, by ascending key.
 void write_slab(const std::vector<BlockPlace>& blocks, std::size_t begin, std::size_t end,
                 CellSums* out) {
     for (std::size_t x = 0; x < 4; ++x) {
         for (std::size_t column = begin, next = begin; column < end; column = next) {
             next = end_of_group(blocks, column, end, y_bits);
+            for (std::size_t b = column; b < next; ++b) {
+                for (std::size_t n = 16 * x; n < 16 * (x + 1); ++n) {
+                    const std::uint32_t at = blocks[b].block->at[n];
+                    if (at != 0) prefetch(blocks[b].table->cells()[at - 1]);
+                }
+            }
             for (std::size_t y = 0; y < 4; ++y) {
                 for (std::size_t b = column; b < next; ++b) {
                     for (std::size_t z = 0; z < 4; ++z) {
@@ -93,7 +106,7 @@ CellTable::Block& CellTable::block(std::uint64_t key) {
     return blocks_[place - 1];
 }
 
-CellSums& CellTable::cell(std::uint64_t key) {
+std::uint32_t CellTable::place_of(std::uint64_t key) {
     Block& home = block(key);
     std::uint32_t& place = home.at[place_in_block(key)];
     if (place == 0) {
@@ -103,19 +116,28 @@ CellSums& CellTable::cell(std::uint64_t key) {
         place = static_cast<std::uint32_t>(cells_.size());
         ++home.count;
     }
-    return cells_[place - 1];
+    return place - 1;
 }
 
 void CellTable::add(std::span<const CellSums> sums, std::span<const std::uint32_t> which) {
-    for (const std::uint32_t s : which) cell(sums[s].key).add(sums[s]);
+    for (const std::uint32_t s : which) cells_[place_of(sums[s].key)].add(sums[s]);
 }
 
 void CellTable::add(std::span<const Reading> readings, std::uint32_t frame) {
-    CellSums* sums = nullptr;  // those of the reading before, mostly in the same cell
-    for (const Reading& reading : readings) {
-        const std::uint64_t key = reading.key();
-        if (!sums || sums->key != key) sums = &cell(key);
-        sums->add(reading, frame);
+    constexpr std::size_t at_once = 32;
+    std::array<std::uint32_t, at_once> place{};
+    for (; !readings.empty(); readings = readings.subspan(std::min(at_once, readings.size()))) {
+        const auto some = readings.first(std::min(at_once, readings.size()));
+        for (std::size_t n = 0; n < some.size(); ++n) {
+            // Mostly in the same cell as the one before.
+            if (n > 0 && some[n].key() == some[n - 1].key()) {
+                place[n] = place[n - 1];
+                continue;
+            }
+            place[n] = place_of(some[n].key());
+            prefetch(cells_[place[n]]);
+        }
+        for (std::size_t n = 0; n < some.size(); ++n) cells_[place[n]].add(some[n], frame);
     }
 }
 
@@ -153,7 +175,17 @@ void WaitingReadings::add(const Reading& reading, std::uint32_t frame) {
 
 void WaitingReadings::add_to(CellTable& table, std::size_t shard) const {
     const std::span<const Reading> all = readings_;
-    for (const Run& run : runs_[shard]) table.add(all.subspan(run.first, run.count), run.frame);
+    const std::vector<Run>& runs = runs_[shard];
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+        // The next run lies anywhere.
+        if (r + 1 < runs.size()) {
+            const auto next = std::as_bytes(all.subspan(runs[r + 1].first, runs[r + 1].count));
+            constexpr std::size_t line = 64, most = 32 * line;
+            for (std::size_t at = 0; at < std::min(next.size(), most); at += line)
+                __builtin_prefetch(&next[at]);
+        }
+        table.add(all.subspan(runs[r].first, runs[r].count), runs[r].frame);
+    }
 }
 
 void WaitingReadings::clear() {

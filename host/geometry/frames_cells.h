@@ -106,9 +106,9 @@ class CellTable {
     }
     static std::uint64_t hash(std::uint64_t key) { return key * 0x9E3779B97F4A7C15u >> 20; }
     Cube& cube(std::uint64_t key);
-    // The cell's block, and the cell, which has no readings where there was none.
+    // The cell's block, and the cell's place in cells(), with no readings where there was none.
     Block& block(std::uint64_t key);
-    CellSums& cell(std::uint64_t key);
+    std::uint32_t place_of(std::uint64_t key);
     void grow();
     std::vector<std::uint32_t> slots_;  // open addressing: place in cubes_ + 1, or 0
     std::vector<Cube> cubes_;

@@ -3,14 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/depth_noise.h"
+#include "geometry/cell_grid.h"
 
 namespace topple::geometry {
 namespace {
 
 constexpr std::uint32_t most_columns = 320;
-constexpr std::uint64_t points_at_once = 1 << 12;
+constexpr std::uint64_t points_at_once = 1 << 16;
+constexpr std::size_t most_together = 1 << 10;  // of these, in one cube
 // Nearer to a camera no sensor reads.
 constexpr float nearest_m = 0.2F;
 // How far poses that agree are off, and deviations of a reading from the surface that it is of. A
@@ -18,6 +21,30 @@ constexpr float nearest_m = 0.2F;
 constexpr float pose_error_m = 0.005F, on_surface = 2, beyond_surface = 3;
 // Deviations of the point's own best reading within which it may be a copy of what lies before it.
 constexpr float copy = 4;
+
+// Points go to the frames by what lies together, so that those that can't see it are left out, and
+// of the others few pixels are looked at. In cubes, as far as these can be told apart.
+std::uint64_t cube_of(float x, float y, float z) {
+    constexpr float edge_m = 0.2F;
+    std::uint64_t key = 0;
+    for (const float at : {x, y, z}) {
+        const float cube = std::clamp(std::floor(at / edge_m), -1048576.0F, 1048575.0F);
+        key = key << 21 | static_cast<std::uint64_t>(static_cast<std::int64_t>(cube) + 1048576);
+    }
+    return key;
+}
+
+FusedPoints gathered(const FusedPoints& points, std::span<const std::uint32_t> which,
+                     std::size_t from) {
+    FusedPoints out;
+    for (const std::uint32_t w : which) {
+        out.x.push_back(points.x[from + w]);
+        out.y.push_back(points.y[from + w]);
+        out.z.push_back(points.z[from + w]);
+        out.sigma.push_back(points.sigma[from + w]);
+    }
+    return out;
+}
 
 }  // namespace
 
@@ -76,8 +103,49 @@ Witnesses::Frame Witnesses::keep(const DepthFrame& frame) const {
     return kept;
 }
 
+Witnesses::Box Witnesses::box_of(const FusedPoints& points, std::size_t first, std::size_t count) {
+    Box box;
+    std::size_t a = 0;
+    for (const std::vector<float>* values : {&points.x, &points.y, &points.z}) {
+        const auto [least, greatest] =
+            std::ranges::minmax(std::span(*values).subspan(first, count));
+        box.centre[a] = 0.5 * (double{least} + double{greatest});
+        box.half[a++] = 0.5 * (double{greatest} - double{least});
+    }
+    return box;
+}
+
+bool Witnesses::may_see(const Frame& frame, const Box& box) const {
+    const auto& m = frame.camera_to_world;
+    std::array<double, 3> from{};
+    double far = 0, beyond_rounding = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+        from[a] = box.centre[a] - double{m[4 * a + 3]};
+        far += std::abs(from[a]) + box.half[a];
+        beyond_rounding += std::abs(box.centre[a]) + box.half[a];
+    }
+    // Projections in single precision are off by far less.
+    const double margin = 1e-3 * far + 1e-5 * beyond_rounding;
+    // Whether a corner lies on the inner side of a plane through the camera: x, y, z of the normal
+    // in its own axes.
+    const auto reaches = [&](double x, double y, double z, double least) {
+        double at = -least, length = 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double along =
+                x * double{m[4 * a]} + y * double{m[4 * a + 1]} + z * double{m[4 * a + 2]};
+            at += along * from[a] + std::abs(along) * box.half[a];
+            length += along * along;
+        }
+        return !(at < -margin * std::sqrt(length));
+    };
+    const double fx = fx_, fy = fy_, cx = cx_, cy = cy_;
+    return reaches(0, 0, 1, double{nearest_m}) && reaches(fx, 0, cx, 0) &&
+           reaches(-fx, 0, width_ - cx, 0) && reaches(0, fy, cy, 0) &&
+           reaches(0, -fy, height_ - cy, 0);
+}
+
 void Witnesses::project(const Frame& frame, const FusedPoints& points, std::size_t first,
-                        Projected& out) const {
+                        std::size_t count, Projected& out) const {
     // Copies: a compiler can't know that what is written is none of them.
     const std::array<float, 16> m = frame.camera_to_world;
     const float columns = static_cast<float>(width_), rows = static_cast<float>(height_);
@@ -86,7 +154,7 @@ void Witnesses::project(const Frame& frame, const FusedPoints& points, std::size
     const float *px = &points.x[first], *py = &points.y[first], *pz = &points.z[first];
     float* const depths = out.depth.data();
     std::int32_t* const pixels = out.pixel.data();
-    for (std::size_t k = 0; k < out.depth.size(); ++k) {
+    for (std::size_t k = 0; k < count; ++k) {
         const float x = px[k] - m[3], y = py[k] - m[7], z = pz[k] - m[11];
         const float depth = m[2] * x + m[6] * y + m[10] * z;
         const float u = (m[0] * x + m[4] * y + m[8] * z) / depth * fx + cx;
@@ -100,34 +168,60 @@ void Witnesses::project(const Frame& frame, const FusedPoints& points, std::size
 }
 
 void Witnesses::vote(const Frame& frame, const FusedPoints& points, std::size_t first,
-                     Projected& at, std::vector<Votes>& votes) const {
-    project(frame, points, first, at);
-    for (std::size_t k = 0; k < votes.size(); ++k) {
-        if (at.pixel[k] < 0) continue;
-        const Pixel& seen = frame.pixels[static_cast<std::size_t>(at.pixel[k])];
-        if (seen.depth == 0) continue;
-        const float depth = at.depth[k];
-        const float reading = metres_ * seen.depth, sigma = depth_sigma(reading);
+                     std::size_t count, Projected& at, Votes& votes) const {
+    project(frame, points, first, count, at);
+    for (std::size_t k = 0; k < count; ++k) {
+        const bool in = at.pixel[k] >= 0;
+        const Pixel& seen = frame.pixels[static_cast<std::size_t>(in ? at.pixel[k] : 0)];
+        at.stored[k] = in ? seen.depth : 0;
+        at.least[k] = seen.least;
+        at.greatest[k] = seen.greatest;
+    }
+    // Plain arrays and factors of 0 or 1, which compilers vectorise.
+    const float metres = metres_;
+    const float *depths = at.depth.data(), *sigmas = &points.sigma[first];
+    const std::int32_t *storeds = at.stored.data(), *leasts = at.least.data(),
+                       *greatests = at.greatest.data();
+    float *confirms = &votes.confirm[first], *denies = &votes.deny[first];
+    for (std::size_t k = 0; k < count; ++k) {
+        const float depth = depths[k];
+        const float reading = metres * static_cast<float>(storeds[k]);
+        const float sigma = depth_sigma(reading);
         const float weight = 1 / (sigma * sigma);
-        const float least = metres_ * seen.least, greatest = metres_ * seen.greatest;
-        const bool through = least > depth + beyond_surface * sigma + pose_error_m;
-        const bool copied = seen.least > 0 && greatest < depth &&
-                            least > depth - copy * points.sigma[first + k] - pose_error_m;
-        if (std::abs(reading - depth) <= on_surface * sigma + pose_error_m)
-            votes[k].confirm += weight;
-        else if (through || copied)
-            votes[k].deny += weight;
+        const float least = metres * static_cast<float>(leasts[k]),
+                    greatest = metres * static_cast<float>(greatests[k]);
+        const int through = least > depth + beyond_surface * sigma + pose_error_m;
+        const int copied = static_cast<int>(leasts[k] > 0) & static_cast<int>(greatest < depth) &
+                           static_cast<int>(least > depth - copy * sigmas[k] - pose_error_m);
+        const int same = std::abs(reading - depth) <= on_surface * sigma + pose_error_m;
+        const int seen = storeds[k] > 0;
+        confirms[k] += static_cast<float>(seen & same) * weight;
+        denies[k] += static_cast<float>(seen & (same ^ 1) & (through | copied)) * weight;
     }
 }
 
 std::vector<std::uint8_t> Witnesses::deny(const FusedPoints& points, ThreadPool& pool) const {
-    std::vector<std::uint8_t> denied(points.x.size());
-    pool.run(points.x.size(), points_at_once, [&](std::uint64_t first, std::uint64_t last) {
-        std::vector<Votes> votes(last - first);
-        Projected at{std::vector<float>(last - first), std::vector<std::int32_t>(last - first)};
-        for (const Frame& frame : frames_) vote(frame, points, first, at, votes);
-        for (std::size_t k = 0; k < votes.size(); ++k)
-            denied[first + k] = votes[k].deny > votes[k].confirm;
+    std::vector<std::uint8_t> denied(points.size());
+    pool.run(points.size(), points_at_once, [&](std::uint64_t begin, std::uint64_t end) {
+        std::vector<std::uint64_t> cube;
+        for (std::uint64_t i = begin; i < end; ++i)
+            cube.push_back(cube_of(points.x[i], points.y[i], points.z[i]));
+        const KeyGroups groups = group_keys(cube);
+        const FusedPoints near = gathered(points, groups.order, begin);
+        Projected at(most_together);
+        Votes votes{std::vector<float>(near.size()), std::vector<float>(near.size())};
+        for (std::size_t g = 0; g < groups.size(); ++g) {
+            for (std::size_t first = groups.first[g]; first < groups.first[g + 1];
+                 first += most_together) {
+                const std::size_t count = std::min(most_together, groups.first[g + 1] - first);
+                const Box box = box_of(near, first, count);
+                for (const Frame& frame : frames_) {
+                    if (may_see(frame, box)) vote(frame, near, first, count, at, votes);
+                }
+            }
+        }
+        for (std::size_t k = 0; k < near.size(); ++k)
+            denied[begin + groups.order[k]] = votes.deny[k] > votes.confirm[k];
     });
     return denied;
 }

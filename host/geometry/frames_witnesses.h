@@ -14,6 +14,7 @@ namespace topple::geometry {
 // that made each; metres.
 struct FusedPoints {
     std::vector<float> x, y, z, sigma;
+    std::size_t size() const { return x.size(); }
 };
 
 // What a sequence of depth frames says about the points fused from it. A far reading is centimetres
@@ -41,20 +42,29 @@ class Witnesses {
         std::array<float, 16> camera_to_world{};
         std::vector<Pixel> pixels;
     };
+    // Of points: sums of inverse variances.
     struct Votes {
-        float confirm = 0, deny = 0;  // sums of inverse variances
+        std::vector<float> confirm, deny;
     };
     Frame keep(const DepthFrame& frame) const;
-    // Of a run of points: their depths in a frame, and the pixels that they lie in, -1 for those
-    // out of its view.
+    // Of a run of points: their depths in a frame, the pixels that they lie in, -1 for those out of
+    // its view, and what these hold, 0 there.
     struct Projected {
         std::vector<float> depth;
-        std::vector<std::int32_t> pixel;
+        std::vector<std::int32_t> pixel, stored, least, greatest;
+        explicit Projected(std::size_t count)
+            : depth(count), pixel(count), stored(count), least(count), greatest(count) {}
     };
+    struct Box {
+        std::array<double, 3> centre{}, half{};
+    };
+    static Box box_of(const FusedPoints& points, std::size_t first, std::size_t count);
+    // False where no point of the box can lie in the frame's view.
+    bool may_see(const Frame& frame, const Box& box) const;
     void project(const Frame& frame, const FusedPoints& points, std::size_t first,
-                 Projected& out) const;
-    void vote(const Frame& frame, const FusedPoints& points, std::size_t first, Projected& at,
-              std::vector<Votes>& votes) const;
+                 std::size_t count, Projected& out) const;
+    void vote(const Frame& frame, const FusedPoints& points, std::size_t first, std::size_t count,
+              Projected& at, Votes& votes) const;
 
     std::uint32_t step_, width_, height_;  // pixels of the frames from one kept to the next; counts
     std::uint32_t row_;                    // pixels in a row of the frames

@@ -236,7 +236,9 @@ std::vector<float> PlaneFitter::mean_offsets(const PlaneFit& fit) {
     for (std::size_t q = 0; q < queries_.cell.size(); ++q)
         query_of[queries_.cell[q]] = static_cast<std::uint32_t>(q);
     std::vector<float> out(queries_.cell.size());
-    for (const Tile& tile : tiles_) mean_tile(tile, query_of, fit, out);
+    // From the last one on, which the fit has left prepared.
+    for (auto tile = tiles_.rbegin(); tile != tiles_.rend(); ++tile)
+        mean_tile(*tile, query_of, fit, out);
     return out;
 }
 

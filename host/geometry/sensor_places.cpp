@@ -72,17 +72,17 @@ SensorPlaces sensor_places(const CloudView& cloud) {
     return out;
 }
 
-std::vector<Vec3> places_apart(const SensorPlaces& sensors, std::size_t most) {
-    std::vector<Vec3> out;
+std::vector<std::uint32_t> places_apart(const SensorPlaces& sensors, std::size_t most) {
+    std::vector<std::uint32_t> out;
     if (sensors.places.empty()) return out;
     std::vector<std::uint64_t> points(sensors.places.size(), 0);
     for (const std::uint32_t place : sensors.of_point) ++points[place];
     std::vector<double> apart(sensors.places.size(), std::numeric_limits<double>::infinity());
     auto next = static_cast<std::size_t>(std::ranges::max_element(points) - points.begin());
     while (out.size() < std::min(most, sensors.places.size())) {
-        out.push_back(sensors.places[next]);
+        out.push_back(static_cast<std::uint32_t>(next));
         for (std::size_t p = 0; p < apart.size(); ++p)
-            apart[p] = std::min(apart[p], square_between(sensors.places[p], out.back()));
+            apart[p] = std::min(apart[p], square_between(sensors.places[p], sensors.places[next]));
         next = static_cast<std::size_t>(std::ranges::max_element(apart) - apart.begin());
     }
     return out;

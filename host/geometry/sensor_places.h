@@ -17,8 +17,8 @@ struct SensorPlaces {
 };
 SensorPlaces sensor_places(const CloudView& cloud);
 
-// At most so many of them that lie far apart: first the one of the most points, then always the
-// one that is farthest from those chosen.
-std::vector<Vec3> places_apart(const SensorPlaces& sensors, std::size_t most);
+// At most so many of them that lie far apart, by their numbers: first the one of the most points,
+// then always the one that is farthest from those chosen.
+std::vector<std::uint32_t> places_apart(const SensorPlaces& sensors, std::size_t most);
 
 }  // namespace topple::geometry

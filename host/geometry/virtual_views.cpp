@@ -61,7 +61,17 @@ class Looking {
     }
 
     void look_around(const VirtualViewOptions& options) {
-        for (const Vec3& eye : options.known_eyes) look(view_from(eye));
+        std::size_t said = 0, hidden = 0;
+        for (std::size_t e = 0; e < options.known_eyes.size(); ++e) {
+            CubeView view = view_from(options.known_eyes[e]);
+            for (std::size_t i = 0; i < options.seen_from.size(); ++i) {
+                if (options.seen_from[i] != e) continue;
+                ++said;
+                hidden += hides(view, {s_.x[i], s_.y[i], s_.z[i]}, places_.cell_m());
+            }
+            look(std::move(view));
+        }
+        if (said > 0) out_.hidden_share = static_cast<double>(hidden) / static_cast<double>(said);
         if (!options.known_eyes.empty()) return explore(options.eyes);
         look_first(options.sides_known);
         if (out_.eyes.empty()) return;
@@ -305,12 +315,12 @@ class Looking {
         });
     }
 
-    // Whether something lies before the point.
-    bool hides(const CubeView& view, const Vec3& point) const {
+    // Whether something lies before the point, by so much.
+    bool hides(const CubeView& view, const Vec3& point, double by_m = 0) const {
         const std::size_t image = view.image_of(point);
         const CubeView::Pixel pixel = view.pixel_of(image, point);
         return !pixel.inside || (view.surfel[image][pixel.index] != CubeView::nothing &&
-                                 view.depth[image][pixel.index] < pixel.depth);
+                                 view.depth[image][pixel.index] + by_m < pixel.depth);
     }
 
     // Whether all of a place is seen through: not a line of sight alone, which may lead through a

@@ -13,6 +13,9 @@ namespace topple::geometry {
 
 struct VirtualViewOptions {
     std::vector<Vec3> known_eyes;  // where a sensor is known to have been
+    // Of each surfel the known eye that it is said to have been seen from, or any other number; or
+    // empty.
+    std::vector<std::uint32_t> seen_from;
     // Places to look from: with the known ones, or where there are none in each 200 m^3.
     unsigned eyes = 12;
     bool sides_known = false;  // the surfels' normals point to the side that was free
@@ -29,6 +32,9 @@ struct VirtualViews {
     // The eyes, and after them places right in front of surfels that no eye has in front: their
     // sides are known from what is around them.
     std::vector<Vec3> viewpoints;
+    // Of the surfels that are said to have been seen from a known eye, those that something hides
+    // from there.
+    double hidden_share = 0;
     // For each surfel a viewpoint in front of it; empty where no eye was found.
     std::vector<std::uint32_t> viewpoint_of_surfel;
 };

@@ -7,11 +7,14 @@
 #include <cmath>
 #include <ctime>
 #include <memory>
+#include <unordered_map>
 #include <vector>
 
 #include "core/scene_bounds.h"
 #include "core/thread_pool.h"
-#include "device/device.h"
+#include "device/devices.h"
+#include "geometry/back_projection.h"
+#include "geometry/frames_fusion.h"
 #include "geometry/surfels.h"
 #include "io/frame_sequence.h"
 #include "io/octomap.h"
@@ -20,6 +23,7 @@
 #include "pipeline/ingest.h"
 #include "pipeline/parse_memory.h"
 #include "pipeline/scale_checks.h"
+#include "pipeline/scan_look.h"
 #include "pipeline/surface_extent.h"
 #include "pipeline/tiled_parse.h"
 #include "pipeline/voxel_size.h"
@@ -27,15 +31,20 @@
 namespace topple {
 namespace {
 
-// Measured on machines whose probe takes probe_reference_s, or as much longer or shorter: of a
-// parse in blocks seconds a point (sorting, thinning, writing) and a square metre of surface,
-// whatever its resolution; of one in one piece those of a point, a voxel of the surface, a voxel of
-// the box, a frame's pixel; and what every run takes. tests/estimates/estimates.py fits those in
-// one piece.
-constexpr double probe_reference_s = 0.075;
-constexpr double tiled_point_s = 0.27e-6, tiled_m2_s = 0.033, tiled_fixed_s = 1;
-constexpr double point_s = 2.9e-6, surface_voxel_s = 4.7e-5, voxel_s = 2.3e-7, pixel_s = 2.8e-7,
-                 fixed_s = 0.89;
+// Seconds of the processor that the stages take together where the probe takes probe_reference_s,
+// fitted by their logarithms. In one piece: of a point, of a frame's pixel, of a voxel of the grid
+// (as many as the geometric mean of those of the surface and those of the box), of a metre of
+// patches and of a surfel as rough as it is wide (scan_look.h), and of every run. In blocks: of a
+// point (sorting, thinning, writing), a thinned cell, a square metre of surface, whatever its
+// resolution, and every run. tests/estimates/estimates.py fits them, but for those of a pixel, and
+// of a point and a cell in blocks: two long sequences and two large buildings gave them.
+constexpr double probe_reference_s = 0.027;
+constexpr double point_s = 2.65e-6, pixel_s = 6e-8, voxel_s = 3.2e-6, patch_m_s = 0.036,
+                 rough_surfel_s = 1.8e-4, fixed_s = 0.22;
+constexpr double tiled_point_s = 0.27e-6, tiled_cell_s = 5e-6, tiled_m2_s = 0.0235,
+                 tiled_fixed_s = 0.1;
+// What of that one thread does alone; threads share the rest.
+constexpr double serial_share = 0.15;
 // Of the cells that a surface passes, those in which frames are fused to a point that stays.
 constexpr double fused_share = 0.66;
 // Cells of a block of a furnished building.
@@ -45,8 +54,10 @@ constexpr double output_point_bytes = 35, tiled_output_point_bytes = 23, output_
 // Of a surface whose noise is about a seventh of the cell, cells a patch of a cell's size.
 constexpr double layers = 2.3;
 
-// Seconds of the work that parses are full of, on a wavy sheet: least of three runs.
-void probe(device::Device& device, Estimate& out) {
+// Seconds of the processor, of one thread, for the work that parses are full of, on a wavy sheet:
+// least of three runs. Other work on the machine leaves them about as they are.
+double probe() {
+    const std::unique_ptr<device::Device> device = device::open_native(1);
     PointCloud cloud;
     for (int i = 0; i < 300; ++i) {
         for (int j = 0; j < 300; ++j) {
@@ -55,16 +66,13 @@ void probe(device::Device& device, Estimate& out) {
             cloud.z.push_back(0.1f * std::sin(0.05f * static_cast<float>(i + 2 * j)));
         }
     }
-    out.probe_s = out.probe_processor_s = INFINITY;
+    double least = INFINITY;
     for (int run = 0; run < 3; ++run) {
-        const std::clock_t spent = std::clock();
-        const auto start = std::chrono::steady_clock::now();
-        geometry::make_surfels(device, cloud, 0.018, {}, {});
-        const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-        out.probe_s = std::min(out.probe_s, passed.count());
-        out.probe_processor_s = std::min(
-            out.probe_processor_s, static_cast<double>(std::clock() - spent) / CLOCKS_PER_SEC);
+        const std::clock_t start = std::clock();
+        geometry::make_surfels(*device, cloud, 0.018, {}, {});
+        least = std::min(least, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
     }
+    return least;
 }
 
 void tell(const ParseOptions& options, double done) {
@@ -72,42 +80,67 @@ void tell(const ParseOptions& options, double done) {
     if (options.progress) options.progress("estimate", done);
 }
 
-// Beside the surface of what is no sequence of frames: its points, as far as they may be parsed in
-// one piece, and the voxels that it brings.
+// The surface, and, as far as it may be parsed in one piece, the points: of frames, about what they
+// are fused to.
 struct Looked {
     SurfaceExtent surface;
     PointCloud cloud;
-    double voxel_m = 0;
-    double spacing_m = 0;  // of the points, or of what the map has for them
+    geometry::FrameHints hints;
+    double voxel_m = 0;         // that the input brings
+    double spacing_m = 0;       // of the points, or of what the map has for them
+    bool views = false;         // a parse looks at it from virtual views
+    double seen_m3 = INFINITY;  // of a single view: the space before what it shows
+    double fused_bytes = 0;     // of frames: while they are fused
 };
+
+double seen_m3(const DepthFrame& frame, const Intrinsics& k) {
+    double sum = 0;
+    for (const std::uint16_t stored : frame.depth) {
+        const double z = stored / k.depth_scale;
+        sum += z * z * z;
+    }
+    return sum / (3 * k.fx * k.fy);
+}
+
+void add(const CloudView& portion, Looked& to) {
+    for (std::size_t n = 0; n < portion.size(); ++n)
+        to.surface.add(portion.x[n], portion.y[n], portion.z[n]);
+}
 
 Looked look_at_cloud(const std::filesystem::path& input, const ParseOptions& options,
                      Estimate& out) {
     Looked looked;
-    const auto add = [&](const PointCloud& portion) {
-        out.points += portion.size();
-        for (std::size_t n = 0; n < portion.size(); ++n)
-            looked.surface.add(portion.x[n], portion.y[n], portion.z[n]);
-        if (out.points <= most_points_at_once) {
-            const auto append = [](std::vector<float>& to, const std::vector<float>& from) {
-                to.insert(to.end(), from.begin(), from.end());
-            };
-            append(looked.cloud.x, portion.x);
-            append(looked.cloud.y, portion.y);
-            append(looked.cloud.z, portion.z);
-        }
-        tell(options, 0);
-    };
-    if (io::can_stream(input)) {
-        io::stream_cloud(input, options.unit_m, add);
+    if (may_be_tiled(input, options)) {
+        io::stream_cloud(input, options.unit_m, [&](const PointCloud& portion) {
+            out.points += portion.size();
+            add(portion, looked);
+            // Where they are too many, the first of them tell of the scale.
+            if (out.points <= most_points_at_once) {
+                const auto append = [](std::vector<float>& to, const std::vector<float>& from) {
+                    to.insert(to.end(), from.begin(), from.end());
+                };
+                append(looked.cloud.x, portion.x);
+                append(looked.cloud.y, portion.y);
+                append(looked.cloud.z, portion.z);
+            }
+            tell(options, 0);
+        });
         out.tiled = options.tile_m > 0 || out.points > most_points_at_once;
-        if (out.tiled || !io::is_mesh(input)) return looked;
-        looked = {};  // of a mesh in one piece its faces count, not its vertices
-        out.points = 0;
+        if (out.tiled) return looked;
+        looked = {};
     }
-    const ScannedMap map = read_input(input, options);
-    add(map.cloud);
-    if (io::looks_like_octomap(input)) looked.voxel_m = map.space.voxel_m;
+    ScannedMap map = read_input(input, options);
+    looked.cloud = std::move(map.cloud);
+    out.points = looked.cloud.size();
+    add(looked.cloud, looked);
+    const bool map_of_space = io::looks_like_octomap(input);
+    if (map_of_space) looked.voxel_m = map.space.voxel_m;
+    DepthFrame frame;
+    Intrinsics k;
+    const bool depth_image =
+        looked.cloud.height > 1 && geometry::frame_of_organised_cloud(looked.cloud, k, frame);
+    if (depth_image) looked.seen_m3 = seen_m3(frame, k);
+    looked.views = !map_of_space && !depth_image;
     return looked;
 }
 
@@ -136,46 +169,195 @@ void find_resolution(const Looked& looked, const ParseOptions& options, Estimate
     else if (looked.voxel_m > 0)
         out.voxel_m = looked.voxel_m;
     else
-        out.voxel_m = voxel_for_scan(out.cell_m, looked.surface, static_cast<double>(out.points),
-                                     options.max_memory_bytes);
+        out.voxel_m = voxel_for_scan(out.cell_m, out.surface_m2, bounds_of(looked.cloud),
+                                     static_cast<double>(out.points), options.max_memory_bytes);
 }
 
-// Calls use(x, y, z) for every third pixel each way that has a reading.
+// Calls use(key of the cell, at) for every step-th pixel each way that has a reading on a surface;
+// at() is its position.
 template <class Use>
-void each_reading(const DepthFrame& frame, const Intrinsics& k, const Use& use) {
-    const Mat4& m = frame.camera_to_world;
-    for (std::uint32_t v = 0; v < k.height; v += 3) {
-        for (std::uint32_t u = 0; u < k.width; u += 3) {
-            const double z = frame.depth[std::size_t{v} * k.width + u] / k.depth_scale;
-            if (z <= 0) continue;
-            const double x = (u - k.cx) / k.fx * z, y = (v - k.cy) / k.fy * z;
-            use(m[0] * x + m[1] * y + m[2] * z + m[3], m[4] * x + m[5] * y + m[6] * z + m[7],
-                m[8] * x + m[9] * y + m[10] * z + m[11]);
+void each_reading(const DepthFrame& frame, const Intrinsics& k,
+                  const geometry::BackProjection& projection, double cell_m, std::uint32_t step,
+                  const Use& use) {
+    geometry::RowReadings row(k.width);
+    for (std::uint32_t v = 0; v < k.height; v += step) {
+        projection.row(frame, v, row);
+        for (std::uint32_t u = 0; u < k.width; u += step) {
+            if (row.kept[u] == 0 || row.inside[u] == 0) continue;
+            std::uint64_t key = 0;
+            for (std::size_t a = 0; a < 3; ++a)
+                key = key << 21 | static_cast<std::uint64_t>(row.cell[a][u]);
+            const auto at = [&] {
+                Vec3 p{};
+                for (std::size_t a = 0; a < 3; ++a)
+                    p[a] = (static_cast<double>(row.cell[a][u] - geometry::key_bias) +
+                            row.part[a][u] / geometry::cell_parts) *
+                           cell_m;
+                return p;
+            };
+            use(key, at);
         }
     }
 }
 
+// How many different cells there are, by a sixteenth of all.
+class CellCount {
+  public:
+    void add(std::uint64_t cell) {
+        if (cell * 0x9E3779B97F4A7C15u >> 60 == 0) ++readings_[cell];
+    }
+    double cells() const { return 16 * static_cast<double>(readings_.size()); }
+    // Those with one reading only.
+    double once() const {
+        return 16 * static_cast<double>(std::ranges::count_if(
+                        readings_, [](const auto& cell) { return cell.second == 1; }));
+    }
+
+  private:
+    std::unordered_map<std::uint64_t, std::uint32_t> readings_;
+};
+
+// The mean of the readings in each cell.
+class CellMeans {
+  public:
+    void add(std::uint64_t cell, const Vec3& at) {
+        const auto [place, is_new] = place_.try_emplace(cell, sums_.size());
+        if (is_new) sums_.emplace_back();
+        Sum& sum = sums_[place->second];
+        for (std::size_t a = 0; a < 3; ++a) sum.at[a] += at[a];
+        ++sum.count;
+    }
+    PointCloud cloud() const {
+        PointCloud out;
+        for (const Sum& sum : sums_) {
+            const auto mean = [&](std::size_t a) {
+                return static_cast<float>(sum.at[a] / static_cast<double>(sum.count));
+            };
+            out.x.push_back(mean(0));
+            out.y.push_back(mean(1));
+            out.z.push_back(mean(2));
+        }
+        return out;
+    }
+
+  private:
+    struct Sum {
+        Vec3 at{};
+        std::size_t count = 0;
+    };
+    std::unordered_map<std::uint64_t, std::size_t> place_;
+    std::vector<Sum> sums_;
+};
+
+// Of more than one frame what only one of them shows is left out: strays are shown once.
+void keep_shown_again(const SurfaceExtent& again, PointCloud& cloud) {
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < cloud.size(); ++n) {
+        if (!again.has(cloud.x[n], cloud.y[n], cloud.z[n])) continue;
+        for (std::vector<float>* at : {&cloud.x, &cloud.y, &cloud.z}) (*at)[kept] = (*at)[n];
+        ++kept;
+    }
+    for (std::vector<float>* at : {&cloud.x, &cloud.y, &cloud.z}) at->resize(kept);
+}
+
 // Each frame of a sample covers what its neighbours cover, too: their union grows as that of all.
-// `bounds`: of what more than one of them shows, for strays are shown once.
-void look_at_frames(const std::filesystem::path& input, const ParseOptions& options,
-                    SurfaceExtent& surface, Bounds<float>& bounds, Estimate& out) {
+Looked look_at_frames(const std::filesystem::path& input, const ParseOptions& options,
+                      Estimate& out) {
+    Looked looked;
     const io::FrameSequence frames = io::FrameSequence::open(input);
     const Intrinsics& k = frames.intrinsics();
+    out.frames = frames.size();
+    out.pixels = out.frames * k.width * k.height;
+    out.cell_m = cell_for_frames(k, frames.size(), [&](std::size_t f) { return frames.load(f); });
+    looked.hints.camera_up = frames.mean_camera_up();
+    const geometry::BackProjection projection(k, out.cell_m);
     constexpr std::size_t most_frames = 100;
     const std::size_t step = std::max<std::size_t>(1, frames.size() / most_frames);
     SurfaceExtent again;
+    CellCount count;
+    CellMeans means;
     for (std::size_t f = 0; f < frames.size(); f += step) {
         const DepthFrame frame = frames.load(f);
-        each_reading(frame, k, [&](double x, double y, double z) {
-            if (surface.has(x, y, z)) again.add(x, y, z);
+        const auto each = [&](std::uint32_t apart, const auto& use) {
+            each_reading(frame, k, projection, out.cell_m, apart, use);
+        };
+        each(3, [&](std::uint64_t, const auto& at) {
+            const Vec3 p = at();
+            if (looked.surface.has(p[0], p[1], p[2])) again.add(p[0], p[1], p[2]);
         });
-        each_reading(frame, k, [&](double x, double y, double z) { surface.add(x, y, z); });
+        each(3, [&](std::uint64_t cell, const auto& at) {
+            const Vec3 p = at();
+            means.add(cell, p);
+            looked.surface.add(p[0], p[1], p[2]);
+        });
+        each(1, [&](std::uint64_t cell, const auto&) { count.add(cell); });
+        if (frames.size() == 1) looked.seen_m3 = seen_m3(frame, k);
         tell(options, static_cast<double>(f) / static_cast<double>(frames.size()));
     }
-    bounds = (again.area_m2() > 0 ? again : surface).bounds();
-    out.frames = frames.size();
-    out.cell_m = cell_for_frames(k, frames.size(), [&](std::size_t f) { return frames.load(f); });
-    out.pixels = out.frames * k.width * k.height;
+    looked.cloud = means.cloud();
+    const double area = looked.surface.area_m2();
+    out.points = static_cast<std::uint64_t>(fused_share * area / (out.cell_m * out.cell_m));
+    if (again.area_m2() > 0) keep_shown_again(again, looked.cloud);
+    // Where a single frame's pixels are farther apart than its cells, some of these are empty.
+    constexpr double pixels_share = 0.87;
+    if (frames.size() == 1)
+        out.points = std::min(out.points, static_cast<std::uint64_t>(pixels_share * count.cells()));
+    // The frames left out find as many cells anew as have one reading now, at most.
+    const double left_out = 1 - 1 / static_cast<double>(step);
+    looked.fused_bytes =
+        fusion_peak(count.cells() + left_out * count.once(), static_cast<double>(out.pixels));
+    return looked;
+}
+
+// In blocks: the thinned cells decide.
+void reckon_blocks(device::Device& device, const ParseOptions& options, Estimate& out) {
+    const auto points = static_cast<double>(out.points);
+    const double asked_cell_m = options.voxel_m / voxel_cells;  // 0: not asked
+    const double finest = points > 0 ? 1.25 * std::sqrt(out.surface_m2 / points) : 0;
+    out.cell_m = std::min(largest_cell_m,
+                          std::max(finest, asked_cell_m > 0 ? asked_cell_m : building_cell_m));
+    const double thinned =
+        std::min(0.95 * points, layers * out.surface_m2 / (out.cell_m * out.cell_m));
+    out.processor_s = tiled_fixed_s + tiled_point_s * points + tiled_cell_s * thinned +
+                      tiled_m2_s * out.surface_m2;
+    const double block = block_bytes(
+        static_cast<std::uint64_t>(std::min(thinned, static_cast<double>(block_cells))));
+    double lanes =
+        device.info().backend == device::Backend::native ? device.threads().threads() : 1;
+    lanes = std::clamp(std::ceil(thinned / static_cast<double>(block_cells)), 1.0, lanes);
+    if (options.max_memory_bytes > 0)
+        lanes = std::clamp(std::floor(static_cast<double>(options.max_memory_bytes) / block), 1.0,
+                           lanes);
+    out.least_bytes = static_cast<std::uint64_t>(std::max(block, whole_bytes(thinned)));
+    out.memory_bytes = static_cast<std::uint64_t>(std::max(block * lanes, whole_bytes(thinned)));
+    out.work_bytes =
+        static_cast<std::uint64_t>(work_point_bytes * points + work_thinned_bytes * thinned);
+    out.output_bytes = static_cast<std::uint64_t>(tiled_output_point_bytes * points + 15 * thinned);
+}
+
+void reckon_one_piece(device::Device& device, const ParseOptions& options, Looked& looked,
+                      Estimate& out) {
+    const auto points = static_cast<double>(out.points);
+    out.output_bytes = static_cast<std::uint64_t>(output_fixed + output_point_bytes * points);
+    if (looked.cloud.size() == 0) return;
+    find_resolution(looked, options, out);
+    if (options.up) looked.hints.up = options.up;
+    const ScanLook look =
+        look_at_scan(device, looked.cloud, out.cell_m, out.surface_m2, looked.hints);
+    const double h = out.voxel_m, surface = out.surface_m2 / (h * h);
+    const double surfel_m = surfel_cells * out.cell_m;
+    out.views = looked.views;
+    out.patches_m = look.patches_m;
+    out.rough_surfels = look.roughness * std::min(points, out.surface_m2 / (surfel_m * surfel_m));
+    out.ground_m2 = look.ground_m2;
+    out.box_voxels = std::min(look.box_m3, looked.seen_m3) / (h * h * h);
+    out.processor_s = fixed_s + point_s * points + pixel_s * static_cast<double>(out.pixels) +
+                      voxel_s * std::sqrt(surface * out.box_voxels) + patch_m_s * out.patches_m +
+                      rough_surfel_s * out.rough_surfels;
+    out.memory_bytes = static_cast<std::uint64_t>(
+        std::max(looked.fused_bytes, one_piece_peak({points, surface, out.box_voxels, out.ground_m2,
+                                                     out.patches_m, out.views})));
+    out.least_bytes = one_piece_bytes(points, out.surface_m2, bounds_of(looked.cloud), h);
 }
 
 }  // namespace
@@ -186,64 +368,21 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
     tell(options, 0);
     Estimate out;
     Looked looked;
-    Bounds<float> bounds;
     if (io::looks_like_sequence(input)) {
-        look_at_frames(input, options, looked.surface, bounds, out);
+        looked = look_at_frames(input, options, out);
     } else {
         looked = look_at_cloud(input, options, out);
         if (out.points > 0) check_scale(input, out, looked);
-        bounds = looked.surface.bounds();
     }
     out.surface_m2 = looked.surface.area_m2();
-    probe(*device, out);
-    const double slower = out.probe_s / probe_reference_s;
-    const auto points = static_cast<double>(out.points);
-    const double asked_cell_m = options.voxel_m / voxel_cells;  // 0: not asked
-    if (out.tiled) {
-        const double finest = points > 0 ? 1.25 * std::sqrt(out.surface_m2 / points) : 0;
-        out.cell_m = std::min(largest_cell_m,
-                              std::max(finest, asked_cell_m > 0 ? asked_cell_m : building_cell_m));
-        const double thinned =
-            std::min(0.95 * points, layers * out.surface_m2 / (out.cell_m * out.cell_m));
-        out.seconds = tiled_fixed_s + tiled_point_s * points + tiled_m2_s * out.surface_m2;
-        const double block = block_bytes(
-            static_cast<std::uint64_t>(std::min(thinned, static_cast<double>(block_cells))));
-        double lanes =
-            device->info().backend == device::Backend::native ? device->threads().threads() : 1;
-        lanes = std::clamp(std::ceil(thinned / static_cast<double>(block_cells)), 1.0, lanes);
-        if (options.max_memory_bytes > 0)
-            lanes = std::clamp(std::floor(static_cast<double>(options.max_memory_bytes) / block),
-                               1.0, lanes);
-        const double blocks = block * lanes;
-        out.least_bytes = static_cast<std::uint64_t>(std::max(block, whole_bytes(thinned)));
-        out.memory_bytes = static_cast<std::uint64_t>(std::max(blocks, whole_bytes(thinned)));
-        out.work_bytes =
-            static_cast<std::uint64_t>(work_point_bytes * points + work_thinned_bytes * thinned);
-        out.output_bytes =
-            static_cast<std::uint64_t>(tiled_output_point_bytes * points + 15 * thinned);
-    } else {
-        if (out.frames > 0) {
-            out.points = static_cast<std::uint64_t>(fused_share * out.surface_m2 /
-                                                    (out.cell_m * out.cell_m));
-        }
-        const auto looked_at = static_cast<double>(out.points);
-        if (looked_at > 0) {
-            find_resolution(looked, options, out);
-            const double h = out.voxel_m;
-            double box = 1;
-            for (std::size_t a = 0; a < 3; ++a) box *= (bounds.high[a] - bounds.low[a]) / h;
-            out.box_voxels = box;
-            out.seconds = fixed_s + point_s * looked_at +
-                          pixel_s * static_cast<double>(out.pixels) +
-                          surface_voxel_s * out.surface_m2 / (h * h) + voxel_s * box;
-            out.memory_bytes = static_cast<std::uint64_t>(
-                one_piece_peak(looked_at, out.surface_m2, bounds, h, out.frames == 0));
-            out.least_bytes = one_piece_bytes(looked_at, out.surface_m2, bounds, h);
-        }
-        out.output_bytes =
-            static_cast<std::uint64_t>(output_fixed + output_point_bytes * looked_at);
-    }
-    out.seconds *= slower;
+    if (out.tiled)
+        reckon_blocks(*device, options, out);
+    else
+        reckon_one_piece(*device, options, looked, out);
+    out.probe_s = probe();
+    out.processor_s *= out.probe_s / probe_reference_s;
+    const double threads = device->threads().threads();
+    out.seconds = out.processor_s * (serial_share + (1 - serial_share) / threads);
     return out;
 }
 

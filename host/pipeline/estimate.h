@@ -8,9 +8,9 @@
 
 namespace topple {
 
-// What a parse will take, before it: guesses from how many points there are and over how much
-// surface they spread, by the measured costs of the stages and the speed of this machine. Memory in
-// one piece is mostly within a quarter, time within a factor of two; so are those of blocks.
+// What a parse will take, before it: guesses from how many points there are, over how much surface
+// they spread and what stands there, by the measured costs of the stages and the speed of this
+// machine. docs/performance.md tells how near they come.
 struct Estimate {
     std::uint64_t points = 0;  // of a cloud; of frames those they are fused to
     std::uint64_t frames = 0;  // 0: a cloud
@@ -18,11 +18,15 @@ struct Estimate {
     bool tiled = false;  // parsed in blocks
     double cell_m = 0;   // one point of each such cell is looked at
     double voxel_m = 0;  // of solids, in one piece
-    double seconds = 0;  // with the device's threads
-    // What that is reckoned from, beside the points: pixels of frames, voxels of the box in one
-    // piece, and the seconds of a piece of work here, by the clock and of the processor.
+    // With the device's threads on a machine without other work; and of the processor, with one.
+    double seconds = 0, processor_s = 0;
+    // What that is reckoned from, beside the above: pixels of frames; in one piece whether the scan
+    // is looked at from virtual views, its patches and ground (scan_look.h), its surfels by how
+    // rough they are, and the voxels of its box, or of what a single view sees there; the seconds
+    // of a piece of work here.
     std::uint64_t pixels = 0;
-    double box_voxels = 0, probe_s = 0, probe_processor_s = 0;
+    bool views = false;
+    double patches_m = 0, ground_m2 = 0, rough_surfels = 0, box_voxels = 0, probe_s = 0;
     std::uint64_t least_bytes = 0;  // with a max_memory_bytes below it parse() refuses
     std::uint64_t memory_bytes = 0, work_bytes = 0, output_bytes = 0;
 };

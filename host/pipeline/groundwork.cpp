@@ -16,9 +16,8 @@ namespace {
 void check_memory(const CloudView& cloud, ScanOrigin origin, double voxel_m,
                   const ParseOptions& options) {
     if (options.max_memory_bytes == 0) return;
-    const SurfaceExtent surface = extent_of(cloud);
-    const std::uint64_t need = one_piece_bytes(static_cast<double>(cloud.size()), surface.area_m2(),
-                                               surface.bounds(), voxel_m);
+    const std::uint64_t need = one_piece_bytes(
+        static_cast<double>(cloud.size()), extent_of(cloud).area_m2(), bounds_of(cloud), voxel_m);
     if (need > options.max_memory_bytes) {
         throw Error(
             ErrorKind::input,

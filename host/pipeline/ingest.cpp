@@ -2,6 +2,7 @@
 #include "pipeline/ingest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -46,6 +47,11 @@ geometry::SurfelScale view_surfels(const geometry::PointSpacing& spacing, double
 
 // Of the places that sensors are known to have been at, those looked from.
 constexpr std::size_t most_sensors = 24;
+constexpr std::uint32_t no_eye = 0xffffffff;
+// Of points that say where they were seen from, how many may be hidden from there: by the discs
+// that surfels are drawn as, a third in a hall full of thin things; places in another frame hide
+// two thirds and more.
+constexpr double most_hidden = 0.5;
 
 class SequenceStream final : public FrameStream {
   public:
@@ -139,14 +145,39 @@ Ingested ingest_folder(device::Device& device, const std::filesystem::path& fold
     return out;
 }
 
+const std::string places_must = "places of sensors must be in the points' frame, and in metres.";
+
+// Whether one of the places is farther outside of the surfels' box than that is long.
+bool lie_far_off(const std::vector<Vec3>& places, const geometry::Surfels& surfels) {
+    Vec3 low{}, high{};
+    double longest = 0;
+    const std::array<const std::vector<float>*, 3> axes{&surfels.x, &surfels.y, &surfels.z};
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto [least, most] = std::ranges::minmax(*axes[a]);
+        low[a] = least;
+        high[a] = most;
+        longest = std::max(longest, high[a] - low[a]);
+    }
+    return std::ranges::any_of(places, [&](const Vec3& place) {
+        double outside = 0;
+        for (std::size_t a = 0; a < 3; ++a)
+            outside = std::max({outside, low[a] - place[a], place[a] - high[a]});
+        return outside > longest;
+    });
+}
+
 // Virtual views of a cloud without poses, and which side of its surfaces was seen.
 void look_from_free_places(device::Device& device, const std::optional<geometry::SingleScan>& scan,
                            const geometry::SurfelScale& scale, double gap_m, Ingested& out) {
     geometry::VirtualViewOptions options;
     geometry::SensorPlaces sensors = geometry::sensor_places(out.cloud);
     const bool posed = !sensors.places.empty();
+    std::vector<std::uint32_t> eye_of_place(sensors.places.size(), no_eye);
     if (posed) {
-        options.known_eyes = geometry::places_apart(sensors, most_sensors);
+        for (const std::uint32_t place : geometry::places_apart(sensors, most_sensors)) {
+            eye_of_place[place] = static_cast<std::uint32_t>(options.known_eyes.size());
+            options.known_eyes.push_back(sensors.places[place]);
+        }
     } else if (scan) {
         options.known_eyes = {scan->eye};
         options.eyes = 1;
@@ -163,11 +194,30 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
     options.gap_m = gap_m;
     const geometry::Surfels surfels = geometry::make_surfels(
         device, out.cloud, scale, posed ? sensors.places : options.known_eyes, sensors.of_point);
+    if (posed) {
+        options.seen_from.assign(surfels.size(), no_eye);
+        for (std::size_t p = 0; p < surfels.of_point.size(); ++p)
+            options.seen_from[surfels.of_point[p]] = eye_of_place[sensors.of_point[p]];
+    }
     geometry::VirtualViews views = geometry::virtual_views(surfels, options, device.threads());
     if (views.frames.empty()) {
         out.notes.push_back(
-            "No free space could be seen from inside of the cloud; nothing was carved.");
+            posed ? "Nothing could be seen from the sensors' places that were given, and nothing "
+                    "was carved: " +
+                        places_must
+                  : "No free space could be seen from inside of the cloud; nothing was carved.");
         return;
+    }
+    if (views.hidden_share > most_hidden) {
+        out.notes.push_back(std::to_string(std::lround(100 * views.hidden_share)) +
+                            " % of the points would be hidden from where they are said to have "
+                            "been seen from: " +
+                            places_must);
+    } else if (lie_far_off(options.known_eyes, surfels)) {
+        out.notes.push_back(
+            "A sensor is said to have been farther from the points than they are "
+            "from one another: " +
+            places_must);
     }
     const std::size_t eyes = views.eyes.size();
     if (posed) {

@@ -11,26 +11,40 @@
 // What parses hold, as measured: in one piece by points and voxels, in blocks by thinned cells.
 namespace topple {
 
-// In one piece. The peak is where the surface is taken apart, or where solids are made; `views`: of
-// a cloud, which is looked at from free places, and not of frames.
-// Of the 192 random inputs of tests/estimates that it is fitted to 77 % come within 25 % of this,
-// and none to more than 1.85 of it; a real scan of many noisy frames to 2.2.
-inline double one_piece_peak(double points, double surface_m2, const Bounds<float>& bounds,
-                             double voxel_m, bool views = true) {
-    constexpr double fixed = 92e6, of_views = 17e6, a_point = 353, a_surface_voxel = 1670,
-                     a_voxel = 3.7;
-    double box = 1;
-    for (std::size_t a = 0; a < 3; ++a) box *= (bounds.high[a] - bounds.low[a]) / voxel_m + 16;
-    const double surface = surface_m2 / (voxel_m * voxel_m);
-    return fixed + (views ? of_views : 0) +
-           std::max(a_point * points, a_surface_voxel * surface + a_voxel * box);
+// What decides the peak of a parse in one piece: its points, voxels of the surface and of the box
+// around it, the ground there, what stands on it (scan_look.h), and whether a cloud is looked at
+// from virtual views.
+struct OnePiece {
+    double points = 0, surface_voxels = 0, box_voxels = 0, ground_m2 = 0, patches_m = 0;
+    bool views = true;
+};
+
+// What people's walk takes grows no more on ground larger than this.
+inline constexpr double walked_m2 = 4;
+
+inline double one_piece_peak(const OnePiece& of) {
+    constexpr double fixed = 61e6, of_views = 27e6, of_walks = 26e6, a_point = 167,
+                     a_surface_voxel = 1040, a_voxel = 10.7, a_patch_m = 6.6e5;
+    return fixed + (of.views ? of_views : 0) + of_walks * std::min(1.0, of.ground_m2 / walked_m2) +
+           a_point * of.points + a_surface_voxel * of.surface_voxels + a_voxel * of.box_voxels +
+           a_patch_m * of.patches_m;
 }
 
-// What a parse in one piece is sure to keep to.
+// While frames with readings in so many cells are fused: the sums of each cell twice, and readings
+// that wait, of four million pixels at most.
+inline double fusion_peak(double cells, double pixels) {
+    constexpr double fixed = 61e6, a_cell = 200, waiting = 20, most_waiting = 4.2e6;
+    return fixed + a_cell * cells + waiting * std::min(pixels, most_waiting);
+}
+
+// What a parse in one piece is sure to keep to, by the bounds along the input's own axes.
 inline std::uint64_t one_piece_bytes(double points, double surface_m2, const Bounds<float>& bounds,
                                      double voxel_m) {
     constexpr double sure = 2.3;
-    return static_cast<std::uint64_t>(sure * one_piece_peak(points, surface_m2, bounds, voxel_m));
+    double box = 1;
+    for (std::size_t a = 0; a < 3; ++a) box *= (bounds.high[a] - bounds.low[a]) / voxel_m + 16;
+    return static_cast<std::uint64_t>(
+        sure * one_piece_peak({points, surface_m2 / (voxel_m * voxel_m), box, walked_m2, 0, true}));
 }
 
 // While a block with so many cells in its core is parsed: it sees its halo's, too.

@@ -13,8 +13,8 @@
 
 namespace topple {
 
-// How much surface a cloud shows, and where, by the cells of 5 cm that its points occupy; they may
-// come in any order.
+// How much surface a cloud shows, by the cells of 5 cm that its points occupy; they may come in any
+// order.
 class SurfaceExtent {
   public:
     static constexpr double cell_m = 0.05;
@@ -31,18 +31,6 @@ class SurfaceExtent {
     // Whether a point was in the same cell.
     bool has(double x, double y, double z) const {
         return cells_.contains(key({cell(x), cell(y), cell(z)}));
-    }
-    Bounds<float> bounds() const {
-        std::array<std::vector<float>, 3> at;
-        for (const std::uint64_t key : cells_) {
-            for (std::size_t a = 0; a < 3; ++a) {
-                // Its 21 bits, with their sign.
-                const auto c = static_cast<std::int64_t>(key << (1 + 21 * a)) >> 43;
-                at[a].push_back(static_cast<float>(static_cast<double>(c) * cell_m));
-            }
-        }
-        if (at[0].empty()) return {};
-        return scene_bounds<float>({at[0], at[1], at[2]}, static_cast<float>(cell_m));
     }
     double area_m2() const {
         return static_cast<double>(cells_.size()) * cell_m * cell_m / cells_per_area;
@@ -64,6 +52,16 @@ inline SurfaceExtent extent_of(const CloudView& cloud) {
     SurfaceExtent out;
     for (std::size_t n = 0; n < cloud.size(); ++n) out.add(cloud.x[n], cloud.y[n], cloud.z[n]);
     return out;
+}
+
+// Where its points lie, without a few strays, as the grid of a parse does.
+inline Bounds<float> bounds_of(const CloudView& cloud) {
+    if (cloud.size() == 0) return {};
+    const auto values = [](const FloatColumn& column) {
+        return std::vector<float>(column.begin(), column.end());
+    };
+    const std::array<std::vector<float>, 3> at{values(cloud.x), values(cloud.y), values(cloud.z)};
+    return scene_bounds<float>({at[0], at[1], at[2]}, static_cast<float>(SurfaceExtent::cell_m));
 }
 
 }  // namespace topple

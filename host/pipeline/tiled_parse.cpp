@@ -57,13 +57,6 @@ std::string manifest(const fs::path& input, const ParseOptions& options) {
            " " + std::to_string(changed) + options_text(options);
 }
 
-// A smaller file is none of a large cloud.
-bool may_be_tiled(const fs::path& input, const ParseOptions& options) {
-    std::error_code error;
-    return fs::is_regular_file(input, error) && io::can_stream(input) &&
-           (options.tile_m > 0 || fs::file_size(input, error) >= small_file);
-}
-
 // An eighth of what a run may take: the device, and the portion in hand, take theirs, too.
 std::uint64_t spill_bytes(const ParseOptions& options) {
     constexpr std::uint64_t most = std::uint64_t{256} << 20, least = std::uint64_t{16} << 20;
@@ -283,6 +276,12 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
 }
 
 }  // namespace
+
+bool may_be_tiled(const fs::path& input, const ParseOptions& options) {
+    std::error_code error;
+    return fs::is_regular_file(input, error) && io::can_stream(input) &&
+           (options.tile_m > 0 || fs::file_size(input, error) >= small_file);
+}
 
 std::string to_text(const WorkLeft& left) {
     if (left.blocks == 0) return "the points sorted on disk";

@@ -24,6 +24,9 @@ inline constexpr double voxel_cells = 2;
 // Tiles hold at least a block, tiles::block_edge_m.
 inline constexpr double least_tile_m = 5;
 
+// Whether a file may hold so many: its points are streamed and counted then.
+bool may_be_tiled(const std::filesystem::path& input, const ParseOptions& options);
+
 // Parses a cloud file in blocks, if it is so large or options.tile_m asks for it: its points are
 // sorted into cubes on disk and thinned there to one a cell; each block with its halo goes through
 // section 2 of the paper; the primitives are joined across borders, and sections 3 to 5 see the

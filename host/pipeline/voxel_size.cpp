@@ -5,6 +5,7 @@
 #include <array>
 
 #include "pipeline/parse_memory.h"
+#include "pipeline/surface_extent.h"
 
 namespace topple {
 namespace {
@@ -22,16 +23,14 @@ double voxel_for_cell(double cell_m) {
     return 2 * cell_m;
 }
 
-double voxel_for_scan(double cell_m, const SurfaceExtent& surface, double points,
+double voxel_for_scan(double cell_m, double surface_m2, const Bounds<float>& bounds, double points,
                       std::uint64_t max_memory_bytes) {
     const double coarsest = voxel_for_cell(cell_m);
     if (coarsest <= room_voxel_m) return coarsest;
-    const double area = surface.area_m2();
-    const Bounds<float> bounds = surface.bounds();
     const auto fits = [&](double h) {
-        return area <= most_surface_voxels * h * h &&
+        return surface_m2 <= most_surface_voxels * h * h &&
                (max_memory_bytes == 0 ||
-                one_piece_bytes(points, area, bounds, h) <= max_memory_bytes);
+                one_piece_bytes(points, surface_m2, bounds, h) <= max_memory_bytes);
     };
     for (const double h : handy)
         if (h >= room_voxel_m && h < coarsest && fits(h)) return h;
@@ -41,8 +40,8 @@ double voxel_for_scan(double cell_m, const SurfaceExtent& surface, double points
 double voxel_for_input(const Ingested& input, const ParseOptions& options) {
     if (options.voxel_m > 0) return options.voxel_m;
     if (input.voxel_m > 0) return input.voxel_m;
-    const bool asked = voxel_for_cell(input.cell_m) > room_voxel_m;
-    return voxel_for_scan(input.cell_m, asked ? extent_of(input.cloud) : SurfaceExtent(),
+    if (voxel_for_cell(input.cell_m) <= room_voxel_m) return voxel_for_cell(input.cell_m);
+    return voxel_for_scan(input.cell_m, extent_of(input.cloud).area_m2(), bounds_of(input.cloud),
                           static_cast<double>(input.cloud.size()), options.max_memory_bytes);
 }
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "core/scene_bounds.h"
 #include "pipeline/ingest.h"
-#include "pipeline/surface_extent.h"
 #include "topple/parse.h"
 
 namespace topple {
@@ -20,7 +20,7 @@ double voxel_for_cell(double cell_m);
 // Edge of the voxels of a scan that is parsed in one piece. Things in rooms are measured at 2 cm or
 // finer, however far the points are apart; halls of more surface than 4 million such voxels, or of
 // more than fits into max_memory_bytes (0: no limit), get larger ones, up to voxel_for_cell().
-double voxel_for_scan(double cell_m, const SurfaceExtent& surface, double points,
+double voxel_for_scan(double cell_m, double surface_m2, const Bounds<float>& bounds, double points,
                       std::uint64_t max_memory_bytes);
 
 // Of a parse: what its options say, else what its input has (a map), else by the above.

@@ -3,20 +3,21 @@
 """Compares what `topple estimate` says with what parses take, on small random inputs of every kind.
 
   estimates.py --program TOPPLE --work DIR [--count N] [--first SEED] [--threads N] [--table FILE]
-  estimates.py --fit TABLE... [--clock]
+  estimates.py --program TOPPLE --work DIR --inputs SCAN... [--threads N] [--table FILE]
+  estimates.py --fit TABLE...
 
-Each seed is an input: rooms and buildings of `topple generate` as every scan, boxes of its own as clouds and meshes,
-maps and volumes of an earlier parse; with a voxel and tiles by chance. It is parsed once as it is, and once with a
+Each seed is an input: rooms and buildings of `topple generate` as every scan, boxes and houses of its own as clouds and
+meshes, maps and volumes of an earlier parse; with a voxel and tiles by chance; or the inputs are given. It is parsed once as it is, and once with a
 --max-memory near the estimate, which must be refused or kept. Printed is each ratio of estimate to truth, and at the
-end the shares within a quarter. Time is compared by the processor's (one thread), which a busy machine leaves as it
+end the shares within a quarter, by kind. Time is compared by the processor's, which a busy machine leaves about as it
 is, and by the clock. Exit code 1 where a limit was not kept.
 
---fit prints constants of host/pipeline/estimate.cpp (time) and parse_memory.h (memory) that fit tables best; --clock
-fits the time by the clock, for tables of a quiet machine with all threads.
+--fit prints constants of host/pipeline/estimate.cpp (time) and parse_memory.h (memory) that fit tables best.
 """
 import argparse
 import json
 import math
+import operator
 import os
 import pathlib
 import random
@@ -28,10 +29,12 @@ import time
 
 KINDS = ['kitchen', 'bathroom', 'bedroom', 'living', 'office', 'shop', 'storage', 'corridor', 'precarious', 'tabletop',
          'library', 'meeting', 'lounge', 'laundry', 'depot', 'plain', 'varied']
-COLUMNS = ['seed', 'what', 'options', 'points', 'frames', 'pixels', 'surface_m2', 'tiled', 'cell_m', 'voxel_m',
-           'box_voxels', 'seconds', 'probe_s', 'probe_processor_s', 'memory_bytes', 'least_bytes', 'wall_s',
-           'processor_s', 'peak_bytes', 'limit_bytes', 'limit_peak_bytes', 'limit']
-PROBE_REFERENCE_S = 0.075  # as in host/pipeline/estimate.cpp
+SAID = ['points', 'frames', 'pixels', 'surface_m2', 'tiled', 'cell_m', 'voxel_m', 'views', 'patches_m', 'ground_m2',
+        'rough_surfels', 'box_voxels', 'seconds', 'processor_s', 'probe_s', 'memory_bytes', 'least_bytes']
+COLUMNS = ['seed', 'what', 'options', *SAID, 'wall_s', 'spent_s', 'peak_bytes', 'limit_bytes', 'limit_peak_bytes', 'limit']
+# As in host/pipeline/estimate.cpp, and parse_memory.h.
+PROBE_REFERENCE_S, PIXEL_S, TILED_POINT_S, TILED_CELL_S, LAYERS = 0.027, 6e-8, 0.27e-6, 5e-6, 2.3
+WALKED_M2 = 4
 
 
 class Ran:
@@ -64,6 +67,24 @@ def boxes(chance):
         size = [chance.uniform(0.1, 0.8) for _ in range(3)]
         low = tuple(chance.uniform(-side / 2, side / 2 - s) for s in size[:2]) + (0,)
         faces += box(low, size)[1:]
+    return faces
+
+
+def house(chance):
+    """Rooms in a row, seen from within, with boxes in them and on one another."""
+    faces, x = [], 0
+    for _ in range(chance.choice([1, 1, 1, 2, 3])):
+        w, d, h = chance.uniform(2, 5), chance.uniform(2, 5), chance.uniform(2.3, 3)
+        faces += [((x, 0, 0), (w, 0, 0), (0, d, 0)), ((x, 0, h), (0, d, 0), (w, 0, 0)),
+                  ((x, 0, 0), (0, d, 0), (0, 0, h)), ((x + w, 0, 0), (0, 0, h), (0, d, 0)),
+                  ((x, 0, 0), (0, 0, h), (w, 0, 0)), ((x, d, 0), (w, 0, 0), (0, 0, h))]
+        for _ in range(chance.randrange(3, 15)):
+            size = [chance.uniform(0.1, 0.9) for _ in range(3)]
+            low = (x + chance.uniform(0.05, w - size[0] - 0.05), chance.uniform(0.05, d - size[1] - 0.05), 0)
+            faces += box(low, size)
+            if chance.random() < 0.5:
+                faces += box((low[0] + 0.01, low[1] + 0.01, size[2]), [chance.uniform(0.05, s) for s in size])
+        x += w + 0.12
     return faces
 
 
@@ -126,8 +147,9 @@ def make(program, folder, seed):
         return 'boxes' + file.suffix, file, options
     if kind == 'mesh':
         file = folder / ('mesh' + chance.choice(['.ply', '.obj', '.stl']))
-        write_mesh(file, boxes(chance))
-        return 'mesh' + file.suffix, file, options
+        faces = house(chance) if chance.random() < 0.4 else boxes(chance)
+        write_mesh(file, faces)
+        return ('house' if len(faces) > 80 else 'mesh') + file.suffix, file, options
     if kind == 'building':
         points = chance.randrange(30_000, 150_000)
         words = ['--building', '--points', points, '--spacing', '%.3g' % chance.uniform(0.03, 0.06)]
@@ -159,16 +181,20 @@ def make(program, folder, seed):
 
 
 def measure(a, seed):
-    folder = a.work / str(seed)
+    folder = a.work / (seed.name if a.inputs else str(seed))
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    what, file, options = make(a.program, folder, seed)
+    what, file, options = (seed.name, seed, []) if a.inputs else make(a.program, folder, seed)
+    return compare(a, folder, seed if not a.inputs else 0, what, file, options)
+
+
+def compare(a, folder, seed, what, file, options):
     common = ['--backend', 'native', '--threads', a.threads, '--quiet']
     said = Ran([a.program, 'estimate', file, *options, *common, '--json'])
     row = {'seed': seed, 'what': what, 'options': ' '.join(options)}
     if said.code != 0:
         return row, 'estimate: ' + said.error.strip()
-    row.update({key: value for key, value in json.loads(said.out).items() if key in COLUMNS})
+    row.update({key: value for key, value in json.loads(said.out).items() if key in SAID})
 
     def parse(*more):
         return Ran([a.program, 'parse', file, '-o', folder / 'out', '--no-cache', *options, *common, *more])
@@ -176,7 +202,7 @@ def measure(a, seed):
     whole = parse()
     if whole.code != 0:
         return row, 'parse: ' + whole.error.strip()
-    row.update(wall_s=round(whole.wall_s, 3), processor_s=round(whole.processor_s, 3), peak_bytes=whole.peak_bytes)
+    row.update(wall_s=round(whole.wall_s, 3), spent_s=round(whole.processor_s, 3), peak_bytes=whole.peak_bytes)
     # From what is refused to what is enough.
     row['limit_bytes'] = int(random.Random(seed + 1).uniform(0.7, 1.05) * row['least_bytes'])
     limited = parse('--max-memory', row['limit_bytes'])
@@ -191,10 +217,21 @@ def measure(a, seed):
 
 
 def ratios(row):
-    """Of estimate to truth: memory, time of the processor (of one thread), time by the clock."""
-    slower = row['probe_processor_s'] / row['probe_s']
-    return (row['memory_bytes'] / row['peak_bytes'], row['seconds'] * slower / row['processor_s'],
-            row['seconds'] / row['wall_s'])
+    """Of estimate to truth: memory, time of the processor, time by the clock."""
+    return row['memory_bytes'] / row['peak_bytes'], row['processor_s'] / row['spent_s'], row['seconds'] / row['wall_s']
+
+
+def kind_of(row):
+    """The sort of input, for the table."""
+    if row['tiled']:
+        return 'clouds in blocks'
+    if row['frames']:
+        return 'single frames' if row['frames'] == 1 else 'frames with poses'
+    if row['what'].startswith(('mesh', 'house')) or row['what'].endswith('.glb'):
+        return 'meshes'
+    if row['what'].endswith(('.bt', '.vdb')):
+        return 'maps and volumes'
+    return 'clouds'
 
 
 def within(values, factor=1.25):
@@ -203,10 +240,13 @@ def within(values, factor=1.25):
 
 def summary(rows):
     names = ['memory', 'time of the processor', 'time by the clock']
-    for name, values in zip(names, zip(*(ratios(row) for row in rows))):
-        ordered = sorted(values)
-        print('%-22s %3.0f %% of %d within a quarter; median %.2f, from %.2f to %.2f' %
-              (name, 100 * within(values), len(values), ordered[len(ordered) // 2], ordered[0], ordered[-1]))
+    for kind in sorted({kind_of(row) for row in rows}) + ['all']:
+        of_kind = [row for row in rows if kind in ('all', kind_of(row))]
+        print('%s, %d' % (kind, len(of_kind)))
+        for name, values in zip(names, zip(*(ratios(row) for row in of_kind))):
+            ordered = sorted(values)
+            print('  %-22s %3.0f %% within a quarter; median %.2f, from %.2f to %.2f' %
+                  (name, 100 * within(values), ordered[len(ordered) // 2], ordered[0], ordered[-1]))
     limits = [row['limit'] for row in rows]
     print('limits: ' + ', '.join('%d %s' % (limits.count(word), word) for word in ('refused', 'kept', 'EXCEEDED')))
     print('peaks above what --max-memory asks for: %d' % sum(r['peak_bytes'] > r['least_bytes'] for r in rows))
@@ -216,7 +256,7 @@ def read_table(file):
     lines = pathlib.Path(file).read_text().splitlines()
     names = lines[0].split('\t')
     text = {'what', 'options', 'limit'}
-    return [{n: v if n in text else v == 'True' if n == 'tiled' else float(v) for n, v in zip(names, line.split('\t'))}
+    return [{n: v if n in text else v == 'True' if n in ('tiled', 'views') else float(v) for n, v in zip(names, line.split('\t'))}
             for line in lines[1:]]
 
 
@@ -243,31 +283,42 @@ def loss(pairs):
     return sum(min(math.log(a / b) ** 2, 0.25) + 0.1 * abs(math.log(a / b)) for a, b in pairs) / len(pairs)
 
 
+def report(file, names, start, columns, truth, known=None):
+    """Fits and prints constants that the columns are multiplied with: their sum and what is known are a row's truth."""
+    known = known or [0] * len(truth)
+
+    def told(c):
+        return [sum(map(operator.mul, c, row)) + k for row, k in zip(columns, known)]
+
+    c = search(start, lambda c: loss(list(zip(told(c), truth))))
+    values = [a / b for a, b in zip(told(c), truth)]
+    print('%s: %s' % (file, ', '.join('%s = %.3g' % both for both in zip(names, c))))
+    print('    %.0f %% of %d within a quarter, from %.2f to %.2f' %
+          (100 * within(values), len(values), min(values), max(values)))
+
+
 def fit(a):
-    rows = [row for file in a.fit for row in read_table(file) if not row['tiled']]
+    rows = [row for file in a.fit for row in read_table(file)]
+    whole, tiled = [r for r in rows if not r['tiled']], [r for r in rows if r['tiled']]
 
-    def reference_s(row):
-        probes = row['wall_s'] / row['probe_s'] if a.clock else row['processor_s'] / row['probe_processor_s']
-        return probes * PROBE_REFERENCE_S
+    def reference_s(of):
+        return [row['spent_s'] / row['probe_s'] * PROBE_REFERENCE_S for row in of]
 
-    def seconds(c, row):
-        return (c[0] * row['points'] + c[1] * row['surface_m2'] / row['voxel_m'] ** 2 + c[2] * row['box_voxels'] +
-                c[3] * row['pixels'] + c[4])
+    def surface(row):
+        return row['surface_m2'] / row['voxel_m'] ** 2
 
-    c = search([4e-6, 5e-5, 6e-8, 6e-8, 0.3], lambda c: loss([(seconds(c, row), reference_s(row)) for row in rows]))
-    names = ('point_s', 'surface_voxel_s', 'voxel_s', 'pixel_s', 'fixed_s')
-    print('estimate.cpp: ' + ', '.join('%s = %.2g' % both for both in zip(names, c)))
-    print('    %.0f %% within a quarter' % (100 * within([seconds(c, row) / reference_s(row) for row in rows])))
-
-    def peak(c, row):
-        surface = c[2] * row['surface_m2'] / row['voxel_m'] ** 2 + c[3] * row['box_voxels']
-        return c[0] + (0 if row['frames'] else c[4]) + max(c[1] * row['points'], surface)
-
-    c = search([80e6, 500, 1500, 3, 30e6], lambda c: loss([(peak(c, row), row['peak_bytes']) for row in rows]))
-    names = ('fixed', 'a_point', 'a_surface_voxel', 'a_voxel', 'of_views')
-    print('parse_memory.h: ' + ', '.join('%s = %.3g' % both for both in zip(names, c)))
-    values = [peak(c, row) / row['peak_bytes'] for row in rows]
-    print('    %.0f %% within a quarter, least %.2f of the peak' % (100 * within(values), min(values)))
+    report('estimate.cpp', ('fixed_s', 'point_s', 'voxel_s', 'patch_m_s', 'rough_surfel_s'), [0.2, 3e-6, 3e-6, 0.04, 2e-4],
+           [[1.0, r['points'], math.sqrt(surface(r) * r['box_voxels']), r['patches_m'], r['rough_surfels']] for r in whole],
+           reference_s(whole), [PIXEL_S * r['pixels'] for r in whole])
+    report('parse_memory.h', ('fixed', 'of_views', 'of_walks', 'a_point', 'a_surface_voxel', 'a_voxel', 'a_patch_m'),
+           [40e6, 40e6, 40e6, 200, 1300, 6, 4e5],
+           [[1.0, float(r['views']), min(1.0, r['ground_m2'] / WALKED_M2), r['points'], surface(r), r['box_voxels'],
+             r['patches_m']] for r in whole], [r['peak_bytes'] for r in whole])
+    if tiled:
+        known = [TILED_POINT_S * r['points'] +
+                 TILED_CELL_S * min(0.95 * r['points'], LAYERS * r['surface_m2'] / r['cell_m'] ** 2) for r in tiled]
+        report('estimate.cpp', ('tiled_fixed_s', 'tiled_m2_s'), [0.1, 0.02], [[1.0, r['surface_m2']] for r in tiled],
+               reference_s(tiled), known)
 
 
 def main():
@@ -279,8 +330,8 @@ def main():
     parser.add_argument('--threads', type=int, default=1)
     parser.add_argument('--table', type=pathlib.Path)
     parser.add_argument('--keep', action='store_true', help='keep the inputs')
+    parser.add_argument('--inputs', nargs='+', type=pathlib.Path, help='scans to compare, instead of random ones')
     parser.add_argument('--fit', nargs='+')
-    parser.add_argument('--clock', action='store_true')
     a = parser.parse_args()
     if a.fit:
         return fit(a)
@@ -289,17 +340,17 @@ def main():
     if table:
         print(*COLUMNS, sep='\t', file=table, flush=True)
     rows, refused = [], 0
-    for seed in range(a.first, a.first + a.count):
+    for seed in a.inputs or range(a.first, a.first + a.count):
         row, why = measure(a, seed)
         if why:
             refused += 1
-            print('%d %s: %s' % (seed, row['what'], why), flush=True)
+            print('%s %s: %s' % (row['seed'], row['what'], why), flush=True)
             continue
         rows.append(row)
         if table:
             print(*(row[name] for name in COLUMNS), sep='\t', file=table, flush=True)
-        print('%d %s %s: memory %.2f, time %.2f of the processor, %.2f by the clock; %s' %
-              (seed, row['what'], row['options'], *ratios(row), row['limit']), flush=True)
+        print('%s %s %s: memory %.2f, time %.2f of the processor, %.2f by the clock; %s' %
+              (row['seed'], row['what'], row['options'], *ratios(row), row['limit']), flush=True)
     summary(rows)
     if refused:
         print('%d inputs could not be parsed' % refused)

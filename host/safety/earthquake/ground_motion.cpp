@@ -81,6 +81,58 @@ std::array<double, 2> in_record(const GroundEvent& event, const std::array<doubl
     return {way[0] * event.dx + way[1] * event.dy, way[1] * event.dx - way[0] * event.dy};
 }
 
+// An event in one plane of a body.
+Shaking shaking_in(const std::array<double, 2>& way, std::uint32_t body, const GroundEvent& event,
+                   const LevelMoments& moments) {
+    const auto in = in_record(event, way);
+    const double share = moments.share(in);
+    // Rounding alone shakes it across the only way that it is shaken.
+    const double scale = share > 1e-6 ? event.scale : 0;
+    return {body, event.record, scale * in[0], scale * in[1], event.scale, share};
+}
+
+// Friction is too little to lift its edges, by far more than rounding, and its support ends
+// nowhere: it only slides.
+bool can_fall(const Profile& body, const Shaking& shaking, double friction) {
+    const bool endless = std::isinf(body.support_ahead_m) && std::isinf(body.support_behind_m);
+    return !endless || 1.001 * friction * shaking.grip > body.slenderness();
+}
+
+// By object, then event: whether it falls. Of those not in `which` none. Either plane is enough, so
+// that the second is shaken only in events that it stands in the first.
+std::vector<std::vector<std::uint8_t>> falls_in(device::Device& device,
+                                                std::span<const ShakenObject> objects,
+                                                std::span<const std::size_t> which,
+                                                std::span<const Accelerogram> records,
+                                                std::span<const GroundEvent> events,
+                                                double friction) {
+    std::vector<std::vector<std::uint8_t>> out(objects.size());
+    for (const std::size_t o : which) out[o].assign(events.size(), objects[o].held ? 0 : 1);
+    const std::vector<LevelMoments> moments(records.begin(), records.end());
+    for (std::size_t p = 0; p < 2; ++p) {
+        std::vector<Profile> bodies;
+        std::vector<Shaking> shakings;
+        std::vector<std::uint8_t*> fell;  // of each shaking
+        for (const std::size_t o : which) {
+            const Profile& body = objects[o].body[p];
+            for (std::size_t e = 0; e < events.size(); ++e) {
+                if (out[o][e] != 0) continue;
+                const Shaking shaking =
+                    shaking_in(objects[o].way[p], static_cast<std::uint32_t>(bodies.size()),
+                               events[e], moments[events[e].record]);
+                if (!can_fall(body, shaking, friction)) continue;
+                shakings.push_back(shaking);
+                fell.push_back(&out[o][e]);
+            }
+            bodies.push_back(body);
+        }
+        const std::vector<Motion> found = shake(device, bodies, records, shakings, friction);
+        for (std::size_t n = 0; n < found.size(); ++n)
+            if (found[n].fell(bodies[shakings[n].body])) *fell[n] = 1;
+    }
+    return out;
+}
+
 }  // namespace
 
 std::vector<GroundEvent> from_all_ways(std::uint32_t record, double scale) {
@@ -116,14 +168,9 @@ Motions shake_objects(device::Device& device, std::span<const ShakenObject> obje
             Profile body = objects[o].body[p];
             if (endless) body.support_ahead_m = body.support_behind_m = INFINITY;
             bodies.push_back(body);
-            for (const GroundEvent& e : events) {
-                const auto in = in_record(e, objects[o].way[p]);
-                const double share = moments[e.record].share(in);
-                // Rounding alone shakes it across the only way that it is shaken.
-                const double scale = share > 1e-6 ? e.scale : 0;
-                shakings.push_back({static_cast<std::uint32_t>(bodies.size() - 1), e.record,
-                                    scale * in[0], scale * in[1], e.scale, share});
-            }
+            const auto last = static_cast<std::uint32_t>(bodies.size() - 1);
+            for (const GroundEvent& e : events)
+                shakings.push_back(shaking_in(objects[o].way[p], last, e, moments[e.record]));
         }
     }
     const std::vector<Motion> found = shake(device, bodies, records, shakings, friction);
@@ -161,16 +208,13 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
     struct Counts {
         std::vector<Trials> peaks, speeds;  // over peak acceleration, g, and velocity, m/s
     };
-    const auto counts = [&](const ShakenObject& object, const std::vector<PlaneMotions>& motions) {
+    const auto counts = [&](const std::vector<std::uint8_t>& fell) {
         Counts found;
         for (const double g : levels_g) found.peaks.push_back({g, 0, 0});
         for (std::size_t e = 0; e < events.size(); e += direction_count) {
             const std::size_t level = e / direction_count % levels_g.size();
             unsigned falls = 0;
-            for (unsigned d = 0; d < direction_count; ++d) {
-                const auto& [weak, across] = motions[e + d].in;
-                falls += !object.held || weak.fell(object.body[0]) || across.fell(object.body[1]);
-            }
+            for (unsigned d = 0; d < direction_count; ++d) falls += fell[e + d];
             found.peaks[level].falls += falls;
             found.peaks[level].of += direction_count;
             found.speeds.push_back(
@@ -178,9 +222,9 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
         }
         return found;
     };
-    const Motions motions = shake_objects(device, objects, which, records, events, friction, false);
+    const auto fell = falls_in(device, objects, which, records, events, friction);
     for (const std::size_t o : which) {
-        const Counts counted = counts(objects[o], motions[o]);
+        const Counts counted = counts(fell[o]);
         Fragility& f = out[o];
         f = fragility_of(counted.peaks);
         f.firm_pga_g = f.pga_g;
@@ -206,10 +250,10 @@ std::vector<Fragility> fragilities(device::Device& device, std::span<const Shake
     std::vector<std::size_t> sliding;
     for (const std::size_t o : which)
         if (objects[o].held && slenderness(objects[o]) > 0.6 * friction) sliding.push_back(o);
-    const Motions firm = shake_objects(device, objects, sliding, records, events,
-                                       std::max(friction, firm_friction), false);
+    const auto fell_firm =
+        falls_in(device, objects, sliding, records, events, std::max(friction, firm_friction));
     for (const std::size_t o : sliding)
-        out[o].firm_pga_g = fragility_of(counts(objects[o], firm[o]).peaks).pga_g;
+        out[o].firm_pga_g = fragility_of(counts(fell_firm[o]).peaks).pga_g;
     return out;
 }
 

@@ -114,6 +114,32 @@ TEST(Fusion, LongSequencesKeepSomeWitnesses) {
     EXPECT_EQ(witnesses.deny(points, pool), (std::vector<std::uint8_t>{1, 0, 1, 0}));
 }
 
+// Points that lie together are left out at a time where a frame can't see them; one by one, and in
+// any order, they are told the same. Some lie out of view, and behind the camera.
+TEST(Fusion, WitnessesTellTheSameOfPointsTogetherAndApart) {
+    Witnesses witnesses(camera);
+    for (std::size_t i = 0; i < 3; ++i) witnesses.add(bent_view(1.5, 0, i));
+    FusedPoints all;
+    test::Random random(5);
+    const auto between = [&](double low, double high) {
+        return static_cast<float>(low + (high - low) * random.uniform());
+    };
+    for (int n = 0; n < 3000; ++n) {
+        all.x.push_back(between(-3, 3));
+        all.y.push_back(between(-3, 3));
+        all.z.push_back(n % 3 == 0 ? between(-1, 4) : between(3.4, 3.6));
+        all.sigma.push_back(0.02F);
+    }
+    ThreadPool pool(2);
+    const std::vector<std::uint8_t> told = witnesses.deny(all, pool);
+    ThreadPool alone(1);
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        const FusedPoints one{{all.x[n]}, {all.y[n]}, {all.z[n]}, {all.sigma[n]}};
+        ASSERT_EQ(witnesses.deny(one, alone), std::vector{told[n]}) << n;
+    }
+    EXPECT_GT(std::ranges::count(told, 1), 100);
+}
+
 TEST(Fusion, OrderOfFramesDoesNotMatter) {
     FrameFusion forth(camera, 0.01), back(camera, 0.01);
     for (int i = 0; i < 5; ++i) forth.add(view(static_cast<std::uint64_t>(i), 0.02 * i));

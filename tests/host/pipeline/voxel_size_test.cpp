@@ -6,38 +6,37 @@
 namespace topple {
 namespace {
 
-// A level square of this edge.
-SurfaceExtent square(double edge_m) {
-    SurfaceExtent out;
-    for (double x = 0.025; x < edge_m; x += 0.05)
-        for (double y = 0.025; y < edge_m; y += 0.05) out.add(x, y, 0.01);
-    return out;
+// The voxels of a level square of this edge.
+double voxel_for_square(double cell_m, double edge_m, double points,
+                        std::uint64_t max_memory_bytes) {
+    const auto edge = static_cast<float>(edge_m);
+    return voxel_for_scan(cell_m, edge_m * edge_m, {{0, 0, 0}, {edge, edge, 0.05f}}, points,
+                          max_memory_bytes);
 }
 
 TEST(VoxelSize, DenseScansGetFinerVoxelsThanRooms) {
-    EXPECT_DOUBLE_EQ(voxel_for_scan(0.002, square(5), 1e6, 0), 0.005);
-    EXPECT_DOUBLE_EQ(voxel_for_scan(0.01, square(5), 1e6, 0), 0.02);
+    EXPECT_DOUBLE_EQ(voxel_for_square(0.002, 5, 1e6, 0), 0.005);
+    EXPECT_DOUBLE_EQ(voxel_for_square(0.01, 5, 1e6, 0), 0.02);
 }
 
 TEST(VoxelSize, SparseRoomsGetThoseOfRooms) {
     for (const double cell : {0.02, 0.03, 0.06})
-        EXPECT_DOUBLE_EQ(voxel_for_scan(cell, square(8), 1e4, 0), 0.02) << cell;
+        EXPECT_DOUBLE_EQ(voxel_for_square(cell, 8, 1e4, 0), 0.02) << cell;
 }
 
 TEST(VoxelSize, HallsGetLargerOnesButNoneWithoutGaps) {
     // 45 x 45 m: five million voxels of 2 cm, two of 3 cm.
-    EXPECT_DOUBLE_EQ(voxel_for_scan(0.04, square(45), 1e6, 0), 0.03);
-    EXPECT_DOUBLE_EQ(voxel_for_scan(0.012, square(45), 1e6, 0), 0.03);
-    EXPECT_DOUBLE_EQ(voxel_for_scan(0.01, square(45), 1e6, 0), 0.02);
+    EXPECT_DOUBLE_EQ(voxel_for_square(0.04, 45, 1e6, 0), 0.03);
+    EXPECT_DOUBLE_EQ(voxel_for_square(0.012, 45, 1e6, 0), 0.03);
+    EXPECT_DOUBLE_EQ(voxel_for_square(0.01, 45, 1e6, 0), 0.02);
 }
 
 TEST(VoxelSize, MemoryMakesThemLarger) {
-    const SurfaceExtent room = square(8);
-    const double free = voxel_for_scan(0.06, room, 1e5, 0),
-                 tight = voxel_for_scan(0.06, room, 1e5, 500 << 20);
+    const double free = voxel_for_square(0.06, 8, 1e5, 0),
+                 tight = voxel_for_square(0.06, 8, 1e5, 500 << 20);
     EXPECT_DOUBLE_EQ(free, 0.02);
     EXPECT_DOUBLE_EQ(tight, 0.03);
-    EXPECT_DOUBLE_EQ(voxel_for_scan(0.06, room, 1e5, 1), voxel_for_cell(0.06));
+    EXPECT_DOUBLE_EQ(voxel_for_square(0.06, 8, 1e5, 1), voxel_for_cell(0.06));
 }
 
 TEST(VoxelSize, WhatIsAskedForOrKnownWins) {

@@ -11,6 +11,7 @@
 #include "room.h"
 #include "safety/columns.h"
 #include "safety/earthquake/ground_motion.h"
+#include "safety/earthquake/made_up_records.h"
 #include "safety/earthquake/rocking.h"
 #include "safety/fields.h"
 #include "safety/objects.h"
@@ -83,6 +84,39 @@ TEST(Earthquake, SlipsFarEnoughWhateverTheWay) {
         EXPECT_NEAR(slid_y, way * std::sin(towards), 0.03 * way);
         const bool one_plane = std::min(std::abs(slid_x), std::abs(slid_y)) < 0.01 * way;
         EXPECT_NEAR(found[0][e].together, one_plane ? 0 : slid_x * slid_y > 0 ? 1 : -1, 1e-9);
+    }
+}
+
+// What falls in either plane falls. A slender one, one that slides off a near edge, one that does
+// neither on endless support, and one that nothing holds.
+TEST(Earthquake, ChancesOfFallingAreThoseOfBothPlanes) {
+    const auto device = device::open_native(2);
+    std::vector<ShakenObject> objects(4, {{{{1, 0}, {0, 1}}}, {}, true, 0});
+    objects[0].body = {Profile{0.05, 0.08, 0.3, 0.2, INFINITY, INFINITY},
+                       Profile{0.1, 0.1, 0.3, 0.2, INFINITY, INFINITY}};
+    objects[1].body.fill({0.3, 0.3, 0.1, 0.2, 0.05, INFINITY});
+    objects[2].body.fill({0.3, 0.3, 0.1, 0.2, INFINITY, INFINITY});
+    objects[3].body.fill({0, 0.1, 0.1, 0.2, 1, 1});
+    objects[3].held = false;
+    const std::vector<std::size_t> which{0, 1, 2, 3};
+    const std::vector records{made_up_records(2, 3)[1]};
+    const auto found = fragilities(*device, objects, which, records, mu, 1.5, nullptr);
+    const double peak = records[0].peak_m_s2();
+    for (const std::size_t o : which) {
+        SCOPED_TRACE(o);
+        std::size_t falling = 0;
+        for (const auto& [pga_g, chance] : found[o].counted) {
+            const auto events = from_all_ways(0, 1.5 * pga_g * gravity / peak);
+            const Motions motions =
+                shake_objects(*device, objects, which, records, events, mu, false);
+            const auto falls = std::ranges::count_if(motions[o], [&](const PlaneMotions& m) {
+                return !objects[o].held || m.in[0].fell(objects[o].body[0]) ||
+                       m.in[1].fell(objects[o].body[1]);
+            });
+            EXPECT_EQ(chance, static_cast<double>(falls) / 16) << pga_g;
+            falling += falls > 0;
+        }
+        EXPECT_EQ(falling > 0, o != 2);
     }
 }
 
