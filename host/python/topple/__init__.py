@@ -257,7 +257,7 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     points, as they are given. viewpoint: where the sensor was, three numbers, or (N, 3) where each point was seen from, NaN where it is not
     known: of several scans, or a sensor that moved. colours: of points, sRGB as uint8, an array of shape (N, 3),
     records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. progress(stage, done) is called as stages start and go on;
-    contents_kg_m3: of closed furniture, or None where all is solid.
+    pga_m_s2: the peak of earthquakes in m/s2, of which 0.3 g are 2.94. contents_kg_m3: of closed furniture, or None where all is solid.
     corrections: what you know of the room beside the scan: a file, or a list of dicts such as {"do": "fixed", "at_m":
     [[x, y, z]]} (docs/corrections.md); Result.corrections says what became of each. cache_file: keeps what does not
     depend on them, so that the next parse of that file or folder is quick; of what is in memory nothing is kept, and it is
