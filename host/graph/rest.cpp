@@ -147,8 +147,8 @@ std::vector<std::vector<Underside>> undersides(const SolidCells& cells,
 }
 
 Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& columns,
-                const ContactGraph& contacts, const BoundaryCells& boundary,
-                double center_error_m) {
+                const ContactGraph& contacts, const BoundaryCells& boundary, double center_error_m,
+                std::span<const double> floors_m) {
     if (columns.empty()) return {RestKind::none, 1, {}, 0, 0};
     const double h = contacts.voxel_m;
     std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
@@ -178,6 +178,21 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
     const double low_m = foot.or_else(lowest * h);
     double near_height = met.or_else(held ? c.support_height_m : low_m);
     if (held) near_height = std::min(near_height, c.support_height_m);
+    const auto hangs_at = [&](double height_m) { return height_m > low_m + noise_gap * h; };
+    // What holds it is well above its foot, which is where the room's floor is, and no ray came
+    // below that: the floor goes on there.
+    const bool at_floor = std::ranges::any_of(
+        floors_m, [&](double floor_m) { return std::abs(floor_m - low_m) <= noise_gap * h; });
+    if (at_floor && hangs_at(near_height)) {
+        std::vector<BorderPoint> on_floor;
+        for (std::size_t n = 0; n < columns.size(); ++n)
+            if (columns[n].k <= lowest + uneven_foot && columns[n].gap < 0)
+                add_corners(corners[n], on_floor);
+        if (!on_floor.empty()) {
+            near = std::move(on_floor);
+            near_height = low_m;
+        }
+    }
     // The foot that was seen may go on where nobody saw in, down to what carries it.
     std::vector<BorderPoint> partly = near;
     bool goes_on = false;
@@ -203,7 +218,7 @@ Rest infer_rest(const physics::Candidate& c, const std::vector<Underside>& colum
         std::vector<BorderPoint> points;
         double height, often;
     };
-    const bool hung = held && c.support_height_m > low_m + noise_gap * h;
+    const bool hung = held && hangs_at(c.support_height_m);
     std::array<Way, 4> ways{
         Way{RestKind::seen, std::move(seen), c.support_height_m, hung ? often_hung : 1},
         Way{RestKind::near, std::move(near), near_height, often_near},

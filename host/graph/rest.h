@@ -56,9 +56,10 @@ struct Rest {
 // times the likelihood that a body stands so far from its border: of a margin as a share of what it
 // would be if all of the body were held. candidate: with the contacts that were seen.
 // boundary: what bounds the columns' cells, if that is known. center_error_m: of the body's centre,
-// horizontal, which is one with that of the border.
+// horizontal, which is one with that of the border. floors_m: heights of the room's floors, which
+// go on below what ends at them, where no ray came.
 Rest infer_rest(const physics::Candidate& candidate, const std::vector<Underside>& columns,
                 const ContactGraph& contacts, const BoundaryCells& boundary = {},
-                double center_error_m = 0);
+                double center_error_m = 0, std::span<const double> floors_m = {});
 
 }  // namespace topple::graph

@@ -358,21 +358,25 @@ Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
     }
     add_passes(candidate, f, around, ways);
     if (around.rolls) ways.push_back({});
+    weigh_ways(ways, weight_N, 1e-6 * radius, result);
+    if (passes == Passes::exact) result.ways = std::move(ways);
+    return result;
+}
 
+void weigh_ways(const std::vector<TippingWay>& ways, double weight_N, double alike_m,
+                Stability& result) {
     const auto least = std::ranges::min_element(ways, {}, &TippingWay::climb_m);
     // Of ways equal to within rounding, the one that releases most.
     const TippingWay* taken = &*least;
     for (const TippingWay& way : ways) {
-        if (way.climb_m <= least->climb_m + 1e-6 * radius && way.release_m > taken->release_m)
+        if (way.climb_m <= least->climb_m + alike_m && way.release_m > taken->release_m)
             taken = &way;
     }
     result.barrier_J = weight_N * least->climb_m;
     result.release_J = weight_N * taken->release_m;
     result.easiest = *taken;
     result.releasing = releasing(ways);
-    if (passes == Passes::exact) result.ways = ways;
-    result.curve = curve_of(std::move(ways), weight_N);
-    return result;
+    result.curve = curve_of(ways, weight_N);
 }
 
 }  // namespace topple::physics

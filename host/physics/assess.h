@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "physics/support_rows.h"
 
@@ -13,5 +14,10 @@ namespace topple::physics {
 // each, which is overwritten.
 Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
                  std::span<const float> height, std::span<std::uint32_t> down, Passes passes);
+
+// Fills in what follows from the ways, of which there is one at least: all but its margin and the
+// ways themselves. Climbs within alike_m are equal.
+void weigh_ways(const std::vector<TippingWay>& ways, double weight_N, double alike_m,
+                Stability& result);
 
 }  // namespace topple::physics

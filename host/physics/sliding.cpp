@@ -37,9 +37,11 @@ std::vector<Footprint> footprints(const SolidCells& cells, std::span<const std::
 }
 
 // The level that most of the columns rest on; of equals the higher, where the object would land
-// first.
+// first. Of an object that is known to stand, of the levels where it does: what it reaches over is
+// not what it slides on.
 void find_support(const SolidCells& cells, const CellColumns& columns,
-                  std::span<const std::int32_t> object, std::int32_t self, Footprint& foot) {
+                  std::span<const std::int32_t> object, std::int32_t self, const Stance& stance,
+                  Footprint& foot) {
     std::map<std::int32_t, std::size_t> votes;
     for (const Footprint::Column& c : foot.columns) {
         const auto [first, last] = columns.at(c.i, c.j);
@@ -52,7 +54,9 @@ void find_support(const SolidCells& cells, const CellColumns& columns,
         ++votes[cells.k[below]];
     }
     std::size_t most = 0;
+    const auto stands = static_cast<std::int64_t>(std::lround(stance.height_m / cells.voxel_m)) - 1;
     for (const auto& [level, count] : votes) {
+        if (!stance.polygon.empty() && std::abs(level - stands) > noise_gap) continue;
         if (count < most) continue;
         most = count;
         foot.support = level;
@@ -402,7 +406,8 @@ std::vector<SlideResult> slide_all(const SolidCells& cells,
     std::vector<SlideResult> results(objects.size());
     const auto slide = [&](std::size_t o) {
         const auto self = static_cast<std::int32_t>(o);
-        find_support(cells, columns, object, self, feet[o]);
+        find_support(cells, columns, object, self,
+                     options.stances.empty() ? Stance{} : options.stances[o], feet[o]);
         if (!feet[o].stands && !options.stances.empty() && !options.stances[o].polygon.empty()) {
             feet[o].support = static_cast<std::int32_t>(
                                   std::lround(options.stances[o].height_m / cells.voxel_m)) -
@@ -433,7 +438,7 @@ std::vector<Landscape::Places> places_of(const SolidCells& cells,
     std::vector<Landscape::Places> out;
     for (const std::size_t o : chosen) {
         const auto self = static_cast<std::int32_t>(o);
-        find_support(cells, columns, object, self, feet[o]);
+        find_support(cells, columns, object, self, {}, feet[o]);
         out.emplace_back();
         if (!feet[o].stands || !(objects[o].mass_kg > 0)) continue;
         SlideMap map(cells, columns, object, self, feet[o], objects[o].center, reach_m);

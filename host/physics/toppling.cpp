@@ -8,6 +8,7 @@
 #include "core/vectors.h"
 #include "physics/blow.h"
 #include "physics/infinity.h"
+#include "physics/leaning.h"
 #include "physics/tipping.h"
 
 namespace topple::physics {
@@ -25,16 +26,6 @@ Eigen::Matrix3d full_matrix(const Symmetric& m) {
 double cosine_of_slant(std::size_t slant) {
     constexpr std::array cosines{1.0, 0.9, 0.7, 0.4};
     return cosines[slant];
-}
-
-// How far the support reaches from under the centre of mass: to a line across the way.
-double footing_reach(const Candidate& candidate, const Vec3& way) {
-    double most = 0;
-    for (const auto& [x, y] : candidate.support_polygon) {
-        const Vec3& c = candidate.body.center;
-        most = std::max(most, dot({x - c[0], y - c[1], 0}, way));
-    }
-    return most;
 }
 
 }  // namespace
@@ -182,16 +173,22 @@ void Toppling::of_blow(const Vec3& way, double height, const Visit& visit) const
     }
 }
 
-template <class Visit>
-void Toppling::of_push(const Vec3& way, const Visit& visit) const {
-    // The edge that a steady push turns it over is the one that the line ahead meets first.
-    double nearest = infinity, aligned = 0;
+const Toppling::Tip* Toppling::met_first(const Vec3& way) const {
+    const Tip* first = nullptr;
+    double nearest = infinity;
     for (const Tip& tip : tips_) {
         const double cosine = dot(way, tip.way);
         if (cosine < 1e-6 || tip.beside_m / cosine >= nearest) continue;
         nearest = tip.beside_m / cosine;
-        aligned = cosine;
+        first = &tip;
     }
+    return first;
+}
+
+template <class Visit>
+void Toppling::of_push(const Vec3& way, const Visit& visit) const {
+    const Tip* const first = met_first(way);
+    const double aligned = first ? dot(way, first->way) : 0;
     for (const Tip& tip : tips_) {
         if (!(tip.release_J > 0)) continue;
         const bool any = tip.way == Vec3{} || !(tip.climb_J > 0);
@@ -219,6 +216,12 @@ double Toppling::blow_barrier_J(const Vec3& way, double height) const {
     double least = infinity;
     of_blow(way, height, [&](double W, double S) { least = S > 0 ? std::min(least, W) : least; });
     return least;
+}
+
+double Toppling::over_edge_J(const Vec3& way) const {
+    const Tip* const first = met_first(way);
+    const double barrier = push_barrier_J(way);
+    return first ? std::min(first->climb_J, barrier) : barrier;
 }
 
 double Toppling::push_barrier_J(const Vec3& way) const {

@@ -38,6 +38,9 @@ class Toppling {
     // Least W for which these are above 0; infinite where there is none.
     double blow_barrier_J(const Vec3& way, double height_m) const;
     double push_barrier_J(const Vec3& way) const;
+    // No more than it takes to turn it over the edge that the line ahead meets first, whatever that
+    // releases.
+    double over_edge_J(const Vec3& way) const;
     // Straight on to where its support ends.
     double slide_distance_m(const Vec3& way) const;
     // The mass that such a blow meets: less than the body's, where it also turns it.
@@ -60,6 +63,9 @@ class Toppling {
         std::array<double, heights> share{};  // of P / M that is left to slide
     };
     std::size_t part(double height_m) const;
+    // The edge that a steady push turns it over is the one that the line ahead meets first; null:
+    // none.
+    const Tip* met_first(const Vec3& way) const;
     double free_share(const Vec3& way, double height_m) const;
     const Slide& slide(const Vec3& way) const;
     void lay_out(const SlideResult& sliding);

@@ -39,8 +39,8 @@ class Mover {
     // The nearest places of the object that are tolerable to those: the nearest of each
     // of 16 directions and 12 ranges of distance, by distance.
     std::vector<Place> places(std::size_t o, const Landscape::Places& around) const {
-        const physics::Toppling level =
-            toppling_of(objects_[o], objects_[o].level_tipping, friction_);
+        const Elsewhere elsewhere{toppling_of(objects_[o], objects_[o].open_tipping, friction_),
+                                  toppling_of(objects_[o], objects_[o].level_tipping, friction_)};
         std::map<std::pair<int, int>, Place> nearest;
         const std::int32_t half = around.side / 2;
         const double voxel_m = cells_.voxel_m;
@@ -59,7 +59,7 @@ class Mover {
                 if (known != nearest.end() && known->second.way_m <= place.way_m) continue;
                 const auto slide = physics::slide_elsewhere(around, a, b, at_risk_[o].mass_kg,
                                                             friction_, safety::directions());
-                if (!slide.reachable || !weigh(o, slide.slide, level, place)) continue;
+                if (!slide.reachable || !weigh(o, slide.slide, elsewhere, place)) continue;
                 nearest.insert_or_assign(key, std::move(place));
             }
         }
@@ -71,8 +71,12 @@ class Mover {
     }
 
   private:
+    // How it topples where no wall is beside it: near an edge of its support, and far from any.
+    struct Elsewhere {
+        physics::Toppling open, level;
+    };
     // Its curve and risk there; false where that is more than is tolerated.
-    bool weigh(std::size_t o, const physics::SlideResult& slide, const physics::Toppling& level,
+    bool weigh(std::size_t o, const physics::SlideResult& slide, const Elsewhere& elsewhere,
                Place& place) const {
         const StableObject& object = objects_[o];
         physics::Candidate there = object.candidate;
@@ -82,16 +86,17 @@ class Mover {
         for (auto& corner : there.support_polygon) corner = {corner[0] + dx, corner[1] + dy};
         const auto drops = physics::drops_when_tipped_m(cells_, columns_, there);
         const bool falls = std::any_of(drops.begin(), drops.end(), [](double d) { return d > 0; });
-        // Near an edge the drops are others than here; all that is known is that there are some.
+        // Near an edge the drops are others than here; all that is known is that there are some. So
+        // are walls: none is counted on.
         const physics::Instability how =
-            physics::combine_curves(falls ? object.tipping : object.level_tipping, slide);
+            physics::combine_curves(falls ? object.open_tipping : object.level_tipping, slide);
         safety::RiskObject changed = at_risk_[o];
         changed.barrier_J = how.barrier_J;
         changed.curve = how.curve;
         changed.slide_distance_m = slide.found ? slide.distance_m : -1;
         changed.drop_m = slide.drop_m;
         changed.toppling = std::make_shared<physics::Toppling>(
-            (falls ? *object.toppling : level).elsewhere(slide));
+            (falls ? elsewhere.open : elsewhere.level).elsewhere(slide));
         for (const safety::Disturbance& d : disturbances_) {
             if (d.response.empty()) continue;
             if (!d.response[o]) continue;
@@ -110,14 +115,13 @@ class Mover {
     const CellColumns& columns_;
 };
 
-// Nearly every event of a kind that has happened before would have upset it, and yet it stood
-// there.
+// Such a share of the events of a kind that has happened before would have upset it, and yet it
+// stood there.
 bool fell_before(std::span<const safety::Disturbance> disturbances,
-                 std::span<const std::vector<safety::Risk>> risk, std::size_t o) {
-    constexpr double nearly_all = 0.9;
+                 std::span<const std::vector<safety::Risk>> risk, std::size_t o, double share) {
     for (std::size_t d = 0; d < disturbances.size(); ++d) {
         const safety::DisturbanceKind* kind = safety::find_disturbance_kind(disturbances[d].name);
-        if (kind && kind->everyday && risk[d][o].chance >= nearly_all) return true;
+        if (kind && kind->everyday && risk[d][o].chance >= share) return true;
     }
     return false;
 }
@@ -141,6 +145,16 @@ safety::Push fixing(const safety::RiskObject& object,
 
 }  // namespace
 
+bool stands_against_odds(const StableObject& object,
+                         std::span<const safety::Disturbance> disturbances,
+                         std::span<const std::vector<safety::Risk>> risk, std::size_t o) {
+    constexpr double likelier_than_not = 0.5, least_tilt_deg = 3, often = 0.05;  // set by hand
+    if (object.grounded) return false;
+    return object.rest_probability < likelier_than_not ||
+           object.overturning.tilt_deg < least_tilt_deg ||
+           fell_before(disturbances, risk, o, often);
+}
+
 std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const std::int32_t> object_of_primitive,
                                std::span<const StableObject> objects,
@@ -149,6 +163,7 @@ std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const std::vector<safety::Risk>> risk,
                                std::span<const std::unique_ptr<safety::DisturbanceField>> fields,
                                double friction, double tolerable_J) {
+    constexpr double nearly_all = 0.9;
     const SolidCells& cells = solids.cells();
     std::vector<Suggestion> out(at_risk.size());
     std::vector<double> worst(at_risk.size(), 0.0);
@@ -164,7 +179,7 @@ std::vector<Suggestion> advise(const SolidScene& solids,
         if (at_risk[o].grounded) out[o].kind = Suggestion::Kind::see;
         if (at_risk[o].grounded || !(worst[o] > tolerable_J)) continue;
         if (at_risk[o].barrier_J <= objects[o].barrier_error_J ||
-            fell_before(disturbances, risk, o)) {
+            fell_before(disturbances, risk, o, nearly_all)) {
             out[o].kind = Suggestion::Kind::check;
             out[o].risk_J = worst[o];
             continue;

@@ -38,4 +38,12 @@ std::vector<Suggestion> advise(const SolidScene& solids,
                                std::span<const std::unique_ptr<safety::DisturbanceField>> fields,
                                double friction, double tolerable_J);
 
+// Whether what is known of object o, and with it its category, is to be doubted: how it stands is
+// one of several readings of the scan, none of them likelier than not; or it stood when it was
+// scanned, although a lean by three degrees would upset it, or one in twenty events of a kind that
+// has happened before.
+bool stands_against_odds(const StableObject& object,
+                         std::span<const safety::Disturbance> disturbances,
+                         std::span<const std::vector<safety::Risk>> risk, std::size_t o);
+
 }  // namespace topple

@@ -87,7 +87,8 @@ double hits_J(const StableObject& from, const physics::Swept& swept) {
     if (!swept.stopped) return how.release_J;
     const physics::Body& body = from.candidate.body;
     const double sinks_m = body.center[2] - swept.center[2];
-    return std::max(0.0, how.barrier_J + body.mass_kg * physics::gravity * sinks_m);
+    return std::clamp(how.barrier_J + body.mass_kg * physics::gravity * sinks_m, 0.0,
+                      how.release_J);
 }
 
 }  // namespace

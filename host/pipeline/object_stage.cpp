@@ -13,6 +13,7 @@
 #include "graph/false_feet.h"
 #include "physics/body_landscape.h"
 #include "physics/drop.h"
+#include "physics/leaning.h"
 #include "physics/overturning.h"
 #include "physics/solid_hulls.h"
 #include "pipeline/object_masses.h"
@@ -66,68 +67,6 @@ void number_objects(ObjectStage& out) {
         out.object_of_primitive.push_back(g + grounded + 1);
 }
 
-// Objects by group, the ground first.
-void collect_objects(const SolidScene& solids, const std::vector<bool>& shell,
-                     const ParseOptions& options, ThreadPool& threads, HandCorrections& hand,
-                     ObjectStage& out) {
-    const SolidCells& cells = solids.cells();
-    const BoundaryCells& boundary = solids.boundary();
-    const std::vector<std::int32_t>& group = out.grouping.group;
-    const bool has_ground = grounded_object(out) == 0;
-    std::int32_t objects = 0;
-    for (const std::int32_t o : out.object_of_primitive) objects = std::max(objects, o + 1);
-    const std::vector<KnownMass> known = hand.masses(
-        out.object_of_primitive, static_cast<std::size_t>(objects), grounded_object(out));
-    const ObjectMasses masses = weigh_objects(solids, out.object_of_primitive, known,
-                                              grounded_object(out), options, out.bodies);
-    std::vector<std::vector<std::int32_t>> members(static_cast<std::size_t>(objects));
-    for (std::size_t p = 0; p < group.size(); ++p) {
-        members[static_cast<std::size_t>(out.object_of_primitive[p])].push_back(
-            static_cast<std::int32_t>(p));
-    }
-    const auto columns = graph::undersides(cells, out.object_of_primitive, members.size());
-    const auto errors = physics::volume_errors(cells, boundary);
-    out.objects.resize(members.size());
-    threads.each(members.size(), 1, [&](std::size_t o) {
-        StableObject& object = out.objects[o];
-        object.candidate =
-            graph::candidate_of(out.contacts, out.bodies, shell, std::move(members[o]));
-        object.body_error = physics::body_error(object.candidate.body, object.candidate.primitives,
-                                                errors, masses.density_kg_m3);
-        object.closed = masses.closed[o];
-        object.hollow = masses.hollow[o];
-        object.inertia = masses.inertia[o];
-        add_independent(masses.contents_error[o], object.body_error);
-        if (masses.weighed[o]) object.body_error.mass_kg = 0;
-        object.grounded = has_ground && o == 0;
-        if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
-        if (!object.grounded) {
-            graph::Rest rest = graph::infer_rest(
-                object.candidate, columns[o], out.contacts, boundary,
-                std::max(object.body_error.center_m[0], object.body_error.center_m[1]));
-            object.rest = rest.kind;
-            object.rest_probability = rest.probability;
-            object.margin_error_m = rest.margin_error_m;
-            object.candidate.stood = rest.kind != graph::RestKind::none;
-            object.candidate.support_polygon = std::move(rest.support_polygon);
-            object.candidate.support_height_m = rest.support_height_m;
-        }
-        object.lowest_m = std::numeric_limits<double>::infinity();
-        object.highest_m = -object.lowest_m;
-        for (const std::int32_t p : object.candidate.primitives) {
-            object.lowest_m =
-                std::min(object.lowest_m, out.contacts.lowest_m[static_cast<std::size_t>(p)]);
-            object.highest_m =
-                std::max(object.highest_m, out.contacts.highest_m[static_cast<std::size_t>(p)]);
-        }
-    });
-    std::vector<graph::Carried> carried;
-    for (const StableObject& o : out.objects)
-        carried.push_back({o.grounded, o.candidate.body.mass_kg});
-    out.supports = graph::find_supports(out.contacts, out.pair_probability, out.object_of_primitive,
-                                        carried, columns);
-}
-
 // The heights of the floors, ascending: levels with a hundredth of what is floor.
 std::vector<double> floor_levels(const SolidScene& solids) {
     const SolidCells& cells = solids.cells();
@@ -149,6 +88,69 @@ double floor_below(const std::vector<double>& floors, double height_m) {
     constexpr double slack_m = 0.05;
     const auto above = std::ranges::upper_bound(floors, height_m + slack_m);
     return above == floors.begin() ? height_m : std::min(*std::prev(above), height_m);
+}
+
+// Objects by group, the ground first.
+void collect_objects(const SolidScene& solids, const std::vector<bool>& shell,
+                     const ParseOptions& options, ThreadPool& threads, HandCorrections& hand,
+                     ObjectStage& out) {
+    const SolidCells& cells = solids.cells();
+    const BoundaryCells& boundary = solids.boundary();
+    const std::vector<std::int32_t>& group = out.grouping.group;
+    const bool has_ground = grounded_object(out) == 0;
+    std::int32_t objects = 0;
+    for (const std::int32_t o : out.object_of_primitive) objects = std::max(objects, o + 1);
+    const std::vector<KnownMass> known = hand.masses(
+        out.object_of_primitive, static_cast<std::size_t>(objects), grounded_object(out));
+    const ObjectMasses masses = weigh_objects(solids, out.object_of_primitive, known,
+                                              grounded_object(out), options, out.bodies);
+    std::vector<std::vector<std::int32_t>> members(static_cast<std::size_t>(objects));
+    for (std::size_t p = 0; p < group.size(); ++p) {
+        members[static_cast<std::size_t>(out.object_of_primitive[p])].push_back(
+            static_cast<std::int32_t>(p));
+    }
+    const auto columns = graph::undersides(cells, out.object_of_primitive, members.size());
+    const auto errors = physics::volume_errors(cells, boundary);
+    const std::vector<double> floors = floor_levels(solids);
+    out.objects.resize(members.size());
+    threads.each(members.size(), 1, [&](std::size_t o) {
+        StableObject& object = out.objects[o];
+        object.candidate =
+            graph::candidate_of(out.contacts, out.bodies, shell, std::move(members[o]));
+        object.body_error = physics::body_error(object.candidate.body, object.candidate.primitives,
+                                                errors, masses.density_kg_m3);
+        object.closed = masses.closed[o];
+        object.hollow = masses.hollow[o];
+        object.inertia = masses.inertia[o];
+        add_independent(masses.contents_error[o], object.body_error);
+        if (masses.weighed[o]) object.body_error.mass_kg = 0;
+        object.grounded = has_ground && o == 0;
+        if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
+        if (!object.grounded) {
+            graph::Rest rest = graph::infer_rest(
+                object.candidate, columns[o], out.contacts, boundary,
+                std::max(object.body_error.center_m[0], object.body_error.center_m[1]), floors);
+            object.rest = rest.kind;
+            object.rest_probability = rest.probability;
+            object.margin_error_m = rest.margin_error_m;
+            object.candidate.stood = rest.kind != graph::RestKind::none;
+            object.candidate.support_polygon = std::move(rest.support_polygon);
+            object.candidate.support_height_m = rest.support_height_m;
+        }
+        object.lowest_m = std::numeric_limits<double>::infinity();
+        object.highest_m = -object.lowest_m;
+        for (const std::int32_t p : object.candidate.primitives) {
+            object.lowest_m =
+                std::min(object.lowest_m, out.contacts.lowest_m[static_cast<std::size_t>(p)]);
+            object.highest_m =
+                std::max(object.highest_m, out.contacts.highest_m[static_cast<std::size_t>(p)]);
+        }
+    });
+    std::vector<graph::Carried> carried;
+    for (const StableObject& o : out.objects)
+        carried.push_back({o.grounded, o.candidate.body.mass_kg});
+    out.supports = graph::find_supports(out.contacts, out.pair_probability, out.object_of_primitive,
+                                        carried, columns);
 }
 
 }  // namespace
@@ -217,8 +219,15 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
                             .ways = safety::directions(),
                             .threads = &device.threads()});
     const std::vector<double> floors = floor_levels(solids);
+    std::vector<bool> fixed;  // by primitive
+    for (const std::int32_t o : object_of_primitive)
+        fixed.push_back(o >= 0 && objects[static_cast<std::size_t>(o)].grounded);
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (objects[o].grounded) return;
+        objects[o].open_tipping = tipping[o];
+        if (auto beside = physics::beside_fixed(cells, columns, candidates[o], fixed,
+                                                objects[o].highest_m, tipping[o]))
+            tipping[o] = std::move(*beside);
         physics::Instability& how = objects[o].instability;
         how = physics::combine_curves(tipping[o], sliding[o]);
         if (how.mode == "tip" && how.drop_m > 0)

@@ -28,7 +28,8 @@ struct StableObject {
     physics::Candidate candidate;
     bool grounded = false;
     physics::Stability tipping;
-    physics::Stability level_tipping;  // if its support went on beyond all of its edges
+    physics::Stability open_tipping;   // if nothing of the building stood beside it
+    physics::Stability level_tipping;  // and its support went on beyond all of its edges
     physics::SlideResult sliding;
     physics::Instability instability;  // of tipping and sliding together
     bool closed = false;               // furniture of boards around contents
@@ -78,7 +79,7 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
                       StageClock& stage);
 
 // What a push does to objects whose candidates are known, all in one batch: fills in the drops over
-// their edges, tipping, sliding, both together and their poses.
+// their edges, tipping, sliding, both together and their poses. What is grounded stops what falls.
 void find_barriers(device::Device& device, const physics::SupportTable& table,
                    const SolidScene& solids, std::span<const std::int32_t> object_of_primitive,
                    double friction, std::vector<StableObject>& objects);

@@ -64,7 +64,8 @@ std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objec
         r.mass_error_share = r.mass_kg > 0 ? o.body_error.mass_kg / r.mass_kg : 0;
         r.center_height_m = o.candidate.body.center[2] - o.candidate.support_height_m;
         r.slides = o.instability.mode == "slide" && o.sliding.found;
-        r.base_m = std::min(o.candidate.support_height_m, o.lowest_m);
+        r.base_m = o.candidate.support_height_m;
+        r.center = o.candidate.body.center;
         r.height_m = o.highest_m - r.base_m;
         r.base_width_m = least_width(o.candidate.support_polygon);
         r.base_error_share = physics::slope_error_share(o.overturning);

@@ -101,8 +101,12 @@ class Sentence {
         } else {
             text = "Rolls or turns " + to() + "by itself";
         }
-        if (!(object_.release_J > 0))
-            return text + ", but then rests no lower: it releases nothing" + later() + ".";
+        if (!(object_.release_J > 0)) {
+            return text +
+                   (stopped_for_good() ? ", but leans on " + stop() + " before it has come so far"
+                                       : ", but then rests no lower") +
+                   ": it releases nothing" + later() + ".";
+        }
         if (swept_.stopped) return text + leans();
         return text + "; " + (why_.drop_m > 0 ? "falls " + dropped() : "comes to rest lower") +
                " and releases " + energy(why_.S_J) + ".";
@@ -115,10 +119,19 @@ class Sentence {
         return "; from " + energy(first->W_J) + " on it may release up to " +
                energy(object_.instability.back().S_J);
     }
-    // Its release and risk are those of a fall with room.
+    // By the building, which does not give way.
+    bool stopped_for_good() const {
+        if (!swept_.stopped || swept_.by < 0) return false;
+        const std::int32_t by = scene_.primitives[static_cast<std::size_t>(swept_.by)].object;
+        return scene_.objects[static_cast<std::size_t>(by)].grounded;
+    }
+    std::string stop() const { return what(scene_, parts_, swept_.by); }
+    // Against anything else its release and risk are those of a fall with room.
     std::string leans() const {
-        return "; comes to lean on " + what(scene_, parts_, swept_.by) + ", with " +
-               energy(object_.fall.hits_J) + ". If that gave way it would " +
+        std::string text =
+            "; comes to lean on " + stop() + ", with " + energy(object_.fall.hits_J) + ".";
+        if (stopped_for_good()) return text;
+        return text + " If that gave way it would " +
                (why_.drop_m > 0 ? "fall " + dropped() : "come to rest lower") + " and release " +
                energy(why_.S_J) + ", which its risk reckons with.";
     }

@@ -29,9 +29,11 @@ struct RiskObject {
     bool grounded = false;  // or held by what was not seen: no risk is reckoned
     double mass_kg = 0;
     double barrier_J = 0;
-    // Of what carries it, grid frame, or of its lowest voxel where that is lower; NaN: of that.
-    // Heights of pushes and blows count from there.
+    // Of what carries it, grid frame; NaN: of its lowest voxel. Heights of pushes and blows count
+    // from there.
     double base_m = std::numeric_limits<double>::quiet_NaN();
+    // Of mass, grid frame; nothing: that of its voxels.
+    std::optional<Vec3> center{};
     double height_m = 0;                 // of its top
     double base_width_m = 0;             // least width of its support polygon
     double base_error_share = 0;         // one standard error of b / h, as a share of it
@@ -106,6 +108,10 @@ double instability(const RiskObject& object, const WorkSample& event);
 // Least work of a steady push towards `way` from which that is above 0; infinite where there is
 // none; barrier_J where no directions are known.
 double push_barrier_J(const RiskObject& object, const Vec3& way);
+// The same, but no more than it takes to turn it over the edge that lies that way, whether that
+// releases anything or not: what upsets it brings so much, and not what it takes to go on from
+// there.
+double over_edge_J(const RiskObject& object, const Vec3& way);
 // Straight on to where its support ends; infinite where it does not. Where no directions are known,
 // slide_distance_m, and `support_m` at least.
 double slide_towards_m(const RiskObject& object, const Vec3& way, double support_m);

@@ -99,7 +99,7 @@ Stance stance(const Surroundings& surroundings, std::span<const std::uint32_t> o
         zz += w * dz * dz;
     }
     const double voxel = cells.voxel_m, voxel2 = voxel * voxel, own = 1.0 / 12;  // of a unit cube
-    out.center = {x * voxel, y * voxel, z * voxel};
+    out.center = object.center.value_or(Vec3{x * voxel, y * voxel, z * voxel});
     out.bottom_m = std::isnan(object.base_m) ? low * voxel : object.base_m;
     out.top_m = (high + 1.0) * voxel;
     out.spread_m2 = {(xx / all + own) * voxel2, xy / all * voxel2, (yy / all + own) * voxel2,

@@ -27,6 +27,13 @@ double measured_W_J(const RiskObject& object, double W_J) {
     return root < 0 ? -1 : root * root;
 }
 
+// The other way round: of what does something to the object as it was measured.
+double at_end_J(const RiskObject& object, double measured_J) {
+    if (object.root_shift == 0) return measured_J;
+    const double root = std::max(0.0, std::sqrt(measured_J) + object.root_shift);
+    return root * root;
+}
+
 }  // namespace
 
 double instability(const RiskObject& object, const WorkSample& event) {
@@ -37,11 +44,12 @@ double instability(const RiskObject& object, const WorkSample& event) {
 }
 
 double push_barrier_J(const RiskObject& object, const Vec3& way) {
-    const double measured =
-        object.toppling ? object.toppling->push_barrier_J(way) : object.barrier_J;
-    if (object.root_shift == 0) return measured;
-    const double root = std::max(0.0, std::sqrt(measured) + object.root_shift);
-    return root * root;
+    return at_end_J(object,
+                    object.toppling ? object.toppling->push_barrier_J(way) : object.barrier_J);
+}
+
+double over_edge_J(const RiskObject& object, const Vec3& way) {
+    return at_end_J(object, object.toppling ? object.toppling->over_edge_J(way) : object.barrier_J);
 }
 
 double slide_towards_m(const RiskObject& object, const Vec3& way, double support_m) {

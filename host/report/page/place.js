@@ -102,9 +102,10 @@ function placeCell(scene, object) {
     .map(text => element('span', {className: 'whole', text: text + ' '}));
 }
 
-// How far around it nobody should stay: where its middle lands, and half its longest side beyond. null where that is not known.
+// How far around it nobody should stay: where its middle lands, and half its longest side beyond. null where that is not known, and
+// where the building stops it: nobody stays in its wall.
 function keepClear(scene, object) {
-  if (object.grounded || !fallKnown(object)) return null;
+  if (object.grounded || !fallKnown(object) || (scene.objectById.get(object.fall.leans_on) || {}).grounded) return null;
   const from = viewPlace(scene, object.center_of_mass_m.map(value => value || 0)), to = viewPlace(scene, object.fall.lands_m);
   const box = scene.boxes.get(object.id), size = object.size_m && object.size_m.every(value => value > 0) ? object.size_m
     : box ? box.high.map((value, k) => value - box.low[k]) : null;

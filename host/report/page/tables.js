@@ -51,6 +51,14 @@ function riskError(object, name) {
   return (object.risk_error_J || object.risk_spread_J || {})[name];
 }
 
+// Why the category is not certain.
+function uncertainText(object) {
+  if (object.rest_probability < 0.5) return 'how it stands is one of several readings of the scan';
+  if ((object.overturning || {}).tilt_deg < 3) return 'it stands, although the slightest lean would upset it by these figures';
+  if ((object.fall_chance || {}).human >= 0.05) return 'it stands, although walks like those before would have upset it by these figures';
+  return 'its errors leave a lower one open';
+}
+
 // The category, with a question mark where the errors leave it open.
 function categoryText(object) {
   return object.unsafety_category ? object.unsafety_category + (object.unsafety_certain ? '' : '?') : '\u2013';
@@ -77,7 +85,7 @@ function categoryBadge(scene, object) {
   if (!object.unsafety_category) return element('span', {className: 'category', text: 'not known', title: 'nothing was seen to hold it'});
   const colour = categoryColour(scene, object.unsafety_category);
   return element('span', {
-    className: 'category', title: 'category' + (object.unsafety_certain ? '' : ': its errors leave a lower one open'), text: categoryText(object),
+    className: 'category', title: 'category' + (object.unsafety_certain ? '' : `: ${uncertainText(object)}`), text: categoryText(object),
     style: {background: css(colour), color: textOn(colour)},
   });
 }
@@ -163,7 +171,7 @@ function figuresOf(scene, object) {
   }
   if (!object.grounded && object.unsafety_category) {
     pairs.push([element('span', {}, [term('category', 'Category'), ', by which to act']),
-      object.unsafety_category + (object.unsafety_certain ? '' : ', or lower: its errors leave it open')]);
+      object.unsafety_category + (object.unsafety_certain ? '' : `, or lower: ${uncertainText(object)}`)]);
   }
   if (!object.grounded) {
     pairs.push([element('span', {}, [term('unsafety', 'Unsafety'), ', 1 to 10 within this scene']), object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);

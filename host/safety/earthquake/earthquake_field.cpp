@@ -44,10 +44,11 @@ std::vector<GroundEvent> random_events(const EarthquakeOptions& options) {
 // What an event does to an object, wherever it stands.
 struct Shaken {
     double energy_J = 0;
-    bool overturns = false;
-    // How far it slid in each plane, each way, and how far its support goes on there, at least.
+    // In each plane, each way: whether it overturned, how far it slid, and how far its support goes
+    // on there, at least.
     struct Slip {
         Vec3 way{};
+        bool overturns = false;
         double way_m = 0, support_m = 0;
     };
     std::array<Slip, 4> slips{};
@@ -58,18 +59,16 @@ Shaken shaken_by(const ShakenObject& object, double mass_kg, double friction,
                  const PlaneMotions& motions) {
     Shaken out;
     out.together = motions.together;
-    out.overturns = !object.held;
     for (std::size_t p = 0; p < 2; ++p) {
         const Motion& m = motions.in[p];
         const Profile& body = object.body[p];
         const auto [dx, dy] = object.way[p];
         Shaken::Slip &ahead = out.slips[2 * p], &behind = out.slips[2 * p + 1];
-        ahead.way = {dx, dy, 0};
-        behind.way = {-dx, -dy, 0};
+        ahead = {{dx, dy, 0}, !object.held};
+        behind = {{-dx, -dy, 0}, !object.held};
         if (!object.held) continue;
-        ahead = {ahead.way, m.slid_ahead_m, body.support_ahead_m};
-        behind = {behind.way, m.slid_behind_m, body.support_behind_m};
-        out.overturns = out.overturns || m.overturned();
+        ahead = {ahead.way, m.overturned_ahead(), m.slid_ahead_m, body.support_ahead_m};
+        behind = {behind.way, m.overturned_behind(), m.slid_behind_m, body.support_behind_m};
         const double slid = std::max(m.slid_ahead_m, m.slid_behind_m);
         out.energy_J = std::max(out.energy_J,
                                 mass_kg * std::max(m.raised_J_kg(body), friction * gravity * slid));
@@ -93,7 +92,9 @@ std::array<Vec3, 4> furthest_slips(const Shaken& shaken) {
 }
 
 // Where it goes, of all ways in which it falls the one that takes least; or, where it does not
-// fall, of all ways that it was shaken.
+// fall, of all ways that it was shaken. What the shaking brings an object that overturns is what
+// lifts it over that edge, and not what takes it over one that lies beyond: where it comes to rest
+// no lower behind it, or leans, it has not fallen.
 struct Outcome {
     bool falls = false;
     Vec3 towards{};
@@ -101,23 +102,25 @@ struct Outcome {
 };
 Outcome outcome_of(const RiskObject& object, const Shaken& shaken) {
     Outcome fallen{true}, shaken_only;
-    const auto weigh = [&](const Vec3& way, Outcome& outcome) {
-        const double barrier = push_barrier_J(object, way);
+    const auto weigh = [&](const Vec3& way, double barrier, Outcome& outcome) {
         if (barrier >= outcome.barrier_J) return;
         outcome.barrier_J = barrier;
         outcome.towards = way;
     };
     for (const Shaken::Slip& slip : shaken.slips) {
-        weigh(slip.way, shaken.overturns ? fallen : shaken_only);
+        weigh(slip.way, push_barrier_J(object, slip.way), shaken_only);
+        const double over_edge = over_edge_J(object, slip.way);
+        const WorkSample turned{std::max(shaken.energy_J, over_edge), 1, slip.way};
+        if (slip.overturns && instability(object, turned) > 0) weigh(slip.way, over_edge, fallen);
         const bool off = !object.toppling && slip.way_m > 0 &&
                          slip.way_m >= slide_towards_m(object, slip.way, slip.support_m);
-        if (off) weigh(slip.way, fallen);
+        if (off) weigh(slip.way, push_barrier_J(object, slip.way), fallen);
     }
     for (const Vec3& slid : furthest_slips(shaken)) {
         const double far = std::hypot(slid[0], slid[1]);
         if (!object.toppling || !(far > 0)) continue;
         const Vec3 way{slid[0] / far, slid[1] / far, 0};
-        if (far >= slide_towards_m(object, way, 0)) weigh(way, fallen);
+        if (far >= slide_towards_m(object, way, 0)) weigh(way, push_barrier_J(object, way), fallen);
     }
     return std::isfinite(fallen.barrier_J) ? fallen : shaken_only;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/vectors.h"
 #include "physics/landscape.h"
 #include "safety/columns.h"
 #include "safety/directions.h"
@@ -76,6 +77,11 @@ double slenderness(const ShakenObject& object) {
     return least;
 }
 
+// Whether it releases anything once it is over the edge that lies that way.
+bool rests_lower(const RiskObject& object, const Vec3& way) {
+    return !object.toppling || instability(object, {over_edge_J(object, way), 1, way}) > 0;
+}
+
 // A level way by the record's components.
 std::array<double, 2> in_record(const GroundEvent& event, const std::array<double, 2>& way) {
     return {way[0] * event.dx + way[1] * event.dy, way[1] * event.dx - way[0] * event.dy};
@@ -128,7 +134,7 @@ std::vector<std::vector<std::uint8_t>> falls_in(device::Device& device,
         }
         const std::vector<Motion> found = shake(device, bodies, records, shakings, friction);
         for (std::size_t n = 0; n < found.size(); ++n)
-            if (found[n].fell(bodies[shakings[n].body])) *fell[n] = 1;
+            if (falls(objects[which[shakings[n].body]], p, found[n])) *fell[n] = 1;
     }
     return out;
 }
@@ -153,8 +159,16 @@ ShakenObject shaken_object(const RiskObject& object, const Stance& stance, const
     for (std::size_t p = 0; p < 2; ++p) {
         out.body[p] = profile(object, stance, columns, out.way[p][0], out.way[p][1]);
         out.held = out.held && out.body[p].least_base_m() > 0;
+        const Vec3 ahead{out.way[p][0], out.way[p][1], 0};
+        out.lower[p] = {rests_lower(object, ahead), rests_lower(object, opposite(ahead))};
     }
     return out;
+}
+
+bool falls(const ShakenObject& object, std::size_t plane, const Motion& motion) {
+    const auto [ahead, behind] = object.lower[plane];
+    return (ahead && motion.overturned_ahead()) || (behind && motion.overturned_behind()) ||
+           motion.slid_off(object.body[plane]);
 }
 
 Motions shake_objects(device::Device& device, std::span<const ShakenObject> objects,

@@ -32,7 +32,11 @@ struct ShakenObject {
     std::array<Profile, 2> body{};
     bool held = false;            // its centre is above its support, not beyond the end of it
     double base_error_share = 0;  // of b / h, by what is not known of the object
+    // Whether what overturns in a plane ahead, or behind, comes to rest lower there: it does not
+    // fall where it only comes to lean on a wall, or lies as high as it stood.
+    std::array<std::array<bool, 2>, 2> lower{{{true, true}, {true, true}}};
 };
+bool falls(const ShakenObject& object, std::size_t plane, const Motion& motion);
 ShakenObject shaken_object(const RiskObject& object, const Stance& stance, const Columns& columns);
 
 // How an object moves in an event, in its two planes, and the correlation of what shakes it in

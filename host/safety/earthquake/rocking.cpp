@@ -165,8 +165,12 @@ std::vector<float> planes_of(std::span<const Profile> bodies, double friction) {
 
 }  // namespace
 
-bool Motion::overturned() const {
-    return std::max(turned_ahead, turned_behind) >= quarter_turn;
+bool Motion::overturned_ahead() const {
+    return turned_ahead >= quarter_turn;
+}
+
+bool Motion::overturned_behind() const {
+    return turned_behind >= quarter_turn;
 }
 
 bool Motion::slid_off(const Profile& body) const {

@@ -35,8 +35,10 @@ struct Shaking {
 struct Motion {
     float turned_ahead = 0, turned_behind = 0;  // radians
     float slid_ahead_m = 0, slid_behind_m = 0;
-    bool overturned() const;                   // a turn came to 90 degrees
+    bool overturned_ahead() const;  // that turn came to 90 degrees
+    bool overturned_behind() const;
     bool slid_off(const Profile& body) const;  // a slip came to where its support ends
+    bool overturned() const { return overturned_ahead() || overturned_behind(); }
     bool fell(const Profile& body) const { return overturned() || slid_off(body); }
     // Largest rise of its centre times g, J/kg: of the edge that it turned about.
     double raised_J_kg(const Profile& body) const;

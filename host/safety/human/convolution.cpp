@@ -38,7 +38,7 @@ std::vector<Extent> extents(const SolidCells& cells, std::span<const std::int32_
         extent.top_m = std::max(extent.top_m, (cells.k[c] + 1) * cells.voxel_m);
     }
     for (std::size_t o = 0; o < out.size(); ++o)
-        if (!std::isnan(objects[o].base_m)) out[o].bottom_m = objects[o].base_m;
+        if (objects[o].base_m < out[o].top_m) out[o].bottom_m = objects[o].base_m;
     return out;
 }
 
@@ -169,8 +169,9 @@ bool Convolution::target_of(std::size_t voxel, std::int32_t number, double floor
     const Extent& extent = extents_[static_cast<std::size_t>(object_of_cell_[voxel])];
     const double part =
         (height - extent.bottom_m) / (extent.top_m - extent.bottom_m) * strike_heights;
+    // What hangs below its base is met at its foot.
     target = {padded(map_.cell_of(i, j)), static_cast<std::uint8_t>(band),
-              static_cast<std::uint8_t>(part), number, 0};
+              static_cast<std::uint8_t>(std::max(part, 0.0)), number, 0};
     return true;
 }
 

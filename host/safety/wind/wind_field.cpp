@@ -227,8 +227,8 @@ double wind_work(const RiskObject& object, const WindLoad& load, const WindOptio
     if (!(force > 0) || !(weight > 0)) return 0;
     // That way it can't fall: its energy alone counts, and brings nothing.
     const double towards = push_barrier_J(object, load.way);
-    const double barrier = std::isfinite(towards) ? towards : 0;
-    const auto work = [&](double threshold, double own_energy) {
+    const auto work = [&](double threshold, double barrier, double own_energy) {
+        if (!std::isfinite(towards)) barrier = 0;
         if (threshold <= 0) return std::max(barrier, own_energy);
         const double ratio = force / threshold;
         return ratio * (ratio < 1 ? barrier : std::max(barrier, own_energy));
@@ -237,10 +237,11 @@ double wind_work(const RiskObject& object, const WindLoad& load, const WindOptio
     double most = 0;
     const double tips = tipping_force(load, options.friction) * weight;
     if (std::isfinite(tips))
-        most = work(tips, tipping_energy(object.mass_kg, load.height_m, load.half_base_m));
+        most = work(tips, over_edge_J(object, load.way),
+                    tipping_energy(object.mass_kg, load.height_m, load.half_base_m));
     // Sliding matters where there is an edge to slide off.
     const double distance = slide_towards_m(object, load.way, 0);
-    if (std::isfinite(distance)) most = std::max(most, work(rubs, rubs * distance));
+    if (std::isfinite(distance)) most = std::max(most, work(rubs, towards, rubs * distance));
     return most;
 }
 

@@ -54,5 +54,35 @@ TEST(FalseFeet, WhatWasFilledBelowWhatCarriesAThingIsNotItsOwn) {
     EXPECT_EQ(without_false_feet(standing, one, 0), standing) << "the same solids";
 }
 
+// A kettle on a counter: cells down to the floor, of which its surfaces leave nothing, are no foot,
+// but for a few, as noise makes.
+TEST(FalseFeet, WhatItsSurfacesLeaveNothingOfIsNoFoot) {
+    constexpr std::int32_t floor = 0, kettle = 1, solid_from = 12;
+    for (const std::int32_t lowest : {1, 10}) {
+        SolidCells cells;
+        cells.voxel_m = 0.02;
+        test::add_column(cells, 0, 0, 1, floor, Basis::surface);
+        test::add_column(cells, 0, lowest, 20, kettle, Basis::surface);
+        BoundaryCells boundary;
+        for (std::int32_t k = lowest; k < solid_from; ++k) {
+            boundary.i.push_back(0);
+            boundary.j.push_back(0);
+            boundary.k.push_back(k);
+            boundary.primitive.push_back(kettle);
+            boundary.form.push_back(0);
+            boundary.share.push_back(0);
+            for (auto& slot : boundary.slot) slot.push_back(0);
+            for (auto& moment : boundary.moment) moment.push_back(0);
+        }
+        const auto solids = std::make_shared<const SolidScene>(
+            cells, std::vector<Role>{Role::floor, Role::none}, SolidCells{}, boundary);
+        const auto out = without_false_feet(solids, std::vector<std::int32_t>{0, 1}, 0);
+        for (std::size_t n = 1; n < cells.size(); ++n)
+            EXPECT_EQ(out->cells().primitive[n],
+                      lowest == 1 && cells.k[n] < solid_from ? -1 : kettle)
+                << cells.k[n];
+    }
+}
+
 }  // namespace
 }  // namespace topple::graph

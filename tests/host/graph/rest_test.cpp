@@ -23,7 +23,7 @@ class RestOf : public test::EachBackend {
     // Of one primitive, an object by itself as each other is; the floor and `walls` are the room's.
     // unseen_below: cells below each that nobody saw into, which contacts don't know of.
     Rest rest(FloorScene& scene, std::int32_t of, std::vector<std::int32_t> walls = {},
-              std::uint8_t unseen_below = 0) {
+              std::uint8_t unseen_below = 0, std::vector<double> floors_m = {}) {
         const ContactGraph contacts = scene.contacts(*device);
         scene.cells.unseen_below.assign(scene.cells.size(), unseen_below);
         std::vector<bool> ground(static_cast<std::size_t>(scene.count));
@@ -34,7 +34,7 @@ class RestOf : public test::EachBackend {
             object[static_cast<std::size_t>(p)] = ground[static_cast<std::size_t>(p)] ? 0 : p;
         const auto columns = undersides(scene.cells, object, object.size());
         return infer_rest(candidate_of(contacts, scene.bodies(*device), ground, {of}),
-                          columns[static_cast<std::size_t>(of)], contacts);
+                          columns[static_cast<std::size_t>(of)], contacts, {}, 0, floors_m);
     }
     static std::array<double, 4> bounds(const Rest& rest) {
         std::array<double, 4> out{INFINITY, INFINITY, -INFINITY, -INFINITY};
@@ -124,6 +124,22 @@ TEST_P(RestOf, WhatEndsNearTheFloorDoesNotHang) {
     const Rest out = rest(scene, thing);
     EXPECT_EQ(out.kind, RestKind::near);
     EXPECT_NEAR(out.support_height_m, 0, 1e-9);
+}
+
+// The floor was not scanned below a bookcase, which a board holds high up, too: it goes on there.
+TEST_P(RestOf, TheFloorGoesOnBelowWhatEndsAtIt) {
+    FloorScene scene;
+    scene.add(box({1.24, 0.14, 0}, {1.4, 0.2, 0.9}));
+    const auto thing = scene.add([](double x, double y, double z) {
+        return x > 1.02 && x < 1.3 && y > 0 && y < 0.2 && z > (x < 1.24 ? 0.0 : 0.9) && z < 1;
+    });
+    scene.cells = test::voxelise(scene.solids, {-1, -1, -0.04}, {1.6, 1, 1.2}, 0.02);
+    EXPECT_NE(rest(scene, thing).kind, RestKind::near);
+    const Rest out = rest(scene, thing, {}, 0, {0.02});
+    EXPECT_EQ(out.kind, RestKind::near);
+    EXPECT_THAT(bounds(out), near({1.02, 0, 1.24, 0.2}));
+    EXPECT_NEAR(out.support_height_m, 0, 1e-6);
+    EXPECT_EQ(rest(scene, thing, {}, 0, {0.3}).kind, rest(scene, thing).kind) << "no floor there";
 }
 
 // A thing in the air: what the scan shows below it does not hold it.

@@ -67,6 +67,23 @@ TEST_F(Sliding, FromAnotherPlaceItIsAsIfItStoodThere) {
     EXPECT_FALSE(slide_elsewhere(places, half - 12, half, 0.7, 0.3).reachable) << "beyond the edge";
 }
 
+// It stands on the floor, and most of its columns reach over a shelf: that is not what it slides
+// off.
+TEST_F(Sliding, WhatReachesOverAShelfSlidesWhereItStands) {
+    const SolidCells cells = test::voxelise({{0, box({-2, -2, -0.1}, {2, 2, 0})},
+                                             {1, box({0.15, -0.2, 0}, {0.8, 0.4, 0.9})},
+                                             {2, box({0, 0, 0}, {0.1, 0.2, 0.9})},
+                                             {2, box({0, 0, 0.9}, {0.6, 0.2, 1})}},
+                                            {-2, -2, -0.1}, {2, 2, 1.1}, 0.025);
+    const std::vector<double> density(3, 700), friction(3, 0.3);
+    const std::vector<std::int32_t> own{0, 1, 2};
+    const auto bodies = mass_properties(*device, cells, 3, density);
+    std::vector<Stance> stances(3);
+    EXPECT_TRUE(slide_all(cells, own, bodies, friction, {.stances = stances})[2].found);
+    stances[2] = {{{0, 0}, {0.6, 0}, {0.6, 0.2}, {0, 0.2}}, 0, false};
+    EXPECT_FALSE(slide_all(cells, own, bodies, friction, {.stances = stances})[2].found);
+}
+
 TEST_F(Sliding, CubeOnATable) {
     for (const double voxel : {0.05, 0.025, 0.0125}) {
         SCOPED_TRACE(voxel);

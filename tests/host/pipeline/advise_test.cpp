@@ -107,5 +107,28 @@ TEST_F(Advice, WhatHangsOnNothingSeenIsToBeSeen) {
     EXPECT_EQ(at(advice, lamp).kind, Suggestion::Kind::see);
 }
 
+// What is said to upset it would have done so before it was scanned.
+TEST(StandsAgainstOdds, WhereTheScanIsReadOneWayOfSeveralOrItWouldNotHaveStood) {
+    StableObject object;
+    object.overturning.tilt_deg = 12;
+    const auto doubted = [&](double walk, double quake) {
+        std::vector<safety::Disturbance> disturbances(2);
+        disturbances[0].name = "human";
+        disturbances[1].name = "earthquake";
+        const std::vector<std::vector<safety::Risk>> risk{{{1, 0, walk}}, {{1, 0, quake}}};
+        return stands_against_odds(object, disturbances, risk, 0);
+    };
+    EXPECT_FALSE(doubted(0.01, 1)) << "it was not scanned in an earthquake";
+    EXPECT_TRUE(doubted(0.1, 0));
+    object.overturning.tilt_deg = 2;
+    EXPECT_TRUE(doubted(0, 0));
+    object.overturning.tilt_deg = std::nan("");
+    EXPECT_FALSE(doubted(0, 0));
+    object.rest_probability = 0.4;
+    EXPECT_TRUE(doubted(0, 0));
+    object.grounded = true;
+    EXPECT_FALSE(doubted(0, 0));
+}
+
 }  // namespace
 }  // namespace topple::test

@@ -10,7 +10,8 @@ namespace {
 
 // An object whose centre of mass lies 0.25 m west of what carries it, with the given barrier; where
 // it is stopped on its way, by object 1.
-std::string sentence_of_leaning(double barrier_J, double error_J, bool stopped = false) {
+std::string sentence_of_leaning(double barrier_J, double error_J, bool stopped = false,
+                                bool building = false) {
     StableObject from;
     from.candidate.support_polygon = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     from.tipping.margin_m = -0.25;
@@ -23,6 +24,7 @@ std::string sentence_of_leaning(double barrier_J, double error_J, bool stopped =
     scene.voxel_size_m = 0.02;
     scene.objects.resize(2);
     scene.objects[1].id = 1;
+    scene.objects[1].grounded = building;
     scene.primitives.resize(1);
     scene.primitives[0].object = 1;
     scene.objects[0].fall.hits_J = 0.004;
@@ -35,7 +37,9 @@ std::string sentence_of_leaning(double barrier_J, double error_J, bool stopped =
     std::vector<Landing> landings(2);
     landings[0].swept.stopped = stopped;
     landings[0].swept.by = stopped ? 0 : -1;
-    tell_why(SolidParts{}, objects, landings, scene);
+    SolidParts parts;
+    parts.solids = std::make_shared<const SolidScene>(SolidCells{}, std::vector<Role>{Role::wall});
+    tell_why(parts, objects, landings, scene);
     return scene.objects[0].why.sentence;
 }
 
@@ -60,6 +64,10 @@ TEST(Explain, what_comes_to_lean_does_not_release_what_a_fall_would) {
               std::string::npos)
         << leans;
     EXPECT_EQ(sentence_of_leaning(127.5, 5).find("lean on"), std::string::npos);
+    const std::string on_wall = sentence_of_leaning(127.5, 5, true, true);
+    EXPECT_NE(on_wall.find("; comes to lean on a wall, with 4.0 mJ."), std::string::npos)
+        << on_wall;
+    EXPECT_EQ(on_wall.find("gave way"), std::string::npos) << on_wall;
 }
 
 // A fixing's force, in what straps are sold by.

@@ -82,6 +82,36 @@ TEST_F(Landings, WhatAWallStopsHitsItWithLess) {
     }
 }
 
+// A wall of the building does not give way: what leans on it releases what it hits it with, and
+// what leans on it before it is over its edge releases nothing. A cupboard that is not the
+// building's may give way.
+TEST_F(Landings, WhatTheBuildingStopsReleasesWhatItHitsWith) {
+    const auto falls = [&](bool building, double gap) {
+        Room room(0.025);
+        room.floor(-2, 2, -2, 2);
+        for (const double x : {0.05 + gap, -0.15 - gap})
+            room.box(x, x + 0.1, -0.5, 0.5, 0, 1.5, building);
+        const auto post = static_cast<std::size_t>(room.box(-0.05, 0.05, -0.3, 0.3, 0, 1, false));
+        const Landing landing = of(room)[post];
+        EXPECT_TRUE(landing.swept.stopped);
+        const physics::Instability& how = scene->objects[post].instability;
+        EXPECT_GT(how.barrier_J, 0);
+        EXPECT_LE(landing.hits_J, how.release_J);
+        return how;
+    };
+    const physics::Instability beside_building = falls(true, 0.25),
+                               beside_thing = falls(false, 0.25);
+    EXPECT_EQ(beside_building.barrier_J, beside_thing.barrier_J);
+    EXPECT_GT(beside_building.release_J, 0);
+    EXPECT_LT(beside_building.release_J, 0.5 * beside_thing.release_J);
+    // Over its ends it falls as before.
+    EXPECT_NEAR(beside_building.curve.back().S_J, beside_thing.curve.back().S_J,
+                0.3 * beside_thing.curve.back().S_J);
+    const physics::Instability close = falls(true, 0.05);
+    EXPECT_EQ(close.barrier_J, beside_building.barrier_J);
+    EXPECT_EQ(close.release_J, 0) << "it leans before it is over its edge";
+}
+
 TEST_F(Landings, MorePeopleMeetWhatStandsByTheWay) {
     Room room(0.025);
     room.floor(-2, 2, -2, 2);

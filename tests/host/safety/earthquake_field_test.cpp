@@ -267,6 +267,45 @@ TEST_F(EarthquakeField, HeightsCountFromWhatCarriesAThing) {
                 1e-6);
 }
 
+// Over the edge that the shaking takes it over it comes to rest no lower; what lies behind a pass a
+// hundred times as high is none of the earthquake's doing.
+TEST_F(EarthquakeField, BringsNoMoreThanItTakesToOverturn) {
+    test::Room room(0.02);
+    room.floor(0, 3, 0, 3);
+    const auto id = static_cast<std::size_t>(room.thing(1.5, 1.5, 0, 0.08, 0.4));
+    RiskObject& object = room.objects[id];
+    constexpr double firm = 2;  // friction on which nothing slides
+    const auto earthquake = [&](double first_m) {
+        physics::Candidate body;
+        body.primitives = {0};
+        body.body.mass_kg = object.mass_kg;
+        body.body.center = {1.5, 1.5, 0.2};
+        body.support_polygon = {{1.46, 1.46}, {1.54, 1.46}, {1.54, 1.54}, {1.46, 1.54}};
+        const double climb_m = std::hypot(0.2, 0.04) - 0.2;
+        physics::Stability tipping;
+        for (const Vec3& way : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}}) {
+            tipping.ways.push_back({climb_m, first_m, way});
+            tipping.ways.push_back({100 * climb_m, 100 * climb_m + 0.1, way});
+        }
+        object.support_polygon = body.support_polygon;
+        object.toppling = std::make_shared<physics::Toppling>(
+            body, physics::Toppling::Body{{1, 1, 1, 0, 0, 0}, 0.4}, tipping,
+            std::vector<std::array<double, 2>>{{1, 0}, {0, 1}, {-1, 0}, {0, -1}},
+            physics::SlideResult{}, firm);
+        EarthquakeOptions strong;
+        strong.pga_m_s2 = 20;
+        return earthquake_field(*device, room.surroundings(), room.objects, firm, strong);
+    };
+    const Disturbance none = earthquake(0), some = earthquake(0.1);
+    const double weight_N = object.mass_kg * gravity;
+    object.toppling = nullptr;
+    EXPECT_GT(std::ranges::max(some.work[id], {}, &WorkSample::W_J).W_J, 0);
+    for (const WorkSample& event : none.work[id])
+        EXPECT_LT(event.W_J, 10 * weight_N * (std::hypot(0.2, 0.04) - 0.2));
+    EXPECT_GT(some.fragility[id].counted.back().chance, 0.9);
+    EXPECT_EQ(none.fragility[id].counted.back().chance, 0) << "it overturns, and rests no lower";
+}
+
 TEST_F(EarthquakeField, NothingToShake) {
     test::Room room(0.02);
     auto field = earthquake_field(*device, room.surroundings(), room.objects, mu, {});
