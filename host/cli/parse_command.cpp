@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "cli/acceleration_option.h"
+#include "cli/before.h"
 #include "cli/choice.h"
 #include "cli/commands.h"
 #include "cli/export_options.h"
@@ -41,6 +43,7 @@ std::string joined(const std::vector<std::string>& names, const char* between) {
 struct ParseArguments {
     std::optional<std::string> accelerogram, accelerogram_across, accelerogram_up;
     std::optional<double> accelerogram_unit_m_s2;
+    std::optional<Acceleration> pga;
     std::optional<std::string> hazard, corrections, cache;
     bool no_cache = false;
     std::string input, backend = "auto", up, disturbance = joined(known_disturbances(), ",");
@@ -122,6 +125,7 @@ void read_options(ParseArguments& a) {
         a.options.tile_m = *a.tile_m;
     }
     if (!a.up.empty()) a.options.up = parse_up("--up", a.up);
+    if (a.pga) a.options.pga_m_s2 = a.pga->m_s2;
     a.options.disturbances = split_commas(a.disturbance);
     if (!a.motion_up.empty()) a.motion_file.up = parse_up("--motion-up", a.motion_up);
     if (a.accelerogram_unit_m_s2 && !a.accelerogram)
@@ -183,10 +187,28 @@ void keep_cache(const io::OutputFolder& room, ParseArguments& a) {
     if (error) std::filesystem::copy_file(earlier, a.options.cache_file, error);
 }
 
+// One of m/s^2 that was meant in g would make a room look safe.
+void note_weak_shaking(const ParseArguments& a, Scene& scene) {
+    const std::string note = a.pga ? weak_shaking_note(*a.pga) : "";
+    if (!note.empty() && scene.events.contains("pga_m_s2"))
+        scene.notes.insert(scene.notes.begin(), note);
+}
+
+// What was worst in the parse that these corrections follow: in the output that this one replaces,
+// or that whose cache it goes on from.
+std::optional<Worst> worst_before(const ParseArguments& a, const std::filesystem::path& out) {
+    if (!a.corrections || a.quiet) return std::nullopt;
+    std::filesystem::path folder = out;
+    if (a.cache) folder = std::filesystem::path(*a.cache).parent_path();
+    return worst_of(folder / "scene.json");
+}
+
 int run(ParseArguments& a) {
     read_options(a);
     const std::filesystem::path out =
         a.out ? std::filesystem::path(*a.out) : default_output(a.input);
+    // So that the report's command says where its own output is.
+    if (!a.out) a.output.command.insert(a.output.command.end(), {"-o", out.string()});
     std::error_code error;
     if (!std::filesystem::exists(a.input, error)) {
         throw Error(ErrorKind::input,
@@ -211,7 +233,9 @@ int run(ParseArguments& a) {
             progress.finish();
             if (!a.quiet) std::fprintf(stderr, "%s\n", line.c_str());
         };
-        const ParseResult result = parse(a.input, a.options);
+        ParseResult result = parse(a.input, a.options);
+        note_weak_shaking(a, result.scene);
+        const std::optional<Worst> before = worst_before(a, out);
         progress("output", 0);
         const auto start = std::chrono::steady_clock::now();
         write_outputs(result, out, a.output);
@@ -223,7 +247,7 @@ int run(ParseArguments& a) {
         }
         progress.finish();
         if (a.quiet) return;
-        print_summary(result.scene, out, output.count());
+        print_summary(result.scene, out, output.count(), before);
         if (exported) print_export(*exported);
     };
     return run_long(a.quiet, a.options, work, [&] { return left_behind(a); });
@@ -277,14 +301,16 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
     app.add_option("--motion-up", a->motion_up,
                    "Up in the recording, X,Y,Z (default: from head and feet)")
         ->needs(motion);
+    app.add_option("--title", a->output.title,
+                   "Title of the report, as the room's name (default: INPUT's name)");
     app.add_option("--wind", a->options.wind_m_s, "Wind speed in m/s")->capture_default_str();
     app.add_option("--wind-from", a->options.wind_from_deg,
                    "Where the wind comes from, degrees clockwise from the scene's north\n"
                    "(default: from all sides)");
-    app.add_option(
-        "--pga", a->options.pga_m_s2,
-        "Peak ground acceleration of the earthquake in m/s^2; an accelerogram is scaled\n"
-        "to it (default: the accelerogram's own, or 3)");
+    app.add_option_function<std::string>(
+        "--pga", [a](const std::string& text) { a->pga = parse_acceleration("--pga", text); },
+        "Peak ground acceleration of the earthquake in m/s^2, or in g as in 0.3g; an\n"
+        "accelerogram is scaled to it (default: the accelerogram's own, or 3)");
     CLI::Option* const record = app.add_option(
         "--accelerogram", a->accelerogram,
         "Recorded earthquake instead of made-up ones: JSON (dT, accel_data), PEER's .AT2, or\n"

@@ -6,21 +6,29 @@
 #include <cstdio>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/urgency.h"
 #include "core/listed.h"
 #include "io/text.h"
+#include "physics/landscape.h"
 #include "safety/disturbances.h"
+#include "safety/earthquake/fragility.h"
+#include "safety/earthquake/intensity.h"
 
 namespace topple::cli {
 namespace {
 
 constexpr std::size_t rows_shown = 12, sentences_shown = 3;
 
+// Without powers of ten where that is long enough for it.
 std::string three_digits(double value) {
-    char text[32];
+    char text[64];
     std::snprintf(text, sizeof(text), "%.3g", value);
+    double rounded = 0;
+    if (std::abs(value) >= 1000 && std::abs(value) < 1e9 && io::parse_number(text, rounded))
+        std::snprintf(text, sizeof(text), "%.0f", rounded);
     return text;
 }
 
@@ -29,6 +37,38 @@ std::string risk_text(const Object& o, const std::string& disturbance) {
     const auto at = o.risk_J.find(disturbance);
     if (at == o.risk_J.end() || !o.seen_enough) return "-";
     return three_digits(at->second);
+}
+
+// Those that this parse reckoned with.
+std::vector<const safety::DisturbanceKind*> reckoned_kinds(const Scene& scene) {
+    std::vector<const safety::DisturbanceKind*> kinds;
+    for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
+        if (std::ranges::any_of(scene.objects,
+                                [&](const Object& o) { return o.risk_J.contains(kind->name); }))
+            kinds.push_back(kind);
+    return kinds;
+}
+
+// What it sets free on average when its largest risk comes true; where it has none, on the easiest
+// way out of its place.
+double release_of(const Object& o) {
+    double most = 0, release = o.release_J;
+    for (const auto& [name, risk] : o.risk_J) {
+        const auto chance = o.fall_chance.find(name);
+        if (!(risk > most) || chance == o.fall_chance.end() || !(chance->second > 0)) continue;
+        most = risk;
+        release = risk / chance->second;
+    }
+    return release;
+}
+
+// " (0.31 g, very strong shaking, intensity VII)" of an earthquake's peak; "" of other figures.
+std::string shaking_of(std::string_view key, double value) {
+    if (key != "pga_m_s2") return "";
+    const double in_g = value / physics::gravity;
+    std::string text = " (";
+    text.append(io::two_digits(in_g)).append(" g, ");
+    return text.append(safety::shaking_text(in_g)).append(")");
 }
 
 std::string category_text(const Object& o) {
@@ -45,19 +85,32 @@ bool at_risk(const Object* o) {
 // What stands above the columns of risks: no harm to people, but what comes of one event.
 std::string risks_text(const Scene& scene) {
     std::vector<std::string> columns, events;
-    for (const safety::DisturbanceKind* kind : safety::disturbance_kinds()) {
+    for (const safety::DisturbanceKind* kind : reckoned_kinds(scene)) {
         columns.emplace_back(kind->words.column);
         std::string event = kind->words.one_event;
         const auto& [key, follows, name, unit] = kind->words.figure;
         const auto figure = scene.events.find(key);
         if (*follows != 0 && figure != scene.events.end())
-            event += follows + three_digits(figure->second) + " " + unit;
+            event += follows + three_digits(figure->second) + " " + unit +
+                     shaking_of(key, figure->second);
         events.push_back(std::move(event));
     }
+    if (columns.empty()) return "";
     return listed(columns, "and") +
            " are risks: the energy\n   that it sets free, over all ways, "
            "per event: " +
            listed(events) + ".";
+}
+
+// How often it falls where it stands; "" without a hazard curve.
+std::string years_text(const Object& o, const Scene& scene) {
+    const double years = o.fragility.return_years;
+    if (!std::isfinite(years)) return "";
+    const auto from = scene.events.find("hazard_from_g");
+    if (from != scene.events.end() && safety::falls_below(o.fragility, from->second))
+        return " It falls once in at most " + io::two_digits(years) +
+               " years: the hazard curve begins at " + io::short_number(from->second) + " g.";
+    return " It falls once in about " + io::two_digits(years) + " years.";
 }
 
 // Who passes where it lands; "" where that is not known, or it lands softly.
@@ -94,7 +147,7 @@ std::string riskiest_text(std::size_t shown, std::size_t of) {
 
 // Why the riskiest are what they are: of those whose barrier is above its error, where there are
 // any. The others' risk says more about the scan.
-void print_sentences(const std::vector<const Object*>& riskiest_first) {
+void print_sentences(const std::vector<const Object*>& riskiest_first, const Scene& scene) {
     std::vector<const Object*> known, doubtful, unseen;
     for (const Object* o : riskiest_first) {
         auto& group = barrier_within_error(*o) ? doubtful : o->seen_enough ? known : unseen;
@@ -123,10 +176,19 @@ void print_sentences(const std::vector<const Object*>& riskiest_first) {
     std::printf(":\n");
     for (std::size_t i = 0; i < shown; ++i) {
         const Object& o = *told[i];
-        std::printf("Object %d%s%s: %s%s%s%s\n", o.id, name_text(o).c_str(), size_text(o).c_str(),
+        std::printf("Object %d%s%s: %s%s%s%s%s\n", o.id, name_text(o).c_str(), size_text(o).c_str(),
                     o.why.sentence.c_str(), people_text(o.fall).c_str(),
-                    o.advice.sentence.empty() ? "" : " ", o.advice.sentence.c_str());
+                    years_text(o, scene).c_str(), o.advice.sentence.empty() ? "" : " ",
+                    o.advice.sentence.c_str());
     }
+}
+
+// "0-0.12" of a barrier that can't be told from 0.
+std::string barrier_text(const Object& o) {
+    if (!barrier_within_error(o)) return three_digits(o.barrier_J);
+    char text[32];
+    std::snprintf(text, sizeof(text), "0-%.2g", o.barrier_J + o.barrier_error_J);
+    return text;
 }
 
 void print_objects(const Scene& scene) {
@@ -143,25 +205,22 @@ void print_objects(const Scene& scene) {
     std::stable_sort(movable.begin(), movable.end(), [](const Object* a, const Object* b) {
         return urgency_of(*a) > urgency_of(*b);
     });
-    std::printf("\n%6s %8s %8s %8s %9s %9s %6s ", "object", "category", "unsafety", "mass kg",
+    const auto kinds = reckoned_kinds(scene);
+    std::printf("\n%-12s %8s %8s %8s %9s %9s %6s ", "object", "category", "unsafety", "mass kg",
                 "barrier J", "release J", "mode");
-    for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
-        std::printf("%8s J ", kind->words.column);
+    for (const safety::DisturbanceKind* kind : kinds) std::printf("%8s J ", kind->words.column);
     std::printf(" rests on\n");
     for (std::size_t i = 0; i < std::min(rows_shown, movable.size()); ++i) {
         const Object& o = *movable[i];
-        char barrier[32], unsafety[32] = "-";
+        char unsafety[32] = "-";
         if (o.seen_enough) std::snprintf(unsafety, sizeof(unsafety), "%.1f", o.unsafety);
-        if (barrier_within_error(o))
-            std::snprintf(barrier, sizeof(barrier), "0-%.2g", o.barrier_J + o.barrier_error_J);
-        else
-            std::snprintf(barrier, sizeof(barrier), "%.3g", o.barrier_J);
-        std::printf("%6d %8s %8s %8.3g %9s %9.3g %6s ", o.id, category_text(o).c_str(), unsafety,
-                    o.mass_kg, barrier, o.release_J, o.mode.c_str());
-        for (const safety::DisturbanceKind* kind : safety::disturbance_kinds())
+        const std::string barrier = barrier_text(o);
+        std::printf("%-12s %8s %8s %8s %9s %9s %6s ", (std::to_string(o.id) + name_text(o)).c_str(),
+                    category_text(o).c_str(), unsafety, three_digits(o.mass_kg).c_str(),
+                    barrier.c_str(), three_digits(release_of(o)).c_str(), o.mode.c_str());
+        for (const safety::DisturbanceKind* kind : kinds)
             std::printf("%10s ", risk_text(o, kind->name).c_str());
-        std::printf(" %s%s\n", rests_on.contains(o.id) ? rests_on[o.id].c_str() : "-",
-                    name_text(o).c_str());
+        std::printf(" %s\n", rests_on.contains(o.id) ? rests_on[o.id].c_str() : "-");
     }
     if (movable.size() > rows_shown)
         std::printf("   ... and %zu more in scene.json\n", movable.size() - rows_shown);
@@ -170,16 +229,17 @@ void print_objects(const Scene& scene) {
             "   Act from the top: by category, which is how often the thing falls and how hard, at "
             "the worse end of its error\n   (? where the better end says less), and within one by "
             "unsafety, its risk from 1 to 10 within this scene, where\n   10 is the worst, however "
-            "harmless. Barrier, release and mode are those of the easiest way out of its\n   "
-            "place. "
+            "harmless. Barrier and mode are those of the easiest way out of its place,\n   "
+            "release that of the falls behind its largest risk. Rests on: 0 is the building. "
             "%s\n",
             risks_text(scene).c_str());
-    print_sentences(movable);
+    print_sentences(movable, scene);
 }
 
 }  // namespace
 
-void print_summary(const Scene& scene, const std::filesystem::path& out, double output_s) {
+void print_summary(const Scene& scene, const std::filesystem::path& out, double output_s,
+                   const std::optional<Worst>& before) {
     double seconds = output_s;
     for (const auto& [stage, s] : scene.timings_s) seconds += s;
     std::size_t grounded = 0, counted = 0;
@@ -200,6 +260,7 @@ void print_summary(const Scene& scene, const std::filesystem::path& out, double 
                     static_cast<std::size_t>(
                         std::ranges::count_if(scene.corrections, &AppliedCorrection::held)),
                     io::counted(scene.corrections.size(), "correction").c_str());
+    if (before) print_change(*before, scene);
     for (const std::string& note : scene.notes) std::printf("Note: %s\n", note.c_str());
     std::printf("\nReport: %s\n", (out / "report.html").c_str());
 }

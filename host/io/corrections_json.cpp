@@ -26,6 +26,7 @@ OrderedJson json_of_correction(const AppliedCorrection& applied) {
     if (c.kind == Kind::hollow) json["wall_m"] = c.wall_m;
     if (c.kind == Kind::mass) json["kg"] = c.mass_kg;
     if (c.kind == Kind::name) json["name"] = c.name;
+    if (!c.was.empty()) json["was"] = c.was;
     json["held"] = applied.held;
     json["outcome"] = applied.outcome;
     json["objects"] = applied.objects;
@@ -48,6 +49,7 @@ AppliedCorrection correction_of(const OrderedJson& json) {
     if (json.contains("wall_m")) c.wall_m = json.at("wall_m").get<double>();
     if (json.contains("kg")) c.mass_kg = json.at("kg").get<double>();
     if (json.contains("name")) c.name = json.at("name").get<std::string>();
+    if (json.contains("was")) c.was = json.at("was").get<std::string>();
     out.held = json.at("held").get<bool>();
     out.outcome = json.at("outcome").get<std::string>();
     out.objects = json.at("objects").get<std::vector<std::int32_t>>();

@@ -46,15 +46,20 @@ std::optional<std::string> fault_of_spots(const std::vector<Vec3>& spots, std::s
     return std::nullopt;
 }
 
-std::optional<std::string> fault_of_name(const std::string& name) {
-    if (name.find_first_not_of(' ') == std::string::npos) return "\"name\" is empty";
-    if (name.size() > longest_name)
-        return "\"name\" has " + std::to_string(name.size()) + " bytes, more than the limit of " +
+// Of a text of one line, after its name.
+std::optional<std::string> fault_of_line(const std::string& text) {
+    if (text.size() > longest_name)
+        return "has " + std::to_string(text.size()) + " bytes, more than the limit of " +
                std::to_string(longest_name);
-    for (const char c : name)
+    for (const char c : text)
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-            return "\"name\" holds a control character; it must be one line of text";
+            return "holds a control character; it must be one line of text";
     return std::nullopt;
+}
+
+std::optional<std::string> fault_of_name(const std::string& name) {
+    if (name.find_first_not_of(' ') == std::string::npos) return "is empty";
+    return fault_of_line(name);
 }
 
 std::optional<std::string> fault_of_one(const Correction& c) {
@@ -67,7 +72,10 @@ std::optional<std::string> fault_of_one(const Correction& c) {
         return "\"wall_m\" is " + range(c.wall_m, " m", thickest_m);
     if (c.kind == Kind::mass && !(c.mass_kg > 0 && c.mass_kg <= heaviest_kg))
         return "\"kg\" is " + range(c.mass_kg, " kg", heaviest_kg);
-    if (c.kind == Kind::name) return fault_of_name(c.name);
+    if (c.kind == Kind::name) {
+        if (const auto wrong = fault_of_name(c.name)) return "\"name\" " + *wrong;
+    }
+    if (const auto wrong = fault_of_line(c.was)) return "\"was\" " + *wrong;
     return std::nullopt;
 }
 
@@ -88,6 +96,7 @@ class Entry {
         if (out.kind == Kind::hollow) out.wall_m = number("wall_m");
         if (out.kind == Kind::mass) out.mass_kg = number("kg");
         if (out.kind == Kind::name) out.name = text("name");
+        if (json_.contains("was")) out.was = text("was");
         if (const auto what = fault_of_one(out)) wrong(*what);
         return out;
     }

@@ -16,6 +16,7 @@
 #include "pipeline/sentences.h"
 #include "safety/directions.h"
 #include "safety/disturbances.h"
+#include "safety/earthquake/fragility.h"
 #include "topple/version.h"
 
 namespace topple {
@@ -227,10 +228,31 @@ void note_indoors(const SolidParts& parts, const SafetyStage& safety, Scene& sce
     bool ceiling = false;
     for (std::size_t p = 0; p < roles; ++p)
         ceiling = ceiling || parts.solids->role(static_cast<std::int32_t>(p)) == Role::ceiling;
-    if (!ceiling) return;
-    for (const safety::Disturbance& d : safety.disturbances)
-        if (const char* note = safety::disturbance_kind(d.name).below_ceiling)
-            scene.notes.emplace_back(note);
+    for (const safety::DisturbanceKind* kind : safety::disturbance_kinds()) {
+        const bool reckoned = std::ranges::any_of(
+            safety.disturbances, [&](const auto& d) { return d.name == kind->name; });
+        const char* note = reckoned && ceiling   ? kind->below_ceiling
+                           : reckoned || ceiling ? nullptr
+                                                 : kind->left_out_below_none;
+        if (note != nullptr) scene.notes.emplace_back(note);
+    }
+}
+
+// Rates of what falls in weaker earthquakes than those that the hazard curve tells of are bounds.
+void note_short_hazard(Scene& scene) {
+    const auto from = scene.events.find("hazard_from_g");
+    if (from == scene.events.end()) return;
+    const auto short_of = std::ranges::count_if(scene.objects, [&](const Object& o) {
+        return !o.grounded && safety::falls_below(o.fragility, from->second);
+    });
+    if (short_of == 0) return;
+    const bool one = short_of == 1;
+    scene.notes.push_back("The hazard curve begins at " + io::short_number(from->second) +
+                          " g, and " + io::counted(static_cast<std::uint64_t>(short_of), "object") +
+                          (one ? " falls" : " fall") + " in weaker earthquakes, too: how often " +
+                          (one ? "it falls" : "they fall") +
+                          " a year is the least that it can be. Let the curve begin at a peak that "
+                          "nothing minds.");
 }
 
 void note_corrections(Scene& scene) {
@@ -294,6 +316,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     note_crowded_objects(scene);
     note_uncertain_barriers(scene);
     note_indoors(parts, safety, scene);
+    note_short_hazard(scene);
     scene.swc_energy = objects.grouping.energy_curve;
     explain(objects, to_input, scene);
     foretell(objects, safety, to_input, scene);

@@ -145,8 +145,7 @@ Ingested ingest_folder(device::Device& device, const std::filesystem::path& fold
     return out;
 }
 
-constexpr const char* places_must =
-    "places of sensors must be in the points' frame, and in metres.";
+const std::string places_must = "places of sensors must be in the points' frame, and in metres.";
 
 // Whether one of the places is farther outside of the surfels' box than that is long.
 bool lie_far_off(const std::vector<Vec3>& places, const geometry::Surfels& surfels) {
@@ -203,8 +202,8 @@ void look_from_free_places(device::Device& device, const std::optional<geometry:
     geometry::VirtualViews views = geometry::virtual_views(surfels, options, device.threads());
     if (views.frames.empty()) {
         out.notes.push_back(
-            posed ? std::string("Nothing could be seen from the sensors' places that were given, "
-                                "and nothing was carved: ") +
+            posed ? "Nothing could be seen from the sensors' places that were given, and nothing "
+                    "was carved: " +
                         places_must
                   : "No free space could be seen from inside of the cloud; nothing was carved.");
         return;

@@ -212,8 +212,9 @@ std::string fix_sentence(const Object& object, const Suggestion& what) {
         object.mass_kg < light_kg ? "Put it elsewhere, or fasten it" : mend_of(object);
     if (!(what.hold.force_N > 0)) return text + ".";
     return text + ", with a strap or bracket rated for " + rated_for(what.hold.force_N) +
-           " or more (it must hold " + io::two_digits(what.hold.force_N) + " N sideways), " +
-           length(what.hold.height_m) + " above what it stands on.";
+           " or more (it must hold " + io::two_digits(what.hold.force_N) +
+           " N sideways at least, without a margin), " + length(what.hold.height_m) +
+           " above what it stands on.";
 }
 
 std::string advice_sentence(const Object& object, const Suggestion& what) {

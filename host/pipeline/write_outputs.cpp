@@ -73,11 +73,10 @@ std::vector<std::string> command_for(const Scene& scene, const std::filesystem::
 }
 
 // The files of an output, each written by itself: what takes longest first. folder: where they are
-// made; command: of the report.
+// made; words: of the report.
 std::vector<std::function<void()>> writers(const std::filesystem::path& folder,
                                            const ParseResult& result, const OutputOptions& options,
-                                           const std::vector<std::string>& command,
-                                           const Poll& poll) {
+                                           const report::ReportWords& words, const Poll& poll) {
     const Scene& scene = result.scene;
     // Of a building they are read from disk, by the first that wants them.
     const auto load = [&result] {
@@ -92,7 +91,7 @@ std::vector<std::function<void()>> writers(const std::filesystem::path& folder,
     const std::shared_future<std::shared_ptr<report::Report>> page =
         std::async(std::launch::deferred, [=, &scene] {
             return std::make_shared<report::Report>(scene, with_surfaces && !scene.solid.x.empty(),
-                                                    command);
+                                                    words);
         });
     std::vector<std::function<void()>> out;
     out.emplace_back([=, &result, &options, &scene, &poll] {
@@ -135,9 +134,11 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
         if (options.cancelled && options.cancelled())
             throw Error(ErrorKind::cancelled, "cancelled");
     };
-    const auto files = writers(
-        out.folder(), result, options,
-        options.command.empty() ? command_for(result.scene, folder) : options.command, poll);
+    const auto files =
+        writers(out.folder(), result, options,
+                {options.command.empty() ? command_for(result.scene, folder) : options.command,
+                 options.title},
+                poll);
     // Surfaces have threads of their own.
     ThreadPool(options.threads == 1 ? 1 : 2).each(files.size(), 1, [&](std::size_t n) {
         poll();

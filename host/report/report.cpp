@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <ctime>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -23,6 +24,8 @@
 #include "report/script_safe.h"
 #include "report/view_data.h"
 #include "safety/disturbances.h"
+#include "safety/earthquake/fragility.h"
+#include "safety/earthquake/intensity.h"
 
 namespace topple::report {
 namespace {
@@ -280,6 +283,7 @@ Json disturbances_json() {
                          {"cause", cause},
                          {"event", event},
                          {"one_event", one_event},
+                         {"may_be_left_out", kind->left_out_below_none != nullptr},
                          {"strength", strengths[static_cast<std::size_t>(arrows.strength)]},
                          {"at_tip", arrows.at_tip},
                          {"below_things", arrows.below_things},
@@ -293,6 +297,42 @@ Json disturbances_json() {
                            {"unit", figure.unit}}}});
     }
     return kinds;
+}
+
+// By the upper ends of their ranges, null for none.
+Json shakings_json() {
+    auto all = Json::array();
+    for (const auto& [up_to_g, word, intensity] : safety::intensities())
+        all.push_back({std::isfinite(up_to_g) ? Json(up_to_g) : Json(), word, intensity});
+    return all;
+}
+
+// Ids of the objects that fall in weaker earthquakes than those that the hazard curve tells of.
+Json below_hazard_json(const Scene& scene) {
+    auto ids = Json::array();
+    const auto from = scene.events.find("hazard_from_g");
+    if (from == scene.events.end()) return ids;
+    for (const Object& o : scene.objects)
+        if (!o.grounded && safety::falls_below(o.fragility, from->second)) ids.push_back(o.id);
+    return ids;
+}
+
+// The last part of a path; what else names a source is that name.
+std::string source_name(const std::string& source) {
+    const auto end = source.find_last_not_of('/');
+    if (end == std::string::npos) return source;
+    const auto slash = source.find_last_of('/', end);
+    return source.substr(slash == std::string::npos ? 0 : slash + 1,
+                         slash == std::string::npos ? end + 1 : end - slash);
+}
+
+// In universal time: "2026-01-31".
+std::string today() {
+    const std::time_t now = std::time(nullptr);
+    std::tm date{};
+    gmtime_r(&now, &date);
+    char text[16];
+    return {text, std::strftime(text, sizeof(text), "%Y-%m-%d", &date)};
 }
 
 // Writes the template with its @NAMES@ filled in, one pass: what is filled in is not searched.
@@ -312,13 +352,16 @@ void write_page(io::FileWriter& writer, std::string_view html,
 }  // namespace
 
 struct Report::Parts {
-    std::string source;
+    std::string title;
     ViewPacker view;
     Json data, points;
 };
 
-Report::Report(const Scene& scene, bool with_surfaces, std::vector<std::string> command)
-    : parts_(new Parts{scene.source, {scene, {}, with_surfaces}, io::scene_document(scene), {}}) {
+Report::Report(const Scene& scene, bool with_surfaces, ReportWords words)
+    : parts_(new Parts{words.title.empty() ? source_name(scene.source) : words.title,
+                       {scene, {}, with_surfaces},
+                       io::scene_document(scene),
+                       {}}) {
     parts_->points = points_json(parts_->view.points());
     Json& json = parts_->data;
     // What is long and nobody but the page reads there.
@@ -330,8 +373,12 @@ Report::Report(const Scene& scene, bool with_surfaces, std::vector<std::string> 
     json["disturbance_kinds"] = disturbances_json();
     json["unsafety_ramp"] = unsafety_ramp;
     json["unranked_colour"] = unranked_colour;
-    if (command.empty()) command = {"topple", "parse", scene.source, "-o", "OUT"};
-    json["command"] = std::move(command);
+    json["shakings"] = shakings_json();
+    json["below_hazard"] = below_hazard_json(scene);
+    json["title"] = parts_->title;
+    json["made"] = today();
+    if (words.command.empty()) words.command = {"topple", "parse", scene.source, "-o", "OUT"};
+    json["command"] = std::move(words.command);
 }
 Report::~Report() = default;
 
@@ -345,7 +392,7 @@ void Report::write(const std::filesystem::path& file, std::span<const ObjectSurf
         json["view"] = view_json(view, std::move(parts_->points), pool);
     }
     const auto data = script_safe(json.dump(-1, ' ', false, Json::error_handler_t::replace));
-    const auto title = html_escaped(parts_->source);
+    const auto title = html_escaped(parts_->title);
     io::FileWriter writer(file);
     write_page(writer, page::html,
                {{"@TITLE@", title},
@@ -358,8 +405,8 @@ void Report::write(const std::filesystem::path& file, std::span<const ObjectSurf
 }
 
 void write_report(const std::filesystem::path& file, const Scene& scene,
-                  std::span<const ObjectSurface> surfaces, std::vector<std::string> command) {
-    Report(scene, !surfaces.empty(), std::move(command)).write(file, surfaces, 0);
+                  std::span<const ObjectSurface> surfaces, ReportWords words) {
+    Report(scene, !surfaces.empty(), std::move(words)).write(file, surfaces, 0);
 }
 
 }  // namespace topple::report

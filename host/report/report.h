@@ -12,6 +12,13 @@
 
 namespace topple::report {
 
+// What the page says beside the scene.
+struct ReportWords {
+    std::vector<std::string>
+        command;        // OutputOptions::command; empty: `topple parse` of the source
+    std::string title;  // empty: the name of the source
+};
+
 // Writes the result as one web page that opens from disk and needs no network: a 3D view of the
 // solid voxels and the scan, the disturbance fields, a table of the objects and the curves behind
 // their figures. Scenes with more voxels or points than a browser draws well are thinned for the
@@ -19,17 +26,14 @@ namespace topple::report {
 // written.
 //
 // surfaces: of the scene's solids; without them, and where they are too large, voxels are shown.
-// command: the words that parse so again, OutputOptions::command; without, `topple parse` of the
-// scene's source.
 void write_report(const std::filesystem::path& file, const Scene& scene,
-                  std::span<const ObjectSurface> surfaces = {},
-                  std::vector<std::string> command = {});
+                  std::span<const ObjectSurface> surfaces = {}, ReportWords words = {});
 
 // The same in two steps, the first of which needs no surfaces.
 class Report {
   public:
     // with_surfaces: whether there will be some. The scene must outlive it.
-    Report(const Scene& scene, bool with_surfaces, std::vector<std::string> command);
+    Report(const Scene& scene, bool with_surfaces, ReportWords words);
     ~Report();
     Report(const Report&) = delete;
     Report& operator=(const Report&) = delete;

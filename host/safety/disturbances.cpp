@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "safety/disturbances.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -40,8 +41,15 @@ const DisturbanceKind& disturbance_kind(std::string_view name) {
     if (const DisturbanceKind* kind = find_disturbance_kind(name)) return *kind;
     std::vector<std::string> known;
     for (const DisturbanceKind* kind : disturbance_kinds()) known.emplace_back(kind->name);
-    throw Error(ErrorKind::usage,
-                "--disturbance " + std::string(name) + ": expected " + listed(known));
+    std::string message = "--disturbance " + std::string(name) + ": expected " + listed(known);
+    for (const DisturbanceKind* kind : disturbance_kinds()) {
+        const auto& words = kind->words;
+        const bool meant = std::ranges::any_of(
+            std::array<std::string_view, 3>{words.cause, words.event, words.column},
+            [&](std::string_view word) { return !name.empty() && word.starts_with(name); });
+        if (meant) message.append("; for ").append(name).append(" say ").append(kind->name);
+    }
+    throw Error(ErrorKind::usage, message);
 }
 
 std::unique_ptr<DisturbanceField> made_field(Disturbance disturbance) {

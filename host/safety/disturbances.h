@@ -50,8 +50,9 @@ struct DisturbanceKind {
                                                const ParseOptions& options);
     // What it reckons with, by names.
     std::map<std::string, double> (*events)(const ParseOptions& options);
-    bool everyday = false;                // such events have happened before the scan
-    const char* below_ceiling = nullptr;  // what to note where the scan has a ceiling
+    bool everyday = false;                      // such events have happened before the scan
+    const char* below_ceiling = nullptr;        // what to note where the scan has a ceiling
+    const char* left_out_below_none = nullptr;  // and where it has none, and this is left out
 };
 
 // In the order in which they are reckoned and shown.

@@ -73,6 +73,10 @@ TEST_F(CorrectedParse, goes_on_from_where_the_first_began_to_group) {
     EXPECT_EQ(corrected.err.find("ingest"), std::string::npos) << corrected.err;
     EXPECT_NE(corrected.out.find("2 of 3 corrections held."), std::string::npos) << corrected.out;
     EXPECT_NE(corrected.out.find("(chest)"), std::string::npos) << corrected.out;
+    // Of the output that it replaces.
+    EXPECT_NE(corrected.out.find("\nWorst before (out/scene.json): nothing is at risk; "),
+              std::string::npos)
+        << corrected.out;
     EXPECT_NE(corrected.out.find("Note: Correction 3 (fixed) did not hold: found nothing within"),
               std::string::npos)
         << corrected.out;

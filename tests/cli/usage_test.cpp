@@ -29,6 +29,8 @@ TEST_F(Usage, names_the_unknown_option_and_the_nearest_one) {
                    {"--unit feet: expected m, cm, mm or in"});
     expect_failure(2, {"generate", "room", "--kind", "office", "--scan", "glass"},
                    {"--scan glass: expected walk, sparse, cloud, laser or single"});
+    expect_failure(2, {"parse", "plane.xyz", "--disturbance", "people"},
+                   {"--disturbance people: expected human", "for people say human"});
     // Nothing is near this one.
     const Finished far = run({"parse", "plane.xyz", "--kaleidoscope"});
     EXPECT_EQ(far.err.find("did you mean"), std::string::npos) << far.err;
@@ -66,6 +68,10 @@ TEST_F(Usage, refuses_values_before_it_parses) {
                                                     {"--wind-from", "nan"},
                                                     {"--wind-from", "400"},
                                                     {"--pga", "0"},
+                                                    {"--pga", "0.3ft"},
+                                                    {"--pga", "g"},
+                                                    {"--pga", "0.3g/s"},
+                                                    {"--pga", "30g"},
                                                     {"--floor-amplification", "0"},
                                                     {"--floor-amplification", "nan"},
                                                     {"--tile", "0"},

@@ -195,7 +195,7 @@ def test_wrong_types_of_options_are_refused_by_name(points, name, value):
 def test_viewpoints_have_a_row_for_each_point(points, device):
     with pytest.raises(topple.Error, match='viewpoint'):
         quick(points, device, viewpoint=np.zeros((3, 2), 'float32'))
-    with pytest.raises(topple.Error, match=f'viewpoint_x has 3 values, but x has {len(points)}'):
+    with pytest.raises(topple.Error, match=f'viewpoint: expected shape .{len(points)}, 3., one for each point, not 3'):
         quick(points, device, viewpoint=np.zeros((3, 3), 'float32'))
 
 

@@ -26,6 +26,7 @@ def test_columns_have_what_the_objects_have(result):
                               ('fall_chance_wind', o.fall_chance['wind']), ('fall_hits_J', o.fall.hits_J), ('unsafety', o.unsafety)):
             assert np.array_equal(table[column][o.id], value, equal_nan=True), column
         assert np.isnan(table['fall_people_share'][o.id])
+        assert table['stands_on'][o.id] == o.stands_on and table['fall_takes_along'][o.id] == o.fall.takes_along
     assert not any('human' in name for name in table)
 
 

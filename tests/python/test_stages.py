@@ -81,6 +81,9 @@ def test_frames_carve_what_they_see_through(device):
     again.carve(list(frames), np.stack([pose] * 3), (100, 100, 79.5, 59.5, 1000), device=device)
     again.carve([], np.zeros((0, 4, 4)), camera, device=device)
     assert np.array_equal(again.state_at(np.arange(5, 30), 0, 0), states)
+    metres = stages.Volume(cloud, np.zeros(len(cloud), np.int32), 0.1)
+    metres.carve(np.where(frames > 0, frames / 1000, np.nan), np.stack([pose] * 3), camera, device=device)
+    assert np.array_equal(metres.state_at(np.arange(5, 30), 0, 0), states)
 
 
 def test_what_is_closed_is_filled(device):
@@ -183,7 +186,7 @@ def volume():
     (lambda d: stages.Volume(SQUARE, np.full(100, -2), 0.05), 'a label of -2'),
     (lambda d: stages.Volume(SQUARE, np.full(100, 1 << 40), 0.05), 'label: 1099511627776 is beyond what int32 holds'),
     (lambda d: stages.Volume(SQUARE, np.zeros(100, int), 0), 'voxel'),
-    (lambda d: volume().carve(np.zeros((4, 4)), POSE, CAMERA, device=d), 'depth 0: expected integers of shape (4, 4), not float64'),
+    (lambda d: volume().carve(np.full((4, 4), 1 << 20), POSE, CAMERA, device=d), 'depth 0: 1048576 is beyond'),
     (lambda d: volume().carve(np.zeros(4, np.uint16), POSE, CAMERA, device=d), 'depth 0: expected integers of shape (N, N)'),
     (lambda d: volume().carve([np.zeros((4, 4), np.uint16), np.zeros((4, 5), np.uint16)], [POSE, POSE], CAMERA, device=d), 'depth 1: expected'),
     (lambda d: volume().carve(np.zeros((2, 4, 4), np.uint16), POSE, CAMERA, device=d), 'camera_to_world: expected floats of shape (2, 4, 4)'),

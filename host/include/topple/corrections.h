@@ -24,6 +24,7 @@ struct Correction {
     double wall_m = 0;         // of hollow: thickness of the shell
     double mass_kg = 0;        // of mass: of all of the object
     std::string name;          // of name
+    std::string was{};         // what is to be kept of it for people, as its number before; or ""
 };
 
 // "one_thing", "apart", ..: as files call them.

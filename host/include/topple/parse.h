@@ -146,6 +146,7 @@ struct OutputOptions {
     // The words of the command that parses so again, which the report shows for a parse with
     // corrections. Empty: `topple parse` of the scene's source into the folder.
     std::vector<std::string> command;
+    std::string title;     // of the report; empty: the source's name
     unsigned threads = 0;  // 1: no thread but the caller's
     // Polled now and then, from any thread; true ends the writing with Error(cancelled).
     std::function<bool()> cancelled;

@@ -160,7 +160,7 @@ typedef struct topple_options {
     double friction;           /* 0.3 */
     double wind_m_s;           /* 12 */
     double wind_from_deg;      /* NaN: from all sides */
-    double pga_m_s2;           /* NaN: 3 */
+    double pga_m_s2;           /* 0.3 g are 2.94; NaN: 3 */
     double tolerable_J;        /* 0.1 */
     double grouping_time_s;    /* NaN: as long as it takes */
     int32_t without_coordinates; /* not 0: the result keeps no coordinates of its points */

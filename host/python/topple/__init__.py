@@ -149,7 +149,8 @@ class Result:
     def spot(self, item, part=False):
         """A spot for corrections (docs/corrections.md): [x, y, z], metres, in the midst of the largest part of an object, an
         Object or its id; with part=True of a part, a Primitive or its id. A correction of a later parse that names it in
-        "at_m" is about that part, also where numbers have changed. Raises Error where there is no solid."""
+        "at_m" is about that part, also where numbers have changed; of a whole object give spots(). Raises Error where there is
+        no solid."""
         return _spots.spot(self, self._solid_parts(), item, part)
 
     def spots(self, item):
@@ -256,7 +257,7 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     points, as they are given. viewpoint: where the sensor was, three numbers, or (N, 3) where each point was seen from, NaN where it is not
     known: of several scans, or a sensor that moved. colours: of points, sRGB as uint8, an array of shape (N, 3),
     records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. progress(stage, done) is called as stages start and go on;
-    contents_kg_m3: of closed furniture, or None where all is solid.
+    pga_m_s2: the peak of earthquakes in m/s2, of which 0.3 g are 2.94. contents_kg_m3: of closed furniture, or None where all is solid.
     corrections: what you know of the room beside the scan: a file, or a list of dicts such as {"do": "fixed", "at_m":
     [[x, y, z]]} (docs/corrections.md); Result.corrections says what became of each. cache_file: keeps what does not
     depend on them, so that the next parse of that file or folder is quick; of what is in memory nothing is kept, and it is
@@ -328,5 +329,8 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     points = _columns(source, ('x', 'y', 'z'), 'points')
     directions = [] if normals is None else _columns(normals, ('nx', 'ny', 'nz'), 'normals')
     channels = [] if colours is None else _channels(colours)
+    for what, given in (('normals', directions), ('colours', channels), ('viewpoint', viewpoints)):
+        if given and len(given[0]) != len(points[0]):
+            raise _usage(f'{what}: expected shape ({len(points[0])}, 3), one for each point, not {len(given[0])} of them')
     parsed = _topple.parse_arrays(points, directions, channels, viewpoint, viewpoints, name, device, options, progress, cancelled)
     return Result(parsed, points, channels)

@@ -10,27 +10,29 @@ from ._arrays import usage
 _OVERTURNING = ('tilt_deg', 'tilt_error_deg', 'push_N', 'push_error_N', 'slide_N', 'shake_g', 'hand_push_N', 'hand_push_error_N',
                 'hand_height_m', 'gust_m_s', 'gust_error_m_s')
 _FRAGILITY = ('pga_g', 'pga_dispersion', 'firm_pga_g', 'pgv_m_s', 'pgv_dispersion', 'falls_per_year', 'return_years')
-_FALL = ('falls', 'hits_J', 'lands_on', 'lands_m')
+_FALL = ('falls', 'hits_J', 'lands_on', 'lands_m', 'leans_on', 'takes_along')
 _BY_DISTURBANCE = ('risk_J', 'risk_error_J', 'fall_chance')
 _ITEMS = {
     'objects': ('id', 'name', 'grounded', 'mass_kg', 'mass_error_kg', 'mass_model', 'center_of_mass_m', 'center_of_mass_error_m', 'size_m',
                 'footprint_error_m', 'barrier_J', 'barrier_error_J', 'release_J', 'mode', 'direction', 'unsafety',
-                'unsafety_category', 'unsafety_certain', 'seen_enough', 'rests_by', 'rest_probability', 'agreement', 'why', 'advice'),
+                'unsafety_category', 'unsafety_certain', 'seen_enough', 'stands_on', 'rests_by', 'rest_probability', 'agreement', 'why', 'advice'),
     'primitives': ('id', 'object', 'model', 'points', 'solid_voxels', 'volume_m3', 'mass_kg', 'center_of_mass_m', 'name'),
     'contacts': ('a', 'b', 'area_m2', 'normal', 'relation', 'probability'),
     'supports': ('supporter', 'supported', 'area_m2', 'probability'),
 }
+_LISTS = ('stands_on', 'fall_takes_along')  # of ids
 _TEXT = ('name', 'mass_model', 'rests_by', 'mode', 'unsafety_category', 'why', 'advice', 'model', 'relation')
 _TYPES = {'id': np.int32, 'object': np.int32, 'a': np.int32, 'b': np.int32, 'supporter': np.int32, 'supported': np.int32,
           'fall_lands_on': np.int32, 'points': np.uint64, 'solid_voxels': np.uint64, 'grounded': bool, 'unsafety_certain': bool, 'seen_enough': bool,
-          'fall_falls': bool, **{name: object for name in _TEXT}}
+          'fall_falls': bool, 'fall_leans_on': np.int32, **{name: object for name in _TEXT + _LISTS}}
 _VECTORS = ('center_of_mass_m', 'center_of_mass_error_m', 'size_m', 'direction', 'normal', 'fall_lands_m')
 
 
 def _column(name, values):
-    column = np.empty(len(values), object) if _TYPES.get(name) is object else None
-    if column is not None:  # sentences of any length, None where there is none
-        column[:] = values
+    if _TYPES.get(name) is object:  # sentences and lists of any length, None where there is none
+        column = np.empty(len(values), object)
+        for row, value in enumerate(values):
+            column[row] = list(value) if name in _LISTS else value
         return column
     column = np.array(values, _TYPES.get(name, np.float64))
     return column.reshape(-1, 3) if name in _VECTORS else column
@@ -76,10 +78,8 @@ def _row(o):
     rank = 'not seen enough' if math.isnan(o.unsafety) else f'{o.unsafety:.1f}'
     hue = 'transparent' if math.isnan(o.unsafety) else f'hsl({120 - 120 * (o.unsafety - 1) / 9:.0f} 70% 60%)'
     barrier = f'{o.barrier_J:.2g} ± {o.barrier_error_J:.1g}' if o.barrier_J > o.barrier_error_J else f'below {o.barrier_J + o.barrier_error_J:.2g}'
-    category = o.unsafety_category or ''
-    if category and not o.unsafety_certain:
-        category += '?'
-    cells = [f'{o.id} {o.name}'.strip(), rank, category, f'{o.mass_kg:.3g}', barrier, o.why]
+    category = (o.unsafety_category or '') + ('' if o.unsafety_certain or not o.unsafety_category else '?')
+    cells = [f'{o.id} {o.name}'.strip(), rank, category, f'{o.mass_kg:.3g} ± {o.mass_error_kg:.1g}', barrier, o.why]
     cells = [f'<td>{html.escape(cell)}</td>' for cell in cells]
     cells[1] = cells[1].replace('<td>', f'<td style="border-left: 0.6em solid {hue}">')
     return f'<tr>{"".join(cells)}</tr>'

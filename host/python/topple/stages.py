@@ -130,6 +130,16 @@ def normals(points, cell_m, *, eye_m=None, device=None, out=None):
     return out.T
 
 
+def _stored(depth, depth_scale):
+    """Depth as it is stored; metres are rounded to that, as those of frames are."""
+    depth = as_array(depth, 'depth')
+    if depth.dtype.kind != 'f' or not depth_scale > 0:
+        return depth
+    with np.errstate(invalid='ignore'):
+        stored = np.round(depth * depth_scale)
+        return np.where((stored >= 0) & (stored <= 65535), stored, 0).astype(np.uint16)
+
+
 class Volume:
     """A voxel grid of surface voxels, to carve and fill. z up.
 
@@ -143,7 +153,8 @@ class Volume:
     def carve(self, depth, camera_to_world, intrinsics, *, device=None):
         """Makes voxels in front of a depth reading empty; may be called for one batch of frames after the other.
 
-        depth: (F, H, W) uint16, or a list of (H, W), or one; 0: no reading. camera_to_world: (F, 4, 4) float64, or (4, 4):
+        depth: (F, H, W) uint16, metres times intrinsics.depth_scale, or floats, metres; or a list of (H, W), or one; 0, and of
+        floats what is not finite or not above 0: no reading. camera_to_world: (F, 4, 4) float64, or (4, 4):
         rigid, metres, row by row. intrinsics: Intrinsics."""
         if not isinstance(depth, (list, tuple)):
             depth = as_array(depth, 'depth')
@@ -151,12 +162,13 @@ class Volume:
         if not depth:
             return
         shape = np.shape(depth[0])
-        frames = [exactly(d, f'depth {n}', shape if len(shape) == 2 else (None, None), np.uint16) for n, d in enumerate(depth)]
         poses = as_array(camera_to_world, 'camera_to_world')
-        poses = exactly(poses[None] if poses.ndim == 2 else poses, 'camera_to_world', (len(frames), 4, 4), float)
+        poses = exactly(poses[None] if poses.ndim == 2 else poses, 'camera_to_world', (len(depth), 4, 4), float)
         _check_rigid(poses)
         camera = _fields(Intrinsics, intrinsics, 'intrinsics')
         camera = [number(value, f'intrinsics {name}') for name, value in zip(Intrinsics._fields, camera)]
+        shape_of_all = shape if len(shape) == 2 else (None, None)
+        frames = [exactly(_stored(d, camera[-1]), f'depth {n}', shape_of_all, np.uint16) for n, d in enumerate(depth)]
         self._volume.carve([f.reshape(-1) for f in frames], poses.reshape(-1), shape[1], shape[0], camera, _opened(device))
 
     def fill(self, votes, hollow=(), *, device=None):

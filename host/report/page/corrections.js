@@ -36,9 +36,9 @@ class Corrections {
   }
 
   // That parts are one thing: each correction begins with the spot that all share.
-  oneThing(parts) {
+  oneThing(parts, more = {}) {
     const [first, ...others] = this.at(parts);
-    return chunks(others, mostSpots - 1).map(at_m => ({do: 'one_thing', at_m: [first, ...at_m]}));
+    return chunks(others, mostSpots - 1).map(at_m => ({do: 'one_thing', at_m: [first, ...at_m], ...more}));
   }
 
   // That no part is in one object with any of the others.
@@ -48,7 +48,7 @@ class Corrections {
 
   // One step; text: what it says.
   add(ones, text) {
-    this.list.push({ones, text});
+    this.list.push({ones, text, isNew: true});
     this.saved = false;
     this.changed();
   }
@@ -71,15 +71,25 @@ class Corrections {
     this.changed();
   }
 
-  // That which made this report, with the corrections; for a POSIX shell.
+  // That which made this report, with the corrections and into a folder beside the one of this parse, which stays to compare with; for
+  // a POSIX shell. It goes on from what this parse keeps for the next.
   command() {
     const words = [], given = this.scene.command;
+    let out = '', cache = !given.some(word => /^--(cache|no-cache|tile)(=|$)/.test(word));
     for (let n = 0; n < given.length; ++n) {
-      if (given[n] === '--corrections') ++n;  // these go on from those
-      else if (!given[n].startsWith('--corrections=')) words.push(given[n]);
+      const word = given[n], joined = word.match(/^(?:--output=|-o=?)(.+)$/);
+      if (word === '--corrections') ++n;  // these go on from those
+      else if (word.startsWith('--corrections=')) continue;
+      else if (word === '-o' || word === '--output') out = given[++n] || '';
+      else if (joined) out = joined[1];
+      else words.push(word);
     }
+    out = out.replace(/\/+$/, '');
     const quoted = word => /^[\w./@%+=:,-]+$/.test(word) ? word : `'${word.replace(/'/g, `'\\''`)}'`;
-    return [...words, '--corrections', 'corrections.json'].map(quoted).join(' ');
+    const counted = out.match(/^(.*)-(\d+)$/), next = counted ? `${counted[1]}-${Number(counted[2]) + 1}` : `${out}-2`;
+    const made = out ? ['-o', next, ...cache ? ['--cache', `${out}/parse.cache`] : []] : [];
+    // The shell is to find the home folder: browsers save there.
+    return [...[...words, ...made, '--corrections'].map(quoted), '~/Downloads/corrections.json'].join(' ');
   }
 }
 
@@ -93,18 +103,29 @@ function chunks(list, most = mostSpots) {
 // A correction of scene.json without what became of it.
 function asInFile(one) {
   const out = {};
-  for (const key of ['do', 'at_m', 'from_m', 'wall_m', 'kg', 'name']) if (one[key] !== undefined) out[key] = one[key];
+  for (const key of ['do', 'at_m', 'from_m', 'wall_m', 'kg', 'name', 'was']) if (one[key] !== undefined) out[key] = one[key];
   return out;
 }
 
-// Of a correction that the scene was parsed with: what it said, and what became of it.
+// Of a correction that the scene was parsed with: where, what it said, and what became of it, as
+// "Bookcase at 1.56 m east, 0.35 m north (before: object 16, to be held with 4.0 kN at least): counted as fixed, ..".
 function givenText(scene, one) {
-  const places = one.objects && one.objects.length ? listed(one.objects.map(id => objectName(scene, id))) : plural(one.at_m.length, 'place');
+  const things = (one.objects || []).filter(id => scene.objectById.has(id) && !scene.objectById.get(id).grounded);
+  const same = other => other.do === 'name' && other.at_m.some(a => one.at_m.some(b => a.every((value, k) => value === b[k])));
+  const named = one.name ? one : (scene.corrections || []).find(same), at = correctedPlace(scene, one);
   const what = {
-    one_thing: 'one thing', apart: 'apart from others', fixed: 'fixed to the wall', not_there: 'not there',
+    one_thing: 'one thing', apart: 'apart from others', fixed: 'counted as fixed; this holds only while its strap does', not_there: 'counted as not there',
     hollow: `hollow, walls of ${metres(one.wall_m || 0)}`, mass: number(one.kg, 'kg'), name: `called \u201c${one.name}\u201d`,
   }[one.do] || one.do;
-  return `${capital(places)}: ${what} (of this parse: ${one.outcome || 'given'})`;
+  const who = things.length ? listed(things.map(id => objectName(scene, id))) : named ? named.name : one.at_m.length > 1 ? 'parts' : 'what is';
+  return `${capital(who)}${at ? ` at ${at}` : ''}${one.was ? ` (before: ${one.was})` : ''}: ${what}${one.outcome && one.outcome !== 'held' ? ` (of this parse: ${one.outcome})` : ''}`;
+}
+
+// The middle of a correction's spots on the plan: "1.56 m east, 0.35 m north".
+function correctedPlace(scene, one) {
+  if (!one.at_m || !one.at_m.length) return '';
+  const {low} = scene.boxes.get(null), middle = k => one.at_m.reduce((sum, spot) => sum + viewPlace(scene, spot)[k], 0) / one.at_m.length - low[k];
+  return `${metreText(middle(0))} m east, ${metreText(middle(1))} m north`;
 }
 
 // Whether a correction gave the object's mass.

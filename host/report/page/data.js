@@ -29,6 +29,7 @@ async function loadScene() {
   scene.colourFrom = new Map();  // objects that have another's colour: of which number
   const reckoned = new Set(scene.objects.flatMap(object => Object.keys(object.risk_J)));
   disturbanceKinds.push(...scene.disturbance_kinds);
+  shakings.push(...scene.shakings);
   scene.disturbances = [...new Set([...disturbanceNames(), ...reckoned])].filter(name => reckoned.has(name));
   return scene;
 }
@@ -110,14 +111,13 @@ function css(colour) {
   return 'rgb(' + colour.join(',') + ')';
 }
 
-// Three digits, short; a dash for what has no value.
+// Three digits, without powers of ten as far as people write numbers so; a dash for what has no value.
 function number(value, unit) {
   if (value === null || value === undefined) return '\u2013';
   const size = Math.abs(value);
-  let text;
-  if (size === 0) text = '0';
-  else if (size >= 10000 || size < 0.001) text = value.toExponential(1).replace('e+', 'e');
-  else text = String(Number(value.toPrecision(3)));
+  const rounded = Number(value.toPrecision(3));
+  const text = size === 0 ? '0' : size < 1e-6 ? 'under 0.000001' : size >= 1e12 ? value.toExponential(1).replace('e+', 'e')
+    : rounded.toLocaleString('en', {maximumSignificantDigits: size < 0.001 ? 1 : 3});
   return unit ? text + '\u00a0' + unit : text;
 }
 

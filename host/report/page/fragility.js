@@ -11,24 +11,57 @@ function belowNormal(z) {
   return z > 0 ? 1 - tail : tail;
 }
 
+// The chance that it falls in an earthquake of this peak, g, if half of them upset it at `median`.
+function chanceOfFall(f, pga, median = f.pga_g) {
+  if (median === null || median === undefined) return countedChance(f, pga);
+  if (f.pga_dispersion !== null) return belowNormal(Math.log(pga / median) / f.pga_dispersion);
+  return countedChance(f, pga * f.pga_g / median);
+}
+
+// Between the steps that were counted, straight over the peak's logarithm.
+function countedChance({counted}, pga) {
+  const after = counted.findIndex(step => step.pga_g > pga);
+  if (after === 0) return counted[0].chance >= 0.5 ? counted[0].chance : 0;
+  if (after < 0) return counted[counted.length - 1].chance;
+  const low = counted[after - 1], high = counted[after];
+  return low.chance + Math.log(pga / low.pga_g) / Math.log(high.pga_g / low.pga_g) * (high.chance - low.chance);
+}
+
+// "about 5 of 100 earthquakes upset it"
+function hundredText(chance) {
+  const share = Math.round(100 * chance);
+  return share >= 100 ? 'nearly all' : share < 1 ? 'fewer than 1 of 100' : `about ${share} of 100`;
+}
+
 // '' where nothing is known of it.
-function fragilityText(object) {
+function fragilityText(scene, object) {
   const f = object.fragility;
   if (!f || !f.counted || !f.counted.length) return '';
-  const round = value => Number(value.toPrecision(2)), strongest = f.counted[f.counted.length - 1];
-  const rate = f.return_years === null || f.return_years === undefined ? '' :
-    ` Where it stands, it falls once in ${round(f.return_years)} years on average.`;
+  const round = value => Number(value.toPrecision(2)), peak = (scene.events || {}).pga_m_s2, strongest = f.counted[f.counted.length - 1];
+  const at = peak > 0 ? peak / 9.80665 : round(strongest.pga_g), chance = chanceOfFall(f, at);
   // Friction is a guess: on what does not let it slide it may go over earlier.
-  const slides = typeof f.firm_pga_g === 'number' && !(f.pga_g !== null && f.pga_g < 1.1 * f.firm_pga_g) ?
-    ` as long as it can slide; where it can't, half of those with peaks of ${round(f.firm_pga_g)} g do` : '';
-  if (f.pga_g === null) {
-    return strongest.chance > 0 ?
-      `Of earthquakes with peaks of ${round(strongest.pga_g)} g${shakingText('pga_g', strongest.pga_g)}, ${Math.round(100 * strongest.chance)} % turn it over or move it off${slides}.${rate}` :
-      `No earthquake with peaks of up to ${round(strongest.pga_g)} g${shakingText('pga_g', strongest.pga_g)} turns it over or moves it off${slides}.`;
-  }
-  const speed = f.pgv_m_s === null ? '' : ` or peak velocities of ${round(f.pgv_m_s)} m/s`;
-  const less = f.pga_dispersion === null && f.counted.length && f.pga_g <= f.counted[0].pga_g ? ', and perhaps less,' : '';
-  return `Half of all earthquakes with peaks of ${round(f.pga_g)} g${shakingText('pga_g', f.pga_g)}${less}${speed} turn it over or move it off${slides}.${rate}`;
+  const firm = typeof f.firm_pga_g === 'number' ? chanceOfFall(f, at, f.firm_pga_g) : chance;
+  const text = `At ${round(at)} g${shakingText('pga_g', at)} ${hundredText(chance)}${chance >= 0.995 ? '' : ' earthquakes'} upset it` +
+    (firm > chance + 0.02 ? `; on a floor where it can\u2019t slide ${hundredText(firm)}.` : '.');
+  const half = f.pga_g === null ? ` None of the shakings that were tried, up to ${round(strongest.pga_g)} g, upsets it in half of the cases.`
+    : Math.abs(Math.log(f.pga_g / at)) < 0.1 ? '' : ` Half of those of ${round(f.pga_g)} g${shakingText('pga_g', f.pga_g)} do.`;
+  return text + half;
+}
+
+// "once in about 500 years": how often an earthquake upsets it where it stands, at most if the curve begins too late for it; '' without a curve.
+function onceIn(scene, object) {
+  const years = (object.fragility || {}).return_years;
+  if (typeof years !== 'number') return '';
+  return `once in ${scene.below_hazard.includes(object.id) ? 'at most' : 'about'} ${Number(years.toPrecision(2)).toLocaleString('en')} years`;
+}
+
+function curveText(scene) {
+  return `the curve of the hazard begins at ${number(scene.events.hazard_from_g)} g, and weaker earthquakes count as none`;
+}
+
+function yearsText(scene, object) {
+  const once = onceIn(scene, object);
+  return once && `An earthquake upsets it ${once}${scene.below_hazard.includes(object.id) ? `: ${curveText(scene)}` : ''}.`;
 }
 
 // The curve; null where nothing was counted.

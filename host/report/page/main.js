@@ -5,11 +5,11 @@ window.addEventListener('unhandledrejection', event => { document.body.dataset.e
 window.addEventListener('error', event => { document.body.dataset.error = event.message || 'error'; });
 
 function fillHeader(scene) {
-  document.getElementById('title').textContent = scene.source || 'scene';
+  document.getElementById('title').textContent = scene.title || 'scene';
   const loose = scene.objects.filter(object => !object.grounded).length;
   document.getElementById('summary').textContent =
-    `${plural(loose, 'object')} that can move` + (loose < scene.objects.length ? ', and the building with all that is fixed to it' : '') +
-    `; ${plural(scene.primitives.length, 'part')} in all.`;
+    (scene.made ? `${scene.made}. ` : '') + `${plural(loose, 'object')} that can move` + (loose < scene.objects.length ? ', and the building with all that is fixed to it' : '') +
+    '.';
   if (scene.verified) {
     const line = document.getElementById('verification');
     line.textContent = verifiedText(scene.verified);
@@ -20,6 +20,8 @@ function fillHeader(scene) {
     'dominant-plane': 'from the largest plane', 'upright-surfaces': 'along the walls', assumed: 'assumed', map: 'the map\'s z',
   };
   const facts = [
+    ['scan', scene.source],
+    ['parts', scene.primitives.length.toLocaleString('en')],
     ['topple', scene.topple_version],
     ['backend', scene.backend + (scene.device ? ' (' + scene.device + ')' : '')],
     ['voxel', number(scene.voxel_size_m * 100, 'cm')],
@@ -38,7 +40,8 @@ function fillHeader(scene) {
 // What was reckoned with, as far as this run asked for it.
 function eventFacts(scene) {
   const known = [...disturbanceKinds.map(({figure}) => [figure.key, figure.name, figure.unit]),
-    ['tolerable_J', 'tolerated risk', 'J per event']];
+    ['hazard_from_g', 'hazard of the place: a curve that begins at', 'g'],
+    ['floor_amplification', 'floors and shelves shake', 'times as strongly as the ground'], ['tolerable_J', 'tolerated risk', 'J per event']];
   const events = scene.events || {};
   return known.filter(([key]) => events[key] !== undefined).map(([key, name, unit]) => [name, number(events[key], unit) + shakingText(key, events[key])]);
 }
@@ -54,8 +57,15 @@ function fillBottom(scene) {
   for (const note of scene.notes) notes.append(element('li', {text: note}));
   if (!scene.notes.length) document.getElementById('notes-panel').hidden = true;
   document.getElementById('table-note').textContent =
-    'Click a heading to sort. Where: as on the plan, and how high above ' + (scene.floor.known ? 'the floor' : 'the lowest that was scanned') + '. Barrier: the least energy that moves an object; release: what it then can set free. ' +
+    'Click a heading to sort. Where: as on the plan, and how high above ' + (scene.floor.known ? 'the floor' : 'the lowest that was scanned') + '. Barrier: the least energy that moves an object; release: what it sets free when its largest risk comes true. ' +
     'For each disturbance: joules expected per event, \u00b1 one standard error, of the sampling of events and of what is not known of barrier and mass (not of what the grouping may have got wrong), and how often an event upsets the object.';
+}
+
+// What was said by hand, if anything was.
+function fillTold(scene, parts) {
+  const lines = correctionLines(scene, parts);
+  document.getElementById('told-list').replaceChildren(...lines.map(text => element('li', {text})));
+  document.getElementById('told').hidden = !lines.length;
 }
 
 // One button of a group is pressed at a time.
@@ -226,10 +236,13 @@ function setLink(id) {
 }
 
 // On paper the view is a picture, and all pictures are there.
-function preparePrint(scene, state, plan) {
+function preparePrint(scene, state, plan, parts) {
+  document.getElementById('print').addEventListener('click', () => print());
   addEventListener('beforeprint', () => {
     // Paper has no tooltips.
-    for (const folded of document.querySelectorAll('#glossary, #risk details, header details')) folded.open = true;
+    for (const folded of document.querySelectorAll('#glossary, #risk details')) folded.open = true;
+    fillSheet(scene);
+    fillTold(scene, parts);
     paintPictures(scene, true);
     plan.paint();
     const stage = document.getElementById('canvas');
@@ -318,7 +331,8 @@ async function start() {
   } else {
     showStill(scene);
   }
-  preparePrint(scene, state, plan);
+  fillTold(scene, parts);
+  preparePrint(scene, state, plan, parts);
   addEventListener('keydown', event => {
     if (event.key === 'Escape' && state.chosen !== null) choose(null);
   });

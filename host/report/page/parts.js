@@ -121,8 +121,16 @@ class PartsPanel {
     const parts = this.parts(), meant = this.meant();
     if (!this.corrections.told(parts).length) return this.refuse(`Of ${meant || 'this'} no surface is drawn, by which it could be found again.`);
     if (kind === 'one_thing' && this.corrections.told(parts).length < 2) return this.refuse('Choose at least two parts, or two objects, first.');
-    this.corrections.add(kind === 'one_thing' ? this.corrections.oneThing(parts) : this.corrections.of(kind, this.enoughOf(kind, parts), more), `${capital(meant)}: ${what}`);
+    const told = {...more, was: this.wasText(kind, parts)};
+    this.corrections.add(kind === 'one_thing' ? this.corrections.oneThing(parts, told) : this.corrections.of(kind, this.enoughOf(kind, parts), told), `${capital(meant)}: ${what}`);
     this.done();
+  }
+
+  // What is to be known of it after the next parse, which has other numbers: a line.
+  wasText(kind, parts) {
+    const owners = [...new Set(parts.map(part => this.owner.get(part)))].sort((a, b) => a - b), holds = owners.map(id => ((this.scene.objectById.get(id) || {}).advice || {}).hold_N || 0);
+    const hold = kind === 'fixed' && Math.max(0, ...holds) > 0 ? `, to be held with ${forceText(Math.max(...holds))} at least` : '';
+    return objectList(owners) + hold;
   }
 
   // What is said of all of an object is said at a few of its parts.

@@ -73,18 +73,22 @@ function planPlace(scene, object) {
 
 const metreText = value => (Math.abs(value) < 0.005 ? 0 : value).toFixed(2).replace('-', '\u2212');
 
-// "Held by object 3; on the plan 1.20 m east, 0.45 m north; 0.76 to 1.20 m above the floor"; '' where it is not drawn.
+// "Held by object 3; 1.20 m east of the plan's left edge, 0.45 m north of its lower edge; 0.76 to 1.20 m above the floor"; '' where it is not drawn.
 function placeText(scene, object) {
   const place = planPlace(scene, object);
   if (!place) return '';
   const held = heldText(scene, object, place);
-  return capital(`${held ? held + '; ' : ''}on the plan ${metreText(place.east)} m east, ${metreText(place.north)} m north; ` +
+  return capital(`${held ? held + '; ' : ''}${onPlan(place)}; ` +
     `${metreText(place.from)} to ${metreText(place.to)} m above ${scene.floor.known ? 'the floor' : 'the lowest that was scanned'}`);
+}
+
+function onPlan({east, north}) {
+  return `${metreText(east)} m east of the plan\u2019s left edge, ${metreText(north)} m north of its lower edge`;
 }
 
 // What carries it, the nearest word for what is fixed.
 function heldText(scene, object, place) {
-  const on = object.grounded ? [] : object.why.stands_on || [];
+  const on = object.grounded || object.seen_enough === false ? [] : object.why.stands_on || [];
   if (!on.length) return '';
   const low = place.from < 0.15;
   return 'held by ' + listed(on.map(id => scene.objectById.get(id).grounded ? (low && scene.floor.known ? 'the floor' : 'what is built in') : objectName(scene, id)));

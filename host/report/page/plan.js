@@ -7,12 +7,13 @@ class Plan {
     this.panel = panel;
     this.scene = scene;
     this.visit = visit;
-    this.shown = [...riskiest(scene), ...doubtfulOnes(scene).slice(0, listedDoubts)].filter(object => planPlace(scene, object));
+    this.shown = [...riskiest(scene), ...doubtfulOnes(scene).slice(0, listedDoubts), ...nearlyOnes(scene).slice(0, listedDoubts), ...unseenOnes(scene).slice(0, 2 * listedUnseen)]
+      .filter(object => planPlace(scene, object));
     const {low, high} = scene.boxes.get(null);
     this.size = [high[0] - low[0], high[1] - low[1]];
     panel.hidden = !(this.size[0] > 0 && this.size[1] > 0) || !drawnRecords(scene.view).count;
     document.getElementById('plan-note').textContent = 'Seen from above, in metres from the south-west corner. North is one of the room\u2019s own ' +
-      'directions, as in the view; not the earth\u2019s. ' + (this.shown.length ? 'Numbers are those of the objects listed as at risk, coloured by category.' : '');
+      'directions, as in the view; not the earth\u2019s. ' + (this.shown.length ? 'Numbers are those of the objects listed, coloured by category; with a ? where the scan does not show what holds them.' : '');
   }
 
   paint() {
@@ -55,7 +56,9 @@ class Plan {
   numbers(svg, x, y, say) {
     const placed = [];
     for (const object of this.shown) {
-      const {east, north} = planPlace(this.scene, object), at = [x(east), y(north)], text = (object.name || String(object.id)) + (object.unsafety_certain ? '' : '?');
+      const {east, north} = planPlace(this.scene, object), at = [x(east), y(north)];
+      const doubtful = object.seen_enough === false || !object.unsafety_certain;
+      const text = (object.name || String(object.id)) + (doubtful ? ' ?' : '');
       const wide = 12 + 7.4 * text.length, to = [at[0], at[1]];
       for (let turn = 0; turn < 40 && placed.some(other => Math.abs(other[0] - to[0]) < (other[2] + wide) / 2 && Math.abs(other[1] - to[1]) < 19); ++turn) {
         const angle = 2.4 * turn, reach = 12 + 3 * turn;

@@ -3,7 +3,7 @@
 
 // The first panel: what is at risk, from what, what happens then, and what to do about it.
 
-const listedObjects = 8, listedDoubts = 4, listedOnPhones = 3;
+const listedObjects = 8, listedDoubts = 4, listedUnseen = 4, listedOnPhones = 3;
 
 // In the order in which one acts: by category, and within one by risk.
 function byUrgency(scene, wanted) {
@@ -14,7 +14,25 @@ function byUrgency(scene, wanted) {
 
 // What can fall and is to be acted on first.
 function riskiest(scene) {
-  return byUrgency(scene, object => !isDoubtful(object)).slice(0, listedObjects);
+  return byUrgency(scene, object => !isDoubtful(object) && !isNearly(object)).slice(0, listedObjects);
+}
+
+// Nothing upsets it as measured, and yet its category is above none: that of the worse end of its errors.
+function isNearly(object) {
+  return !object.grounded && object.seen_enough !== false && !isDoubtful(object) && !object.unsafety_certain && categories.indexOf(object.unsafety_category) > 0 &&
+    Object.keys(object.risk_J).every(name => !(((object.fall_chance || {})[name] || 0) >= 1e-4));
+}
+
+// Those, the worst category and the hardest fall first.
+function nearlyOnes(scene) {
+  const level = object => categories.indexOf(object.unsafety_category);
+  return scene.objects.filter(isNearly).sort((a, b) => level(b) - level(a) || b.release_J - a.release_J || a.id - b.id);
+}
+
+// What may move, and nothing was seen to hold it: the largest first.
+function unseenOnes(scene) {
+  const bulk = object => Array.isArray(object.size_m) ? object.size_m.reduce((product, side) => product * (side || 0), 1) : 0;
+  return scene.objects.filter(object => !object.grounded && object.seen_enough === false).sort((a, b) => bulk(b) - bulk(a) || a.id - b.id);
 }
 
 // At risk as scanned, but the scan hardly shows what holds it.
@@ -24,16 +42,17 @@ function doubtfulOnes(scene) {
 
 // Which disturbances the run left out, and which of them found nothing to act on.
 function missingText(scene) {
-  const lines = [], left = disturbanceNames().filter(name => !scene.disturbances.includes(name));
+  // Whether there is wind in a room its scan doesn't tell: a note says what was taken.
+  const lines = [], left = disturbanceKinds.filter(kind => !kind.may_be_left_out && !scene.disturbances.includes(kind.name)).map(kind => kind.name);
   if (scene.objects.length && left.length) {
     lines.push(`This run left out ${listed(left.map(causeOf))}: risks from there are not known. ` +
-      `Parse with the disturbances ${listed(disturbanceNames())} to have them.`);
+      `Parse with ${listed(left)} among the disturbances to have them.`);
   }
   if (scene.disturbances.includes('human') && !scene.view.walks.shade.some(shade => shade > 0)) {
     lines.push('No floor was found on which people could walk, so their walks put nothing at risk here.');
   }
   // What the list below stands or falls with.
-  lines.push(...scene.notes.filter(note => /^(People walk|Object|A ceiling)/.test(note)));
+  lines.push(...scene.notes.filter(note => /^(People walk|Object|A ceiling|The hazard curve|\S+ m\/s\u00b2 is)/.test(note)));
   return lines.join(' ');
 }
 
@@ -46,16 +65,32 @@ function largestRiskText(object) {
   return `Risk ${number(risk)}${within(error)} J per ${event}`;
 }
 
-// How far the searches agree that its parts are one thing; '' where they do.
-function agreementText(object) {
-  if (object.grounded || !(object.agreement < 0.995)) return '';
-  const share = Math.round(100 * object.agreement);
-  return object.agreement > 0.5 ? `${share} % of the searches found it so.`
-    : `Uncertain: only ${share} % of the searches found it so. Its parts may belong together otherwise, and all figures are of this reading of the scan.`;
+// What may be otherwise, so that no figure is taken for more than it is.
+function howSureText(object) {
+  if (object.grounded) return '';
+  const share = value => `${Math.max(1, Math.round(100 * value))} %`, parts = [];
+  parts.push(object.agreement >= 0.995 ? 'one thing in all searches'
+    : object.agreement > 0.5 ? `one thing in ${share(object.agreement)} of the searches` : `one thing in only ${share(object.agreement)} of the searches: its parts may belong together otherwise`);
+  const held = {seen: 'seen', near: 'a gap that the scan left is bridged', leaning: 'it leans on what is beside it', hidden: 'not seen', none: 'not seen'}[object.rests_by];
+  if (held && object.seen_enough === false) parts.push('what holds it was not seen');
+  else if (held && typeof object.rest_probability === 'number') {
+    parts.push(`what holds it: ${held}, ${share(object.rest_probability)} likely${object.rest_probability < 0.5 ? ', one of several readings' : ''}`);
+  }
+  const ratio = (error, value) => error > 0 && value > 0 ? error / value : 0, mass = ratio(object.mass_error_kg, object.mass_kg);
+  if (mass) parts.push(`mass \u00b1 ${share(mass)}`);
+  const barrier = ratio(object.barrier_error_J, object.barrier_J);
+  if (barrier) parts.push(barrier >= 1 ? 'barrier within its error of nothing' : `barrier \u00b1 ${share(barrier)}`);
+  return `How sure: ${parts.join('; ')}.`;
+}
+
+// What of it is in doubt more than usual.
+function isUnsure(object) {
+  return !(object.agreement > 0.5) || object.rest_probability < 0.5;
 }
 
 // What to do, so that it does not seem to contradict the category.
 function actionText(scene, object) {
+  if (isNearly(object)) return nearlyText(object);
   const advice = object.advice && object.advice.sentence, tolerable = (scene.events || {}).tolerable_J;
   const limit = tolerable === undefined ? 'what is tolerated' : `the ${number(tolerable, 'J')} per event that this run tolerates`;
   if (object.unsafety_category !== 'none' || isDoubtful(object)) {
@@ -65,25 +100,38 @@ function actionText(scene, object) {
   return `No need to act. To bring its risk below ${limit} all the same: ${advice.charAt(0).toLowerCase()}${advice.slice(1)}`;
 }
 
+function nearlyText(object) {
+  return `Nothing upsets it as measured; if its foot is one error smaller, it falls with ${number(Number(object.release_J.toPrecision(2)), 'J')}: check that it stands firm.`;
+}
+
 // Whether there is more to do than to know about it.
 function isAdvised(object) {
+  if (isNearly(object)) return true;
   return !!(object.advice && object.advice.sentence) && (object.unsafety_category !== 'none' || isDoubtful(object));
 }
 
+// "44.2 kg if solid", "54 kg"
+function shortMass(scene, object) {
+  const mass = number(object.mass_kg, 'kg');
+  return massIsGiven(scene, object) ? mass : mass + ({solid: ' if solid', closed: ' if of boards', hollow: ' as a shell'}[object.mass_model] || '');
+}
+
 function riskItem(scene, object, choose) {
-  const mass = number(object.mass_kg, 'kg'), doubtful = isDoubtful(object);
+  const doubtful = isDoubtful(object), unseen = object.seen_enough === false, plain = !doubtful && !unseen && !isNearly(object);
   const words = element('span', {className: 'words'}, [
     element('span', {className: 'head'}, [objectSwatch(scene, object.id), element('strong', {text: capital(objectName(scene, object.id))}),
       categoryBadge(scene, object)])]);
   const say = (className, text) => { if (text) words.append(element('span', {className, text})); };
-  say('mass', [object.name ? `object ${object.id}` : '', massIsGiven(scene, object) ? mass : mass + ({solid: ' if solid', closed: ' if of boards', hollow: ' as a shell'}[object.mass_model] || ''), sizeText(object)].filter(text => text).join(', '));
-  say('standing', largestRiskText(object));
-  say(object.agreement <= 0.5 ? 'doubt' : 'mass', agreementText(object));
+  say('mass', [object.name ? `object ${object.id}` : '', shortMass(scene, object), sizeText(object)].filter(text => text).join(', '));
+  if (plain || doubtful) say('standing', largestRiskText(object));
+  say(isUnsure(object) ? 'doubt' : 'mass', howSureText(object));
   say('mass', placeText(scene, object));
-  say('from', doubtful ? `As scanned a touch would upset it. ${happensText(scene, object)}` : upsetText(object));
-  if (!doubtful) for (const text of [happensText(scene, object), keepClearText(scene, object)]) say('then', text);
-  say(isAdvised(object) ? 'advice' : 'calm', actionText(scene, object));
-  if (!doubtful) for (const text of [overturningText(object), fragilityText(object)]) say('then figures', text);
+  if (doubtful) say('from', `As scanned a touch would upset it. ${happensText(scene, object)}`);
+  else if (plain) say('from', upsetText(object));
+  if (plain || doubtful) say('from', yearsText(scene, object));
+  if (plain) for (const text of [happensText(scene, object), keepClearText(scene, object)]) say('then', text);
+  say(isAdvised(object) || unseen ? 'advice' : 'calm', unseen ? 'Go and look what holds it.' : actionText(scene, object));
+  if (plain) for (const text of [overturningText(object), fragilityText(scene, object)]) say('then figures', text);
   const item = element('button', {type: 'button', className: 'item', onclick: () => choose(object.id)}, [words]);
   const picture = pictureOf(scene, object.id);
   if (picture) item.prepend(picture);
@@ -95,6 +143,7 @@ function fillRisk(panel, scene, choose) {
   const worst = riskiest(scene), doubtful = doubtfulOnes(scene);
   const movable = scene.objects.filter(object => !object.grounded).length;
   panel.append(element('h2', {text: 'What is at risk, and what to do'}));
+  for (const note of scene.notes.filter(text => /left out, as for/.test(text))) panel.append(element('p', {className: 'hint', text: note}));
   const missing = missingText(scene);
   if (missing) panel.append(element('p', {className: 'warning', text: missing}));
   if (!worst.length) {
@@ -103,13 +152,30 @@ function fillRisk(panel, scene, choose) {
   } else {
     fillRiskiest(panel, scene, worst, movable, choose);
   }
-  if (!doubtful.length) return;
-  panel.append(element('h3', {text: 'To be looked at'}));
-  panel.append(element('p', {className: 'hint', text:
-    `As scanned, ${plural(doubtful.length, 'more object')} at risk would fall at the slightest push, and yet stood there: the scan hardly ` +
-    `shows what holds them, or they stand on edge.${doubtful.length > listedDoubts ? ` The first ${listedDoubts}, in the same order:` : ''}`}));
-  panel.append(element('div', {className: 'items'},
-    doubtful.slice(0, listedDoubts).map(object => riskItem(scene, object, choose))));
+  fillLooks(panel, scene, doubtful, choose);
+}
+
+// What is to be looked at: since it would fall at once, since it might with a smaller foot, and since nobody saw what holds it.
+function fillLooks(panel, scene, doubtful, choose) {
+  const nearly = nearlyOnes(scene), unseen = unseenOnes(scene);
+  const cards = (objects, most) => panel.append(element('div', {className: 'items'}, objects.slice(0, most).map(object => riskItem(scene, object, choose))),
+    ...objects.length > most ? [element('p', {className: 'hint', text: `And ${listed(objects.slice(most, most + 12).map(object => objectName(scene, object.id)))}` +
+      (objects.length > most + 12 ? `, and ${objects.length - most - 12} more` : '') + '.'})] : []);
+  if (doubtful.length || nearly.length) panel.append(element('h3', {text: 'To be looked at'}));
+  if (doubtful.length) {
+    panel.append(element('p', {className: 'hint', text:
+      `As scanned, ${plural(doubtful.length, 'more object')} at risk would fall at the slightest push, and yet stood there: the scan hardly ` +
+      'shows what holds them, or they stand on edge.'}));
+    cards(doubtful, listedDoubts);
+  }
+  if (nearly.length) {
+    panel.append(element('p', {className: 'hint', text: `${doubtful.length ? 'And ' : ''}${plural(nearly.length, 'object')} that nothing upsets as measured, but might:`}));
+    cards(nearly, listedDoubts);
+  }
+  if (!unseen.length) return;
+  panel.append(element('h3', {text: 'The scan does not show what holds these: go and look'}),
+    element('p', {className: 'hint', text: `${plural(unseen.length, 'object')} without a rank, the largest first; on the plan they have a \u201c?\u201d.`}));
+  cards(unseen, listedUnseen);
 }
 
 function eventsText(scene) {
@@ -117,8 +183,8 @@ function eventsText(scene) {
   const all = disturbanceKinds.map(kind => {
     const {key, follows, unit} = kind.figure, value = events[key];
     return kind.one_event + (follows && value !== undefined ? follows + number(value, unit) + shakingText(key, value) : '');
-  });
-  return `An event is ${listed(all, 'or')}.`;
+  }).filter((text, n) => scene.disturbances.includes(disturbanceKinds[n].name));
+  return all.length ? `An event is ${listed(all, 'or')}.` : '';
 }
 
 // "The 3 riskiest of the 5 objects that can fall"; fewer words where that is all of them, or one.
@@ -132,9 +198,10 @@ function riskiestOf(shown, all, which) {
 function rankedText(scene, shown, movable) {
   const doubtful = scene.objects.filter(isDoubtful);
   const unseen = scene.objects.filter(object => !object.grounded && !isDoubtful(object) && object.seen_enough === false).length;
-  const uncertain = doubtful.length + unseen;
+  const nearly = nearlyOnes(scene).length, uncertain = doubtful.length + unseen + nearly;
   const of = riskiestOf(shown, movable - uncertain, uncertain ? 'whose barrier is above its error' : 'that can move');
-  const listed = `${of}.` + (unseen ? ` ${unseen} more ${unseen === 1 ? 'has' : 'have'} no rank, since nothing was seen to hold ${unseen === 1 ? 'it' : 'them'}.` : '');
+  const listed = `${of}.` + (unseen ? ` ${unseen} more ${unseen === 1 ? 'has' : 'have'} no rank, since nothing was seen to hold ${unseen === 1 ? 'it' : 'them'}.` : '') +
+    (nearly ? ` ${nearly} more nothing upsets as measured, but ${nearly === 1 ? 'its errors leave a category' : 'their errors leave categories'} open.` : '');
   if (!doubtful.length) return listed;
   const atRisk = doubtful.filter(object => largestRisk(object) > 0), urgent = atRisk.filter(object => /medium|high/.test(object.unsafety_category)).length;
   return `${listed} ${doubtful.length} more stand${doubtful.length === 1 ? 's' : ''} on edge, or the scan hardly shows the support: ` +
@@ -147,7 +214,8 @@ function fillRiskiest(panel, scene, worst, movable, choose) {
   panel.append(element('p', {className: 'hint', text: rankedText(scene, worst.length, movable)}));
   panel.append(element('details', {}, [element('summary', {text: 'How to read this'}), element('p', {className: 'hint', text: eventsText(scene) +
     ' The badge is the category, high to none; ? where its errors leave a lower one open. What is \u201cnone\u201d falls too seldom or too softly ' +
-    'to matter. \u00b1 is one standard error. '}, [term('advice', 'Advice'), ' (\u2192) is what brings the risk below the tolerated one; where it is not to ' +
+    'to matter. \u00b1 is one standard error. \u201cIf solid\u201d: the mass is that of its whole volume, at ' +
+    `${number(scene.density_kg_m3, 'kg/m\u00b3')}, about that of wood; what is hollow is lighter. Straps must hold what is said at least: no safety margin is in it. `}, [term('advice', 'Advice'), ' (\u2192) is what brings the risk below the tolerated one; where it is not to ' +
     'move the thing, no safer place was found within 1.5 m on what carries it, or it is not one of the 16 of the largest risk, for which one is looked for.'])]));
   if (worst.every(object => object.unsafety_category === 'none' && !(object.advice && object.advice.kind))) {
     panel.append(element('p', {className: 'hint', text: 'All of these risks are tolerated: nothing needs to be done.'}));

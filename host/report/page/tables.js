@@ -21,7 +21,7 @@ function objectColumns(scene) {
         objectSwatch(scene, object.id), object.name ? `${object.name} (${object.id})` : String(object.id)])]},
     {name: 'Mass (kg)', value: object => object.mass_kg},
     {name: 'Barrier (J)', term: 'barrier', value: object => object.grounded ? Infinity : object.barrier_J, cell: object => [barrierText(object)]},
-    {name: 'Release (J)', term: 'release', value: object => object.grounded ? -1 : object.release_J, number: object => object.grounded ? null : object.release_J},
+    {name: 'Release (J)', term: 'release', value: object => object.grounded ? -1 : releaseOf(object), number: object => object.grounded ? null : releaseOf(object)},
     {name: 'How', text: true, value: howText, cell: object => [howText(object)]},
   ];
   for (const name of scene.disturbances) {
@@ -43,7 +43,7 @@ function howText(object) {
 }
 
 function adviceText(object) {
-  return (object.advice || {}).kind || '\u2013';
+  return (object.advice || {}).kind || (isNearly(object) ? 'check' : '\u2013');
 }
 
 // One standard error of a risk; scenes of earlier versions know that of the sampling alone.
@@ -105,7 +105,8 @@ class ObjectTable {
     for (const object of scene.objects) {
       const cells = this.columns.map(column => element('td', {className: column.text ? 'text' : ''},
         column.cell ? column.cell(object) : [number(column.number ? column.number(object) : column.value(object))]));
-      const row = element('tr', {onclick: () => choose(object.id)}, cells);
+      const minor = object.grounded || object.unsafety_category === 'none';
+      const row = element('tr', {className: minor ? 'minor' : '', onclick: () => choose(object.id)}, cells);
       this.rows.set(object.id, row);
     }
     this.sort(this.columns.length - 1, -1);
@@ -157,8 +158,12 @@ function figuresOf(scene, object) {
   if (!object.grounded) {
     pairs.push([element('span', {}, [term('barrier', 'Barrier'), ': energy that moves it']),
       barrierText(object, 'J') + (isDoubtful(object) ? '' : within(object.barrier_error_J))],
-    [element('span', {}, ['It then can ', term('release', 'release')]), number(object.release_J, 'J')]);
+    [element('span', {}, ['It then can ', term('release', 'release')]), number(releaseOf(object), 'J')]);
     if (object.footprint_error_m > 0) pairs.push(['Error of its footprint', number(1000 * object.footprint_error_m, 'mm')]);
+  }
+  const f = object.fragility || {};
+  if (f.pga_g) {
+    pairs.push(['Half of all earthquakes upset it from', `${Number(f.pga_g.toPrecision(2))} g` + (f.pgv_m_s ? `, or ${Number(f.pgv_m_s.toPrecision(2))} m/s` : '')]);
   }
   if (object.why.azimuth_deg !== null) pairs.push(['Weakest direction', azimuthText(object.why.azimuth_deg)]);
   for (const name of object.grounded ? [] : scene.disturbances) {
@@ -170,7 +175,6 @@ function figuresOf(scene, object) {
   }
   if (!object.grounded) {
     pairs.push([element('span', {}, [term('unsafety', 'Unsafety'), ', 1 to 10 within this scene']), object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
-    pairs.push(['Searches that found it so', `${Math.round(100 * object.agreement)} %`]);
   }
   return pairs;
 }
@@ -206,8 +210,9 @@ function showObject(panel, scene, id, choose, visit) {
   say(object.why.sentence);
   say(overturningText(object));
   const curve = fragilityChart(object);
-  say(fragilityText(object));
-  say(agreementText(object));
+  say(fragilityText(scene, object));
+  say(yearsText(scene, object));
+  say(howSureText(object));
   say(scene.verified ? verifiedObjectText(scene.verified, id) : '');
   panel.append(numberList(figuresOf(scene, object)));
 

@@ -58,6 +58,12 @@ function causesOf(object) {
     .sort((a, b) => object.risk_J[b] - object.risk_J[a]);
 }
 
+// What it sets free on average when its largest risk comes true; where it has none, on the easiest way out of its place.
+function releaseOf(object) {
+  const name = causesOf(object)[0], chance = name && (object.fall_chance || {})[name];
+  return chance > 0 ? object.risk_J[name] / chance : object.release_J;
+}
+
 function upsetText(object) {
   if (object.seen_enough === false) return 'Its risk is not known: nothing was seen to hold it.';
   const names = causesOf(object);
@@ -86,23 +92,22 @@ function overturningText(object) {
     `; begins to ${slides ? 'slide' : 'rock'} where the ground shakes with ${round(o.shake_g)} g${shakingText('pga_g', o.shake_g)}.`;
 }
 
-// What a peak acceleration of the ground means to people, by the scale of instrumental intensity (Wald and others 1999, Earthquake
-// Spectra 15, table 1): its upper end in g, and the word.
-const shakings = [[0.0017, 'not felt', 'I'], [0.014, 'weak', 'II to III'], [0.039, 'light', 'IV'], [0.092, 'moderate', 'V'], [0.18, 'strong', 'VI'],
-  [0.34, 'very strong', 'VII'], [0.65, 'severe', 'VIII'], [1.24, 'violent', 'IX'], [Infinity, 'extreme', 'X or more']];
+// What the ground's peak means to people: [its upper end in g, words, intensity], from weak to strong; of the page's data.
+const shakings = [];
 
-// " (very strong shaking, intensity VII)" for a figure of the key pga_g, in g, or pga_m_s2; '' for others.
+// " (0.3 g, very strong shaking, intensity VII)" for a figure of the key pga_m_s2, the same without g for one of pga_g; '' for others.
 function shakingText(key, value) {
   if (key !== 'pga_g' && key !== 'pga_m_s2') return '';
-  const [, word, intensity] = shakings.find(([end]) => (key === 'pga_g' ? value : value / 9.80665) <= end);
-  return ` (${word}${word === 'not felt' ? '' : ' shaking'}, intensity ${intensity})`;
+  const inG = key === 'pga_g' ? value : value / 9.80665, found = shakings.find(([end]) => end === null || inG <= end);
+  if (!found) return '';
+  return ` (${key === 'pga_g' ? '' : `${Number(inG.toPrecision(2))} g, `}${found[1]}, intensity ${found[2]})`;
 }
 
 // A mass is a guess from the volume, unless it was given.
 function massText(scene, object) {
   const mass = number(object.mass_kg, 'kg') + within(object.mass_error_kg), density = number(scene.density_kg_m3, 'kg/m\u00b3');
   if (massIsGiven(scene, object)) return `${mass}, as given by hand`;
-  if (object.mass_model === 'solid' || !object.mass_model) return `${mass}, if solid at ${density}`;
+  if (object.mass_model === 'solid' || !object.mass_model) return `${mass}, if it is solid throughout, of ${density}`;
   if (object.mass_model === 'closed') return `${mass}, if of boards at ${density} around contents`;
   return `${mass}, ${object.mass_model}`;
 }
@@ -147,9 +152,9 @@ function hitsText(object) {
   const fall = object.fall;
   if (!(fall.hits_J > 0)) return '';
   const joules = value => number(Number(value.toPrecision(2)), 'J');
-  const people = 100 * fall.people_share, stopped = fall.leans_on >= 0 && fall.hits_J < 0.9 * object.release_J;
+  const people = 100 * fall.people_share, stopped = fall.leans_on >= 0 && fall.hits_J < 0.9 * releaseOf(object);
   // Risk and category are of what is not stopped.
-  const energy = joules(fall.hits_J) + (stopped ? `, and ${joules(object.release_J)} if that gives way` : '');
+  const energy = joules(fall.hits_J) + (stopped ? `, and ${joules(releaseOf(object))} if that gives way` : '');
   if (typeof fall.people_share !== 'number') return ` It would land with ${energy}.`;
   const who = people <= 0 ? 'nobody passes who walks' : `${people < 0.5 ? 'less than 1' : Math.round(people)} of 100 people pass who walk`;
   return ` It would land where ${who} through the room, with ${energy}.`;
@@ -182,4 +187,9 @@ function verifiedObjectText(verified, id) {
   if (!object || !object.free) return '';
   if (object.stays) return `Stayed in ${verified.simulator}.`;
   return `Moved in ${verified.simulator}: by ${metres(object.moved_m)}, turned by ${Math.round(object.turned_deg)}\u00b0.`;
+}
+
+// "230 N", "4.0 kN"
+function forceText(newtons) {
+  return newtons < 999.5 ? `${Number(newtons.toPrecision(2))} N` : `${newtons < 9950 ? (newtons / 1000).toFixed(1) : Math.round(newtons / 1000)} kN`;
 }

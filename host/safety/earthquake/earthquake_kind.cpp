@@ -55,6 +55,8 @@ const DisturbanceKind& earthquake_kind() {
                                                                : EarthquakeOptions{}.pga_m_s2)}};
                 if (options.floor_amplification != 1)
                     events["floor_amplification"] = options.floor_amplification;
+                if (options.hazard && !options.hazard->pga_g.empty())
+                    events["hazard_from_g"] = options.hazard->pga_g.front();
                 return events;
             }};
     return kind;

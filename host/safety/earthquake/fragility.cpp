@@ -118,12 +118,18 @@ Fragility fragility_of(std::span<const Trials> peaks) {
     return f;
 }
 
+double chance_of_fall(const Fragility& fragility, double pga_g) {
+    return std::isfinite(fragility.pga_dispersion)
+               ? Lognormal{fragility.pga_g, fragility.pga_dispersion}.chance(pga_g)
+               : counted_chance(fragility, pga_g);
+}
+
+bool falls_below(const Fragility& fragility, double pga_g) {
+    return chance_of_fall(fragility, pga_g) >= 0.1;
+}
+
 double falls_per_year(const HazardCurve& hazard, const Fragility& fragility) {
-    const auto chance = [&](double pga_g) {
-        return std::isfinite(fragility.pga_dispersion)
-                   ? Lognormal{fragility.pga_g, fragility.pga_dispersion}.chance(pga_g)
-                   : counted_chance(fragility, pga_g);
-    };
+    const auto chance = [&](double pga_g) { return chance_of_fall(fragility, pga_g); };
     constexpr int parts = 64;
     double rate = 0;
     for (std::size_t n = 0; n + 1 < hazard.pga_g.size(); ++n) {

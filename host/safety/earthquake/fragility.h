@@ -28,9 +28,15 @@ inline constexpr double least_dispersion = 0.05, most_dispersion = 1.5;
 // above. None where fewer than half of the trials at the greatest strength are falls.
 std::optional<Lognormal> fit_lognormal(std::span<const Trials> trials);
 
+// Of falling in a shaking of this peak, g: the lognormal's, or without a dispersion that of the
+// steps, straight between them over the peak's logarithm.
+double chance_of_fall(const Fragility& fragility, double pga_g);
+
+// Whether it falls in so many of the shakings of this peak, a tenth, that those below it count.
+bool falls_below(const Fragility& fragility, double pga_g);
+
 // How many falls a year: the integral of the chance of falling over the annual rates at which peaks
-// come. Peaks beyond the curve's last count as that one; those below its first as none. Without a
-// dispersion the chance is that of the steps, straight between them over the peak's logarithm.
+// come. Peaks beyond the curve's last count as that one; those below its first as none.
 double falls_per_year(const HazardCurve& hazard, const Fragility& fragility);
 
 // The first peak at which half falls, between the steps as above; NaN where none is.

@@ -40,7 +40,8 @@ const DisturbanceKind& wind_kind() {
         // A gale inside takes an open window.
         .below_ceiling =
             "A ceiling was scanned, and the wind is taken to blow as outside: where "
-            "windows and doors are closed in gales leave wind out of the disturbances."};
+            "windows and doors are closed in gales leave wind out of the disturbances.",
+        .left_out_below_none = "Wind was left out, as for a closed room."};
     return kind;
 }
 

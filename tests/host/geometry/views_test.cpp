@@ -146,7 +146,8 @@ class Views : public ::testing::Test {
 
 // Its views are closed, and every ray ends on a wall.
 TEST_F(Views, NoRayLeaksFromARoom) {
-    const VirtualViews views = virtual_views(room(false), {.known_eyes = {}, .eyes = 3}, pool);
+    const VirtualViews views =
+        virtual_views(room(false), {.known_eyes = {}, .seen_from = {}, .eyes = 3}, pool);
     ASSERT_EQ(views.frames.size(), 18u);
     const Intrinsics& k = views.intrinsics;
     std::size_t pixels = 0, leaks = 0, wrong = 0;
@@ -329,11 +330,11 @@ TEST_F(Views, WhatIsSeenFromBehindEndsNoRay) {
         }
     }
     const Surfels s = make_surfels(*device, cloud, 0.05, {}, {});
-    const VirtualViews above =
-        virtual_views(s, {.known_eyes = {{1, 1, 1}}, .eyes = 1, .sides_known = true}, pool);
+    const VirtualViews above = virtual_views(
+        s, {.known_eyes = {{1, 1, 1}}, .seen_from = {}, .eyes = 1, .sides_known = true}, pool);
     EXPECT_FALSE(above.frames.empty());
-    const VirtualViews below =
-        virtual_views(s, {.known_eyes = {{1, 1, -1}}, .eyes = 1, .sides_known = true}, pool);
+    const VirtualViews below = virtual_views(
+        s, {.known_eyes = {{1, 1, -1}}, .seen_from = {}, .eyes = 1, .sides_known = true}, pool);
     EXPECT_TRUE(below.frames.empty());
 }
 

@@ -32,7 +32,7 @@ TEST_F(Corrections, OfEachKind) {
     const auto all = read_corrections(write("corrections.json", "\xEF\xBB\xBF" + file_of(R"(
         {"do": "one_thing", "at_m": [[1, 2, 3], [4.5, 0, -1e-1]]},
         {"do": "apart", "at_m": [[1, 2, 3]], "from_m": [[0, 0, 0], [1, 1, 1]]},
-        {"do": "fixed", "at_m": [[1, 2, 3]], "said_by": "me"},
+        {"do": "fixed", "at_m": [[1, 2, 3]], "said_by": "me", "was": "object 16"},
         {"do": "not_there", "at_m": [[1, 2, 3]]},
         {"do": "hollow", "at_m": [[1, 2, 3]], "wall_m": 0.02},
         {"do": "mass", "at_m": [[1, 2, 3]], "kg": 12},
@@ -46,6 +46,7 @@ TEST_F(Corrections, OfEachKind) {
     EXPECT_EQ(all[1].from_m.size(), 2u);
     EXPECT_EQ(all[4].wall_m, 0.02);
     EXPECT_EQ(all[5].mass_kg, 12);
+    EXPECT_EQ(all[2].was, "object 16");
     EXPECT_EQ(all[6].name, "K\u00fchlschrank");
     EXPECT_FALSE(fault_of(all));
     EXPECT_TRUE(corrections_of(file_of("")).empty());
@@ -62,6 +63,9 @@ TEST_F(Corrections, FilesThatAreNone) {
     refused(R"({"schema": "topple.corrections/1", "corrections": {}})", {"no list"});
     refused(std::string(200'000, '['), {"nested"});
     refused(file_of(R"({"do": "fixed", "at_m": [[1e999, 0, 0]]})"), {});
+    refused(file_of(R"({"do": "fixed", "at_m": [[0, 0, 0]], "was": 16})"), {"was", "text is due"});
+    refused(file_of(R"({"do": "fixed", "at_m": [[0, 0, 0]], "was": "a\nb"})"),
+            {"\"was\"", "control character"});
     const std::string fixed = R"({"do": "fixed", "at_m": [[0, 0, 0]]})";
     std::string many = fixed;
     for (int n = 0; n < 1000; ++n) many += "," + fixed;

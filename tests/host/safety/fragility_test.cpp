@@ -99,6 +99,10 @@ TEST(Fragility, RateOfFallsByCornell) {
     EXPECT_LT(falls_per_year(hazard, counted), 1e-4 * std::pow(0.1, -2.5));
     EXPECT_GT(falls_per_year(hazard, counted), 1e-4 * std::pow(0.2, -2.5));
     EXPECT_EQ(falls_per_year(hazard, {}), 0);
+    // What falls in weaker shakings than the curve's first.
+    EXPECT_TRUE(falls_below(counted, 0.11));
+    EXPECT_FALSE(falls_below(counted, 0.1));
+    EXPECT_FALSE(falls_below({}, 0.1));
 }
 
 TEST(Fragility, WhatSlidesIsToldHowItWouldFareWhereItCant) {

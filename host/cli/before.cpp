@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "cli/before.h"
+
+#include <cstdio>
+#include <system_error>
+
+#include "cli/urgency.h"
+#include "io/scene_json.h"
+#include "io/text.h"
+#include "safety/disturbances.h"
+#include "topple/error.h"
+
+namespace topple::cli {
+namespace {
+
+// The largest risk's kind; null where it has none.
+const safety::DisturbanceKind* worst_kind(const Object& o) {
+    const safety::DisturbanceKind* worst = nullptr;
+    double most = 0;
+    for (const auto& [name, risk] : o.risk_J) {
+        if (!(risk > most)) continue;
+        most = risk;
+        worst = safety::find_disturbance_kind(name);
+    }
+    return worst;
+}
+
+// That on which one would act first, and its risk.
+std::string worst_text(const Scene& scene) {
+    const Object* worst = nullptr;
+    for (const Object& o : scene.objects) {
+        if (o.grounded || !o.seen_enough || worst_kind(o) == nullptr) continue;
+        if (worst == nullptr || urgency_of(o) > urgency_of(*worst)) worst = &o;
+    }
+    if (worst == nullptr) return "nothing is at risk";
+    const safety::DisturbanceKind& kind = *worst_kind(*worst);
+    std::string text = "object " + std::to_string(worst->id);
+    if (!worst->name.empty()) text.append(" (").append(io::printable(worst->name)).append(")");
+    text.append(", ").append(worst->unsafety_category).append(worst->unsafety_certain ? "" : "?");
+    text.append(", ").append(io::two_digits(worst->risk_J.at(kind.name))).append(" J per ");
+    return text.append(kind.words.event);
+}
+
+}  // namespace
+
+std::optional<Worst> worst_of(const std::filesystem::path& scene_json) {
+    std::error_code error;
+    if (!std::filesystem::exists(scene_json, error)) return std::nullopt;
+    try {
+        return Worst{worst_text(io::read_scene_json(scene_json)), scene_json};
+    } catch (const Error&) {
+        return std::nullopt;  // of another version, or damaged: nothing to compare with
+    }
+}
+
+void print_change(const Worst& before, const Scene& now) {
+    std::printf("Worst before (%s): %s; now: %s.\n", io::path_text(before.of).c_str(),
+                before.text.c_str(), worst_text(now).c_str());
+}
+
+}  // namespace topple::cli
