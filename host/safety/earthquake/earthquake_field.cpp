@@ -43,7 +43,8 @@ std::vector<GroundEvent> random_events(const EarthquakeOptions& options) {
 
 // What an event does to an object, wherever it stands.
 struct Shaken {
-    double energy_J = 0;
+    double energy_J = 0;  // of its turns and slips
+    double raised_J = 0;  // of its turns
     // In each plane, each way: whether it overturned, how far it slid, and how far its support goes
     // on there, at least.
     struct Slip {
@@ -72,6 +73,7 @@ Shaken shaken_by(const ShakenObject& object, double mass_kg, double friction,
         const double slid = std::max(m.slid_ahead_m, m.slid_behind_m);
         out.energy_J = std::max(out.energy_J,
                                 mass_kg * std::max(m.raised_J_kg(body), friction * gravity * slid));
+        out.raised_J = std::max(out.raised_J, mass_kg * m.raised_J_kg(body));
     }
     return out;
 }
@@ -97,30 +99,34 @@ std::array<Vec3, 4> furthest_slips(const Shaken& shaken) {
 // no lower behind it, or leans, it has not fallen.
 struct Outcome {
     bool falls = false;
+    double energy_J = 0;  // that takes it there: what slips lose to friction lifts nothing
     Vec3 towards{};
     double barrier_J = std::numeric_limits<double>::infinity();
 };
 Outcome outcome_of(const RiskObject& object, const Shaken& shaken) {
     Outcome fallen{true}, shaken_only;
-    const auto weigh = [&](const Vec3& way, double barrier, Outcome& outcome) {
+    const auto weigh = [&](const Vec3& way, double barrier, double energy_J, Outcome& outcome) {
         if (barrier >= outcome.barrier_J) return;
         outcome.barrier_J = barrier;
+        outcome.energy_J = energy_J;
         outcome.towards = way;
     };
     for (const Shaken::Slip& slip : shaken.slips) {
-        weigh(slip.way, push_barrier_J(object, slip.way), shaken_only);
+        weigh(slip.way, push_barrier_J(object, slip.way), shaken.energy_J, shaken_only);
         const double over_edge = over_edge_J(object, slip.way);
-        const WorkSample turned{std::max(shaken.energy_J, over_edge), 1, slip.way};
-        if (slip.overturns && instability(object, turned) > 0) weigh(slip.way, over_edge, fallen);
+        const WorkSample turned{std::max(shaken.raised_J, over_edge), 1, slip.way};
+        if (slip.overturns && instability(object, turned) > 0)
+            weigh(slip.way, over_edge, shaken.raised_J, fallen);
         const bool off = !object.toppling && slip.way_m > 0 &&
                          slip.way_m >= slide_towards_m(object, slip.way, slip.support_m);
-        if (off) weigh(slip.way, push_barrier_J(object, slip.way), fallen);
+        if (off) weigh(slip.way, push_barrier_J(object, slip.way), shaken.energy_J, fallen);
     }
     for (const Vec3& slid : furthest_slips(shaken)) {
         const double far = std::hypot(slid[0], slid[1]);
         if (!object.toppling || !(far > 0)) continue;
         const Vec3 way{slid[0] / far, slid[1] / far, 0};
-        if (far >= slide_towards_m(object, way, 0)) weigh(way, push_barrier_J(object, way), fallen);
+        if (far >= slide_towards_m(object, way, 0))
+            weigh(way, push_barrier_J(object, way), shaken.energy_J, fallen);
     }
     return std::isfinite(fallen.barrier_J) ? fallen : shaken_only;
 }
@@ -132,7 +138,7 @@ double work_of(const Shaken& shaken, const Outcome& outcome) {
     const double barrier = outcome.barrier_J;
     if (barrier <= 0 || !std::isfinite(barrier)) return shaken.energy_J;
     constexpr double just_below = 1 - 1e-6;
-    return outcome.falls ? std::max(shaken.energy_J, barrier)
+    return outcome.falls ? std::max(outcome.energy_J, barrier)
                          : std::min(shaken.energy_J, just_below * barrier);
 }
 
