@@ -298,7 +298,7 @@ def test_colours_come_along(points, device, tmp_path):
         head, data = (out / 'points.ply').read_bytes().split(b'end_header\n', 1)
         assert head.index(b'uchar red') < head.index(b'uchar object_red')
         assert data[5 * 38 + 32:5 * 38 + 35] == b'\1\2\3'
-    for wrong, why in ((colours.astype(float), 'uint8'), (colours[:, :2], r'\(N, 3\)'), (colours[1:], 'red has')):
+    for wrong, why in ((colours.astype(float), 'uint8'), (colours[:, :2], r'\(N, 3\)'), (colours[1:], 'colours: expected shape')):
         with pytest.raises(topple.Error, match=why):
             quick(points, device, colours=wrong)
     with pytest.raises(topple.Error, match='colours'):

@@ -57,8 +57,7 @@ class Plan {
     const placed = [];
     for (const object of this.shown) {
       const {east, north} = planPlace(this.scene, object), at = [x(east), y(north)];
-      const doubtful = object.seen_enough === false || !object.unsafety_certain;
-      const text = (object.name || String(object.id)) + (doubtful ? ' ?' : '');
+      const text = (object.name || String(object.id)) + (object.seen_enough === false ? ' ?' : '');
       const wide = 12 + 7.4 * text.length, to = [at[0], at[1]];
       for (let turn = 0; turn < 40 && placed.some(other => Math.abs(other[0] - to[0]) < (other[2] + wide) / 2 && Math.abs(other[1] - to[1]) < 19); ++turn) {
         const angle = 2.4 * turn, reach = 12 + 3 * turn;

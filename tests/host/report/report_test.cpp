@@ -220,7 +220,7 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
     }
     for (const char* part : {"Object 3", "Barrier: energy that moves it", "1.4\u00a0J",
                              "Risk from people walking by", "6.5\u00a0J \u00b1 1.3", "Contacts",
-                             "Category", "high, or lower: its errors leave it open",
+                             "Category", "high, or lower: its errors leave a lower one open",
                              "At 0.8 g (violent shaking, intensity IX) about 99 of 100 "
                              "earthquakes upset it. Half of those of 0.41 g (severe shaking, "
                              "intensity VIII) do.",
