@@ -9,7 +9,6 @@
 #include <set>
 #include <utility>
 
-#include "core/vectors.h"
 #include "export/footing.h"
 #include "export/separate.h"
 #include "export/stand.h"

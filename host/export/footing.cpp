@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include "core/vectors.h"
 #include "export/separate.h"
 #include "export/touching.h"
 #include "physics/infinity.h"

@@ -18,7 +18,6 @@
 namespace topple::geometry {
 namespace {
 
-constexpr std::uint32_t no_eye = 0xffffffff;
 // A view of a surfel counts where it is seen no more obliquely than this (cosine).
 constexpr double seen_cos = 0.25;
 // Places tried as the first, and the share of surfels that must face it.

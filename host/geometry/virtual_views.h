@@ -11,10 +11,11 @@
 
 namespace topple::geometry {
 
+inline constexpr std::uint32_t no_eye = 0xffffffff;
+
 struct VirtualViewOptions {
     std::vector<Vec3> known_eyes;  // where a sensor is known to have been
-    // Of each surfel the known eye that it is said to have been seen from, or any other number; or
-    // empty.
+    // Of each surfel the known eye that it is said to have been seen from, or no_eye; or empty.
     std::vector<std::uint32_t> seen_from;
     // Places to look from: with the known ones, or where there are none in each 200 m^3.
     unsigned eyes = 12;

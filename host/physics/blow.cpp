@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/vectors.h"
 #include "physics/infinity.h"
 #include "physics/landscape.h"
 

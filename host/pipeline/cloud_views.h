@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+#include "device/device.h"
+#include "geometry/single_scan.h"
+#include "geometry/surfels.h"
+#include "pipeline/ingest.h"
+
+namespace topple {
+
+// Sets the frames of out.cloud, an unorganised one, and where its points were seen from: from the
+// places that its points name, or from that of the scan that it is, or else by virtual views, which
+// tell which side of its surfaces was seen, too. Notes say which.
+void look_from_free_places(device::Device& device, const std::optional<geometry::SingleScan>& scan,
+                           const geometry::PointSpacing& spacing, Ingested& out);
+// The same of a part of a building, of which every cell of out.cell_m has a point.
+void look_from_free_places(device::Device& device, Ingested& out);
+
+}  // namespace topple
