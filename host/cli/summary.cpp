@@ -227,11 +227,11 @@ void print_objects(const Scene& scene) {
     if (!movable.empty())
         std::printf(
             "   Act from the top: by category, which is how often the thing falls and how hard, at "
-            "the worse end of its error\n   (? where the better end says less), and within one by "
-            "unsafety, its risk from 1 to 10 within this scene, where\n   10 is the worst, however "
-            "harmless. Barrier and mode are those of the easiest way out of its place,\n   "
-            "release that of the falls behind its largest risk. Rests on: 0 is the building. "
-            "%s\n",
+            "the worse end of its error\n   (? where the better end says less, or it may be a "
+            "piece of another thing), within one what has\n   no ? first, and then by unsafety, "
+            "its risk from 1 to 10 within this scene, where 10 is the\n   worst, however "
+            "harmless. Barrier and mode are those of the easiest way out of its place, release\n"
+            "   that of the falls behind its largest risk. Rests on: 0 is the building. %s\n",
             risks_text(scene).c_str());
     print_sentences(movable, scene);
 }

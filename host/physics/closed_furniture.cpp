@@ -14,8 +14,6 @@ namespace topple::physics {
 namespace {
 
 constexpr double backing_reach_m = 0.08;
-// Of what fills less of its box no wall behind it makes a cupboard.
-constexpr double least_fill = 0.2;
 
 using Point = std::array<double, 2>;
 
@@ -124,7 +122,9 @@ std::vector<FurnitureLooks> furniture_looks(const SolidScene& solids,
         out[o].height_m = height;
         out[o].fill = std::min(1.0, volumes_m3[o] / (box.area() * height));
         out[o].box_side_m2 = 2 * box.area() + 4 * (box.half[0] + box.half[1]) * height;
-        if (out[o].fill < least_fill) continue;
+        out[o].box_m = {2 * std::min(box.half[0], box.half[1]),
+                        2 * std::max(box.half[0], box.half[1])};
+        if (out[o].fill < least_furniture_fill) continue;
         for (const std::size_t axis : {std::size_t{0}, std::size_t{1}})
             for (const int way : {-1, 1})
                 out[o].backing =

@@ -14,6 +14,9 @@
 // into them, but they are no solid wood: boards around what they hold.
 namespace topple::physics {
 
+// Of what fills less of its box no wall behind it makes a cupboard.
+inline constexpr double least_furniture_fill = 0.2;
+
 // What closed furniture looks like from outside. Grid frame.
 struct FurnitureLooks {
     double height_m = 0;
@@ -22,7 +25,8 @@ struct FurnitureLooks {
     // of what the object has near it that has something of the room within 8 cm of that. 0 for what
     // fills less than a fifth of its box.
     double backing = 0;
-    double box_side_m2 = 0;  // of all six sides of that box
+    double box_side_m2 = 0;         // of all six sides of that box
+    std::array<double, 2> box_m{};  // its level sides, the shorter one first
 };
 
 // Of each object, without what of it is of the room's shell. volumes_m3: by object.

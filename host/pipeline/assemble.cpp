@@ -129,6 +129,7 @@ void add_objects(const SolidScene& solids, const ObjectStage& objects, const Saf
         const safety::CategoryEnds& category = safety.category[o];
         to.unsafety_category = to.seen_enough ? safety::to_string(category.lower) : "";
         to.unsafety_certain = to.seen_enough && category.lower == category.higher &&
+                              from.piece.probability <= 0.5 &&
                               safety.advice[o].kind != Suggestion::Kind::check &&
                               !stands_against_odds(from, safety.disturbances, safety.risk, o);
         to.name = objects.told.name[o];

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "physics/alike.h"
 #include "physics/closed_furniture.h"
 #include "physics/hollow_body.h"
 
@@ -63,13 +64,15 @@ ObjectMasses weigh_objects(const SolidScene& solids,
     out.hollow = out.weighed = out.closed;
     out.contents_error.resize(objects);
     std::vector<double> density(objects, options.density_kg_m3), inertia_density = density;
+    const std::vector<double> volume = volumes(object_of_primitive, bodies, objects);
+    auto looks = physics::furniture_looks(solids, object_of_primitive, volume);
+    for (std::size_t o = 0; o < objects; ++o)
+        if (static_cast<std::int32_t>(o) == grounded || known[o].wall_m) looks[o] = {};
+    const physics::Alike alike = physics::alike_objects(looks);
     if (options.contents_kg_m3) {
-        const std::vector<double> volume = volumes(object_of_primitive, bodies, objects);
-        const auto looks = physics::furniture_looks(solids, object_of_primitive, volume);
+        const std::vector<double> closed = physics::probabilities_closed(looks, alike);
         for (std::size_t o = 0; o < objects; ++o) {
-            if (static_cast<std::int32_t>(o) == grounded || known[o].wall_m ||
-                physics::probability_closed(looks[o]) <= 0.5)
-                continue;
+            if (closed[o] <= 0.5) continue;
             const physics::ClosedBody body = physics::closed_body(
                 looks[o], volume[o], options.density_kg_m3, *options.contents_kg_m3);
             out.closed[o] = true;
@@ -101,6 +104,11 @@ ObjectMasses weigh_objects(const SolidScene& solids,
                 body.volume_m3 > 0 ? body.mass_kg / body.volume_m3 : 0;
         }
     }
+    std::vector<double> mass(objects, 0);
+    for (std::size_t p = 0; p < bodies.size(); ++p)
+        mass[static_cast<std::size_t>(object_of_primitive[p])] += bodies[p].mass_kg;
+    for (std::size_t o = 0; o < objects; ++o)
+        out.alike_error_kg.push_back(physics::error_among_alike_kg(mass, alike[o], o));
     return out;
 }
 

@@ -26,6 +26,7 @@ struct ObjectMasses {
     std::vector<bool> closed, hollow, weighed;       // by object
     std::vector<physics::BodyError> contents_error;  // by object, 0 for solids
     std::vector<physics::Symmetric> inertia;         // by object, about its centre of mass
+    std::vector<double> alike_error_kg;              // by object: see physics/alike.h
 };
 
 // Gives `bodies`, of primitives at the density of the options, the masses that they have in their

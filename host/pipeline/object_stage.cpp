@@ -67,6 +67,17 @@ void number_objects(ObjectStage& out) {
         out.object_of_primitive.push_back(g + grounded + 1);
 }
 
+// By object the voxels that its surface was seen in; none of the ground.
+std::vector<std::uint64_t> seen_surface(const SolidCells& cells, const ObjectStage& of) {
+    std::vector<std::uint64_t> out(of.objects.size(), 0);
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        if (cells.primitive[n] < 0 || cells.basis[n] != Basis::surface) continue;
+        const std::int32_t o = of.object_of_primitive[static_cast<std::size_t>(cells.primitive[n])];
+        out[static_cast<std::size_t>(o)] += !of.objects[static_cast<std::size_t>(o)].grounded;
+    }
+    return out;
+}
+
 // The heights of the floors, ascending: levels with a hundredth of what is floor.
 std::vector<double> floor_levels(const SolidScene& solids) {
     const SolidCells& cells = solids.cells();
@@ -123,6 +134,8 @@ void collect_objects(const SolidScene& solids, const std::vector<bool>& shell,
         object.hollow = masses.hollow[o];
         object.inertia = masses.inertia[o];
         add_independent(masses.contents_error[o], object.body_error);
+        // What is off of alike things holds what is off of each by itself.
+        object.body_error.mass_kg = std::max(object.body_error.mass_kg, masses.alike_error_kg[o]);
         if (masses.weighed[o]) object.body_error.mass_kg = 0;
         object.grounded = has_ground && o == 0;
         if (!object.grounded) object.agreement = out.grouping.agreement[o - (has_ground ? 1 : 0)];
@@ -301,6 +314,9 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
         find_barriers(device, table, *solid.solids, out.object_of_primitive, options.friction,
                       out.objects);
     });
+    const std::vector<graph::PieceOf> pieces = graph::likely_pieces(
+        parts.joints, hand.links(), out.object_of_primitive, seen_surface(cells, out));
+    for (std::size_t o = 0; o < pieces.size(); ++o) out.objects[o].piece = pieces[o];
     out.told = hand.tell(out.object_of_primitive, out.objects.size(), grounded_object(out));
     return out;
 }

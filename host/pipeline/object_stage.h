@@ -8,6 +8,7 @@
 
 #include "device/device.h"
 #include "graph/contact_graph.h"
+#include "graph/pieces.h"
 #include "graph/rest.h"
 #include "graph/stable_objects.h"
 #include "graph/supports.h"
@@ -48,6 +49,7 @@ struct StableObject {
         return rest != graph::RestKind::hidden && rest != graph::RestKind::none;
     }
     double agreement = 1;  // share of the sampler's chains that found it
+    graph::PieceOf piece;  // what it may be a piece of
     Landscape poses;       // grid frame; its places are those of `sliding`
     double lowest_m = 0, highest_m = 0;
 };

@@ -70,11 +70,17 @@ class Sentence {
             return "The scan does not show what holds it up: it is taken to stand there, and is "
                    "not ranked.";
         }
-        if (object_.mode == "slide") return slides();
-        return tips();
+        return (object_.mode == "slide" ? slides() : tips()) + piece();
     }
 
   private:
+    // Whose figures are those of a piece.
+    std::string piece() const {
+        const graph::PieceOf& of = from_.piece;
+        if (!(of.probability > 0.5)) return "";
+        return " It may be a piece of " + what(scene_, parts_, of.primitive) + " (" +
+               io::two_digits(100 * of.probability) + " % likely).";
+    }
     std::string slides() const {
         if (!(why_.way_m > 0)) {
             return "Its centre of mass is past the edge of what carries it: it falls " + dropped() +

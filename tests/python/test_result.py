@@ -84,7 +84,7 @@ def test_a_notebook_shows_the_riskiest_first(result):
     loose = [o for o in result.objects if not o.grounded]
     assert table.rows == 1 + min(len(loose), 12) and '<script' not in result._repr_html_()
     category = {'high': 3, 'medium': 2, 'low': 1}
-    riskiest = max(loose, key=lambda o: (category.get(o.unsafety_category, 0), np.nan_to_num(o.unsafety, nan=0)))
+    riskiest = max(loose, key=lambda o: (category.get(o.unsafety_category, 0), o.unsafety_category in category and o.unsafety_certain, np.nan_to_num(o.unsafety, nan=0)))
     places = [table.words.find(o.why) for o in loose]
     assert min(p for p in places if p >= 0) == table.words.find(riskiest.why)
 

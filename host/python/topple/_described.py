@@ -64,7 +64,7 @@ _ITEMS = {
         'fall_chance': 'dict: chance per event, 0 to 1, that it falls.',
         'unsafety': '1 (safest) to 10, by its risk among the scene\'s objects; NaN: not seen enough to be ranked.',
         'unsafety_category': 'str: "none", "low", "medium" or "high", by itself; None: not seen enough.',
-        'unsafety_certain': 'bool: whether the category is the same at the better end of one standard error.',
+        'unsafety_certain': 'bool: whether the category is the same at the better end of one standard error, and the object likelier a whole than a piece of another.',
         'seen_enough': 'bool: whether what holds it up was seen; else its risks are 0 and mean nothing.',
         'rests_by': 'str: how it is held up: "seen" contacts, "near", "leaning", "hidden", "none", or "ground".',
         'rest_probability': 'How probable that is, 0 to 1.',

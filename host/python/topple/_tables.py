@@ -86,11 +86,12 @@ def _row(o):
 
 
 def riskiest_first(o):
-    return math.isnan(o.unsafety), -('none', 'low', 'medium', 'high').index(o.unsafety_category or 'none'), -o.unsafety, o.id
+    category = ('none', 'low', 'medium', 'high').index(o.unsafety_category or 'none')
+    return math.isnan(o.unsafety), -category, category > 0 and not o.unsafety_certain, -o.unsafety, o.id
 
 
 def page(result):
-    """The riskiest first: by category, and within one by risk; last what was not seen enough."""
+    """The riskiest first: by category, within one what is certain first, and then by risk; last what was not seen enough."""
     loose = sorted((o for o in result.objects if not o.grounded), key=riskiest_first)
     head = ''.join(f'<th>{name}</th>' for name in ('id', 'unsafety, 1 to 10', 'category', 'mass, kg', 'barrier, J', 'why'))
     more = f'<p>{len(loose) - _SHOWN} more objects in <code>Result.objects</code></p>' if len(loose) > _SHOWN else ''

@@ -5,11 +5,16 @@
 
 const listedObjects = 8, listedDoubts = 4, listedUnseen = 4, listedOnPhones = 3;
 
-// In the order in which one acts: by category, and within one by risk.
+// A number that is the higher the more it is to be acted on: by category, within one above none first what is certain to be in it.
+function urgencyOf(object) {
+  const category = categories.indexOf(object.unsafety_category);
+  return 2 * category + Number(category > 0 && Boolean(object.unsafety_certain));
+}
+
+// In the order in which one acts: by that, and then by risk.
 function byUrgency(scene, wanted) {
-  const level = object => categories.indexOf(object.unsafety_category);
   return scene.objects.filter(object => !object.grounded && largestRisk(object) > 0 && wanted(object))
-    .sort((a, b) => level(b) - level(a) || largestRisk(b) - largestRisk(a) || a.id - b.id);
+    .sort((a, b) => urgencyOf(b) - urgencyOf(a) || largestRisk(b) - largestRisk(a) || a.id - b.id);
 }
 
 // What can fall and is to be acted on first.
@@ -210,10 +215,10 @@ function rankedText(scene, shown, movable) {
 
 function fillRiskiest(panel, scene, worst, movable, choose) {
   panel.append(element('p', {className: 'order'}, ['Act from the top: cards go by ', term('category', 'category'),
-    ', which says how likely an event makes the thing fall and how hard it then lands (? it may be lower), and within one by ', term('risk', 'risk'), '.']));
+    ', which says how likely an event makes the thing fall and how hard it then lands, within one those of which it is certain first (? it may be lower), and then by ', term('risk', 'risk'), '.']));
   panel.append(element('p', {className: 'hint', text: rankedText(scene, worst.length, movable)}));
   panel.append(element('details', {}, [element('summary', {text: 'How to read this'}), element('p', {className: 'hint', text: eventsText(scene) +
-    ' The badge is the category, high to none; ? where its errors leave a lower one open. What is \u201cnone\u201d falls too seldom or too softly ' +
+    ' The badge is the category, high to none; ? where its errors leave a lower one open, or it may be a piece of another thing. What is \u201cnone\u201d falls too seldom or too softly ' +
     'to matter. \u00b1 is one standard error. \u201cIf solid\u201d: the mass is that of its whole volume, at ' +
     `${number(scene.density_kg_m3, 'kg/m\u00b3')}, about that of wood; what is hollow is lighter. Straps must hold what is said at least: no safety margin is in it. `}, [term('advice', 'Advice'), ' (\u2192) is what brings the risk below the tolerated one; where it is not to ' +
     'move the thing, no safer place was found within 1.5 m on what carries it, or it is not one of the 16 of the largest risk, for which one is looked for.'])]));

@@ -32,9 +32,9 @@ function objectColumns(scene) {
   }
   columns.push({name: 'Where (m)', text: true, value: object => { const at = planPlace(scene, object); return at && at.east; }, cell: object => placeCell(scene, object)});
   columns.push({name: 'Unsafety', term: 'unsafety', value: object => object.unsafety, cell: object => [object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]});
-  // Within one by unsafety, which is 10 at most.
+  // Within one what is certain first, then by unsafety, which is 10 at most.
   columns.push({name: 'Category', term: 'category', text: true, value: object => object.grounded || !object.unsafety_category ? null
-    : 20 * categories.indexOf(object.unsafety_category) + object.unsafety, cell: object => [object.grounded ? '\u2013' : categoryBadge(scene, object)]});
+    : 20 * urgencyOf(object) + object.unsafety, cell: object => [object.grounded ? '\u2013' : categoryBadge(scene, object)]});
   return columns;
 }
 
@@ -56,7 +56,7 @@ function uncertainText(object) {
   if (object.rest_probability < 0.5) return 'how it stands is one of several readings of the scan';
   if ((object.overturning || {}).tilt_deg < 3) return 'it stands, although the slightest lean would upset it by these figures';
   if ((object.fall_chance || {}).human >= 0.05) return 'it stands, although walks like those before would have upset it by these figures';
-  return 'its errors leave a lower one open';
+  return 'its errors, or what it may be a piece of, leave a lower one open';
 }
 
 // The category, with a question mark where the errors leave it open.

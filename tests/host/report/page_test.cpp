@@ -499,10 +499,10 @@ TEST_F(Page, lists_what_is_to_be_looked_at) {
         out.large = `${number(16234.5)}, ${number(0.00012)}`;
     )");
     EXPECT_EQ(page.data("error"), "(none)") << page.log;
-    EXPECT_EQ(page.data("listed"), "3 2 1 4");
+    EXPECT_EQ(page.data("listed"), "2 3 1 4");
     EXPECT_EQ(page.data("headings"),
               "To be looked at, The scan does not show what holds these: go and look");
-    EXPECT_EQ(page.data("chips"), "3, 2, 1, 4 ?");
+    EXPECT_EQ(page.data("chips"), "2, 3, 1, 4 ?");
     EXPECT_EQ(page.data("advice"), "check");
     EXPECT_EQ(page.data("large"), "16,200, 0.0001");
     const std::vector<std::pair<const char*, const char*>> said{

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/closed_furniture.h"
+
+// What several things of one make tell of each other: bookcases along the walls, chairs around a
+// table. Each was seen from elsewhere and completed by itself, so they are repeated measurements.
+namespace topple::physics {
+
+// By object, all others whose smallest upright boxes have its sides and height, each to within 15 %
+// of the larger: rising. What has no box has none.
+using Alike = std::vector<std::vector<std::int32_t>>;
+Alike alike_objects(std::span<const FurnitureLooks> looks);
+
+// By object, the probability that it is closed furniture: the mean log-odds of its own and of those
+// that are alike and fill their boxes enough to tell. 0 for what does not itself.
+std::vector<double> probabilities_closed(std::span<const FurnitureLooks> looks, const Alike& alike);
+
+// One standard error that the masses of alike things show: their logarithms differ by the root of
+// two times what each is off, in the mean of squares; the mass less than which it then is one
+// deviation down is taken for either side, so that no mass is within its error of nothing. 0 for
+// what has none.
+double error_among_alike_kg(std::span<const double> mass_kg, std::span<const std::int32_t> alike,
+                            std::size_t object);
+
+}  // namespace topple::physics
