@@ -17,8 +17,8 @@ namespace {
 constexpr double nearest_cells = 1.5;
 
 // A disc around p, with unit normal n, before an eye at the origin. The ray (x, y, 1) meets its
-// plane at z (x, y, 1), z = n.p / (n1 x + n2 y + n3), and the disc where that lies within the radius
-// of p. Times the denominator's square this is a quadratic in x.
+// plane at z (x, y, 1), z = n.p / (n1 x + n2 y + n3), and the disc where that lies within the
+// radius of p. Times the denominator's square this is a quadratic in x.
 class Disc {
   public:
     Disc(const Vec3& n, const Vec3& p, double radius)
@@ -59,9 +59,8 @@ class Image {
           near_(nearest_cells * surfels.cell_m),
           f_(image / 2),
           sign_(image % 2 == 0 ? 1 : -1) {
-        nearest_.assign(
-            std::size_t{CubeView::side} * CubeView::side,
-            nearness(std::numeric_limits<float>::infinity()) << 32 | CubeView::nothing);
+        nearest_.assign(std::size_t{CubeView::side} * CubeView::side,
+                        nearness(std::numeric_limits<float>::infinity()) << 32 | CubeView::nothing);
     }
 
     // Whether any of a patch may be in the image, and be drawn.

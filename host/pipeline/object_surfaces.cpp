@@ -53,8 +53,8 @@ std::vector<std::span<const solids::ObjectVoxel>> by_object(
 }
 
 // Threads for work on all objects. These are worked on side by side, the largest first. Those that
-// are more than a thread's share of all, as the building may be, share out their own work meanwhile:
-// what such a one does on one thread holds up nobody.
+// are more than a thread's share of all, as the building may be, share out their own work
+// meanwhile: what such a one does on one thread holds up nobody.
 class ObjectPools {
   public:
     explicit ObjectPools(unsigned threads)

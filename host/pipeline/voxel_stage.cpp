@@ -293,8 +293,7 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, const Geom
         // Larger voxels close gaps by themselves.
         if (voxel_m < closing_cells * std::max(input.cell_m, input.sparse_cell_m))
             gaps = geometry::close_gaps(geometry.surfels, geometry.primitives.faces.label,
-                                        geometry.primitives.label, voxel_m / 2,
-                                        device.threads());
+                                        geometry.primitives.label, voxel_m / 2, device.threads());
         if (gaps.size() == 0) {
             out.scene =
                 std::make_shared<vdb::VoxelScene>(frame, input.cloud, geometry.primitive_of_point);

@@ -15,7 +15,7 @@ namespace {
 // How far from its corner a vertex of which not all patches are known goes along each axis; along
 // one in which there is but one voxel, so that sticks and boards don't wither.
 constexpr double farthest_unknown = 0.4, farthest_thin = 0.15;
-constexpr double place_slack = 0.002;  // what is no further outside is not
+constexpr double place_slack = 0.002;     // what is no further outside is not
 constexpr std::uint64_t chunk = 1 << 11;  // vertices handed to a thread at once
 
 // The faces at each vertex, in rows.
