@@ -36,22 +36,19 @@ Alike alike_objects(std::span<const FurnitureLooks> looks) {
 
 std::vector<double> probabilities_closed(std::span<const FurnitureLooks> looks,
                                          const Alike& alike) {
-    const auto log_odds = [&](std::size_t o) {
-        const double p = probability_closed(looks[o]);
-        return std::log(p / (1 - p));
+    const auto log_odds = [](double p) { return std::log(p / (1 - p)); };
+    const auto told = [&](std::size_t o) {
+        return log_odds(probability_closed(looks[o])) - log_odds(closed_share);
     };
     std::vector<double> out(looks.size(), 0);
     for (std::size_t o = 0; o < looks.size(); ++o) {
         if (looks[o].fill < least_furniture_fill) continue;
-        double sum = log_odds(o);
-        std::size_t count = 1;
+        double sum = log_odds(closed_share) + told(o);
         for (const std::int32_t other : alike[o]) {
             const auto at = static_cast<std::size_t>(other);
-            if (looks[at].fill < least_furniture_fill) continue;
-            sum += log_odds(at);
-            ++count;
+            if (looks[at].fill >= least_furniture_fill) sum += told(at);
         }
-        out[o] = 1 / (1 + std::exp(-sum / static_cast<double>(count)));
+        out[o] = 1 / (1 + std::exp(-sum));
     }
     return out;
 }

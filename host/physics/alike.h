@@ -16,8 +16,9 @@ namespace topple::physics {
 using Alike = std::vector<std::vector<std::int32_t>>;
 Alike alike_objects(std::span<const FurnitureLooks> looks);
 
-// By object, the probability that it is closed furniture: the mean log-odds of its own and of those
-// that are alike and fill their boxes enough to tell. 0 for what does not itself.
+// By object, the probability that it is closed furniture if what is alike is of one kind: what the
+// looks of each add to the log-odds of closed_share, summed over its own and those that are alike
+// and fill their boxes enough to tell. 0 for what does not itself.
 std::vector<double> probabilities_closed(std::span<const FurnitureLooks> looks, const Alike& alike);
 
 // One standard error that the masses of alike things show: their logarithms differ by the root of

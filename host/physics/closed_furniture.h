@@ -39,6 +39,9 @@ std::vector<FurnitureLooks> furniture_looks(const SolidScene& solids,
 // taken to be solid: nothing tells a block from a box of boards there.
 double probability_closed(const FurnitureLooks& looks);
 
+// The share of the objects that it was fitted on that are closed furniture: 26 of 231.
+inline constexpr double closed_share = 0.11;
+
 // Boards of 18 mm, as most furniture is made of, around contents.
 struct ClosedBody {
     static constexpr double board_m = 0.018;

@@ -35,12 +35,12 @@ TEST(Alike, BoxesOfTheSameSidesAre) {
 TEST(Alike, AreClosedTogether) {
     const std::vector<double> p = probabilities_closed(things, alike_objects(things));
     const auto log_odds = [](double x) { return std::log(x / (1 - x)); };
-    const double mean =
-        (log_odds(probability_closed(things[0])) + log_odds(probability_closed(things[1]))) / 2;
+    const double both = log_odds(probability_closed(things[0])) +
+                        log_odds(probability_closed(things[1])) - log_odds(closed_share);
     EXPECT_GT(probability_closed(things[0]), 0.5);
     EXPECT_LT(probability_closed(things[1]), 0.5);
-    EXPECT_NEAR(log_odds(p[0]), mean, 1e-9);
-    EXPECT_NEAR(log_odds(p[1]), mean, 1e-9);
+    EXPECT_NEAR(log_odds(p[0]), both, 1e-9);
+    EXPECT_NEAR(log_odds(p[1]), both, 1e-9);
     EXPECT_NEAR(p[3], probability_closed(things[3]), 1e-12);
     EXPECT_EQ(p[4], 0);
 }
