@@ -159,7 +159,7 @@ void check_count(const CloudView& cloud) {
 }
 
 // All that follows from the points.
-void look_at_cloud(device::Device& device, Ingested& out) {
+void look_at_cloud(device::Device& device, const ParseOptions& options, Ingested& out) {
     const CloudView& cloud = out.cloud;
     check_count(cloud);
     const geometry::PointSpacing spacing = geometry::point_spacing(cloud);
@@ -192,16 +192,21 @@ void look_at_cloud(device::Device& device, Ingested& out) {
         scan = geometry::find_single_scan(
             cloud, cloud.has_viewpoint ? cloud.viewpoint : out.own.origin_m, spacing.nearest_m);
     }
-    look_from_free_places(device, scan, spacing, out);
+    // Reading it took the rest of the stage.
+    constexpr double read_share = 0.2;
+    const auto tell = [&](double done) {
+        if (options.progress) options.progress("ingest", read_share + (1 - read_share) * done);
+    };
+    look_from_free_places(device, scan, spacing, tell, out);
 }
 
 }  // namespace
 
-Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions&) {
+Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options) {
     Ingested out;
     out.own = std::move(cloud);
     out.cloud = out.own;
-    look_at_cloud(device, out);
+    look_at_cloud(device, options, out);
     return out;
 }
 
@@ -219,7 +224,7 @@ Ingested ingest_view(device::Device& device, const CloudView& cloud, const Parse
         out.index = std::move(finite->index);
         out.cloud = out.own;
     }
-    look_at_cloud(device, out);
+    look_at_cloud(device, options, out);
     return out;
 }
 
@@ -273,12 +278,12 @@ std::optional<geometry::SceneFrame> frame_of_map(const std::optional<Vec3>& give
 }
 
 // A volume's surface, and its free space beside what virtual views of the surface find.
-Ingested ingest_volume(device::Device& device, ScannedMap map) {
+Ingested ingest_volume(device::Device& device, ScannedMap map, const ParseOptions& options) {
     Ingested out;
     out.origin = ScanOrigin::map_file;
     out.own = std::move(map.cloud);
     out.cloud = out.own;
-    look_at_cloud(device, out);
+    look_at_cloud(device, options, out);
     if (!map.space.free.empty()) out.space = std::move(map.space);
     return out;
 }
@@ -330,7 +335,7 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
     }
     ScannedMap map = read_input(input, options);
     if (io::looks_like_octomap(input)) return ingest_octomap(std::move(map), options);
-    if (vdb::looks_like_volume(input)) return ingest_volume(device, std::move(map));
+    if (vdb::looks_like_volume(input)) return ingest_volume(device, std::move(map), options);
     return ingest_cloud(device, std::move(map.cloud), options);
 }
 
