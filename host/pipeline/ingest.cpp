@@ -72,14 +72,21 @@ void fuse_frames(device::Device& device, bool posed, const ParseOptions& options
                                  [&](std::size_t f) { return out.frames->load(f); });
     geometry::FrameFusion fusion(out.frames->intrinsics(), out.cell_m, device.threads().threads());
     const auto count = static_cast<double>(out.frames->size());
-    const auto poll = [&] { end_if_cancelled(options); };
+    constexpr double added_share = 0.4, polls = 5;  // of the stage; while it is finished
+    const auto tell = [&](double done) {
+        if (options.progress) options.progress("ingest", done);
+    };
     const auto add = [&](const DepthFrame& frame, std::size_t f) {
-        poll();
+        end_if_cancelled(options);
         fusion.add(frame);
-        if (options.progress) options.progress("ingest", static_cast<double>(f + 1) / count);
+        tell(added_share * static_cast<double>(f + 1) / count);
     };
     for_each_frame(*out.frames, device.threads(), add, true);
-    geometry::FusedCloud fused = fusion.finish(poll);
+    double polled = 0;
+    geometry::FusedCloud fused = fusion.finish([&] {
+        end_if_cancelled(options);
+        tell(added_share + (1 - added_share) * std::min(1.0, ++polled / polls));
+    });
     out.own = std::move(fused.cloud);
     out.cloud = out.own;
     out.viewpoints = std::move(fused.viewpoints);
