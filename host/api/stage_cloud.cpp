@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "api/arrays.h"
+#include "core/room_measures.h"
 #include "geometry/sensor_places.h"
 #include "geometry/surfels.h"
-#include "io/cloud_builder.h"
 #include "io/text.h"
 #include "pipeline/caller_points.h"
 #include "pipeline/scale_checks.h"
@@ -71,9 +71,9 @@ void normals(device::Device& device, const CloudView& cloud, double cell_m, cons
             "cell_m " + io::short_number(cell_m) + ": expected metres above 0 and at most " +
                 io::short_number(largest_voxel_m) + ", about twice the points' spacing");
     for (int axis = 0; eye_m && axis < 3; ++axis) {
-        require(std::abs((*eye_m)[axis]) <= io::farthest_m, "normals",
+        require(std::abs((*eye_m)[axis]) <= farthest_m, "normals",
                 "eye_m " + io::short_number((*eye_m)[axis]) + ": expected metres up to " +
-                    io::short_number(io::farthest_m));
+                    io::short_number(farthest_m));
     }
     const Usable usable(cloud);
     check_metres(usable.view(), cell_m);

@@ -52,11 +52,18 @@ struct SideStep {
     std::size_t surfels = 0;
 };
 
+// Rows of equations in so many unknowns.
+template <int unknowns>
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, unknowns>;
+template <int unknowns>
+using Fit = Eigen::Matrix<double, unknowns, 1>;
+
 // Least squares with a prior of the last column's factor: 0 +- slope.
-double residual_with_prior(const Eigen::MatrixXd& rows, const Eigen::VectorXd& out, double noise,
-                           double slope, Eigen::VectorXd& fit) {
-    Eigen::MatrixXd normal = rows.transpose() * rows;
-    const Eigen::Index last = rows.cols() - 1;
+template <int unknowns>
+double residual_with_prior(const Rows<unknowns>& rows, const Eigen::VectorXd& out, double noise,
+                           double slope, Fit<unknowns>& fit) {
+    Eigen::Matrix<double, unknowns, unknowns> normal = rows.transpose() * rows;
+    constexpr Eigen::Index last = unknowns - 1;
     const double weight = std::isfinite(slope) ? noise * noise / (slope * slope) : 0;
     normal(last, last) += weight;
     fit = normal.ldlt().solve(rows.transpose() * out);
@@ -109,7 +116,8 @@ std::optional<SideStep> step_at(const LedgeSide& side, double height, double cel
         covered_by_both(parts, first, last, cell_m) < least_side_covered)
         return std::nullopt;
     const auto count = static_cast<Eigen::Index>(parts[0].size() + parts[1].size());
-    Eigen::MatrixXd two(count, 5), one(count, 3);
+    Rows<5> two(count, 5);
+    Rows<3> one(count, 3);
     Eigen::VectorXd out(count);
     const double middle = 0.5 * (first + last);
     Eigen::Index n = 0;
@@ -123,7 +131,8 @@ std::optional<SideStep> step_at(const LedgeSide& side, double height, double cel
         }
     }
     constexpr double any_slope = std::numeric_limits<double>::infinity();
-    Eigen::VectorXd fit, unused;
+    Fit<5> fit;
+    Fit<3> unused;
     const double free = residual_with_prior(two, out, 0, any_slope, fit);
     const double noise =
         std::max(std::sqrt(free / static_cast<double>(std::max<Eigen::Index>(count - 5, 1))),

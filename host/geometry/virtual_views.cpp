@@ -36,12 +36,14 @@ constexpr double least_seen = 0.5, roomy_m = 0.75;
 // A large room, and how many of them are looked at.
 constexpr double room_m3 = 200, most_rooms = 30;
 
+constexpr std::uint64_t place_chunk = 256;  // handed to a thread at once
+
 class Looking {
   public:
     Looking(const Surfels& surfels, const VirtualViewOptions& options, ThreadPool& pool)
         : s_(surfels),
           pool_(pool),
-          radii_(covering_radii(surfels, options.gap_m, pool)),
+          views_(surfels, covering_radii(surfels, options.gap_m, pool), pool),
           places_(surfels),
           sides_(surfels, pool),
           in_view_(places_.size(), 0),
@@ -64,7 +66,7 @@ class Looking {
         std::size_t said = 0, hidden = 0;
         expected_ = std::max<double>(options.eyes, static_cast<double>(options.known_eyes.size()));
         for (std::size_t e = 0; e < options.known_eyes.size(); ++e) {
-            CubeView view = view_from(options.known_eyes[e]);
+            CubeView view = views_.from(options.known_eyes[e]);
             for (std::size_t i = 0; i < options.seen_from.size(); ++i) {
                 if (options.seen_from[i] != e) continue;
                 ++said;
@@ -103,7 +105,6 @@ class Looking {
     }
 
   private:
-    CubeView view_from(const Vec3& eye) const { return view_surfels(s_, radii_, eye, pool_); }
     // As many rooms as the scene has room for.
     std::size_t rooms() const {
         const double count = std::round(places_.volume_m3() / room_m3);
@@ -125,10 +126,8 @@ class Looking {
     // Share of all surfels that are seen: little from within a box.
     double share_seen(const CubeView& view) const {
         std::vector<bool> seen(s_.size());
-        for (const auto& image : view.surfel) {
-            for (const std::uint32_t i : image)
-                if (i != CubeView::nothing) seen[i] = true;
-        }
+        for (std::size_t image = 0; image < 6; ++image)
+            view.for_each_seen(image, [&](std::uint32_t i) { seen[i] = true; });
         return static_cast<double>(std::ranges::count(seen, true)) / static_cast<double>(s_.size());
     }
 
@@ -137,7 +136,7 @@ class Looking {
         while (out_.eyes.size() < eyes) {
             const std::size_t place = places_.choose_free();
             if (place == places_.size()) break;
-            look(view_from(places_.middle(place)));
+            look(views_.from(places_.middle(place)));
         }
     }
 
@@ -148,7 +147,7 @@ class Looking {
         for (unsigned n = 0; n < most_closed; ++n) {
             const std::size_t place = places_.choose_closed(roomy_m);
             if (place == places_.size()) return;
-            const CubeView view = view_from(places_.middle(place));
+            const CubeView view = views_.from(places_.middle(place));
             pass_over_seen(view, place);
             if (share_behind(view) > most_behind) continue;
             look(view);
@@ -165,7 +164,7 @@ class Looking {
             const std::size_t place =
                 places_.choose_outside([&](std::size_t p) { return in_view_[p] > most; });
             if (place == places_.size()) return;
-            look(view_from(places_.middle(place)));
+            look(views_.from(places_.middle(place)));
         }
     }
 
@@ -191,7 +190,7 @@ class Looking {
             const auto best = std::ranges::max_element(facing_it);
             if (*best == 0) return;
             const std::size_t place = static_cast<std::size_t>(best - facing_it.begin()) * stride;
-            look(view_from(places_.middle(place)));
+            look(views_.from(places_.middle(place)));
             std::size_t left = 0;
             for (const std::size_t i : unseen) left += out_.viewpoint_of_surfel[i] == no_eye;
             const double gain = static_cast<double>(unseen.size() - left);
@@ -234,7 +233,7 @@ class Looking {
         for (unsigned n = 0; n < first_tries; ++n) {
             const std::size_t place = places_.choose_first();
             if (place == places_.size()) break;
-            CubeView view = view_from(places_.middle(place));
+            CubeView view = views_.from(places_.middle(place));
             const double share = share_seen(view);
             const bool fits = sides_known
                                   ? share_facing(view) >= least_facing
@@ -256,39 +255,45 @@ class Looking {
         if (!sides_known_) sides_.count(view);
         const auto eye = static_cast<std::uint32_t>(out_.eyes.size());
         out_.eyes.push_back(view.eye);
-        for (const auto& image : view.surfel) {
-            for (const std::uint32_t i : image) {
-                if (i == CubeView::nothing || out_.viewpoint_of_surfel[i] != no_eye) continue;
+        for (std::size_t image = 0; image < 6; ++image) {
+            view.for_each_seen(image, [&](std::uint32_t i) {
+                if (out_.viewpoint_of_surfel[i] != no_eye) return;
                 const double f = sides_.facing(i, view.eye);
-                if (sides_.has_normal(i) && std::abs(f) < seen_cos) continue;
+                if (sides_.has_normal(i) && std::abs(f) < seen_cos) return;
                 if (sides_.side(i) == 0) sides_.face(i, f);
                 if (sides_.side(i) * f >= 0) out_.viewpoint_of_surfel[i] = eye;
-            }
+            });
         }
-        for (std::size_t p = 0; p < places_.size(); ++p) {
+        pool_.each(places_.size(), place_chunk, [&](std::size_t p) {
             if (!places_.is_free(p) && sees_through(view, places_.middle(p))) places_.set_free(p);
             if (!places_.is_within(p) && !hides(view, places_.middle(p))) ++in_view_[p];
-        }
+        });
         places_.leave_out(view.eye);
-        for (std::size_t image = 0; image < 6; ++image) add_frame(view, image);
+        add_frames(view);
         if (tell_) tell_(std::min(0.99, static_cast<double>(out_.eyes.size()) / expected_));
     }
 
-    void add_frame(CubeView& view, std::size_t image) {
-        DepthFrame frame;
-        frame.camera_to_world = view.pose(image);
-        frame.depth.assign(view.depth[image].size(), 0);
-        bool any = false;
-        for (std::size_t at = 0; at < frame.depth.size(); ++at) {
-            if (view.surfel[image][at] == CubeView::nothing) continue;
-            const double stored = std::round(view.depth[image][at] * out_.intrinsics.depth_scale);
-            if (!(stored <= 65535)) continue;
-            frame.depth[at] = static_cast<std::uint16_t>(std::max(stored, 1.0));
-            any = true;
+    void add_frames(CubeView& view) {
+        std::array<DepthFrame, 6> frames;
+        std::array<bool, 6> any{};
+        pool_.each(6, 1, [&](std::size_t image) {
+            DepthFrame& frame = frames[image];
+            frame.camera_to_world = view.pose(image);
+            frame.depth.assign(view.depth[image].size(), 0);
+            for (std::size_t at = 0; at < frame.depth.size(); ++at) {
+                if (view.surfel[image][at] == CubeView::nothing) continue;
+                // To the nearest; depths are positive.
+                const double stored = view.depth[image][at] * out_.intrinsics.depth_scale + 0.5;
+                if (!(stored < 65536)) continue;
+                frame.depth[at] = static_cast<std::uint16_t>(std::max(stored, 1.0));
+                any[image] = true;
+            }
+        });
+        for (std::size_t image = 0; image < 6; ++image) {
+            if (!any[image]) continue;
+            out_.frames.push_back(std::move(frames[image]));
+            shown_.push_back(std::move(view.surfel[image]));
         }
-        if (!any) return;
-        out_.frames.push_back(std::move(frame));
-        shown_.push_back(std::move(view.surfel[image]));
     }
 
     void agree_on_sides() {
@@ -307,9 +312,15 @@ class Looking {
         pool_.each(out_.frames.size(), 1, [&](std::size_t f) {
             DepthFrame& frame = out_.frames[f];
             const Mat4& m = frame.camera_to_world;
+            std::uint32_t last = CubeView::nothing;
+            bool behind = false;
             for (std::size_t at = 0; at < frame.depth.size(); ++at) {
-                if (frame.depth[at] != 0 && sides_.from_behind(shown_[f][at], {m[3], m[7], m[11]}))
-                    frame.depth[at] = 0;
+                if (frame.depth[at] == 0) continue;
+                if (shown_[f][at] != last) {
+                    last = shown_[f][at];
+                    behind = sides_.from_behind(last, {m[3], m[7], m[11]});
+                }
+                if (behind) frame.depth[at] = 0;
             }
         });
         shown_.clear();
@@ -376,7 +387,7 @@ class Looking {
 
     const Surfels& s_;
     ThreadPool& pool_;
-    std::vector<float> radii_;  // of the surfels as discs
+    SurfelViews views_;
     FreePlaces places_;
     SideVotes sides_;
     bool sides_known_ = false;
