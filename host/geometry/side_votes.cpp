@@ -78,7 +78,7 @@ void SideVotes::count(CubeView& view) {
     std::vector<std::int8_t> seen(s_.size(), 0);  // from its normal's side 1, from the other -1
     for (const auto& image : view.surfel) {
         for (const std::uint32_t i : image) {
-            if (i == CubeView::nothing) continue;
+            if (i == CubeView::nothing || seen[i] != 0) continue;
             const double f = facing(i, view.eye);
             if (!has_normal(i) || std::abs(f) >= vote_cos) seen[i] = f > 0 ? 1 : -1;
         }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -10,6 +11,12 @@
 #include "geometry/surfels.h"
 
 namespace topple::geometry {
+
+// A value above -0.5 rounded as std::round() does, which is a call.
+inline std::uint32_t nearest_index(double value) {
+    const auto whole = static_cast<std::uint32_t>(std::max(value, 0.0));
+    return whole + (value - whole >= 0.5);
+}
 
 // What is seen from one place in all directions: six square images of 90 degrees, along +x, -x, +y,
 // -y, +z, -z of the input's frame. Image 2 f + s looks along axis f (negative for s = 1); its

@@ -254,20 +254,30 @@ class Looking {
         const auto eye = static_cast<std::uint32_t>(out_.eyes.size());
         out_.eyes.push_back(view.eye);
         for (const auto& image : view.surfel) {
+            std::uint32_t last = CubeView::nothing;  // a surfel fills several pixels
             for (const std::uint32_t i : image) {
-                if (i == CubeView::nothing || out_.viewpoint_of_surfel[i] != no_eye) continue;
+                if (i == CubeView::nothing || i == last || out_.viewpoint_of_surfel[i] != no_eye)
+                    continue;
+                last = i;
                 const double f = sides_.facing(i, view.eye);
                 if (sides_.has_normal(i) && std::abs(f) < seen_cos) continue;
                 if (sides_.side(i) == 0) sides_.face(i, f);
                 if (sides_.side(i) * f >= 0) out_.viewpoint_of_surfel[i] = eye;
             }
         }
-        for (std::size_t p = 0; p < places_.size(); ++p) {
-            if (!places_.is_free(p) && sees_through(view, places_.middle(p))) places_.set_free(p);
-            if (!places_.is_within(p) && !hides(view, places_.middle(p))) ++in_view_[p];
-        }
+        for (std::size_t p = 0; p < places_.size(); ++p) look_at_place(view, p);
         places_.leave_out(view.eye);
         for (std::size_t image = 0; image < 6; ++image) add_frame(view, image);
+    }
+
+    void look_at_place(const CubeView& view, std::size_t p) {
+        const bool free = places_.is_free(p), within = places_.is_within(p);
+        if (free && within) return;
+        const std::size_t image = view.image_of(places_.middle(p));
+        const CubeView::Pixel pixel = view.pixel_of(image, places_.middle(p));
+        if (hides(view, image, pixel)) return;
+        if (!within) ++in_view_[p];
+        if (!free && sees_through(view, image, pixel)) places_.set_free(p);
     }
 
     void add_frame(CubeView& view, std::size_t image) {
@@ -277,9 +287,9 @@ class Looking {
         bool any = false;
         for (std::size_t at = 0; at < frame.depth.size(); ++at) {
             if (view.surfel[image][at] == CubeView::nothing) continue;
-            const double stored = std::round(view.depth[image][at] * out_.intrinsics.depth_scale);
-            if (!(stored <= 65535)) continue;
-            frame.depth[at] = static_cast<std::uint16_t>(std::max(stored, 1.0));
+            const double steps = view.depth[image][at] * out_.intrinsics.depth_scale;
+            if (!(steps < 65535.5)) continue;
+            frame.depth[at] = static_cast<std::uint16_t>(std::max(nearest_index(steps), 1u));
             any = true;
         }
         if (!any) return;
@@ -303,9 +313,15 @@ class Looking {
         pool_.each(out_.frames.size(), 1, [&](std::size_t f) {
             DepthFrame& frame = out_.frames[f];
             const Mat4& m = frame.camera_to_world;
+            std::uint32_t last = CubeView::nothing;  // a surfel fills several pixels
+            bool behind = false;
             for (std::size_t at = 0; at < frame.depth.size(); ++at) {
-                if (frame.depth[at] != 0 && sides_.from_behind(shown_[f][at], {m[3], m[7], m[11]}))
-                    frame.depth[at] = 0;
+                if (frame.depth[at] == 0) continue;
+                if (shown_[f][at] != last) {
+                    last = shown_[f][at];
+                    behind = sides_.from_behind(last, {m[3], m[7], m[11]});
+                }
+                if (behind) frame.depth[at] = 0;
             }
         });
         shown_.clear();
@@ -317,7 +333,10 @@ class Looking {
     // Whether something lies before the point, by so much.
     bool hides(const CubeView& view, const Vec3& point, double by_m = 0) const {
         const std::size_t image = view.image_of(point);
-        const CubeView::Pixel pixel = view.pixel_of(image, point);
+        return hides(view, image, view.pixel_of(image, point), by_m);
+    }
+    static bool hides(const CubeView& view, std::size_t image, const CubeView::Pixel& pixel,
+                      double by_m = 0) {
         return !pixel.inside || (view.surfel[image][pixel.index] != CubeView::nothing &&
                                  view.depth[image][pixel.index] + by_m < pixel.depth);
     }
@@ -326,8 +345,13 @@ class Looking {
     // gap between surfels, but those to the rim of its cell, too.
     bool sees_through(const CubeView& view, const Vec3& place) const {
         const std::size_t image = view.image_of(place);
-        const CubeView::Pixel pixel = view.pixel_of(image, place);
-        if (!pixel.inside) return false;
+        return sees_through(view, image, view.pixel_of(image, place));
+    }
+    bool sees_through(const CubeView& view, std::size_t image, const CubeView::Pixel& pixel) const {
+        // At its middle first, where most is not seen through.
+        if (!pixel.inside || view.surfel[image][pixel.index] == CubeView::nothing ||
+            pixel.depth + places_.cell_m() >= view.depth[image][pixel.index])
+            return false;
         const auto at = [](std::size_t n, double away) {
             const double to = std::clamp(static_cast<double>(n) + away, 0.0, CubeView::side - 1.0);
             return static_cast<std::size_t>(to);
@@ -338,9 +362,7 @@ class Looking {
             for (const double right : {-rim, 0.0, rim}) {
                 const std::size_t n = at(row, down) * CubeView::side + at(column, right);
                 const std::uint32_t i = view.surfel[image][n];
-                const bool nothing = i == CubeView::nothing;
-                if (nothing && n == pixel.index) return false;
-                if (!nothing && (sides_.from_behind(i, view.eye) ||
+                if (i != CubeView::nothing && (sides_.from_behind(i, view.eye) ||
                                  pixel.depth + places_.cell_m() >= view.depth[image][n]))
                     return false;
             }
