@@ -24,8 +24,7 @@ constexpr std::size_t beyond = lanes - 1;  // elements after the last that are r
 // How far the rays of the pixels of a row, or of a column, go aside for each metre along the axis.
 constexpr auto slopes = [] {
     std::array<double, CubeView::side + beyond> of{};
-    for (std::uint32_t x = 0; x < of.size(); ++x)
-        of[x] = (x - CubeView::centre) / CubeView::focal;
+    for (std::uint32_t x = 0; x < of.size(); ++x) of[x] = (x - CubeView::centre) / CubeView::focal;
     return of;
 }();
 
@@ -115,8 +114,8 @@ class Image {
         const double front = p[2] - reach[2], back = p[2] + reach[2];
         const auto narrow = [&](std::size_t a, Span& to) {
             const double low = p[a] - reach[a], high = p[a] + reach[a];
-            const Span box = between(pixel(low, low > 0 ? back : front),
-                                     pixel(high, high > 0 ? front : back));
+            const Span box =
+                between(pixel(low, low > 0 ? back : front), pixel(high, high > 0 ? front : back));
             to = {std::max(to.first, box.first), std::min(to.last, box.last)};
         };
         narrow(0, columns);
