@@ -85,8 +85,10 @@ struct SideStep {
 class SideFit {
   public:
     SideFit(const Eigen::MatrixXd& rows, const Eigen::VectorXd& out)
-        : rows_(rows), out_(out), normal_(rows.transpose() * rows), right_(rows.transpose() * out) {
-    }
+        : rows_(rows),
+          out_(out),
+          normal_(rows.transpose() * rows),
+          right_(rows.transpose() * out) {}
     // What is left. slope: infinite for none.
     double residual(double noise, double slope, Eigen::VectorXd& fit) const {
         Eigen::MatrixXd normal = normal_;
@@ -106,8 +108,8 @@ class SideFit {
 
 // Share of the side's length that has surfels above as well as below: legs under a table's edge
 // have little of it.
-double covered_by_both(const std::array<std::vector<SidePoint>, 2>& parts, double first, double last,
-                       double cell_m) {
+double covered_by_both(const std::array<std::vector<SidePoint>, 2>& parts, double first,
+                       double last, double cell_m) {
     const auto bins = static_cast<std::size_t>((last - first) / cell_m) + 1;
     std::array<std::vector<bool>, 2> covered{std::vector<bool>(bins), std::vector<bool>(bins)};
     for (std::size_t above = 0; above < 2; ++above)
