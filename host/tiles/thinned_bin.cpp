@@ -116,8 +116,8 @@ class CellSums {
         for (std::uint32_t n = 0; n < cells_.size(); ++n) slots_[slot(cells_[n].key)] = n;
     }
 
-    std::vector<std::uint32_t> slots_;  // places; a power of two of them
-    std::vector<Cell> cells_;           // by place
+    std::vector<std::uint32_t> slots_;                   // places; a power of two of them
+    std::vector<Cell> cells_;                            // by place
     std::vector<std::array<std::uint64_t, 4>> colours_;  // sums of channels, and how many
 };
 
