@@ -22,7 +22,7 @@ namespace {
 constexpr std::uint64_t batch_frames = 32;                        // one bit of a word each
 constexpr std::uint64_t resident_bytes = std::uint64_t{1} << 28;  // frames on the device at a time
 constexpr std::uint64_t leaf_chunk = std::uint64_t{1} << 18;      // leaves classified at a time
-constexpr std::uint64_t voxel_chunk = std::uint64_t{1} << 14;     // leaves counted at a time
+constexpr std::uint64_t voxel_chunk = std::uint64_t{1} << 13;     // leaves counted at a time
 constexpr std::size_t max_slots = std::size_t{1} << 21;
 
 // When a voxel counts as seen through. It is in front of a reading where it is closer by half its

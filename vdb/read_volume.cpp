@@ -10,6 +10,7 @@
 #include <new>
 #include <string>
 
+#include "core/room_measures.h"
 #include "io/mapped_file.h"
 #include "io/volume_checks.h"
 #include "topple/error.h"
@@ -21,7 +22,6 @@ using openvdb::Coord;
 using openvdb::Vec3d;
 
 constexpr std::uint64_t most_voxels = std::uint64_t{1} << 28;
-constexpr double farthest_m = 1e6;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& message) {
     throw Error(ErrorKind::input, file.string() + ": " + message);

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "api/arrays.h"
+#include "core/room_measures.h"
 #include "geometry/surfels.h"
-#include "io/cloud_builder.h"
 #include "io/text.h"
 #include "pipeline/caller_points.h"
 #include "vdb/completion.h"
@@ -51,9 +51,9 @@ void normals(device::Device& device, const CloudView& cloud, double cell_m, cons
             "cell_m " + io::short_number(cell_m) +
                 ": expected metres above 0, about twice the points' spacing");
     for (int axis = 0; eye_m && axis < 3; ++axis) {
-        require(std::abs((*eye_m)[axis]) <= io::farthest_m, "normals",
+        require(std::abs((*eye_m)[axis]) <= farthest_m, "normals",
                 "eye_m " + io::short_number((*eye_m)[axis]) + ": expected metres up to " +
-                    io::short_number(io::farthest_m));
+                    io::short_number(farthest_m));
     }
     const Usable usable(cloud);
     const std::span<const Vec3> eyes(eye_m, eye_m ? 1 : 0);

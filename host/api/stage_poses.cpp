@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "api/arrays.h"
+#include "core/room_measures.h"
 #include "device/queue.h"
-#include "io/cloud_builder.h"
 #include "io/text.h"
 #include "physics/landscape.h"
 #include "physics/tipping.h"
@@ -120,10 +120,10 @@ std::vector<Barrier> barriers(device::Device& device, std::span<const StandingBo
                 name + ": its mass must be above 0, and its centre of mass finite");
         for (const Vec3& p : body.points) {
             for (const double c : p) {
-                if (!(std::abs(c) <= io::farthest_m))
+                if (!(std::abs(c) <= farthest_m))
                     throw Error(ErrorKind::input,
                                 "barriers: " + name + " has a point at " + io::short_number(c) +
-                                    ": expected metres up to " + io::short_number(io::farthest_m));
+                                    ": expected metres up to " + io::short_number(farthest_m));
             }
         }
         physics::Candidate c;

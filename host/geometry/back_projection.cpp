@@ -35,7 +35,13 @@ void project(const double* m, double dy, double per_cell, const double* columns,
 }  // namespace
 
 RowReadings::RowReadings(std::size_t width)
-    : kept(width), inside(width), weight(width), depth_m(width) {
+    : kept(width),
+      inside(width),
+      weight(width),
+      depth_m(width),
+      limit(width),
+      padded(width + 2),
+      none(width) {
     for (auto* values : {&cell, &part}) {
         for (auto& axis : *values) axis.resize(width);
     }
@@ -63,21 +69,18 @@ void BackProjection::look(const DepthFrame& frame, std::uint32_t v, RowReadings&
     const std::uint32_t width = intrinsics_.width;
     const std::uint16_t* row = frame.depth.data() + std::size_t{v} * width;
     // Beyond the image there are no readings, as where a pixel has none.
-    std::vector<std::uint16_t> none, padded(width + 2);
-    if (v == 0 || v + 1 == intrinsics_.height) none.resize(width);
-    const std::uint16_t* above = v > 0 ? row - width : none.data();
-    const std::uint16_t* below = v + 1 < intrinsics_.height ? row + width : none.data();
-    std::copy(row, row + width, padded.begin() + 1);
-    std::vector<float> limit(width);
+    const std::uint16_t* above = v > 0 ? row - width : out.none.data();
+    const std::uint16_t* below = v + 1 < intrinsics_.height ? row + width : out.none.data();
+    std::copy(row, row + width, out.padded.begin() + 1);
     for (std::uint32_t u = 0; u < width; ++u) {
         const DepthReading& reading = by_depth_[row[u]];
-        limit[u] = reading.largest_jump;
+        out.limit[u] = reading.largest_jump;
         out.weight[u] = reading.weight;
         out.depth_m[u] = reading.depth_m;
     }
     std::uint32_t* const kept = out.kept.data();
-    const std::uint16_t* const left = padded.data();
-    const float* const limits = limit.data();
+    const std::uint16_t* const left = out.padded.data();
+    const float* const limits = out.limit.data();
     for (std::uint32_t u = 0; u < width; ++u) {
         const float depth = row[u], most = limits[u];
         const auto far = [&](std::uint16_t stored) {

@@ -21,6 +21,10 @@ struct RowReadings {
     std::vector<double> depth_m;
     // Of those inside, by axis: cells, and 65536ths of one, from the grid's lowest corner.
     std::array<std::vector<std::int32_t>, 3> cell, part;
+    // Room to look at neighbours in: largest jumps; the row between two pixels without a reading,
+    // and a row of such.
+    std::vector<float> limit;
+    std::vector<std::uint16_t> padded, none;
     explicit RowReadings(std::size_t width);
 };
 

@@ -118,7 +118,7 @@ void FreePlaces::find_places() {
         within_.push_back(within);
     });
     apart_.assign(middle_.size(), std::numeric_limits<double>::max());
-    free_.assign(middle_.size(), false);
+    free_.assign(middle_.size(), 0);
     passed_over_.assign(middle_.size(), false);
 }
 
@@ -157,13 +157,13 @@ std::size_t FreePlaces::choose_first() const {
 }
 
 std::size_t FreePlaces::choose_free() const {
-    return best([&](std::size_t i) { return free_[i]; });
+    return best([&](std::size_t i) { return is_free(i); });
 }
 
 std::size_t FreePlaces::choose_closed(double clearance_m) const {
     constexpr double closed = 0.95;
     return best([&](std::size_t i) {
-        return !free_[i] && !passed_over_[i] && within_[i] && clearance_[i] >= clearance_m &&
+        return !is_free(i) && !passed_over_[i] && within_[i] && clearance_[i] >= clearance_m &&
                enclosure_[i] >= closed;
     });
 }

@@ -30,9 +30,10 @@ class FreePlaces {
     // Along the axes to the nearest occupied cell.
     double clearance_m(std::size_t place) const { return clearance_[place]; }
 
-    // Marks places that are known to be free: only these are chosen from then on.
-    void set_free(std::size_t place) { free_[place] = true; }
-    bool is_free(std::size_t place) const { return free_[place]; }
+    // Marks places that are known to be free: only these are chosen from then on. Different places
+    // may be marked by different threads.
+    void set_free(std::size_t place) { free_[place] = 1; }
+    bool is_free(std::size_t place) const { return free_[place] != 0; }
 
     // The place with the most room around it that sees the most of the scene around it, far from
     // those chosen before; size() where there is none left. As the first one any place that was not
@@ -66,7 +67,8 @@ class FreePlaces {
     std::vector<double> enclosure_;  // share of 26 directions in which something is seen
     std::vector<double> apart_;      // from the nearest chosen one
     std::vector<bool> within_;       // the scene's box
-    std::vector<bool> free_, passed_over_;
+    std::vector<bool> passed_over_;
+    std::vector<std::uint8_t> free_;  // bytes, which several threads may set
 };
 
 }  // namespace topple::geometry

@@ -81,18 +81,30 @@ struct SideStep {
     std::size_t surfels = 0;
 };
 
+// Rows of equations in so many unknowns.
+template <int unknowns>
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, unknowns>;
+template <int unknowns>
+using Fit = Eigen::Matrix<double, unknowns, 1>;
+
 // Least squares with a prior of the last column's factor: 0 +- slope.
+// Rows of equations in so many unknowns.
+template <int unknowns>
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, unknowns>;
+template <int unknowns>
+using Fit = Eigen::Matrix<double, unknowns, 1>;
+
+// Least squares with a prior of the last column's factor: 0 +- slope.
+template <int unknowns>
 class SideFit {
   public:
-    SideFit(const Eigen::MatrixXd& rows, const Eigen::VectorXd& out)
-        : rows_(rows),
-          out_(out),
-          normal_(rows.transpose() * rows),
-          right_(rows.transpose() * out) {}
+    SideFit(const Rows<unknowns>& rows, const Eigen::VectorXd& out)
+        : rows_(rows), out_(out), normal_(rows.transpose() * rows), right_(rows.transpose() * out) {
+    }
     // What is left. slope: infinite for none.
-    double residual(double noise, double slope, Eigen::VectorXd& fit) const {
-        Eigen::MatrixXd normal = normal_;
-        const Eigen::Index last = rows_.cols() - 1;
+    double residual(double noise, double slope, Fit<unknowns>& fit) const {
+        Eigen::Matrix<double, unknowns, unknowns> normal = normal_;
+        constexpr Eigen::Index last = unknowns - 1;
         const double weight = std::isfinite(slope) ? noise * noise / (slope * slope) : 0;
         normal(last, last) += weight;
         fit = normal.ldlt().solve(right_);
@@ -100,10 +112,10 @@ class SideFit {
     }
 
   private:
-    const Eigen::MatrixXd& rows_;
+    const Rows<unknowns>& rows_;
     const Eigen::VectorXd& out_;
-    Eigen::MatrixXd normal_;
-    Eigen::VectorXd right_;
+    Eigen::Matrix<double, unknowns, unknowns> normal_;
+    Fit<unknowns> right_;
 };
 
 // Share of the side's length that has surfels above as well as below: legs under a table's edge
@@ -149,7 +161,8 @@ std::optional<SideStep> step_at(const LedgeSide& side, double height, double cel
         covered_by_both(parts, first, last, cell_m) < least_side_covered)
         return std::nullopt;
     const auto count = static_cast<Eigen::Index>(parts[0].size() + parts[1].size());
-    Eigen::MatrixXd two(count, 5), one(count, 3);
+    Rows<5> two(count, 5);
+    Rows<3> one(count, 3);
     Eigen::VectorXd out(count);
     const double middle = 0.5 * (first + last);
     Eigen::Index n = 0;
@@ -163,8 +176,10 @@ std::optional<SideStep> step_at(const LedgeSide& side, double height, double cel
         }
     }
     constexpr double any_slope = std::numeric_limits<double>::infinity();
-    const SideFit as_two(two, out), as_one(one, out);
-    Eigen::VectorXd fit, unused;
+    const SideFit<5> as_two(two, out);
+    const SideFit<3> as_one(one, out);
+    Fit<5> fit;
+    Fit<3> unused;
     const double free = as_two.residual(0, any_slope, fit);
     const double noise =
         std::max(std::sqrt(free / static_cast<double>(std::max<Eigen::Index>(count - 5, 1))),

@@ -7,13 +7,13 @@
 #include <limits>
 #include <map>
 
+#include "core/room_measures.h"
 #include "core/vectors.h"
 
 namespace topple::geometry {
 namespace {
 
-constexpr double place_m = 0.05;    // a sensor that moved by less stood still
-constexpr double farthest_m = 1e6;  // as of points: beyond, it is not metres
+constexpr double place_m = 0.05;  // a sensor that moved by less stood still
 
 double square_between(const Vec3& a, const Vec3& b) {
     const Vec3 d = minus(a, b);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <queue>
 
@@ -76,13 +77,14 @@ float SideVotes::agreement(std::size_t i, std::size_t j) const {
 
 void SideVotes::count(CubeView& view) {
     std::vector<std::int8_t> seen(s_.size(), 0);  // from its normal's side 1, from the other -1
-    for (const auto& image : view.surfel) {
-        for (const std::uint32_t i : image) {
-            if (i == CubeView::nothing || seen[i] != 0) continue;
+    pool_.each(6, 1, [&](std::size_t image) {
+        view.for_each_seen(image, [&](std::uint32_t i) {
             const double f = facing(i, view.eye);
-            if (!has_normal(i) || std::abs(f) >= vote_cos) seen[i] = f > 0 ? 1 : -1;
-        }
-    }
+            // The same in all images.
+            if (!has_normal(i) || std::abs(f) >= vote_cos)
+                std::atomic_ref(seen[i]).store(f > 0 ? 1 : -1, std::memory_order_relaxed);
+        });
+    });
     std::vector<float> share(s_.size(), 1);
     pool_.each(s_.size(), vote_chunk, [&](std::size_t i) {
         if (seen[i] == 0) return;
@@ -97,10 +99,10 @@ void SideVotes::count(CubeView& view) {
         share[i] = static_cast<float>(agree) / static_cast<float>(around);
         votes_[i] += static_cast<float>(seen[i]) * share[i] * share[i];
     });
-    for (auto& image : view.surfel) {
-        for (std::uint32_t& i : image)
+    pool_.each(6, 1, [&](std::size_t image) {
+        for (std::uint32_t& i : view.surfel[image])
             if (i != CubeView::nothing && share[i] < least_pixel_share) i = CubeView::nothing;
-    }
+    });
 }
 
 void SideVotes::agree() {

@@ -10,47 +10,63 @@ namespace {
 
 using Point = std::array<float, 3>;
 
-// Cells of a primitive that hold a point already: an open-addressed table of keys.
+// Cells that hold a point already, 4 x 4 x 4 to a word: an open-addressed table of words. Points
+// come in rows, most of them to the word of the one before.
 class Taken {
   public:
     // Whether it was not taken yet.
-    bool take(const std::array<std::int32_t, 3>& cell, std::int32_t primitive) {
-        if (2 * (count_ + 1) > keys_.size()) grow();
-        const Key key{cell[0], cell[1], cell[2], primitive};
-        Key& slot = find(key);
-        if (slot[3] >= 0) return false;
-        slot = key;
-        ++count_;
-        return true;
+    bool take(const std::array<std::int32_t, 3>& cell) {
+        const std::array<std::int32_t, 3> at{cell[0] >> 2, cell[1] >> 2, cell[2] >> 2};
+        if (count_ == 0 || at != words_[last_].at) last_ = place_of(at);
+        const std::uint64_t bit = std::uint64_t{1}
+                                  << ((cell[0] & 3) << 4 | (cell[1] & 3) << 2 | (cell[2] & 3));
+        std::uint64_t& cells = words_[last_].cells;
+        const bool is_new = (cells & bit) == 0;
+        cells |= bit;
+        return is_new;
     }
 
   private:
-    using Key = std::array<std::int32_t, 4>;  // the last, a primitive, is negative where it is free
-    Key& find(const Key& key) {
+    struct Word {
+        std::uint64_t cells = 0;  // none where the slot is free
+        std::array<std::int32_t, 3> at{};
+    };
+    // Of the word, or of the free slot that it is to have.
+    std::size_t find(const std::array<std::int32_t, 3>& at) const {
         std::uint64_t hash = 0;
-        for (const std::int32_t k : key)
+        for (const std::int32_t k : at)
             hash = (hash ^ static_cast<std::uint32_t>(k)) * 0x9e3779b97f4a7c15U;
-        std::size_t at = (hash >> 20) & (keys_.size() - 1);
-        while (keys_[at][3] >= 0 && keys_[at] != key) at = (at + 1) & (keys_.size() - 1);
-        return keys_[at];
+        const std::size_t mask = words_.size() - 1;
+        std::size_t slot = (hash >> 20) & mask;
+        while (words_[slot].cells != 0 && words_[slot].at != at) slot = (slot + 1) & mask;
+        return slot;
+    }
+    std::size_t place_of(const std::array<std::int32_t, 3>& at) {
+        if (2 * (count_ + 1) > words_.size()) grow();
+        const std::size_t slot = find(at);
+        if (words_[slot].cells == 0) {
+            ++count_;
+            words_[slot].at = at;
+        }
+        return slot;
     }
     void grow() {
-        std::vector<Key> before(std::max<std::size_t>(2 * keys_.size(), 1024), Key{0, 0, 0, -1});
-        before.swap(keys_);
-        for (const Key& key : before)
-            if (key[3] >= 0) find(key) = key;
+        std::vector<Word> before(std::max<std::size_t>(2 * words_.size(), 64));
+        before.swap(words_);
+        for (const Word& word : before)
+            if (word.cells != 0) words_[find(word.at)] = word;
     }
-    std::vector<Key> keys_;
-    std::size_t count_ = 0;
+    std::vector<Word> words_;
+    std::size_t count_ = 0, last_ = 0;
 };
 
+// Points on the triangles of one primitive.
 class Closing {
   public:
     Closing(const Surfels& surfels, double step_m)
         : s_(surfels), step_(static_cast<float>(step_m)) {}
 
-    void cover(const std::array<std::size_t, 3>& corner, std::int32_t primitive,
-               std::int32_t face) {
+    void cover(const std::array<std::size_t, 3>& corner, std::int32_t face) {
         const std::array<Point, 3> t{at(corner[0]), at(corner[1]), at(corner[2])};
         float side = 0;
         for (std::size_t n = 0; n < 3; ++n) side = std::max(side, distance(t[n], t[(n + 1) % 3]));
@@ -67,11 +83,10 @@ class Closing {
                     cell[k] = static_cast<std::int32_t>(
                         std::clamp(std::floor(p[k] / step_), -2e9F, 2e9F));
                 }
-                if (!taken_.take(cell, primitive)) continue;
+                if (!taken_.take(cell)) continue;
                 out_.x.push_back(p[0]);
                 out_.y.push_back(p[1]);
                 out_.z.push_back(p[2]);
-                out_.primitive.push_back(primitive);
                 out_.face.push_back(face);
             }
         }
@@ -81,7 +96,8 @@ class Closing {
   private:
     Point at(std::size_t n) const { return {s_.x[n], s_.y[n], s_.z[n]}; }
     static float distance(const Point& p, const Point& q) {
-        return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+        const float x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
+        return std::sqrt(x * x + y * y + z * z);
     }
     const Surfels& s_;
     float step_;
@@ -89,10 +105,9 @@ class Closing {
     GapPoints out_;
 };
 
-}  // namespace
-
-GapPoints close_gaps(const Surfels& s, std::span<const std::int32_t> face,
-                     std::span<const std::int32_t> primitive, double step_m) {
+GapPoints close_primitive(const Surfels& s, std::span<const std::int32_t> face,
+                          std::span<const std::int32_t> primitive,
+                          std::span<const std::uint32_t> members, double step_m) {
     const auto near = [&](std::size_t n) {
         return std::span(s.neighbours)
             .subspan(s.neighbour_first[n], s.neighbour_first[n + 1] - s.neighbour_first[n]);
@@ -100,20 +115,50 @@ GapPoints close_gaps(const Surfels& s, std::span<const std::int32_t> face,
     Closing closing(s, step_m);
     // What is on one face comes first.
     for (const bool one_face : {true, false}) {
-        for (std::size_t a = 0; a < s.size(); ++a) {
-            if (primitive[a] < 0) continue;
+        for (const std::uint32_t a : members) {
             for (const std::uint32_t b : near(a)) {
                 if (b <= a || primitive[b] != primitive[a]) continue;
+                if (one_face && face[a] != face[b]) continue;
                 for (const std::uint32_t c : near(b)) {
                     if (c <= b || primitive[c] != primitive[a]) continue;
                     if (one_face != (face[a] == face[b] && face[a] == face[c])) continue;
                     if (std::ranges::binary_search(near(a), c))
-                        closing.cover({a, b, c}, primitive[a], one_face ? face[a] : -1);
+                        closing.cover({a, b, c}, one_face ? face[a] : -1);
                 }
             }
         }
     }
     return closing.finish();
+}
+
+}  // namespace
+
+GapPoints close_gaps(const Surfels& s, std::span<const std::int32_t> face,
+                     std::span<const std::int32_t> primitive, double step_m, ThreadPool& pool) {
+    std::int32_t primitives = 0;
+    for (const std::int32_t p : primitive) primitives = std::max(primitives, p + 1);
+    std::vector<std::vector<std::uint32_t>> members(static_cast<std::size_t>(primitives));
+    for (std::size_t n = 0; n < s.size(); ++n)
+        if (primitive[n] >= 0)
+            members[static_cast<std::size_t>(primitive[n])].push_back(
+                static_cast<std::uint32_t>(n));
+    std::vector<GapPoints> closed(members.size());
+    pool.each(members.size(), 1, [&](std::size_t p) {
+        closed[p] = close_primitive(s, face, primitive, members[p], step_m);
+    });
+    GapPoints out;
+    const auto append = [](auto& to, const auto& from) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
+    for (std::size_t p = 0; p < closed.size(); ++p) {
+        append(out.x, closed[p].x);
+        append(out.y, closed[p].y);
+        append(out.z, closed[p].z);
+        append(out.face, closed[p].face);
+        out.primitive.resize(out.x.size(), static_cast<std::int32_t>(p));
+        closed[p] = {};
+    }
+    return out;
 }
 
 }  // namespace topple::geometry

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "core/thread_pool.h"
 #include "geometry/surfels.h"
-#include "topple/cloud_view.h"
 
 namespace topple::geometry {
 
@@ -20,8 +20,8 @@ struct GapPoints {
 
 // Over the triangles of surfels of one primitive that are neighbours of one another, so that
 // nothing goes beyond what was seen; no two in one cell of step_m. face, primitive: labels of
-// surfels, -1 for none. None where all neighbours lie within two steps.
+// surfels, -1 for none. None where all neighbours lie within two steps. By primitive, ascending.
 GapPoints close_gaps(const Surfels& surfels, std::span<const std::int32_t> face,
-                     std::span<const std::int32_t> primitive, double step_m);
+                     std::span<const std::int32_t> primitive, double step_m, ThreadPool& pool);
 
 }  // namespace topple::geometry

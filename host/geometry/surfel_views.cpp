@@ -2,10 +2,13 @@
 #include "geometry/surfel_views.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/vectors.h"
 
 namespace topple::geometry {
 namespace {
@@ -13,151 +16,142 @@ namespace {
 // Nearer than this a surfel fills the view and tells nothing.
 constexpr double nearest_cells = 1.5;
 
-// Pixels side by side are drawn at once, without branches: which of them a disc covers is no more
-// to be foreseen than which of two discs is the nearer.
-constexpr int lanes = 4;
-using Lanes [[gnu::vector_size(lanes * sizeof(double))]] = double;
-using Depths [[gnu::vector_size(lanes * sizeof(float))]] = float;
-using Marks [[gnu::vector_size(lanes * sizeof(std::int32_t))]] = std::int32_t;
-constexpr std::size_t beyond = lanes - 1;  // elements after the last that are read with it
+// A disc around p, with unit normal n, before an eye at the origin. The ray (x, y, 1) meets its
+// plane at z (x, y, 1), z = n.p / (n1 x + n2 y + n3), and the disc where that lies within the
+// radius of p. Times the denominator's square this is a quadratic in x.
+class Disc {
+  public:
+    Disc(const Vec3& n, const Vec3& p, double radius)
+        : n_(n), p_(p), offset_(dot(n, p)), beyond_(dot(p, p) - radius * radius) {}
 
-// How far the rays of the pixels of a row, or of a column, go aside for each metre along the axis.
-constexpr auto slopes = [] {
-    std::array<double, CubeView::side + beyond> of{};
-    for (std::uint32_t x = 0; x < of.size(); ++x) of[x] = (x - CubeView::centre) / CubeView::focal;
-    return of;
-}();
+    double offset() const { return offset_; }
+
+    struct Rays {
+        double first, last;
+    };
+    // Seen edge-on it has no width, of which rounding leaves anything.
+    bool edge_on() const { return std::abs(offset_) <= 1e-6 * length(p_); }
+    // The x of the rays with this y that meet the disc, all of which lies ahead of the eye.
+    std::optional<Rays> along_row(double y) const {
+        const double row = n_[1] * y + n_[2], ahead = p_[1] * y + p_[2];
+        const double a = offset_ * (offset_ - 2 * n_[0] * p_[0]) + n_[0] * n_[0] * beyond_;
+        const double b = n_[0] * row * beyond_ - offset_ * (n_[0] * ahead + row * p_[0]);
+        const double c = offset_ * (offset_ * (y * y + 1) - 2 * row * ahead) + row * row * beyond_;
+        const double square = b * b - a * c;
+        if (!(square >= 0)) return std::nullopt;
+        const double root = std::sqrt(square), middle = -b / a, to_side = root / a;
+        return Rays{middle - to_side, middle + to_side};
+    }
+
+  private:
+    Vec3 n_, p_;
+    double offset_, beyond_;
+};
 
 // One image while it is drawn.
 class Image {
   public:
     Image(const Surfels& surfels, std::span<const float> radii_m, const Vec3& eye,
           std::size_t image)
-        : s_(surfels), radii_(radii_m), eye_(eye), f_(image / 2), sign_(image % 2 == 0 ? 1 : -1) {
-        depth.assign(pixels + beyond, std::numeric_limits<float>::infinity());
-        surfel.assign(pixels + beyond, CubeView::nothing);
+        : s_(surfels),
+          radii_(radii_m),
+          eye_(eye),
+          near_(nearest_cells * surfels.cell_m),
+          f_(image / 2),
+          sign_(image % 2 == 0 ? 1 : -1) {
+        nearest_.assign(std::size_t{CubeView::side} * CubeView::side,
+                        nearness(std::numeric_limits<float>::infinity()) << 32 | CubeView::nothing);
     }
 
-    // Those that may be in the image, in their order.
-    void draw_all() {
-        constexpr std::size_t at_once = 1024;
-        std::array<std::uint32_t, at_once> within{};
-        for (std::size_t first = 0; first < s_.size(); first += at_once) {
-            const std::size_t last = std::min(first + at_once, s_.size());
-            std::size_t count = 0;
-            for (std::size_t i = first; i < last; ++i) {
-                within[count] = static_cast<std::uint32_t>(i);
-                count += may_show(place(i), radii_[i]);
-            }
-            for (std::size_t n = 0; n < count; ++n) draw(within[n]);
+    // Whether any of a patch may be in the image, and be drawn.
+    bool may_show(const SurfelViews::Patch& patch) const {
+        const Vec3 low = turned(minus(patch.low, eye_)), high = turned(minus(patch.high, eye_));
+        const double deep = std::max(low[2], high[2]), most = deep + 2 * patch.largest_radius;
+        if (!(deep > near_)) return false;
+        for (const std::size_t a : {0, 1})
+            if (std::min(low[a], high[a]) > most || std::max(low[a], high[a]) < -most) return false;
+        return true;
+    }
+
+    void draw(std::size_t i) {
+        // In the image's axes: right, down, forward.
+        const Vec3 p = turned({s_.x[i] - eye_[0], s_.y[i] - eye_[1], s_.z[i] - eye_[2]});
+        const double radius = radii_[i];
+        if (!(p[2] > std::max(near_, radius)) || std::abs(p[0]) > p[2] + 2 * radius ||
+            std::abs(p[1]) > p[2] + 2 * radius) {
+            return;
         }
-        depth.resize(pixels);
-        surfel.resize(pixels);
+        Vec3 n = turned({s_.nx[i], s_.ny[i], s_.nz[i]});
+        if (n == Vec3{}) n = {0, 0, 1};
+        const double half = CubeView::focal * radius / (p[2] - radius);
+        const double scale = CubeView::focal / p[2];
+        const double u = scale * p[0] + CubeView::centre, v = scale * p[1] + CubeView::centre;
+        const Span columns = span(u - half, u + half), rows = span(v - half, v + half);
+        const Disc disc(n, p, radius);
+        if (columns.first > columns.last || disc.edge_on()) return;
+        for (int y = rows.first; y <= rows.last; ++y) {
+            const double ry = ray(y);
+            const auto seen = disc.along_row(ry);
+            if (!seen) continue;
+            const Span row = span(pixel(seen->first), pixel(seen->last));
+            fill(row, y, n[1] * ry + n[2], n[0], disc.offset(), static_cast<std::uint32_t>(i));
+        }
     }
 
-    std::vector<float> depth;
-    std::vector<std::uint32_t> surfel;
+    void finish(std::vector<float>& depth, std::vector<std::uint32_t>& surfel) const {
+        depth.resize(nearest_.size());
+        surfel.resize(nearest_.size());
+        for (std::size_t at = 0; at < nearest_.size(); ++at) {
+            depth[at] = std::bit_cast<float>(static_cast<std::uint32_t>(nearest_[at] >> 32));
+            surfel[at] = static_cast<std::uint32_t>(nearest_[at]);
+        }
+    }
 
   private:
-    static constexpr std::size_t pixels = std::size_t{CubeView::side} * CubeView::side;
-
-    // In the image's axes: right, down, forward.
-    Vec3 place(std::size_t i) const {
-        return turned({s_.x[i] - eye_[0], s_.y[i] - eye_[1], s_.z[i] - eye_[2]});
-    }
-    bool may_show(const Vec3& p, double radius) const {
-        return bool(int{p[2] > nearest_cells * s_.cell_m} &
-                    int{!(std::abs(p[0]) > p[2] + 2 * radius)} &
-                    int{!(std::abs(p[1]) > p[2] + 2 * radius)});
-    }
-
-    void draw(std::uint32_t i) {
-        const Vec3 p = place(i);
-        const double radius = radii_[i];
-        Vec3 n = turned({s_.nx[i], s_.ny[i], s_.nz[i]});
-        const double half = CubeView::focal * radius / (p[2] - radius);
-        Span columns = span(pixel(p[0], p[2]), half), rows = span(pixel(p[1], p[2]), half);
-        if (n == Vec3{}) {
-            n = {0, 0, 1};
-        } else if (p[2] > 1.001 * radius) {
-            tighten(p, n, radius, columns, rows);
-        }
-        fill(i, p, n, radius, columns, rows);
-    }
-
+    // Numbers that ascend with positive depths; those of all others are higher.
+    static std::uint64_t nearness(float depth) { return std::bit_cast<std::uint32_t>(depth); }
     Vec3 turned(const Vec3& d) const {
         return {sign_ * d[(f_ + 1) % 3], d[(f_ + 2) % 3], sign_ * d[f_]};
     }
-    // Pixels from the first to the last.
     struct Span {
-        int first = 0, last = 0;
+        int first, last;
     };
-    static double pixel(double aside, double ahead) {
-        return CubeView::focal * aside / ahead + CubeView::centre;
-    }
-    static Span between(double low, double high) {
+    // The pixels from low to high.
+    static Span span(double low, double high) {
         const auto clip = [](double value) {
-            return static_cast<int>(std::clamp(value, -1.0, double{CubeView::side}));
+            return std::clamp(value, -1.0, double{CubeView::side});
         };
-        return {std::max(clip(std::ceil(low)), 0),
-                std::min(clip(std::floor(high)), static_cast<int>(CubeView::side) - 1)};
+        const double from = clip(low), to = clip(high);
+        const int first = static_cast<int>(from), last = static_cast<int>(to);
+        return {std::max(first + (first < from), 0),
+                std::min(last - (last > to), static_cast<int>(CubeView::side) - 1)};
     }
-    static Span span(double middle, double half) { return between(middle - half, middle + half); }
+    // Between a column or row and the slope of its ray.
+    static double ray(int pixel) { return (pixel - CubeView::centre) / CubeView::focal; }
+    static double pixel(double ray) { return CubeView::focal * ray + CubeView::centre; }
 
-    // Leaves out pixels that look past the box around a disc, which is as flat as that is. Wider
-    // than all that rounding does.
-    static void tighten(const Vec3& p, const Vec3& n, double radius, Span& columns, Span& rows) {
-        const double square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-        Vec3 reach{};
-        for (std::size_t a = 0; a < 3; ++a)
-            reach[a] = radius * (std::sqrt(std::max(0.0, 1 - n[a] * n[a] / square)) + 1e-6);
-        const double front = p[2] - reach[2], back = p[2] + reach[2];
-        const auto narrow = [&](std::size_t a, Span& to) {
-            const double low = p[a] - reach[a], high = p[a] + reach[a];
-            const Span box =
-                between(pixel(low, low > 0 ? back : front), pixel(high, high > 0 ? front : back));
-            to = {std::max(to.first, box.first), std::min(to.last, box.last)};
-        };
-        narrow(0, columns);
-        narrow(1, rows);
-    }
-
-    // Pixels whose rays meet the disc nearer than all discs before it.
-    void fill(std::uint32_t i, const Vec3& p, const Vec3& n, double radius, const Span& columns,
-              const Span& rows) {
-        const double offset = n[0] * p[0] + n[1] * p[1] + n[2] * p[2], most = radius * radius;
-        constexpr Marks places{0, 1, 2, 3};
-        for (int y = rows.first; y <= rows.last; ++y) {
-            const double ry = slopes[static_cast<std::size_t>(y)], n_down = n[1] * ry;
-            for (int x = columns.first; x <= columns.last; x += lanes) {
-                const auto column = static_cast<std::size_t>(x),
-                           at = static_cast<std::size_t>(y) * CubeView::side + column;
-                Lanes rx;
-                Depths there;
-                Marks before;
-                std::memcpy(&rx, &slopes[column], sizeof(rx));
-                std::memcpy(&there, &depth[at], sizeof(there));
-                std::memcpy(&before, &surfel[at], sizeof(before));
-                const Lanes z = offset / (n[0] * rx + n_down + n[2]);
-                const Lanes dx = z * rx - p[0], dy = z * ry - p[1], dz = z - p[2];
-                // Seen edge-on, a disc has no width: z is not finite, or far off.
-                const auto meets = dx * dx + dy * dy + dz * dz <= most;
-                const auto here = __builtin_convertvector(z, Depths);
-                const Marks nearer = __builtin_convertvector(meets, Marks) & (here < there) &
-                                     (places <= columns.last - x);
-                const Depths nearest = nearer ? here : there;
-                const Marks shown = nearer ? static_cast<std::int32_t>(i) + Marks{} : before;
-                std::memcpy(&depth[at], &nearest, sizeof(nearest));
-                std::memcpy(&surfel[at], &shown, sizeof(shown));
-            }
+    // Columns of a row, where the surfel's plane lies at offset / (row + across * ray).
+    void fill(const Span& columns, int y, double row, double across, double offset,
+              std::uint32_t i) {
+        std::uint64_t* const nearest = &nearest_[static_cast<std::size_t>(y) * CubeView::side];
+        const double per_column = across / CubeView::focal;
+        const double from = row - CubeView::centre * per_column;
+        const auto ahead = static_cast<float>(offset);
+        for (int x = columns.first; x <= columns.last; ++x) {
+            const float z = ahead / static_cast<float>(from + per_column * x);
+            nearest[x] = std::min(nearest[x], nearness(z) << 32 | i);
         }
     }
 
     const Surfels& s_;
     std::span<const float> radii_;
     Vec3 eye_;
+    double near_;
     std::size_t f_;
     double sign_;
+    // Of each pixel the nearness of what is nearest, and below it the surfel, of several the first:
+    // which of two is nearer no branch foretells.
+    std::vector<std::uint64_t> nearest_;
 };
 
 }  // namespace
@@ -168,11 +162,11 @@ CubeView::Pixel CubeView::pixel_of(std::size_t image, const Vec3& point) const {
     Pixel out;
     out.depth = sign * (point[f] - eye[f]);
     if (!(out.depth > 0)) return out;
-    const double u = focal * sign * (point[(f + 1) % 3] - eye[(f + 1) % 3]) / out.depth + centre;
-    const double v = focal * (point[(f + 2) % 3] - eye[(f + 2) % 3]) / out.depth + centre;
-    constexpr double rim = 0.5, far_rim = side - 0.5;
-    out.inside = u > -rim && v > -rim && u < far_rim && v < far_rim;
-    if (out.inside) out.index = std::size_t{nearest_index(v)} * side + nearest_index(u);
+    const double scale = focal / out.depth, to_nearest = centre + 0.5;
+    const double u = scale * sign * (point[(f + 1) % 3] - eye[(f + 1) % 3]) + to_nearest;
+    const double v = scale * (point[(f + 2) % 3] - eye[(f + 2) % 3]) + to_nearest;
+    out.inside = u >= 0 && v >= 0 && u < side && v < side;
+    if (out.inside) out.index = static_cast<std::size_t>(v) * side + static_cast<std::size_t>(u);
     return out;
 }
 
@@ -198,17 +192,35 @@ Mat4 CubeView::pose(std::size_t image) const {
     return m;
 }
 
-CubeView view_surfels(const Surfels& surfels, std::span<const float> radii_m, const Vec3& eye,
-                      ThreadPool& pool) {
+SurfelViews::SurfelViews(const Surfels& surfels, std::vector<float> radii_m, ThreadPool& pool)
+    : s_(surfels), radii_(std::move(radii_m)), pool_(pool) {
+    for (std::size_t first = 0; first < s_.size(); first += patch_size) {
+        constexpr double infinite = std::numeric_limits<double>::infinity();
+        Patch patch{{infinite, infinite, infinite}, {-infinite, -infinite, -infinite}, 0};
+        for (std::size_t i = first; i < std::min(first + patch_size, s_.size()); ++i) {
+            const Vec3 at{s_.x[i], s_.y[i], s_.z[i]};
+            for (std::size_t a = 0; a < 3; ++a) {
+                patch.low[a] = std::min(patch.low[a], at[a]);
+                patch.high[a] = std::max(patch.high[a], at[a]);
+            }
+            patch.largest_radius = std::max(patch.largest_radius, double{radii_[i]});
+        }
+        patches_.push_back(patch);
+    }
+}
+
+CubeView SurfelViews::from(const Vec3& eye) const {
     CubeView view;
     view.eye = eye;
-    pool.run(6, 1, [&](std::uint64_t first, std::uint64_t last) {
-        for (std::uint64_t k = first; k < last; ++k) {
-            Image image(surfels, radii_m, eye, static_cast<std::size_t>(k));
-            image.draw_all();
-            view.depth[k] = std::move(image.depth);
-            view.surfel[k] = std::move(image.surfel);
+    pool_.each(6, 1, [&](std::size_t k) {
+        Image image(s_, radii_, eye, k);
+        for (std::size_t p = 0; p < patches_.size(); ++p) {
+            if (!image.may_show(patches_[p])) continue;
+            const std::size_t first = p * patch_size;
+            for (std::size_t i = first; i < std::min(first + patch_size, s_.size()); ++i)
+                image.draw(i);
         }
+        image.finish(view.depth[k], view.surfel[k]);
     });
     return view;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -11,12 +10,6 @@
 #include "geometry/surfels.h"
 
 namespace topple::geometry {
-
-// A value above -0.5 rounded as std::round() does, which is a call.
-inline std::uint32_t nearest_index(double value) {
-    const auto whole = static_cast<std::uint32_t>(std::max(value, 0.0));
-    return whole + (value - whole >= 0.5);
-}
 
 // What is seen from one place in all directions: six square images of 90 degrees, along +x, -x, +y,
 // -y, +z, -z of the input's frame. Image 2 f + s looks along axis f (negative for s = 1); its
@@ -42,11 +35,37 @@ struct CubeView {
     std::size_t image_of(const Vec3& point) const;
     // Camera to world of one image; x right, y down, z forward.
     Mat4 pose(std::size_t image) const;
+    // Calls visit(i) for the surfels of one image, again only where another one lies between.
+    template <class Visit>
+    void for_each_seen(std::size_t image, const Visit& visit) const {
+        std::uint32_t last = nothing;
+        for (const std::uint32_t i : surfel[image]) {
+            if (i != last && i != nothing) visit(i);
+            last = i;
+        }
+    }
 };
 
 // Draws surfels as discs in their planes, of the given radii (covering_radii()); those without a
 // normal as discs across the line of sight.
-CubeView view_surfels(const Surfels& surfels, std::span<const float> radii_m, const Vec3& eye,
-                      ThreadPool& pool);
+class SurfelViews {
+  public:
+    SurfelViews(const Surfels& surfels, std::vector<float> radii_m, ThreadPool& pool);
+    CubeView from(const Vec3& eye) const;
+
+    // Surfels that follow one another, and so lie together: many are out of an image at once.
+    struct Patch {
+        Vec3 low, high;  // of their middles
+        double largest_radius;
+    };
+
+  private:
+    static constexpr std::size_t patch_size = 64;
+
+    const Surfels& s_;
+    std::vector<float> radii_;
+    ThreadPool& pool_;
+    std::vector<Patch> patches_;
+};
 
 }  // namespace topple::geometry

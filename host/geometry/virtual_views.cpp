@@ -36,12 +36,14 @@ constexpr double least_seen = 0.5, roomy_m = 0.75;
 // A large room, and how many of them are looked at.
 constexpr double room_m3 = 200, most_rooms = 30;
 
+constexpr std::uint64_t place_chunk = 256;  // handed to a thread at once
+
 class Looking {
   public:
     Looking(const Surfels& surfels, const VirtualViewOptions& options, ThreadPool& pool)
         : s_(surfels),
           pool_(pool),
-          radii_(covering_radii(surfels, options.gap_m, pool)),
+          views_(surfels, covering_radii(surfels, options.gap_m, pool), pool),
           places_(surfels),
           sides_(surfels, pool),
           in_view_(places_.size(), 0) {
@@ -62,7 +64,7 @@ class Looking {
     void look_around(const VirtualViewOptions& options) {
         std::size_t said = 0, hidden = 0;
         for (std::size_t e = 0; e < options.known_eyes.size(); ++e) {
-            CubeView view = view_from(options.known_eyes[e]);
+            CubeView view = views_.from(options.known_eyes[e]);
             for (std::size_t i = 0; i < options.seen_from.size(); ++i) {
                 if (options.seen_from[i] != e) continue;
                 ++said;
@@ -100,7 +102,6 @@ class Looking {
     }
 
   private:
-    CubeView view_from(const Vec3& eye) const { return view_surfels(s_, radii_, eye, pool_); }
     // As many rooms as the scene has room for.
     std::size_t rooms() const {
         const double count = std::round(places_.volume_m3() / room_m3);
@@ -122,10 +123,8 @@ class Looking {
     // Share of all surfels that are seen: little from within a box.
     double share_seen(const CubeView& view) const {
         std::vector<bool> seen(s_.size());
-        for (const auto& image : view.surfel) {
-            for (const std::uint32_t i : image)
-                if (i != CubeView::nothing) seen[i] = true;
-        }
+        for (std::size_t image = 0; image < 6; ++image)
+            view.for_each_seen(image, [&](std::uint32_t i) { seen[i] = true; });
         return static_cast<double>(std::ranges::count(seen, true)) / static_cast<double>(s_.size());
     }
 
@@ -134,7 +133,7 @@ class Looking {
         while (out_.eyes.size() < eyes) {
             const std::size_t place = places_.choose_free();
             if (place == places_.size()) break;
-            look(view_from(places_.middle(place)));
+            look(views_.from(places_.middle(place)));
         }
     }
 
@@ -145,7 +144,7 @@ class Looking {
         for (unsigned n = 0; n < most_closed; ++n) {
             const std::size_t place = places_.choose_closed(roomy_m);
             if (place == places_.size()) return;
-            const CubeView view = view_from(places_.middle(place));
+            const CubeView view = views_.from(places_.middle(place));
             pass_over_seen(view, place);
             if (share_behind(view) > most_behind) continue;
             look(view);
@@ -162,7 +161,7 @@ class Looking {
             const std::size_t place =
                 places_.choose_outside([&](std::size_t p) { return in_view_[p] > most; });
             if (place == places_.size()) return;
-            look(view_from(places_.middle(place)));
+            look(views_.from(places_.middle(place)));
         }
     }
 
@@ -188,7 +187,7 @@ class Looking {
             const auto best = std::ranges::max_element(facing_it);
             if (*best == 0) return;
             const std::size_t place = static_cast<std::size_t>(best - facing_it.begin()) * stride;
-            look(view_from(places_.middle(place)));
+            look(views_.from(places_.middle(place)));
             std::size_t left = 0;
             for (const std::size_t i : unseen) left += out_.viewpoint_of_surfel[i] == no_eye;
             const double gain = static_cast<double>(unseen.size() - left);
@@ -231,7 +230,7 @@ class Looking {
         for (unsigned n = 0; n < first_tries; ++n) {
             const std::size_t place = places_.choose_first();
             if (place == places_.size()) break;
-            CubeView view = view_from(places_.middle(place));
+            CubeView view = views_.from(places_.middle(place));
             const double share = share_seen(view);
             const bool fits = sides_known
                                   ? share_facing(view) >= least_facing
@@ -253,21 +252,18 @@ class Looking {
         if (!sides_known_) sides_.count(view);
         const auto eye = static_cast<std::uint32_t>(out_.eyes.size());
         out_.eyes.push_back(view.eye);
-        for (const auto& image : view.surfel) {
-            std::uint32_t last = CubeView::nothing;  // a surfel fills several pixels
-            for (const std::uint32_t i : image) {
-                if (i == CubeView::nothing || i == last || out_.viewpoint_of_surfel[i] != no_eye)
-                    continue;
-                last = i;
+        for (std::size_t image = 0; image < 6; ++image) {
+            view.for_each_seen(image, [&](std::uint32_t i) {
+                if (out_.viewpoint_of_surfel[i] != no_eye) return;
                 const double f = sides_.facing(i, view.eye);
-                if (sides_.has_normal(i) && std::abs(f) < seen_cos) continue;
+                if (sides_.has_normal(i) && std::abs(f) < seen_cos) return;
                 if (sides_.side(i) == 0) sides_.face(i, f);
                 if (sides_.side(i) * f >= 0) out_.viewpoint_of_surfel[i] = eye;
-            }
+            });
         }
-        for (std::size_t p = 0; p < places_.size(); ++p) look_at_place(view, p);
+        pool_.each(places_.size(), place_chunk, [&](std::size_t p) { look_at_place(view, p); });
         places_.leave_out(view.eye);
-        for (std::size_t image = 0; image < 6; ++image) add_frame(view, image);
+        add_frames(view);
     }
 
     void look_at_place(const CubeView& view, std::size_t p) {
@@ -280,21 +276,27 @@ class Looking {
         if (!free && sees_through(view, image, pixel)) places_.set_free(p);
     }
 
-    void add_frame(CubeView& view, std::size_t image) {
-        DepthFrame frame;
-        frame.camera_to_world = view.pose(image);
-        frame.depth.assign(view.depth[image].size(), 0);
-        bool any = false;
-        for (std::size_t at = 0; at < frame.depth.size(); ++at) {
-            if (view.surfel[image][at] == CubeView::nothing) continue;
-            const double steps = view.depth[image][at] * out_.intrinsics.depth_scale;
-            if (!(steps < 65535.5)) continue;
-            frame.depth[at] = static_cast<std::uint16_t>(std::max(nearest_index(steps), 1u));
-            any = true;
+    void add_frames(CubeView& view) {
+        std::array<DepthFrame, 6> frames;
+        std::array<bool, 6> any{};
+        pool_.each(6, 1, [&](std::size_t image) {
+            DepthFrame& frame = frames[image];
+            frame.camera_to_world = view.pose(image);
+            frame.depth.assign(view.depth[image].size(), 0);
+            for (std::size_t at = 0; at < frame.depth.size(); ++at) {
+                if (view.surfel[image][at] == CubeView::nothing) continue;
+                // To the nearest; depths are positive.
+                const double stored = view.depth[image][at] * out_.intrinsics.depth_scale + 0.5;
+                if (!(stored < 65536)) continue;
+                frame.depth[at] = static_cast<std::uint16_t>(std::max(stored, 1.0));
+                any[image] = true;
+            }
+        });
+        for (std::size_t image = 0; image < 6; ++image) {
+            if (!any[image]) continue;
+            out_.frames.push_back(std::move(frames[image]));
+            shown_.push_back(std::move(view.surfel[image]));
         }
-        if (!any) return;
-        out_.frames.push_back(std::move(frame));
-        shown_.push_back(std::move(view.surfel[image]));
     }
 
     void agree_on_sides() {
@@ -313,7 +315,7 @@ class Looking {
         pool_.each(out_.frames.size(), 1, [&](std::size_t f) {
             DepthFrame& frame = out_.frames[f];
             const Mat4& m = frame.camera_to_world;
-            std::uint32_t last = CubeView::nothing;  // a surfel fills several pixels
+            std::uint32_t last = CubeView::nothing;
             bool behind = false;
             for (std::size_t at = 0; at < frame.depth.size(); ++at) {
                 if (frame.depth[at] == 0) continue;
@@ -362,9 +364,8 @@ class Looking {
             for (const double right : {-rim, 0.0, rim}) {
                 const std::size_t n = at(row, down) * CubeView::side + at(column, right);
                 const std::uint32_t i = view.surfel[image][n];
-                if (i != CubeView::nothing &&
-                    (sides_.from_behind(i, view.eye) ||
-                     pixel.depth + places_.cell_m() >= view.depth[image][n]))
+                if (i != CubeView::nothing && (sides_.from_behind(i, view.eye) ||
+                                 pixel.depth + places_.cell_m() >= view.depth[image][n]))
                     return false;
             }
         }
@@ -395,7 +396,7 @@ class Looking {
 
     const Surfels& s_;
     ThreadPool& pool_;
-    std::vector<float> radii_;  // of the surfels as discs
+    SurfelViews views_;
     FreePlaces places_;
     SideVotes sides_;
     bool sides_known_ = false;

@@ -2,24 +2,27 @@
 #include "graph/outline.h"
 
 #include <algorithm>
-#include <map>
+#include <utility>
 
 #include "physics/tipping.h"
 
 namespace topple::graph {
 
-Outline outline_of(const std::vector<BorderPoint>& points) {
-    std::map<std::array<double, 2>, double> error;
+Outline outline_of(std::vector<BorderPoint> points) {
+    // Of several at one place the best known one.
+    const auto at = [](const BorderPoint& p) { return std::pair(p.at, p.error_m); };
+    std::ranges::sort(points, {}, at);
+    const auto rest = std::ranges::unique(points, {}, &BorderPoint::at);
+    points.erase(rest.begin(), rest.end());
     std::vector<std::array<double, 2>> places;
-    for (const BorderPoint& p : points) {
-        const auto [at, added] = error.emplace(p.at, p.error_m);
-        if (!added) at->second = std::min(at->second, p.error_m);
-        if (added) places.push_back(p.at);
-    }
+    places.reserve(points.size());
+    for (const BorderPoint& p : points) places.push_back(p.at);
     Outline out;
     out.polygon = physics::convex_polygon(std::move(places));
-    for (const auto& corner : out.polygon)
-        out.error_m += error[corner] / static_cast<double>(out.polygon.size());
+    for (const auto& corner : out.polygon) {
+        const auto found = std::ranges::lower_bound(points, corner, {}, &BorderPoint::at);
+        out.error_m += found->error_m / static_cast<double>(out.polygon.size());
+    }
     return out;
 }
 

@@ -18,7 +18,7 @@ struct Outline {
     std::vector<std::array<double, 2>> polygon;
     double error_m = 0;
 };
-Outline outline_of(const std::vector<BorderPoint>& points);
+Outline outline_of(std::vector<BorderPoint> points);
 
 void add_points(const std::vector<std::array<double, 2>>& polygon, double error_m,
                 std::vector<BorderPoint>& points);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <new>
 
+#include "core/room_measures.h"
 #include "io/text.h"
 
 namespace topple::io {

@@ -58,10 +58,7 @@ class CloudBuilder {
     std::uint64_t seen_ = 0;
 };
 
-// Farther from the origin than this, a room is not described in metres: at 1e6 a float resolves 6
-// cm.
-inline constexpr double farthest_m = 1e6;
-// What is wrong with point number `index` then, and what mends it.
+// What is wrong with point number `index`, beyond farthest_m, and what mends it.
 std::string too_far(std::uint64_t index, double coordinate);
 
 // Notes in the cloud what looks odd about its extent or its place.

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/json.h"
+#include "core/room_measures.h"
 #include "io/corrections_json.h"
 #include "io/json_text.h"
 #include "io/text.h"
@@ -16,7 +17,7 @@ using Kind = Correction::Kind;
 constexpr const char* corrections_schema = "topple.corrections/1";
 constexpr std::uint64_t largest_corrections_bytes = 10'000'000;
 constexpr std::size_t most_corrections = 1000, most_spots = 100, longest_name = 200;
-constexpr double farthest_m = 1e6, thickest_m = 10, heaviest_kg = 1e6;
+constexpr double thickest_m = 10, heaviest_kg = 1e6;
 
 std::string which(std::size_t n) {
     return "correction " + std::to_string(n + 1);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/cloud_builder.h"
+#include "core/room_measures.h"
 #include "io/text.h"
 
 namespace topple::io {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/room_measures.h"
 #include "io/cloud_builder.h"
 #include "io/text.h"
 #include "topple/error.h"
@@ -49,9 +50,9 @@ void check_image(const CloudView& view) {
 void check_viewpoint(const CloudView& view) {
     if (!view.has_viewpoint) return;
     for (const double value : view.viewpoint) {
-        if (!(std::abs(value) <= io::farthest_m))
+        if (!(std::abs(value) <= farthest_m))
             refuse(view, "its viewpoint has a coordinate of " + io::short_number(value) +
-                             "; expected metres up to " + io::short_number(io::farthest_m) +
+                             "; expected metres up to " + io::short_number(farthest_m) +
                              ", or none");
     }
 }
@@ -101,7 +102,7 @@ bool all_finite(const CloudView& view) {
             continue;
         }
         for (const float v : {view.x[i], view.y[i], view.z[i]}) {
-            if (std::abs(v) > io::farthest_m) refuse(view, io::too_far(i, v));
+            if (std::abs(v) > farthest_m) refuse(view, io::too_far(i, v));
         }
     }
     for (std::size_t i = 0; all && i < view.nx.size(); ++i)

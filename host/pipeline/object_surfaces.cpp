@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <thread>
@@ -51,21 +52,24 @@ std::vector<std::span<const solids::ObjectVoxel>> by_object(
     return out;
 }
 
-// Threads for work on all objects. Large ones, as the building is, share out their own, and
-// meanwhile small ones are worked on side by side: what a large one does on one thread holds up
-// nobody.
+// Threads for work on all objects. These are worked on side by side, the largest first. Those that
+// are more than a thread's share of all, as the building may be, share out their own work
+// meanwhile: what such a one does on one thread holds up nobody.
 class ObjectPools {
   public:
     explicit ObjectPools(unsigned threads)
-        : both_(std::min(threads, 2U)), within_(threads), beside_(threads) {}
+        : threads_(threads), both_(std::min(threads, 2U)), within_(threads), beside_(threads) {}
 
     // Calls what(n, pool) for each object.
     template <class What>
     void each(std::span<const std::span<const solids::ObjectVoxel>> objects, const What& what) {
-        constexpr std::size_t least = 50'000;  // voxels
+        std::size_t all = 0;
+        for (const auto& object : objects) all += object.size();
         std::vector<std::size_t> large, small;
         for (std::size_t n = 0; n < objects.size(); ++n)
-            (objects[n].size() < least ? small : large).push_back(n);
+            (objects[n].size() <= all / threads_ ? small : large).push_back(n);
+        const auto voxels = [&](std::size_t n) { return objects[n].size(); };
+        std::ranges::stable_sort(small, std::greater{}, voxels);
         both_.each(2, 1, [&](std::size_t which) {
             if (which == 0) {
                 for (const std::size_t n : large) what(n, within_);
@@ -81,6 +85,7 @@ class ObjectPools {
     ThreadPool& all() { return beside_; }
 
   private:
+    unsigned threads_;
     ThreadPool both_, within_, beside_;
 };
 

@@ -21,7 +21,7 @@ namespace topple {
 namespace {
 
 // Frames are carved in batches of this many bytes of depth, so that any number of them fits.
-constexpr std::uint64_t batch_bytes = 16u << 20;
+constexpr std::uint64_t batch_bytes = 64u << 20;
 
 // The solids among so many primitives, by their voxels, numbered in their order.
 std::vector<std::int32_t> solid_numbers(const SolidCells& cells, std::size_t primitives) {
@@ -191,7 +191,7 @@ bool carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScen
     const Intrinsics& k = frames.intrinsics();
     const std::uint64_t frame_bytes = std::uint64_t{2} * k.width * k.height;
     const std::size_t per_batch =
-        static_cast<std::size_t>(std::clamp<std::uint64_t>(batch_bytes / frame_bytes, 1, 64));
+        static_cast<std::size_t>(std::clamp<std::uint64_t>(batch_bytes / frame_bytes, 1, 512));
     std::vector<DepthFrame> batch;
     for_each_frame(frames, device.threads(), [&](DepthFrame frame, std::size_t f) {
         batch.push_back(std::move(frame));
@@ -293,7 +293,7 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, const Geom
         // Larger voxels close gaps by themselves.
         if (voxel_m < closing_cells * std::max(input.cell_m, input.sparse_cell_m))
             gaps = geometry::close_gaps(geometry.surfels, geometry.primitives.faces.label,
-                                        geometry.primitives.label, voxel_m / 2);
+                                        geometry.primitives.label, voxel_m / 2, device.threads());
         if (gaps.size() == 0) {
             out.scene =
                 std::make_shared<vdb::VoxelScene>(frame, input.cloud, geometry.primitive_of_point);

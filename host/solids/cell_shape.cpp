@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+#include <boost/container/static_vector.hpp>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -178,7 +179,7 @@ class Part {
     Vec3 low_;
     double edge_;
     std::vector<Vec3>& out_;
-    std::vector<const SurfacePatch*> patches_;
+    boost::container::static_vector<const SurfacePatch*, BoundaryCells::slots> patches_;
 };
 
 // The patch that bounds a voxel from below, if one does.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -57,27 +58,42 @@ std::vector<Edge> curved_edges(const SurfaceMesh& mesh, std::span<const SurfaceP
 // The new vertex in the middle of each triangle's edges.
 using Middles = std::vector<std::array<std::uint32_t, 3>>;
 
-Middles add_middles(SurfaceMesh& mesh, std::span<const SurfacePatch> patches, double voxel_m) {
+// On the patches of two triangles, where their edge is to be split; none where it is straight.
+std::optional<Vec3> bent_middle(const SurfaceMesh& mesh, const Edge& one, const Edge& other,
+                                std::span<const SurfacePatch> patches, double voxel_m,
+                                MeetingPoint& meet) {
     constexpr double tolerance = 0.01;  // of a voxel
     constexpr double furthest = 0.4;    // of the edge: what bends more is no arc
-    MeetingPoint meet(patches, voxel_m);
+    const Facet &f = mesh.facet[one.triangle], &g = mesh.facet[other.triangle];
+    if (f.patch == no_patch || g.patch == no_patch ||
+        (!is_curved(f, patches) && !is_curved(g, patches)))
+        return std::nullopt;
+    const Vec3 &a = mesh.vertex[one.low], &b = mesh.vertex[one.high];
+    const Vec3 middle{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
+    const std::array of{std::min(f.patch, g.patch), std::max(f.patch, g.patch)};
+    const Vec3 on = meet(std::span(of).first(f.patch == g.patch ? 1 : 2), middle, middle);
+    const double off = length(minus(on, middle));
+    if (!(off > tolerance * voxel_m) || off > furthest * length(minus(a, b))) return std::nullopt;
+    return on;
+}
+
+Middles add_middles(SurfaceMesh& mesh, std::span<const SurfacePatch> patches, double voxel_m,
+                    ThreadPool& pool) {
+    constexpr std::uint64_t chunk = 1 << 11;  // edges handed to a thread at once
     const std::vector<Edge> edges = curved_edges(mesh, patches);
+    std::vector<std::optional<Vec3>> on(edges.size() / 2);
+    pool.run(on.size(), chunk, [&](std::uint64_t first, std::uint64_t last) {
+        MeetingPoint meet(patches, voxel_m);
+        for (std::uint64_t n = first; n < last; ++n)
+            on[n] = bent_middle(mesh, edges[2 * n], edges[2 * n + 1], patches, voxel_m, meet);
+    });
     Middles out(mesh.triangle.size(), {no_vertex, no_vertex, no_vertex});
-    for (std::size_t n = 0; n + 1 < edges.size(); n += 2) {
-        const Edge &one = edges[n], &other = edges[n + 1];
-        const Facet &f = mesh.facet[one.triangle], &g = mesh.facet[other.triangle];
-        if (f.patch == no_patch || g.patch == no_patch ||
-            (!is_curved(f, patches) && !is_curved(g, patches)))
-            continue;
-        const Vec3 &a = mesh.vertex[one.low], &b = mesh.vertex[one.high];
-        const Vec3 middle{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
-        const std::array of{std::min(f.patch, g.patch), std::max(f.patch, g.patch)};
-        const Vec3 on = meet(std::span(of).first(f.patch == g.patch ? 1 : 2), middle, middle);
-        const double off = length(minus(on, middle));
-        if (!(off > tolerance * voxel_m) || off > furthest * length(minus(a, b))) continue;
+    for (std::size_t n = 0; n < on.size(); ++n) {
+        if (!on[n]) continue;
+        const Edge &one = edges[2 * n], &other = edges[2 * n + 1];
         out[one.triangle][one.slot] = out[other.triangle][other.slot] =
             static_cast<std::uint32_t>(mesh.vertex.size());
-        mesh.vertex.push_back(on);
+        mesh.vertex.push_back(*on[n]);
         mesh.corner.push_back(mesh.corner[one.low]);
     }
     return out;
@@ -114,10 +130,11 @@ void split(std::size_t t, const std::array<std::uint32_t, 3>& middle, SurfaceMes
 
 }  // namespace
 
-void refine(SurfaceMesh& mesh, std::span<const SurfacePatch> patches, double voxel_m) {
+void refine(SurfaceMesh& mesh, std::span<const SurfacePatch> patches, double voxel_m,
+            ThreadPool& pool) {
     constexpr int rounds = 2;  // a voxel's edge in four
     for (int round = 0; round < rounds; ++round) {
-        const Middles middles = add_middles(mesh, patches, voxel_m);
+        const Middles middles = add_middles(mesh, patches, voxel_m, pool);
         for (std::size_t t = 0; t < middles.size(); ++t) split(t, middles[t], mesh);
     }
 }

@@ -85,7 +85,7 @@ SurfaceMesh surface_mesh(std::span<const ObjectVoxel> voxels, const BoundaryCell
     out.corner = std::move(surface.corner);
     Triangles triangles(boundary.patches, out);
     for (std::size_t f = 0; f < surface.face.size(); ++f) triangles.add(surface.face[f], facet[f]);
-    refine(out, boundary.patches, voxel_m);
+    refine(out, boundary.patches, voxel_m, pool);
     return out;
 }
 

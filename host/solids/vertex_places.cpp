@@ -15,7 +15,8 @@ namespace {
 // How far from its corner a vertex of which not all patches are known goes along each axis; along
 // one in which there is but one voxel, so that sticks and boards don't wither.
 constexpr double farthest_unknown = 0.4, farthest_thin = 0.15;
-constexpr double place_slack = 0.002;  // what is no further outside is not
+constexpr double place_slack = 0.002;     // what is no further outside is not
+constexpr std::uint64_t chunk = 1 << 11;  // vertices handed to a thread at once
 
 // The faces at each vertex, in rows.
 struct VertexFaces {
@@ -56,13 +57,12 @@ class Places {
           open_(voxels.size(), 0) {}
 
     std::vector<Vec3> find(ThreadPool& pool) {
-        constexpr std::uint64_t chunk = 1 << 11;
         std::vector<Vec3> at(surface_.corner.size());
         pool.run(at.size(), chunk, [&](std::uint64_t first, std::uint64_t last) {
             Scratch scratch{MeetingPoint(patches_, h_)};
             for (std::uint64_t v = first; v < last; ++v) at[v] = place(v, corner(v), scratch);
         });
-        smooth(at);
+        smooth(at, pool);
         pool.run(at.size(), chunk, [&](std::uint64_t first, std::uint64_t last) {
             Scratch scratch{MeetingPoint(patches_, h_)};
             for (std::uint64_t v = first; v < last; ++v)
@@ -152,15 +152,17 @@ class Places {
     // Taubin's smoothing of the vertices that are not known: steps towards the mean of their
     // neighbours, and away from it, so that nothing shrinks much. What lies on patches moves along
     // the edge where these end, between neighbours that lie on them, too.
-    void smooth(std::vector<Vec3>& at) {
+    void smooth(std::vector<Vec3>& at, ThreadPool& pool) {
         constexpr int rounds = 10;
         constexpr double towards = 0.5, away = -0.53;
-        find_beside();
+        find_beside(pool);
         std::vector<Vec3> next(beside_.size());
         for (int round = 0; round < 2 * rounds; ++round) {
             const double share = round % 2 ? away : towards;
-            for (std::size_t n = 0; n < beside_.size(); ++n) next[n] = moved(beside_[n], share, at);
-            for (std::size_t n = 0; n < beside_.size(); ++n) at[beside_[n].vertex] = next[n];
+            pool.each(beside_.size(), chunk,
+                      [&](std::size_t n) { next[n] = moved(beside_[n], share, at); });
+            pool.each(beside_.size(), chunk,
+                      [&](std::size_t n) { at[beside_[n].vertex] = next[n]; });
         }
     }
     // What a vertex that is not known is drawn to.
@@ -178,33 +180,57 @@ class Places {
         }
         return out;
     }
-    void find_beside() {
+    // By vertex, those with two neighbours or more.
+    void find_beside(ThreadPool& pool) {
         for (const VoxelFace& face : surface_.face)
             open_[face.voxel] |= static_cast<std::uint8_t>(1U << face.direction);
-        std::vector<std::uint32_t> own, others, found;
-        for (std::uint32_t v = 0; v < known_.size(); ++v) {
-            if (known_[v]) continue;
-            found.clear();
-            for (const std::uint32_t f : faces_.of(v)) {
-                const auto& vertex = surface_.face[f].vertex;
-                const auto slot =
-                    static_cast<std::size_t>(std::ranges::find(vertex, v) - vertex.begin());
-                found.push_back(vertex[(slot + 1) % 4]);
-                found.push_back(vertex[(slot + 3) % 4]);
+        struct Part {
+            std::vector<Beside> beside;
+            std::vector<std::uint32_t> neighbours;
+        };
+        std::vector<Part> parts((known_.size() + chunk - 1) / chunk);
+        pool.each(parts.size(), 1, [&](std::size_t p) {
+            const auto end = std::min((p + 1) * chunk, known_.size());
+            std::vector<std::uint32_t> own, others, found;
+            for (std::size_t at = p * chunk; at < end; ++at) {
+                if (known_[at]) continue;
+                const auto v = static_cast<std::uint32_t>(at);
+                find_neighbours(v, own, others, found);
+                if (found.size() < 2) continue;
+                Part& part = parts[p];
+                part.beside.push_back({v, static_cast<std::uint32_t>(found.size()),
+                                       part.neighbours.size(), reach_of(v)});
+                part.neighbours.insert(part.neighbours.end(), found.begin(), found.end());
             }
-            make_unique(found);
-            find_patches(v, own);
-            if (!own.empty()) {
-                std::erase_if(found, [&](std::uint32_t u) {
-                    find_patches(u, others);
-                    return known_[u] || !std::ranges::includes(others, own);
-                });
+        });
+        for (const Part& part : parts) {
+            for (Beside b : part.beside) {
+                b.first += neighbours_.size();
+                beside_.push_back(b);
             }
-            if (found.size() < 2) continue;
-            beside_.push_back(
-                {v, static_cast<std::uint32_t>(found.size()), neighbours_.size(), reach_of(v)});
-            neighbours_.insert(neighbours_.end(), found.begin(), found.end());
+            neighbours_.insert(neighbours_.end(), part.neighbours.begin(), part.neighbours.end());
         }
+    }
+    // Those along edges; of a vertex on patches, that lie on all of these and are not known. own,
+    // others: room for patches.
+    void find_neighbours(std::uint32_t v, std::vector<std::uint32_t>& own,
+                         std::vector<std::uint32_t>& others,
+                         std::vector<std::uint32_t>& found) const {
+        found.clear();
+        for (const std::uint32_t f : faces_.of(v)) {
+            const auto& vertex = surface_.face[f].vertex;
+            const auto slot =
+                static_cast<std::size_t>(std::ranges::find(vertex, v) - vertex.begin());
+            found.push_back(vertex[(slot + 1) % 4]);
+            found.push_back(vertex[(slot + 3) % 4]);
+        }
+        make_unique(found);
+        find_patches(v, own);
+        if (own.empty()) return;
+        std::erase_if(found, [&](std::uint32_t u) {
+            find_patches(u, others);
+            return known_[u] || !std::ranges::includes(others, own);
+        });
     }
     void find_patches(std::uint32_t v, std::vector<std::uint32_t>& out) const {
         out.clear();

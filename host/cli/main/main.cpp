@@ -2,6 +2,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <climits>
 #include <csignal>
 #include <thread>
 
@@ -11,13 +12,12 @@
 namespace {
 
 // Stages take and leave hundreds of megabytes: handed back to the system and taken again, each page
-// is a fault and filled with zeros, a twentieth of a parse's processor time. So freed memory is
-// kept, and arenas, which keep theirs each by itself, are few. (Larger blocks than the C library
-// has an own limit for, 32 MiB, go back at once.)
+// is a fault and filled with zeros, up to a tenth of a parse's processor time. So freed memory is
+// kept, large blocks come from it, too, and arenas, which keep theirs each by itself, are few.
 void keep_freed_memory() {
 #ifdef __GLIBC__
-    ::mallopt(M_MMAP_THRESHOLD, 32 << 20);
-    ::mallopt(M_TRIM_THRESHOLD, 128 << 20);
+    ::mallopt(M_MMAP_MAX, 0);
+    ::mallopt(M_TRIM_THRESHOLD, INT_MAX);
     ::mallopt(M_ARENA_MAX, std::max(1, static_cast<int>(std::thread::hardware_concurrency() / 2)));
 #endif
 }

@@ -45,7 +45,7 @@ struct Labelled {
         }
         ThreadPool threads(2);
         connect_surfels(s, 4 * pitch, threads);
-        return close_gaps(s, face, primitive, step_m);
+        return close_gaps(s, face, primitive, step_m, threads);
     }
 };
 
