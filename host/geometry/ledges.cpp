@@ -99,8 +99,10 @@ template <int unknowns>
 class SideFit {
   public:
     SideFit(const Rows<unknowns>& rows, const Eigen::VectorXd& out)
-        : rows_(rows), out_(out), normal_(rows.transpose() * rows), right_(rows.transpose() * out) {
-    }
+        : rows_(rows),
+          out_(out),
+          normal_(rows.transpose() * rows),
+          right_(rows.transpose() * out) {}
     // What is left. slope: infinite for none.
     double residual(double noise, double slope, Fit<unknowns>& fit) const {
         Eigen::Matrix<double, unknowns, unknowns> normal = normal_;

@@ -2,16 +2,16 @@
 #include "geometry/minimum_cut.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
 namespace topple::geometry {
 namespace {
 
 constexpr double steps = 1e6;
-constexpr std::uint32_t no_root = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t unreached = std::numeric_limits<std::uint32_t>::max();
+// Levels are made exact when as many arcs were looked at as the graph has, so many times.
+constexpr std::size_t lifts_between = 4;
 
 std::int64_t in_steps(double cost) {
     return std::llround(steps * cost);
@@ -21,12 +21,12 @@ std::int64_t in_steps(double cost) {
 
 MinimumCut::MinimumCut(std::size_t nodes, std::span<const CutEdge> edges)
     : first_(nodes + 1, 0),
+      around_(nodes, 0),
       excess_(nodes),
-      side_(nodes),
-      parent_(nodes),
-      when_(nodes),
-      distance_(nodes),
-      awake_(nodes) {
+      room_(nodes),
+      is_sink_(nodes),
+      level_(nodes),
+      next_(nodes) {
     for (const CutEdge& e : edges) {
         ++first_[e.a + 1];
         ++first_[e.b + 1];
@@ -39,188 +39,132 @@ MinimumCut::MinimumCut(std::size_t nodes, std::span<const CutEdge> edges)
         const std::int64_t capacity = in_steps(e.weight);
         arcs_[there] = {e.b, back, capacity};
         arcs_[back] = {e.a, there, capacity};
+        around_[e.a] += capacity;
+        around_[e.b] += capacity;
     }
+    capacity_.reserve(arcs_.size());
     for (const Arc& arc : arcs_) capacity_.push_back(arc.rest);
 }
 
 std::vector<bool> MinimumCut::part(std::span<const CutNode> nodes) {
-    plant(nodes);
-    while (!active_.empty()) {
-        const std::uint32_t n = active_.front();
-        const std::uint32_t middle = hangs(n) ? grow(n) : no_arc;
-        if (middle == no_arc) {
-            active_.pop_front();
-            awake_[n] = false;
-            continue;
-        }
-        ++time_;
-        augment(middle);
-        while (!orphans_.empty()) {
-            const std::uint32_t lost = orphans_.front();
-            orphans_.pop_front();
-            adopt(lost);
-        }
-    }
-    std::vector<bool> inside(side_.size());
-    for (std::size_t n = 0; n < inside.size(); ++n) inside[n] = side_[n] == Side::source;
+    supply(nodes);
+    while (find_levels()) push_all();
+    std::vector<bool> inside(level_.size());
+    for (std::size_t n = 0; n < inside.size(); ++n) inside[n] = level_[n] != unreached;
     return inside;
 }
 
-// Every node that has something from the source, or to the sink, is the root of a tree.
-void MinimumCut::plant(std::span<const CutNode> nodes) {
-    for (const std::uint32_t arc : passed_)
-        for (const std::uint32_t a : {arc, arcs_[arc].reverse}) arcs_[a].rest = capacity_[a];
-    passed_.clear();
-    time_ = 0;
-    std::fill(when_.begin(), when_.end(), 0);
-    std::fill(distance_.begin(), distance_.end(), 1);
-    std::array<std::size_t, 3> count{};
+// What the sinks have goes to their nodes; and on to all neighbours from those that have more than
+// these could take, which have nothing to do with the rest.
+void MinimumCut::supply(std::span<const CutNode> nodes) {
+    for (std::size_t arc = 0; arc < arcs_.size(); ++arc) arcs_[arc].rest = capacity_[arc];
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-        excess_[n] = in_steps(nodes[n].from_source) - in_steps(nodes[n].from_sink);
-        side_[n] = excess_[n] > 0 ? Side::source : excess_[n] < 0 ? Side::sink : Side::none;
-        parent_[n] = side_[n] == Side::none ? no_arc : root;
-        ++count[static_cast<std::size_t>(side_[n])];
+        const std::int64_t more = in_steps(nodes[n].from_sink) - in_steps(nodes[n].from_source);
+        excess_[n] = std::max<std::int64_t>(more, 0);
+        room_[n] = std::max<std::int64_t>(-more, 0);
+        is_sink_[n] = more > around_[n];
     }
-    // Of the larger side those nodes wake that something else is beside.
-    const Side larger =
-        count[static_cast<std::size_t>(Side::source)] > count[static_cast<std::size_t>(Side::sink)]
-            ? Side::source
-            : Side::sink;
     for (std::uint32_t n = 0; n < nodes.size(); ++n) {
-        if (side_[n] == larger) continue;
-        if (side_[n] != Side::none) wake(n);
-        for (const Arc& arc : arcs_of(n))
-            if (side_[arc.to] == larger) wake(arc.to);
+        if (!is_sink_[n]) continue;
+        for (std::uint32_t a = first_[n]; a < first_[n + 1]; ++a) {
+            Arc& arc = arcs_[a];
+            if (is_sink_[arc.to]) continue;
+            excess_[arc.to] += arc.rest;
+            send(arc, arc.rest);
+        }
     }
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        const std::int64_t taken = std::min(room_[n], excess_[n]);
+        room_[n] -= taken;
+        excess_[n] -= taken;
+    }
+}
+
+// By a search from all nodes with room. Tells whether any excess reaches one.
+bool MinimumCut::find_levels() {
+    std::fill(level_.begin(), level_.end(), unreached);
+    reached_.clear();
+    for (std::uint32_t n = 0; n < level_.size(); ++n) {
+        if (room_[n] == 0) continue;
+        level_[n] = 0;
+        reached_.push_back(n);
+    }
+    for (std::size_t k = 0; k < reached_.size(); ++k) {
+        const std::uint32_t n = reached_[k];
+        for (std::uint32_t a = first_[n]; a < first_[n + 1]; ++a) {
+            const std::uint32_t from = arcs_[a].to;
+            if (level_[from] != unreached || is_sink_[from] || arcs_[arcs_[a].reverse].rest == 0)
+                continue;
+            level_[from] = level_[n] + 1;
+            reached_.push_back(from);
+        }
+    }
+    count_.assign(level_.size() + 1, 0);
+    active_.clear();
+    active_.resize(1);
+    highest_ = work_ = 0;
+    gap_ = unreached - 1;
+    for (const std::uint32_t n : reached_) {
+        ++count_[level_[n]];
+        next_[n] = first_[n];
+        if (excess_[n] > 0) wake(n);
+    }
+    return !active_[highest_].empty();
 }
 
 void MinimumCut::wake(std::uint32_t n) {
-    if (awake_[n]) return;
-    awake_[n] = true;
-    active_.push_back(n);
+    const std::size_t level = level_[n];
+    if (active_.size() <= level) active_.resize(level + 1);
+    active_[level].push_back(n);
+    highest_ = std::max(highest_, level);
 }
 
-// Lets a node's tree grow to its neighbours: tells an arc from the source's tree to the sink's, or
-// no_arc.
-std::uint32_t MinimumCut::grow(std::uint32_t n) {
-    const Side side = side_[n];
-    for (std::uint32_t arc = first_[n]; arc < first_[n + 1]; ++arc) {
-        if (!leads_on(arc, side)) continue;
-        const std::uint32_t to = arcs_[arc].to;
-        if (side_[to] == Side::none) {
-            side_[to] = side;
-            parent_[to] = arcs_[arc].reverse;
-            when_[to] = when_[n];
-            distance_[to] = distance_[n] + 1;
-            wake(to);
-        } else if (side_[to] != side) {
-            return side == Side::source ? arc : arcs_[arc].reverse;
-        } else if (when_[to] <= when_[n] && distance_[to] > distance_[n] + 1) {
-            parent_[to] = arcs_[arc].reverse;  // nearer to a root
-            when_[to] = when_[n];
-            distance_[to] = distance_[n] + 1;
-        }
-    }
-    return no_arc;
-}
-
-// The least of what is left on the way from a node to its root.
-std::int64_t MinimumCut::least_rest(std::uint32_t from, Side side, std::int64_t least) const {
-    while (parent_[from] != root) {
-        const Arc& up = arcs_[parent_[from]];
-        least = std::min(least, side == Side::source ? arcs_[up.reverse].rest : up.rest);
-        from = up.to;
-    }
-    return std::min(least, std::abs(excess_[from]));
-}
-
-void MinimumCut::pass(std::uint32_t arc, std::int64_t flow) {
-    const std::uint32_t back = arcs_[arc].reverse;
-    if (arcs_[arc].rest == capacity_[arc]) passed_.push_back(arc);
-    arcs_[arc].rest -= flow;
-    arcs_[back].rest += flow;
-}
-
-void MinimumCut::push(std::uint32_t from, Side side, std::int64_t flow) {
-    while (parent_[from] != root) {
-        const std::uint32_t up = parent_[from],
-                            along = side == Side::source ? arcs_[up].reverse : up;
-        pass(along, flow);
-        if (arcs_[along].rest == 0) {
-            parent_[from] = orphan;
-            orphans_.push_front(from);
-        }
-        from = arcs_[up].to;
-    }
-    excess_[from] -= side == Side::source ? flow : -flow;
-    if (excess_[from] == 0) {
-        parent_[from] = orphan;
-        orphans_.push_front(from);
+// Until nothing more seems to reach a source, or levels have grown wrong.
+void MinimumCut::push_all() {
+    while (work_ <= lifts_between * arcs_.size()) {
+        while (highest_ > 0 && active_[highest_].empty()) --highest_;
+        if (active_[highest_].empty()) return;
+        const std::uint32_t n = active_[highest_].back();
+        active_[highest_].pop_back();
+        discharge(n);
     }
 }
 
-void MinimumCut::augment(std::uint32_t middle) {
-    const std::uint32_t head = arcs_[middle].to, tail = arcs_[arcs_[middle].reverse].to;
-    std::int64_t flow = least_rest(tail, Side::source, arcs_[middle].rest);
-    flow = least_rest(head, Side::sink, flow);
-    pass(middle, flow);
-    push(tail, Side::source, flow);
-    push(head, Side::sink, flow);
+void MinimumCut::discharge(std::uint32_t n) {
+    if (level_[n] > gap_) return;
+    const std::int64_t taken = std::min(room_[n], excess_[n]);
+    room_[n] -= taken;
+    excess_[n] -= taken;
+    for (std::uint32_t& a = next_[n]; excess_[n] > 0 && a < first_[n + 1]; ++a) {
+        Arc& arc = arcs_[a];
+        if (arc.rest == 0 || level_[n] == 0 || level_[arc.to] != level_[n] - 1) continue;
+        const std::int64_t flow = std::min(arc.rest, excess_[n]);
+        if (excess_[arc.to] == 0) wake(arc.to);
+        excess_[arc.to] += flow;
+        excess_[n] -= flow;
+        send(arc, flow);
+        if (excess_[n] == 0) return;  // the arc may have something left
+    }
+    if (excess_[n] > 0) lift(n);
 }
 
-// Nodes from one to the root of its tree; no_root where an orphan is on the way. Marks the way, so
-// that it is walked once for each path.
-std::uint32_t MinimumCut::distance_to_root(std::uint32_t n) {
-    std::uint32_t all = 0;
-    for (std::uint32_t at = n;; at = arcs_[parent_[at]].to) {
-        if (when_[at] == time_) {
-            all += distance_[at];
-            break;
-        }
-        if (!hangs(at)) return no_root;
-        ++all;
-        if (parent_[at] == root) {
-            when_[at] = time_;
-            distance_[at] = 1;
-            break;
-        }
+// To right above the lowest node that it can push to.
+void MinimumCut::lift(std::uint32_t n) {
+    std::uint32_t least = unreached;
+    for (std::uint32_t a = first_[n]; a < first_[n + 1]; ++a) {
+        const Arc& arc = arcs_[a];
+        if (arc.rest > 0 && level_[arc.to] <= gap_) least = std::min(least, level_[arc.to] + 1);
     }
-    std::uint32_t away = all;
-    for (std::uint32_t at = n; when_[at] != time_; at = arcs_[parent_[at]].to) {
-        when_[at] = time_;
-        distance_[at] = away--;
-    }
-    return all;
-}
-
-// A node whose way to its root is closed gets another parent in the same tree, or leaves it, and
-// its children are orphans, too.
-void MinimumCut::adopt(std::uint32_t n) {
-    const Side side = side_[n];
-    std::uint32_t best = no_arc, nearest = no_root;
-    for (std::uint32_t arc = first_[n]; arc < first_[n + 1]; ++arc) {
-        const std::uint32_t to = arcs_[arc].to;
-        if (side_[to] != side || !hangs(to) || !leads_on(arcs_[arc].reverse, side)) continue;
-        const std::uint32_t away = distance_to_root(to);
-        if (away < nearest) nearest = away, best = arc;
-    }
-    if (best != no_arc) {
-        parent_[n] = best;
-        when_[n] = time_;
-        distance_[n] = nearest + 1;
+    work_ += first_[n + 1] - first_[n] + 1;
+    next_[n] = first_[n];
+    if (--count_[level_[n]] == 0) gap_ = std::min(gap_, level_[n]);
+    if (least > gap_ || least >= level_.size()) {
+        level_[n] = unreached;
         return;
     }
-    for (std::uint32_t arc = first_[n]; arc < first_[n + 1]; ++arc) {
-        const std::uint32_t to = arcs_[arc].to;
-        if (side_[to] != side) continue;
-        if (leads_on(arcs_[arc].reverse, side)) wake(to);
-        if (parent_[to] < orphan && arcs_[parent_[to]].to == n) {
-            parent_[to] = orphan;
-            orphans_.push_back(to);
-        }
-    }
-    side_[n] = Side::none;
-    parent_[n] = no_arc;
+    level_[n] = least;
+    ++count_[least];
+    wake(n);
 }
 
 }  // namespace topple::geometry

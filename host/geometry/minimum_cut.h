@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <span>
 #include <vector>
 
@@ -23,10 +22,11 @@ inline constexpr double cut_never = 1e9;
 // An undirected graph that is parted in two at the least cost, again and again. Costs are counted
 // in steps of 1e-6, so that ways of the same cost are known as such.
 //
-// The maximum flow by search trees from both ends that are kept from path to path: Boykov and
-// Kolmogorov (2004), with the marks by which Kolmogorov's thesis (2003) finds new parents near the
-// roots. A cut touches the surroundings of the smaller part alone: only arcs that flow has passed
-// are set back for the next one, and what lies amid its own side is not searched.
+// By the maximum flow, found by pushing and relabelling (Goldberg and Tarjan 1988), the highest
+// label first, with exact labels now and then and without what lies above a gap in them (Cherkassky
+// and Goldberg 1997). Where every node of a face would rather stay with the sources by a little, as
+// here, search trees send each little along a path of its own. The flow runs backwards, from the
+// sinks to the sources: in the end what still reaches a source is what is left with them.
 class MinimumCut {
   public:
     // Nodes below `nodes`, which is below 2^28.
@@ -41,40 +41,34 @@ class MinimumCut {
         std::uint32_t to = 0, reverse = 0;
         std::int64_t rest = 0;  // of its capacity, steps of cost
     };
-    enum class Side : std::uint8_t { none, source, sink };
-    // What a node hangs on: an arc to its parent, or one of these.
-    static constexpr std::uint32_t no_arc = ~0u, root = ~0u - 1, orphan = ~0u - 2;
 
-    std::span<const Arc> arcs_of(std::uint32_t n) const {
-        return std::span(arcs_).subspan(first_[n], first_[n + 1] - first_[n]);
-    }
-    bool hangs(std::uint32_t n) const { return parent_[n] < orphan || parent_[n] == root; }
-    // Whether flow may go on from a node away from its root along an arc.
-    bool leads_on(std::uint32_t arc, Side side) const {
-        return (side == Side::source ? arcs_[arc] : arcs_[arcs_[arc].reverse]).rest > 0;
-    }
-    void plant(std::span<const CutNode> nodes);
+    void supply(std::span<const CutNode> nodes);
+    bool find_levels();
     void wake(std::uint32_t n);
-    std::uint32_t grow(std::uint32_t n);
-    void augment(std::uint32_t middle);
-    std::int64_t least_rest(std::uint32_t from, Side side, std::int64_t least) const;
-    void push(std::uint32_t from, Side side, std::int64_t flow);
-    void pass(std::uint32_t arc, std::int64_t flow);
-    void adopt(std::uint32_t n);
-    std::uint32_t distance_to_root(std::uint32_t n);
+    void push_all();
+    void discharge(std::uint32_t n);
+    void lift(std::uint32_t n);
+    void send(Arc& arc, std::int64_t flow) {
+        arc.rest -= flow;
+        arcs_[arc.reverse].rest += flow;
+    }
 
     std::vector<std::uint32_t> first_;  // CSR over the nodes: their arcs
     std::vector<Arc> arcs_;
     std::vector<std::int64_t> capacity_;  // by arc
-    std::vector<std::uint32_t> passed_;   // arcs with another rest than that
-    std::vector<std::int64_t> excess_;    // of each node: from the source, or, below 0, to the sink
-    std::vector<Side> side_;
-    std::vector<std::uint32_t> parent_;
-    // When a node's distance to its root was last found, and how many arcs it is.
-    std::vector<std::uint32_t> when_, distance_;
-    std::vector<bool> awake_;
-    std::deque<std::uint32_t> active_, orphans_;
-    std::uint32_t time_ = 0;
+    std::vector<std::int64_t> around_;    // of each node: of all its arcs
+    // Of each node: what has come to it and not gone on, and what it may still give to the source.
+    std::vector<std::int64_t> excess_, room_;
+    std::vector<std::uint8_t> is_sink_;  // has more for its neighbours than they could take
+    // Arcs from a node to a source, at least, and how many nodes have each level. What is above a
+    // gap, a level that no node had, waits for levels to be exact.
+    std::vector<std::uint32_t> level_, count_;
+    std::uint32_t gap_ = 0;
+    std::vector<std::uint32_t> next_;                 // of each node: the arc to be tried next
+    std::vector<std::vector<std::uint32_t>> active_;  // nodes with an excess, by level
+    std::size_t highest_ = 0;                         // level of these, at most
+    std::size_t work_ = 0;                            // since levels were last exact
+    std::vector<std::uint32_t> reached_;
 };
 
 }  // namespace topple::geometry

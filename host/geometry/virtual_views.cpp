@@ -364,8 +364,9 @@ class Looking {
             for (const double right : {-rim, 0.0, rim}) {
                 const std::size_t n = at(row, down) * CubeView::side + at(column, right);
                 const std::uint32_t i = view.surfel[image][n];
-                if (i != CubeView::nothing && (sides_.from_behind(i, view.eye) ||
-                                 pixel.depth + places_.cell_m() >= view.depth[image][n]))
+                if (i != CubeView::nothing &&
+                    (sides_.from_behind(i, view.eye) ||
+                     pixel.depth + places_.cell_m() >= view.depth[image][n]))
                     return false;
             }
         }
