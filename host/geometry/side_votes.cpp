@@ -7,6 +7,9 @@
 #include <cmath>
 #include <queue>
 
+#include "core/vectors.h"
+#include "geometry/surfel_discs.h"
+
 namespace topple::geometry {
 namespace {
 
@@ -25,8 +28,12 @@ constexpr double two_sided_cells = 0.25;
 
 }  // namespace
 
-SideVotes::SideVotes(const Surfels& surfels, ThreadPool& pool)
-    : s_(surfels), pool_(pool), side_(surfels.size(), 0), votes_(surfels.size(), 0) {}
+SideVotes::SideVotes(const Surfels& surfels, std::span<const float> radii_m, ThreadPool& pool)
+    : s_(surfels),
+      radii_(radii_m),
+      pool_(pool),
+      side_(surfels.size(), 0),
+      votes_(surfels.size(), 0) {}
 
 bool SideVotes::has_normal(std::size_t i) const {
     return s_.nx[i] != 0 || s_.ny[i] != 0 || s_.nz[i] != 0;
@@ -75,10 +82,21 @@ float SideVotes::agreement(std::size_t i, std::size_t j) const {
     return square > 0 ? cosine - 2 * n_along * m_along / square : cosine;
 }
 
+// Of the pixels that the surface that a surfel stands for takes up where nothing is before it.
+float SideVotes::view_share(std::size_t i, std::uint32_t pixels, const Vec3& eye) const {
+    const Vec3 d{s_.x[i] - eye[0], s_.y[i] - eye[1], s_.z[i] - eye[2]};
+    const double deep = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+    const double side = CubeView::focal * radii_[i] / radius_sides / deep;
+    const double all = side * side * std::abs(facing(i, eye)) * length(d) / deep;
+    return all > pixels ? static_cast<float>(pixels / all) : 1;
+}
+
 void SideVotes::count(CubeView& view) {
     std::vector<std::int8_t> seen(s_.size(), 0);  // from its normal's side 1, from the other -1
+    std::vector<std::uint32_t> pixels(s_.size(), 0);
     pool_.each(6, 1, [&](std::size_t image) {
-        view.for_each_seen(image, [&](std::uint32_t i) {
+        view.for_each_seen(image, [&](std::uint32_t i, std::uint32_t count) {
+            std::atomic_ref(pixels[i]).fetch_add(count, std::memory_order_relaxed);
             const double f = facing(i, view.eye);
             // The same in all images.
             if (!has_normal(i) || std::abs(f) >= vote_cos)
@@ -97,7 +115,8 @@ void SideVotes::count(CubeView& view) {
             agree += seen[j] == (along > 0 ? seen[i] : -seen[i]);
         }
         share[i] = static_cast<float>(agree) / static_cast<float>(around);
-        votes_[i] += static_cast<float>(seen[i]) * share[i] * share[i];
+        const float said = share[i] * view_share(i, pixels[i], view.eye);
+        votes_[i] += static_cast<float>(seen[i]) * said * said;
     });
     pool_.each(6, 1, [&](std::size_t image) {
         for (std::uint32_t& i : view.surfel[image])

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/thread_pool.h"
@@ -14,7 +15,8 @@ namespace topple::geometry {
 // normal have no sides.
 class SideVotes {
   public:
-    SideVotes(const Surfels& surfels, ThreadPool& pool);
+    // radii_m: of the surfels' discs.
+    SideVotes(const Surfels& surfels, std::span<const float> radii_m, ThreadPool& pool);
 
     // 1: the normal points to the free side, -1: away from it, 0: not known.
     int side(std::size_t i) const { return side_[i]; }
@@ -34,7 +36,8 @@ class SideVotes {
     // Sight leaks through gaps between surfels and meets the insides of faces, here and there one
     // surfel: of which little of the surface around is seen, that is not seen at all, and is taken
     // from the view. The vote of an eye on a surfel's side counts by the square of the share that
-    // it sees of that surface.
+    // it sees of that surface, times that of what the surfel stands for: of a narrow rim the back
+    // of a disc's margin may be in view.
     void count(CubeView& view);
     // The side of a surfel becomes that for which it and its neighbours in one surface have more
     // votes; what only leaks speak of is not known.
@@ -45,10 +48,12 @@ class SideVotes {
     void spread();
 
   private:
+    float view_share(std::size_t i, std::uint32_t pixels, const Vec3& eye) const;
     float cosine(std::size_t i, std::size_t j) const;
     float agreement(std::size_t i, std::size_t j) const;
 
     const Surfels& s_;
+    std::span<const float> radii_;
     ThreadPool& pool_;
     std::vector<std::int8_t> side_;
     std::vector<float> votes_;  // of the eyes for the normal's side, less those for the other

@@ -13,9 +13,9 @@
 namespace topple::geometry {
 namespace {
 
-// Half the diagonal of the square that a surfel stands for, and a little more: surfels lie anywhere
-// in their cells.
-constexpr double radius_sides = 0.9;
+// Normals that differ by more are of two faces (cosine); so much of its radius a disc goes on
+// beyond their edge, so that those of both faces overlap.
+constexpr double one_face_cos = 0.8, edge_overlap = 0.15;
 constexpr std::uint64_t disc_chunk = 1 << 12;  // handed to a thread at once
 
 using Vec2 = std::array<double, 2>;
@@ -93,6 +93,43 @@ std::vector<float> covering_radii(const Surfels& s, double gap_m, ThreadPool& po
         radii[i] = static_cast<float>(std::max(least, cell.farthest_within(gap_m)));
     });
     return radii;
+}
+
+std::vector<DiscCuts> cuts_at_edges(const Surfels& s, std::span<const float> radii_m,
+                                    ThreadPool& pool) {
+    std::vector<DiscCuts> cuts(s.size());
+    pool.each(s.size(), disc_chunk, [&](std::size_t i) {
+        const Vec3 n{s.nx[i], s.ny[i], s.nz[i]}, at{s.x[i], s.y[i], s.z[i]};
+        if (n == Vec3{}) return;
+        double nearest[2] = {radii_m[i], radii_m[i]};
+        Vec3 towards[2]{};
+        for (std::uint32_t k = s.neighbour_first[i]; k < s.neighbour_first[i + 1]; ++k) {
+            const std::uint32_t j = s.neighbours[k];
+            const Vec3 m{s.nx[j], s.ny[j], s.nz[j]};
+            const double cosine = dot(n, m);
+            if (m == Vec3{} || std::abs(cosine) > one_face_cos) continue;
+            // Along its own plane to the other's.
+            const double away = dot(minus({s.x[j], s.y[j], s.z[j]}, at), m);
+            const double sine = std::sqrt(1 - cosine * cosine);
+            const double distance = std::abs(away) / sine;
+            const double sign = away < 0 ? -1 : 1;
+            Vec3 way;
+            for (std::size_t a = 0; a < 3; ++a) way[a] = sign * (m[a] - cosine * n[a]) / sine;
+            const bool second = towards[0] != Vec3{} && dot(way, towards[0]) < 0.5;
+            const std::size_t slot = second ? 1 : 0;
+            if (distance >= nearest[slot]) continue;
+            nearest[slot] = distance;
+            towards[slot] = way;
+        }
+        for (std::size_t c = 0; c < 2; ++c) {
+            if (towards[c] == Vec3{}) continue;
+            DiscCut& cut = cuts[i][c];
+            for (std::size_t a = 0; a < 3; ++a) cut.normal[a] = static_cast<float>(-towards[c][a]);
+            cut.least =
+                static_cast<float>(-dot(towards[c], at) - nearest[c] - edge_overlap * radii_m[i]);
+        }
+    });
+    return cuts;
 }
 
 }  // namespace topple::geometry

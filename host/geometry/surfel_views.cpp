@@ -51,10 +51,11 @@ class Disc {
 // One image while it is drawn.
 class Image {
   public:
-    Image(const Surfels& surfels, std::span<const float> radii_m, const Vec3& eye,
-          std::size_t image)
+    Image(const Surfels& surfels, std::span<const float> radii_m, std::span<const DiscCuts> cuts,
+          const Vec3& eye, std::size_t image)
         : s_(surfels),
           radii_(radii_m),
+          cuts_(cuts),
           eye_(eye),
           near_(nearest_cells * surfels.cell_m),
           f_(image / 2),
@@ -91,8 +92,10 @@ class Image {
         if (columns.first > columns.last || disc.edge_on()) return;
         for (int y = rows.first; y <= rows.last; ++y) {
             const double ry = ray(y);
-            const auto seen = disc.along_row(ry);
+            auto seen = disc.along_row(ry);
             if (!seen) continue;
+            for (const DiscCut& cut : cuts_[i])
+                if (cut.normal != std::array<float, 3>{}) clip(cut, n, disc.offset(), ry, *seen);
             const Span row = span(pixel(seen->first), pixel(seen->last));
             fill(row, y, n[1] * ry + n[2], n[0], disc.offset(), static_cast<std::uint32_t>(i));
         }
@@ -130,6 +133,21 @@ class Image {
     static double ray(int pixel) { return (pixel - CubeView::centre) / CubeView::focal; }
     static double pixel(double ray) { return CubeView::focal * ray + CubeView::centre; }
 
+    // Leaves of the rays of a row those on which what is kept of a disc lies: normal . z ray >=
+    // least, z = offset / (n . ray).
+    void clip(const DiscCut& cut, const Vec3& n, double offset, double y, Disc::Rays& rays) const {
+        const Vec3 world{cut.normal[0], cut.normal[1], cut.normal[2]};
+        const Vec3 m = turned(world);
+        const double least = cut.least - dot(world, eye_);
+        // Of either sign: n . ray has that of the offset.
+        const double sign = offset < 0 ? -1 : 1;
+        const double slope = sign * (offset * m[0] - least * n[0]);
+        const double at_0 = sign * (offset * (m[1] * y + m[2]) - least * (n[1] * y + n[2]));
+        if (slope > 0) rays.first = std::max(rays.first, -at_0 / slope);
+        if (slope < 0) rays.last = std::min(rays.last, -at_0 / slope);
+        if (slope == 0 && at_0 < 0) rays.last = rays.first - 1;
+    }
+
     // Columns of a row, where the surfel's plane lies at offset / (row + across * ray).
     void fill(const Span& columns, int y, double row, double across, double offset,
               std::uint32_t i) {
@@ -145,6 +163,7 @@ class Image {
 
     const Surfels& s_;
     std::span<const float> radii_;
+    std::span<const DiscCuts> cuts_;
     Vec3 eye_;
     double near_;
     std::size_t f_;
@@ -193,7 +212,10 @@ Mat4 CubeView::pose(std::size_t image) const {
 }
 
 SurfelViews::SurfelViews(const Surfels& surfels, std::vector<float> radii_m, ThreadPool& pool)
-    : s_(surfels), radii_(std::move(radii_m)), pool_(pool) {
+    : s_(surfels),
+      radii_(std::move(radii_m)),
+      cuts_(cuts_at_edges(surfels, radii_, pool)),
+      pool_(pool) {
     for (std::size_t first = 0; first < s_.size(); first += patch_size) {
         constexpr double infinite = std::numeric_limits<double>::infinity();
         Patch patch{{infinite, infinite, infinite}, {-infinite, -infinite, -infinite}, 0};
@@ -213,7 +235,7 @@ CubeView SurfelViews::from(const Vec3& eye) const {
     CubeView view;
     view.eye = eye;
     pool_.each(6, 1, [&](std::size_t k) {
-        Image image(s_, radii_, eye, k);
+        Image image(s_, radii_, cuts_, eye, k);
         for (std::size_t p = 0; p < patches_.size(); ++p) {
             if (!image.may_show(patches_[p])) continue;
             const std::size_t first = p * patch_size;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/thread_pool.h"
+#include "geometry/surfel_discs.h"
 #include "geometry/surfels.h"
 
 namespace topple::geometry {
@@ -35,13 +36,13 @@ struct CubeView {
     std::size_t image_of(const Vec3& point) const;
     // Camera to world of one image; x right, y down, z forward.
     Mat4 pose(std::size_t image) const;
-    // Calls visit(i) for the surfels of one image, again only where another one lies between.
+    // Calls visit(i, pixels) for each run of a surfel's pixels in one image.
     template <class Visit>
     void for_each_seen(std::size_t image, const Visit& visit) const {
-        std::uint32_t last = nothing;
-        for (const std::uint32_t i : surfel[image]) {
-            if (i != last && i != nothing) visit(i);
-            last = i;
+        const std::vector<std::uint32_t>& of = surfel[image];
+        for (std::size_t first = 0, end = 0; first < of.size(); first = end) {
+            while (end < of.size() && of[end] == of[first]) ++end;
+            if (of[first] != nothing) visit(of[first], static_cast<std::uint32_t>(end - first));
         }
     }
 };
@@ -52,6 +53,7 @@ class SurfelViews {
   public:
     SurfelViews(const Surfels& surfels, std::vector<float> radii_m, ThreadPool& pool);
     CubeView from(const Vec3& eye) const;
+    std::span<const float> radii_m() const { return radii_; }
 
     // Surfels that follow one another, and so lie together: many are out of an image at once.
     struct Patch {
@@ -64,6 +66,7 @@ class SurfelViews {
 
     const Surfels& s_;
     std::vector<float> radii_;
+    std::vector<DiscCuts> cuts_;
     ThreadPool& pool_;
     std::vector<Patch> patches_;
 };

@@ -45,7 +45,7 @@ class Looking {
           pool_(pool),
           views_(surfels, covering_radii(surfels, options.gap_m, pool), pool),
           places_(surfels),
-          sides_(surfels, pool),
+          sides_(surfels, views_.radii_m(), pool),
           in_view_(places_.size(), 0) {
         if (options.sides_known) sides_.believe_normals();
         sides_known_ = options.sides_known;
@@ -124,7 +124,7 @@ class Looking {
     double share_seen(const CubeView& view) const {
         std::vector<bool> seen(s_.size());
         for (std::size_t image = 0; image < 6; ++image)
-            view.for_each_seen(image, [&](std::uint32_t i) { seen[i] = true; });
+            view.for_each_seen(image, [&](std::uint32_t i, std::uint32_t) { seen[i] = true; });
         return static_cast<double>(std::ranges::count(seen, true)) / static_cast<double>(s_.size());
     }
 
@@ -253,7 +253,7 @@ class Looking {
         const auto eye = static_cast<std::uint32_t>(out_.eyes.size());
         out_.eyes.push_back(view.eye);
         for (std::size_t image = 0; image < 6; ++image) {
-            view.for_each_seen(image, [&](std::uint32_t i) {
+            view.for_each_seen(image, [&](std::uint32_t i, std::uint32_t) {
                 if (out_.viewpoint_of_surfel[i] != no_eye) return;
                 const double f = sides_.facing(i, view.eye);
                 if (sides_.has_normal(i) && std::abs(f) < seen_cos) return;

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "device/devices.h"
+#include "geometry/surfel_graph.h"
 #include "geometry_random.h"
 
 namespace topple::geometry {
@@ -81,8 +84,65 @@ TEST_F(Discs, EndWhereAnotherFaceBegins) {
     EXPECT_GT(edge, 30);
 }
 
+// The rim of a board is narrower than its discs; what they reach beyond the board is cut off, but
+// for what overlaps the board's own discs.
+TEST_F(Discs, AreCutWhereTheFacesOfNeighboursCross) {
+    constexpr double pitch = 0.02, thick = 0.04, side = 0.3;
+    std::map<std::array<int, 3>, std::array<Vec3, 2>> surfels;  // by cell: place and normal
+    const auto put = [&](const Vec3& at, const Vec3& normal) {
+        const auto cell = [](double v) { return static_cast<int>(std::floor(v / pitch)); };
+        surfels[{cell(at[0]), cell(at[1]), cell(at[2])}] = {at, normal};
+    };
+    for (double y = pitch / 2; y < side; y += pitch) {
+        for (double x = pitch / 2; x < side; x += pitch) {
+            put({x, y, 0}, {0, 0, -1});
+            put({x, y, thick}, {0, 0, 1});
+        }
+        for (const double z : {0.01, 0.03}) put({side, y, z}, {1, 0, 0});
+    }
+    Surfels s;
+    s.cell_m = pitch;
+    s.area_m2 = pitch * pitch;
+    for (const auto& [cell, surfel] : surfels) {
+        s.cx.push_back(cell[0]);
+        s.cy.push_back(cell[1]);
+        s.cz.push_back(cell[2]);
+        const auto [at, normal] = surfel;
+        s.x.push_back(static_cast<float>(at[0]));
+        s.y.push_back(static_cast<float>(at[1]));
+        s.z.push_back(static_cast<float>(at[2]));
+        s.nx.push_back(static_cast<float>(normal[0]));
+        s.ny.push_back(static_cast<float>(normal[1]));
+        s.nz.push_back(static_cast<float>(normal[2]));
+    }
+    connect_surfels(s, 2 * pitch, pool);
+    const std::vector<float> radii(s.size(), 0.025F);
+    const std::vector<DiscCuts> cuts = cuts_at_edges(s, radii, pool);
+    ASSERT_EQ(cuts.size(), s.size());
+    const auto keeps = [&](std::size_t i, const Vec3& p) {
+        return std::ranges::all_of(cuts[i], [&](const DiscCut& cut) {
+            return cut.normal[0] * p[0] + cut.normal[1] * p[1] + cut.normal[2] * p[2] >= cut.least;
+        });
+    };
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        const Vec3 at{s.x[i], s.y[i], s.z[i]};
+        EXPECT_TRUE(keeps(i, at)) << "a surfel is cut from itself";
+        if (s.nx[i] > 0) {  // of the rim: up to the board's faces and little farther
+            EXPECT_TRUE(keeps(i, {at[0], at[1], -0.003}) &&
+                        keeps(i, {at[0], at[1], thick + 0.003}));
+            EXPECT_FALSE(keeps(i, {at[0], at[1], at[2] > thick / 2 ? thick + 0.005 : -0.005}));
+            EXPECT_TRUE(keeps(i, {at[0], at[1] + 0.025, at[2]}));
+        } else if (at[0] > side - pitch) {
+            EXPECT_FALSE(keeps(i, {side + 0.005, at[1], at[2]}));
+        } else if (at[0] < side - 2.5 * pitch) {
+            EXPECT_EQ(cuts[i][0].normal, (std::array<float, 3>{})) << "parallel faces cut nothing";
+        }
+    }
+}
+
 TEST_F(Discs, OfNothingOrOnePointAreWhatSurfelsStandFor) {
     EXPECT_TRUE(covering_radii({}, 1, pool).empty());
+    EXPECT_TRUE(cuts_at_edges({}, {}, pool).empty());
     add(1, 2, 3);
     const Surfels s = make_surfels(*device, cloud, {0.02, 0.02}, {}, {});
     EXPECT_FLOAT_EQ(covering_radii(s, 1, pool).at(0), 0.018f);
