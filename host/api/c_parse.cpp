@@ -81,9 +81,10 @@ ParseOptions parse_options(const topple_options& o) {
     to.coordinates = !o.without_coordinates;
     to.isolate = !o.without_isolation;
     if (o.progress || o.log) {
-        to.progress = [&o](const std::string& stage, double done) {
+        to.progress = [&o, last = std::string()](const std::string& stage, double done) mutable {
             if (o.progress) o.progress(stage.c_str(), done, o.user);
-            if (o.log && done == 0) o.log(TOPPLE_LOG_INFO, stage.c_str(), o.user);
+            if (o.log && stage != last) o.log(TOPPLE_LOG_INFO, stage.c_str(), o.user);
+            last = stage;
         };
     }
     if (o.cancelled) to.cancelled = [&o] { return o.cancelled(o.user) != 0; };
@@ -140,7 +141,9 @@ topple_result::topple_result(ParseResult parsed, const topple_allocator* allocat
         objects.push_back({arrays.hand(o.primitives),
                            reinterpret_cast<const topple_step*>(arrays.hand(o.instability)),
                            arrays.hand(directed.height_m), arrays.hand(directed.push_J),
-                           arrays.hand(directed.blow_J)});
+                           arrays.hand(directed.blow_J), arrays.hand(directed.direction),
+                           arrays.hand(directed.push_N), arrays.hand(directed.push_error_N),
+                           arrays.hand(o.why.edge_m), arrays.hand(o.why.stands_on)});
         corrected.push_back(arrays.hand(o.corrected));
     }
     for (const AppliedCorrection& c : result.scene.corrections)

@@ -7,6 +7,7 @@
 
 #include "api/c_support.h"
 #include "safety/disturbances.h"
+#include "topple/frame_labels.h"
 
 using namespace topple;
 using namespace topple::c_api;
@@ -143,6 +144,22 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         to.name = from.name.c_str();
         to.corrected = result->corrected[index];
         to.corrected_count = from.corrected.size();
+        to.push_direction = result->objects[index].push_direction;
+        to.push_by_direction_N = result->objects[index].push_N;
+        to.push_error_by_direction_N = result->objects[index].push_error_N;
+        to.why_azimuth_deg = from.why.azimuth_deg;
+        to.why_edge_m = result->objects[index].edge_m;
+        to.why_edge_ends = from.why.edge_m.size();
+        to.why_way_m = from.why.way_m;
+        to.why_drop_m = from.why.drop_m;
+        to.stands_on = result->objects[index].stands_on;
+        to.stands_on_count = from.why.stands_on.size();
+        to.advice_kind = from.advice.kind.c_str();
+        copy_vector(from.advice.move_m, to.advice_move_m);
+        to.advice_risk_J = from.advice.risk_J;
+        to.hold_N = from.advice.hold_N;
+        to.hold_height_m = from.advice.hold_height_m;
+        to.why_lands_on = from.why.lands_on;
         give(to, object, "object");
     });
 }
@@ -231,4 +248,31 @@ const float* topple_result_point_normals(const topple_result* result, int axis) 
 
 const uint64_t* topple_result_point_index(const topple_result* result) {
     return result ? result->index : nullptr;
+}
+
+struct topple_labeller {
+    FrameLabeller labeller;
+};
+
+int topple_labeller_create(const topple_result* result, topple_labeller** labeller,
+                           topple_status* status) {
+    return guarded(status, [&] {
+        needed(labeller, "labeller") = nullptr;
+        *labeller = new topple_labeller{FrameLabeller(needed(result, "result").result)};
+    });
+}
+
+int topple_labeller_label(const topple_labeller* labeller, const topple_frames* frames,
+                          uint64_t number, int32_t* primitives, int32_t* objects,
+                          topple_status* status) {
+    return guarded(status, [&] {
+        const FrameLabels found =
+            needed(labeller, "labeller").labeller.label(frames_of(frames), number);
+        if (primitives) std::ranges::copy(found.primitive, primitives);
+        if (objects) std::ranges::copy(found.object, objects);
+    });
+}
+
+void topple_labeller_release(topple_labeller* labeller) {
+    delete labeller;
 }

@@ -27,6 +27,11 @@ class Arrays {
         if (!allocator_) return from.data();
         return static_cast<const T*>(copy(from.data(), from.size() * sizeof(T), alignof(T)));
     }
+    // Three numbers each.
+    const double* hand(const std::vector<Vec3>& from) {
+        const Vec3* const first = hand<Vec3>(from);
+        return first ? first->data() : nullptr;
+    }
 
   private:
     struct Block {
@@ -49,6 +54,8 @@ struct topple_result {
         const std::int32_t* primitives;
         const topple_step* instability;
         const double *blow_height_m, *push_barrier_J, *blow_barrier_J;
+        const double *push_direction, *push_N, *push_error_N, *edge_m;
+        const std::int32_t* stands_on;
     };
     std::vector<OfObject> objects;
     std::vector<const std::int32_t*> corrected;                  // by object

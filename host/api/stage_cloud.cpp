@@ -5,9 +5,12 @@
 
 #include "api/arrays.h"
 #include "core/room_measures.h"
+#include "geometry/sensor_places.h"
 #include "geometry/surfels.h"
 #include "io/text.h"
 #include "pipeline/caller_points.h"
+#include "pipeline/scale_checks.h"
+#include "pipeline/voxel_size.h"
 #include "vdb/completion.h"
 #include "vdb/voxel_scene.h"
 
@@ -30,6 +33,23 @@ class Usable {
     std::optional<FinitePoints> finite_;
 };
 
+// Who gives millimetres for metres would get nothing but cells of one point each. cell_m: into
+// which the points are sorted; what they are further apart than shows no surface.
+void check_metres(const CloudView& view, double cell_m) {
+    constexpr double large_m = 30;  // of rooms; their spacing need not be measured
+    if (extent_m({view.x, view.y, view.z}) <= large_m) return;
+    const double spacing_m = geometry::point_spacing(view).nearest_m;
+    if (spacing_m > cell_m) check_spacing(view, spacing_m, ScanOrigin::cloud_in_memory);
+}
+
+// Where the sensor that saw each point was, as far as that is known.
+geometry::SensorPlaces eyes_of(const CloudView& view, const Vec3* eye_m) {
+    if (eye_m) return {{*eye_m}, {}};
+    geometry::SensorPlaces out = geometry::sensor_places(view);
+    if (out.places.empty() && view.has_viewpoint) out.places = {view.viewpoint};
+    return out;
+}
+
 // Frames are copied in batches of this many bytes of depth.
 constexpr std::uint64_t batch_bytes = 16u << 20;
 
@@ -47,17 +67,19 @@ void normals(device::Device& device, const CloudView& cloud, double cell_m, cons
                 std::to_string(out.size()) + " values of output for " +
                     std::to_string(cloud.size()) + " points");
     }
-    require(cell_m > 0 && std::isfinite(cell_m), "normals",
-            "cell_m " + io::short_number(cell_m) +
-                ": expected metres above 0, about twice the points' spacing");
+    require(cell_m > 0 && cell_m <= largest_voxel_m, "normals",
+            "cell_m " + io::short_number(cell_m) + ": expected metres above 0 and at most " +
+                io::short_number(largest_voxel_m) + ", about twice the points' spacing");
     for (int axis = 0; eye_m && axis < 3; ++axis) {
         require(std::abs((*eye_m)[axis]) <= farthest_m, "normals",
                 "eye_m " + io::short_number((*eye_m)[axis]) + ": expected metres up to " +
                     io::short_number(farthest_m));
     }
     const Usable usable(cloud);
-    const std::span<const Vec3> eyes(eye_m, eye_m ? 1 : 0);
-    const geometry::Surfels s = geometry::make_surfels(device, usable.view(), cell_m, eyes, {});
+    check_metres(usable.view(), cell_m);
+    const geometry::SensorPlaces eyes = eyes_of(usable.view(), eye_m);
+    const geometry::Surfels s =
+        geometry::make_surfels(device, usable.view(), cell_m, eyes.places, eyes.of_point);
     if (usable.view().size() < cloud.size()) {
         for (const std::span<float>& out : {nx, ny, nz}) std::fill(out.begin(), out.end(), 0.0f);
     }
@@ -73,7 +95,11 @@ Volume::Volume(const CloudView& cloud, std::span<const std::int32_t> label, doub
     require(
         label.size() == cloud.size(), "Volume",
         std::to_string(label.size()) + " labels for " + std::to_string(cloud.size()) + " points");
+    require(voxel_m >= least_voxel_m && voxel_m <= largest_voxel_m, "Volume",
+            "voxel_m " + io::short_number(voxel_m) + ": expected metres from " +
+                io::short_number(least_voxel_m) + " to " + io::short_number(largest_voxel_m));
     const Usable usable(cloud);
+    check_metres(usable.view(), voxel_m);
     std::vector<std::int32_t> kept;
     for (std::size_t i = 0; i < usable.view().size(); ++i) {
         kept.push_back(label[usable.place(i)]);

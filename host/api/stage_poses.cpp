@@ -20,6 +20,10 @@ constexpr std::uint64_t direction_block = 32;  // what one work-item takes, on a
 constexpr std::uint64_t tile_values = (std::uint64_t{64} << 20) / sizeof(float);
 constexpr unsigned sphere_frequency = 16;  // of the directions that landscapes are sampled in
 constexpr const char* support_stage = "support_functions";
+constexpr double largest_resolution_m = 1;  // as of voxels
+// Means over the box around a body, kg/m^3: no matter has more; and a rod of wood that leans, in
+// its own box, has ten times the least. What is beyond is in other units than metres and kilograms.
+constexpr double most_kg_m3 = 30000, least_kg_m3 = 0.01;
 
 void check(const Coordinates& vertices, std::span<const std::uint64_t> first,
            const Coordinates& directions, const Array<float>& out) {
@@ -54,6 +58,25 @@ std::vector<float> padded(const Array<const float>& axis, std::uint64_t count) {
     std::vector<float> out(axis.host.begin(), axis.host.end());
     out.resize(axis.on_device() ? 0 : count, out.empty() ? 0 : out[0]);
     return out;
+}
+
+void check_density(const std::string& name, const StandingBody& body, double resolution_m) {
+    Vec3 size{};
+    double volume_m3 = 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto along = [&](const Vec3& p) { return p[a]; };
+        const auto [low, high] = std::ranges::minmax(body.points, {}, along);
+        size[a] = high[a] - low[a];
+        volume_m3 *= size[a] + resolution_m;
+    }
+    const double kg_m3 = body.mass_kg / volume_m3;
+    // Of what is flat no more than that is known.
+    if (volume_m3 == 0 || (kg_m3 <= most_kg_m3 && kg_m3 >= least_kg_m3)) return;
+    throw Error(ErrorKind::input,
+                "barriers: " + name + " of " + io::short_number(body.mass_kg) + " kg would be " +
+                    io::short_number(size[0]) + " x " + io::short_number(size[1]) + " x " +
+                    io::short_number(size[2]) + " m large, " + io::two_digits(kg_m3) +
+                    " kg/m^3: points must be in metres, and its mass in kilograms");
 }
 
 }  // namespace
@@ -107,8 +130,9 @@ void support_functions(device::Device& device, const Coordinates& vertices,
 std::vector<Barrier> barriers(device::Device& device, std::span<const StandingBody> bodies,
                               double resolution_m) {
     const device::InUse in_use(device);
-    require(resolution_m >= 0 && std::isfinite(resolution_m), "barriers",
-            "resolution_m must be 0 or above");
+    require(resolution_m >= 0 && resolution_m <= largest_resolution_m, "barriers",
+            "resolution_m " + io::short_number(resolution_m) + ": expected metres from 0 to " +
+                io::short_number(largest_resolution_m));
     std::vector<std::vector<Vec3>> points;
     std::vector<physics::Candidate> candidates;
     for (const StandingBody& body : bodies) {
@@ -126,6 +150,7 @@ std::vector<Barrier> barriers(device::Device& device, std::span<const StandingBo
                                     ": expected metres up to " + io::short_number(farthest_m));
             }
         }
+        check_density(name, body, resolution_m);
         physics::Candidate c;
         c.primitives = {static_cast<std::int32_t>(points.size())};
         c.body.mass_kg = body.mass_kg;

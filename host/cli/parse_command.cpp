@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -31,8 +30,6 @@
 
 namespace topple::cli {
 namespace {
-
-const std::map<std::string, double> record_units{{"g", 9.80665}, {"m/s2", 1}, {"cm/s2", 0.01}};
 
 std::string joined(const std::vector<std::string>& names, const char* between) {
     std::string out;
@@ -322,7 +319,9 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
         ->needs(record);
     app.add_option_function<std::string>(
            "--accelerogram-unit",
-           [a](const std::string& unit) { a->accelerogram_unit_m_s2 = record_units.at(unit); },
+           [a](const std::string& unit) {
+               a->accelerogram_unit_m_s2 = acceleration_unit_m_s2(unit);
+           },
            "Its unit: g, m/s2 or cm/s2 (default: what the file says, else g)")
         ->check(one_of({"g", "m/s2", "cm/s2"}));
     app.add_option("--floor-amplification", a->options.floor_amplification,

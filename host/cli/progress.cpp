@@ -77,29 +77,28 @@ void Progress::operator()(const std::string& stage, double done) {
         if (!terminal_) finish();
         stage_ = stage;
         stage_start_ = told_ = Clock::now();
-        first_done_ = first_s_ = 0;
         if (!terminal_) std::fprintf(stderr, "%s: %s ...", stage.c_str(), what_it_does(stage));
         line_begun_ = true;
     }
     if (terminal_) {
-        std::fprintf(stderr, "\r\033[K%4.0f s  %s: %s", seconds_since(start_), stage.c_str(),
-                     what_it_does(stage));
-        if (done > 0) std::fprintf(stderr, " %.0f %%", 100 * done);
-        std::fprintf(stderr, "%s", time_left(done).c_str());
+        std::fprintf(stderr, "\r\033[K%4.0f s", seconds_since(start_));
+        if (done > 0) std::fprintf(stderr, " %3.0f %%", 100 * done);
+        std::fprintf(stderr, "  %s: %s%s", stage.c_str(), what_it_does(stage),
+                     time_left(done).c_str());
     } else if (done > 0 && seconds_since(told_) > between_figures_s) {
         told_ = Clock::now();
         if (!line_begun_) std::fprintf(stderr, "%s:", stage.c_str());
-        std::fprintf(stderr, " %.0f %% after %.0f s\n", 100 * done, seconds_since(stage_start_));
+        std::fprintf(stderr, " %.0f %% after %.0f s\n", 100 * done, seconds_since(start_));
         line_begun_ = false;
     }
     std::fflush(stderr);
 }
 
-// "", or ", about 3 min left" of this stage. What an earlier run had done was no work of this one.
+// "", or ", about 3 min left". What an earlier run had done was no work of this one.
 std::string Progress::time_left(double done) {
     constexpr double least_s = 3, least_share = 0.02;
-    const double elapsed = seconds_since(stage_start_);
-    if (elapsed < least_s) {
+    const double elapsed = seconds_since(start_);
+    if (elapsed < least_s || done < first_done_) {
         first_done_ = done;
         first_s_ = elapsed;
         return "";

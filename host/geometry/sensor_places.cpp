@@ -51,7 +51,10 @@ SensorPlaces sensor_places(const CloudView& cloud) {
     };
     for (std::size_t i = 0; i < cloud.size(); ++i) {
         const Vec3 p = place(i);
-        if (!known(p)) continue;
+        if (!known(p)) {
+            ++out.unknown;
+            continue;
+        }
         Cell& cell = cells[cell_of(p)];
         ++cell.points;
         for (std::size_t a = 0; a < 3; ++a) cell.sum[a] += p[a];

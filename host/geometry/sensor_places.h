@@ -14,6 +14,7 @@ struct SensorPlaces {
     // Place of each point. Of a point that does not say: of the nearest place; empty where there
     // are none at all.
     std::vector<std::uint32_t> of_point;
+    std::uint64_t unknown = 0;  // points that do not say
 };
 SensorPlaces sensor_places(const CloudView& cloud);
 

@@ -45,8 +45,14 @@ class Looking {
           pool_(pool),
           views_(surfels, covering_radii(surfels, options.gap_m, pool), pool),
           places_(surfels),
+<<<<<<< HEAD
           sides_(surfels, views_.radii_m(), pool),
           in_view_(places_.size(), 0) {
+=======
+          sides_(surfels, pool),
+          in_view_(places_.size(), 0),
+          tell_(options.tell) {
+>>>>>>> py21
         if (options.sides_known) sides_.believe_normals();
         sides_known_ = options.sides_known;
         out_.viewpoint_of_surfel.assign(surfels.size(), no_eye);
@@ -63,6 +69,7 @@ class Looking {
 
     void look_around(const VirtualViewOptions& options) {
         std::size_t said = 0, hidden = 0;
+        expected_ = std::max<double>(options.eyes, static_cast<double>(options.known_eyes.size()));
         for (std::size_t e = 0; e < options.known_eyes.size(); ++e) {
             CubeView view = views_.from(options.known_eyes[e]);
             for (std::size_t i = 0; i < options.seen_from.size(); ++i) {
@@ -73,6 +80,7 @@ class Looking {
             look(std::move(view));
         }
         if (said > 0) out_.hidden_share = static_cast<double>(hidden) / static_cast<double>(said);
+        if (options.known_eyes.empty()) expected_ *= static_cast<double>(rooms());
         if (!options.known_eyes.empty()) return explore(options.eyes);
         look_first(options.sides_known);
         if (out_.eyes.empty()) return;
@@ -267,6 +275,7 @@ class Looking {
         });
         places_.leave_out(view.eye);
         add_frames(view);
+        if (tell_) tell_(std::min(0.99, static_cast<double>(out_.eyes.size()) / expected_));
     }
 
     void add_frames(CubeView& view) {
@@ -390,6 +399,8 @@ class Looking {
     std::vector<std::uint32_t> in_view_;  // of each place outside: how many eyes have it in view
     std::vector<std::vector<std::uint32_t>> shown_;  // surfels of the frames' pixels
     VirtualViews out_;
+    const std::function<void(double)>& tell_;
+    double expected_ = 1;  // places, about
 };
 
 }  // namespace

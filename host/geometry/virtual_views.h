@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct VirtualViewOptions {
     // Gaps of less than this radius between surfels are surface that was hit by no point; 0: those
     // alone that a surfel is wide.
     double gap_m = 0;
+    // Called after each place that was looked from, with about how much is done, 0 to 1; or empty.
+    std::function<void(double)> tell{};
 };
 
 // Depth images as a sensor would have taken them from free places of the scene.

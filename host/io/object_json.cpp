@@ -77,9 +77,9 @@ Json to_json(const DirectedBarrier& b) {
             row.push_back(number(b.blow_J[n * b.height_m.size() + h]));
         blows.push_back(std::move(row));
     }
-    return {{"height_m", numbers(b.height_m)},
-            {"push_J", numbers(b.push_J)},
-            {"blow_J", std::move(blows)}};
+    return {{"height_m", numbers(b.height_m)}, {"push_J", numbers(b.push_J)},
+            {"blow_J", std::move(blows)},      {"direction", list(b.direction, vector)},
+            {"push_N", numbers(b.push_N)},     {"push_error_N", numbers(b.push_error_N)}};
 }
 
 Why why_of(const Json& json) {
@@ -162,6 +162,11 @@ DirectedBarrier directed_of(const Json& json) {
     for (const Json& row : json.at("blow_J")) {
         for (const Json& value : row) b.blow_J.push_back(number_of(value, never));
     }
+    if (!json.contains("push_N")) return b;
+    for (const Json& way : json.at("direction")) b.direction.push_back(vector_of(way));
+    for (const Json& value : json.at("push_N")) b.push_N.push_back(number_of(value, never));
+    for (const Json& value : json.at("push_error_N"))
+        b.push_error_N.push_back(number_of(value, never));
     return b;
 }
 

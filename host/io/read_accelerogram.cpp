@@ -230,6 +230,11 @@ Raw read_text(const fs::path& file, std::string_view text, bool unit_given) {
 
 }  // namespace
 
+double acceleration_unit_m_s2(const std::string& name) {
+    if (const std::optional<double> unit = unit_of(lower_case(name))) return *unit;
+    throw Error(ErrorKind::usage, "--accelerogram-unit " + name + ": expected g, m/s2 or cm/s2");
+}
+
 Accelerogram read_accelerogram(const fs::path& file, std::optional<double> unit_m_s2) {
     const auto bytes = io::read_file(file, most_bytes);
     std::string_view text = bytes.text();

@@ -142,6 +142,20 @@ double find_unit(const std::filesystem::path& file, BodyMotion& motion,
     return unit;
 }
 
+void check_motion_options(const MotionFileOptions& options) {
+    const auto check = [](const char* name, const std::optional<double>& value) {
+        if (value && !(*value > 0 && std::isfinite(*value)))
+            throw Error(ErrorKind::usage, std::string(name) + " " + io::short_number(*value) +
+                                              ": expected a number above 0");
+    };
+    check("--motion-unit", options.unit_m);
+    check("--motion-rate", options.rate_hz);
+    if (!options.up) return;
+    const double length = std::hypot((*options.up)[0], (*options.up)[1], (*options.up)[2]);
+    if (!(length > 0) || !std::isfinite(length))
+        throw Error(ErrorKind::usage, "--motion-up: expected three numbers, not all zero");
+}
+
 }  // namespace
 
 std::size_t BodyMotion::frames() const {
@@ -156,6 +170,7 @@ double BodyMotion::stature_m() const {
 }
 
 BodyMotion read_motion(const std::filesystem::path& file, const MotionFileOptions& options) {
+    check_motion_options(options);
     const io::FileBytes bytes = io::read_file(file, std::uint64_t{1} << 31);
     const std::string_view text = bytes.text();
     const bool bvh = text.substr(0, 4096).find("HIERARCHY") != std::string_view::npos;

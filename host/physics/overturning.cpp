@@ -8,6 +8,21 @@
 #include "physics/tipping.h"
 
 namespace topple::physics {
+namespace {
+
+double foot_error(double border_error_m, double distance_m) {
+    return std::hypot(border_error_m, foot_off_share * distance_m);
+}
+
+}  // namespace
+
+TippingPush tipping_push(const Body& body, const BodyError& known, double ahead_m, double aside,
+                         double border_error_m, double arm_m) {
+    const double weight = body.mass_kg * gravity;
+    const double error_m = foot_error(border_error_m / aside, ahead_m);
+    return {weight * ahead_m / arm_m,
+            std::hypot(weight * error_m, gravity * known.mass_kg * ahead_m) / arm_m};
+}
 
 Overturning overturning(const Candidate& candidate, const BodyError& known,
                         const Stability& tipping, double top_m, double border_error_m,
@@ -22,12 +37,13 @@ Overturning overturning(const Candidate& candidate, const BodyError& known,
     Overturning out;
     out.direction = tipping.easiest.direction;
     out.tilt_deg = std::atan(beside / height) * degrees;
-    const double foot_error_m = std::hypot(border_error_m, foot_off_share * beside);
+    const double foot_error_m = foot_error(border_error_m, beside);
     out.tilt_error_deg = std::hypot(height * foot_error_m, beside * known.center_m[2]) /
                          (height * height + beside * beside) * degrees;
     const double arm = std::max(top_m - candidate.support_height_m, height);
-    out.push_N = weight * beside / arm;
-    out.push_error_N = std::hypot(weight * foot_error_m, gravity * known.mass_kg * beside) / arm;
+    const TippingPush push = tipping_push(body, known, beside, 1, border_error_m, arm);
+    out.push_N = push.push_N;
+    out.push_error_N = push.error_N;
     // What stands higher than a hand's height is reached for.
     constexpr double hand_m = 1;
     const double hand = floor_m + hand_m - candidate.support_height_m;

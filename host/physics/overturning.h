@@ -24,6 +24,15 @@ Overturning overturning(const Candidate& candidate, const BodyError& known,
                         const Stability& tipping, double top_m, double border_error_m,
                         double friction, double floor_m);
 
+// Steady level push, newtons, `arm_m` above its support, at which a body begins to turn over an
+// edge that lies `ahead_m` before its centre of mass along the push: M g ahead / arm. `aside`: the
+// cosine of the angle between the push and the way square across that edge.
+struct TippingPush {
+    double push_N = 0, error_N = 0;  // and one standard error
+};
+TippingPush tipping_push(const Body& body, const BodyError& known, double ahead_m, double aside,
+                         double border_error_m, double arm_m);
+
 // One standard error of b / h, the tangent of its tilt, as a share of it; 0 where it can't tip.
 double slope_error_share(const Overturning& overturning);
 

@@ -185,6 +185,20 @@ const Toppling::Tip* Toppling::met_first(const Vec3& way) const {
     return first;
 }
 
+Toppling::EdgeAhead Toppling::edge_ahead(const Vec3& way) const {
+    EdgeAhead out{infinity, 1};
+    if (const Tip* const first = met_first(way)) {
+        out.cosine = dot(way, first->way);
+        out.distance_m = first->beside_m / out.cosine;
+    }
+    // Any push, any way.
+    for (const Tip& tip : tips_) {
+        const bool any = tip.way == Vec3{} || !(tip.climb_J > 0);
+        if (any && tip.beside_m < out.distance_m) out = {tip.beside_m, 1};
+    }
+    return out;
+}
+
 template <class Visit>
 void Toppling::of_push(const Vec3& way, const Visit& visit) const {
     const Tip* const first = met_first(way);

@@ -41,6 +41,13 @@ class Toppling {
     // No more than it takes to turn it over the edge that the line ahead meets first, whatever that
     // releases.
     double over_edge_J(const Vec3& way) const;
+    // The edge that the line ahead meets first: how far before the centre of mass it lies along
+    // that line, and the cosine of the angle between that and the way square across the edge.
+    // Infinity and 1: there is none.
+    struct EdgeAhead {
+        double distance_m = 0, cosine = 1;
+    };
+    EdgeAhead edge_ahead(const Vec3& way) const;
     // Straight on to where its support ends.
     double slide_distance_m(const Vec3& way) const;
     // The mass that such a blow meets: less than the body's, where it also turns it.

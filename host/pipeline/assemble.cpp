@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "io/text.h"
+#include "physics/overturning.h"
 #include "pipeline/explain.h"
 #include "pipeline/object_sizes.h"
 #include "pipeline/sentences.h"
@@ -54,7 +55,8 @@ Landscape turned(const StableObject& from, const ToInput& to_input) {
 }
 
 // By azimuth, which is clockwise from north, +y of the grid.
-DirectedBarrier directed(const physics::Toppling& toppling) {
+DirectedBarrier directed(const StableObject& from, const ToInput& to_input) {
+    const physics::Toppling& toppling = *from.toppling;
     static_assert(DirectedBarrier::directions == safety::direction_count);
     DirectedBarrier out;
     for (std::size_t h = 0; h < physics::Toppling::heights; ++h)
@@ -66,6 +68,14 @@ DirectedBarrier directed(const physics::Toppling& toppling) {
         out.push_J.push_back(toppling.push_barrier_J(way));
         for (const double height : out.height_m)
             out.blow_J.push_back(toppling.blow_barrier_J(way, height));
+        out.direction.push_back(to_input(way));
+        if (std::isnan(from.overturning.hand_height_m)) continue;  // it hangs
+        const physics::Toppling::EdgeAhead edge = toppling.edge_ahead(way);
+        const physics::TippingPush push =
+            physics::tipping_push(from.candidate.body, from.body_error, edge.distance_m,
+                                  edge.cosine, from.margin_error_m, from.overturning.hand_height_m);
+        out.push_N.push_back(push.push_N);
+        out.push_error_N.push_back(push.error_N);
     }
     return out;
 }
@@ -107,7 +117,7 @@ void add_objects(const SolidScene& solids, const ObjectStage& objects, const Saf
             to.direction = to_input(from.instability.direction);
             to.instability = from.instability.curve;
             if (from.seen_enough() && from.toppling)
-                to.barrier_by_direction = directed(*from.toppling);
+                to.barrier_by_direction = directed(from, to_input);
             to.landscape = turned(from, to_input);
         }
         for (std::size_t d = 0; d < safety.disturbances.size(); ++d) {
@@ -256,6 +266,15 @@ void note_short_hazard(Scene& scene) {
                           "nothing minds.");
 }
 
+// Of g/cm^3 instead, all would weigh a thousandth.
+void note_light_density(Scene& scene) {
+    constexpr double lightest_kg_m3 = 10;  // foams for packing
+    if (scene.density_kg_m3 >= lightest_kg_m3) return;
+    scene.notes.push_back("The density of " + io::short_number(scene.density_kg_m3) +
+                          " kg/m\u00b3 is less than that of the lightest foam; if it is in "
+                          "g/cm\u00b3, give --density 1000 times as large.");
+}
+
 void note_corrections(Scene& scene) {
     for (std::size_t n = 0; n < scene.corrections.size(); ++n) {
         const AppliedCorrection& c = scene.corrections[n];
@@ -312,6 +331,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     add_fields(safety, to_input, scene);
     add_walks(safety, to_input, scene);
     scene.corrections = objects.told.corrections;
+    note_light_density(scene);
     note_corrections(scene);
     note_unsettled_search(scene);
     note_crowded_objects(scene);

@@ -13,6 +13,7 @@
 
 #include "geometry/sensor_places.h"
 #include "geometry/virtual_views.h"
+#include "io/text.h"
 #include "pipeline/memory_stream.h"
 
 namespace topple {
@@ -67,12 +68,29 @@ bool lie_far_off(const std::vector<Vec3>& places, const geometry::Surfels& surfe
     });
 }
 
+// What was given, but is no place: not finite, or so far off that it is not metres.
+void note_unknown(const geometry::SensorPlaces& sensors, std::size_t points,
+                  std::vector<std::string>& notes) {
+    if (sensors.unknown == 0) return;
+    notes.push_back(
+        sensors.places.empty()
+            ? "The places that the points are said to have been seen from are not finite: they "
+              "count as not known."
+            : "Of " + io::counted(points, "point") + " " + std::to_string(sensors.unknown) +
+                  (sensors.unknown == 1 ? " has" : " have") +
+                  " no finite place to have been seen from: of the places of the others the "
+                  "nearest one was taken.");
+}
+
 // scale, gap_m: of surfels in views.
 void look_around(device::Device& device, const std::optional<geometry::SingleScan>& scan,
-                 const geometry::SurfelScale& scale, double gap_m, Ingested& out) {
+                 const geometry::SurfelScale& scale, double gap_m,
+                 const std::function<void(double)>& tell, Ingested& out) {
     geometry::VirtualViewOptions options;
+    options.tell = tell;
     geometry::SensorPlaces sensors = geometry::sensor_places(out.cloud);
     const bool posed = !sensors.places.empty();
+    note_unknown(sensors, out.cloud.size(), out.notes);
     std::vector<std::uint32_t> eye_of_place(sensors.places.size(), geometry::no_eye);
     if (posed) {
         for (const std::uint32_t place : geometry::places_apart(sensors, most_sensors)) {
@@ -152,13 +170,14 @@ void look_around(device::Device& device, const std::optional<geometry::SingleSca
 }  // namespace
 
 void look_from_free_places(device::Device& device, const std::optional<geometry::SingleScan>& scan,
-                           const geometry::PointSpacing& spacing, Ingested& out) {
+                           const geometry::PointSpacing& spacing,
+                           const std::function<void(double)>& tell, Ingested& out) {
     look_around(device, scan, view_surfels(spacing, out.cell_m), gap_pitches * spacing.surface_m,
-                out);
+                tell, out);
 }
 
 void look_from_free_places(device::Device& device, Ingested& out) {
-    look_around(device, std::nullopt, view_cells * out.cell_m, gap_pitches * out.cell_m, out);
+    look_around(device, std::nullopt, view_cells * out.cell_m, gap_pitches * out.cell_m, {}, out);
 }
 
 }  // namespace topple

@@ -89,8 +89,11 @@ void add_options(Checksum& sum, const ParseOptions& options) {
     add_text(sum, build_id());
     const device::DeviceInfo& info = options.device->info();
     add_text(sum, device::to_string(info.backend));
-    add_text(sum, info.name);
-    add_text(sum, info.driver);
+    // The native backend's results are those of every processor and number of threads.
+    if (info.backend != device::Backend::native) {
+        add_text(sum, info.name);
+        add_text(sum, info.driver);
+    }
     add(options.voxel_m);
     add(options.unit_m);
     add(options.max_memory_bytes);

@@ -72,14 +72,21 @@ void fuse_frames(device::Device& device, bool posed, const ParseOptions& options
                                  [&](std::size_t f) { return out.frames->load(f); });
     geometry::FrameFusion fusion(out.frames->intrinsics(), out.cell_m, device.threads().threads());
     const auto count = static_cast<double>(out.frames->size());
-    const auto poll = [&] { end_if_cancelled(options); };
+    constexpr double added_share = 0.4, polls = 5;  // of the stage; while it is finished
+    const auto tell = [&](double done) {
+        if (options.progress) options.progress("ingest", done);
+    };
     const auto add = [&](const DepthFrame& frame, std::size_t f) {
-        poll();
+        end_if_cancelled(options);
         fusion.add(frame);
-        if (options.progress) options.progress("ingest", static_cast<double>(f + 1) / count);
+        tell(added_share * static_cast<double>(f + 1) / count);
     };
     for_each_frame(*out.frames, device.threads(), add, true);
-    geometry::FusedCloud fused = fusion.finish(poll);
+    double polled = 0;
+    geometry::FusedCloud fused = fusion.finish([&] {
+        end_if_cancelled(options);
+        tell(added_share + (1 - added_share) * std::min(1.0, ++polled / polls));
+    });
     out.own = std::move(fused.cloud);
     out.cloud = out.own;
     out.viewpoints = std::move(fused.viewpoints);
@@ -159,7 +166,7 @@ void check_count(const CloudView& cloud) {
 }
 
 // All that follows from the points.
-void look_at_cloud(device::Device& device, Ingested& out) {
+void look_at_cloud(device::Device& device, const ParseOptions& options, Ingested& out) {
     const CloudView& cloud = out.cloud;
     check_count(cloud);
     const geometry::PointSpacing spacing = geometry::point_spacing(cloud);
@@ -192,16 +199,21 @@ void look_at_cloud(device::Device& device, Ingested& out) {
         scan = geometry::find_single_scan(
             cloud, cloud.has_viewpoint ? cloud.viewpoint : out.own.origin_m, spacing.nearest_m);
     }
-    look_from_free_places(device, scan, spacing, out);
+    // Reading it took the rest of the stage.
+    constexpr double read_share = 0.2;
+    const auto tell = [&](double done) {
+        if (options.progress) options.progress("ingest", read_share + (1 - read_share) * done);
+    };
+    look_from_free_places(device, scan, spacing, tell, out);
 }
 
 }  // namespace
 
-Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions&) {
+Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options) {
     Ingested out;
     out.own = std::move(cloud);
     out.cloud = out.own;
-    look_at_cloud(device, out);
+    look_at_cloud(device, options, out);
     return out;
 }
 
@@ -219,7 +231,7 @@ Ingested ingest_view(device::Device& device, const CloudView& cloud, const Parse
         out.index = std::move(finite->index);
         out.cloud = out.own;
     }
-    look_at_cloud(device, out);
+    look_at_cloud(device, options, out);
     return out;
 }
 
@@ -273,12 +285,12 @@ std::optional<geometry::SceneFrame> frame_of_map(const std::optional<Vec3>& give
 }
 
 // A volume's surface, and its free space beside what virtual views of the surface find.
-Ingested ingest_volume(device::Device& device, ScannedMap map) {
+Ingested ingest_volume(device::Device& device, ScannedMap map, const ParseOptions& options) {
     Ingested out;
     out.origin = ScanOrigin::map_file;
     out.own = std::move(map.cloud);
     out.cloud = out.own;
-    look_at_cloud(device, out);
+    look_at_cloud(device, options, out);
     if (!map.space.free.empty()) out.space = std::move(map.space);
     return out;
 }
@@ -330,7 +342,7 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
     }
     ScannedMap map = read_input(input, options);
     if (io::looks_like_octomap(input)) return ingest_octomap(std::move(map), options);
-    if (vdb::looks_like_volume(input)) return ingest_volume(device, std::move(map));
+    if (vdb::looks_like_volume(input)) return ingest_volume(device, std::move(map), options);
     return ingest_cloud(device, std::move(map.cloud), options);
 }
 

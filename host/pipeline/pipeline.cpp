@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "device/device.h"
+#include "io/frame_sequence.h"
 #include "io/scan_notes.h"
 #include "pipeline/assemble.h"
 #include "pipeline/cancelling.h"
@@ -16,15 +17,14 @@
 #include "pipeline/safety_stage.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/tiled_parse.h"
+#include "pipeline/voxel_size.h"
 #include "pipeline/voxel_stage.h"
+#include "pipeline/whole_progress.h"
 #include "safety/disturbances.h"
 #include "topple/parse.h"
 
 namespace topple {
 namespace {
-
-// The finest voxel: below the noise of every sensor of rooms, and far above what overflows.
-constexpr double least_voxel_m = 0.001;
 
 std::string number_text(double value) {
     char digits[32];
@@ -117,7 +117,7 @@ ParseResult parse_whole(const std::filesystem::path& input, const ParseOptions& 
 }  // namespace
 
 void check_options(const ParseOptions& o) {
-    if (o.voxel_m != 0) check_range("--voxel", o.voxel_m, least_voxel_m, 1.0);
+    if (o.voxel_m != 0) check_range("--voxel", o.voxel_m, least_voxel_m, largest_voxel_m);
     check_range("--unit", o.unit_m, 1e-6, 1e6);
     if (o.up)
         check_range("--up: its length,", std::hypot((*o.up)[0], (*o.up)[1], (*o.up)[2]), 1e-6, 1e6);
@@ -194,7 +194,10 @@ ParseResult parse(const std::filesystem::path& input, const ParseOptions& option
     check_options(options);
     // First, as it is told early what can't be read.
     std::vector<std::string> notes = io::scan_notes(input);
-    ParseResult result = parse_scan(input, options);
+    const auto kind =
+        io::looks_like_sequence(input) ? WholeProgress::Input::frames : WholeProgress::Input::cloud;
+    ParseResult result =
+        tell_whole(kind, options, [&](const ParseOptions& o) { return parse_scan(input, o); });
     std::vector<std::string>& all = result.scene.notes;
     all.insert(all.begin(), notes.begin(), notes.end());
     return result;
@@ -204,9 +207,11 @@ ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
     check_options(options);
     refuse_cache(options);
     const std::string source = cloud.source.empty() ? "cloud" : cloud.source;
-    return run(source, options, [&](device::Device& device, StageClock& stage) {
-        Ingested input = stage("ingest", [&] { return ingest_view(device, cloud, options); });
-        return lay_groundwork(device, std::move(input), options, source, stage);
+    return tell_whole(WholeProgress::Input::cloud, options, [&](const ParseOptions& o) {
+        return run(source, o, [&](device::Device& device, StageClock& stage) {
+            Ingested input = stage("ingest", [&] { return ingest_view(device, cloud, o); });
+            return lay_groundwork(device, std::move(input), o, source, stage);
+        });
     });
 }
 
@@ -214,10 +219,11 @@ ParseResult parse(const FramesView& frames, const ParseOptions& options) {
     check_options(options);
     refuse_cache(options);
     const std::string source = frames.source.empty() ? "frames" : frames.source;
-    return run(source, options, [&](device::Device& device, StageClock& stage) {
-        Ingested input =
-            stage("ingest", [&] { return ingest_frames_view(device, frames, options); });
-        return lay_groundwork(device, std::move(input), options, source, stage);
+    return tell_whole(WholeProgress::Input::frames, options, [&](const ParseOptions& o) {
+        return run(source, o, [&](device::Device& device, StageClock& stage) {
+            Ingested input = stage("ingest", [&] { return ingest_frames_view(device, frames, o); });
+            return lay_groundwork(device, std::move(input), o, source, stage);
+        });
     });
 }
 

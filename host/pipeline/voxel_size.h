@@ -13,6 +13,10 @@ namespace topple {
 // by the surface's own neighbourhoods (geometry/surface_gaps.h).
 inline constexpr double closing_cells = 1.75;
 
+// The finest voxel is below the noise of every sensor of rooms, and far above what overflows; the
+// coarsest hardly shows a room.
+inline constexpr double least_voxel_m = 0.001, largest_voxel_m = 1;
+
 // Edge of a solid voxel, metres, whose surface has no gaps at a scan of this resolution: about two
 // cells, rounded to a handy value.
 double voxel_for_cell(double cell_m);

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "python.h"
 #include "topple/cloud_view.h"
 #include "topple/error.h"
+#include "topple/frames_view.h"
 
 // Arrays of NumPy where they lie. The Python side has converted what needs it, and says in the
 // caller's words what is wrong with the rest: here remain checks that keep memory safe.
@@ -34,5 +37,52 @@ std::span<T> row(const py::array& from, const char* name) {
 // Lists of three arrays each, or empty ones where there are none; any strides.
 CloudView view_of(const std::vector<py::array>& points, const std::vector<py::array>& normals,
                   const std::vector<py::array>& colours, const std::optional<Vec3>& viewpoint);
+
+// Gives each point the place that it was seen from: three arrays, or none.
+void see_from(const std::vector<py::array>& viewpoints, CloudView& view);
+
+// The points of which a result has no coordinates, as they are the caller's; none: it has them.
+std::optional<CloudView> caller_points(const std::vector<py::array>& points,
+                                       const std::vector<py::array>& colours);
+
+// While it lives, the result has the coordinates of these points. Nobody else may use it meanwhile.
+class LentCoordinates {
+  public:
+    LentCoordinates(const std::optional<CloudView>& points, Parsed& parsed) {
+        if (!points) return;
+        add_coordinates(*points, parsed.result);
+        to_ = &parsed.result.scene.points;
+    }
+    ~LentCoordinates() {
+        if (!to_) return;
+        to_->x = to_->y = to_->z = {};
+        to_->red = to_->green = to_->blue = {};
+    }
+    LentCoordinates(const LentCoordinates&) = delete;
+    LentCoordinates& operator=(const LentCoordinates&) = delete;
+
+  private:
+    ScenePoints* to_ = nullptr;
+};
+
+using PyFrame = std::pair<py::array, std::optional<py::array>>;  // depth, colour
+
+FrameView frame_view(const PyFrame& frame);
+// c: fx, fy, cx, cy, depth_scale.
+Intrinsics intrinsics(std::uint32_t width, std::uint32_t height, const std::array<double, 5>& c);
+// size: width and height. poses: 16 numbers each. camera: as above.
+FramesView frames_view(const std::vector<PyFrame>& frames, const std::array<std::uint32_t, 2>& size,
+                       const py::array& poses, const std::array<double, 5>& camera,
+                       const std::string& name);
+
+// A vector's memory as an array, which owns it from then on.
+template <class T>
+py::array owned(std::vector<T>&& values) {
+    auto kept = std::make_unique<std::vector<T>>(std::move(values));
+    const py::capsule owner(kept.get(), [](void* p) { delete static_cast<std::vector<T>*>(p); });
+    const std::vector<T>& lasting = *kept.release();
+    return py::array_t<T>({static_cast<py::ssize_t>(lasting.size())},
+                          {static_cast<py::ssize_t>(sizeof(T))}, lasting.data(), owner);
+}
 
 }  // namespace topple::python

@@ -87,7 +87,7 @@ void bind_devices(py::module_& module) {
 }  // namespace
 
 std::string with_own_names(std::string text) {
-    static constexpr std::array<std::pair<const char*, const char*>, 22> names{
+    static constexpr std::array<std::pair<const char*, const char*>, 26> names{
         {{"--backend", "backend"},
          {"--voxel", "voxel_m"},
          {"--unit", "unit_m"},
@@ -100,6 +100,10 @@ std::string with_own_names(std::string text) {
          {"--friction", "friction"},
          {"--contents", "contents_kg_m3"},
          {"--walks", "walks"},
+         {"--motion-unit", "motion_unit"},
+         {"--motion-rate", "motion_rate"},
+         {"--motion-up", "motion_up"},
+         {"--accelerogram-unit", "accelerogram_unit"},
          {"--wind", "wind_m_s"},
          {"--wind-from", "wind_from_deg"},
          {"--pga", "pga_m_s2"},
@@ -119,7 +123,7 @@ std::string with_own_names(std::string text) {
     }
     const auto in_name = [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; };
     for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at + 1)) {
-        if (at > 0 && text[at - 1] != ' ') continue;  // within a file's name
+        if (at > 0 && text[at - 1] != ' ' && text[at - 1] != '(') continue;  // in a file's name
         std::size_t end = at;
         while (end < text.size() && in_name(text[end])) ++end;
         for (const auto& [option, own] : names) {
@@ -138,6 +142,7 @@ PYBIND11_MODULE(_topple, module) {
     bind_devices(module);
     bind_result(module);
     bind_parse(module);
+    bind_labels(module);
     bind_export(module);
     bind_stages(module);
     py::module_::import("atexit").attr("register")(py::cpp_function([] {

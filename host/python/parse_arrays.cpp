@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <limits>
 #include <thread>
 
 #include "arrays.h"
@@ -22,8 +20,9 @@ class Caller {
         : progress_(std::move(progress)), cancelled_(std::move(cancelled)) {}
 
     void progress(const std::string& stage, double done) {
-        if (progress_.is_none() || !mine() || stop_ || (done != 0 && done != 1 && !due(told_)))
-            return;
+        if (progress_.is_none() || !mine() || stop_) return;
+        if (stage == stage_ && done != 1 && !due(told_)) return;
+        stage_ = stage;
         ask([&] { progress_(stage, done); });
     }
     // Whether it was told to stop, by the callback or by a signal such as Ctrl-C.
@@ -65,6 +64,7 @@ class Caller {
     }
 
     py::object progress_, cancelled_;
+    std::string stage_;  // that was told last
     const std::thread::id thread_ = std::this_thread::get_id();
     std::atomic<bool> stop_ = false;
     Clock::time_point told_{}, asked_{};
@@ -77,14 +77,7 @@ std::shared_ptr<Parsed> run(const std::shared_ptr<SharedDevice>& device, ParseOp
     Caller caller(std::move(progress), std::move(cancelled));
     options.progress = [&](const std::string& stage, double done) { caller.progress(stage, done); };
     options.cancelled = [&] { return caller.cancelled(); };
-    std::unique_lock<std::mutex> lock;
-    if (device) {
-        lock = std::unique_lock(device->in_use, std::try_to_lock);
-        if (!lock)
-            throw Error(ErrorKind::usage,
-                        "the device is in use by another thread's parse; open one for each");
-        options.device = device->device;
-    }
+    if (device) options.device = device->device;
     auto out = std::make_shared<Parsed>();
     try {
         const Busy busy;
@@ -98,45 +91,7 @@ std::shared_ptr<Parsed> run(const std::shared_ptr<SharedDevice>& device, ParseOp
     return out;
 }
 
-// A one-dimensional array where it lies.
-template <class T>
-Column<T> column(const py::array& from, const char* name) {
-    if (from.ndim() != 1 || !py::isinstance<py::array_t<T>>(from)) {
-        throw Error(ErrorKind::usage, std::string(name) + " is no array of " +
-                                          (sizeof(T) == 1 ? "uint8" : "float32") + " in a row");
-    }
-    return {static_cast<const T*>(from.data()), static_cast<std::size_t>(from.shape(0)),
-            from.strides(0)};
-}
-
-// An image where it lies; the Python side has seen to its type and to rows without gaps.
-template <class Pixel, class Value>
-ImageView<Pixel> image(const py::array& from, const char* name) {
-    const py::ssize_t values = sizeof(Pixel) / sizeof(Value);
-    const bool fits =
-        py::isinstance<py::array_t<Value>>(from) && from.ndim() == (values == 1 ? 2 : 3) &&
-        (values == 1 || (from.shape(2) == values && from.strides(2) == sizeof(Value)));
-    if (!fits || (from.shape(1) > 1 && from.strides(1) != sizeof(Pixel)) ||
-        std::max(from.shape(0), from.shape(1)) > std::numeric_limits<std::int32_t>::max())
-        throw Error(ErrorKind::usage, std::string(name) + " is no image with rows without gaps");
-    return {static_cast<const Pixel*>(from.data()), static_cast<std::uint32_t>(from.shape(1)),
-            static_cast<std::uint32_t>(from.shape(0)), from.shape(0) > 1 ? from.strides(0) : 0};
-}
-
-using PyFrame = std::pair<py::array, std::optional<py::array>>;  // depth, colour
-
-FrameView frame_view(const PyFrame& frame) {
-    FrameView out;
-    if (py::isinstance<py::array_t<float>>(frame.first))
-        out.depth_m = image<float, float>(frame.first, "frames");
-    else
-        out.depth = image<std::uint16_t, std::uint16_t>(frame.first, "frames");
-    if (frame.second) out.colour = image<Rgb, std::uint8_t>(*frame.second, "colours");
-    return out;
-}
-
-// frames: all of them; or none, and `load` gives that of a number. size: width and height. poses:
-// 16 numbers each. Cameras: fx, fy, cx, cy, depth_scale.
+// frames: all of them; or none, and `load` gives that of a number.
 std::shared_ptr<Parsed> parse_frames(const std::vector<PyFrame>& frames, const py::object& load,
                                      const std::array<std::uint32_t, 2>& size,
                                      const py::array& poses, const std::array<double, 5>& camera,
@@ -145,14 +100,7 @@ std::shared_ptr<Parsed> parse_frames(const std::vector<PyFrame>& frames, const p
                                      const std::shared_ptr<SharedDevice>& device,
                                      const ParseOptions& options, py::object progress,
                                      py::object cancelled) {
-    const auto intrinsics = [](std::uint32_t width, std::uint32_t height,
-                               const std::array<double, 5>& c) {
-        return Intrinsics{width, height, c[0], c[1], c[2], c[3], c[4]};
-    };
-    FramesView view;
-    view.source = name;
-    view.intrinsics = intrinsics(size[0], size[1], camera);
-    for (const PyFrame& frame : frames) view.images.push_back(frame_view(frame));
+    FramesView view = frames_view(frames, size, poses, camera, name);
     PyFrame last;  // stays until the next one is asked for
     if (frames.empty()) {
         view.image = [&](std::size_t number) {
@@ -173,36 +121,11 @@ std::shared_ptr<Parsed> parse_frames(const std::vector<PyFrame>& frames, const p
                 intrinsics(static_cast<std::uint32_t>(first->second->shape(1)),
                            static_cast<std::uint32_t>(first->second->shape(0)), *colour_camera);
     }
-    const std::span<const double> values = row<const double>(poses, "camera_to_world");
-    for (std::size_t at = 0; at + 16 <= values.size(); at += 16)
-        std::ranges::copy(values.subspan(at, 16), view.camera_to_world.emplace_back().begin());
     return run(device, options, std::move(progress), std::move(cancelled),
                [&](const ParseOptions& o) { return parse(view, o); });
 }
 
 }  // namespace
-
-CloudView view_of(const std::vector<py::array>& points, const std::vector<py::array>& normals,
-                  const std::vector<py::array>& colours, const std::optional<Vec3>& viewpoint) {
-    CloudView view;
-    view.source = "points";
-    view.x = column<float>(points.at(0), "x");
-    view.y = column<float>(points.at(1), "y");
-    view.z = column<float>(points.at(2), "z");
-    if (!normals.empty()) {
-        view.nx = column<float>(normals.at(0), "nx");
-        view.ny = column<float>(normals.at(1), "ny");
-        view.nz = column<float>(normals.at(2), "nz");
-    }
-    if (!colours.empty()) {
-        view.red = column<std::uint8_t>(colours.at(0), "red");
-        view.green = column<std::uint8_t>(colours.at(1), "green");
-        view.blue = column<std::uint8_t>(colours.at(2), "blue");
-    }
-    view.has_viewpoint = viewpoint.has_value();
-    view.viewpoint = viewpoint.value_or(Vec3{});
-    return view;
-}
 
 void bind_parse(py::module_& module) {
     py::class_<ParseOptions>(module, "Options")
@@ -226,13 +149,17 @@ void bind_parse(py::module_& module) {
         .def_readwrite("tolerable_J", &ParseOptions::tolerable_J)
         .def_readwrite("grouping_time_s", &ParseOptions::grouping_time_s)
         .def("read_motion",
-             [](ParseOptions& o, const std::string& file) {
-                 o.motions.push_back(std::make_shared<BodyMotion>(read_motion(file)));
+             [](ParseOptions& o, const std::string& file, const std::optional<double>& unit_m,
+                const std::optional<double>& rate_hz, const std::optional<Vec3>& up) {
+                 o.motions.push_back(
+                     std::make_shared<BodyMotion>(read_motion(file, {unit_m, rate_hz, up})));
              })
         .def("read_accelerogram",
              [](ParseOptions& o, const std::string& along, const std::optional<std::string>& across,
-                const std::optional<std::string>& up) {
-                 o.accelerogram = read_accelerogram(along, across, up);
+                const std::optional<std::string>& up, const std::optional<std::string>& unit) {
+                 std::optional<double> unit_m_s2;
+                 if (unit) unit_m_s2 = acceleration_unit_m_s2(*unit);
+                 o.accelerogram = read_accelerogram(along, across, up, unit_m_s2);
              })
         .def("read_corrections",
              [](ParseOptions& o, const std::string& file) {
@@ -259,11 +186,7 @@ void bind_parse(py::module_& module) {
                   const std::shared_ptr<SharedDevice>& device, ParseOptions options,
                   py::object progress, py::object cancelled) {
                    CloudView view = view_of(points, normals, colours, viewpoint);
-                   if (!viewpoints.empty()) {
-                       view.viewpoint_x = column<float>(viewpoints.at(0), "viewpoint x");
-                       view.viewpoint_y = column<float>(viewpoints.at(1), "viewpoint y");
-                       view.viewpoint_z = column<float>(viewpoints.at(2), "viewpoint z");
-                   }
+                   see_from(viewpoints, view);
                    view.source = name;
                    options.coordinates = false;
                    return run(device, options, std::move(progress), std::move(cancelled),
@@ -281,20 +204,10 @@ void bind_parse(py::module_& module) {
     module.def("write",
                [](Parsed& parsed, const std::string& folder, bool pictures, bool glb, bool octomap,
                   const std::vector<py::array>& points, const std::vector<py::array>& colours) {
-                   std::optional<CloudView> view;
-                   if (!points.empty()) view = view_of(points, {}, colours, {});
+                   const std::optional<CloudView> view = caller_points(points, colours);
                    const Busy busy;
                    const py::gil_scoped_release release;
-                   ScenePoints& kept = parsed.result.scene.points;
-                   if (view) add_coordinates(*view, parsed.result);
-                   struct Forget {
-                       ScenePoints* points;
-                       ~Forget() {
-                           if (!points) return;
-                           points->x = points->y = points->z = {};
-                           points->red = points->green = points->blue = {};
-                       }
-                   } const forget{view ? &kept : nullptr};
+                   const LentCoordinates lent(view, parsed);
                    OutputOptions options;
                    options.pictures = pictures;
                    options.glb = glb;

@@ -6,7 +6,6 @@
 #include <pybind11/stl.h>
 
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include "topple/parse.h"
@@ -16,10 +15,8 @@ namespace topple::python {
 
 namespace py = pybind11;
 
-// A device, and whether a parse runs on it: threads of Python may share the object.
 struct SharedDevice {
     std::shared_ptr<device::Device> device;
-    std::mutex in_use;
 };
 
 // A result that arrays borrow from: it lives as long as the last of them.
@@ -32,6 +29,7 @@ struct Parsed {
 std::string with_own_names(std::string text);
 
 void bind_export(py::module_& module);
+void bind_labels(py::module_& module);
 void bind_parse(py::module_& module);
 void bind_result(py::module_& module);
 void bind_stages(py::module_& module);

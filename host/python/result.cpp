@@ -16,6 +16,14 @@ py::array borrowed(const std::vector<T>& values, const py::object& owner) {
                           {static_cast<py::ssize_t>(sizeof(T))}, values.data(), owner);
 }
 
+// The same of vectors: (N, 3).
+py::array vectors(const std::vector<Vec3>& values, const py::object& owner) {
+    return py::array_t<double>(
+        {static_cast<py::ssize_t>(values.size()), py::ssize_t{3}},
+        {static_cast<py::ssize_t>(sizeof(Vec3)), static_cast<py::ssize_t>(sizeof(double))},
+        values.empty() ? nullptr : values.front().data(), owner);
+}
+
 // References to the items, each of which keeps the result alive.
 template <class Item>
 py::list items(const std::vector<Item>& from, const py::object& owner) {
@@ -93,14 +101,48 @@ void bind_items(py::module_& module) {
                                    return borrowed(self.cast<const DirectedBarrier&>().push_J,
                                                    self);
                                })
-        .def_property_readonly("blow_J", [](const py::object& self) {
-            const auto& from = self.cast<const DirectedBarrier&>();
-            const auto rows = static_cast<py::ssize_t>(from.push_J.size());
-            const auto heights = static_cast<py::ssize_t>(from.height_m.size());
-            const auto width = static_cast<py::ssize_t>(sizeof(double));
-            return py::array_t<double>({rows, heights}, {heights * width, width},
-                                       from.blow_J.data(), self);
+        .def_property_readonly(
+            "blow_J",
+            [](const py::object& self) {
+                const auto& from = self.cast<const DirectedBarrier&>();
+                const auto rows = static_cast<py::ssize_t>(from.push_J.size());
+                const auto heights = static_cast<py::ssize_t>(from.height_m.size());
+                const auto width = static_cast<py::ssize_t>(sizeof(double));
+                return py::array_t<double>({rows, heights}, {heights * width, width},
+                                           from.blow_J.data(), self);
+            })
+        .def_property_readonly("direction",
+                               [](const py::object& self) {
+                                   return vectors(self.cast<const DirectedBarrier&>().direction,
+                                                  self);
+                               })
+        .def_property_readonly("push_N",
+                               [](const py::object& self) {
+                                   return borrowed(self.cast<const DirectedBarrier&>().push_N,
+                                                   self);
+                               })
+        .def_property_readonly("push_error_N", [](const py::object& self) {
+            return borrowed(self.cast<const DirectedBarrier&>().push_error_N, self);
         });
+    py::class_<Why>(module, "Why")
+        .def_readonly("azimuth_deg", &Why::azimuth_deg)
+        .def_property_readonly(
+            "edge_m",
+            [](const py::object& self) { return vectors(self.cast<const Why&>().edge_m, self); })
+        .def_readonly("W_J", &Why::W_J)
+        .def_readonly("S_J", &Why::S_J)
+        .def_readonly("way_m", &Why::way_m)
+        .def_readonly("drop_m", &Why::drop_m)
+        .def_readonly("lands_on", &Why::lands_on)
+        .def_readonly("stands_on", &Why::stands_on)
+        .def_readonly("sentence", &Why::sentence);
+    py::class_<Advice>(module, "Advice")
+        .def_readonly("kind", &Advice::kind)
+        .def_readonly("move_m", &Advice::move_m)
+        .def_readonly("risk_J", &Advice::risk_J)
+        .def_readonly("hold_N", &Advice::hold_N)
+        .def_readonly("hold_height_m", &Advice::hold_height_m)
+        .def_readonly("sentence", &Advice::sentence);
     py::class_<Fragility>(module, "Fragility")
         .def_readonly("pga_g", &Fragility::pga_g)
         .def_readonly("pga_dispersion", &Fragility::pga_dispersion)
@@ -183,16 +225,13 @@ void bind_items(py::module_& module) {
                     reinterpret_cast<const double*>(curve.data()), self);
             })
         .def_property_readonly("why", [](const Object& o) { return o.why.sentence; })
+        .def_readonly("why_figures", &Object::why)
         .def_readonly("fall", &Object::fall)
         .def_property_readonly("stands_on", [](const Object& o) { return o.why.stands_on; })
         .def_property_readonly("advice", [](const Object& o) { return o.advice.sentence; })
+        .def_readonly("advice_figures", &Object::advice)
         .def_readonly("name", &Object::name)
-        .def_readonly("corrected", &Object::corrected)
-        .def("__repr__", [](const Object& o) {
-            return "<topple.Object " + std::to_string(o.id) +
-                   (o.name.empty() ? "" : ", " + o.name) + ", unsafety " +
-                   std::to_string(o.unsafety).substr(0, 4) + ">";
-        });
+        .def_readonly("corrected", &Object::corrected);
     py::class_<Contact>(module, "Contact")
         .def_readonly("a", &Contact::a)
         .def_readonly("b", &Contact::b)
@@ -210,11 +249,7 @@ void bind_items(py::module_& module) {
             "do", [](const AppliedCorrection& c) { return to_string(c.correction.kind); })
         .def_readonly("held", &AppliedCorrection::held)
         .def_readonly("outcome", &AppliedCorrection::outcome)
-        .def_readonly("objects", &AppliedCorrection::objects)
-        .def("__repr__", [](const AppliedCorrection& c) {
-            return std::string("<topple.AppliedCorrection ") + to_string(c.correction.kind) + ": " +
-                   c.outcome + ">";
-        });
+        .def_readonly("objects", &AppliedCorrection::objects);
 }
 
 template <class Member>

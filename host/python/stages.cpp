@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -23,13 +24,11 @@ struct SharedVolume {
 using Volume = std::shared_ptr<SharedVolume>;
 using Device = std::shared_ptr<SharedDevice>;
 
-template <class Shared>
-std::unique_lock<std::mutex> alone(const std::shared_ptr<Shared>& shared, const char* what) {
-    std::unique_lock lock(shared->in_use, std::try_to_lock);
+std::unique_lock<std::mutex> alone(const Volume& volume) {
+    std::unique_lock lock(volume->in_use, std::try_to_lock);
     if (!lock)
-        throw Error(
-            ErrorKind::usage,
-            std::string("the ") + what + " is in use by another thread; each needs one of its own");
+        throw Error(ErrorKind::usage,
+                    "the volume is in use by another thread; each needs one of its own");
     return lock;
 }
 
@@ -39,16 +38,6 @@ auto unlocked(const Stage& stage) {
     const Busy busy;
     const py::gil_scoped_release release;
     return stage();
-}
-
-// A vector's memory as an array, which owns it from then on.
-template <class T>
-py::array owned(std::vector<T>&& values) {
-    auto kept = std::make_unique<std::vector<T>>(std::move(values));
-    const py::capsule owner(kept.get(), [](void* p) { delete static_cast<std::vector<T>*>(p); });
-    const std::vector<T>& lasting = *kept.release();
-    return py::array_t<T>({static_cast<py::ssize_t>(lasting.size())},
-                          {static_cast<py::ssize_t>(sizeof(T))}, lasting.data(), owner);
 }
 
 stages::Coordinates coordinates(const std::vector<py::array>& from, const char* name) {
@@ -66,7 +55,6 @@ py::list barriers(const std::vector<PyBody>& given, double resolution_m, const D
                           mass_kg,
                           center_of_mass_m});
     }
-    const auto lock = alone(device, "device");
     std::vector<stages::Barrier> found =
         unlocked([&] { return stages::barriers(*device->device, bodies, resolution_m); });
     py::list out;
@@ -102,15 +90,13 @@ void bind_volume(py::module_& module) {
                      frames[n].depth = row<const std::uint16_t>(depth[n], "depth");
                      std::ranges::copy(pose.subspan(16 * n, 16), frames[n].camera_to_world.begin());
                  }
-                 const auto volume = alone(self, "volume");
-                 const auto lock = alone(device, "device");
+                 const auto volume = alone(self);
                  unlocked([&] { self->volume.carve(*device->device, intrinsics, frames); });
              })
         .def("fill",
              [](const Volume& self, unsigned votes, const std::vector<std::int32_t>& hollow,
                 const Device& device) {
-                 const auto volume = alone(self, "volume");
-                 const auto lock = alone(device, "device");
+                 const auto volume = alone(self);
                  return unlocked([&] { return self->volume.fill(*device->device, votes, hollow); });
              })
         .def("state_at",
@@ -119,7 +105,7 @@ void bind_volume(py::module_& module) {
                             y = row<const std::int32_t>(j, "j"),
                             z = row<const std::int32_t>(k, "k");
                  std::vector<std::uint8_t> state(x.size());
-                 const auto volume = alone(self, "volume");
+                 const auto volume = alone(self);
                  unlocked([&] {
                      for (std::size_t n = 0; n < state.size(); ++n)
                          state[n] =
@@ -128,7 +114,7 @@ void bind_volume(py::module_& module) {
                  return owned(std::move(state));
              })
         .def("solid", [](const Volume& self) {
-            const auto volume = alone(self, "volume");
+            const auto volume = alone(self);
             stages::Voxels v = unlocked([&] { return self->volume.solid(); });
             return py::make_tuple(owned(std::move(v.i)), owned(std::move(v.j)),
                                   owned(std::move(v.k)), owned(std::move(v.label)),
@@ -145,12 +131,13 @@ void bind_stages(py::module_& parent) {
         return unlocked([&] { return stages::point_spacing(view); });
     });
     module.def("normals", [](const std::vector<py::array>& points, double cell_m,
-                             const std::optional<Vec3>& eye_m, const Device& device,
+                             const std::optional<Vec3>& eye_m,
+                             const std::vector<py::array>& viewpoints, const Device& device,
                              const std::vector<py::array>& out) {
-        const CloudView view = view_of(points, {}, {}, {});
+        CloudView view = view_of(points, {}, {}, {});
+        see_from(viewpoints, view);
         const auto nx = row<float>(out.at(0), "out"), ny = row<float>(out.at(1), "out"),
                    nz = row<float>(out.at(2), "out");
-        const auto lock = alone(device, "device");
         unlocked([&] {
             stages::normals(*device->device, view, cell_m, eye_m ? &*eye_m : nullptr, nx, ny, nz);
         });
@@ -163,7 +150,6 @@ void bind_stages(py::module_& parent) {
                                       d = coordinates(directions, "directions");
             const auto starts = row<const std::uint64_t>(first, "first");
             const stages::Array<float> values(row<float>(out, "out"));
-            const auto lock = alone(device, "device");
             unlocked([&] { stages::support_functions(*device->device, v, starts, d, values); });
         });
     module.def("barriers", barriers);
@@ -193,7 +179,6 @@ void bind_stages(py::module_& parent) {
         for (std::size_t n = 0; n < weight.size(); ++n)
             entries.push_back({dx[n], dy[n], weight[n]});
         const stages::MapShape map{width, height, directions, 0};
-        const auto lock = alone(device, "device");
         unlocked([&] { stages::convolve(*device->device, map, from, entries, starts, to); });
     });
     bind_volume(module);

@@ -111,6 +111,13 @@ void check_object(const Object& o, std::size_t objects) {
         for (const double joules : *barriers)
             expect(joules >= 0 && joules > o.barrier_J * (1 - 1e-9) - 1e-9,
                    "a push or a blow takes less than the barrier");
+    for (std::size_t n = 0; n < directed.push_N.size(); ++n) {
+        expect(directed.push_N[n] >= 0 && directed.push_error_N[n] >= 0,
+               "a push or its error is negative");
+        const Vec3& way = directed.direction[n];
+        expect(std::abs(std::hypot(way[0], way[1], way[2]) - 1) < 1e-9,
+               "a push has no unit direction");
+    }
     expect_share(o.agreement, "an agreement");
     expect_share(o.rest_probability, "the probability of a rest");
     expect(std::isnan(o.unsafety) || (o.unsafety >= 1 && o.unsafety <= 10),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import topple
-from made_scans import CAMERA, POSES
+from made_scans import CAMERA, POSES, seen_from
 
 INTRINSICS = topple.stages.Intrinsics(CAMERA.fx, CAMERA.fy, CAMERA.cx, CAMERA.cy)
 
@@ -65,6 +65,42 @@ def test_colours(depth, device, tmp_path):
     count = int(next(line for line in head.decode().splitlines() if line.startswith('element vertex')).split()[2])
     reds = np.frombuffer(body, [(name, kinds[kind]) for kind, name in fields], count)['red']
     assert {0, 200} <= set(np.unique(reds).tolist())
+
+
+def test_labels_of_pixels(walk, depth, sequence, points, device, result):
+    parsed = of_memory(depth, device)
+    for n in (0, 7):
+        labels = parsed.frame_labels(n)
+        assert labels.shape == depth[n].shape and labels.dtype == np.int32 and np.array_equal(labels, sequence.frame_labels(n))
+        assert np.array_equal(labels, parsed.frame_labels(depth[n], camera_to_world=POSES[n], intrinsics=INTRINSICS))
+        parts = parsed.frame_labels(n, primitives=True)
+        known = parts >= 0
+        assert known.mean() > 0.9 and (np.array([p.object for p in parsed.primitives])[parts[known]] == labels[known]).all()
+        # What is in the picture there: the room, the crate, the box on it.
+        _, what = walk[n][0], seen_from(walk[n][0])[1]
+        for number in range(3):
+            found = labels[(what == number) & known]
+            if len(found) > 50:
+                assert parsed.objects[np.bincount(found).argmax()].grounded == (number == 0)
+                assert np.bincount(found).max() > 0.9 * len(found)
+    moved = depth[0].copy()
+    moved[:20] //= 5
+    moved[20:30] = 0
+    others = parsed.frame_labels(moved, camera_to_world=POSES[0], intrinsics=INTRINSICS)
+    assert (others[:30] == -1).all() and np.array_equal(others[30:], parsed.frame_labels(0)[30:])
+    cloud = result.frame_labels(np.float32(depth[0] / 1000), camera_to_world=POSES[0], intrinsics=INTRINSICS)
+    assert (cloud >= 0).mean() > 0.4  # its walls are lower
+    assert np.array_equal(of_memory(OneByOne(depth), device).frame_labels(7), parsed.frame_labels(7))
+    for call, words in ((lambda: parsed.frame_labels(18), 'there is no frame 18: they count from 0, and there are 18'),
+                        (lambda: parsed.frame_labels(-1), 'there is no frame -1'), (lambda: sequence.frame_labels(18), 'there is no frame 18'),
+                        (lambda: result.frame_labels(0), 'points were parsed'), (lambda: parsed.frame_labels(depth[0]), 'takes camera_to_world'),
+                        (lambda: parsed.frame_labels('first'), 'frame'), (lambda: parsed.frame_labels(True), 'no frame True'),
+                        (lambda: parsed.frame_labels(0, intrinsics=INTRINSICS), 'are for a depth image'),
+                        (lambda: parsed.frame_labels(depth, camera_to_world=POSES[0], intrinsics=INTRINSICS), 'of shape (H, W)'),
+                        (lambda: parsed.frame_labels(depth[0], camera_to_world=np.diag([1, 1, -1, 1.0]), intrinsics=INTRINSICS), 'camera_to_world')):
+        with pytest.raises(topple.Error) as raised:
+            call()
+        assert words in str(raised.value), raised.value
 
 
 def refused(kind, *parts, **options):

@@ -73,6 +73,54 @@ def test_takes_the_components_of_a_record(points, device, record):
     assert by((shaken[0], None, shaken[2]))[0] == one[0]
 
 
+def test_the_unit_of_a_record_may_be_given(points, device, tmp_path):
+    (tmp_path / 'quake.txt').write_text('\n'.join(f'{0.1 * n} {value}' for n, value in enumerate([0, *[100, -100] * 8, 0])))
+
+    def by(**options):
+        parsed = topple.parse(points, device=device, disturbances='earthquake', accelerogram=tmp_path / 'quake.txt', **options)
+        return next(note for note in parsed.notes if 'accelerogram' in note)
+    assert '1 m/s^2' in by(accelerogram_unit='cm/s2')
+    with pytest.raises(topple.Error, match='quake.txt.*name it with accelerogram_unit g, m/s2 or cm/s2') as raised:
+        by()
+    assert raised.value.kind == 'input'
+    for unit, options in (('ft', {'accelerogram': tmp_path / 'quake.txt'}), ('g', {})):
+        with pytest.raises(topple.Error, match='^accelerogram_unit') as raised:
+            topple.parse(points, device=device, accelerogram_unit=unit, **options)
+        assert raised.value.kind == 'usage'
+
+
+def walking(file, unit=1.0, up=2):
+    """Writes a table of a body that swings its leg, without times."""
+    across = [axis for axis in range(3) if axis != up]
+    columns, rows = [f'{joint}.{axis}' for joint in ('l_hip', 'l_knee', 'l_ankle', 'r_hip') for axis in 'xyz'], []
+    for n in range(120):
+        swing, row = 0.1 * np.sin(n / 10), []
+        for height, ahead, left in ((0.9, 0, 0.1), (0.45, swing, 0.1), (0.05, 2 * swing, 0.1), (0.9, 0, -0.1)):
+            place = [0.0, 0.0, 0.0]
+            place[up], place[across[0]], place[across[1]] = height / unit, ahead / unit, left / unit
+            row += place
+        rows.append(' '.join(f'{value:.6g}' for value in row))
+    file.write_text('\n'.join([' '.join(columns), *rows]))
+    return file
+
+
+def test_what_a_recording_does_not_say_may_be_given(points, device, tmp_path):
+    plain = walking(tmp_path / 'plain.csv')
+
+    def by(**options):
+        parsed = topple.parse(points, device=device, disturbances='human', walks=40, **options)
+        return np.stack([parsed.fields['human'][name] for name in ('vx', 'vy', 'vz', 'density')])
+    expected = by(motion=plain, motion_rate=np.float32(60))
+    odd = by(motion=[walking(tmp_path / 'odd.csv', 0.0312, 0)], motion_rate=60, motion_unit=0.0312, motion_up=(1, 0, 0))
+    assert np.abs(expected).max() > 0 and np.allclose(odd, expected, rtol=1e-3, atol=1e-3)
+    for options, words in (({'motion': plain}, r'\(motion_rate\)'), ({'motion': plain, 'motion_rate': 60, 'motion_unit': 10}, 'tall'),
+                           ({'motion': plain, 'motion_rate': 0}, '^motion_rate 0: expected a number above 0'),
+                           ({'motion': plain, 'motion_rate': 60, 'motion_up': (0, 0, 0)}, '^motion_up: expected three numbers, not all zero'),
+                           ({'motion_rate': 60}, 'there is no motion')):
+        with pytest.raises(topple.Error, match=words):
+            topple.parse(points, device=device, **options)
+
+
 @pytest.mark.parametrize('wrong', [(), ('a', 'b', 'c', 'd'), (None, 'b')])
 def test_a_record_has_one_to_three_components(points, device, wrong):
     with pytest.raises(topple.Error, match='along, across and up') as error:
@@ -184,6 +232,7 @@ def test_errors_of_options_and_devices(points):
 @pytest.mark.parametrize('name, value', [
     ('up', 'z'), ('up', '0,0,1'), ('up', (0, 0)), ('up', (0, 0, np.nan)), ('voxel_m', '1cm'), ('voxel_m', None), ('wind_from_deg', 'north'),
     ('seed', -1), ('seed', 1.5), ('seed', 1 << 64), ('walks', 1 << 32), ('viewpoint', (0, 0)), ('device', 3), ('disturbances', 3), ('disturbances', [3]),
+    ('motion_unit', 'cm'), ('motion_rate', 'fast'), ('motion_up', 'z'), ('motion_up', (0, np.inf, 0)), ('accelerogram_unit', 9.8),
     ('isolate', 'no'), ('progress', 3), ('cancelled', True), ('hazard', 3), ('cache_file', 3), ('motion', 3), ('accelerogram', 3), ('name', 3), ('name', 'a\n'),
     ('corrections', {'do': 'fixed'})])
 def test_wrong_types_of_options_are_refused_by_name(points, name, value):
@@ -199,13 +248,41 @@ def test_viewpoints_have_a_row_for_each_point(points, device):
         quick(points, device, viewpoint=np.zeros((3, 3), 'float32'))
 
 
+def test_viewpoints_that_are_not_finite_are_told(points, device):
+    seen_from = np.broadcast_to(np.float32([1.4, 0.4, 1.0]), points.shape).copy()
+    seen_from[:7] = np.nan
+    assert any(f'Of {len(points)} points 7 have no finite place' in note for note in quick(points, device, viewpoint=seen_from).notes)
+    seen_from[:] = np.inf
+    assert any('not finite: they count as not known' in note for note in quick(points, device, viewpoint=seen_from).notes)
+    with pytest.raises(topple.Error, match='viewpoint: expected three finite numbers'):
+        quick(points, device, viewpoint=(0, 0, np.nan))
+
+
+def test_a_density_in_other_units_is_told(points, device):
+    notes = quick(points, device, density_kg_m3=0.7).notes
+    assert any('0.7 kg/m³' in note and 'give density_kg_m3 1000 times' in note for note in notes)
+
+
+def test_a_cache_serves_any_number_of_threads(points, tmp_path):
+    file = tmp_path / 'scan.xyz'
+    np.savetxt(file, points, fmt='%.4f')
+    results, stages = [], []
+    for threads in (1, 3):
+        stages.clear()
+        results.append(topple.parse(file, device=topple.open_device('native', threads), disturbances=[], cache_file=tmp_path / 'cache',
+                                    progress=lambda stage, done: stages.append((stage, done))))
+    assert stages[0][0] == 'cache' and 'ingest' not in dict(stages) and [done for _, done in stages] == sorted(done for _, done in stages)
+    assert np.array_equal(results[0].point_object, results[1].point_object)
+    assert [o.barrier_J for o in results[0].objects] == [o.barrier_J for o in results[1].objects]
+
+
 def test_options_of_numpy_are_taken(points, result, device):
     parsed = quick(points, device, seed=np.int64(1), up=np.array([0, 0, 1]), friction=np.float32(0.3), walks=np.uint8(9))
     assert parsed.up == [0, 0, 1] and len(parsed.objects) == len(result.objects)
 
 
 def test_a_cache_is_of_files_and_a_name_of_arrays(points, device, tmp_path):
-    with pytest.raises(topple.Error, match='^cache_file: .*in memory') as raised:
+    with pytest.raises(topple.Error, match='^cache_file /nope/x: .*in memory') as raised:
         quick(points, device, cache_file='/nope/x')
     assert raised.value.kind == 'usage'
     with pytest.raises(topple.Error, match='name are for points in memory'):
@@ -225,8 +302,10 @@ def test_one_disturbance_may_be_named_alone(points, result, device):
 def test_progress_and_cancelling(points, device):
     stages = []
     quick(points, device, progress=lambda stage, done: stages.append((stage, done)))
-    names = [stage for stage, done in stages if done == 0]
+    names = list(dict.fromkeys(stage for stage, done in stages))
     assert names[0] == 'ingest' and 'grouping' in names and names[-1] == 'assembly'
+    shares = [done for stage, done in stages]
+    assert shares == sorted(shares) and 0 <= shares[0] < 0.1 and shares[-1] == 1 and len(set(shares)) > 10
     with pytest.raises(topple.Error, match='^cancelled$') as raised:
         quick(points, device, cancelled=lambda: True)
     assert raised.value.kind == 'cancelled'
@@ -336,7 +415,8 @@ def test_takes_corrections(points, device, tmp_path):
 def test_the_stubs_name_what_there_is(result):
     stub = open(os.path.join(os.path.dirname(topple.__file__), '__init__.pyi'), encoding='utf-8').read()
     for kind, item in (('Object', result.objects[0]), ('Primitive', result.primitives[0]), ('Result', result),
-                       ('Contact', result.contacts[0]), ('Support', result.supports[0])):
+                       ('Contact', result.contacts[0]), ('Support', result.supports[0]), ('Why', result.objects[0].why_figures),
+                       ('Advice', result.objects[0].advice_figures), ('DirectedBarrier', result.objects[0].barrier_by_direction)):
         block = stub.split(f'class {kind}:')[1].split('\nclass ')[0].split('\ndef ')[0]
         named = {line.split('def ')[1].split('(')[0] for line in block.splitlines() if ' def ' in line}
         assert named == {n for n in dir(item) if not n.startswith('_')} - {'x', 'y', 'z', 'nx', 'ny', 'nz'}

@@ -42,9 +42,70 @@ def test_columns_of_a_scene_without_contacts_have_their_shapes(device):
     square = np.random.default_rng(4).random((4000, 3), np.float32) * np.array([2, 2, 0.002], np.float32)
     table = topple.parse(square, device=device, disturbances=[]).columns('supports')
     assert table['supporter'].shape == (0,) and table['supporter'].dtype == np.int32
-    with pytest.raises(topple.Error, match='what: expected objects, primitives, contacts, supports, not 3') as raised:
+    with pytest.raises(topple.Error, match='what: expected objects, primitives, contacts, supports, pushes, not 3') as raised:
         topple.parse(square, device=device, disturbances=[]).columns(3)
     assert raised.value.kind == 'usage'
+
+
+def test_columns_have_the_figures_of_why_and_advice(result):
+    table = result.columns()
+    for o in result.objects:
+        why, advice = o.why_figures, o.advice_figures
+        assert why.sentence == o.why and advice.sentence == o.advice and why.stands_on == o.stands_on and why.drop_m == o.drop_m
+        assert why.edge_m.shape in ((0, 3), (2, 3)) and (o.grounded or (why.W_J, why.S_J) == (o.barrier_J, o.release_J))
+        for name in ('azimuth_deg', 'W_J', 'S_J', 'way_m', 'drop_m', 'lands_on'):
+            assert np.array_equal(table[f'why_{name}'][o.id], getattr(why, name), equal_nan=True), name
+        for name in ('kind', 'move_m', 'risk_J', 'hold_N', 'hold_height_m'):
+            assert np.array_equal(table[f'advice_{name}'][o.id], getattr(advice, name)), name
+        ends = np.stack([table['why_edge_start_m'][o.id], table['why_edge_end_m'][o.id]])
+        assert np.array_equal(ends, why.edge_m) if len(why.edge_m) else np.isnan(ends).all()
+    assert any(len(o.why_figures.edge_m) for o in result.objects)
+
+
+def test_pushes_by_direction_are_in_the_frame_of_the_scan(result, points, device):
+    loose = [o for o in result.objects if not o.grounded]
+    for o in loose:
+        by = o.barrier_by_direction
+        assert by.direction.shape == (16, 3) and by.push_N.shape == by.push_error_N.shape == (16,)
+        assert np.allclose(np.linalg.norm(by.direction, axis=1), 1) and np.allclose(by.direction @ result.up, 0)
+        turned = np.degrees(np.arctan2(*(by.direction @ np.reshape(result.manhattan_from_input, (4, 4))[:2, :3].T).T)) % 360
+        assert np.allclose(turned, np.arange(16) * 22.5, atol=1e-6)
+        # No side takes less than the easiest way, and those across it more than that way itself.
+        assert by.push_N.min() >= o.overturning.hand_push_N * (1 - 1e-6) and (by.push_error_N > 0).all()
+        ahead = np.argmax(by.direction @ o.overturning.direction)
+        assert by.push_N[ahead] <= o.overturning.hand_push_N * 1.1
+    # A box of 25 x 20 x 35 cm: over its narrow side M g b / h, and over its corners as far as these lie.
+    box = min(loose, key=lambda o: o.mass_kg)
+    weight, reach = 9.80665 * box.mass_kg, box.overturning.hand_height_m
+    expected = [weight * min(0.125 / max(abs(x), 1e-9), 0.1 / max(abs(y), 1e-9)) / reach for x, y, _ in box.barrier_by_direction.direction]
+    assert np.allclose(box.barrier_by_direction.push_N, expected, rtol=0.25)
+    table = result.columns('pushes')
+    assert table['object'].tolist() == [o.id for o in loose for _ in range(16)] and table['direction'].shape == (16 * len(loose), 3)
+    rows = table['object'] == box.id
+    assert np.array_equal(table['push_N'][rows], box.barrier_by_direction.push_N) and (table['slide_N'][rows] == box.overturning.slide_N).all()
+    assert table['azimuth_deg'][rows][3] == 67.5
+    # A scan that is turned has them turned.
+    turn = np.array([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1]])
+    again = topple.parse(points.astype(float) @ turn.T, device=device, disturbances=[])
+    same = min((o for o in again.objects if not o.grounded), key=lambda o: np.linalg.norm(o.center_of_mass_m - turn @ box.center_of_mass_m))
+    ahead = turn @ box.overturning.direction
+    here = same.barrier_by_direction
+    assert here.push_N[np.argmax(here.direction @ ahead)] == pytest.approx(box.overturning.hand_push_N, rel=0.3)
+
+
+def test_reprs_say_what_an_item_is(result):
+    box, joint, carried = result.objects[-1], result.contacts[0], result.supports[0]
+    for item, words in ((box, f'<topple.Object {box.id}, unsafety'), (result.primitives[2], f'<topple.Primitive 2: {result.primitives[2].model}, of object'),
+                        (joint, f'<topple.Contact: primitives {joint.a} and {joint.b}, {joint.relation}'),
+                        (carried, f'<topple.Support: object {carried.supporter} carries {carried.supported}'),
+                        (box.why_figures, f'<topple.Why: {box.why}'), (box.advice_figures, '<topple.Advice'), (box.overturning, '<topple.Overturning: tips at'),
+                        (box.fragility, '<topple.Fragility'), (box.barrier_by_direction, '<topple.DirectedBarrier: 16 directions, a push from'),
+                        (box.landscape, '<topple.Landscape: '), (box.fall, '<topple.Fall: '), (result.objects[0].overturning, '<topple.Overturning: ')):
+        assert repr(item).startswith(words), repr(item)
+        assert repr(pickle.loads(pickle.dumps(item))) == repr(item)
+    back = pickle.loads(pickle.dumps(result))
+    assert repr(back.supports) == repr(result.supports) and repr(back.primitives) == repr(result.primitives)
+    assert repr(topple._snapshot.Item(id=3)) == '<topple item 3>'  # of a pickle of an earlier version
 
 
 def test_a_data_frame_splits_vectors(result):
@@ -53,6 +114,8 @@ def test_a_data_frame_splits_vectors(result):
     assert isinstance(frame, pandas.DataFrame) and len(frame) == len(result.objects)
     assert frame.center_of_mass_z_m[1] == result.objects[1].center_of_mass_m[2] and 'direction_x' in frame
     assert result.to_dataframe('contacts').normal_y[0] == result.contacts[0].normal[1]
+    assert {'why_edge_start_x_m', 'advice_move_z_m', 'advice_hold_N', 'why_azimuth_deg'} <= set(frame)
+    assert list(result.to_dataframe('pushes'))[:3] == ['object', 'azimuth_deg', 'direction_x']
 
 
 def test_without_pandas_the_error_says_so(result, monkeypatch):
@@ -111,7 +174,7 @@ def test_a_pickle_holds_all_that_can_be_asked_for(result, points, tmp_path):
     assert set(dir(back)) == set(dir(result))
     again = copy.deepcopy(back)
     assert np.array_equal(again.point_object, result.point_object)
-    for call in (lambda: back.write(tmp_path / 'out'), lambda: back.export(mjcf=tmp_path / 'mjcf')):
+    for call in (lambda: back.write(tmp_path / 'out'), lambda: back.export(mjcf=tmp_path / 'mjcf'), lambda: back.frame_labels(0)):
         with pytest.raises(topple.Error, match='before pickling'):
             call()
     assert not list(tmp_path.iterdir())
@@ -125,7 +188,7 @@ def test_an_item_can_be_pickled_alone(result):
 
 
 def test_help_has_a_line_for_each_attribute(result):
-    kinds = [topple.Result] + [type(part) for o in result.objects[:1] for part in (o, o.fall, o.overturning, o.fragility, o.barrier_by_direction)]
+    kinds = [topple.Result] + [type(part) for o in result.objects[:1] for part in (o, o.fall, o.overturning, o.fragility, o.barrier_by_direction, o.why_figures, o.advice_figures)]
     for kind in kinds + [topple.Primitive, topple.Contact, topple.Support, topple.AppliedCorrection, topple.Device]:
         public = {n: p for n, p in vars(kind).items() if not n.startswith('_')}
         assert kind.__doc__ and public and all(p.__doc__ for p in public.values()), kind

@@ -43,6 +43,25 @@ def test_normals_turn_to_the_eye(device, eye):
     assert np.allclose(n, [0, 0, np.sign(eye[2])], atol=1e-6)
 
 
+def test_normals_turn_to_where_each_point_was_seen_from(device):
+    square = grid()
+    eyes = np.tile(np.float32([0.1, 0.2, 1]), (len(square), 1))
+    eyes[square[:, 0] > 0.195] = 0.29, 0.2, -1
+    expected = np.where(square[:, 0] < 0.195, 1, -1)
+    clear = np.abs(square[:, 0] - 0.195) > 0.03  # of cells that were seen from one side
+    records = np.zeros(len(square), [('vp_x', 'f4'), ('vp_y', 'f4'), ('vp_z', 'f4')])
+    for axis, name in enumerate(records.dtype.names):
+        records[name] = eyes[:, axis]
+    for given in (eyes, eyes.astype(float), records, tuple(eyes.T), Exported(eyes)):
+        n = stages.normals(square, 0.02, eye_m=given, device=device)
+        assert np.allclose(n[clear, 2], expected[clear], atol=1e-6)
+    eyes[::3] = np.nan
+    with pytest.warns(RuntimeWarning, match='eye_m: of 1600 points 534 have no finite place .* the nearest one of the others is taken'):
+        assert np.allclose(stages.normals(square, 0.02, eye_m=eyes, device=device)[clear, 2], expected[clear], atol=1e-6)
+    with pytest.warns(RuntimeWarning, match='count as not known'):
+        stages.normals(square, 0.02, eye_m=eyes * np.nan, device=device)
+
+
 def test_normals_of_every_layout_are_the_same(device, points):
     expected = stages.normals(points, 0.06, device=device)
     assert np.allclose(np.linalg.norm(expected, axis=1)[np.any(expected, axis=1)], 1, atol=1e-5)
@@ -160,6 +179,11 @@ def test_a_body_beside_its_footing_falls_and_says_so(device):
         assert stages.barriers([(box_points(0.3, 0.3, 0.6), 2.0, tuple(middle))], 0.005, device=device)[0].barrier_J > 0
 
 
+def test_a_body_lighter_than_air_is_told(device):
+    with pytest.warns(RuntimeWarning, match=r'bodies\[0\]: 0.0378 kg in a box of 0.054 m3 are less than air'):
+        stages.barriers([(box_points(0.3, 0.3, 0.6), 0.7 * 0.054, (0.15, 0.15, 0.3))], 0, device=device)
+
+
 SQUARE = grid(side=10)
 POSE = np.eye(4)
 CAMERA = stages.Intrinsics(100, 100, 2, 2)
@@ -176,6 +200,13 @@ def volume():
     (lambda d: stages.point_spacing([[1.0, 2.0], [3.0]]), 'points: no array can be made'),
     (lambda d: stages.point_spacing(np.full((5, 3), np.nan, np.float32)), 'finite'),
     (lambda d: stages.normals(SQUARE, 0, device=d), 'cell_m 0: expected metres above 0'),
+    (lambda d: stages.normals(SQUARE, 20, device=d), 'cell_m 20: expected metres above 0 and at most 1'),
+    (lambda d: stages.normals(SQUARE * 1000, 0.02, device=d), 'the points extend over 90 m and are 10 m apart'),
+    (lambda d: stages.normals(SQUARE, 0.1, eye_m=np.zeros((9, 3)), device=d), 'eye_m: expected shape (3,) or (100, 3), one for each point, not 9'),
+    (lambda d: stages.normals(SQUARE, 0.1, eye_m=np.zeros((100, 2)), device=d), 'eye_m: expected floats of shape (N, 3)'),
+    (lambda d: stages.Volume(SQUARE, np.zeros(100, int), 20), 'voxel_m 20: expected metres from 0.001 to 1'),
+    (lambda d: stages.barriers([(box_points(300, 300, 600), 10, (150, 150, 300))], 0.5, device=d), 'points must be in metres'),
+    (lambda d: stages.barriers([(box_points(1, 1, 1), 10, (0.5, 0.5, 0.5))], 20, device=d), 'resolution_m 20: expected metres from 0 to 1'),
     (lambda d: stages.normals(SQUARE, 'wide', device=d), "cell_m: expected a number, not 'wide'"),
     (lambda d: stages.normals(SQUARE, 0.1, eye_m=(0, np.inf, 1), device=d), 'eye_m: inf at (1,)'),
     (lambda d: stages.normals(SQUARE, 0.1, eye_m=(0, 1), device=d), 'eye_m: expected floats of shape (3,), not float64 of shape (2,)'),
@@ -242,7 +273,7 @@ def test_other_threads_run_during_a_stage_and_a_device_serves_one(device):
         ticks += 1
         time.sleep(0.001)
     thread.join()
-    assert ticks > 5 and refused and 'the device is in use by another thread' in refused[0]
+    assert ticks > 5 and refused and 'the device is in use by another parse or stage' in refused[0]
 
 
 @pytest.mark.parametrize('module, name', [(topple, '__init__'), (stages, 'stages')])

@@ -88,6 +88,9 @@ struct Accelerogram {
     }
 };
 
+// How many m/s^2 one of a unit is: "g", "m/s2", "cm/s2". Throws Error(usage) for another.
+double acceleration_unit_m_s2(const std::string& name);
+
 // Reads a record of an earthquake from
 //   - JSON: "dT" (or "dt"), seconds, and a list "accel_data" (or "data", "acceleration", "accel"),
 //     with "unit" and "factor", by which the values count, if any; at the top or in "timeSeries";

@@ -61,8 +61,8 @@ struct MotionFileOptions {
 
 // Reads a BVH file, or a table of joint positions: text with a first line of column names, such as
 // time,left_wrist.x,left_wrist.y,left_wrist.z,... Names of joints are those of common motion
-// capture systems; what has no counterpart above is left out. Throws Error(input) naming the file,
-// the line and what is wrong.
+// capture systems; what has no counterpart above is left out. Throws Error: input, naming the file,
+// the line and what is wrong; usage for options that make no sense.
 BodyMotion read_motion(const std::filesystem::path& file, const MotionFileOptions& options = {});
 
 }  // namespace topple

@@ -94,7 +94,8 @@ struct ParseOptions {
     // With whom a parse in blocks is shared (topple/crew.h); null: nobody.
     std::shared_ptr<Crew> crew;
     // Called on the thread that called the parse, as `cancelled` is, when a stage starts and while
-    // it goes on: its name, and how much of it is done, 0 to 1.
+    // it goes on: its name, and about how much of the whole parse is done, which never falls, and
+    // is 1 at the end: by the shares of time that stages take of typical parses.
     std::function<void(const std::string&, double)> progress;
     // Polled now and then; true stops the parse with Error(cancelled).
     std::function<bool()> cancelled;

@@ -46,6 +46,12 @@ struct DirectedBarrier {
     // That the impulse of a level blow would give to the object if nothing held it, motion and
     // turning together: by direction, then by height.
     std::vector<double> blow_J;
+    std::vector<Vec3> direction;  // unit and horizontal, towards where the push goes
+    // Steady level push at Overturning::hand_height_m, in newtons, at which the object begins to
+    // turn over the edge that the line ahead meets first, whatever that then releases, and one
+    // standard error of it: by direction. Infinity: no edge lies that way. Where
+    // Overturning::slide_N is less, the object slides before. Empty for what hangs.
+    std::vector<double> push_N, push_error_N;
 };
 
 // Why an object is as safe as it is: its easiest step out of its pose, which is the one of its

@@ -55,9 +55,12 @@ struct Array {
 double point_spacing(const CloudView& cloud);
 
 // Normals of a cloud, one for each point: that of the plane through its neighbourhood of cells,
-// unit, towards `eye_m` (where the sensor was) if there is one, else of arbitrary but locally
-// consistent sign; 0, 0, 0 where there is none, and for points that are not finite. cell_m: edge
-// of the cells, about twice the points' spacing. The spans hold a float for each point.
+// unit; 0, 0, 0 where there is none, and for points that are not finite. They turn towards `eye_m`,
+// where the sensor was; where that is null, to where the cloud says that each point was seen from
+// (viewpoint_x to viewpoint_z, else viewpoint); else their sign is arbitrary but locally
+// consistent. cell_m: edge of the cells, about twice the points' spacing, 1 m at most. The spans
+// hold a float for each point. Throws Error(input), too, where the points lie so far apart that
+// they can't be in metres.
 void normals(device::Device& device, const CloudView& cloud, double cell_m, const Vec3* eye_m,
              std::span<float> nx, std::span<float> ny, std::span<float> nz);
 
@@ -84,7 +87,8 @@ std::vector<std::int64_t> label_spots(const Voxels& solid);
 // A voxel grid, carved and filled (paper, 2.2). z up.
 class Volume {
   public:
-    // Surface voxels of a cloud; label: of each point, -1 for none.
+    // Surface voxels of a cloud; label: of each point, -1 for none; voxel_m: 0.001 to 1. Throws
+    // Error(input), too, where the points lie so far apart that they can't be in metres.
     Volume(const CloudView& cloud, std::span<const std::int32_t> label, double voxel_m);
     ~Volume();
     Volume(Volume&&) noexcept;
@@ -136,8 +140,9 @@ struct Barrier {
     std::vector<InstabilityStep> curve;  // S(W)
 };
 
-// Barriers of bodies, by tipping alone (paper, 3.2). resolution_m: to what the points are known;
-// what is no higher above the lowest point bears the body.
+// Barriers of bodies, by tipping alone (paper, 3.2). resolution_m: to what the points are known,
+// up to 1; what is no higher above the lowest point bears the body. Throws Error(input), too, for a
+// body of a density that none has in metres and kilograms.
 std::vector<Barrier> barriers(device::Device& device, std::span<const StandingBody> bodies,
                               double resolution_m);
 

@@ -166,8 +166,9 @@ typedef struct topple_options {
     int32_t without_coordinates; /* not 0: the result keeps no coordinates of its points */
     int32_t without_isolation;   /* not 0: files of others' formats are read in this process */
     /* Called on the thread that parses, with `user`. They must return, and not by longjmp. */
-    void (*progress)(const char* stage, double done, void* user); /* done: 0 to 1 */
-    int (*cancelled)(void* user);                                 /* not 0: stop */
+    /* done: about how much of the whole parse, 0 to 1; it never falls */
+    void (*progress)(const char* stage, double done, void* user);
+    int (*cancelled)(void* user); /* not 0: stop */
     /* Each stage as it starts, at level TOPPLE_LOG_INFO; what the reader of the result should
      * know, at level TOPPLE_LOG_WARNING. Single lines. */
     void (*log)(int level, const char* message, void* user);
@@ -268,6 +269,26 @@ typedef struct topple_object {
     const char* name;         /* given by hand, or "" */
     const int32_t* corrected; /* numbers of the corrections about it, from 1 */
     uint64_t corrected_count;
+    /* of 16 directions, in the input's frame: where a push goes, x y z each; and the steady push at
+     * hand_height_m, in newtons, at which it begins to turn over that way, and one standard error
+     * of it; infinity: no edge lies there. NULL where nothing is known */
+    const double *push_direction, *push_by_direction_N, *push_error_by_direction_N;
+    /* what `why` is made of (struct Why of topple/scene.h): degrees clockwise from the scene's
+     * north, NaN where no way is easier than others; the ends of the edge that it turns over, x y z
+     * each, 2 or 0 of them; metres slid, and fallen beyond its support's end, and the object below
+     * that or -1; what carries it */
+    double why_azimuth_deg;
+    const double* why_edge_m;
+    uint64_t why_edge_ends;
+    double why_way_m, why_drop_m;
+    const int32_t* stands_on;
+    uint64_t stands_on_count;
+    /* and `advice` (struct Advice): "", "see", "check", "move" or "fix"; the smallest move that
+     * does; its risk then; and the force that a fixing must take, at that height above its support
+     */
+    const char* advice_kind;
+    double advice_move_m[3], advice_risk_J, hold_N, hold_height_m;
+    int32_t why_lands_on;
 } topple_object;
 typedef struct topple_contact {
     size_t size;
@@ -323,6 +344,18 @@ const float* topple_result_point_normals(const topple_result* result, int axis);
  * arrays; else NULL. */
 const uint64_t* topple_result_point_index(const topple_result* result);
 
+/* What pixels of depth frames show of a result (topple/frame_labels.h), which must hold its points'
+ * coordinates, and need not outlive it. May be asked from several threads at once. */
+typedef struct topple_labeller topple_labeller;
+int topple_labeller_create(const topple_result* result, topple_labeller** labeller,
+                           topple_status* status);
+/* Of frame `number`. primitives and objects, one of which may be NULL, get an id for each pixel,
+ * row by row from the upper left one on; -1: nothing that is known. */
+int topple_labeller_label(const topple_labeller* labeller, const topple_frames* frames,
+                          uint64_t number, int32_t* primitives, int32_t* objects,
+                          topple_status* status);
+void topple_labeller_release(topple_labeller* labeller);
+
 enum { TOPPLE_WRITE_PICTURES = 1, TOPPLE_WRITE_GLB = 2, TOPPLE_WRITE_OCTOMAP = 4 };
 /* The folder of outputs, which appears whole or not at all. `what`: these, added up, or 0. A result
  * without coordinates needs topple_result_add_coordinates() first, with the cloud that was parsed.
@@ -357,9 +390,9 @@ typedef struct topple_array {
 int topple_point_spacing(const topple_cloud* cloud, double* spacing_m, topple_status* status);
 /* Unit normals, 0 where there is none. cell_m: edge of the cells whose points are looked at
  * together, about 2 * topple_point_spacing(). eye: 3 numbers, where the sensor was: normals point
- * there. NULL: neighbours agree in sign, and each connected piece as a whole faces the middle of
- * the cloud, as the inside of a room does; a lone object's normals then point inwards. nx, ny, nz:
- * a float for each point. */
+ * there. NULL: to the cloud's viewpoints; where it has none, neighbours agree in sign, and each
+ * connected piece as a whole faces the middle of the cloud, as the inside of a room does; a lone
+ * object's normals then point inwards. nx, ny, nz: a float for each point. */
 int topple_normals(topple_device* device, const topple_cloud* cloud, double cell_m,
                    const double* eye, float* nx, float* ny, float* nz, topple_status* status);
 

@@ -17,22 +17,21 @@ import os
 import threading
 from typing import NamedTuple
 
-import numpy as np
-
-from . import _described, _snapshot, _spots, _tables, _topple, formats, plot, stages
-from ._arrays import channels as _channels, columns as _columns, usage as _usage
+from . import _described, _labels, _shown, _snapshot, _spots, _tables, _topple, formats, plot, stages
+from ._arrays import channels as _channels, columns as _columns, has_rows as _has_rows, usage as _usage
 from ._device import open_device
 from ._frames import Frames as _Frames
 from ._options import option as _option
 from ._program import generate
-from ._topple import AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Landscape, Object, Overturning, Primitive, Support, __version__
+from ._topple import Advice, AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Landscape, Object, Overturning, Primitive, Support, Why, __version__
 from .foxglove import to_mcap
 from .rerun_viewer import to_rerun
 
-__all__ = ['AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Landscape', 'Object', 'Overturning', 'Primitive', 'Result',
-           'Support', '__version__', 'devices', 'formats', 'generate', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
+__all__ = ['Advice', 'AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Landscape', 'Object', 'Overturning', 'Primitive', 'Result',
+           'Support', 'Why', '__version__', 'devices', 'formats', 'generate', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
 
 _described.items()
+_shown.items()
 for _kind in _snapshot.ITEMS:  # of a live result: a plain item that stands alone comes back
     copyreg.pickle(_kind, _snapshot.reduced)
 
@@ -89,11 +88,12 @@ class Result:
     and fields come back as they were, objects as plain ones with the same attributes. What write() and export() need is
     not among them: call these before."""
 
-    def __init__(self, parsed, points, colours=()):
+    def __init__(self, parsed, points, colours=(), frames=None):
         self._parsed = parsed
         self._points = points  # the caller's, where they are theirs
         self._colours = colours
-        self._parts = None  # for spots, once they are asked for
+        self._frames = frames  # where those that were parsed are: a folder's path, or the caller's
+        self._parts = self._labeller = None  # for spots and labels, once they are asked for
         self._writing = threading.Lock()  # the coordinates are in the result for as long as it takes
 
     def __getattr__(self, name):
@@ -119,9 +119,10 @@ class Result:
 
     def columns(self, what='objects'):
         """What there is, as NumPy arrays by name: one entry for each of `what`, "objects", "primitives", "contacts" or
-        "supports", in the order of ids. Names are those of the items' attributes; of an object's parts with theirs before,
-        as overturning_tilt_deg; by disturbance as risk_wind_J, risk_error_wind_J, fall_chance_wind. Vectors are (N, 3),
-        sentences and words of dtype object. NaN: none, or not asked for."""
+        "supports", in the order of ids; or "pushes": for each direction of each object, what it takes to push it over
+        (Object.barrier_by_direction). Names are those of the items' attributes; of an object's parts with theirs before,
+        as overturning_tilt_deg, why_drop_m, advice_hold_N; by disturbance as risk_wind_J, risk_error_wind_J, fall_chance_wind.
+        Vectors are (N, 3), sentences and words of dtype object. NaN: none, or not asked for."""
         return _tables.columns(self, what)
 
     def to_dataframe(self, what='objects'):
@@ -161,6 +162,19 @@ class Result:
         if self._parts is None:
             self._parts = _spots.Parts(self)
         return self._parts
+
+    def frame_labels(self, frame=0, *, camera_to_world=None, intrinsics=None, primitives=False):
+        """The object that each pixel of a depth frame shows, (height, width) int32: ids, and -1 where the pixel has no reading, or shows
+        nothing that the parse knows. With primitives=True the part.
+
+        frame: the number of one that was parsed, from a folder or frames=...; or any depth image of the same place, (height, width)
+        uint16 or floats as in parse(frames=...), with its camera_to_world, (4, 4), metres, in the frame of the result's points, and
+        its intrinsics, a topple.stages.Intrinsics. A pixel shows what the point is of that is nearest to its reading, within the edge of
+        a voxel, or three standard deviations of a reading from so far away. Raises Error of kind "usage" where there is no such frame."""
+        with self._writing:
+            if self._labeller is None:
+                self._labeller = _topple.Labeller(self._whole('frame_labels'), list(self._points or []))
+        return _labels.of_frame(self._labeller, self._frames, frame, camera_to_world, intrinsics, primitives)
 
     def write(self, folder, *, pictures=False, glb=False, octomap=False):
         """Writes the folder of outputs (docs/output.md), which appears whole or not at all: with view-*.png,
@@ -229,8 +243,8 @@ def _components(accelerogram):
 
 
 def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=None,
-          seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, wind_m_s=12.0,
-          wind_from_deg=None, pga_m_s2=None, accelerogram=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, grouping_time_s=None, corrections=None, cache_file=None, normals=None,
+          seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, motion_unit=None,
+          motion_rate=None, motion_up=None, wind_m_s=12.0, wind_from_deg=None, pga_m_s2=None, accelerogram=None, accelerogram_unit=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, grouping_time_s=None, corrections=None, cache_file=None, normals=None,
           name=None, viewpoint=None, colours=None, frames=None, camera_to_world=None, intrinsics=None, colour_intrinsics=None,
           tile_m=0.0, isolate=True, progress=None, cancelled=None):
     """Parses a scan into a Result.
@@ -252,12 +266,14 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     disturbances: a list of "human", "wind", "earthquake", which may be empty; or one of these names; or None for
     all that there are.
 
-    device: a Device of open_device(), or a backend's name. motion: a file, or a list of files; accelerogram: a file, or
-    a tuple of up to three with a record's components along, across and up, None for one that is not known; hazard: a file. normals: of
+    device: a Device of open_device(), or a backend's name. motion: a file, or a list of files; where these do not tell it, motion_unit is
+    how many metres their unit has, motion_rate how many frames a second, and motion_up what is up in them, three numbers. accelerogram: a
+    file, or a tuple of up to three with a record's components along, across and up, None for one that is not known; accelerogram_unit:
+    "g", "m/s2" or "cm/s2", else what the file says, else g. hazard: a file. normals: of
     points, as they are given. viewpoint: where the sensor was, three numbers, or (N, 3) where each point was seen from, NaN where it is not
-    known: of several scans, or a sensor that moved. colours: of points, sRGB as uint8, an array of shape (N, 3),
-    records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. progress(stage, done) is called as stages start and go on;
-    pga_m_s2: the peak of earthquakes in m/s2, of which 0.3 g are 2.94. contents_kg_m3: of closed furniture, or None where all is solid.
+    known, which Result.notes says: of several scans, or a sensor that moved. colours: of points, sRGB as uint8, an array of shape (N, 3),
+    records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. progress(stage, done) is called as stages start and go on: done is about
+    how much of the whole parse is done, 0 to 1, and never falls. pga_m_s2: the peak of earthquakes in m/s2, of which 0.3 g are 2.94. contents_kg_m3: of closed furniture, or None where all is solid.
     corrections: what you know of the room beside the scan: a file, or a list of dicts such as {"do": "fixed", "at_m":
     [[x, y, z]]} (docs/corrections.md); Result.corrections says what became of each. cache_file: keeps what does not
     depend on them, so that the next parse of that file or folder is quick; of what is in memory nothing is kept, and it is
@@ -279,15 +295,21 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     for option, value in given.items():
         setattr(options, option, _option(option, value))
     device, viewpoints = _option('device', device), []
-    if isinstance(source, (str, os.PathLike)) or frames is not None or np.ndim(viewpoint) < 2:
+    if isinstance(source, (str, os.PathLike)) or frames is not None or not _has_rows(viewpoint):
         viewpoint = _option('viewpoint', viewpoint)
     else:
         viewpoint, viewpoints = None, _columns(viewpoint, ('vp_x', 'vp_y', 'vp_z'), 'viewpoint')
     progress, cancelled = _option('progress', progress), _option('cancelled', cancelled)
+    body = [_option('motion_unit', motion_unit), _option('motion_rate', motion_rate), _option('motion_up', motion_up)]
+    if motion is None and any(value is not None for value in body):
+        raise _usage('motion_unit, motion_rate and motion_up: there is no motion that they could be of')
     for file in _files(motion):
-        options.read_motion(file)
+        options.read_motion(file, *body)
+    accelerogram_unit = _option('accelerogram_unit', accelerogram_unit)
     if accelerogram is not None:
-        options.read_accelerogram(*_components(accelerogram))
+        options.read_accelerogram(*_components(accelerogram), accelerogram_unit)
+    elif accelerogram_unit is not None:
+        raise _usage('accelerogram_unit: there is no accelerogram whose unit it could be')
     if hazard is not None:
         options.read_hazard_curve(_file('hazard', hazard))
     if isinstance(corrections, (str, os.PathLike)):
@@ -307,16 +329,13 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
             raise _usage('normals, colours, viewpoint and name are for points in memory; a file brings its own')
         with formats.opened(source, formats.Options(unit_m=unit_m, isolate=isolate), cancelled) as converted:
             if converted is None:
-                return Result(_topple.parse_path(os.fspath(source), device, options, progress, cancelled), None)
+                return Result(_topple.parse_path(os.fspath(source), device, options, progress, cancelled), None, frames=os.fspath(source))
             if converted.is_sequence:
                 options.unit_m = 1.0
             parsed = _topple.parse_path(os.fspath(converted.path), device, options, progress, cancelled)
             _topple.came_from(parsed, os.fspath(source), converted.notes, list(converted.offset * unit_m))
-            converted.needed_by = result = Result(parsed, None)
+            converted.needed_by = result = Result(parsed, None, frames=os.fspath(converted.path))
             return result
-    if cache_file is not None:
-        raise _usage(f'cache_file: {cache_file}: a cache is kept of a file or folder, and the source is in memory; leave it out, '
-                     'or parse their file')
     if name is None:
         name = 'points' if frames is None else 'frames'
     if not isinstance(name, str) or not name.isprintable() or not name.strip():
@@ -325,7 +344,7 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
         if normals is not None or viewpoint is not None:
             raise _usage('normals and viewpoint are for points; frames have camera_to_world')
         given = _Frames(frames, camera_to_world, intrinsics, colours, colour_intrinsics)
-        return Result(given.parse(name, device, options, progress, cancelled), None)
+        return Result(given.parse(name, device, options, progress, cancelled), None, frames=given)
     points = _columns(source, ('x', 'y', 'z'), 'points')
     directions = [] if normals is None else _columns(normals, ('nx', 'ny', 'nz'), 'normals')
     channels = [] if colours is None else _channels(colours)

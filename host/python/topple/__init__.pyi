@@ -23,7 +23,7 @@ _Points = Union[NDArray[Any], _SupportsDLPack, Tuple[NDArray[Any], NDArray[Any],
 _Path = Union[str, os.PathLike[str]]
 _Disturbance = Literal["human", "wind", "earthquake"]
 _Backend = Literal["auto", "native", "opencl", "vulkan"]
-_What = Literal["objects", "primitives", "contacts", "supports"]
+_What = Literal["objects", "primitives", "contacts", "supports", "pushes"]
 
 class Error(RuntimeError):
     kind: Literal["input", "usage", "device", "cancelled"]
@@ -121,6 +121,46 @@ class DirectedBarrier:  # direction n is towards the azimuth n * 22.5 degrees; i
     def push_J(self) -> NDArray[np.float64]: ...  # (16,)
     @property
     def blow_J(self) -> NDArray[np.float64]: ...  # (16, heights)
+    @property
+    def direction(self) -> NDArray[np.float64]: ...  # (16, 3), in the scan's frame
+    @property
+    def push_N(self) -> NDArray[np.float64]: ...  # (16,)
+    @property
+    def push_error_N(self) -> NDArray[np.float64]: ...  # (16,)
+
+class Why:
+    @property
+    def azimuth_deg(self) -> float: ...  # NaN: any
+    @property
+    def edge_m(self) -> NDArray[np.float64]: ...  # (2, 3) or (0, 3)
+    @property
+    def W_J(self) -> float: ...
+    @property
+    def S_J(self) -> float: ...
+    @property
+    def way_m(self) -> float: ...
+    @property
+    def drop_m(self) -> float: ...
+    @property
+    def lands_on(self) -> int: ...
+    @property
+    def stands_on(self) -> list[int]: ...
+    @property
+    def sentence(self) -> str: ...
+
+class Advice:
+    @property
+    def kind(self) -> Literal["", "see", "check", "move", "fix"]: ...
+    @property
+    def move_m(self) -> list[float]: ...
+    @property
+    def risk_J(self) -> float: ...
+    @property
+    def hold_N(self) -> float: ...
+    @property
+    def hold_height_m(self) -> float: ...
+    @property
+    def sentence(self) -> str: ...
 
 class Fragility:  # of earthquakes; NaN: few fall at the strongest that is tried
     @property
@@ -256,11 +296,15 @@ class Object:
     @property
     def why(self) -> str: ...
     @property
+    def why_figures(self) -> Why: ...
+    @property
     def fall(self) -> Fall: ...
     @property
     def stands_on(self) -> list[int]: ...
     @property
     def advice(self) -> str: ...
+    @property
+    def advice_figures(self) -> Advice: ...
 
 class Contact:
     @property
@@ -339,6 +383,7 @@ class Result:
     def fields(self) -> dict[str, dict[str, _Floats]]: ...  # x, y, z, vx, vy, vz, density
     def spot(self, item: Union[Object, Primitive, int], part: bool = ...) -> list[float]: ...
     def spots(self, item: Union[Object, int]) -> list[list[float]]: ...
+    def frame_labels(self, frame: Union[int, NDArray[Any], _SupportsDLPack] = ..., *, camera_to_world: Optional[NDArray[np.floating[Any]]] = ..., intrinsics: Optional[stages.Intrinsics] = ..., primitives: bool = ...) -> NDArray[np.int32]: ...  # (H, W)
     def columns(self, what: _What = ...) -> dict[str, NDArray[Any]]: ...  # (N,), vectors (N, 3)
     def to_dataframe(self, what: _What = ...) -> Any: ...  # pandas.DataFrame
     def write(self, folder: _Path, *, pictures: bool = ..., glb: bool = ..., octomap: bool = ...) -> None: ...
@@ -362,10 +407,14 @@ def parse(
     contents_kg_m3: Optional[float] = ...,
     walks: int = ...,
     motion: Union[_Path, Sequence[_Path], None] = ...,
+    motion_unit: Optional[float] = ...,
+    motion_rate: Optional[float] = ...,
+    motion_up: Optional[_Vec3] = ...,
     wind_m_s: float = ...,
     wind_from_deg: Optional[float] = ...,
     pga_m_s2: Optional[float] = ...,
     accelerogram: Union[_Path, Sequence[Optional[_Path]], None] = ...,
+    accelerogram_unit: Optional[Literal["g", "m/s2", "cm/s2"]] = ...,
     floor_amplification: float = ...,
     hazard: Optional[_Path] = ...,
     tolerable_J: float = ...,

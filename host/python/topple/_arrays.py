@@ -71,6 +71,15 @@ def columns(source, names, what):
     return [source[:, axis] for axis in range(3)]
 
 
+def has_rows(given):
+    """Whether it is something for each point, as columns() takes it, and no single place."""
+    if hasattr(given, '__dlpack__') and not isinstance(given, np.ndarray):
+        given = as_array(given, 'it')
+    if isinstance(given, (list, tuple)):
+        return any(isinstance(part, (list, tuple, np.ndarray)) or hasattr(part, '__dlpack__') for part in given)
+    return isinstance(given, np.ndarray) and (given.ndim > 1 or given.dtype.names is not None)
+
+
 def channels(source):
     """Red, green and blue of an array, of records with fields of these names, or of three arrays; no copies."""
     names = ('red', 'green', 'blue')

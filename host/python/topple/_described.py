@@ -70,7 +70,9 @@ _ITEMS = {
         'rest_probability': 'How probable that is, 0 to 1.',
         'stands_on': 'list of int: the objects that carry it.',
         'why': 'str: why it is as safe as it is, in a sentence.',
+        'why_figures': 'Why: the figures of that sentence.',
         'advice': 'str: what would lower its risk, in a sentence; empty: nothing is needed.',
+        'advice_figures': 'Advice: the figures of that sentence.',
         'fall': 'Fall: where it comes to lie.',
     }),
     'Primitive': ('A part: solid, about convex, of which objects are made.', {
@@ -127,7 +129,31 @@ _ITEMS = {
                             'height_m': '(heights,): of blows, above what it stands on, metres.',
                             'push_J': '(16,): work of a slow push.',
                             'blow_J': '(16, heights): energy that a level blow would give to the object if nothing held it.',
+                            'direction': '(16, 3): horizontal unit vectors in the scan\'s frame, where the push or blow goes; it comes from the '
+                                         'opposite side.',
+                            'push_N': '(16,): steady level push at Overturning.hand_height_m, newtons, at which it begins to turn over the edge that '
+                                      'lies there; inf: none does. Where Overturning.slide_N is less, it slides before. Empty for what hangs.',
+                            'push_error_N': '(16,): one standard error of that, newtons.',
                         }),
+    'Why': ('Its easiest step out of its pose, of which Object.why tells in words.', {
+        'azimuth_deg': 'Degrees from the room\'s y, clockwise as seen from above, of the way that it goes; NaN where none is easier than others.',
+        'edge_m': '(2, 3): the ends of the edge that it turns over, or of its support\'s where it slides off, metres; (0, 3): there is none.',
+        'W_J': 'Energy that the step takes, joules: Object.barrier_J.',
+        'S_J': 'Energy that it can release, joules: Object.release_J.',
+        'way_m': 'Metres slid on the support; 0 for other steps.',
+        'drop_m': 'Metres fallen beyond where its support ends; 0: it stays on it.',
+        'lands_on': 'int: the object below that drop, -1: none.',
+        'stands_on': 'list of int: the objects that carry it.',
+        'sentence': 'str: Object.why.',
+    }),
+    'Advice': ('What would lower an object\'s risk to what is tolerated, of which Object.advice tells in words.', {
+        'kind': 'str: "" (nothing is needed), "see" (nothing was seen that holds it), "check", "move" or "fix".',
+        'move_m': '[x, y, z], metres: for "move" the smallest that does, horizontal, in the scan\'s frame.',
+        'risk_J': 'Its largest risk afterwards, joules per event; for "check" its present one.',
+        'hold_N': 'For "fix": the horizontal force that a fixing must take, newtons,',
+        'hold_height_m': 'at that height above its support, metres.',
+        'sentence': 'str: Object.advice.',
+    }),
     'Landscape': ('The energy landscape of an object on level ground: its stable poses, by rising energy. Empty where nothing is known.', {
         'now': 'int: the pose that it is in; -1: none of them.',
         'up': '(poses, 3): unit vectors of the object, as it was scanned, that point up then.',

@@ -83,6 +83,14 @@ class Frames:
         seen = None if self._colours is None else self._colours[number]
         return depth, None if seen is None else _colour(seen, f'colours[{number}]')
 
+    def __len__(self):
+        return self._count
+
+    def labels(self, labeller, number):
+        """What the labeller says of one of them."""
+        depth, _ = self._load(number)
+        return labelled(labeller, depth, self._poses[16 * number:16 * number + 16], self._camera, f'frames[{number}]')
+
     def parse(self, name, device, options, progress, cancelled):
         """The library's result. What is no array or list is asked for its frames one by one, and again where they are needed again."""
         here = all(isinstance(images, (np.ndarray, list, tuple, type(None))) for images in (self._frames, self._colours))
@@ -90,6 +98,18 @@ class Frames:
         height, width = images[0][0].shape
         return _topple.parse_frames(images if here else [], None if here else self._load, (width, height), self._poses, self._camera,
                                     self._colour_camera, name, device, options, progress, cancelled)
+
+
+def labelled(labeller, depth, pose, camera, name):
+    height, width = depth.shape
+    return labeller.of_array((depth, None), (width, height), pose, camera, name)
+
+
+def one_frame(frame, camera_to_world, intrinsics):
+    """A depth image of its own as labelled() takes it: depth, pose and camera."""
+    if intrinsics is None or camera_to_world is None:
+        raise usage('frame_labels: a depth image takes camera_to_world, a (4, 4) array, and a topple.stages.Intrinsics')
+    return _depth(frame, 'frame'), _poses(camera_to_world, 1), _camera(intrinsics, 'intrinsics')
 
 
 def _images(given, name, pixel):

@@ -47,6 +47,12 @@ def _device(value):
     return value
 
 
+def _text(value):
+    if not isinstance(value, str):
+        raise TypeError
+    return value
+
+
 def _names(value):
     names = [value] if isinstance(value, str) else list(value)
     if not all(isinstance(name, str) for name in names):
@@ -56,11 +62,12 @@ def _names(value):
 
 _KINDS = {
     'a number': (_number, ('voxel_m', 'unit_m', 'density_kg_m3', 'friction', 'wind_m_s', 'floor_amplification', 'tolerable_J', 'tile_m')),
-    'a number, or None': (_number, ('contents_kg_m3', 'wind_from_deg', 'pga_m_s2', 'grouping_time_s')),
+    'a number, or None': (_number, ('contents_kg_m3', 'wind_from_deg', 'pga_m_s2', 'grouping_time_s', 'motion_unit', 'motion_rate')),
     'a whole number from 0': (_whole(64), ('seed', 'max_memory_bytes')),
     'a whole number, 1 or more': (_whole(32), ('walks',)),
     'a whole number, 0 for all cores': (_whole(32), ('threads',)),
-    'three finite numbers, as [0, 0, 1], or None': (_vector, ('up', 'viewpoint')),
+    'three finite numbers, as [0, 0, 1], or None': (_vector, ('up', 'viewpoint', 'motion_up')),
+    '"g", "m/s2", "cm/s2", or None': (_text, ('accelerogram_unit',)),
     'True or False': (_flag, ('isolate', 'visuals')),
     'a name, a list of names, or None': (_names, ('disturbances',)),
     "a Device of topple.open_device(), a backend's name, or None": (_device, ('device',)),

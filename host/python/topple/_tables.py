@@ -11,6 +11,8 @@ _OVERTURNING = ('tilt_deg', 'tilt_error_deg', 'push_N', 'push_error_N', 'slide_N
                 'hand_height_m', 'gust_m_s', 'gust_error_m_s')
 _FRAGILITY = ('pga_g', 'pga_dispersion', 'firm_pga_g', 'pgv_m_s', 'pgv_dispersion', 'falls_per_year', 'return_years')
 _FALL = ('falls', 'hits_J', 'lands_on', 'lands_m', 'leans_on', 'takes_along')
+_WHY = ('azimuth_deg', 'W_J', 'S_J', 'way_m', 'drop_m', 'lands_on')
+_ADVICE = ('kind', 'move_m', 'risk_J', 'hold_N', 'hold_height_m')
 _BY_DISTURBANCE = ('risk_J', 'risk_error_J', 'fall_chance')
 _ITEMS = {
     'objects': ('id', 'name', 'grounded', 'mass_kg', 'mass_error_kg', 'mass_model', 'center_of_mass_m', 'center_of_mass_error_m', 'size_m',
@@ -21,11 +23,13 @@ _ITEMS = {
     'supports': ('supporter', 'supported', 'area_m2', 'probability'),
 }
 _LISTS = ('stands_on', 'fall_takes_along')  # of ids
-_TEXT = ('name', 'mass_model', 'rests_by', 'mode', 'unsafety_category', 'why', 'advice', 'model', 'relation')
+_TEXT = ('advice_kind', 'name', 'mass_model', 'rests_by', 'mode', 'unsafety_category', 'why', 'advice', 'model', 'relation')
 _TYPES = {'id': np.int32, 'object': np.int32, 'a': np.int32, 'b': np.int32, 'supporter': np.int32, 'supported': np.int32,
-          'fall_lands_on': np.int32, 'points': np.uint64, 'solid_voxels': np.uint64, 'grounded': bool, 'unsafety_certain': bool, 'seen_enough': bool,
+          'fall_lands_on': np.int32, 'why_lands_on': np.int32, 'points': np.uint64, 'solid_voxels': np.uint64, 'grounded': bool, 'unsafety_certain': bool, 'seen_enough': bool,
           'fall_falls': bool, 'fall_leans_on': np.int32, **{name: object for name in _TEXT + _LISTS}}
-_VECTORS = ('center_of_mass_m', 'center_of_mass_error_m', 'size_m', 'direction', 'normal', 'fall_lands_m')
+_VECTORS = ('center_of_mass_m', 'center_of_mass_error_m', 'size_m', 'direction', 'normal', 'fall_lands_m', 'why_edge_start_m', 'why_edge_end_m',
+            'advice_move_m')
+_PUSHES = 'pushes'
 
 
 def _column(name, values):
@@ -38,15 +42,33 @@ def _column(name, values):
     return column.reshape(-1, 3) if name in _VECTORS else column
 
 
+def _pushes(result):
+    """A row for each direction of each object that may be pushed over."""
+    rows = [(o, n) for o in result.objects for n in range(len(o.barrier_by_direction.push_N))]
+    of = [o.barrier_by_direction for o, _ in rows]
+    ways = [n for _, n in rows]
+    table = {'object': [o.id for o, _ in rows], 'azimuth_deg': [360 * n / len(b.push_N) for b, n in zip(of, ways)]}
+    for name in ('direction', 'push_N', 'push_error_N', 'push_J'):
+        table[name] = [getattr(b, name)[n] for b, n in zip(of, ways)]
+    for name in ('slide_N', 'hand_height_m'):
+        table[name] = [getattr(o.overturning, name) for o, _ in rows]
+    return table
+
+
 def columns(result, what):
+    if what == _PUSHES:
+        return {name: _column(name, values) for name, values in _pushes(result).items()}
     if what not in _ITEMS:
-        raise usage(f'what: expected {", ".join(_ITEMS)}, not {what!r}')
+        raise usage(f'what: expected {", ".join([*_ITEMS, _PUSHES])}, not {what!r}')
     items = getattr(result, what)
     table = {name: [getattr(item, name) for item in items] for name in _ITEMS[what]}
     if what == 'objects':
-        for part, names in (('overturning', _OVERTURNING), ('fragility', _FRAGILITY), ('fall', _FALL)):
-            parts = [getattr(o, part) for o in items]
-            table.update({f'{part}_{name}': [getattr(p, name) for p in parts] for name in names})
+        for part, names in (('overturning', _OVERTURNING), ('fragility', _FRAGILITY), ('fall', _FALL), ('why_figures', _WHY),
+                            ('advice_figures', _ADVICE)):
+            parts, stem = [getattr(o, part) for o in items], part.removesuffix('_figures')
+            table.update({f'{stem}_{name}': [getattr(p, name) for p in parts] for name in names})
+        ends = [np.asarray(o.why_figures.edge_m) if len(o.why_figures.edge_m) else np.full((2, 3), math.nan) for o in items]
+        table['why_edge_start_m'], table['why_edge_end_m'] = [e[0] for e in ends], [e[1] for e in ends]
         table['fall_people_share'] = [math.nan if o.fall.people_share is None else o.fall.people_share for o in items]
         for name in _BY_DISTURBANCE:
             for disturbance in sorted({d for o in items for d in getattr(o, name)}):

@@ -23,12 +23,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._arrays import as_array, columns, exactly, number, usage
+from ._arrays import as_array, columns, exactly, has_rows, number, usage
 from ._topple import Device, open_device
 from ._topple import stages as _stages
 
 __all__ = ['Barrier', 'Intrinsics', 'StandingBody', 'State', 'Volume', 'Voxels', 'barriers', 'convolve', 'footprint_dtype',
            'normals', 'point_spacing', 'support_functions']
+
+_AIR_KG_M3 = 1.2
 
 footprint_dtype = np.dtype([('dx', np.int32), ('dy', np.int32), ('weight', np.float32)])
 
@@ -118,16 +120,33 @@ def point_spacing(points):
 
 def normals(points, cell_m, *, eye_m=None, device=None, out=None):
     """Normals of a cloud: (N, 3) float32, unit, each of the plane through its point's neighbourhood; 0, 0, 0 where there
-    is none, and for points that are not finite. cell_m: edge of the cells whose points are looked at together, metres,
-    about twice the points' spacing. eye_m: where the sensor was, x, y, z, to which normals then turn; else their sign is
-    arbitrary but agrees among neighbours. out: an array for them, (3, N) float32 without gaps.
+    is none, and for points that are not finite. cell_m: edge of the cells whose points are looked at together, metres, 1 at
+    most, about twice the points' spacing. eye_m: where the sensor was, x, y, z, to which normals then turn; or (N, 3) where each
+    point was seen from, NaN where that is not known, of which a RuntimeWarning tells: the nearest of the others is taken. Without,
+    the sign is arbitrary but agrees among neighbours. out: an array for them, (3, N) float32 without gaps.
 
     Each coordinate is an array of its own: `nx, ny, nz = normals.T` are three without gaps."""
     given = _points(points)
     out = _target(out, (3, len(given[0])))
-    eye = None if eye_m is None else exactly(np.asarray(eye_m, float), 'eye_m', (3,), float)
-    _stages.normals(given, number(cell_m, 'cell_m'), eye, _opened(device), list(out))
+    eye, eyes = None, []
+    if has_rows(eye_m):
+        eyes = _eyes(eye_m, len(given[0]))
+    elif eye_m is not None:
+        eye = exactly(np.asarray(eye_m, float), 'eye_m', (3,), float)
+    _stages.normals(given, number(cell_m, 'cell_m'), eye, eyes, _opened(device), list(out))
     return out.T
+
+
+def _eyes(given, count):
+    """Three columns, one for each point."""
+    eyes = columns(given, ('vp_x', 'vp_y', 'vp_z'), 'eye_m')
+    if len(eyes[0]) != count:
+        raise usage(f'eye_m: expected shape (3,) or ({count}, 3), one for each point, not {len(eyes[0])} of them')
+    unknown = count - np.count_nonzero(np.isfinite(eyes[0]) & np.isfinite(eyes[1]) & np.isfinite(eyes[2]))
+    if unknown:
+        warnings.warn(f'eye_m: of {count} points {unknown} have no finite place that they were seen from: '
+                      + ('they count as not known' if unknown == count else 'the nearest one of the others is taken'), RuntimeWarning, stacklevel=3)
+    return eyes
 
 
 def _stored(depth, depth_scale):
@@ -144,7 +163,7 @@ class Volume:
     """A voxel grid of surface voxels, to carve and fill. z up.
 
     points: the cloud. label: (N,) int32, what each point is part of, counted from 0, or -1. voxel_m: edge of a voxel,
-    metres."""
+    metres, 0.001 to 1."""
 
     def __init__(self, points, label, voxel_m):
         given = _points(points)
@@ -230,8 +249,9 @@ def _beside_footing(points, center, resolution_m):
 def barriers(bodies, resolution_m, *, device=None):
     """What it takes to make each of the bodies fall by tipping (paper, 3.2): a list of Barrier.
 
-    bodies: of StandingBody. resolution_m: to what their points are known; what is no higher than that above the lowest
-    point bears the body, and is its footing.
+    bodies: of StandingBody. resolution_m: to what their points are known, 0 to 1; what is no higher than that above the lowest
+    point bears the body, and is its footing. What would be denser than any matter is refused, and what would be lighter than
+    air, as by a density in g/cm3, is told by a RuntimeWarning.
 
     Points must go all around the body: its corners, or the solid voxels of an object, result.solid. Of a scan that saw it
     from one side the footing is a strip below that side, and a centre of mass that is not above it makes the body fall by
@@ -248,6 +268,11 @@ def barriers(bodies, resolution_m, *, device=None):
                       number(mass_kg, f'bodies[{n}].mass_kg'),
                       exactly(np.asarray(center, float), f'bodies[{n}].center_of_mass_m', (3,), float)))
     found = _stages.barriers(given, number(resolution_m, 'resolution_m'), _opened(device))
+    for n, (points, mass_kg, _) in enumerate(given):
+        size = np.ptp(points.reshape(-1, 3), axis=0) + resolution_m
+        if mass_kg < _AIR_KG_M3 * size.prod():
+            warnings.warn(f'bodies[{n}]: {mass_kg:.3g} kg in a box of {size.prod():.3g} m3 are less than air weighs; mass_kg is in kilograms, of '
+                          'a density in kg/m3', RuntimeWarning, stacklevel=2)
     for n, ((points, _, center), (barrier_J, *_)) in enumerate(zip(given, found)):
         if barrier_J == 0 and _beside_footing(points.reshape(-1, 3), center, resolution_m):
             warnings.warn(f'bodies[{n}]: its centre of mass is not above its footing, so that it falls by itself; of a body that a scan saw '

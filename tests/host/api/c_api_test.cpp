@@ -168,6 +168,25 @@ TEST_F(CApi, ParsesAsTheLibraryDoes) {
             EXPECT_EQ(object.blow_barrier_J[b], directed.blow_J[b]);
         for (std::size_t b = 0; b < directed.push_J.size(); ++b)
             EXPECT_EQ(object.push_barrier_J[b], directed.push_J[b]);
+        for (std::size_t b = 0; b < directed.push_N.size(); ++b) {
+            EXPECT_EQ(object.push_by_direction_N[b], directed.push_N[b]);
+            EXPECT_EQ(object.push_error_by_direction_N[b], directed.push_error_N[b]);
+            EXPECT_EQ(object.push_direction[3 * b + 1], directed.direction[b][1]);
+        }
+        EXPECT_EQ(object.push_by_direction_N == nullptr, directed.push_N.empty());
+        ASSERT_EQ(object.why_edge_ends, o.why.edge_m.size());
+        if (object.why_edge_ends > 0) {
+            EXPECT_EQ(object.why_edge_m[4], o.why.edge_m[1][1]);
+        }
+        EXPECT_EQ(object.why_way_m, o.why.way_m);
+        EXPECT_EQ(object.why_drop_m, o.why.drop_m);
+        EXPECT_EQ(object.why_lands_on, o.why.lands_on);
+        ASSERT_EQ(object.stands_on_count, o.why.stands_on.size());
+        for (std::size_t s = 0; s < o.why.stands_on.size(); ++s)
+            EXPECT_EQ(object.stands_on[s], o.why.stands_on[s]);
+        EXPECT_EQ(object.advice_kind, o.advice.kind);
+        EXPECT_EQ(object.advice_move_m[0], o.advice.move_m[0]);
+        EXPECT_EQ(object.hold_N, o.advice.hold_N);
         EXPECT_EQ(object.why, o.why.sentence);
         ASSERT_EQ(object.instability_count, o.instability.size());
         if (!o.instability.empty()) {

@@ -8,6 +8,7 @@
 
 #include "scenes/depth_camera.h"
 #include "scenes/furnished_room.h"
+#include "topple/frame_labels.h"
 #include "topple/parse.h"
 #include "topple/topple.h"
 
@@ -53,7 +54,8 @@ TEST(CFrames, AreParsedAsThoseOfCpp) {
     ParseOptions same;
     same.device = device::open_device("native", 2);
     same.disturbances = {};
-    const Scene scene = parse(expected, same).scene;
+    const ParseResult parsed = parse(expected, same);
+    const Scene& scene = parsed.scene;
     topple_scene got{};
     got.size = sizeof(got);
     ASSERT_EQ(topple_result_scene(result, &got, &status), TOPPLE_OK);
@@ -61,8 +63,26 @@ TEST(CFrames, AreParsedAsThoseOfCpp) {
     EXPECT_STREQ(got.source, "frames");
     EXPECT_TRUE(std::ranges::equal(scene.points.object,
                                    std::span(topple_result_point_objects(result), got.points)));
+    // The labels of pixels, too, which need the result no more.
+    topple_labeller* labeller = nullptr;
+    ASSERT_EQ(topple_labeller_create(result, &labeller, &status), TOPPLE_OK) << status.message;
     topple_result_release(result);
     result = nullptr;
+    std::vector<std::int32_t> primitives(std::size_t{96} * 72), objects(primitives.size(), -7);
+    ASSERT_EQ(
+        topple_labeller_label(labeller, &frames, 2, primitives.data(), objects.data(), &status),
+        TOPPLE_OK)
+        << status.message;
+    const FrameLabels labels = FrameLabeller(parsed).label(expected, 2);
+    EXPECT_EQ(primitives, labels.primitive);
+    EXPECT_EQ(objects, labels.object);
+    EXPECT_EQ(topple_labeller_label(labeller, &frames, 2, nullptr, nullptr, &status), TOPPLE_OK);
+    EXPECT_EQ(topple_labeller_label(labeller, &frames, 4, nullptr, objects.data(), &status),
+              TOPPLE_ERROR_USAGE);
+    EXPECT_STREQ(status.message, "frames: there is no frame 4: they count from 0, and there are 4");
+    topple_labeller_release(labeller);
+    EXPECT_EQ(topple_labeller_create(nullptr, &labeller, &status), TOPPLE_ERROR_USAGE);
+    EXPECT_EQ(labeller, nullptr);
 
     // One by one, up to one that can't be had.
     frames.frames = nullptr;

@@ -51,6 +51,75 @@ TEST(Stages, NormalsOfACornerFaceTheEye) {
 }
 
 // A camera above an open box sees its inside empty; below it nobody saw anything.
+// A sheet that was seen from above on the left, and from below on the right.
+TEST(Stages, NormalsFaceWhereEachPointWasSeenFrom) {
+    const auto device = device::open_device("native");
+    PointCloud cloud;
+    for (int i = 0; i < 60; ++i) {
+        for (int j = 0; j < 30; ++j) {
+            cloud.x.push_back(0.01f * static_cast<float>(i));
+            cloud.y.push_back(0.01f * static_cast<float>(j));
+            cloud.z.push_back(0);
+            for (auto* values : {&cloud.viewpoint_x, &cloud.viewpoint_y})
+                values->push_back(i == 0 ? NAN : 0.1f);
+            cloud.viewpoint_z.push_back(i < 30 ? 1.0f : -1.0f);
+        }
+    }
+    std::vector<float> nx(cloud.size()), ny(nx), nz(nx);
+    normals(*device, cloud, 0.02, nullptr, nx, ny, nz);
+    for (std::size_t n = 0; n < nz.size(); ++n) {
+        if (cloud.x[n] > 0.27f && cloud.x[n] < 0.33f) continue;  // cells of both
+        EXPECT_NEAR(nz[n], cloud.x[n] < 0.3f ? 1 : -1, 1e-6) << cloud.x[n];
+    }
+    const Vec3 below{0, 0, -1};
+    normals(*device, cloud, 0.02, &below, nx, ny, nz);
+    EXPECT_NEAR(nz[5], -1, 1e-6);
+    for (auto* values : {&cloud.viewpoint_x, &cloud.viewpoint_y, &cloud.viewpoint_z})
+        values->clear();
+    cloud.has_viewpoint = true;
+    cloud.viewpoint = {0, 0, 2};
+    normals(*device, cloud, 0.02, nullptr, nx, ny, nz);
+    EXPECT_NEAR(nz[5], 1, 1e-6);
+}
+
+// Who has millimetres gets to know it, instead of cells of one point each.
+TEST(Stages, UnitsThatAreNoneOfRoomsAreRefused) {
+    const auto device = device::open_device("native");
+    PointCloud cloud;
+    for (int n = 0; n < 900; ++n) {
+        cloud.x.push_back(static_cast<float>(10 * (n % 30)));
+        cloud.y.push_back(static_cast<float>(10 * (n / 30)));
+        cloud.z.push_back(0);
+    }
+    std::vector<float> nx(cloud.size()), ny(nx), nz(nx);
+    const std::vector<std::int32_t> label(cloud.size(), 0);
+    const auto refusal = [&](const auto& stage) {
+        try {
+            stage();
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string("taken");
+    };
+    const auto of_normals = [&](double cell_m) {
+        return refusal([&] { normals(*device, cloud, cell_m, nullptr, nx, ny, nz); });
+    };
+    const auto of_volume = [&](double voxel_m) {
+        return refusal([&] { Volume(cloud, label, voxel_m); });
+    };
+    EXPECT_NE(of_normals(0.02).find("290 m and are 10 m apart"), std::string::npos);
+    EXPECT_NE(of_volume(0.02).find("multiply them by 0.01"), std::string::npos);
+    EXPECT_EQ(of_normals(20),
+              "normals: cell_m 20: expected metres above 0 and at most 1, about "
+              "twice the points' spacing");
+    EXPECT_EQ(of_volume(20), "Volume: voxel_m 20: expected metres from 0.001 to 1");
+    EXPECT_EQ(of_volume(NAN), "Volume: voxel_m nan: expected metres from 0.001 to 1");
+    for (auto* values : {&cloud.x, &cloud.y})
+        for (float& v : *values) v *= 0.001f;
+    EXPECT_EQ(of_normals(0.02), "taken");
+    EXPECT_EQ(of_volume(0.02), "taken");
+}
+
 TEST(Stages, AVolumeIsCarvedAndFilled) {
     const auto device = device::open_device("native");
     PointCloud cloud;
@@ -162,6 +231,23 @@ TEST(Stages, BarrierOfABox) {
         const StandingBody body{spoilt, 10, {0.2, 0.1, 0.5}};
         EXPECT_THROW(barriers(*device, std::span(&body, 1), 0.001), Error) << far;
     }
+    const auto refusal = [&](double scale, double mass_kg, double resolution_m) {
+        std::vector<Vec3> scaled = corners;
+        for (Vec3& p : scaled)
+            for (double& c : p) c *= scale;
+        const StandingBody body{scaled, mass_kg, {0.2 * scale, 0.1 * scale, 0.5 * scale}};
+        try {
+            barriers(*device, std::span(&body, 1), resolution_m);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string("taken");
+    };
+    // Millimetres, and grams.
+    EXPECT_NE(refusal(1000, 10, 0.5).find("400 x 200 x 1000 m"), std::string::npos);
+    EXPECT_NE(refusal(1, 10000, 0).find("125000 kg/m^3"), std::string::npos);
+    EXPECT_EQ(refusal(1, 10, 20), "barriers: resolution_m 20: expected metres from 0 to 1");
+    EXPECT_EQ(refusal(1, 0.02, 0), "taken");
     EXPECT_THROW(barriers(*device, std::span(&none, 1), 0.001), Error);
     EXPECT_THROW(barriers(*device, std::span(&light, 1), 0.001), Error);
 }

@@ -100,5 +100,21 @@ TEST_F(Motion, SaysWhatIsWrong) {
     EXPECT_NE(refused("a.csv", still, options).find("size of the body"), std::string::npos);
 }
 
+TEST_F(Motion, OptionsThatMakeNoSenseAreRefusedByName) {
+    const auto file = write("a.bvh", test::bvh(90, 0.01));
+    const auto wrong = [&](const MotionFileOptions& options) {
+        try {
+            read_motion(file, options);
+            return std::string("nothing");
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            return std::string(error.what());
+        }
+    };
+    EXPECT_EQ(wrong({0, {}, {}}), "--motion-unit 0: expected a number above 0");
+    EXPECT_EQ(wrong({{}, HUGE_VAL, {}}), "--motion-rate inf: expected a number above 0");
+    EXPECT_EQ(wrong({{}, {}, Vec3{0, 0, 0}}), "--motion-up: expected three numbers, not all zero");
+}
+
 }  // namespace
 }  // namespace topple::io

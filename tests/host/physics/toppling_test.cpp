@@ -12,6 +12,7 @@
 #include "core/random.h"
 #include "device/devices.h"
 #include "physics/blow.h"
+#include "physics/overturning.h"
 
 namespace topple::physics {
 namespace {
@@ -75,6 +76,35 @@ TEST(Toppling, AboutEachEdgeIsTheClosedFormOfTheBlow) {
         }
         EXPECT_NEAR(toppling.push_barrier_J(way), brick_rise_J(brick, half), 1e-6);
     }
+}
+
+// The edge ahead is where the line ahead leaves the footing, and a push that tips it over that edge
+// has the moment of its weight about where they meet.
+TEST(Toppling, TheEdgeAheadIsWhereTheLineLeavesTheFooting) {
+    const Brick brick(0.1, 0.16, 0.4);
+    const Toppling toppling = brick.toppling();
+    for (int n = 0; n < 72; ++n) {
+        const double angle = (n + 0.3) * std::numbers::pi / 36, x = std::cos(angle),
+                     y = std::sin(angle);
+        const bool across = 0.05 / std::abs(x) < 0.08 / std::abs(y);
+        const Toppling::EdgeAhead edge = toppling.edge_ahead({x, y, 0});
+        EXPECT_NEAR(edge.distance_m, across ? 0.05 / std::abs(x) : 0.08 / std::abs(y), 1e-6);
+        EXPECT_NEAR(edge.cosine, across ? std::abs(x) : std::abs(y), 1e-6);
+        const Body& body = brick.candidate.body;
+        const TippingPush push =
+            tipping_push(body, {0.1 * body.mass_kg, {}}, edge.distance_m, edge.cosine, 0, 0.25);
+        EXPECT_NEAR(push.push_N, body.mass_kg * gravity * edge.distance_m / 0.25, 1e-9);
+        EXPECT_NEAR(push.error_N, push.push_N * std::hypot(foot_off_share, 0.1), 1e-9);
+    }
+}
+
+// What stands on its edge falls by any push; what hangs from nothing has no edge.
+TEST(Toppling, WithoutAnEdgeNothingTips) {
+    Brick brick(0.1, 0.16, 0.4);
+    brick.tipping.ways.clear();
+    EXPECT_EQ(brick.toppling().edge_ahead({1, 0, 0}).distance_m, HUGE_VAL);
+    brick.tipping.ways.push_back({});
+    EXPECT_EQ(brick.toppling().edge_ahead({1, 0, 0}).distance_m, 0);
 }
 
 TEST(Toppling, ABookSlidesOffItsShelfAndTipsNowhere) {
