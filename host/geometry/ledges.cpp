@@ -19,7 +19,36 @@ namespace {
 struct SidePoint {
     double along, out, height;
 };
-using LedgeSide = std::vector<SidePoint>;
+struct LedgeSide {
+    std::vector<SidePoint> points;
+    std::vector<double> height;  // of the points, for what looks at no more of all of them
+    double from = std::numeric_limits<double>::infinity(), to = -from;  // along it
+
+    void add(const SidePoint& p) {
+        points.push_back(p);
+        height.push_back(p.height);
+        from = std::min(from, p.along);
+        to = std::max(to, p.along);
+    }
+    // Those between two distances from a height, in their order: below it, and above.
+    std::array<std::vector<SidePoint>, 2> around(double at, double nearest, double farthest) const {
+        constexpr std::size_t at_once = 256;
+        std::array<std::uint32_t, at_once> found{};
+        std::array<std::vector<SidePoint>, 2> out;
+        for (std::size_t first = 0; first < height.size(); first += at_once) {
+            const std::size_t last = std::min(first + at_once, height.size());
+            std::size_t count = 0;
+            for (std::size_t n = first; n < last; ++n) {
+                const double off = std::abs(height[n] - at);
+                found[count] = static_cast<std::uint32_t>(n);
+                count += std::size_t{off >= nearest} & std::size_t{off <= farthest};
+            }
+            for (std::size_t k = 0; k < count; ++k)
+                out[height[found[k]] > at].push_back(points[found[k]]);
+        }
+        return out;
+    }
+};
 
 // Sides are told apart by eighths of the circle; a box has four, with gaps between.
 constexpr std::size_t side_sectors = 8;
@@ -59,21 +88,42 @@ template <int unknowns>
 using Fit = Eigen::Matrix<double, unknowns, 1>;
 
 // Least squares with a prior of the last column's factor: 0 +- slope.
+// Rows of equations in so many unknowns.
 template <int unknowns>
-double residual_with_prior(const Rows<unknowns>& rows, const Eigen::VectorXd& out, double noise,
-                           double slope, Fit<unknowns>& fit) {
-    Eigen::Matrix<double, unknowns, unknowns> normal = rows.transpose() * rows;
-    constexpr Eigen::Index last = unknowns - 1;
-    const double weight = std::isfinite(slope) ? noise * noise / (slope * slope) : 0;
-    normal(last, last) += weight;
-    fit = normal.ldlt().solve(rows.transpose() * out);
-    return (out - rows * fit).squaredNorm() + weight * fit[last] * fit[last];
-}
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, unknowns>;
+template <int unknowns>
+using Fit = Eigen::Matrix<double, unknowns, 1>;
+
+// Least squares with a prior of the last column's factor: 0 +- slope.
+template <int unknowns>
+class SideFit {
+  public:
+    SideFit(const Rows<unknowns>& rows, const Eigen::VectorXd& out)
+        : rows_(rows),
+          out_(out),
+          normal_(rows.transpose() * rows),
+          right_(rows.transpose() * out) {}
+    // What is left. slope: infinite for none.
+    double residual(double noise, double slope, Fit<unknowns>& fit) const {
+        Eigen::Matrix<double, unknowns, unknowns> normal = normal_;
+        constexpr Eigen::Index last = unknowns - 1;
+        const double weight = std::isfinite(slope) ? noise * noise / (slope * slope) : 0;
+        normal(last, last) += weight;
+        fit = normal.ldlt().solve(right_);
+        return (out_ - rows_ * fit).squaredNorm() + weight * fit[last] * fit[last];
+    }
+
+  private:
+    const Rows<unknowns>& rows_;
+    const Eigen::VectorXd& out_;
+    Eigen::Matrix<double, unknowns, unknowns> normal_;
+    Fit<unknowns> right_;
+};
 
 // Share of the side's length that has surfels above as well as below: legs under a table's edge
 // have little of it.
-double covered_by_both(const std::array<LedgeSide, 2>& parts, double first, double last,
-                       double cell_m) {
+double covered_by_both(const std::array<std::vector<SidePoint>, 2>& parts, double first,
+                       double last, double cell_m) {
     const auto bins = static_cast<std::size_t>((last - first) / cell_m) + 1;
     std::array<std::vector<bool>, 2> covered{std::vector<bool>(bins), std::vector<bool>(bins)};
     for (std::size_t above = 0; above < 2; ++above)
@@ -88,15 +138,13 @@ double covered_by_both(const std::array<LedgeSide, 2>& parts, double first, doub
 //   out = a [above] + a' [below] + b [above] along + b' [below] along + c height
 //   out = a + b along + c height.
 std::optional<SideStep> step_at(const LedgeSide& side, double height, double cell_m) {
-    std::array<LedgeSide, 2> parts;
+    std::array<std::vector<SidePoint>, 2> parts =
+        side.around(height, from_cells * cell_m, to_cells * cell_m);
     std::array<double, 2> low, high;
     for (std::size_t above = 0; above < 2; ++above) {
         low[above] = std::numeric_limits<double>::infinity();
         high[above] = -low[above];
-        for (const SidePoint& p : side) {
-            const double off = above ? p.height - height : height - p.height;
-            if (off < from_cells * cell_m || off > to_cells * cell_m) continue;
-            parts[above].push_back(p);
+        for (const SidePoint& p : parts[above]) {
             low[above] = std::min(low[above], p.along);
             high[above] = std::max(high[above], p.along);
         }
@@ -104,15 +152,14 @@ std::optional<SideStep> step_at(const LedgeSide& side, double height, double cel
     // Both where the other is, too: what only one of them has may be another face.
     const double first = std::max(low[0], low[1]) - 0.5 * cell_m,
                  last = std::min(high[0], high[1]) + 0.5 * cell_m;
-    for (LedgeSide& part : parts) {
+    for (std::vector<SidePoint>& part : parts) {
         std::erase_if(part, [&](const SidePoint& p) { return p.along < first || p.along > last; });
         if (part.size() < least_surfels_each) return std::nullopt;
         // The means of cells at an edge lie behind it.
         const auto [bottom, top] = std::ranges::minmax_element(part, {}, &SidePoint::height);
         if (top->height - bottom->height < cell_m) return std::nullopt;
     }
-    const auto [from, to] = std::ranges::minmax_element(side, {}, &SidePoint::along);
-    if (last - first < least_side_length * (to->along - from->along) ||
+    if (last - first < least_side_length * (side.to - side.from) ||
         covered_by_both(parts, first, last, cell_m) < least_side_covered)
         return std::nullopt;
     const auto count = static_cast<Eigen::Index>(parts[0].size() + parts[1].size());
@@ -131,18 +178,19 @@ std::optional<SideStep> step_at(const LedgeSide& side, double height, double cel
         }
     }
     constexpr double any_slope = std::numeric_limits<double>::infinity();
+    const SideFit<5> as_two(two, out);
+    const SideFit<3> as_one(one, out);
     Fit<5> fit;
     Fit<3> unused;
-    const double free = residual_with_prior(two, out, 0, any_slope, fit);
+    const double free = as_two.residual(0, any_slope, fit);
     const double noise =
         std::max(std::sqrt(free / static_cast<double>(std::max<Eigen::Index>(count - 5, 1))),
                  least_noise_cells * cell_m);
-    const double stepped = residual_with_prior(two, out, noise, upright_side_slope, fit);
+    const double stepped = as_two.residual(noise, upright_side_slope, fit);
     SideStep step;
-    step.over_none = (residual_with_prior(one, out, noise, upright_side_slope, unused) - stepped) /
-                     (noise * noise);
-    step.over_lean =
-        (residual_with_prior(one, out, noise, any_slope, unused) - stepped) / (noise * noise);
+    step.over_none =
+        (as_one.residual(noise, upright_side_slope, unused) - stepped) / (noise * noise);
+    step.over_lean = (as_one.residual(noise, any_slope, unused) - stepped) / (noise * noise);
     double squares = 0;
     for (Eigen::Index k = 0; k < count; ++k) {
         const double d = fit[0] - fit[1] + (fit[2] - fit[3]) * one(k, 1);
@@ -215,7 +263,7 @@ std::optional<double> find_ledge(const Surfels& s, std::span<const std::uint32_t
         const double angle = turn + width * static_cast<double>(sector);
         const Eigen::Vector3d out = std::cos(angle) * east + std::sin(angle) * north;
         const Eigen::Vector3d at = position(s, p.surfel);
-        sides[sector].push_back({up.cross(out).dot(at), out.dot(at), up.dot(at)});
+        sides[sector].add({up.cross(out).dot(at), out.dot(at), up.dot(at)});
         low = std::min(low, up.dot(at));
         high = std::max(high, up.dot(at));
     }

@@ -1,85 +1,170 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/minimum_cut.h"
 
-#include <boost/graph/boykov_kolmogorov_max_flow.hpp>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace topple::geometry {
 namespace {
 
 constexpr double steps = 1e6;
+constexpr std::uint32_t unreached = std::numeric_limits<std::uint32_t>::max();
+// Levels are made exact when as many arcs were looked at as the graph has, so many times.
+constexpr std::size_t lifts_between = 4;
 
 std::int64_t in_steps(double cost) {
     return std::llround(steps * cost);
 }
 
-// Of a node: the arc to the source, and then the one to the sink. The source's arcs, and then the
-// sink's, come after all nodes', in the order of the nodes.
-constexpr std::uint32_t terminals = 2;
-
 }  // namespace
 
-// A node's arcs begin with those to the terminals, whether it has anything to do with them or not:
-// that is for part() to say.
-MinimumCut::MinimumCut(std::size_t nodes, std::span<const CutEdge> edges) : nodes_(nodes) {
-    const auto count = static_cast<std::uint32_t>(nodes);
-    const std::uint32_t source = count, sink = count + 1;
-    std::vector<std::uint32_t> first(nodes + 3, 0);
-    for (std::uint32_t n = 0; n < count; ++n) first[n + 1] = terminals;
-    first[source + 1] = first[sink + 1] = count;
+MinimumCut::MinimumCut(std::size_t nodes, std::span<const CutEdge> edges)
+    : first_(nodes + 1, 0),
+      around_(nodes, 0),
+      excess_(nodes),
+      room_(nodes),
+      is_sink_(nodes),
+      level_(nodes),
+      next_(nodes) {
     for (const CutEdge& e : edges) {
-        ++first[e.a + 1];
-        ++first[e.b + 1];
+        ++first_[e.a + 1];
+        ++first_[e.b + 1];
     }
-    for (std::size_t v = 0; v < nodes + 2; ++v) first[v + 1] += first[v];
-    const std::size_t arcs = first.back();
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> ends(arcs);
-    reverse_.resize(arcs);
-    capacity_.assign(arcs, 0);
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    const auto connect = [&](std::uint32_t a, std::uint32_t b, std::int64_t capacity) {
-        const std::uint32_t there = next[a]++, back = next[b]++;
-        ends[there] = {a, b};
-        ends[back] = {b, a};
-        reverse_[there] = Arc(b, back);
-        reverse_[back] = Arc(a, there);
-        capacity_[there] = capacity_[back] = capacity;
-    };
-    for (std::uint32_t n = 0; n < count; ++n) {
-        connect(n, source, 0);
-        connect(n, sink, 0);
+    for (std::size_t n = 0; n < nodes; ++n) first_[n + 1] += first_[n];
+    arcs_.resize(first_.back());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (const CutEdge& e : edges) {
+        const std::uint32_t there = next[e.a]++, back = next[e.b]++;
+        const std::int64_t capacity = in_steps(e.weight);
+        arcs_[there] = {e.b, back, capacity};
+        arcs_[back] = {e.a, there, capacity};
+        around_[e.a] += capacity;
+        around_[e.b] += capacity;
     }
-    for (const CutEdge& e : edges) connect(e.a, e.b, in_steps(e.weight));
-    graph_ = Graph(boost::edges_are_sorted, ends.begin(), ends.end(), count + 2);
-    residual_.resize(arcs);
-    distance_.resize(nodes + 2);
-    parent_.resize(nodes + 2);
-    tree_.resize(nodes + 2);
+    capacity_.reserve(arcs_.size());
+    for (const Arc& arc : arcs_) capacity_.push_back(arc.rest);
 }
 
 std::vector<bool> MinimumCut::part(std::span<const CutNode> nodes) {
-    const auto source = static_cast<std::uint32_t>(nodes_), sink = source + 1;
-    const auto out = [&](std::uint32_t v) { return out_edges(v, graph_).first; };
-    if (nodes_ == 0) return {};
-    for (std::uint32_t n = 0; n < source; ++n) {
-        const Arc to_source = *out(n), to_sink = *(out(n) + 1);
-        capacity_[reverse_[to_source.idx].idx] = in_steps(nodes[n].from_source);
-        capacity_[to_sink.idx] = in_steps(nodes[n].from_sink);
-    }
-    const auto index = get(boost::edge_index, graph_);
-    const auto vertex = get(boost::vertex_index, graph_);
-    std::fill(tree_.begin(), tree_.end(), boost::gray_color);
-    std::fill(distance_.begin(), distance_.end(), 0);
-    boost::boykov_kolmogorov_max_flow(
-        graph_, boost::make_iterator_property_map(capacity_.begin(), index),
-        boost::make_iterator_property_map(residual_.begin(), index),
-        boost::make_iterator_property_map(reverse_.begin(), index),
-        boost::make_iterator_property_map(parent_.begin(), vertex),
-        boost::make_iterator_property_map(tree_.begin(), vertex),
-        boost::make_iterator_property_map(distance_.begin(), vertex), vertex, source, sink);
-    std::vector<bool> inside(nodes_);
-    for (std::size_t n = 0; n < nodes_; ++n) inside[n] = tree_[n] == tree_[source];
+    supply(nodes);
+    while (find_levels()) push_all();
+    std::vector<bool> inside(level_.size());
+    for (std::size_t n = 0; n < inside.size(); ++n) inside[n] = level_[n] != unreached;
     return inside;
+}
+
+// What the sinks have goes to their nodes; and on to all neighbours from those that have more than
+// these could take, which have nothing to do with the rest.
+void MinimumCut::supply(std::span<const CutNode> nodes) {
+    for (std::size_t arc = 0; arc < arcs_.size(); ++arc) arcs_[arc].rest = capacity_[arc];
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        const std::int64_t more = in_steps(nodes[n].from_sink) - in_steps(nodes[n].from_source);
+        excess_[n] = std::max<std::int64_t>(more, 0);
+        room_[n] = std::max<std::int64_t>(-more, 0);
+        is_sink_[n] = more > around_[n];
+    }
+    for (std::uint32_t n = 0; n < nodes.size(); ++n) {
+        if (!is_sink_[n]) continue;
+        for (std::uint32_t a = first_[n]; a < first_[n + 1]; ++a) {
+            Arc& arc = arcs_[a];
+            if (is_sink_[arc.to]) continue;
+            excess_[arc.to] += arc.rest;
+            send(arc, arc.rest);
+        }
+    }
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        const std::int64_t taken = std::min(room_[n], excess_[n]);
+        room_[n] -= taken;
+        excess_[n] -= taken;
+    }
+}
+
+// By a search from all nodes with room. Tells whether any excess reaches one.
+bool MinimumCut::find_levels() {
+    std::fill(level_.begin(), level_.end(), unreached);
+    reached_.clear();
+    for (std::uint32_t n = 0; n < level_.size(); ++n) {
+        if (room_[n] == 0) continue;
+        level_[n] = 0;
+        reached_.push_back(n);
+    }
+    for (std::size_t k = 0; k < reached_.size(); ++k) {
+        const std::uint32_t n = reached_[k];
+        for (std::uint32_t a = first_[n]; a < first_[n + 1]; ++a) {
+            const std::uint32_t from = arcs_[a].to;
+            if (level_[from] != unreached || is_sink_[from] || arcs_[arcs_[a].reverse].rest == 0)
+                continue;
+            level_[from] = level_[n] + 1;
+            reached_.push_back(from);
+        }
+    }
+    count_.assign(level_.size() + 1, 0);
+    active_.clear();
+    active_.resize(1);
+    highest_ = work_ = 0;
+    gap_ = unreached - 1;
+    for (const std::uint32_t n : reached_) {
+        ++count_[level_[n]];
+        next_[n] = first_[n];
+        if (excess_[n] > 0) wake(n);
+    }
+    return !active_[highest_].empty();
+}
+
+void MinimumCut::wake(std::uint32_t n) {
+    const std::size_t level = level_[n];
+    if (active_.size() <= level) active_.resize(level + 1);
+    active_[level].push_back(n);
+    highest_ = std::max(highest_, level);
+}
+
+// Until nothing more seems to reach a source, or levels have grown wrong.
+void MinimumCut::push_all() {
+    while (work_ <= lifts_between * arcs_.size()) {
+        while (highest_ > 0 && active_[highest_].empty()) --highest_;
+        if (active_[highest_].empty()) return;
+        const std::uint32_t n = active_[highest_].back();
+        active_[highest_].pop_back();
+        discharge(n);
+    }
+}
+
+void MinimumCut::discharge(std::uint32_t n) {
+    if (level_[n] > gap_) return;
+    const std::int64_t taken = std::min(room_[n], excess_[n]);
+    room_[n] -= taken;
+    excess_[n] -= taken;
+    for (std::uint32_t& a = next_[n]; excess_[n] > 0 && a < first_[n + 1]; ++a) {
+        Arc& arc = arcs_[a];
+        if (arc.rest == 0 || level_[n] == 0 || level_[arc.to] != level_[n] - 1) continue;
+        const std::int64_t flow = std::min(arc.rest, excess_[n]);
+        if (excess_[arc.to] == 0) wake(arc.to);
+        excess_[arc.to] += flow;
+        excess_[n] -= flow;
+        send(arc, flow);
+        if (excess_[n] == 0) return;  // the arc may have something left
+    }
+    if (excess_[n] > 0) lift(n);
+}
+
+// To right above the lowest node that it can push to.
+void MinimumCut::lift(std::uint32_t n) {
+    std::uint32_t least = unreached;
+    for (std::uint32_t a = first_[n]; a < first_[n + 1]; ++a) {
+        const Arc& arc = arcs_[a];
+        if (arc.rest > 0 && level_[arc.to] <= gap_) least = std::min(least, level_[arc.to] + 1);
+    }
+    work_ += first_[n + 1] - first_[n] + 1;
+    next_[n] = first_[n];
+    if (--count_[level_[n]] == 0) gap_ = std::min(gap_, level_[n]);
+    if (least > gap_ || least >= level_.size()) {
+        level_[n] = unreached;
+        return;
+    }
+    level_[n] = least;
+    ++count_[least];
+    wake(n);
 }
 
 }  // namespace topple::geometry

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <tuple>
+#include <utility>
 
 namespace topple::geometry {
 namespace {
@@ -14,11 +14,22 @@ namespace {
 struct Key {
     std::int32_t primitive, i, j, k;
     std::uint32_t point;
-    auto cell() const { return std::tuple(primitive, i, j, k); }
-    // By place within a cell, so that sums do not depend on the points' order in memory but for
-    // points at one place.
-    bool operator<(const Key& other) const { return cell() < other.cell(); }
+    bool same_cell(const Key& o) const {
+        return primitive == o.primitive && i == o.i && j == o.j && k == o.k;
+    }
+    bool operator<(const Key& o) const {
+        if (primitive != o.primitive) return primitive < o.primitive;
+        if (i != o.i) return i < o.i;
+        return j != o.j ? j < o.j : k < o.k;
+    }
 };
+
+// Numbers of this unit are added up exactly, whatever their order. As std::llround() does, which is
+// a call: value / unit has the few digits of a float.
+std::int64_t in_units(double value, double unit) {
+    const double units = value * unit;
+    return static_cast<std::int64_t>(units + (units < 0 ? -0.5 : 0.5));
+}
 
 // Samples at random on a surface, one in each square of side s on average, have their sixth
 // neighbour at a median distance of sqrt(5.67 / pi) s.
@@ -76,9 +87,9 @@ void add_colour(const Surfels& surfels, std::span<const Key> keys, SurfaceSample
         const std::size_t s = surfels.of_point[key.point];
         if (std::isnan(surfels.lab_l[s])) continue;
         ++known;
-        sum[0] += std::llround(double{surfels.lab_l[s]} * unit);
-        sum[1] += std::llround(double{surfels.lab_a[s]} * unit);
-        sum[2] += std::llround(double{surfels.lab_b[s]} * unit);
+        sum[0] += in_units(surfels.lab_l[s], unit);
+        sum[1] += in_units(surfels.lab_a[s], unit);
+        sum[2] += in_units(surfels.lab_b[s], unit);
     }
     std::size_t axis = 0;
     for (auto* values : {&out.lab_l, &out.lab_a, &out.lab_b}) {
@@ -130,11 +141,11 @@ SurfaceSamples sample_surface(const CloudView& cloud, const Surfels& surfels,
         // Sums of fixed-point numbers: exact, so that the order of points plays no part.
         std::array<std::int64_t, 6> sum{};
         const double unit = 1 << 20;
-        for (; last < keys.size() && keys[last].cell() == keys[first].cell(); ++last) {
+        for (; last < keys.size() && keys[last].same_cell(keys[first]); ++last) {
             const std::size_t n = keys[last].point, s = surfels.of_point[n];
             const std::array<double, 6> v{cloud.x[n],    cloud.y[n],    cloud.z[n],
                                           surfels.nx[s], surfels.ny[s], surfels.nz[s]};
-            for (std::size_t a = 0; a < 6; ++a) sum[a] += std::llround(v[a] * unit);
+            for (std::size_t a = 0; a < 6; ++a) sum[a] += in_units(v[a], unit);
         }
         const double count = static_cast<double>(last - first) * unit;
         const auto mean = [&](std::size_t a) { return static_cast<double>(sum[a]) / count; };

@@ -84,31 +84,59 @@ std::vector<std::size_t> sample_area(const CloudView& cloud, std::size_t samples
 struct Spacings {
     float first = 0, last = 0;
 };
-Spacings distances_around(const CloudView& cloud, std::size_t point) {
+class NearestPlaces {
+  public:
+    // Points of the cloud that are looked at together.
+    static constexpr std::size_t at_once = 256;
+    struct Portion {
+        std::size_t first = 0, count = 0;
+        std::array<float, at_once> x{}, y{}, z{};
+    };
+
+    NearestPlaces(const CloudView& cloud, std::size_t point)
+        : cloud_(cloud), x_(cloud.x[point]), y_(cloud.y[point]), z_(cloud.z[point]) {}
+
+    // Most points are farther off than those found, and no more than compared.
+    void look(const Portion& all) {
+        std::array<float, at_once> distance;
+        const float last = nearest_.back().distance;
+        std::uint32_t nearer = 0;
+        for (std::size_t n = 0; n < at_once; ++n) {
+            const float dx = all.x[n] - x_, dy = all.y[n] - y_, dz = all.z[n] - z_;
+            distance[n] = dx * dx + dy * dy + dz * dz;
+            nearer |= std::uint32_t{distance[n] < last};
+        }
+        if (nearer == 0) return;
+        for (std::size_t n = 0; n < all.count; ++n) add(all.first + n, distance[n]);
+    }
+
+    Spacings found() const { return {nearest_.front().distance, nearest_.back().distance}; }
+
+  private:
     struct Place {
         float distance = std::numeric_limits<float>::infinity();
         std::size_t point = 0;
     };
-    std::array<Place, around> nearest{};
-    const auto same = [&](std::size_t a, std::size_t b) {
-        return cloud.x[a] == cloud.x[b] && cloud.y[a] == cloud.y[b] && cloud.z[a] == cloud.z[b];
-    };
-    const float x = cloud.x[point], y = cloud.y[point], z = cloud.z[point];
-    Place& last = nearest.back();
-    for (std::size_t j = 0; j < cloud.size(); ++j) {
-        const float dx = cloud.x[j] - x, dy = cloud.y[j] - y, dz = cloud.z[j] - z;
-        const float d = dx * dx + dy * dy + dz * dz;
-        if (!(d < last.distance && d > 0)) continue;
-        if (std::any_of(nearest.begin(), nearest.end(),
+    bool same(std::size_t a, std::size_t b) const {
+        return cloud_.x[a] == cloud_.x[b] && cloud_.y[a] == cloud_.y[b] &&
+               cloud_.z[a] == cloud_.z[b];
+    }
+    void add(std::size_t j, float d) {
+        Place& last = nearest_.back();
+        if (!(d < last.distance && d > 0)) return;
+        if (std::any_of(nearest_.begin(), nearest_.end(),
                         [&](const Place& p) { return p.distance == d && same(p.point, j); }))
-            continue;
+            return;
         last = {d, j};
-        for (auto at = nearest.end() - 1;
-             at != nearest.begin() && at->distance < (at - 1)->distance; --at)
+        for (auto at = nearest_.end() - 1;
+             at != nearest_.begin() && at->distance < (at - 1)->distance; --at)
             std::swap(*at, *(at - 1));
     }
-    return {nearest.front().distance, last.distance};
-}
+
+    const CloudView& cloud_;
+    float x_, y_, z_;
+    std::array<Place, around> nearest_{};
+};
 
 // The distance that this share of those found has at most; 0 where none was.
 double share_of(const std::vector<Spacings>& all, float Spacings::*which, double share) {
@@ -123,8 +151,21 @@ double share_of(const std::vector<Spacings>& all, float Spacings::*which, double
 }
 
 std::vector<Spacings> look_around(const CloudView& cloud, const std::vector<std::size_t>& points) {
+    std::vector<NearestPlaces> nearest;
+    for (const std::size_t i : points) nearest.emplace_back(cloud, i);
+    NearestPlaces::Portion portion;
+    for (std::size_t first = 0; first < cloud.size(); first += NearestPlaces::at_once) {
+        portion.first = first;
+        portion.count = std::min(NearestPlaces::at_once, cloud.size() - first);
+        for (std::size_t n = 0; n < portion.count; ++n) {
+            portion.x[n] = cloud.x[first + n];
+            portion.y[n] = cloud.y[first + n];
+            portion.z[n] = cloud.z[first + n];
+        }
+        for (NearestPlaces& of_point : nearest) of_point.look(portion);
+    }
     std::vector<Spacings> out;
-    for (const std::size_t i : points) out.push_back(distances_around(cloud, i));
+    for (const NearestPlaces& of_point : nearest) out.push_back(of_point.found());
     return out;
 }
 

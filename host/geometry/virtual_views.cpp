@@ -269,13 +269,20 @@ class Looking {
                 if (sides_.side(i) * f >= 0) out_.viewpoint_of_surfel[i] = eye;
             });
         }
-        pool_.each(places_.size(), place_chunk, [&](std::size_t p) {
-            if (!places_.is_free(p) && sees_through(view, places_.middle(p))) places_.set_free(p);
-            if (!places_.is_within(p) && !hides(view, places_.middle(p))) ++in_view_[p];
-        });
+        pool_.each(places_.size(), place_chunk, [&](std::size_t p) { look_at_place(view, p); });
         places_.leave_out(view.eye);
         add_frames(view);
         if (tell_) tell_(std::min(0.99, static_cast<double>(out_.eyes.size()) / expected_));
+    }
+
+    void look_at_place(const CubeView& view, std::size_t p) {
+        const bool free = places_.is_free(p), within = places_.is_within(p);
+        if (free && within) return;
+        const std::size_t image = view.image_of(places_.middle(p));
+        const CubeView::Pixel pixel = view.pixel_of(image, places_.middle(p));
+        if (hides(view, image, pixel)) return;
+        if (!within) ++in_view_[p];
+        if (!free && sees_through(view, image, pixel)) places_.set_free(p);
     }
 
     void add_frames(CubeView& view) {
@@ -337,7 +344,10 @@ class Looking {
     // Whether something lies before the point, by so much.
     bool hides(const CubeView& view, const Vec3& point, double by_m = 0) const {
         const std::size_t image = view.image_of(point);
-        const CubeView::Pixel pixel = view.pixel_of(image, point);
+        return hides(view, image, view.pixel_of(image, point), by_m);
+    }
+    static bool hides(const CubeView& view, std::size_t image, const CubeView::Pixel& pixel,
+                      double by_m = 0) {
         return !pixel.inside || (view.surfel[image][pixel.index] != CubeView::nothing &&
                                  view.depth[image][pixel.index] + by_m < pixel.depth);
     }
@@ -346,8 +356,13 @@ class Looking {
     // gap between surfels, but those to the rim of its cell, too.
     bool sees_through(const CubeView& view, const Vec3& place) const {
         const std::size_t image = view.image_of(place);
-        const CubeView::Pixel pixel = view.pixel_of(image, place);
-        if (!pixel.inside) return false;
+        return sees_through(view, image, view.pixel_of(image, place));
+    }
+    bool sees_through(const CubeView& view, std::size_t image, const CubeView::Pixel& pixel) const {
+        // At its middle first, where most is not seen through.
+        if (!pixel.inside || view.surfel[image][pixel.index] == CubeView::nothing ||
+            pixel.depth + places_.cell_m() >= view.depth[image][pixel.index])
+            return false;
         const auto at = [](std::size_t n, double away) {
             const double to = std::clamp(static_cast<double>(n) + away, 0.0, CubeView::side - 1.0);
             return static_cast<std::size_t>(to);
@@ -358,10 +373,9 @@ class Looking {
             for (const double right : {-rim, 0.0, rim}) {
                 const std::size_t n = at(row, down) * CubeView::side + at(column, right);
                 const std::uint32_t i = view.surfel[image][n];
-                const bool nothing = i == CubeView::nothing;
-                if (nothing && n == pixel.index) return false;
-                if (!nothing && (sides_.from_behind(i, view.eye) ||
-                                 pixel.depth + places_.cell_m() >= view.depth[image][n]))
+                if (i != CubeView::nothing &&
+                    (sides_.from_behind(i, view.eye) ||
+                     pixel.depth + places_.cell_m() >= view.depth[image][n]))
                     return false;
             }
         }

@@ -2,6 +2,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <tuple>
 
 #include "solids/grid_points.h"
@@ -10,18 +12,40 @@
 namespace topple::solids {
 namespace {
 
+// Two numbers in one that has their order, for sorting: the second one counts where the first are
+// the same.
+std::uint64_t in_order(std::int32_t first, std::int32_t second) {
+    const auto ordered = [](std::int32_t v) { return static_cast<std::uint32_t>(v) ^ (1u << 31); };
+    return std::uint64_t{ordered(first)} << 32 | ordered(second);
+}
+std::int32_t first_of(std::uint64_t both) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(both >> 32) ^ (1u << 31));
+}
+std::int32_t second_of(std::uint64_t both) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(both) ^ (1u << 31));
+}
+
 struct SeenPoint {
-    std::int32_t i, j, k, primitive;
+    std::uint64_t ij, k_primitive;
     float x, y, z;
-    auto key() const { return std::tie(i, j, k, primitive); }
-    auto order() const { return std::tie(i, j, k, primitive, x, y, z); }
+    bool same_cell(const SeenPoint& o) const { return ij == o.ij && k_primitive == o.k_primitive; }
+    bool operator<(const SeenPoint& o) const {
+        if (ij != o.ij) return ij < o.ij;
+        if (k_primitive != o.k_primitive) return k_primitive < o.k_primitive;
+        return std::tie(x, y, z) < std::tie(o.x, o.y, o.z);
+    }
 };
 
 // The mean of points of one patch in one cell, and where it belongs.
 struct SeenMean {
-    std::int32_t i, j, k, primitive, patch;
+    std::uint64_t ij, k_primitive;
+    std::int32_t patch;
     float count, x, y, z;
-    auto key() const { return std::tie(i, j, k, primitive, patch); }
+    bool operator<(const SeenMean& o) const {
+        if (ij != o.ij) return ij < o.ij;
+        if (k_primitive != o.k_primitive) return k_primitive < o.k_primitive;
+        return patch < o.patch;
+    }
 };
 
 void add_means(std::span<const SeenPoint> sorted, std::int32_t patch, std::vector<SeenMean>& out) {
@@ -29,13 +53,13 @@ void add_means(std::span<const SeenPoint> sorted, std::int32_t patch, std::vecto
         const SeenPoint& first = sorted[n];
         std::size_t end = n;
         double sum[3] = {0, 0, 0};
-        for (; end < sorted.size() && sorted[end].key() == first.key(); ++end) {
+        for (; end < sorted.size() && sorted[end].same_cell(first); ++end) {
             sum[0] += sorted[end].x;
             sum[1] += sorted[end].y;
             sum[2] += sorted[end].z;
         }
         const auto count = static_cast<double>(end - n);
-        out.push_back({first.i, first.j, first.k, first.primitive, patch, static_cast<float>(count),
+        out.push_back({first.ij, first.k_primitive, patch, static_cast<float>(count),
                        static_cast<float>(sum[0] / count), static_cast<float>(sum[1] / count),
                        static_cast<float>(sum[2] / count)});
         n = end;
@@ -63,26 +87,27 @@ SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primi
                     return static_cast<std::int32_t>(
                         std::clamp(std::floor(v / voxel_m), -2e9, 2e9));
                 };
-                places.push_back({cell(p.x()), cell(p.y()), cell(p.z()), primitive_of_point[n],
+                places.push_back({in_order(cell(p.x()), cell(p.y())),
+                                  in_order(cell(p.z()), primitive_of_point[n]),
                                   static_cast<float>(p.x()), static_cast<float>(p.y()),
                                   static_cast<float>(p.z())});
             }
-            std::ranges::sort(places, {}, &SeenPoint::order);
+            std::ranges::sort(places, std::less<>());
             add_means(places, static_cast<std::int32_t>(patch), of_patch[patch]);
         }
     });
     std::vector<SeenMean> means;
     for (const auto& some : of_patch) means.insert(means.end(), some.begin(), some.end());
-    std::ranges::sort(means, {}, &SeenMean::key);
+    std::ranges::sort(means, std::less<>());
     SeenCells out;
     for (auto* values : {&out.i, &out.j, &out.k, &out.primitive, &out.patch})
         values->reserve(means.size());
     for (auto* values : {&out.count, &out.x, &out.y, &out.z}) values->reserve(means.size());
     for (const SeenMean& m : means) {
-        out.i.push_back(m.i);
-        out.j.push_back(m.j);
-        out.k.push_back(m.k);
-        out.primitive.push_back(m.primitive);
+        out.i.push_back(first_of(m.ij));
+        out.j.push_back(second_of(m.ij));
+        out.k.push_back(first_of(m.k_primitive));
+        out.primitive.push_back(second_of(m.k_primitive));
         out.patch.push_back(m.patch);
         out.count.push_back(m.count);
         out.x.push_back(m.x);

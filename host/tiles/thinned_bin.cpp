@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 #include <string>
 #include <system_error>
 
+#include "geometry/cell_grid.h"
 #include "tiles/binary_file.h"
 
 namespace topple::tiles {
@@ -47,22 +47,33 @@ class CellSums {
     CellSums() { grow(1u << 12); }
 
     std::uint32_t add(std::uint64_t key, const std::array<double, 3>& point) {
-        if (2 * keys_.size() >= slots_.size()) grow(2 * slots_.size());
+        if (2 * cells_.size() >= slots_.size()) grow(2 * slots_.size());
         std::size_t at = slot(key);
         if (slots_[at] == none) {
-            slots_[at] = static_cast<std::uint32_t>(keys_.size());
-            keys_.push_back(key);
-            for (auto& axis : sum_) axis.push_back(0);
-            count_.push_back(0);
+            slots_[at] = static_cast<std::uint32_t>(cells_.size());
+            cells_.push_back({key, {}, 0});
         }
         const std::uint32_t place = slots_[at];
-        for (std::size_t a = 0; a < 3; ++a) sum_[a][place] += point[a];
-        ++count_[place];
+        Cell& cell = cells_[place];
+        for (std::size_t a = 0; a < 3; ++a) cell.sum[a] += point[a];
+        ++cell.count;
         return place;
     }
-    const std::vector<std::uint64_t>& keys() const { return keys_; }
+    // Points of a scan are spread over cells: what add() will look at of a key is asked for before,
+    // first the slot, then the cell in it.
+    void expect(std::uint64_t key) const { __builtin_prefetch(&slots_[home(key)]); }
+    void expect_cell(std::uint64_t key) const {
+        const std::uint32_t place = slots_[home(key)];
+        if (place != none) __builtin_prefetch(&cells_[place]);
+    }
+    std::vector<std::uint64_t> keys() const {
+        std::vector<std::uint64_t> out;
+        out.reserve(cells_.size());
+        for (const Cell& cell : cells_) out.push_back(cell.key);
+        return out;
+    }
     void add_colour(std::uint32_t place, const Rgb8& colour) {
-        if (colours_.size() <= place) colours_.resize(keys_.size());
+        if (colours_.size() <= place) colours_.resize(cells_.size());
         if (colour == Rgb8{0, 0, 0}) return;
         for (std::size_t c = 0; c < 3; ++c) colours_[place][c] += colour[c];
         ++colours_[place][3];
@@ -76,30 +87,37 @@ class CellSums {
         }
         return out;
     }
-    std::uint32_t count(std::uint32_t place) const { return count_[place]; }
+    std::uint32_t count(std::uint32_t place) const { return cells_[place].count; }
     double mean(std::uint32_t place, std::size_t axis) const {
-        return sum_[axis][place] / count_[place];
+        return cells_[place].sum[axis] / cells_[place].count;
     }
 
   private:
     static constexpr std::uint32_t none = UINT32_MAX;
 
+    struct Cell {
+        std::uint64_t key;
+        std::array<double, 3> sum;
+        std::uint32_t count;
+    };
+
+    std::size_t home(std::uint64_t key) const {
+        return (key * 0x9e3779b97f4a7c15ULL >> 20) & (slots_.size() - 1);
+    }
     // The slot that holds the key, or the free one for it.
     std::size_t slot(std::uint64_t key) const {
-        const std::size_t mask = slots_.size() - 1;
-        std::size_t at = (key * 0x9e3779b97f4a7c15ULL >> 20) & mask;
-        while (slots_[at] != none && keys_[slots_[at]] != key) at = (at + 1) & mask;
+        std::size_t at = home(key);
+        while (slots_[at] != none && cells_[slots_[at]].key != key)
+            at = (at + 1) & (slots_.size() - 1);
         return at;
     }
     void grow(std::size_t size) {
         slots_.assign(size, none);
-        for (std::uint32_t n = 0; n < keys_.size(); ++n) slots_[slot(keys_[n])] = n;
+        for (std::uint32_t n = 0; n < cells_.size(); ++n) slots_[slot(cells_[n].key)] = n;
     }
 
-    std::vector<std::uint32_t> slots_;  // places; a power of two of them
-    std::vector<std::uint64_t> keys_;   // by place
-    std::array<std::vector<double>, 3> sum_;
-    std::vector<std::uint32_t> count_;
+    std::vector<std::uint32_t> slots_;                   // places; a power of two of them
+    std::vector<Cell> cells_;                            // by place
     std::vector<std::array<std::uint64_t, 4>> colours_;  // sums of channels, and how many
 };
 
@@ -145,29 +163,38 @@ void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const
     const Bin& at = points.bins()[bin].bin;
     const auto cells = static_cast<std::int64_t>(std::llround(bin_edge_m / cell_m));
     const std::array<double, 3> low{at[0] * bin_edge_m, at[1] * bin_edge_m, at[2] * bin_edge_m};
+    constexpr std::size_t at_once = 32;  // points whose cells are asked for before they are needed
     CellSums sums;
     PlacesWriter places(places_file(folder, at));
     points.read(bin, [&](std::span<const Point> portion, std::span<const Rgb8> colours) {
-        for (std::size_t n = 0; n < portion.size(); ++n) {
-            const Point& p = portion[n];
-            // Relative to the bin, so that the mean keeps the floats' accuracy.
-            const std::array<double, 3> in_bin{p.x - low[0], p.y - low[1], p.z - low[2]};
-            std::uint64_t key = 0;
-            for (const double c : in_bin) {
-                const auto cell = std::clamp<std::int64_t>(
-                    static_cast<std::int64_t>(std::floor(c / cell_m)), 0, cells - 1);
-                key = key * static_cast<std::uint64_t>(cells) + static_cast<std::uint64_t>(cell);
+        std::array<std::uint64_t, at_once> keys{};
+        std::array<std::array<double, 3>, at_once> in_bin{};
+        for (std::size_t first = 0; first < portion.size(); first += at_once) {
+            const std::size_t count = std::min(at_once, portion.size() - first);
+            for (std::size_t n = 0; n < count; ++n) {
+                const Point& p = portion[first + n];
+                // Relative to the bin, so that the mean keeps the floats' accuracy.
+                in_bin[n] = {p.x - low[0], p.y - low[1], p.z - low[2]};
+                keys[n] = 0;
+                for (const double c : in_bin[n]) {
+                    const auto cell = std::clamp<std::int64_t>(
+                        static_cast<std::int64_t>(std::floor(c / cell_m)), 0, cells - 1);
+                    keys[n] = keys[n] * static_cast<std::uint64_t>(cells) +
+                              static_cast<std::uint64_t>(cell);
+                }
+                sums.expect(keys[n]);
             }
-            const std::uint32_t place = sums.add(key, in_bin);
-            if (!colours.empty()) sums.add_colour(place, colours[n]);
-            places.add(place);
+            for (std::size_t n = 0; n < count; ++n) sums.expect_cell(keys[n]);
+            for (std::size_t n = 0; n < count; ++n) {
+                const std::uint32_t place = sums.add(keys[n], in_bin[n]);
+                if (!colours.empty()) sums.add_colour(place, colours[first + n]);
+                places.add(place);
+            }
         }
     });
     places.finish();
-    const std::vector<std::uint64_t>& keys = sums.keys();
-    std::vector<std::uint32_t> order(keys.size()), rank(keys.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::ranges::sort(order, {}, [&](std::uint32_t n) { return keys[n]; });
+    const std::vector<std::uint32_t> order = geometry::sorted_order(sums.keys());
+    std::vector<std::uint32_t> rank(order.size());
     ThinnedBin out;
     for (std::uint32_t n = 0; n < order.size(); ++n) {
         rank[order[n]] = n;
