@@ -45,14 +45,9 @@ class Looking {
           pool_(pool),
           views_(surfels, covering_radii(surfels, options.gap_m, pool), pool),
           places_(surfels),
-<<<<<<< HEAD
           sides_(surfels, views_.radii_m(), pool),
-          in_view_(places_.size(), 0) {
-=======
-          sides_(surfels, pool),
           in_view_(places_.size(), 0),
           tell_(options.tell) {
->>>>>>> py21
         if (options.sides_known) sides_.believe_normals();
         sides_known_ = options.sides_known;
         out_.viewpoint_of_surfel.assign(surfels.size(), no_eye);
