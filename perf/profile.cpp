@@ -30,7 +30,7 @@ class Profiler {
   public:
     explicit Profiler(const device::Device& device) : device_(device) {}
     void begin(const std::string& stage) {
-        // A stage may tell more than once that none of it is done yet.
+        // A stage tells of itself more than once.
         if (open_ && stages_.back().name == stage) return;
         end();
         open_ = true;
@@ -63,9 +63,7 @@ std::vector<StageProfile> profile(const std::shared_ptr<device::Device>& device,
     Profiler profiler(*device);
     ParseOptions options;
     options.device = device;
-    options.progress = [&](const std::string& stage, double done) {
-        if (done == 0) profiler.begin(stage);
-    };
+    options.progress = [&](const std::string& stage, double) { profiler.begin(stage); };
     const ParseResult result = parse(input, options);
     const scenes::TemporaryFolder folder("topple-profile");
     profiler.begin("output");

@@ -34,8 +34,9 @@ int main(int argc, char** argv) {
         topple::ParseOptions options;
         options.device = topple::device::open_device("native");
         options.coordinates = false;  // they are here already
-        options.progress = [](const std::string& stage, double done) {
-            if (done == 0) std::fprintf(stderr, "%s\n", stage.c_str());
+        options.progress = [last = std::string()](const std::string& stage, double) mutable {
+            if (stage != last) std::fprintf(stderr, "%s\n", stage.c_str());
+            last = stage;
         };
         const topple::ParseResult result = topple::parse(cloud, options);
         for (std::size_t i = 0; i < records.size(); ++i)
