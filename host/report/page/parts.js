@@ -38,7 +38,10 @@ class PartsPanel {
     this.changed();
   }
 
+  // Beside the object that is chosen as a whole, if another one is.
   toggleObject(id) {
+    if (!this.marked.size && this.object !== null && this.object !== id)
+      for (const part of this.partsOf.get(this.object) || []) this.marked.add(part.id);
     const parts = (this.partsOf.get(id) || []).map(part => part.id), on = !parts.every(part => this.marked.has(part));
     for (const part of parts) {
       if (on) this.marked.add(part);
@@ -121,6 +124,8 @@ class PartsPanel {
     const parts = this.parts(), meant = this.meant();
     if (!this.corrections.told(parts).length) return this.refuse(`Of ${meant || 'this'} no surface is drawn, by which it could be found again.`);
     if (kind === 'one_thing' && this.corrections.told(parts).length < 2) return this.refuse('Choose at least two parts, or two objects, first.');
+    if (kind === 'one_thing' && new Set(parts.map(part => this.owner.get(part))).size < 2)
+      return this.refuse('These are one thing already: Shift-click the other one, too.');
     const told = {...more, was: this.wasText(kind, parts)};
     this.corrections.add(kind === 'one_thing' ? this.corrections.oneThing(parts, told) : this.corrections.of(kind, this.enoughOf(kind, parts), told), `${capital(meant)}: ${what}`);
     this.done();

@@ -88,6 +88,12 @@ function howSureText(object) {
   return `How sure: ${parts.join('; ')}.`;
 }
 
+// "It may be a piece of object 5 (86 % likely).", as what is known of it says; "" where it is likelier a thing of its own.
+function pieceText(object) {
+  const [found] = ((object.why || {}).sentence || '').match(/It may be a piece of .*\(\d+ % likely\)\./) || [''];
+  return found;
+}
+
 // What of it is in doubt more than usual.
 function isUnsure(object) {
   return !(object.agreement > 0.5) || object.rest_probability < 0.5;
@@ -130,6 +136,8 @@ function riskItem(scene, object, choose) {
   say('mass', [object.name ? `object ${object.id}` : '', shortMass(scene, object), sizeText(object)].filter(text => text).join(', '));
   if (plain || doubtful) say('standing', largestRiskText(object));
   say(isUnsure(object) ? 'doubt' : 'mass', howSureText(object));
+  const piece = pieceText(object);
+  if (piece) say('doubt', `Look first: ${piece.charAt(0).toLowerCase()}${piece.slice(1, -1)}. If so, choose both below the view, and say \u201cone thing\u201d.`);
   say('mass', placeText(scene, object));
   if (doubtful) say('from', `As scanned a touch would upset it. ${happensText(scene, object)}`);
   else if (plain) say('from', upsetText(object));

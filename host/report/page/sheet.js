@@ -35,7 +35,8 @@ function fillSheet(scene) {
   const list = (title, lines, left) => lines.length ? [node('h2', title), element('ol', {className: 'todo'}, lines),
     ...left > 0 ? [node('p', `And ${plural(left, 'more object')}: see the pages that follow.`, 'hint')] : []] : [];
   const doubtful = doubtfulOnes(scene), nearly = nearlyOnes(scene), unseen = unseenOnes(scene);
-  const doing = object => sheetLine(scene, object, object.advice.sentence, [dangerText(scene, object), sheetYears(scene, object)]);
+  const look = object => pieceText(object).replace(/^It may be (.*)\.$/, 'first look whether it is $1, which is to be fastened as a whole then. ');
+  const doing = object => sheetLine(scene, object, look(object) + object.advice.sentence, [dangerText(scene, object), sheetYears(scene, object)]);
   const looks = [...doubtful.slice(0, listedDoubts).map(object => sheetLine(scene, object, 'look whether it stands firm: as scanned a touch would upset it.', [sheetYears(scene, object)])),
     ...nearly.slice(0, listedDoubts).map(object => sheetLine(scene, object, nearlyText(object))),
     ...calm.map(object => sheetLine(scene, object, actionText(scene, object), [dangerText(scene, object)]))];
@@ -52,5 +53,5 @@ function fillSheet(scene) {
       const {key, follows, unit} = kind.figure, value = (scene.events || {})[key];
       return kind.one_event + (follows && value !== undefined ? follows + number(value, unit) + shakingText(key, value) : '');
     })) || 'nothing'}.${scene.below_hazard.length ? ` \u201cAt most\u201d: ${curveText(scene)}.` : ''} Places are in metres east (E) of the plan\u2019s left edge and north (N) of its lower edge. A joule (J) lifts 1 kg by 10 cm; from about 40 J on injuries need more than first aid. ` +
-      'Straps must hold what is said at least: no safety margin is in it.', 'hint'));
+      'Straps must hold what is said at least: no safety margin is in it. ?: it may be less, or a piece of another thing.', 'hint'));
 }

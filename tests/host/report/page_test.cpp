@@ -122,6 +122,37 @@ TEST_F(Page, takes_a_part_out_of_an_object_in_four_clicks) {
     EXPECT_EQ(parts_at(scene, one["from_m"]), (std::vector<std::int32_t>{3, 4}));
 }
 
+// What is chosen as a whole stays chosen beside what is Shift-clicked; one object alone is one
+// already.
+TEST_F(Page, joins_the_chosen_object_to_another) {
+    NEEDS_BROWSER();
+    const Scene scene = test::SyntheticScene(0.08).make();
+    write_report(folder_ / "report.html", scene);
+    const auto page = open(folder_ / "report.html", clicking + R"(
+        toppleChoose(3);
+        click((part, object) => object === 1, {shiftKey: true});
+        press('[data-do=one_thing]');
+        out.said = told();
+        const refused = [];
+        for (const object of [1, 2, 3, 4, 5]) {
+            toppleChoose(object);
+            const button = document.querySelector('[data-do=one_thing]');
+            if (button.disabled) continue;
+            button.click();
+            refused.push(document.getElementById('mend-note').textContent);
+        }
+        out.refused = [...new Set(refused)].join('|');
+        out.listed = document.querySelectorAll('#mend-list li').length;
+    )");
+    EXPECT_EQ(page.data("error"), "(none)") << page.log;
+    const Json said = unescaped(page.data("said"));
+    ASSERT_TRUE(said.is_object()) << page.data("said");
+    EXPECT_EQ(parts_at(scene, said["corrections"][0]["at_m"]),
+              (std::vector<std::int32_t>{3, 4, 6}));
+    EXPECT_EQ(page.data("refused"), "These are one thing already: Shift-click the other one, too.");
+    EXPECT_EQ(page.data("listed"), "1");
+}
+
 TEST_F(Page, joins_objects_and_says_what_they_are) {
     NEEDS_BROWSER();
     const Scene scene = test::SyntheticScene(0.08).make();
