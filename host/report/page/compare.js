@@ -4,7 +4,7 @@
 // Another parse of the same room beside this one: which objects became safer.
 
 // The scene in a scene.json or a report.html; throws an Error that says what is wrong.
-function readScene(name, text) {
+async function readScene(name, text) {
   let json = text;
   if (/^\s*</.test(text)) {
     const inlined = text.match(/<script type="application\/json" id="data">([^]*?)<\/script>/);
@@ -20,177 +20,96 @@ function readScene(name, text) {
   if (!scene || !String(scene.schema).startsWith('topple.scene/') || !Array.isArray(scene.objects)) {
     throw new Error(`${name} is no scene of topple: it has no objects, or not the schema topple.scene/1.`);
   }
+  // A report has them packed.
+  if (typeof scene.primitives === 'string') scene.primitives = JSON.parse(new TextDecoder().decode(await inflated(scene.primitives)));
   return scene;
-}
-
-// Where a point of the other scene lies in this scene's view.
-function otherPlace(scene, other, point) {
-  return viewPlace(scene, point.map((value, k) => value + ((other.offset_m || [])[k] || 0) - ((scene.offset_m || [])[k] || 0)));
-}
-
-// The box of an object in this scene's view: its size along the room's axes, about its middle of mass; null where it has none.
-function comparedBox(scene, other, object) {
-  const {size_m: size, center_of_mass_m: middle} = object;
-  if (!Array.isArray(size) || !Array.isArray(middle) || ![...size, ...middle].every(Number.isFinite)) return null;
-  const at = otherPlace(scene, other, middle);
-  // A voxel at least: thin things that moved by less are still the same.
-  return at.map((value, k) => {
-    const half = Math.max(size[k], scene.voxel_size_m, 0.01) / 2;
-    return [value - half, value + half];
-  });
-}
-
-// Share of the two boxes together that both have.
-function overlap(a, b) {
-  if (!a || !b) return 0;
-  const volume = box => box.reduce((product, [low, high]) => product * (high - low), 1);
-  const both = a.reduce((product, [low, high], k) => product * Math.max(0, Math.min(high, b[k][1]) - Math.max(low, b[k][0])), 1);
-  return both / (volume(a) + volume(b) - both);
-}
-
-// Share of the first box that lies in the second.
-function shareWithin(a, b) {
-  if (!a || !b) return 0;
-  return a.reduce((share, [low, high], k) => share * Math.max(0, Math.min(high, b[k][1]) - Math.max(low, b[k][0])) / (high - low), 1);
-}
-
-// By how much two sizes along one axis may differ and yet be the same: a voxel at each end, and what is not known of their feet.
-function sizeError(scene, other, a, b) {
-  return scene.voxel_size_m + other.voxel_size_m + 2 * Math.hypot(a.footprint_error_m || 0, b.footprint_error_m || 0);
-}
-
-// What tells two objects apart that are to be the same, whatever disturbs them: 'size', 'mass', both or none. turned: one may be turned by a quarter.
-function unlike(scene, other, a, b, turned) {
-  const known = [a, b].every(object => Array.isArray(object.size_m) && object.size_m.every(Number.isFinite));
-  const error = sizeError(scene, other, a, b), sides = object => object.size_m.slice(0, 2).sort((p, q) => p - q).concat(object.size_m[2]);
-  const [one, two] = known ? turned ? [sides(a), sides(b)] : [a.size_m, b.size_m] : [[], []], out = [];
-  if (!known || one.some((value, k) => Math.abs(value - two[k]) > Math.max(error, 0.05 * Math.max(value, two[k])))) out.push('size');
-  const heavier = Math.max(a.mass_kg, b.mass_kg);
-  if (!(Math.abs(a.mass_kg - b.mass_kg) <= Math.max(2 * Math.hypot(a.mass_error_kg || 0, b.mass_error_kg || 0), 0.1 * heavier))) out.push('mass');
-  return out;
-}
-
-// Takes pairs from the best on, each object once: [score, a, b].
-function bestPairs(scored, takenA, takenB) {
-  scored.sort((p, q) => q[0] - p[0] || p[1].id - q[1].id || p[2].id - q[2].id);
-  const pairs = [];
-  for (const [, a, b] of scored) {
-    if (takenA.has(a) || takenB.has(b)) continue;
-    takenA.add(a);
-    takenB.add(b);
-    pairs.push([a, b]);
-  }
-  return pairs;
-}
-
-// What became of each object that can move, in one parse or the other: {mine, theirs, as, differs}. as: 'same' where place, size and
-// mass are alike; 'moved' where size and mass are, elsewhere; 'apart' where what overlaps has another extent, so that the
-// scans may have been told apart differently; 'fixed' and 'alone'. isFixed(object, box): of one of the earlier parse.
-function matchObjects(scene, other, earlier, isFixed) {
-  const movable = objects => objects.filter(object => !object.grounded);
-  const mine = movable(scene.objects), theirs = movable(other.objects), takenA = new Set(), takenB = new Set(), rows = [];
-  const boxes = new Map([...mine.map(o => [o, comparedBox(scene, scene, o)]), ...theirs.map(o => [o, comparedBox(scene, other, o)])]);
-  const leftA = () => mine.filter(a => !takenA.has(a)), leftB = () => theirs.filter(b => !takenB.has(b));
-  const scored = score => leftA().flatMap(a => leftB().map(b => [score(a, b), a, b])).filter(([value]) => value > 0);
-  const overlapping = (a, b) => { const share = overlap(boxes.get(a), boxes.get(b)); return share > 0.1 ? share : 0; };
-  const take = (as, score) => rows.push(...bestPairs(scored(score), takenA, takenB).map(([a, b]) =>
-    ({mine: a, theirs: b, as, differs: as === 'apart' ? unlike(scene, other, a, b) : []})));
-  take('same', (a, b) => unlike(scene, other, a, b).length ? 0 : overlapping(a, b));
-  for (const object of earlier === scene ? leftA() : leftB()) {
-    if (!isFixed(object, boxes.get(object))) continue;
-    (earlier === scene ? takenA : takenB).add(object);
-    rows.push({mine: earlier === scene ? object : null, theirs: earlier === scene ? null : object, as: 'fixed', differs: []});
-  }
-  // Not where something else overlaps one of them, which may be it.
-  const free = new Set([...leftA().filter(a => !leftB().some(b => overlapping(a, b))), ...leftB().filter(b => !leftA().some(a => overlapping(a, b)))]);
-  take('moved', (a, b) => free.has(a) && free.has(b) && boxes.get(a) && boxes.get(b) && !unlike(scene, other, a, b, true).length ? 1 / (1e-3 + shift(scene, other, a, b)) : 0);
-  take('apart', overlapping);
-  // Pieces of what was told apart otherwise.
-  const split = rows.filter(row => row.as === 'apart');
-  for (const [left, taken, key, of] of [[leftA(), takenA, 'mine', 'theirs'], [leftB(), takenB, 'theirs', 'mine']]) {
-    for (const object of left) {
-      const row = split.find(each => shareWithin(boxes.get(object), boxes.get(each[of])) > 0.5);
-      if (!row) continue;
-      taken.add(object);
-      rows.push({mine: null, theirs: null, [key]: object, as: 'apart', differs: ['size'], piece: true});
-    }
-  }
-  for (const a of leftA()) rows.push({mine: a, theirs: null, as: 'alone', differs: []});
-  for (const b of leftB()) rows.push({mine: null, theirs: b, as: 'alone', differs: []});
-  return rows;
-}
-
-// How far apart the middles of two objects are.
-function shift(scene, other, a, b) {
-  const at = otherPlace(scene, other, b.center_of_mass_m), from = otherPlace(scene, scene, a.center_of_mass_m);
-  return Math.hypot(...at.map((value, k) => value - from[k]));
-}
-
-// Whether two objects stand on the same: on the building, or on what was matched.
-function heldAlike(scene, other, a, b, match) {
-  const grounded = new Set(other.objects.filter(object => object.grounded).map(object => object.id));
-  const on = object => (object.why || {}).stands_on || [];
-  const one = new Set(on(a).map(id => { const below = scene.objectById.get(id); return !below || below.grounded ? -1 : match.get(below); }));
-  const two = new Set(on(b).map(id => grounded.has(id) ? -1 : id));
-  // An edge of a neighbour may hold it in one scan and not in the other.
-  return [...one].some(id => two.has(id)) || !one.size && !two.size;
 }
 
 // The largest risk and its error; of disturbances that both parses reckoned with.
 function comparedRisk(object, names) {
   const name = names.reduce((worst, next) => (object.risk_J[next] || 0) > (object.risk_J[worst] || 0) ? next : worst, names[0]);
-  return {risk: object.risk_J[name] || 0, error: riskError(object, name) || 0, unknown: object.seen_enough === false};
+  return {risk: object.risk_J[name] || 0, error: riskError(object, name) || 0, category: object.unsafety_category, categoryText: object.seen_enough === false ? 'not known' : categoryText(object), unknown: object.seen_enough === false};
 }
 
-// 'safer', 'less safe', 'alike' within two standard errors, or 'unknown'.
+// 'safer', 'less safe', 'alike' within two standard errors, 'not told apart' where these exceed the risks themselves or span
+// categories, or 'unknown'.
 function verdict(before, after) {
   if (before.unknown || after.unknown) return 'unknown';
-  const change = after.risk - before.risk;
-  if (Math.abs(change) <= Math.max(2 * Math.hypot(before.error, after.error), 0.01 * Math.max(before.risk, after.risk))) return 'alike';
+  const change = after.risk - before.risk, most = Math.max(before.risk, after.risk), doubt = 2 * Math.hypot(before.error, after.error);
+  if (Math.abs(change) <= Math.max(doubt, 0.01 * most)) {
+    if (before.category !== after.category) return 'not told apart';
+    return Math.abs(change) > 0.01 * most && doubt > most && before.category !== 'none' ? 'not told apart' : 'alike';
+  }
   return change < 0 ? 'safer' : 'less safe';
 }
 
-// Whether a later parse was told that what stood in an object's place is fixed to the building.
-function fixedBy(corrections, scene, other, box) {
+// Whether a spot of a correction lies within a box of the view, or near it; spots lie in the frame of the parse that was told.
+function spotWithin(scene, told, one, box) {
   const margin = 2 * scene.voxel_size_m;
-  return !!box && (corrections || []).some(one => one.do === 'fixed' && one.held !== false && (one.at_m || []).some(spot => {
-    const at = otherPlace(scene, other, spot);
-    return at.every((value, k) => value >= box[k][0] - margin && value <= box[k][1] + margin);
-  }));
+  return !!box && one.held !== false && (one.at_m || []).some(spot => otherPlace(scene, told, spot).every((value, k) => value >= box[k][0] - margin && value <= box[k][1] + margin));
 }
 
-// Rows for the table: {mine, theirs, before, after, verdict, note}, what changed most first.
+// What holds what is fixed now.
+function strapText(object) {
+  const hold = (object.advice || {}).hold_N;
+  return `which holds only while its strap does${hold > 0 ? ` (${forceText(hold)} at least)` : ''}`;
+}
+
+// Rows for the table: {mine, theirs, before, after, verdict, text}, what changed most first; names: the disturbances; sameScan.
 function compareScenes(scene, other, otherIsBefore) {
   const reckoned = objects => new Set(objects.flatMap(object => Object.keys(object.risk_J || {})));
   const theirs = reckoned(other.objects), names = scene.disturbances.filter(name => theirs.has(name));
-  const later = otherIsBefore ? scene : other, earlier = otherIsBefore ? other : scene;
-  const matched = matchObjects(scene, other, earlier, (object, box) => fixedBy(later.corrections, scene, later, box));
-  const match = new Map(matched.filter(row => row.mine && row.theirs).map(row => [row.mine, row.theirs.id]));
-  const rows = matched.map(row => {
-    const [first, last] = otherIsBefore ? [row.theirs, row.mine] : [row.mine, row.theirs];
-    const before = first && comparedRisk(first, names), after = last && comparedRisk(last, names);
-    return {...row, before, after, ...outcome(scene, other, row, before, after, first, match)};
-  });
+  const later = otherIsBefore ? scene : other, earlier = otherIsBefore ? other : scene, common = commonParts(scene, other);
+  const risks = (first, last) => ({before: first && comparedRisk(first, names), after: last && comparedRisk(last, names)});
+  let rows;
+  if (common) {
+    const partsOf = new Map([...pointsByObject(scene), ...pointsByObject(other, part => common.has(part.id) ? common.get(part.id) : `their ${part.id}`)]);
+    const isSpotOf = (one, object) => spotWithin(scene, later, one, comparedBox(scene, earlier, object));
+    rows = rowsByParts(earlier, later, partsOf, (side, object) => sideName(scene, side, object), isSpotOf).map(({first, last, ...row}) => {
+      const risk = risks(first, last);
+      return {...row, ...risk, mine: otherIsBefore ? last : first, theirs: otherIsBefore ? first : last, verdict: row.verdict || verdict(risk.before, risk.after)};
+    });
+  } else {
+    const matched = matchObjects(scene, other, earlier, box => (later.corrections || []).some(one => one.do === 'fixed' && spotWithin(scene, later, one, box)));
+    const match = new Map(matched.filter(row => row.mine && row.theirs).map(row => [row.mine, row.theirs.id]));
+    rows = matched.map(row => {
+      const [first, last] = otherIsBefore ? [row.theirs, row.mine] : [row.mine, row.theirs], risk = risks(first, last);
+      return {...row, ...risk, ...outcome(scene, other, row, risk, first, match)};
+    });
+  }
   const change = row => Math.abs((row.after ? row.after.risk : 0) - (row.before ? row.before.risk : 0));
-  const order = ['less safe', 'new', 'moved', 'safer', 'fixed now', 'gone', 'told apart differently', 'unknown', 'alike'];
-  rows.sort((p, q) => order.indexOf(p.verdict) - order.indexOf(q.verdict) || change(q) - change(p));
-  return {rows, names};
+  rows.sort((p, q) => verdicts.indexOf(p.verdict) - verdicts.indexOf(q.verdict) || change(q) - change(p));
+  return {rows, names, sameScan: !!common};
 }
 
-// Of a row: what became of it, in a word, and a note on it.
-function outcome(scene, other, row, before, after, first, match) {
-  if (row.as === 'fixed') {
-    const hold = (first.advice || {}).hold_N;
-    return {verdict: 'fixed now', note: `which holds only while its strap does${hold > 0 ? ` (${forceText(hold)} at least)` : ''}`};
-  }
-  if (row.as === 'alone') return {verdict: before ? 'gone' : 'new', note: ''};
-  if (row.as === 'apart') return {verdict: 'told apart differently', note: row.piece ? 'a piece of something else there' : `other ${listed(row.differs) || 'extent'}`};
-  const {mine: a, theirs: b} = row, moved = shift(scene, other, a, b), far = sizeError(scene, other, a, b);
-  const held = heldAlike(scene, other, a, b, match), became = verdict(before, after);
-  if (row.as === 'moved' || moved > far && !held) return {verdict: 'moved', note: `by ${metres(moved)}`};
-  if (!held) return {verdict: 'told apart differently', note: 'what holds it'};
-  if (moved <= far) return {verdict: became, note: ''};
-  return became === 'safer' || became === 'less safe' ? {verdict: became, note: `moved by ${metres(moved)}`} : {verdict: 'moved', note: `by ${metres(moved)}`};
+// In the order of the table.
+const verdicts = ['less safe', 'new', 'moved', 'perhaps moved', 'safer', 'fixed now', 'gone', 'joined', 'now part', 'parted', 'not there', 'told apart differently',
+  'unknown', 'not told apart', 'alike'];
+
+function sideName(scene, side, object) {
+  return side === scene ? objectName(scene, object.id) : `their ${object.name || `object ${object.id}`}`;
+}
+
+// Of a row of two scans: what became of it, in a word, and a text on it.
+function outcome(scene, other, row, risk, first, match) {
+  const {mine: a, theirs: b, far} = row;
+  if (row.as === 'fixed') return {verdict: 'fixed now', text: strapText(first)};
+  if (row.as === 'alone') return {verdict: risk.before ? 'gone' : 'new', text: ''};
+  if (row.as === 'perhaps') return {verdict: 'perhaps moved', text: `looks like ${sideName(scene, other, b)}, ${metres(far)} away`};
+  if (row.as === 'apart') return {verdict: 'told apart differently', text: row.piece ? 'a piece of something else there' : `other ${listed(row.differs) || 'extent'}`};
+  const held = heldAlike(scene, other, a, b, match), became = verdict(risk.before, risk.after);
+  if (row.as === 'moved' || far && !held) return {verdict: 'moved', text: `by ${metres(far)}`};
+  if (!held) return {verdict: 'told apart differently', text: 'what holds it'};
+  if (!far) return {verdict: became, text: ''};
+  return became === 'safer' || became === 'less safe' ? {verdict: became, text: `moved by ${metres(far)}`} : {verdict: 'moved', text: `by ${metres(far)}`};
+}
+
+// What became of a row, as the table has it.
+function becameText({verdict: became, text}) {
+  if (['joined', 'now part', 'parted', 'not there'].includes(became)) return [became, text].filter(part => part).join(' ');
+  if (became === 'fixed now' && text) return `${became}, ${text}`;
+  const words = {alike: 'as before', unknown: 'not known', 'not told apart': 'not told apart (\u00b1 too large)'}[became] || became;
+  return words + (text ? `: ${text}` : '');
 }
 
 class ComparePanel {
@@ -210,9 +129,9 @@ class ComparePanel {
     this.order.addEventListener('change', () => this.show());
   }
 
-  read(name, text) {
+  async read(name, text) {
     try {
-      this.other = readScene(name, text);
+      this.other = await readScene(name, text);
       this.name = name;
       this.show();
     } catch (error) {
@@ -224,32 +143,35 @@ class ComparePanel {
 
   show() {
     if (!this.other) return;
-    const {rows, names} = compareScenes(this.scene, this.other, this.order.value === 'before');
+    const {rows, names, sameScan} = compareScenes(this.scene, this.other, this.order.value === 'before');
     const count = what => rows.filter(row => row.verdict === what).length;
     const line = rows.some(row => row.mine && row.theirs) ? '' :
       'No object of one is where one of the other is: are both of the same room, in the same frame? ';
-    const counts = `${count('safer')} safer, ${count('less safe')} less safe, ${count('alike')} as before within the errors, ` +
-      `${count('moved')} moved, ${count('new')} new, ${count('gone')} gone` + ['fixed now', 'told apart differently'].filter(count).map(what => `, ${count(what)} ${what}`).join('') +
-      (count('unknown') ? `, ${count('unknown')} not known` : '') + '.';
+    const always = sameScan ? ['safer', 'less safe', 'alike'] : ['safer', 'less safe', 'alike', 'moved', 'new', 'gone'];
+    const counts = [...always, ...verdicts.filter(what => !always.includes(what) && count(what))].map(what =>
+      `${count(what)} ${{alike: 'as before within the errors', unknown: 'not known', 'now part': 'now part of others'}[what] || what}`).join(', ') + '.';
     const risk = side => !side ? '\u2013' : side.unknown ? 'not known' : number(side.risk) + within(side.error);
+    const category = side => !side ? '\u2013' : side.categoryText;
     const body = rows.map(row => {
       const id = row.mine ? row.mine.id : null;
-      const name = row.mine ? objectName(this.scene, id) : `their ${row.theirs.name || 'object ' + row.theirs.id}`;
-      const words = {alike: 'as before', unknown: 'not known'}[row.verdict] || row.verdict;
+      const name = row.mine ? objectName(this.scene, id) : sideName(this.scene, this.other, row.theirs);
       return element('tr', {className: row.verdict.replace(/ /g, '-')}, [
         element('th', {scope: 'row'}, [id === null ? name : element('button', {type: 'button', text: name, onclick: () => this.choose(id)})]),
         element('td', {className: 'text', text: row.theirs ? row.theirs.name || 'object ' + row.theirs.id : '\u2013'}),
-        element('td', {text: risk(row.before)}), element('td', {text: risk(row.after)}), element('td', {className: 'text', text: words + (row.note ? `: ${row.note}` : '')})]);
+        ...[row.before, row.after].map(side => element('td', {className: 'text', text: category(side)})),
+        ...[row.before, row.after].map(side => element('td', {text: risk(side)})), element('td', {className: 'text', text: becameText(row)})]);
     });
-    const head = ['Object here', `In ${this.name}`, 'Risk before (J)', 'Risk after (J)', 'Became'].map((text, i) =>
-      element('th', {scope: 'col', text, className: i === 2 || i === 3 ? '' : 'text'}));
-    this.out.replaceChildren(element('p', {className: 'warning', text: 'The two scans may have been told apart differently; \u00b1 does not cover that: look at both pictures before believing a change.'}),
-      element('p', {className: 'counts', text: line + counts}),
+    const head = ['Object here', `In ${this.name}`, 'Category before', 'after', 'Risk before (J)', 'Risk after (J)', 'Became'].map((text, i) =>
+      element('th', {scope: 'col', text, className: i === 4 || i === 5 ? '' : 'text'}));
+    const banner = sameScan ? element('p', {className: 'hint', text: 'The same scan: what changed follows from the corrections.'}) :
+      element('p', {className: 'warning', text: 'The two scans may have been told apart differently; \u00b1 does not cover that: look at both pictures before believing a change.'});
+    const how = sameScan ? 'Objects are the same that have the most points in common. ' : 'Objects are the same where their boxes overlap by a tenth or more, and size, mass and what holds them are alike within the errors: only of these ' +
+      'is said whether they became safer. Moved: of equal size and mass, elsewhere, both ends of their boxes by more than the voxels. Perhaps moved: of a like shape, elsewhere. Gone and new may also be one thing that was moved and then told apart otherwise, or what one of the parses took for part of the building. ';
+    this.out.replaceChildren(banner, element('p', {className: 'counts', text: line + counts}),
       element('div', {className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': 'Objects of both parses'}, [
         element('table', {}, [element('thead', {}, [element('tr', {}, head)]), element('tbody', {}, body)])]),
-      element('p', {className: 'hint', text: `Objects are the same where their boxes overlap by a tenth or more, and size, mass and what holds them are alike within the errors: only of these ` +
-        `is said whether they became safer. Moved: of equal size and mass, elsewhere. Gone and new may also be one thing that was moved and then told apart otherwise, or what one of the parses took for part of the building. Risk is the largest of ` +
-        `${listed(names.map(causeOf)) || 'none that both parses have'}, in joules per event; a change within two standard errors is none. Objects have the colours of ${this.name} now, whose numbers are beside theirs.`}));
+      element('p', {className: 'hint', text: `${how}Risk is the largest of ${listed(names.map(causeOf)) || 'none that both parses have'}, in joules per event; a change within two standard errors is none, and is not told apart where these ` +
+        `exceed the risks or the category is another. Objects have the colours of ${this.name} now, whose numbers are beside theirs.`}));
     this.say(line + counts);
     this.takeColours(rows);
   }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 
 #include "files.h"
 #include "io/file_writer.h"
@@ -319,6 +320,28 @@ TEST_F(Write, files_longer_than_the_buffer) {
     writer.write(std::string_view(text).substr(1000001));
     writer.close();
     EXPECT_EQ(bytes_of_file(path("long")), text);
+}
+
+TEST_F(Write, says_where_the_boxes_of_objects_lie) {
+    Scene scene;
+    const double c = std::cos(0.5), s = std::sin(0.5);
+    scene.manhattan_from_input = {c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    scene.objects.resize(2);
+    // An L along the room's axes: 1 by 0.4 by 0.2 m from (2, 3, 0) on.
+    for (const auto& [x, y, z, object] : {std::tuple{2.0, 3.0, 0.0, 0},
+                                          {3.0, 3.0, 0.2, 0},
+                                          {2.0, 3.4, 0.0, 0},
+                                          {9.0, 9.0, 9.0, -1}}) {
+        scene.solid.x.push_back(static_cast<float>(c * x - s * y));
+        scene.solid.y.push_back(static_cast<float>(s * x + c * y));
+        scene.solid.z.push_back(static_cast<float>(z));
+        scene.solid.object.push_back(object);
+    }
+    const auto json = nlohmann::json::parse(scene_json(scene));
+    const auto& middle = json["objects"][0]["box_middle_m"];
+    const Vec3 wanted{c * 2.5 - s * 3.2, s * 2.5 + c * 3.2, 0.1};
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(middle[a].get<double>(), wanted[a], 1e-6) << a;
+    EXPECT_TRUE(json["objects"][1]["box_middle_m"].is_null()) << "an object without voxels";
 }
 
 }  // namespace

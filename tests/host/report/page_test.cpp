@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "in_browser.h"
-#include "io/scene_json.h"
 #include "report/report.h"
 #include "synthetic_scene.h"
 
@@ -317,71 +316,6 @@ TEST_F(Page, turns_by_keys_and_can_be_reached_by_them) {
     EXPECT_EQ(test::text(page.data("spoken")),
               "Object 3 chosen: 6.2\u00a0kg, category high?. Upset by 1 walk in 40 or 1 earthquake "
               "in 40.");
-}
-
-TEST_F(Page, tells_what_became_safer) {
-    NEEDS_BROWSER();
-    Scene scene = test::SyntheticScene(0.2).make();
-    for (Object& object : scene.objects) object.size_m = {0.4, 0.3, 0.5};
-    for (std::size_t id = 1; id < 6; ++id)
-        scene.objects[id].center_of_mass_m = {double(id), 1, 0.5};
-    write_report(folder_ / "report.html", scene);
-    // Before: the monitor was less safe, the shelf safer, the ball elsewhere, the cup larger, and
-    // numbers others.
-    Scene before = scene;
-    before.objects[3].risk_J["human"] *= 9;
-    before.objects[4].risk_J["earthquake"] /= 9;
-    before.objects[5].center_of_mass_m[1] = 4;
-    before.objects[2].size_m[0] = 1.2;
-    before.objects[2].risk_J["human"] *= 9;
-    std::swap(before.objects[1], before.objects[4]);
-    for (std::size_t id = 0; id < 6; ++id) before.objects[id].id = std::int32_t(id);
-    io::write_scene_json(folder_ / "before.json", before);
-    write_report(folder_ / "before.html", before);
-    // As the text of a script.
-    const auto literal = [&](const char* file) {
-        std::string text = Json(read(folder_ / file)).dump();
-        for (auto at = text.find("</"); at != std::string::npos; at = text.find("</"))
-            text.replace(at, 2, "<\\/");
-        return text;
-    };
-    const auto page = open(folder_ / "report.html", "const json = " + literal("before.json") +
-                                                        ", html = " + literal("before.html") + R"(;
-        const out = document.body.dataset, text = selector => document.querySelector(`#compare-result ${selector}`).textContent;
-        const rows = () => [...document.querySelectorAll('#compare-result tbody tr')]
-            .map(row => `${row.cells[0].textContent}: ${row.cells[4].textContent}`).join(', ');
-        toppleCompare.read('before.json', json);
-        out.rows = rows();
-        out.line = text('.counts');
-        toppleCompare.read('before.html', html);
-        out.same = rows() === out.rows;
-        // Object 4 was object 1 there, whose colour it has now; no two have the same.
-        out.taken = String(objectColour(toppleScene, 4)) === String(toppleScene.colours[1]);
-        const colours = toppleScene.objects.filter(object => !object.grounded).map(object => String(objectColour(toppleScene, object.id)));
-        out.distinct = new Set(colours).size === colours.length;
-        document.getElementById('compare-order').value = 'after';
-        toppleCompare.show();
-        out.turned = text('tbody tr th');
-        const told = JSON.parse(json);
-        told.corrections = [{do: 'fixed', held: true, at_m: [[5, 1, 0.5]]}];
-        toppleCompare.read('told.json', JSON.stringify(told));
-        out.fixed = rows().includes('object 5: fixed now');
-        toppleCompare.read('x.html', '<html></html>');
-        out.wrong = text('.warning');
-    )");
-    EXPECT_EQ(page.data("error"), "(none)") << page.log.substr(0, 2000);
-    EXPECT_EQ(page.data("rows"),
-              "object 4: less safe, object 5: moved: by 3.0 m, object 3: safer, "
-              "object 2: told apart differently: other size, object 1: as before");
-    EXPECT_EQ(page.data("line"),
-              "1 safer, 1 less safe, 1 as before within the errors, 1 moved, 0 new, 0 gone, "
-              "1 told apart differently.");
-    EXPECT_EQ(page.data("same"), "true");
-    EXPECT_EQ(page.data("taken"), "true") << "the same thing has the same colour in both";
-    EXPECT_EQ(page.data("distinct"), "true");
-    EXPECT_EQ(page.data("turned"), "object 3") << "which is less safe now";
-    EXPECT_EQ(page.data("fixed"), "true");
-    EXPECT_EQ(page.data("wrong"), "x.html is a web page, but no report of topple.");
 }
 
 TEST_F(Page, has_pictures_on_paper_and_without_webgl) {

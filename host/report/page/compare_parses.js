@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+'use strict';
+
+// Two parses of one scan, of which one was told more: what became of each object, by the parts that it has.
+
+// The parts that both have, where one scan was parsed twice: of the other parse's numbers those of this; null for another scan.
+// Segmentation comes before corrections, which group parts and leave out what is not there: the same file has the same
+// parts in the same order, of as many points each.
+function commonParts(scene, other) {
+  const file = path => String(path).replace(/^.*[\\/]/, ''), one = scene.primitives, two = other.primitives;
+  if (file(scene.source) !== file(other.source) || scene.voxel_size_m !== other.voxel_size_m || !Array.isArray(two)) return null;
+  // The longest sequence that both have.
+  const width = two.length + 1, best = new Uint32Array((one.length + 1) * width);
+  for (let i = one.length - 1; i >= 0; --i) {
+    for (let j = two.length - 1; j >= 0; --j) {
+      best[i * width + j] = one[i].points === two[j].points ? 1 + best[(i + 1) * width + j + 1] : Math.max(best[(i + 1) * width + j], best[i * width + j + 1]);
+    }
+  }
+  const common = new Map(), leavesOut = side => (side.corrections || []).some(each => each.do === 'not_there' && each.held !== false);
+  for (let i = 0, j = 0; i < one.length && j < two.length;) {
+    if (one[i].points === two[j].points) common.set(two[j++].id, one[i++].id);
+    else if (best[(i + 1) * width + j] >= best[i * width + j + 1]) ++i;
+    else ++j;
+  }
+  const complete = (side, left) => common.size === side.length || leavesOut(left);
+  return complete(one, other) && complete(two, scene) && 2 * common.size > Math.max(one.length, two.length) ? common : null;
+}
+
+// The parts of each object by this parse's numbers, with their points: Map of object to Map of part to points; one without any counts as one.
+function pointsByObject(parsed, number = part => part.id) {
+  const parts = new Map(parsed.primitives.map(part => [part.id, [number(part), Math.max(1, part.points)]]));
+  return new Map(parsed.objects.map(object => [object, new Map(object.primitives.map(id => parts.get(id)).filter(part => part))]));
+}
+
+// " (correction 2)": those of some kinds that an object of the later parse follows; '' for none.
+function followed(later, object, kinds) {
+  const numbers = (object.corrected || []).filter(n => kinds.includes(((later.corrections || [])[n - 1] || {}).do));
+  return numbers.length ? ` (correction${numbers.length > 1 ? 's' : ''} ${listed(numbers.map(String))})` : '';
+}
+
+// Rows {first, last, verdict, text}: of the earlier parse and of the later one. verdict '' where its risks tell. partsOf: of all objects of
+// both (pointsByObject); name(parse, object): what it is called; isSpotOf(correction, object): whether it is about an object
+// of the earlier one.
+function rowsByParts(earlier, later, partsOf, name, isSpotOf) {
+  const shared = (a, b) => [...partsOf.get(a)].reduce((sum, [part, points]) => sum + (partsOf.get(b).has(part) ? points : 0), 0);
+  const movable = side => side.objects.filter(object => !object.grounded), takenFirst = new Set(), takenLast = new Set();
+  const pairs = bestPairs(movable(earlier).flatMap(a => movable(later).map(b => [shared(a, b), a, b])).filter(([points]) => points > 0), takenFirst, takenLast);
+  const most = (objects, object) => objects.map(each => [shared(object, each), each]).filter(([points]) => points > 0)
+    .sort(([p], [q]) => q - p).map(([, each]) => each)[0];
+  const inside = (a, b) => [...partsOf.get(a).keys()].every(part => partsOf.get(b).has(part));
+  const share = (side, from, to) => from.grounded ? 'part of the building' : inside(from, to) ? name(side, from) : `part of ${name(side, from)}`;
+  const rows = pairs.map(([first, last]) => {
+    const gained = earlier.objects.filter(each => each !== first && shared(each, last));
+    const lost = later.objects.filter(each => each !== last && shared(each, first));
+    const away = [...partsOf.get(first).keys()].some(part => !later.objects.some(each => partsOf.get(each).has(part)));
+    const notes = [...gained.length ? [`with ${listed(gained.map(each => share(earlier, each, last)))}${followed(later, last, ['one_thing'])}`] : [],
+      ...lost.length ? [`without what is now ${listed(lost.map(each => each.grounded ? 'part of the building' : name(later, each)))}${followed(later, last, ['apart'])}`] : [],
+      ...away ? ['without what is not there'] : []];
+    return {first, last, verdict: '', text: notes.join(', ')};
+  });
+  const gone = movable(earlier).filter(object => !takenFirst.has(object));
+  const told = (object, kind) => (later.corrections || []).filter(one => one.do === kind && isSpotOf(one, object));
+  const linked = (a, b) => a !== b && told(a, 'one_thing').some(one => told(b, 'one_thing').includes(one));
+  // Of things that are one and fixed the largest, since a spot where both are may be of either.
+  const points = object => shared(object, object), strapped = [];
+  for (const object of gone.filter(each => told(each, 'fixed').length).sort((a, b) => points(b) - points(a)))
+    if (!strapped.some(each => linked(each, object))) strapped.push(object);
+  for (const first of gone) {
+    const into = most(later.objects, first);
+    if (!into) {
+      const by = told(first, 'not_there')[0];
+      rows.push({first, last: null, verdict: 'not there', text: by ? `(correction ${later.corrections.indexOf(by) + 1})` : ''});
+    } else if (!into.grounded) {
+      const by = followed(later, into, ['one_thing']);
+      rows.push({first, last: null, verdict: by ? 'joined' : 'now part', text: by ? `to ${name(later, into)}${by}` : `of ${name(later, into)}`});
+    } else if (strapped.includes(first)) {
+      rows.push({first, last: null, verdict: 'fixed now', text: strapText(first)});
+    } else {
+      const withIt = strapped.filter(each => linked(each, first));
+      rows.push(withIt.length ? {first, last: null, verdict: 'fixed now', text: `with ${listed(withIt.map(each => name(earlier, each)))}`} :
+        {first, last: null, verdict: 'now part', text: 'of the building'});
+    }
+  }
+  for (const last of movable(later).filter(object => !takenLast.has(object))) {
+    const from = most(earlier.objects, last);
+    rows.push({first: null, last, verdict: 'parted', text: from ? `from ${from.grounded ? 'the building' : name(earlier, from)}${followed(later, last, ['apart'])}` : ''});
+  }
+  return rows;
+}
