@@ -13,7 +13,11 @@ struct Acceleration {
 // Throws Error(usage).
 Acceleration parse_acceleration(const char* option, const std::string& text);
 
-// What to say of one so weak that it was meant in g, perhaps; "" of others.
-std::string weak_shaking_note(const Acceleration& pga);
+// Whether `word` may follow the number.
+bool is_acceleration_unit(const std::string& word);
+
+// What to say of one so weak that it was meant in g, perhaps, or so strong that it was meant in
+// hundredths of g; "" of others.
+std::string unlikely_shaking_note(const Acceleration& pga);
 
 }  // namespace topple::cli

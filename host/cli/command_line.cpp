@@ -74,7 +74,9 @@ int run(std::span<const CommandEntry> entries, int argc, char** argv) {
         std::string unknown = subcommands.empty() ? unknown_command(app, words) : "";
         if (unknown.empty())
             unknown = unknown_option(subcommands.empty() ? app : *subcommands.front(), words);
-        throw wrong_usage(unknown.empty() ? error.what() : unknown);
+        if (!unknown.empty()) throw wrong_usage(unknown);
+        const std::string mend = value_with_space(words);
+        throw wrong_usage(error.what() + (mend.empty() ? mend : "; " + mend));
     }
     const CLI::App& chosen = *app.get_subcommands().front();
     check_values(chosen);

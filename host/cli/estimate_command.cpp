@@ -56,6 +56,7 @@ void print_json(const Estimate& e) {
         {"surface_m2", e.surface_m2},
         {"tiled", e.tiled},
         {"cell_m", e.cell_m},
+        {"spacing_m", e.spacing_m},
         {"voxel_m", e.voxel_m},
         {"views", e.views},
         {"patches_m", e.patches_m},
@@ -91,8 +92,9 @@ int run(EstimateArguments& a) {
         if (e.tiled)
             std::printf("parsed   in blocks, thinned to one point per %.3g mm\n", 1000 * e.cell_m);
         else
-            std::printf("parsed   in one piece, voxels of %s m, points about %.2g mm apart\n",
-                        io::short_number(e.voxel_m).c_str(), 1000 * e.cell_m);
+            std::printf("parsed   in one piece, voxels of %s m, points about %s mm apart\n",
+                        io::short_number(e.voxel_m).c_str(),
+                        io::two_digits(1000 * e.spacing_m).c_str());
         std::printf("time     about %s\n", time_text(e.seconds).c_str());
         std::printf("memory   about %s\n", io::bytes_text(e.memory_bytes).c_str());
         if (a.options.max_memory_bytes > 0)
@@ -100,7 +102,8 @@ int run(EstimateArguments& a) {
                         limit_text(e, io::can_stream(a.input), a.options.max_memory_bytes).c_str());
         if (e.work_bytes > 0)
             std::printf("disk     about %s while it works\n", io::bytes_text(e.work_bytes).c_str());
-        std::printf("results  about %s\n", io::bytes_text(e.output_bytes).c_str());
+        std::printf("results  about %s%s\n", io::bytes_text(e.output_bytes).c_str(),
+                    e.tiled ? "" : ", with parse.cache");
     });
 }
 

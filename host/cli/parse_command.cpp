@@ -184,9 +184,9 @@ void keep_cache(const io::OutputFolder& room, ParseArguments& a) {
     if (error) std::filesystem::copy_file(earlier, a.options.cache_file, error);
 }
 
-// One of m/s^2 that was meant in g would make a room look safe.
-void note_weak_shaking(const ParseArguments& a, Scene& scene) {
-    const std::string note = a.pga ? weak_shaking_note(*a.pga) : "";
+// One of m/s^2 that was meant in g would make a room look safe, and one of hundredths of g unsafe.
+void note_unlikely_shaking(const ParseArguments& a, Scene& scene) {
+    const std::string note = a.pga ? unlikely_shaking_note(*a.pga) : "";
     if (!note.empty() && scene.events.contains("pga_m_s2"))
         scene.notes.insert(scene.notes.begin(), note);
 }
@@ -231,7 +231,7 @@ int run(ParseArguments& a) {
             if (!a.quiet) std::fprintf(stderr, "%s\n", line.c_str());
         };
         ParseResult result = parse(a.input, a.options);
-        note_weak_shaking(a, result.scene);
+        note_unlikely_shaking(a, result.scene);
         const std::optional<Worst> before = worst_before(a, out);
         progress("output", 0);
         const auto start = std::chrono::steady_clock::now();

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "cli/action.h"
 #include "cli/urgency.h"
 #include "core/listed.h"
 #include "io/text.h"
@@ -138,11 +140,15 @@ std::string name_text(const Object& o) {
 }
 
 // "The 3 riskiest of the 5 objects whose barrier is ...", or of fewer without an order among one.
-std::string riskiest_text(std::size_t shown, std::size_t of) {
+// Where nothing upsets some of them they are to be looked at for what their errors leave open.
+std::string first_text(std::span<const Object* const> shown, std::size_t of) {
     if (of == 1) return "The one object";
-    if (shown == of) return "The " + std::to_string(of) + " objects";
-    return "The " + (shown == 1 ? "" : std::to_string(shown) + " ") + "riskiest of the " +
-           std::to_string(of) + " objects";
+    if (shown.size() == of) return "The " + std::to_string(of) + " objects";
+    const std::string count = shown.size() == 1 ? "" : std::to_string(shown.size()) + " ";
+    const std::string others = "of the " + std::to_string(of) + " objects";
+    if (std::ranges::any_of(shown, [](const Object* o) { return upset_by_nothing(*o); }))
+        return "The first " + count + "to look at " + others;
+    return "The " + count + "riskiest " + others;
 }
 
 // Why the riskiest are what they are: of those whose barrier is above its error, where there are
@@ -163,8 +169,8 @@ void print_sentences(const std::vector<const Object*>& riskiest_first, const Sce
     }
     const auto risky = static_cast<std::size_t>(std::ranges::count_if(told, at_risk));
     const std::size_t shown = std::min(sentences_shown, risky > 0 ? risky : told.size());
-    std::printf("\n%s whose barrier is %s its error", riskiest_text(shown, told.size()).c_str(),
-                doubts ? "within" : "above");
+    std::printf("\n%s whose barrier is %s its error",
+                first_text({told.data(), shown}, told.size()).c_str(), doubts ? "within" : "above");
     if (const std::size_t more = doubtful.size(); !doubts && more > 0)
         std::printf(
             "; that of %zu more is within its error of 0: %s on edge, or the scan hardly shows "
@@ -176,10 +182,10 @@ void print_sentences(const std::vector<const Object*>& riskiest_first, const Sce
     std::printf(":\n");
     for (std::size_t i = 0; i < shown; ++i) {
         const Object& o = *told[i];
+        const std::string action = action_text(scene, o);
         std::printf("Object %d%s%s: %s%s%s%s%s\n", o.id, name_text(o).c_str(), size_text(o).c_str(),
                     o.why.sentence.c_str(), people_text(o.fall).c_str(),
-                    years_text(o, scene).c_str(), o.advice.sentence.empty() ? "" : " ",
-                    o.advice.sentence.c_str());
+                    years_text(o, scene).c_str(), action.empty() ? "" : " ", action.c_str());
     }
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/acceleration_option.h"
 #include "io/text.h"
 
 namespace topple::cli {
@@ -70,6 +71,23 @@ std::string unknown_option(const CLI::App& app, std::span<const char* const> wor
         text.append(name);
         text.append(did_you_mean(name, known));
         return text;
+    }
+    return {};
+}
+
+std::string value_with_space(std::span<const char* const> words) {
+    const auto goes_on = [&](std::size_t n) {
+        const std::string_view before = words[n - 1], word = words[n];
+        return !word.starts_with("-") && (before.ends_with(",") || word.starts_with(","));
+    };
+    for (std::size_t n = 2; n < words.size(); ++n) {
+        std::string value = words[n - 1];
+        double number = 0;
+        if (io::parse_number(value, number) && is_acceleration_unit(words[n]))
+            return "write it without the space: " + io::printable(value.append(words[n]));
+        if (!goes_on(n)) continue;
+        for (; n < words.size() && goes_on(n); ++n) value.append(words[n]);
+        return "write the list without spaces: " + io::printable(value);
     }
     return {};
 }

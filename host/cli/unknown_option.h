@@ -17,4 +17,9 @@ std::string unknown_option(const CLI::App& app, std::span<const char* const> wor
 // subcommands: 'unknown subcommand "prase"; did you mean parse?'. Empty where it is an option.
 std::string unknown_command(const CLI::App& app, std::span<const char* const> words);
 
+// What to say where a value was written with a space in it, so that its end was taken for an
+// argument: a list after a comma, or a number before its unit. 'write the list without spaces:
+// human,earthquake'; empty where there is none.
+std::string value_with_space(std::span<const char* const> words);
+
 }  // namespace topple::cli

@@ -50,7 +50,10 @@ constexpr double fused_share = 0.66;
 // Cells of a block of a furnished building.
 constexpr std::uint64_t block_cells = 450'000;
 constexpr double work_point_bytes = 16, work_thinned_bytes = 40;
-constexpr double output_point_bytes = 35, tiled_output_point_bytes = 23, output_fixed = 15e6;
+// Bytes of all files of an output, its parse.cache among them: of a point of points.ply, of a voxel
+// of the grid as for time, and of every run. In blocks there is no cache.
+constexpr double output_point_bytes = 35, output_voxel_bytes = 63, tiled_output_point_bytes = 23,
+                 output_fixed = 15e6;
 // Of a surface whose noise is about a seventh of the cell, cells a patch of a cell's size.
 constexpr double layers = 2.3;
 
@@ -87,7 +90,7 @@ struct Looked {
     PointCloud cloud;
     geometry::FrameHints hints;
     double voxel_m = 0;         // that the input brings
-    double spacing_m = 0;       // of the points, or of what the map has for them
+    double spacing_m = 0;       // from point to nearest point, or of what the map has for them
     bool views = false;         // a parse looks at it from virtual views
     double seen_m3 = INFINITY;  // of a single view: the space before what it shows
     double fused_bytes = 0;     // of frames: while they are fused
@@ -147,9 +150,13 @@ Looked look_at_cloud(const std::filesystem::path& input, const ParseOptions& opt
 // Refuses what a parse would refuse: figures of a room that is a thousand times too large are of no
 // use. Of more points than are held those are the first, in whatever order they come: the spacing
 // of all is at least what it were if these were strewn over the whole.
-void check_scale(const std::filesystem::path& input, const Estimate& out, Looked& looked) {
-    looked.spacing_m =
-        looked.voxel_m > 0 ? looked.voxel_m : geometry::point_spacing(looked.cloud).nearest_m;
+void check_scale(const std::filesystem::path& input, Estimate& out, Looked& looked) {
+    looked.spacing_m = out.spacing_m = looked.voxel_m;
+    if (!(looked.voxel_m > 0)) {
+        const geometry::PointSpacing spacing = geometry::point_spacing(looked.cloud);
+        looked.spacing_m = spacing.nearest_m;
+        out.spacing_m = spacing.around_m;
+    }
     const auto held = static_cast<double>(looked.cloud.size());
     const double share = std::min(1.0, held / static_cast<double>(out.points));
     CloudView view = looked.cloud;
@@ -269,6 +276,7 @@ Looked look_at_frames(const std::filesystem::path& input, const ParseOptions& op
     out.frames = frames.size();
     out.pixels = out.frames * k.width * k.height;
     out.cell_m = cell_for_frames(k, frames.size(), [&](std::size_t f) { return frames.load(f); });
+    out.spacing_m = out.cell_m;
     looked.hints.camera_up = frames.mean_camera_up();
     const geometry::BackProjection projection(k, out.cell_m);
     constexpr std::size_t most_frames = 100;
@@ -351,8 +359,10 @@ void reckon_one_piece(device::Device& device, const ParseOptions& options, Looke
     out.rough_surfels = look.roughness * std::min(points, out.surface_m2 / (surfel_m * surfel_m));
     out.ground_m2 = look.ground_m2;
     out.box_voxels = std::min(look.box_m3, looked.seen_m3) / (h * h * h);
+    const double grid_voxels = std::sqrt(surface * out.box_voxels);
+    out.output_bytes += static_cast<std::uint64_t>(output_voxel_bytes * grid_voxels);
     out.processor_s = fixed_s + point_s * points + pixel_s * static_cast<double>(out.pixels) +
-                      voxel_s * std::sqrt(surface * out.box_voxels) + patch_m_s * out.patches_m +
+                      voxel_s * grid_voxels + patch_m_s * out.patches_m +
                       rough_surfel_s * out.rough_surfels;
     out.memory_bytes = static_cast<std::uint64_t>(
         std::max(looked.fused_bytes, one_piece_peak({points, surface, out.box_voxels, out.ground_m2,

@@ -17,6 +17,9 @@ struct Estimate {
     double surface_m2 = 0;
     bool tiled = false;  // parsed in blocks
     double cell_m = 0;   // one point of each such cell is looked at
+    // In one piece: how far apart the points are, as the parse's note has it; of frames those that
+    // they are fused to.
+    double spacing_m = 0;
     double voxel_m = 0;  // of solids, in one piece
     // With the device's threads on a machine without other work; and of the processor, with one.
     double seconds = 0, processor_s = 0;

@@ -250,6 +250,7 @@ Ingested ingest_frames_view(device::Device& device, const FramesView& frames,
     out.notes = given.notes();
     out.frames = std::move(stream);
     fuse_frames(device, given.posed(), options, out);
+    check_camera_steps(out.viewpoints, given.source());
     if (out.cloud.size() == 0)
         throw Error(ErrorKind::input, given.source() + ": no points were found; " +
                                           depth_scale_hint(given, out.origin));
@@ -336,6 +337,7 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
                 "intrinsics.json, as depth_scale");
         }
         Ingested out = ingest_folder(device, input, options);
+        check_camera_steps(out.viewpoints, input.string());
         if (out.cloud.size() == 0)
             io::fail(input, "no points were found; " + depth_scale_hint(*out.frames, out.origin));
         return out;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "core/vectors.h"
 #include "io/text.h"
 #include "pipeline/ingest.h"
 #include "topple/error.h"
@@ -74,6 +75,20 @@ void note_small_extent(double extent_m, ScanOrigin origin, std::vector<std::stri
     if (note.empty()) return;
     note[0] = 'I';
     notes.push_back(note + ".");
+}
+
+void check_camera_steps(std::span<const Vec3> places, const std::string& source) {
+    constexpr double longest_step_m = 10;
+    if (places.size() < 2) return;
+    std::vector<double> steps;
+    for (std::size_t n = 1; n < places.size(); ++n)
+        steps.push_back(length(minus(places[n], places[n - 1])));
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    if (*middle <= longest_step_m) return;
+    throw Error(ErrorKind::input, source + ": the camera moves by " + text_of(*middle) +
+                                      " m from one frame to the next: places of poses are metres; "
+                                      "if these are mm, multiply them by 0.001");
 }
 
 void note_spacing(double spacing_m, std::vector<std::string>& notes) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,10 @@ void check_spacing(const CloudView& cloud, double spacing_m,
 std::string small_extent_hint(double extent_m, ScanOrigin origin);
 // The same as a note of a scene from there, which else shows shards of nothing in particular.
 void note_small_extent(double extent_m, ScanOrigin origin, std::vector<std::string>& notes);
+
+// Refuses frames between which the camera moved as nobody carries one: their poses are in another
+// unit. places: of the cameras, metres. Throws Error(input).
+void check_camera_steps(std::span<const Vec3> places, const std::string& source);
 
 // Says what points of a cloud that are so far apart leave open, where that matters for things in
 // rooms: thin boards, and what stands on little.

@@ -34,6 +34,9 @@ std::string numbered_object(const Object& o) {
     return o.name.empty() ? text : text + " (" + o.name + ")";
 }
 
+constexpr const char* floor = "the floor";
+constexpr double step_m = 0.05;  // a floor that is lower by less is the same one, not quite level
+
 // What a primitive is to those in the room; of the building, which part of it.
 std::string what(const Scene& scene, const SolidParts& parts, std::int32_t primitive) {
     if (primitive < 0) return "what is there";
@@ -42,7 +45,7 @@ std::string what(const Scene& scene, const SolidParts& parts, std::int32_t primi
     if (!object.grounded) return numbered_object(object);
     switch (parts.solids->role(primitive)) {
         case Role::floor:
-            return "the floor";
+            return floor;
         case Role::wall:
             return "a wall";
         case Role::ceiling:
@@ -86,7 +89,14 @@ class Sentence {
             return "Its centre of mass is past the edge of what carries it: it falls " + dropped() +
                    " and releases " + energy(why_.S_J) + ".";
         }
-        return "Slides " + to() + "off " + carrier() + " at " + barrier() + ", over " +
+        const std::string off = carrier();
+        if (off == floor && what(scene_, parts_, from_.instability.onto) == floor &&
+            why_.drop_m < step_m) {
+            return "Slides " + to() + "on the floor at " + barrier() + ", over " +
+                   length(why_.way_m) + ", to where it stands " + length(why_.drop_m) +
+                   " lower, and releases " + energy(why_.S_J) + ".";
+        }
+        return "Slides " + to() + "off " + off + " at " + barrier() + ", over " +
                length(why_.way_m) + "; falls " + dropped() + " and releases " + energy(why_.S_J) +
                ".";
     }
@@ -108,22 +118,24 @@ class Sentence {
             text = "Rolls or turns " + to() + "by itself";
         }
         if (!(object_.release_J > 0)) {
-            return text +
-                   (stopped_for_good() ? ", but leans on " + stop() + " before it has come so far"
-                                       : ", but then rests no lower") +
-                   ": it releases nothing" + later() + ".";
+            text += stopped_for_good() ? ", but leans on " + stop() + " before it has come so far"
+                                       : ", but then rests no lower";
+            text += ": it releases nothing.";
+            const std::string harder = harder_way();
+            if (harder.empty()) return text;
+            return harder + io::lower_case(text.substr(0, 1)) + text.substr(1);
         }
         if (swept_.stopped) return text + leans();
         return text + "; " + (why_.drop_m > 0 ? "falls " + dropped() : "comes to rest lower") +
                " and releases " + energy(why_.S_J) + ".";
     }
-    // What more energy sets free, which its risk reckons with.
-    std::string later() const {
+    // What more energy sets free, which its risk reckons with, before the easiest way.
+    std::string harder_way() const {
         const auto first = std::ranges::find_if(
             object_.instability, [](const InstabilityStep& step) { return step.S_J > 0; });
         if (first == object_.instability.end()) return "";
-        return "; from " + energy(first->W_J) + " on it may release up to " +
-               energy(object_.instability.back().S_J);
+        return "With " + energy(first->W_J) + " or more it may fall and release up to " +
+               energy(object_.instability.back().S_J) + ". The easiest way: ";
     }
     // By the building, which does not give way.
     bool stopped_for_good() const {

@@ -2,6 +2,7 @@
 #include <array>
 #include <cctype>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
@@ -53,8 +54,22 @@ void expect_told_summary(const std::string& out) {
     EXPECT_EQ(rows, 12u) << out;
     EXPECT_EQ(told, 3u) << out;
     EXPECT_FALSE(uncertain.empty()) << out;
-    EXPECT_NE(out.find("\nThe 3 riskiest of the "), std::string::npos) << out;
+    // By category the third comes before some with a risk, and has none itself.
+    EXPECT_NE(out.find("\nThe first 3 to look at of the "), std::string::npos) << out;
+    EXPECT_NE(
+        out.find(" Nothing upsets it as measured; if its foot is one error smaller, it falls"),
+        std::string::npos)
+        << out;
     EXPECT_NE(out.find(" whose barrier is above its error; that of "), std::string::npos) << out;
+}
+
+// Of all files, the cache among them.
+void expect_told_size(const std::string& estimate, const std::filesystem::path& out) {
+    std::uintmax_t taken = 0;
+    for (const auto& file : std::filesystem::directory_iterator(out)) taken += file.file_size();
+    const double told = nlohmann::json::parse(estimate).at("output_bytes");
+    EXPECT_GT(told, 0.8 * static_cast<double>(taken));
+    EXPECT_LT(told, 1.25 * static_cast<double>(taken));
 }
 
 TEST_F(DrawLandscape, makes_pictures_of_the_worst_or_the_chosen_object) {
@@ -63,6 +78,9 @@ TEST_F(DrawLandscape, makes_pictures_of_the_worst_or_the_chosen_object) {
                                  "wind", "--backend", "native"});
     ASSERT_EQ(parsed.code, 0) << parsed.err;
     expect_told_summary(parsed.out);
+    expect_told_size(
+        run({"estimate", "room", "--voxel", "0.04", "--backend", "native", "--json"}).out,
+        in("out"));
     const Finished worst = run({"landscape", "out"});
     ASSERT_EQ(worst.code, 0) << worst.err;
     EXPECT_NE(worst.out.find(".png"), std::string::npos) << worst.out;

@@ -73,8 +73,8 @@ TEST_F(Output, is_the_same_again) {
         EXPECT_TRUE(bytes_of_file(in("a/" + name)) == bytes_of_file(in("b/" + name))) << name;
 }
 
-// 0.3 of m/s^2 that was meant in g would make a room look safe.
-TEST_F(Output, says_so_where_a_peak_is_meant_in_g) {
+// 0.3 of m/s^2 that was meant in g would make a room look safe, and 30 of hundredths of g unsafe.
+TEST_F(Output, says_so_where_a_peak_is_meant_in_another_unit) {
     put_plane("plane.xyz");
     const auto parse = [&](const char* pga, const char* out) {
         return run({"parse", "plane.xyz", "--disturbance", "earthquake", "--pga", pga, "-o", out})
@@ -84,7 +84,11 @@ TEST_F(Output, says_so_where_a_peak_is_meant_in_g) {
                   .find("Note: 0.3 m/s\u00b2 is 0.031 g (light shaking, intensity "
                         "IV): for 0.3 g give --pga 0.3g."),
               std::string::npos);
-    EXPECT_EQ(parse("0.3g", "strong").find("for 0.3 g"), std::string::npos);
+    EXPECT_EQ(parse("0.3g", "strong").find(" m/s\u00b2 is "), std::string::npos);
+    EXPECT_NE(parse("30", "stronger")
+                  .find("Note: 30 m/s\u00b2 is 3.1 g (extreme shaking, intensity X or more), "
+                        "stronger than nearly all that were recorded; was 0.3g meant?"),
+              std::string::npos);
     EXPECT_NE(bytes_of_file(in("strong/scene.json")).find("\"pga_m_s2\": 2.941995"),
               std::string::npos);
 }

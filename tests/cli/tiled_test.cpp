@@ -75,6 +75,8 @@ TEST_F(Tiled, estimates_without_parsing) {
     for (const char* word : {"points", "surface", "time", "memory", "results"})
         EXPECT_NE(finished.out.find(word), std::string::npos) << finished.out;
     EXPECT_EQ(finished.out.find("limit"), std::string::npos) << finished.out;
+    // As the note of its parse.
+    EXPECT_NE(finished.out.find(", points about 20 mm apart\n"), std::string::npos) << finished.out;
     const auto limit = [&](const char* size) {
         const Finished limited = run({"estimate", "plane.xyz", "--quiet", "--max-memory", size});
         EXPECT_EQ(limited.code, 0) << limited.err;

@@ -37,6 +37,18 @@ TEST_F(Usage, names_the_unknown_option_and_the_nearest_one) {
     EXPECT_NE(far.err.find("--kaleidoscope"), std::string::npos) << far.err;
 }
 
+TEST_F(Usage, says_how_to_write_what_has_a_space_in_it) {
+    put_plane("plane.xyz");
+    expect_failure(2, {"parse", "plane.xyz", "--disturbance", "human,", "earthquake"},
+                   {"earthquake", "write the list without spaces: human,earthquake"});
+    expect_failure(2, {"parse", "--disturbance", "human", ",wind,", "earthquake", "plane.xyz"},
+                   {"write the list without spaces: human,wind,earthquake"});
+    expect_failure(2, {"parse", "plane.xyz", "--pga", "0.3", "g"},
+                   {"write it without the space: 0.3g"});
+    const Finished other = run({"parse", "plane.xyz", "--voxel", "0.03", "more.xyz"});
+    EXPECT_EQ(other.err.find("without"), std::string::npos) << other.err;
+}
+
 // Not quiet: the name of a stage on stderr would show that the parse had begun.
 TEST_F(Usage, refuses_values_before_it_parses) {
     put_plane("plane.xyz");

@@ -11,7 +11,8 @@ namespace {
 // An object whose centre of mass lies 0.25 m west of what carries it, with the given barrier; where
 // it is stopped on its way, by object 1.
 std::string sentence_of_leaning(double barrier_J, double error_J, bool stopped = false,
-                                bool building = false) {
+                                bool building = false,
+                                const std::vector<InstabilityStep>& steps = {}) {
     StableObject from;
     from.candidate.support_polygon = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     from.tipping.margin_m = -0.25;
@@ -30,7 +31,8 @@ std::string sentence_of_leaning(double barrier_J, double error_J, bool stopped =
     scene.objects[0].fall.hits_J = 0.004;
     scene.objects[0].barrier_J = barrier_J;
     scene.objects[0].barrier_error_J = error_J;
-    scene.objects[0].release_J = 300;
+    scene.objects[0].release_J = steps.empty() ? 300 : 0;
+    scene.objects[0].instability = steps;
     scene.objects[0].mode = "tip";
     const std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     explain(objects, ToInput(axes), scene);
@@ -68,6 +70,67 @@ TEST(Explain, what_comes_to_lean_does_not_release_what_a_fall_would) {
     EXPECT_NE(on_wall.find("; comes to lean on a wall, with 4.0 mJ."), std::string::npos)
         << on_wall;
     EXPECT_EQ(on_wall.find("gave way"), std::string::npos) << on_wall;
+}
+
+// Its risk is of the harder way.
+TEST(Explain, what_the_wall_stops_tells_of_the_harder_way_first) {
+    const std::string on_wall =
+        sentence_of_leaning(5, 0.5, true, true, {{5, 0}, {6, 200}, {9, 349}});
+    EXPECT_TRUE(
+        on_wall.starts_with("With 6.0 J or more it may fall and release up to 349 J. "
+                            "The easiest way: its centre of mass is 0.25 m beyond"))
+        << on_wall;
+    EXPECT_TRUE(on_wall.ends_with("before it has come so far: it releases nothing.")) << on_wall;
+    const std::string never = sentence_of_leaning(5, 0.5, true, true, {{5, 0}});
+    EXPECT_TRUE(never.starts_with("Its centre of mass")) << never;
+}
+
+// Floors of scans are not quite level: what slides on one does not fall off it.
+TEST(Explain, what_slides_on_the_floor_falls_off_no_floor) {
+    const auto sentence_of_slide = [](double drop_m) {
+        StableObject chair;
+        chair.candidate.support_polygon = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+        chair.tipping.margin_m = 0.25;
+        chair.instability.mode = "slide";
+        chair.instability.weakest = {1, 0, 0};
+        chair.instability.drop_m = drop_m;
+        chair.instability.onto = 0;
+        chair.sliding.distance_m = 0.12;
+        ObjectStage objects;
+        objects.objects = {chair, StableObject{}};
+        objects.object_of_primitive = {1, 0};
+        graph::Carrying on_floor;
+        on_floor.supporter = 0;
+        on_floor.supported = 1;
+        on_floor.area_m2 = 0.1;
+        objects.contacts.carryings = {on_floor};
+        Scene scene;
+        scene.objects.resize(2);
+        scene.objects[0].id = 0;
+        scene.objects[1].id = 1;
+        scene.objects[1].grounded = true;
+        scene.objects[0].why.stands_on = {1};
+        scene.objects[0].mode = "slide";
+        scene.objects[0].barrier_J = 5;
+        scene.objects[0].release_J = 2;
+        scene.primitives.resize(2);
+        scene.primitives[0].object = 1;
+        const std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+        explain(objects, ToInput(axes), scene);
+        SolidParts parts;
+        parts.solids = std::make_shared<const SolidScene>(
+            SolidCells{}, std::vector<Role>{Role::floor, Role::none});
+        tell_why(parts, objects, std::vector<Landing>(2), scene);
+        return scene.objects[0].why.sentence;
+    };
+    EXPECT_EQ(
+        sentence_of_slide(0.04),
+        "Slides to the east on the floor at 5.0 J, over 0.12 m, to where it stands 4.0 cm lower, "
+        "and releases 2.0 J.");
+    EXPECT_EQ(
+        sentence_of_slide(1.2),
+        "Slides to the east off the floor at 5.0 J, over 0.12 m; falls 1.2 m to the floor and "
+        "releases 2.0 J.");
 }
 
 // A fixing's force, in what straps are sold by.

@@ -237,6 +237,13 @@ TEST_F(FramesViews, ThatMakeNoSenseAreRefused) {
     EXPECT_NE(refusal(wrong).find("frame 0: camera_to_world: the matrix is no rotation"),
               std::string::npos);
     wrong = view();
+    for (Mat4& pose : wrong.camera_to_world)
+        for (std::size_t axis = 0; axis < 3; ++axis) pose[4 * axis + 3] *= 1000;
+    EXPECT_TRUE(refusal(wrong).ends_with(
+        " m from one frame to the next: places of poses are metres; if these are mm, multiply "
+        "them by 0.001"))
+        << refusal(wrong);
+    wrong = view();
     wrong.camera_to_world[3][15] = 0;
     EXPECT_NE(refusal(wrong).find("the last row"), std::string::npos);
     wrong = view();

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "cli/action.h"
+
+#include <algorithm>
+
+#include "io/text.h"
+
+namespace topple::cli {
+namespace {
+
+bool has_category(const Object& o) {
+    return !o.unsafety_category.empty() && o.unsafety_category != "none";
+}
+
+// "the 1 J per event that this run tolerates"
+std::string tolerated_text(const Scene& scene) {
+    const auto at = scene.events.find("tolerable_J");
+    if (at == scene.events.end()) return "what is tolerated";
+    return "the " + io::short_number(at->second) + " J per event that this run tolerates";
+}
+
+}  // namespace
+
+bool upset_by_nothing(const Object& o) {
+    constexpr double hardly_ever = 1e-4;
+    return std::ranges::none_of(o.fall_chance,
+                                [](const auto& chance) { return chance.second >= hardly_ever; });
+}
+
+std::string action_text(const Scene& scene, const Object& o) {
+    const bool doubtful = barrier_within_error(o);
+    const std::string advice = o.advice.sentence;
+    if (!doubtful && o.seen_enough && has_category(o) && !o.unsafety_certain && upset_by_nothing(o))
+        return "Nothing upsets it as measured; if its foot is one error smaller, it falls with " +
+               io::two_digits(o.release_J) + " J: check that it stands firm.";
+    if (o.unsafety_category != "none" || doubtful) {
+        if (!advice.empty() || o.unsafety_category.empty()) return advice;
+        return "Its risk is below " + tolerated_text(scene) +
+               ": if it must not fall all the same, fasten it.";
+    }
+    if (advice.empty()) return "No need to act.";
+    return "No need to act. To bring its risk below " + tolerated_text(scene) +
+           " all the same: " + io::lower_case(advice.substr(0, 1)) + advice.substr(1);
+}
+
+}  // namespace topple::cli
