@@ -161,7 +161,7 @@ class ComparePanel {
         ...[row.before, row.after].map(side => element('td', {className: 'text', text: category(side)})),
         ...[row.before, row.after].map(side => element('td', {text: risk(side)})), element('td', {className: 'text', text: becameText(row)})]);
     });
-    const head = ['Object here', `In ${this.name}`, 'Category before', 'after', 'Risk before (J)', 'Risk after (J)', 'Became'].map((text, i) =>
+    const head = ['Object here', `In ${this.name}`, 'Category before', 'Category after', 'Risk before (J)', 'Risk after (J)', 'Became'].map((text, i) =>
       element('th', {scope: 'col', text, className: i === 4 || i === 5 ? '' : 'text'}));
     const banner = sameScan ? element('p', {className: 'hint', text: 'The same scan: what changed follows from the corrections.'}) :
       element('p', {className: 'warning', text: 'The two scans may have been told apart differently; \u00b1 does not cover that: look at both pictures before believing a change.'});

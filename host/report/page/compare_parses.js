@@ -5,31 +5,27 @@
 
 // The parts that both have, where one scan was parsed twice: of the other parse's numbers those of this; null for another scan.
 // Segmentation comes before corrections, which group parts and leave out what is not there: the same file has the same
-// parts in the same order, of as many points each.
+// parts in the same order, of as many points each, but for those that one of the two was told to leave out.
 function commonParts(scene, other) {
-  const file = path => String(path).replace(/^.*[\\/]/, ''), one = scene.primitives, two = other.primitives;
-  if (file(scene.source) !== file(other.source) || scene.voxel_size_m !== other.voxel_size_m || !Array.isArray(two)) return null;
-  // The longest sequence that both have.
-  const width = two.length + 1, best = new Uint32Array((one.length + 1) * width);
-  for (let i = one.length - 1; i >= 0; --i) {
-    for (let j = two.length - 1; j >= 0; --j) {
-      best[i * width + j] = one[i].points === two[j].points ? 1 + best[(i + 1) * width + j + 1] : Math.max(best[(i + 1) * width + j], best[i * width + j + 1]);
-    }
+  const file = path => String(path).replace(/^.*[\\/]/, '');
+  if (file(scene.source) !== file(other.source) || scene.voxel_size_m !== other.voxel_size_m || !Array.isArray(other.primitives)) return null;
+  const [fewer, more] = other.primitives.length < scene.primitives.length ? [other, scene] : [scene, other], common = new Map();
+  let found = 0;
+  for (const part of more.primitives) {
+    const same = fewer.primitives[found];
+    if (!same || same.points !== part.points || same.model !== part.model) continue;
+    if (fewer === other) common.set(same.id, part.id);
+    else common.set(part.id, same.id);
+    ++found;
   }
-  const common = new Map(), leavesOut = side => (side.corrections || []).some(each => each.do === 'not_there' && each.held !== false);
-  for (let i = 0, j = 0; i < one.length && j < two.length;) {
-    if (one[i].points === two[j].points) common.set(two[j++].id, one[i++].id);
-    else if (best[(i + 1) * width + j] >= best[i * width + j + 1]) ++i;
-    else ++j;
-  }
-  const complete = (side, left) => common.size === side.length || leavesOut(left);
-  return complete(one, other) && complete(two, scene) && 2 * common.size > Math.max(one.length, two.length) ? common : null;
+  const leavesOut = (fewer.corrections || []).some(one => one.do === 'not_there' && one.held !== false);
+  return found && found === fewer.primitives.length && (leavesOut || found === more.primitives.length) ? common : null;
 }
 
 // The parts of each object by this parse's numbers, with their points: Map of object to Map of part to points; one without any counts as one.
 function pointsByObject(parsed, number = part => part.id) {
   const parts = new Map(parsed.primitives.map(part => [part.id, [number(part), Math.max(1, part.points)]]));
-  return new Map(parsed.objects.map(object => [object, new Map(object.primitives.map(id => parts.get(id)).filter(part => part))]));
+  return new Map(parsed.objects.map(object => [object, new Map((object.primitives || []).map(id => parts.get(id)).filter(part => part))]));
 }
 
 // " (correction 2)": those of some kinds that an object of the later parse follows; '' for none.
@@ -83,7 +79,7 @@ function rowsByParts(earlier, later, partsOf, name, isSpotOf) {
   }
   for (const last of movable(later).filter(object => !takenLast.has(object))) {
     const from = most(earlier.objects, last);
-    rows.push({first: null, last, verdict: 'parted', text: from ? `from ${from.grounded ? 'the building' : name(earlier, from)}${followed(later, last, ['apart'])}` : ''});
+    rows.push({first: null, last, verdict: from ? 'parted' : 'new', text: from ? `from ${from.grounded ? 'the building' : name(earlier, from)}${followed(later, last, ['apart'])}` : ''});
   }
   return rows;
 }
