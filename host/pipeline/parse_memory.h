@@ -23,7 +23,7 @@ struct OnePiece {
 inline constexpr double walked_m2 = 4;
 
 inline double one_piece_peak(const OnePiece& of) {
-    constexpr double fixed = 61e6, of_views = 27e6, of_walks = 26e6, a_point = 167,
+    constexpr double fixed = 61e6, of_views = 45e6, of_walks = 26e6, a_point = 167,
                      a_surface_voxel = 1040, a_voxel = 10.7, a_patch_m = 6.6e5;
     return fixed + (of.views ? of_views : 0) + of_walks * std::min(1.0, of.ground_m2 / walked_m2) +
            a_point * of.points + a_surface_voxel * of.surface_voxels + a_voxel * of.box_voxels +
@@ -49,7 +49,7 @@ inline std::uint64_t one_piece_bytes(double points, double surface_m2, const Bou
 
 // While a block with so many cells in its core is parsed: it sees its halo's, too.
 inline double block_bytes(std::uint64_t cells) {
-    constexpr double fixed = 120e6, a_cell = 450, seen = 1.75;
+    constexpr double fixed = 195e6, a_cell = 450, seen = 1.75;
     return fixed + a_cell * seen * static_cast<double>(cells);
 }
 

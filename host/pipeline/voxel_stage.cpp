@@ -21,7 +21,7 @@ namespace topple {
 namespace {
 
 // Frames are carved in batches of this many bytes of depth, so that any number of them fits.
-constexpr std::uint64_t batch_bytes = 64u << 20;
+constexpr std::uint64_t batch_bytes = 32u << 20;
 
 // The solids among so many primitives, by their voxels, numbered in their order.
 std::vector<std::int32_t> solid_numbers(const SolidCells& cells, std::size_t primitives) {
