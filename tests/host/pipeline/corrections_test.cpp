@@ -284,8 +284,9 @@ TEST_F(CorrectedRoom, IsNotWhatContradictsItself) {
 TEST_F(CorrectedRoom, IsWrittenAndReadBack) {
     Correction name = correction(Kind::name, {on_crate});
     name.name = "chest";
-    const Scene scene =
-        parsed({name, apart(on_crate, on_box), correction(Kind::fixed, {in_air})}).scene;
+    Scene scene = parsed({name, apart(on_crate, on_box), correction(Kind::fixed, {in_air})}).scene;
+    // What voxels alone tell is not read back.
+    scene.solid = {};
     const std::string text = io::scene_json(scene);
     EXPECT_THAT(text, HasSubstr("\"name\": \"chest\""));
     EXPECT_THAT(text, HasSubstr("\"corrected\": ["));

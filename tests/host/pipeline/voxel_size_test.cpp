@@ -33,7 +33,7 @@ TEST(VoxelSize, HallsGetLargerOnesButNoneWithoutGaps) {
 
 TEST(VoxelSize, MemoryMakesThemLarger) {
     const double free = voxel_for_square(0.06, 8, 1e5, 0),
-                 tight = voxel_for_square(0.06, 8, 1e5, 500 << 20);
+                 tight = voxel_for_square(0.06, 8, 1e5, 550 << 20);
     EXPECT_DOUBLE_EQ(free, 0.02);
     EXPECT_DOUBLE_EQ(tight, 0.03);
     EXPECT_DOUBLE_EQ(voxel_for_square(0.06, 8, 1e5, 1), voxel_for_cell(0.06));
