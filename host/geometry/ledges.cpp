@@ -88,13 +88,6 @@ template <int unknowns>
 using Fit = Eigen::Matrix<double, unknowns, 1>;
 
 // Least squares with a prior of the last column's factor: 0 +- slope.
-// Rows of equations in so many unknowns.
-template <int unknowns>
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, unknowns>;
-template <int unknowns>
-using Fit = Eigen::Matrix<double, unknowns, 1>;
-
-// Least squares with a prior of the last column's factor: 0 +- slope.
 template <int unknowns>
 class SideFit {
   public:

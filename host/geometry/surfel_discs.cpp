@@ -97,6 +97,7 @@ std::vector<float> covering_radii(const Surfels& s, double gap_m, ThreadPool& po
 
 std::vector<DiscCuts> cuts_at_edges(const Surfels& s, std::span<const float> radii_m,
                                     ThreadPool& pool) {
+    constexpr double other_way = 0.5;  // cosine, of two directions in which a disc ends
     std::vector<DiscCuts> cuts(s.size());
     pool.each(s.size(), disc_chunk, [&](std::size_t i) {
         const Vec3 n{s.nx[i], s.ny[i], s.nz[i]}, at{s.x[i], s.y[i], s.z[i]};
@@ -115,7 +116,7 @@ std::vector<DiscCuts> cuts_at_edges(const Surfels& s, std::span<const float> rad
             const double sign = away < 0 ? -1 : 1;
             Vec3 way;
             for (std::size_t a = 0; a < 3; ++a) way[a] = sign * (m[a] - cosine * n[a]) / sine;
-            const bool second = towards[0] != Vec3{} && dot(way, towards[0]) < 0.5;
+            const bool second = towards[0] != Vec3{} && dot(way, towards[0]) < other_way;
             const std::size_t slot = second ? 1 : 0;
             if (distance >= nearest[slot]) continue;
             nearest[slot] = distance;

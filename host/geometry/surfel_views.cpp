@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <boost/container/static_vector.hpp>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -29,6 +30,11 @@ class Disc {
     struct Rays {
         double first, last;
     };
+    // What is kept of it: p with normal . p >= least.
+    struct Cut {
+        Vec3 normal{};
+        double least = 0;
+    };
     // Seen edge-on it has no width, of which rounding leaves anything.
     bool edge_on() const { return std::abs(offset_) <= 1e-6 * length(p_); }
     // The x of the rays with this y that meet the disc, all of which lies ahead of the eye.
@@ -41,6 +47,17 @@ class Disc {
         if (!(square >= 0)) return std::nullopt;
         const double root = std::sqrt(square), middle = -b / a, to_side = root / a;
         return Rays{middle - to_side, middle + to_side};
+    }
+    // Leaves of the rays with this y those that meet its plane in what is kept: normal . z ray >=
+    // least, z = offset / (n . ray), of which both have one sign ahead of the eye.
+    void clip(const Cut& cut, double y, Rays& rays) const {
+        const Vec3& m = cut.normal;
+        const double sign = offset_ < 0 ? -1 : 1;
+        const double slope = sign * (offset_ * m[0] - cut.least * n_[0]);
+        const double at_0 = sign * (offset_ * (m[1] * y + m[2]) - cut.least * (n_[1] * y + n_[2]));
+        if (slope > 0) rays.first = std::max(rays.first, -at_0 / slope);
+        if (slope < 0) rays.last = std::min(rays.last, -at_0 / slope);
+        if (slope == 0 && at_0 < 0) rays.last = rays.first - 1;
     }
 
   private:
@@ -90,12 +107,12 @@ class Image {
         const Span columns = span(u - half, u + half), rows = span(v - half, v + half);
         const Disc disc(n, p, radius);
         if (columns.first > columns.last || disc.edge_on()) return;
+        const auto cuts = cuts_of(i);
         for (int y = rows.first; y <= rows.last; ++y) {
             const double ry = ray(y);
             auto seen = disc.along_row(ry);
             if (!seen) continue;
-            for (const DiscCut& cut : cuts_[i])
-                if (cut.normal != std::array<float, 3>{}) clip(cut, n, disc.offset(), ry, *seen);
+            for (const Disc::Cut& cut : cuts) disc.clip(cut, ry, *seen);
             const Span row = span(pixel(seen->first), pixel(seen->last));
             fill(row, y, n[1] * ry + n[2], n[0], disc.offset(), static_cast<std::uint32_t>(i));
         }
@@ -133,19 +150,15 @@ class Image {
     static double ray(int pixel) { return (pixel - CubeView::centre) / CubeView::focal; }
     static double pixel(double ray) { return CubeView::focal * ray + CubeView::centre; }
 
-    // Leaves of the rays of a row those on which what is kept of a disc lies: normal . z ray >=
-    // least, z = offset / (n . ray).
-    void clip(const DiscCut& cut, const Vec3& n, double offset, double y, Disc::Rays& rays) const {
-        const Vec3 world{cut.normal[0], cut.normal[1], cut.normal[2]};
-        const Vec3 m = turned(world);
-        const double least = cut.least - dot(world, eye_);
-        // Of either sign: n . ray has that of the offset.
-        const double sign = offset < 0 ? -1 : 1;
-        const double slope = sign * (offset * m[0] - least * n[0]);
-        const double at_0 = sign * (offset * (m[1] * y + m[2]) - least * (n[1] * y + n[2]));
-        if (slope > 0) rays.first = std::max(rays.first, -at_0 / slope);
-        if (slope < 0) rays.last = std::min(rays.last, -at_0 / slope);
-        if (slope == 0 && at_0 < 0) rays.last = rays.first - 1;
+    // Of a surfel's disc, in the image's axes and from the eye.
+    boost::container::static_vector<Disc::Cut, 2> cuts_of(std::size_t i) const {
+        boost::container::static_vector<Disc::Cut, 2> out;
+        for (const DiscCut& cut : cuts_[i]) {
+            if (cut.normal == std::array<float, 3>{}) continue;
+            const Vec3 normal{cut.normal[0], cut.normal[1], cut.normal[2]};
+            out.push_back({turned(normal), cut.least - dot(normal, eye_)});
+        }
+        return out;
     }
 
     // Columns of a row, where the surfel's plane lies at offset / (row + across * ray).

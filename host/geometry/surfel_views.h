@@ -47,8 +47,8 @@ struct CubeView {
     }
 };
 
-// Draws surfels as discs in their planes, of the given radii (covering_radii()); those without a
-// normal as discs across the line of sight.
+// Draws surfels as discs in their planes, of the given radii (covering_radii()), up to the edges
+// where they end (cuts_at_edges()); those without a normal as discs across the line of sight.
 class SurfelViews {
   public:
     SurfelViews(const Surfels& surfels, std::vector<float> radii_m, ThreadPool& pool);

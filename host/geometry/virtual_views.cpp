@@ -64,7 +64,9 @@ class Looking {
 
     void look_around(const VirtualViewOptions& options) {
         std::size_t said = 0, hidden = 0;
-        expected_ = std::max<double>(options.eyes, static_cast<double>(options.known_eyes.size()));
+        const std::size_t known = options.known_eyes.size();
+        expected_ = static_cast<double>(known > 0 ? std::max<std::size_t>(options.eyes, known)
+                                                  : options.eyes * rooms());
         for (std::size_t e = 0; e < options.known_eyes.size(); ++e) {
             CubeView view = views_.from(options.known_eyes[e]);
             for (std::size_t i = 0; i < options.seen_from.size(); ++i) {
@@ -75,7 +77,6 @@ class Looking {
             look(std::move(view));
         }
         if (said > 0) out_.hidden_share = static_cast<double>(hidden) / static_cast<double>(said);
-        if (options.known_eyes.empty()) expected_ *= static_cast<double>(rooms());
         if (!options.known_eyes.empty()) return explore(options.eyes);
         look_first(options.sides_known);
         if (out_.eyes.empty()) return;

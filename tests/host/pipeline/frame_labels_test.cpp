@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "core/depth_noise.h"
-#include "scenes/depth_camera.h"
-#include "scenes/furnished_room.h"
+#include "host/pipeline/small_walk.h"
 
 // What pixels of depth frames show of a result, against a search through all its points.
 namespace topple::test {
@@ -19,12 +18,7 @@ namespace {
 class Labels : public ::testing::Test {
   protected:
     static void SetUpTestSuite() {
-        scenes::RoomOptions room;
-        room.seed = 3;
-        scenes::CameraOptions camera;
-        camera.intrinsics = {96, 72, 83, 83, 47.5, 35.5, 1000};
-        camera.frames = 6;
-        walk_ = new scenes::Sequence(scenes::walk(scenes::furnished_room(room), camera));
+        walk_ = new scenes::Sequence(small_walk());
         ParseOptions options;
         options.device = device::open_device("native", 2);
         options.disturbances = {};
@@ -34,15 +28,7 @@ class Labels : public ::testing::Test {
         delete result_;
         delete walk_;
     }
-    static FramesView view() {
-        FramesView out;
-        out.intrinsics = walk_->intrinsics;
-        for (const DepthFrame& frame : walk_->frames) {
-            out.camera_to_world.push_back(frame.camera_to_world);
-            out.images.emplace_back().depth = {frame.depth.data(), 96, 72};
-        }
-        return out;
-    }
+    static FramesView view() { return frames_view_of(*walk_); }
     static std::string refusal(const ParseResult& result) {
         try {
             FrameLabeller labeller(result);

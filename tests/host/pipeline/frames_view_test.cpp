@@ -13,6 +13,7 @@
 
 #include "host/io/files.h"
 #include "host/pipeline/scan.h"
+#include "host/pipeline/small_walk.h"
 #include "scenes/files.h"
 
 // Depth frames in the caller's memory: the same as those of a folder.
@@ -23,14 +24,7 @@ constexpr float nan_m = std::numeric_limits<float>::quiet_NaN();
 
 class FramesViews : public Files {
   protected:
-    static void SetUpTestSuite() {
-        scenes::RoomOptions room;
-        room.seed = 3;
-        scenes::CameraOptions camera;
-        camera.intrinsics = {96, 72, 83, 83, 47.5, 35.5, 1000};
-        camera.frames = 6;
-        walk_ = new scenes::Sequence(scenes::walk(scenes::furnished_room(room), camera));
-    }
+    static void SetUpTestSuite() { walk_ = new scenes::Sequence(small_walk()); }
     static void TearDownTestSuite() { delete walk_; }
 
     // Pictures of twice the depth images' size.
@@ -41,15 +35,7 @@ class FramesViews : public Files {
                                         static_cast<std::uint8_t>(50 + p / 192),
                                         static_cast<std::uint8_t>(200 - 20 * n)});
     }
-    FramesView view() const {
-        FramesView out;
-        out.intrinsics = walk_->intrinsics;
-        for (const DepthFrame& frame : walk_->frames) {
-            out.camera_to_world.push_back(frame.camera_to_world);
-            out.images.emplace_back().depth = {frame.depth.data(), 96, 72};
-        }
-        return out;
-    }
+    FramesView view() const { return frames_view_of(*walk_); }
     // With the poses as matrices, to their last digit.
     void write_folder(const std::string& name) const {
         scenes::make_folder(path(name + "/depth"));
