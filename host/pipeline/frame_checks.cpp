@@ -73,10 +73,9 @@ void note_principal_point(const Intrinsics& k, ScanOrigin origin, std::vector<st
                     io::short_number(0.5 * (k.height - 1.0)) + ").");
 }
 
-void note_pose_convention(const geometry::PoseComparison& frames, ScanOrigin origin,
-                          std::vector<std::string>& notes) {
+std::string pose_convention_note(const geometry::PoseComparison& frames, ScanOrigin origin) {
     const std::vector<PoseConvention> better = frames.better();
-    if (better.empty()) return;
+    if (better.empty()) return {};
     const auto found = frames.agreements();
     const auto agreeing = [&](PoseConvention convention) {
         return percent(found[static_cast<std::size_t>(convention)].agreeing_share());
@@ -86,19 +85,16 @@ void note_pose_convention(const geometry::PoseComparison& frames, ScanOrigin ori
         words.append(words.empty() ? "" : ", or ").append(words_of(convention));
         mends.append(mends.empty() ? "" : ", or ").append(mend_of(convention));
     }
-    // Before all others: what they are about may be nonsense.
-    notes.insert(notes.begin(),
-                 "The poses seem to be in another convention: of the readings of " +
-                     io::counted(frames.pairs(), "pair") +
-                     " of frames that look at the same place " +
-                     agreeing(PoseConvention::camera_to_world) +
-                     " lie on what the other frame sees there, but " + agreeing(better.front()) +
-                     " if poses are taken to be " + words +
-                     (better.size() > 1 ? ", between which the frames do not tell" : "") +
-                     ". topple takes camera to world, camera x right, y down, z ahead: " +
-                     (origin == ScanOrigin::frames_folder ? "write into the file of poses"
-                                                          : "give as camera_to_world") +
-                     ", in NumPy's words, " + mends + ".");
+    return "The poses seem to be in another convention: of the readings of " +
+           io::counted(frames.pairs(), "pair") + " of frames that look at the same place " +
+           agreeing(PoseConvention::camera_to_world) +
+           " lie on what the other frame sees there, but " + agreeing(better.front()) +
+           " if poses are taken to be " + words +
+           (better.size() > 1 ? ", between which the frames do not tell" : "") +
+           ". topple takes camera to world, camera x right, y down, z ahead: " +
+           (origin == ScanOrigin::frames_folder ? "write into the file of poses"
+                                                : "give as camera_to_world") +
+           ", in NumPy's words, " + mends + ".";
 }
 
 }  // namespace topple

@@ -16,9 +16,8 @@ namespace topple {
 void note_principal_point(const Intrinsics& intrinsics, ScanOrigin origin,
                           std::vector<std::string>& notes);
 
-// Poses in another convention, in which the frames agree where they don't as given: the first note.
-// The frames were added.
-void note_pose_convention(const geometry::PoseComparison& frames, ScanOrigin origin,
-                          std::vector<std::string>& notes);
+// Poses in another convention, in which the frames agree where they don't as given; "": none. The
+// frames were added.
+std::string pose_convention_note(const geometry::PoseComparison& frames, ScanOrigin origin);
 
 }  // namespace topple

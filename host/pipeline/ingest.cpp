@@ -95,6 +95,12 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const Pars
         tell(added_share * static_cast<double>(f + 1) / count);
     };
     for_each_frame(*out.frames, device.threads(), add, true);
+    note_principal_point(k, out.origin, out.notes);
+    // First, and at once: the shards that such poses give take long.
+    if (const std::string note = pose_convention_note(comparison, out.origin); !note.empty()) {
+        out.notes.insert(out.notes.begin(), note);
+        if (options.notice) options.notice(note);
+    }
     double polled = 0;
     geometry::FusedCloud fused = fusion.finish([&] {
         end_if_cancelled(options);
@@ -104,8 +110,6 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const Pars
     out.cloud = out.own;
     out.viewpoints = std::move(fused.viewpoints);
     out.viewpoint_of_point = std::move(fused.viewpoint_of_point);
-    note_principal_point(k, out.origin, out.notes);
-    note_pose_convention(comparison, out.origin, out.notes);
     if (poses.empty())
         out.notes.push_back("A single frame: what it does not show is completed by shape alone.");
 }

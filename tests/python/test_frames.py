@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """parse(frames=...): depth frames of memory give what a folder of them gives."""
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -129,8 +130,13 @@ def test_labels_of_pixels_after_a_pickle(depth, sequence, device, result, tmp_pa
 def test_poses_and_principal_points_that_mean_something_else_are_noted(depth, sequence, device):
     assert not any('convention' in note or 'principal point' in note for note in sequence.notes)
     flipped = np.array(POSES) @ np.diag([1, -1, -1, 1])
-    notes = of_memory(depth, device, camera_to_world=flipped).notes
+    with pytest.warns(RuntimeWarning, match='The poses seem to be in another convention'):
+        coarse = INTRINSICS._replace(fx=INTRINSICS.fx / 2, fy=INTRINSICS.fy / 2, cx=INTRINSICS.cx / 2, cy=INTRINSICS.cy / 2)
+        notes = of_memory(depth[:, ::2, ::2], device, camera_to_world=flipped, intrinsics=coarse, voxel_m=0.05).notes
     assert notes[0].startswith('The poses seem to be in another convention') and 'pose @ np.diag([1, -1, -1, 1])' in notes[0]
+    with warnings.catch_warnings(), pytest.raises(RuntimeWarning):  # at once, and the parse ends
+        warnings.simplefilter('error')
+        of_memory(depth, device, camera_to_world=flipped)
     notes = of_memory(depth[:1], device, camera_to_world=None, intrinsics=INTRINSICS._replace(cx=0)).notes
     assert any('The principal point (0, 59.5)' in note for note in notes)
 
