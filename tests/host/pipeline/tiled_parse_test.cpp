@@ -136,7 +136,8 @@ TEST_F(SlowTiles, AStoppedRunGoesOnWhereItWas) {
     scenes::TemporaryFolder folder("topple_tiles");
     ParseOptions options = coarse();
     options.work_folder = folder.path() / "work";
-    // Stops within the blocks: the next run finds some of them done.
+    // Stops within the blocks: the next run finds some of them done. They come one by one.
+    options.device = device::open_device("native", 1);
     double first = 1, done = 0;
     options.progress = [&](const std::string& name, double share) {
         if (name != "blocks") return;
@@ -156,6 +157,7 @@ TEST_F(SlowTiles, AStoppedRunGoesOnWhereItWas) {
     ASSERT_FALSE(before.empty());
     const auto written = fs::last_write_time(before.front());
     options.cancelled = nullptr;
+    options.device = nullptr;
     {
         const ParseResult resumed = parse(building(), options);
         EXPECT_GT(blocks().size(), before.size());
