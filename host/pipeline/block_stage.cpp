@@ -110,7 +110,8 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
     constexpr double below = -std::numeric_limits<double>::infinity();
     input.storeys = {{block.floor_m, below, block.top_m}};
     const GeometryStage geometry = find_primitives(device, input, quiet, stage);
-    const VoxelStage voxels = make_solids(device, input, geometry, layout.voxel_m, stage);
+    const VoxelStage voxels =
+        make_solids(device, input, geometry, layout.voxel_m, stage, SolidDetail::whole_voxels);
     for (std::size_t p = 0; p < voxels.number.size(); ++p) {
         if (voxels.number[p] < 0) continue;
         out.primitives.push_back({geometry.primitives.model[p].front(), geometry.role[p],
