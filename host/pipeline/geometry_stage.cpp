@@ -59,7 +59,8 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input, Fra
     }
     stage("shell", [&] {
         g.samples = geometry::sample_surface(input.cloud, g.surfels, g.primitive_of_point, g.frame,
-                                             std::max(geometry::finest_sample_m, input.cell_m));
+                                             std::max(geometry::finest_sample_m, input.cell_m),
+                                             device.threads());
         geometry::Shell shell =
             geometry::find_shell(g.samples, g.primitives.model.size(), device.threads(), g.storeys);
         g.role = std::move(shell.role);
