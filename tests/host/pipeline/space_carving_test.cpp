@@ -40,7 +40,7 @@ class Wall final : public FrameStream {
     std::size_t size_;
 };
 
-// A wall, and frames of it.
+// A wall, frames of it, and a post beside what they see.
 class Carving : public testing::Test {
   protected:
     Ingested input_of(std::unique_ptr<Wall> wall, double cell_m = 0.02) {
@@ -51,6 +51,11 @@ class Carving : public testing::Test {
                 input.own.y.push_back(static_cast<float>(y) * 0.05f + 0.02f);
                 input.own.z.push_back(2.02f);
             }
+        for (int z = 0; z < 20; ++z) {
+            input.own.x.push_back(-0.98f);
+            input.own.y.push_back(-0.98f);
+            input.own.z.push_back(static_cast<float>(z) * 0.05f + 0.02f);
+        }
         input.cloud = input.own;
         input.cell_m = cell_m;
         frames_ = wall.get();
