@@ -3,34 +3,21 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/scene_bounds.h"
+#include "core/sorted_order.h"
 #include "topple/error.h"
 #include "vdb/grids.h"
 
 namespace topple::vdb {
 namespace {
 
-constexpr int key_bits = 21;                          // of a voxel index, per axis
-constexpr std::int32_t window = 1 << (key_bits - 1);  // voxels from the median, either way
+constexpr std::int32_t window = 1 << 20;  // voxels from the points' median, either way
 constexpr std::uint64_t max_leaves = std::uint64_t{1} << 23;
-
-// A point's voxel, relative to a corner that is a multiple of 8, and which point it is: the key
-// sorts by leaf (x, then y, then z) and within the leaf by the voxel's offset.
-struct Sample {
-    std::uint64_t key, point;
-    friend auto operator<=>(const Sample&, const Sample&) = default;
-};
-
-std::uint64_t make_key(const std::array<std::uint32_t, 3>& v) {
-    const std::uint64_t leaf =
-        (std::uint64_t{v[0] >> 3} << 36) | (std::uint64_t{v[1] >> 3} << 18) | (v[2] >> 3);
-    return leaf << 9 | (v[0] & 7) << 6 | (v[1] & 7) << 3 | (v[2] & 7);
-}
 
 void check(const VoxelFrame& frame) {
     if (!(frame.voxel_m > 0) || !std::isfinite(frame.voxel_m)) {
@@ -132,13 +119,29 @@ LeafTable box_of(const VoxelFrame& frame, const std::array<std::vector<std::int3
     return chosen;
 }
 
-// The voxels of the points, sorted, of those that voxel indices reach.
+// The points that voxel indices reach, by leaf of the table and voxel of the leaf; those of one
+// voxel in their order.
 struct SortedPoints {
-    std::vector<Sample> samples;
     LeafTable leaves;
-    std::array<std::int32_t, 3> corner{}, lowest{0, 0, 0}, highest{-1, -1, -1};
+    std::vector<std::uint64_t> voxel;  // leaf * 512 + offset, ascending
+    std::vector<std::size_t> point;
+    std::array<std::int32_t, 3> lowest{0, 0, 0}, highest{-1, -1, -1};
     std::uint64_t unplaced = 0;
 };
+
+LeafTable::Leaf leaf_of(const std::array<std::vector<std::int32_t>, 3>& index, std::size_t n) {
+    return {index[0][n] >> 3, index[1][n] >> 3, index[2][n] >> 3};
+}
+
+void add_beyond(const std::array<std::vector<std::int32_t>, 3>& index, LeafTable& leaves) {
+    auto& beyond = leaves.beyond;
+    for (std::size_t n = 0; n < index[0].size(); ++n) {
+        const LeafTable::Leaf leaf = leaf_of(index, n);
+        if (!leaves.in_box(leaf)) beyond.push_back(leaf);
+    }
+    std::ranges::sort(beyond);
+    beyond.erase(std::unique(beyond.begin(), beyond.end()), beyond.end());
+}
 
 SortedPoints sort_points(const VoxelFrame& frame, const CloudView& cloud) {
     const Placed placed = place(frame, cloud);
@@ -161,6 +164,9 @@ SortedPoints sort_points(const VoxelFrame& frame, const CloudView& cloud) {
     SortedPoints out;
     out.unplaced = cloud.size() - within.size();
     if (within.empty()) return out;
+    if (within.size() > std::numeric_limits<std::uint32_t>::max())
+        throw Error(ErrorKind::input, std::to_string(within.size()) +
+                                          " points: in one piece 4294967295 can be parsed");
     std::array<std::vector<std::int32_t>, 3> index;
     for (auto& axis : index) axis.resize(within.size());
     each_point(within.size(), [&](std::size_t n) {
@@ -168,40 +174,42 @@ SortedPoints sort_points(const VoxelFrame& frame, const CloudView& cloud) {
             index[a][n] = static_cast<std::int32_t>(placed.at[a][within[n]]);
     });
     out.leaves = box_of(frame, index);
+    add_beyond(index, out.leaves);
     for (std::size_t a = 0; a < 3; ++a) {
-        out.corner[a] = (static_cast<std::int32_t>(placed.median[a]) - window) & ~7;
-        out.lowest[a] = *std::min_element(index[a].begin(), index[a].end());
-        out.highest[a] = *std::max_element(index[a].begin(), index[a].end());
+        const auto [low, high] = std::ranges::minmax_element(index[a]);
+        out.lowest[a] = *low;
+        out.highest[a] = *high;
     }
-    out.samples.resize(within.size());
+    std::vector<std::uint64_t> voxel(within.size());
     each_point(within.size(), [&](std::size_t n) {
-        out.samples[n] = {make_key({static_cast<std::uint32_t>(index[0][n] - out.corner[0]),
-                                    static_cast<std::uint32_t>(index[1][n] - out.corner[1]),
-                                    static_cast<std::uint32_t>(index[2][n] - out.corner[2])}),
-                          within[n]};
+        const auto leaf = static_cast<std::uint64_t>(out.leaves.index_of(leaf_of(index, n)));
+        voxel[n] =
+            leaf << 9 | static_cast<std::uint64_t>((index[0][n] & 7) << 6 | (index[1][n] & 7) << 3 |
+                                                   (index[2][n] & 7));
     });
-    tbb::parallel_sort(out.samples.begin(), out.samples.end());
+    const std::vector<std::uint32_t> order = sorted_order(voxel);
+    out.voxel.resize(order.size());
+    out.point.resize(order.size());
+    each_point(order.size(), [&](std::size_t n) {
+        out.voxel[n] = voxel[order[n]];
+        out.point[n] = within[order[n]];
+    });
     return out;
 }
 
-// Calls enter(leaf) for each leaf of sorted points, and use(offset, samples) for its voxels.
+// Calls enter(leaf) for each leaf of sorted points, and use(offset, points) for its voxels.
 template <class Enter, class Use>
 void each_voxel(const SortedPoints& points, const Enter& enter, const Use& use) {
-    const std::vector<Sample>& samples = points.samples;
-    std::uint64_t leaf_key = ~std::uint64_t{0};
-    for (std::size_t first = 0; first < samples.size();) {
-        std::size_t end = first;
-        while (end < samples.size() && samples[end].key == samples[first].key) ++end;
-        if (samples[first].key >> 9 != leaf_key) {
-            leaf_key = samples[first].key >> 9;
-            enter(LeafTable::Leaf{
-                static_cast<std::int32_t>(leaf_key >> 36) + (points.corner[0] >> 3),
-                static_cast<std::int32_t>(leaf_key >> 18 & 0x3ffff) + (points.corner[1] >> 3),
-                static_cast<std::int32_t>(leaf_key & 0x3ffff) + (points.corner[2] >> 3)});
+    const std::vector<std::uint64_t>& voxel = points.voxel;
+    std::uint64_t leaf = ~std::uint64_t{0};
+    for (std::size_t first = 0, last = 0; first < voxel.size(); first = last) {
+        while (last < voxel.size() && voxel[last] == voxel[first]) ++last;
+        if (voxel[first] >> 9 != leaf) {
+            leaf = voxel[first] >> 9;
+            enter(leaf);
         }
-        use(static_cast<openvdb::Index>(samples[first].key & 511),
-            std::span(samples.data() + first, end - first));
-        first = end;
+        use(static_cast<openvdb::Index>(voxel[first] & 511),
+            std::span(points.point).subspan(first, last - first));
     }
 }
 
@@ -214,12 +222,12 @@ void mark_surface(const SortedPoints& points, VoxelScene::Grids& g) {
     openvdb::MaskTree::LeafNodeType* mask = nullptr;
     each_voxel(
         points,
-        [&](const LeafTable::Leaf& leaf) {
-            if (!g.leaves.in_box(leaf)) g.leaves.beyond.push_back(leaf);
-            state = g.state->tree().touchLeaf(origin_of(leaf));
-            mask = g.points.touchLeaf(origin_of(leaf));
+        [&](std::uint64_t leaf) {
+            const openvdb::Coord origin = origin_of(g.leaves.leaf_at(leaf));
+            state = g.state->tree().touchLeaf(origin);
+            mask = g.points.touchLeaf(origin);
         },
-        [&](openvdb::Index offset, std::span<const Sample>) {
+        [&](openvdb::Index offset, std::span<const std::size_t>) {
             state->setValueOn(offset, static_cast<std::int32_t>(State::surface));
             mask->setValueOn(offset);
         });
@@ -249,14 +257,13 @@ void mark_labels(const SortedPoints& points, std::span<const std::int32_t> label
     std::vector<std::int32_t> labels;  // of one voxel's points
     each_voxel(
         points,
-        [&](const LeafTable::Leaf& leaf) {
-            stray = !g.leaves.in_box(leaf);
-            primitive = g.primitive->tree().touchLeaf(origin_of(leaf));
+        [&](std::uint64_t leaf) {
+            stray = leaf >= points.leaves.box_size();
+            primitive = g.primitive->tree().touchLeaf(origin_of(points.leaves.leaf_at(leaf)));
         },
-        [&](openvdb::Index offset, std::span<const Sample> samples) {
+        [&](openvdb::Index offset, std::span<const std::size_t> of_voxel) {
             labels.clear();
-            for (const Sample& sample : samples)
-                labels.push_back(std::max(label[sample.point], -1));
+            for (const std::size_t point : of_voxel) labels.push_back(std::max(label[point], -1));
             primitive->setValueOn(offset, stray ? -1 : majority(labels));
         });
 }

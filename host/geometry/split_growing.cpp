@@ -3,8 +3,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/sorted_order.h"
 #include "geometry/algebraic_model.h"
-#include "geometry/cell_grid.h"
 #include "geometry/face_limits.h"
 #include "geometry/split.h"
 

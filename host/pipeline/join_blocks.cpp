@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/sorted_order.h"
 #include "geometry/cell_grid.h"
 #include "pipeline/block_stage.h"
 
@@ -109,7 +110,7 @@ void sort_cells(SolidCells& cells) {
     std::vector<std::uint64_t> keys(cells.size());
     for (std::size_t n = 0; n < keys.size(); ++n)
         keys[n] = packing(cells.i[n], cells.j[n], cells.k[n]);
-    const std::vector<std::uint32_t> order = geometry::sorted_order(keys);
+    const std::vector<std::uint32_t> order = sorted_order(keys);
     keys = {};
     const auto sort = [&](auto& values) {
         auto sorted = values;
