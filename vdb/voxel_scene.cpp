@@ -19,11 +19,10 @@ constexpr int key_bits = 21;                          // of a voxel index, per a
 constexpr std::int32_t window = 1 << (key_bits - 1);  // voxels from the median, either way
 constexpr std::uint64_t max_leaves = std::uint64_t{1} << 23;
 
-// A point's voxel, relative to a corner that is a multiple of 8, and its label: the key sorts by
-// leaf (x, then y, then z) and within the leaf by the voxel's offset.
+// A point's voxel, relative to a corner that is a multiple of 8, and which point it is: the key
+// sorts by leaf (x, then y, then z) and within the leaf by the voxel's offset.
 struct Sample {
-    std::uint64_t key;
-    std::int32_t label;
+    std::uint64_t key, point;
     friend auto operator<=>(const Sample&, const Sample&) = default;
 };
 
@@ -33,7 +32,7 @@ std::uint64_t make_key(const std::array<std::uint32_t, 3>& v) {
     return leaf << 9 | (v[0] & 7) << 6 | (v[1] & 7) << 3 | (v[2] & 7);
 }
 
-void check(const VoxelFrame& frame, const CloudView& cloud, std::span<const std::int32_t> label) {
+void check(const VoxelFrame& frame) {
     if (!(frame.voxel_m > 0) || !std::isfinite(frame.voxel_m)) {
         throw Error(ErrorKind::usage,
                     "voxel size " + std::to_string(frame.voxel_m) + " m: it must be positive");
@@ -48,6 +47,9 @@ void check(const VoxelFrame& frame, const CloudView& cloud, std::span<const std:
             }
         }
     }
+}
+
+void check(const CloudView& cloud, std::span<const std::int32_t> label) {
     if (label.size() != cloud.size()) {
         throw Error(ErrorKind::usage, "voxel scene: " + std::to_string(label.size()) +
                                           " labels for " + std::to_string(cloud.size()) +
@@ -130,37 +132,15 @@ LeafTable box_of(const VoxelFrame& frame, const std::array<std::vector<std::int3
     return chosen;
 }
 
-// The most frequent label of sorted samples, the lowest of equals; -1 counts only by itself.
-std::int32_t majority(std::span<const Sample> samples) {
-    std::int32_t best = -1;
-    std::size_t best_count = 0;
-    for (std::size_t first = 0; first < samples.size();) {
-        std::size_t end = first;
-        while (end < samples.size() && samples[end].label == samples[first].label) ++end;
-        if (samples[first].label >= 0 && end - first > best_count) {
-            best = samples[first].label;
-            best_count = end - first;
-        }
-        first = end;
-    }
-    return best;
-}
+// The voxels of the points, sorted, of those that voxel indices reach.
+struct SortedPoints {
+    std::vector<Sample> samples;
+    LeafTable leaves;
+    std::array<std::int32_t, 3> corner{}, lowest{0, 0, 0}, highest{-1, -1, -1};
+    std::uint64_t unplaced = 0;
+};
 
-}  // namespace
-
-VoxelScene::VoxelScene(const VoxelFrame& frame) : grids_(std::make_unique<Grids>()) {
-    openvdb::initialize();
-    grids_->frame = frame;
-    grids_->state = openvdb::Int32Grid::create(static_cast<std::int32_t>(State::invisible));
-    grids_->primitive = openvdb::Int32Grid::create(-1);
-}
-
-VoxelScene::VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
-                       std::span<const std::int32_t> label)
-    : VoxelScene(frame) {
-    check(frame, cloud, label);
-    Grids& g = *grids_;
-
+SortedPoints sort_points(const VoxelFrame& frame, const CloudView& cloud) {
     const Placed placed = place(frame, cloud);
     for (int a = 0; a < 3; ++a) {
         if (!(std::abs(placed.median[a]) < 1e9)) {
@@ -178,57 +158,136 @@ VoxelScene::VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
             all = all && std::abs(placed.at[a][n] - placed.median[a]) < window - 16;
         if (all) within.push_back(n);
     }
-    g.unplaced += cloud.size() - within.size();
-    if (within.empty()) return;
+    SortedPoints out;
+    out.unplaced = cloud.size() - within.size();
+    if (within.empty()) return out;
     std::array<std::vector<std::int32_t>, 3> index;
     for (auto& axis : index) axis.resize(within.size());
     each_point(within.size(), [&](std::size_t n) {
         for (std::size_t a = 0; a < 3; ++a)
             index[a][n] = static_cast<std::int32_t>(placed.at[a][within[n]]);
     });
-    g.leaves = box_of(frame, index);
-
-    std::array<std::int32_t, 3> corner;
-    for (int a = 0; a < 3; ++a) {
-        corner[a] = (static_cast<std::int32_t>(placed.median[a]) - window) & ~7;
-        g.lowest[a] = *std::min_element(index[a].begin(), index[a].end());
-        g.highest[a] = *std::max_element(index[a].begin(), index[a].end());
+    out.leaves = box_of(frame, index);
+    for (std::size_t a = 0; a < 3; ++a) {
+        out.corner[a] = (static_cast<std::int32_t>(placed.median[a]) - window) & ~7;
+        out.lowest[a] = *std::min_element(index[a].begin(), index[a].end());
+        out.highest[a] = *std::max_element(index[a].begin(), index[a].end());
     }
-    std::vector<Sample> samples(within.size());
+    out.samples.resize(within.size());
     each_point(within.size(), [&](std::size_t n) {
-        samples[n].key = make_key({static_cast<std::uint32_t>(index[0][n] - corner[0]),
-                                   static_cast<std::uint32_t>(index[1][n] - corner[1]),
-                                   static_cast<std::uint32_t>(index[2][n] - corner[2])});
-        samples[n].label = std::max(label[within[n]], -1);
+        out.samples[n] = {make_key({static_cast<std::uint32_t>(index[0][n] - out.corner[0]),
+                                    static_cast<std::uint32_t>(index[1][n] - out.corner[1]),
+                                    static_cast<std::uint32_t>(index[2][n] - out.corner[2])}),
+                          within[n]};
     });
-    tbb::parallel_sort(samples.begin(), samples.end());
+    tbb::parallel_sort(out.samples.begin(), out.samples.end());
+    return out;
+}
 
-    StateLeaf* state = nullptr;
-    StateLeaf* primitive = nullptr;
-    openvdb::MaskTree::LeafNodeType* points = nullptr;
+// Calls enter(leaf) for each leaf of sorted points, and use(offset, samples) for its voxels.
+template <class Enter, class Use>
+void each_voxel(const SortedPoints& points, const Enter& enter, const Use& use) {
+    const std::vector<Sample>& samples = points.samples;
     std::uint64_t leaf_key = ~std::uint64_t{0};
-    bool stray = false;
     for (std::size_t first = 0; first < samples.size();) {
         std::size_t end = first;
         while (end < samples.size() && samples[end].key == samples[first].key) ++end;
         if (samples[first].key >> 9 != leaf_key) {
             leaf_key = samples[first].key >> 9;
-            const LeafTable::Leaf leaf{
-                static_cast<std::int32_t>(leaf_key >> 36) + (corner[0] >> 3),
-                static_cast<std::int32_t>(leaf_key >> 18 & 0x3ffff) + (corner[1] >> 3),
-                static_cast<std::int32_t>(leaf_key & 0x3ffff) + (corner[2] >> 3)};
-            stray = !g.leaves.in_box(leaf);
-            if (stray) g.leaves.beyond.push_back(leaf);
-            state = g.state->tree().touchLeaf(origin_of(leaf));
-            primitive = g.primitive->tree().touchLeaf(origin_of(leaf));
-            points = g.points.touchLeaf(origin_of(leaf));
+            enter(LeafTable::Leaf{
+                static_cast<std::int32_t>(leaf_key >> 36) + (points.corner[0] >> 3),
+                static_cast<std::int32_t>(leaf_key >> 18 & 0x3ffff) + (points.corner[1] >> 3),
+                static_cast<std::int32_t>(leaf_key & 0x3ffff) + (points.corner[2] >> 3)});
         }
-        const auto offset = static_cast<openvdb::Index>(samples[first].key & 511);
-        state->setValueOn(offset, static_cast<std::int32_t>(State::surface));
-        primitive->setValueOn(offset, stray ? -1 : majority({samples.data() + first, end - first}));
-        points->setValueOn(offset);
+        use(static_cast<openvdb::Index>(samples[first].key & 511),
+            std::span(samples.data() + first, end - first));
         first = end;
     }
+}
+
+void mark_surface(const SortedPoints& points, VoxelScene::Grids& g) {
+    g.unplaced += points.unplaced;
+    g.leaves = points.leaves;
+    g.lowest = points.lowest;
+    g.highest = points.highest;
+    StateLeaf* state = nullptr;
+    openvdb::MaskTree::LeafNodeType* mask = nullptr;
+    each_voxel(
+        points,
+        [&](const LeafTable::Leaf& leaf) {
+            if (!g.leaves.in_box(leaf)) g.leaves.beyond.push_back(leaf);
+            state = g.state->tree().touchLeaf(origin_of(leaf));
+            mask = g.points.touchLeaf(origin_of(leaf));
+        },
+        [&](openvdb::Index offset, std::span<const Sample>) {
+            state->setValueOn(offset, static_cast<std::int32_t>(State::surface));
+            mask->setValueOn(offset);
+        });
+}
+
+// The most frequent of some labels, the lowest of equals; -1 counts only by itself. Sorts them.
+std::int32_t majority(std::vector<std::int32_t>& labels) {
+    std::sort(labels.begin(), labels.end());
+    std::int32_t best = -1;
+    std::size_t best_count = 0;
+    for (std::size_t first = 0; first < labels.size();) {
+        std::size_t end = first;
+        while (end < labels.size() && labels[end] == labels[first]) ++end;
+        if (labels[first] >= 0 && end - first > best_count) {
+            best = labels[first];
+            best_count = end - first;
+        }
+        first = end;
+    }
+    return best;
+}
+
+void mark_labels(const SortedPoints& points, std::span<const std::int32_t> label,
+                 VoxelScene::Grids& g) {
+    StateLeaf* primitive = nullptr;
+    bool stray = false;
+    std::vector<std::int32_t> labels;  // of one voxel's points
+    each_voxel(
+        points,
+        [&](const LeafTable::Leaf& leaf) {
+            stray = !g.leaves.in_box(leaf);
+            primitive = g.primitive->tree().touchLeaf(origin_of(leaf));
+        },
+        [&](openvdb::Index offset, std::span<const Sample> samples) {
+            labels.clear();
+            for (const Sample& sample : samples)
+                labels.push_back(std::max(label[sample.point], -1));
+            primitive->setValueOn(offset, stray ? -1 : majority(labels));
+        });
+}
+
+}  // namespace
+
+VoxelScene::VoxelScene(const VoxelFrame& frame) : grids_(std::make_unique<Grids>()) {
+    openvdb::initialize();
+    grids_->frame = frame;
+    grids_->state = openvdb::Int32Grid::create(static_cast<std::int32_t>(State::invisible));
+    grids_->primitive = openvdb::Int32Grid::create(-1);
+}
+
+VoxelScene::VoxelScene(const VoxelFrame& frame, const CloudView& cloud) : VoxelScene(frame) {
+    check(frame);
+    mark_surface(sort_points(frame, cloud), *grids_);
+}
+
+VoxelScene::VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
+                       std::span<const std::int32_t> label)
+    : VoxelScene(frame) {
+    check(frame);
+    check(cloud, label);
+    const SortedPoints points = sort_points(frame, cloud);
+    mark_surface(points, *grids_);
+    mark_labels(points, label, *grids_);
+}
+
+void VoxelScene::set_labels(const CloudView& cloud, std::span<const std::int32_t> label) {
+    check(cloud, label);
+    mark_labels(sort_points(grids_->frame, cloud), label, *grids_);
 }
 
 VoxelScene::~VoxelScene() = default;

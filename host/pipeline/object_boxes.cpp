@@ -53,12 +53,15 @@ std::vector<ObjectBox> object_boxes(const SolidScene& solids,
         box->add(from);
         box->add(to);
     }
+    std::vector<Vec3> corners;
     for (std::size_t b = 0; b < boundary.size(); ++b) {
         const Vec3 from{boundary.i[b] * h, boundary.j[b] * h, boundary.k[b] * h};
         Ends* const box =
             widened(boundary.primitive[b], from, {from[0] + h, from[1] + h, from[2] + h});
         if (!box || boundary.share[b] == 0) continue;
-        for (const Vec3& corner : solids::corners_of(boundary, b, h)) box->add(corner);
+        corners.clear();
+        solids::add_corners(boundary, b, h, corners);
+        for (const Vec3& corner : corners) box->add(corner);
     }
     std::vector<ObjectBox> out(objects);
     for (std::size_t o = 0; o < objects; ++o) {
