@@ -195,6 +195,8 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
                    double friction, std::vector<StableObject>& objects) {
     const SolidCells& cells = solids.cells();
     const CellColumns& columns = solids.columns();
+    const std::vector<ObjectBox> boxes = object_boxes(solids, object_of_primitive, objects.size());
+    for (std::size_t o = 0; o < objects.size(); ++o) objects[o].box = boxes[o];
     std::vector<physics::Candidate> candidates;
     for (StableObject& o : objects) {
         if (!o.grounded && !o.candidate.support_polygon.empty())
@@ -251,7 +253,7 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
                                      objects[o].margin_error_m, friction);
         objects[o].overturning =
             physics::overturning(candidates[o], objects[o].body_error, tipping[o],
-                                 objects[o].highest_m, objects[o].margin_error_m, friction,
+                                 objects[o].box.top_m(), objects[o].margin_error_m, friction,
                                  floor_below(floors, candidates[o].support_height_m));
         objects[o].tipping = std::move(tipping[o]);
         objects[o].level_tipping = std::move(level[o]);

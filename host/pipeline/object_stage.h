@@ -18,6 +18,7 @@
 #include "physics/sliding.h"
 #include "physics/toppling.h"
 #include "pipeline/hand_corrections.h"
+#include "pipeline/object_boxes.h"
 #include "pipeline/solid_parts.h"
 #include "pipeline/stage_clock.h"
 
@@ -48,10 +49,11 @@ struct StableObject {
     bool seen_enough() const {
         return rest != graph::RestKind::hidden && rest != graph::RestKind::none;
     }
-    double agreement = 1;  // share of the sampler's chains that found it
-    graph::PieceOf piece;  // what it may be a piece of
-    Landscape poses;       // grid frame; its places are those of `sliding`
-    double lowest_m = 0, highest_m = 0;
+    double agreement = 1;                // share of the sampler's chains that found it
+    graph::PieceOf piece;                // what it may be a piece of
+    Landscape poses;                     // grid frame; its places are those of `sliding`
+    double lowest_m = 0, highest_m = 0;  // of its voxels
+    ObjectBox box;
 };
 
 // S(W) by direction and height of an object that tips so, as it stands.
@@ -81,7 +83,8 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
                       StageClock& stage);
 
 // What a push does to objects whose candidates are known, all in one batch: fills in the drops over
-// their edges, tipping, sliding, both together and their poses. What is grounded stops what falls.
+// their edges, tipping, sliding, both together, their poses and boxes. What is grounded stops what
+// falls.
 void find_barriers(device::Device& device, const physics::SupportTable& table,
                    const SolidScene& solids, std::span<const std::int32_t> object_of_primitive,
                    double friction, std::vector<StableObject>& objects);
