@@ -13,7 +13,8 @@ double support_m(const StableObject& from) {
     return from.candidate.support_polygon.empty() ? from.lowest_m : from.candidate.support_height_m;
 }
 
-physics::Swept swept(const SolidParts& parts, const StableObject& from) {
+physics::Swept swept(const SolidParts& parts, const physics::HiddenWalls& walls,
+                     const StableObject& from) {
     const physics::Instability& how = from.instability;
     const Vec3& center = from.candidate.body.center;
     const Vec3& way = how.weakest;
@@ -28,8 +29,8 @@ physics::Swept swept(const SolidParts& parts, const StableObject& from) {
         for (std::size_t c = 0; c < 2; ++c) beside += ((a[c] + b[c]) / 2 - center[c]) * way[c];
     }
     physics::Swept out =
-        physics::sweep_over_edge(parts.solids->cells(), parts.solids->columns(), from.candidate,
-                                 support, way, beside, from.highest_m);
+        physics::sweep_over_edge(parts.solids->cells(), parts.solids->columns(), walls,
+                                 from.candidate, support, way, beside, from.highest_m);
     if (!out.stopped) out.center[2] -= how.drop_m;
     return out;
 }
@@ -99,7 +100,7 @@ std::vector<Landing> landings(const SolidParts& parts, const ObjectStage& object
     for (std::size_t o = 0; o < out.size(); ++o) {
         const StableObject& from = objects.objects[o];
         if (from.grounded) continue;
-        out[o].swept = swept(parts, from);
+        out[o].swept = swept(parts, objects.hidden_walls, from);
         out[o].hits_J = hits_J(from, out[o].swept);
         out[o].zone = zone(from, out[o].swept, reach[o]);
     }

@@ -24,7 +24,7 @@ Swept falling(const std::vector<Solid>& others) {
     Candidate body;
     body.primitives = {0};
     body.body.center = {edge_m - inside_m, 0.3, middle_m};
-    return sweep_over_edge(cells, CellColumns(cells), body, 0, {1, 0, 0}, inside_m, summit_m);
+    return sweep_over_edge(cells, CellColumns(cells), {}, body, 0, {1, 0, 0}, inside_m, summit_m);
 }
 
 TEST(FallSweep, WithRoomItLiesOnItsSide) {
