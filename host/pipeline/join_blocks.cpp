@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "core/sorted_order.h"
 #include "geometry/cell_grid.h"
 #include "pipeline/block_stage.h"
 
@@ -131,7 +132,7 @@ void sort_cells(SolidCells& cells) {
         std::vector<std::uint64_t> keys;
         for (const std::uint32_t n : of_slice) keys.push_back(packing(0, cells.j[n], cells.k[n]));
         const std::vector<std::uint32_t> was(of_slice.begin(), of_slice.end());
-        const std::vector<std::uint32_t> sorted = geometry::sorted_order(keys);
+        const std::vector<std::uint32_t> sorted = sorted_order(keys);
         for (std::size_t n = 0; n < sorted.size(); ++n) of_slice[n] = was[sorted[n]];
     }
     const auto sort = [&](auto& values) {

@@ -13,17 +13,12 @@
 #include "geometry/ledges.h"
 #include "geometry/split.h"
 #include "geometry/surface_gaps.h"
-#include "pipeline/view_coverage.h"
-#include "pipeline/voxel_size.h"
 #include "solids/boundary.h"
 #include "solids/patches.h"
 #include "vdb/completion.h"
 
 namespace topple {
 namespace {
-
-// Frames are carved in batches of this many bytes of depth, so that any number of them fits.
-constexpr std::uint64_t batch_bytes = 32u << 20;
 
 // The solids among so many primitives, by their voxels, numbered in their order.
 std::vector<std::int32_t> solid_numbers(const SolidCells& cells, std::size_t primitives) {
@@ -63,21 +58,6 @@ std::vector<vdb::StandsOn> ledges(const GeometryStage& geometry) {
     return out;
 }
 
-PointCloud with_gaps(const CloudView& cloud, const geometry::GapPoints& gaps) {
-    PointCloud out;
-    const auto joined = [](const auto& first, const std::vector<float>& then) {
-        std::vector<float> all;
-        all.reserve(first.size() + then.size());
-        for (const float v : first) all.push_back(v);
-        all.insert(all.end(), then.begin(), then.end());
-        return all;
-    };
-    out.x = joined(cloud.x, gaps.x);
-    out.y = joined(cloud.y, gaps.y);
-    out.z = joined(cloud.z, gaps.z);
-    return out;
-}
-
 // The faces of the primitives: what bounds the solids within their voxels.
 struct Faces {
     std::vector<SurfacePatch> patches;
@@ -97,7 +77,7 @@ solids::SeenCells seen_and_between(const CloudView& cloud, const geometry::GapPo
     std::vector<bool> left(static_cast<std::size_t>(faces), false);
     for (const std::int32_t f : face)
         if (f >= 0) left[static_cast<std::size_t>(f)] = true;
-    const PointCloud all = with_gaps(cloud, gaps);
+    const PointCloud all = geometry::with_gaps(cloud, gaps);
     for (std::size_t n = 0; n < gaps.size(); ++n) {
         const std::int32_t f = gaps.face[n];
         solid.push_back(number[static_cast<std::size_t>(gaps.primitive[n])]);
@@ -229,26 +209,6 @@ std::shared_ptr<const SolidScene> scene_of_whole_voxels(const GeometryStage& geo
                                               std::move(parted.strays));
 }
 
-// Returns whether the frames show the scene from around.
-bool carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScene& scene,
-               StageClock& stage) {
-    ViewCoverage coverage(scene.frame().grid_from_input);
-    const Intrinsics& k = frames.intrinsics();
-    const std::uint64_t frame_bytes = std::uint64_t{2} * k.width * k.height;
-    const std::size_t per_batch =
-        static_cast<std::size_t>(std::clamp<std::uint64_t>(batch_bytes / frame_bytes, 1, 512));
-    std::vector<DepthFrame> batch;
-    for_each_frame(frames, device.threads(), [&](DepthFrame frame, std::size_t f) {
-        batch.push_back(std::move(frame));
-        coverage.add(batch.back().camera_to_world);
-        if (batch.size() < per_batch && f + 1 < frames.size()) return;
-        scene.carve(device, k, batch);
-        batch.clear();
-        stage.progress("carving", static_cast<double>(f + 1) / static_cast<double>(frames.size()));
-    });
-    return coverage.from_around();
-}
-
 constexpr const char* fraction_field = "fraction";
 
 }  // namespace
@@ -330,33 +290,21 @@ geometry::SurfaceSamples numbered(geometry::SurfaceSamples samples,
 }
 
 VoxelStage make_solids(device::Device& device, const Ingested& input, const GeometryStage& geometry,
-                       double voxel_m, StageClock& stage, SolidDetail detail) {
+                       SpaceCarving& carving, StageClock& stage, SolidDetail detail) {
     VoxelStage out;
-    const vdb::VoxelFrame frame{voxel_m, geometry.frame.axes};
+    const double voxel_m = carving.frame().voxel_m;
     geometry::GapPoints gaps;
     stage("voxels", [&] {
-        // Larger voxels close gaps by themselves.
-        if (voxel_m < closing_cells * std::max(input.cell_m, input.sparse_cell_m))
+        if (carving.closes_gaps())
             gaps = geometry::close_gaps(geometry.surfels, geometry.primitives.faces.label,
                                         geometry.primitives.label, voxel_m / 2, device.threads());
-        if (gaps.size() == 0) {
-            out.scene =
-                std::make_shared<vdb::VoxelScene>(frame, input.cloud, geometry.primitive_of_point);
-            return;
-        }
-        std::vector<std::int32_t> label = geometry.primitive_of_point;
-        label.insert(label.end(), gaps.primitive.begin(), gaps.primitive.end());
-        out.scene = std::make_shared<vdb::VoxelScene>(frame, with_gaps(input.cloud, gaps), label);
     });
-    bool around = false;
-    stage("carving", [&] {
-        if (input.frames) around = carve_all(device, *input.frames, *out.scene, stage);
-        if (input.space) out.scene->set_free(*input.space);
-    });
+    const SpaceCarving::Carved carved = carving.finish(geometry.primitive_of_point, gaps, stage);
+    out.scene = carved.scene;
     stage("filling", [&] {
         SolidCells cells = out.scene->solid_cells();
         vdb::CompletionOptions options;
-        options.fill.columns = around;
+        options.fill.columns = carved.from_around;
         options.fill.lowest = floor_level(cells, geometry);
         options.fill.roles = geometry.role;
         options.ledges = ledges(geometry);
