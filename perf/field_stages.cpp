@@ -31,8 +31,8 @@ std::vector<Result> measure_fields(device::Device& device, const StageScene& sce
     std::vector<std::pair<std::string, double>> timings;
     ParseOptions options;
     StageClock clock(timings, options);
-    const VoxelStage voxels =
-        make_solids(device, scene.ingested, scene.geometry, stage_voxel_m, clock);
+    SpaceCarving carving(device, scene.ingested, {stage_voxel_m, scene.geometry.frame.axes});
+    const VoxelStage voxels = make_solids(device, scene.ingested, scene.geometry, carving, clock);
     SolidParts parts = solid_parts(scene.geometry, voxels);
     const ObjectStage objects = find_objects(device, options, clock, parts);
     std::vector<Result> out;

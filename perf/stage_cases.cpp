@@ -16,7 +16,8 @@ using Timings = std::vector<std::pair<std::string, double>>;
 GeometryStage segment(device::Device& device, const StageScene& scene, Timings& timings) {
     const ParseOptions options;
     StageClock clock(timings, options);
-    return find_primitives(device, scene.ingested, options, clock);
+    return find_primitives(device, scene.ingested,
+                           find_surfels(device, scene.ingested, options, clock), clock);
 }
 
 std::uint64_t hash_of(const vdb::VoxelScene& scene) {

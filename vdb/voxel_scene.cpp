@@ -3,37 +3,23 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/scene_bounds.h"
+#include "core/sorted_order.h"
 #include "topple/error.h"
 #include "vdb/grids.h"
 
 namespace topple::vdb {
 namespace {
 
-constexpr int key_bits = 21;                          // of a voxel index, per axis
-constexpr std::int32_t window = 1 << (key_bits - 1);  // voxels from the median, either way
+constexpr std::int32_t window = 1 << 20;  // voxels from the points' median, either way
 constexpr std::uint64_t max_leaves = std::uint64_t{1} << 23;
 
-// A point's voxel, relative to a corner that is a multiple of 8, and its label: the key sorts by
-// leaf (x, then y, then z) and within the leaf by the voxel's offset.
-struct Sample {
-    std::uint64_t key;
-    std::int32_t label;
-    friend auto operator<=>(const Sample&, const Sample&) = default;
-};
-
-std::uint64_t make_key(const std::array<std::uint32_t, 3>& v) {
-    const std::uint64_t leaf =
-        (std::uint64_t{v[0] >> 3} << 36) | (std::uint64_t{v[1] >> 3} << 18) | (v[2] >> 3);
-    return leaf << 9 | (v[0] & 7) << 6 | (v[1] & 7) << 3 | (v[2] & 7);
-}
-
-void check(const VoxelFrame& frame, const CloudView& cloud, std::span<const std::int32_t> label) {
+void check(const VoxelFrame& frame) {
     if (!(frame.voxel_m > 0) || !std::isfinite(frame.voxel_m)) {
         throw Error(ErrorKind::usage,
                     "voxel size " + std::to_string(frame.voxel_m) + " m: it must be positive");
@@ -48,6 +34,9 @@ void check(const VoxelFrame& frame, const CloudView& cloud, std::span<const std:
             }
         }
     }
+}
+
+void check(const CloudView& cloud, std::span<const std::int32_t> label) {
     if (label.size() != cloud.size()) {
         throw Error(ErrorKind::usage, "voxel scene: " + std::to_string(label.size()) +
                                           " labels for " + std::to_string(cloud.size()) +
@@ -130,37 +119,31 @@ LeafTable box_of(const VoxelFrame& frame, const std::array<std::vector<std::int3
     return chosen;
 }
 
-// The most frequent label of sorted samples, the lowest of equals; -1 counts only by itself.
-std::int32_t majority(std::span<const Sample> samples) {
-    std::int32_t best = -1;
-    std::size_t best_count = 0;
-    for (std::size_t first = 0; first < samples.size();) {
-        std::size_t end = first;
-        while (end < samples.size() && samples[end].label == samples[first].label) ++end;
-        if (samples[first].label >= 0 && end - first > best_count) {
-            best = samples[first].label;
-            best_count = end - first;
-        }
-        first = end;
+// The points that voxel indices reach, by leaf of the table and voxel of the leaf; those of one
+// voxel in their order.
+struct SortedPoints {
+    LeafTable leaves;
+    std::vector<std::uint64_t> voxel;  // leaf * 512 + offset, ascending
+    std::vector<std::size_t> point;
+    std::array<std::int32_t, 3> lowest{0, 0, 0}, highest{-1, -1, -1};
+    std::uint64_t unplaced = 0;
+};
+
+LeafTable::Leaf leaf_of(const std::array<std::vector<std::int32_t>, 3>& index, std::size_t n) {
+    return {index[0][n] >> 3, index[1][n] >> 3, index[2][n] >> 3};
+}
+
+void add_beyond(const std::array<std::vector<std::int32_t>, 3>& index, LeafTable& leaves) {
+    auto& beyond = leaves.beyond;
+    for (std::size_t n = 0; n < index[0].size(); ++n) {
+        const LeafTable::Leaf leaf = leaf_of(index, n);
+        if (!leaves.in_box(leaf)) beyond.push_back(leaf);
     }
-    return best;
+    std::ranges::sort(beyond);
+    beyond.erase(std::unique(beyond.begin(), beyond.end()), beyond.end());
 }
 
-}  // namespace
-
-VoxelScene::VoxelScene(const VoxelFrame& frame) : grids_(std::make_unique<Grids>()) {
-    openvdb::initialize();
-    grids_->frame = frame;
-    grids_->state = openvdb::Int32Grid::create(static_cast<std::int32_t>(State::invisible));
-    grids_->primitive = openvdb::Int32Grid::create(-1);
-}
-
-VoxelScene::VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
-                       std::span<const std::int32_t> label)
-    : VoxelScene(frame) {
-    check(frame, cloud, label);
-    Grids& g = *grids_;
-
+SortedPoints sort_points(const VoxelFrame& frame, const CloudView& cloud) {
     const Placed placed = place(frame, cloud);
     for (int a = 0; a < 3; ++a) {
         if (!(std::abs(placed.median[a]) < 1e9)) {
@@ -178,57 +161,140 @@ VoxelScene::VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
             all = all && std::abs(placed.at[a][n] - placed.median[a]) < window - 16;
         if (all) within.push_back(n);
     }
-    g.unplaced += cloud.size() - within.size();
-    if (within.empty()) return;
+    SortedPoints out;
+    out.unplaced = cloud.size() - within.size();
+    if (within.empty()) return out;
+    if (within.size() > std::numeric_limits<std::uint32_t>::max())
+        throw Error(ErrorKind::input, std::to_string(within.size()) +
+                                          " points: in one piece 4294967295 can be parsed");
     std::array<std::vector<std::int32_t>, 3> index;
     for (auto& axis : index) axis.resize(within.size());
     each_point(within.size(), [&](std::size_t n) {
         for (std::size_t a = 0; a < 3; ++a)
             index[a][n] = static_cast<std::int32_t>(placed.at[a][within[n]]);
     });
-    g.leaves = box_of(frame, index);
-
-    std::array<std::int32_t, 3> corner;
-    for (int a = 0; a < 3; ++a) {
-        corner[a] = (static_cast<std::int32_t>(placed.median[a]) - window) & ~7;
-        g.lowest[a] = *std::min_element(index[a].begin(), index[a].end());
-        g.highest[a] = *std::max_element(index[a].begin(), index[a].end());
+    out.leaves = box_of(frame, index);
+    add_beyond(index, out.leaves);
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto [low, high] = std::ranges::minmax_element(index[a]);
+        out.lowest[a] = *low;
+        out.highest[a] = *high;
     }
-    std::vector<Sample> samples(within.size());
+    std::vector<std::uint64_t> voxel(within.size());
     each_point(within.size(), [&](std::size_t n) {
-        samples[n].key = make_key({static_cast<std::uint32_t>(index[0][n] - corner[0]),
-                                   static_cast<std::uint32_t>(index[1][n] - corner[1]),
-                                   static_cast<std::uint32_t>(index[2][n] - corner[2])});
-        samples[n].label = std::max(label[within[n]], -1);
+        const auto leaf = static_cast<std::uint64_t>(out.leaves.index_of(leaf_of(index, n)));
+        voxel[n] =
+            leaf << 9 | static_cast<std::uint64_t>((index[0][n] & 7) << 6 | (index[1][n] & 7) << 3 |
+                                                   (index[2][n] & 7));
     });
-    tbb::parallel_sort(samples.begin(), samples.end());
+    const std::vector<std::uint32_t> order = sorted_order(voxel);
+    out.voxel.resize(order.size());
+    out.point.resize(order.size());
+    each_point(order.size(), [&](std::size_t n) {
+        out.voxel[n] = voxel[order[n]];
+        out.point[n] = within[order[n]];
+    });
+    return out;
+}
 
-    StateLeaf* state = nullptr;
-    StateLeaf* primitive = nullptr;
-    openvdb::MaskTree::LeafNodeType* points = nullptr;
-    std::uint64_t leaf_key = ~std::uint64_t{0};
-    bool stray = false;
-    for (std::size_t first = 0; first < samples.size();) {
-        std::size_t end = first;
-        while (end < samples.size() && samples[end].key == samples[first].key) ++end;
-        if (samples[first].key >> 9 != leaf_key) {
-            leaf_key = samples[first].key >> 9;
-            const LeafTable::Leaf leaf{
-                static_cast<std::int32_t>(leaf_key >> 36) + (corner[0] >> 3),
-                static_cast<std::int32_t>(leaf_key >> 18 & 0x3ffff) + (corner[1] >> 3),
-                static_cast<std::int32_t>(leaf_key & 0x3ffff) + (corner[2] >> 3)};
-            stray = !g.leaves.in_box(leaf);
-            if (stray) g.leaves.beyond.push_back(leaf);
-            state = g.state->tree().touchLeaf(origin_of(leaf));
-            primitive = g.primitive->tree().touchLeaf(origin_of(leaf));
-            points = g.points.touchLeaf(origin_of(leaf));
+// Calls enter(leaf) for each leaf of sorted points, and use(offset, points) for its voxels.
+template <class Enter, class Use>
+void each_voxel(const SortedPoints& points, const Enter& enter, const Use& use) {
+    const std::vector<std::uint64_t>& voxel = points.voxel;
+    std::uint64_t leaf = ~std::uint64_t{0};
+    for (std::size_t first = 0, last = 0; first < voxel.size(); first = last) {
+        while (last < voxel.size() && voxel[last] == voxel[first]) ++last;
+        if (voxel[first] >> 9 != leaf) {
+            leaf = voxel[first] >> 9;
+            enter(leaf);
         }
-        const auto offset = static_cast<openvdb::Index>(samples[first].key & 511);
-        state->setValueOn(offset, static_cast<std::int32_t>(State::surface));
-        primitive->setValueOn(offset, stray ? -1 : majority({samples.data() + first, end - first}));
-        points->setValueOn(offset);
+        use(static_cast<openvdb::Index>(voxel[first] & 511),
+            std::span(points.point).subspan(first, last - first));
+    }
+}
+
+void mark_surface(const SortedPoints& points, VoxelScene::Grids& g) {
+    g.unplaced += points.unplaced;
+    g.leaves = points.leaves;
+    g.lowest = points.lowest;
+    g.highest = points.highest;
+    StateLeaf* state = nullptr;
+    openvdb::MaskTree::LeafNodeType* mask = nullptr;
+    each_voxel(
+        points,
+        [&](std::uint64_t leaf) {
+            const openvdb::Coord origin = origin_of(g.leaves.leaf_at(leaf));
+            state = g.state->tree().touchLeaf(origin);
+            mask = g.points.touchLeaf(origin);
+        },
+        [&](openvdb::Index offset, std::span<const std::size_t>) {
+            state->setValueOn(offset, static_cast<std::int32_t>(State::surface));
+            mask->setValueOn(offset);
+        });
+}
+
+// The most frequent of some labels, the lowest of equals; -1 counts only by itself. Sorts them.
+std::int32_t majority(std::vector<std::int32_t>& labels) {
+    std::sort(labels.begin(), labels.end());
+    std::int32_t best = -1;
+    std::size_t best_count = 0;
+    for (std::size_t first = 0; first < labels.size();) {
+        std::size_t end = first;
+        while (end < labels.size() && labels[end] == labels[first]) ++end;
+        if (labels[first] >= 0 && end - first > best_count) {
+            best = labels[first];
+            best_count = end - first;
+        }
         first = end;
     }
+    return best;
+}
+
+void mark_labels(const SortedPoints& points, std::span<const std::int32_t> label,
+                 VoxelScene::Grids& g) {
+    StateLeaf* primitive = nullptr;
+    bool stray = false;
+    std::vector<std::int32_t> labels;  // of one voxel's points
+    each_voxel(
+        points,
+        [&](std::uint64_t leaf) {
+            stray = leaf >= points.leaves.box_size();
+            primitive = g.primitive->tree().touchLeaf(origin_of(points.leaves.leaf_at(leaf)));
+        },
+        [&](openvdb::Index offset, std::span<const std::size_t> of_voxel) {
+            labels.clear();
+            for (const std::size_t point : of_voxel) labels.push_back(std::max(label[point], -1));
+            primitive->setValueOn(offset, stray ? -1 : majority(labels));
+        });
+}
+
+}  // namespace
+
+VoxelScene::VoxelScene(const VoxelFrame& frame) : grids_(std::make_unique<Grids>()) {
+    openvdb::initialize();
+    grids_->frame = frame;
+    grids_->state = openvdb::Int32Grid::create(static_cast<std::int32_t>(State::invisible));
+    grids_->primitive = openvdb::Int32Grid::create(-1);
+}
+
+VoxelScene::VoxelScene(const VoxelFrame& frame, const CloudView& cloud) : VoxelScene(frame) {
+    check(frame);
+    mark_surface(sort_points(frame, cloud), *grids_);
+}
+
+VoxelScene::VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
+                       std::span<const std::int32_t> label)
+    : VoxelScene(frame) {
+    check(frame);
+    check(cloud, label);
+    const SortedPoints points = sort_points(frame, cloud);
+    mark_surface(points, *grids_);
+    mark_labels(points, label, *grids_);
+}
+
+void VoxelScene::set_labels(const CloudView& cloud, std::span<const std::int32_t> label) {
+    check(cloud, label);
+    mark_labels(sort_points(grids_->frame, cloud), label, *grids_);
 }
 
 VoxelScene::~VoxelScene() = default;

@@ -68,6 +68,10 @@ class VoxelScene {
     // the bounds hold more leaves than memory allows.
     VoxelScene(const VoxelFrame& frame, const CloudView& cloud,
                std::span<const std::int32_t> label);
+    // The same before labels are known: what is carved doesn't depend on them.
+    VoxelScene(const VoxelFrame& frame, const CloudView& cloud);
+    // The labels of a scene of the same cloud.
+    void set_labels(const CloudView& cloud, std::span<const std::int32_t> label);
     // A scene without points or bounds, for put_leaf(), labels and write().
     explicit VoxelScene(const VoxelFrame& frame);
     // As it was saved. Throws Error(input) for what no scene saves. It can't be carved further.

@@ -160,6 +160,10 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         to.hold_N = from.advice.hold_N;
         to.hold_height_m = from.advice.hold_height_m;
         to.why_lands_on = from.why.lands_on;
+        to.piece_of = from.piece_of;
+        to.piece_probability = from.piece_probability;
+        copy_vector(from.box_middle_m, to.box_middle_m);
+        to.action = from.advice.action.c_str();
         give(to, object, "object");
     });
 }

@@ -2,37 +2,24 @@
 #include "cli/acceleration_option.h"
 
 #include <algorithm>
-#include <map>
 
+#include "io/acceleration_units.h"
 #include "io/text.h"
 #include "physics/landscape.h"
 #include "safety/earthquake/intensity.h"
 #include "topple/error.h"
 
 namespace topple::cli {
-namespace {
-
-const std::map<std::string, double>& acceleration_units() {
-    static const std::map<std::string, double> units{
-        {"", 1}, {"g", physics::gravity}, {"m/s2", 1}, {"m/s^2", 1}, {"cm/s2", 0.01}};
-    return units;
-}
-
-}  // namespace
-
-bool is_acceleration_unit(const std::string& word) {
-    return !word.empty() && acceleration_units().contains(word);
-}
 
 Acceleration parse_acceleration(const char* option, const std::string& text) {
-    const auto& units = acceleration_units();
-    const std::size_t unit_at = std::min(text.size(), text.find_first_of("gmc"));
-    const auto unit = units.find(text.substr(unit_at));
+    const std::size_t unit_at = std::min(text.size(), text.find_first_of("gmcGMC"));
+    const bool with_unit = unit_at < text.size();
+    const auto unit = with_unit ? io::acceleration_unit_m_s2(text.substr(unit_at)) : 1.0;
     double value = 0;
-    if (unit == units.end() || !io::parse_number(text.substr(0, unit_at), value))
+    if (!unit || !io::parse_number(text.substr(0, unit_at), value))
         throw Error(ErrorKind::usage, std::string(option) + " " + text +
                                           ": expected a number in m/s^2, or one in g as in 0.3g");
-    return {value * unit->second, !unit->first.empty()};
+    return {value * *unit, with_unit};
 }
 
 std::string unlikely_shaking_note(const Acceleration& pga) {

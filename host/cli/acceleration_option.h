@@ -13,9 +13,6 @@ struct Acceleration {
 // Throws Error(usage).
 Acceleration parse_acceleration(const char* option, const std::string& text);
 
-// Whether `word` may follow the number.
-bool is_acceleration_unit(const std::string& word);
-
 // What to say of one so weak that it was meant in g, perhaps, or so strong that it was meant in
 // hundredths of g; "" of others.
 std::string unlikely_shaking_note(const Acceleration& pga);

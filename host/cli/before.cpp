@@ -7,38 +7,26 @@
 #include "cli/urgency.h"
 #include "io/scene_json.h"
 #include "io/text.h"
-#include "safety/disturbances.h"
+#include "safety/largest_risk.h"
 #include "topple/error.h"
 
 namespace topple::cli {
 namespace {
 
-// The largest risk's kind; null where it has none.
-const safety::DisturbanceKind* worst_kind(const Object& o) {
-    const safety::DisturbanceKind* worst = nullptr;
-    double most = 0;
-    for (const auto& [name, risk] : o.risk_J) {
-        if (!(risk > most)) continue;
-        most = risk;
-        worst = safety::find_disturbance_kind(name);
-    }
-    return worst;
-}
-
 // That on which one would act first, and its risk.
 std::string worst_text(const Scene& scene) {
     const Object* worst = nullptr;
     for (const Object& o : scene.objects) {
-        if (o.grounded || !o.seen_enough || worst_kind(o) == nullptr) continue;
+        if (o.grounded || !o.seen_enough || safety::largest_risk(o).kind == nullptr) continue;
         if (worst == nullptr || urgency_of(o) > urgency_of(*worst)) worst = &o;
     }
     if (worst == nullptr) return "nothing is at risk";
-    const safety::DisturbanceKind& kind = *worst_kind(*worst);
+    const auto [kind, risk_J] = safety::largest_risk(*worst);
     std::string text = "object " + std::to_string(worst->id);
     if (!worst->name.empty()) text.append(" (").append(io::printable(worst->name)).append(")");
     text.append(", ").append(worst->unsafety_category).append(worst->unsafety_certain ? "" : "?");
-    text.append(", ").append(io::two_digits(worst->risk_J.at(kind.name))).append(" J per ");
-    return text.append(kind.words.event);
+    text.append(", ").append(io::two_digits(risk_J)).append(" J per ");
+    return text.append(kind->words.event);
 }
 
 }  // namespace

@@ -10,14 +10,15 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/action.h"
 #include "cli/urgency.h"
 #include "core/listed.h"
 #include "io/text.h"
 #include "physics/landscape.h"
+#include "safety/action.h"
 #include "safety/disturbances.h"
 #include "safety/earthquake/fragility.h"
 #include "safety/earthquake/intensity.h"
+#include "safety/largest_risk.h"
 
 namespace topple::cli {
 namespace {
@@ -49,19 +50,6 @@ std::vector<const safety::DisturbanceKind*> reckoned_kinds(const Scene& scene) {
                                 [&](const Object& o) { return o.risk_J.contains(kind->name); }))
             kinds.push_back(kind);
     return kinds;
-}
-
-// What it sets free on average when its largest risk comes true; where it has none, on the easiest
-// way out of its place.
-double release_of(const Object& o) {
-    double most = 0, release = o.release_J;
-    for (const auto& [name, risk] : o.risk_J) {
-        const auto chance = o.fall_chance.find(name);
-        if (!(risk > most) || chance == o.fall_chance.end() || !(chance->second > 0)) continue;
-        most = risk;
-        release = risk / chance->second;
-    }
-    return release;
 }
 
 // " (0.31 g, very strong shaking, intensity VII)" of an earthquake's peak; "" of other figures.
@@ -146,7 +134,7 @@ std::string first_text(std::span<const Object* const> shown, std::size_t of) {
     if (shown.size() == of) return "The " + std::to_string(of) + " objects";
     const std::string count = shown.size() == 1 ? "" : std::to_string(shown.size()) + " ";
     const std::string others = "of the " + std::to_string(of) + " objects";
-    if (std::ranges::any_of(shown, [](const Object* o) { return upset_by_nothing(*o); }))
+    if (std::ranges::any_of(shown, [](const Object* o) { return safety::upset_by_nothing(*o); }))
         return "The first " + count + "to look at " + others;
     return "The " + count + "riskiest " + others;
 }
@@ -182,7 +170,7 @@ void print_sentences(const std::vector<const Object*>& riskiest_first, const Sce
     std::printf(":\n");
     for (std::size_t i = 0; i < shown; ++i) {
         const Object& o = *told[i];
-        const std::string action = action_text(scene, o);
+        const std::string& action = o.advice.action;
         std::printf("Object %d%s%s: %s%s%s%s%s\n", o.id, name_text(o).c_str(), size_text(o).c_str(),
                     o.why.sentence.c_str(), people_text(o.fall).c_str(),
                     years_text(o, scene).c_str(), action.empty() ? "" : " ", action.c_str());
@@ -223,7 +211,7 @@ void print_objects(const Scene& scene) {
         const std::string barrier = barrier_text(o);
         std::printf("%-12s %8s %8s %8s %9s %9s %6s ", (std::to_string(o.id) + name_text(o)).c_str(),
                     category_text(o).c_str(), unsafety, three_digits(o.mass_kg).c_str(),
-                    barrier.c_str(), three_digits(release_of(o)).c_str(), o.mode.c_str());
+                    barrier.c_str(), three_digits(safety::released_J(o)).c_str(), o.mode.c_str());
         for (const safety::DisturbanceKind* kind : kinds)
             std::printf("%10s ", risk_text(o, kind->name).c_str());
         std::printf(" %s\n", rests_on.contains(o.id) ? rests_on[o.id].c_str() : "-");

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/acceleration_option.h"
+#include "io/acceleration_units.h"
 #include "io/text.h"
 
 namespace topple::cli {
@@ -83,7 +83,7 @@ std::string value_with_space(std::span<const char* const> words) {
     for (std::size_t n = 2; n < words.size(); ++n) {
         std::string value = words[n - 1];
         double number = 0;
-        if (io::parse_number(value, number) && is_acceleration_unit(words[n]))
+        if (io::parse_number(value, number) && io::acceleration_unit_m_s2(words[n]))
             return "write it without the space: " + io::printable(value.append(words[n]));
         if (!goes_on(n)) continue;
         for (; n < words.size() && goes_on(n); ++n) value.append(words[n]);

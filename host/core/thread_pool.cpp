@@ -43,30 +43,39 @@ void ThreadPool::run(std::uint64_t count, std::uint64_t chunk,
         }
         return;
     }
+    Run own{body, count, chunk};
     {
-        std::lock_guard lock(mutex_);
-        body_ = &body;
-        count_ = count;
-        chunk_ = chunk;
-        next_.store(0, std::memory_order_relaxed);
-        open_ = true;
-        ++generation_;
+        const std::lock_guard lock(mutex_);
+        runs_.push_back(&own);
     }
     start_.notify_all();
     std::exception_ptr ended;
     try {
-        take_chunks();
+        take_chunks(own);
     } catch (...) {  // from the poll
         ended = std::current_exception();
-        next_.store(count_, std::memory_order_relaxed);  // hands out no more
+        own.next.store(count, std::memory_order_relaxed);  // hands out no more
     }
     {
         std::unique_lock lock(mutex_);
-        open_ = false;  // all is handed out: who wakes up from now on has nothing to do
-        done_.wait(lock, [this] { return inside_ == 0; });
-        if (failure_) ended = std::exchange(failure_, nullptr);
+        std::erase(runs_, &own);  // all is handed out: nobody comes to help any more
+        done_.wait(lock, [&] { return own.inside == 0; });
     }
+    if (own.failure) ended = own.failure;
     if (ended) std::rethrow_exception(ended);
+}
+
+ThreadPool::Beside::Beside(ThreadPool& pool) : pool_(pool) {
+    const std::lock_guard lock(pool.mutex_);
+    ++pool.beside_;
+}
+
+ThreadPool::Beside::~Beside() {
+    {
+        const std::lock_guard lock(pool_.mutex_);
+        --pool_.beside_;
+    }
+    pool_.start_.notify_all();
 }
 
 void ThreadPool::poll() {
@@ -89,43 +98,45 @@ ThreadPool::Polling::~Polling() {
     pool_.polling_thread_ = outer_thread_;
 }
 
-void ThreadPool::take_chunks() {
+void ThreadPool::take_chunks(Run& run) {
     for (;;) {
         poll();
-        const std::uint64_t first = next_.fetch_add(chunk_, std::memory_order_relaxed);
-        if (first >= count_) return;
+        const std::uint64_t first = run.next.fetch_add(run.chunk, std::memory_order_relaxed);
+        if (first >= run.count) return;
         try {
-            (*body_)(first, std::min(count_, first + chunk_));
+            run.body(first, std::min(run.count, first + run.chunk));
         } catch (...) {
-            note_failure(first);
+            note_failure(run, first);
         }
     }
 }
 
 // All chunks before this one are handed out already, and go on to their end.
-void ThreadPool::note_failure(std::uint64_t first) {
+void ThreadPool::note_failure(Run& run, std::uint64_t first) {
     const std::lock_guard lock(mutex_);
-    if (!failure_ || first < failed_) {
-        failure_ = std::current_exception();
-        failed_ = first;
+    if (!run.failure || first < run.failed) {
+        run.failure = std::current_exception();
+        run.failed = first;
     }
-    next_.store(count_, std::memory_order_relaxed);  // hands out no more
+    run.next.store(run.count, std::memory_order_relaxed);  // hands out no more
 }
 
 void ThreadPool::work() {
-    std::uint64_t seen = 0;
+    std::unique_lock lock(mutex_);
     for (;;) {
-        {
-            std::unique_lock lock(mutex_);
-            start_.wait(lock, [&] { return stop_ || generation_ != seen; });
-            if (stop_) return;
-            seen = generation_;
-            if (!open_) continue;
-            ++inside_;
-        }
-        take_chunks();
-        std::lock_guard lock(mutex_);
-        if (--inside_ == 0) done_.notify_one();
+        start_.wait(lock, [&] {
+            return stop_ || (!runs_.empty() && helping_ + beside_ < workers_.size());
+        });
+        if (stop_) return;
+        Run& run = *runs_.back();
+        ++run.inside;
+        ++helping_;
+        lock.unlock();
+        take_chunks(run);
+        lock.lock();
+        std::erase(runs_, &run);  // all is handed out
+        --helping_;
+        if (--run.inside == 0) done_.notify_all();
     }
 }
 

@@ -15,6 +15,8 @@
 namespace topple {
 
 // A fixed set of threads that share out ranges of an index space. The caller's thread works too.
+// Several threads may call at a time, and what runs in a chunk may call again: threads that have
+// nothing to do join whichever run was begun last.
 class ThreadPool {
   public:
     // More than any machine has use for.
@@ -44,6 +46,19 @@ class ThreadPool {
         });
     }
 
+    // While it lives, the thread that made it stands in for one of the pool's, beside the caller's:
+    // one of these rests, so that all together are no more than the machine has room for.
+    class Beside {
+      public:
+        explicit Beside(ThreadPool& pool);
+        ~Beside();
+        Beside(const Beside&) = delete;
+        Beside& operator=(const Beside&) = delete;
+
+      private:
+        ThreadPool& pool_;
+    };
+
     // While it lives, poll() calls `poll` on the thread that made it, some twenty times a second at
     // most. One within another takes its place.
     class Polling {
@@ -63,21 +78,25 @@ class ThreadPool {
     void poll();
 
   private:
+    // A call that shares out its chunks.
+    struct Run {
+        const std::function<void(std::uint64_t, std::uint64_t)>& body;
+        std::uint64_t count, chunk;
+        std::atomic<std::uint64_t> next{0};
+        unsigned inside = 0;  // workers that take chunks; the caller waits for these alone
+        std::exception_ptr
+            failure{};  // of the chunk that begins at `failed`, the first that failed
+        std::uint64_t failed = 0;
+    };
     void work();
-    void take_chunks();
-    void note_failure(std::uint64_t first);
+    void take_chunks(Run& run);
+    void note_failure(Run& run, std::uint64_t first);
 
     std::mutex mutex_;
     std::condition_variable start_, done_;
-    std::uint64_t generation_ = 0;
-    bool open_ = false;    // whether there may be chunks left
-    unsigned inside_ = 0;  // workers that take chunks; the caller waits for these alone
+    std::vector<Run*> runs_;  // those that may have chunks left, in the order of their calls
+    std::size_t helping_ = 0, beside_ = 0;  // workers at a run; threads that stand in for others
     bool stop_ = false;
-    const std::function<void(std::uint64_t, std::uint64_t)>* body_ = nullptr;
-    std::uint64_t count_ = 0, chunk_ = 1;
-    std::atomic<std::uint64_t> next_{0};
-    std::exception_ptr failure_;  // of the chunk that begins at failed_, the first that failed
-    std::uint64_t failed_ = 0;
     std::vector<std::thread> workers_;
     std::function<void()> poll_;
     std::thread::id polling_thread_;

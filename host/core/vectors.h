@@ -34,5 +34,9 @@ inline Vec3 unit(Vec3 v) {
         for (double& x : v) x /= l;
     return v;
 }
+// Zero where v is no longer than what rounding leaves of unit vectors that cancel.
+inline Vec3 unit_or_zero(const Vec3& v) {
+    return length(v) > 1e-12 ? unit(v) : Vec3{};
+}
 
 }  // namespace topple

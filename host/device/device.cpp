@@ -53,12 +53,19 @@ std::uint32_t Device::items_per_lane(const KernelSource& kernel) const {
     return 1;
 }
 
+Counters Device::counters() const {
+    return {counters_.dispatches,    counters_.submits,    counters_.kernel_builds,
+            counters_.bytes_written, counters_.bytes_read, counters_.bytes_bound};
+}
+
 void Device::count(std::span<const Dispatch> dispatches) {
     counters_.dispatches += dispatches.size();
     ++counters_.submits;
+    std::uint64_t bound = 0;
     for (const Dispatch& dispatch : dispatches) {
-        for (const BoundRange& range : dispatch.ranges) counters_.bytes_bound += range.bytes;
+        for (const BoundRange& range : dispatch.ranges) bound += range.bytes;
     }
+    counters_.bytes_bound += bound;
 }
 
 std::uint64_t Queue::groups_for(const KernelSource& kernel, std::uint64_t count) const {

@@ -63,7 +63,7 @@ class Device {
     Device();
     virtual ~Device();
     const DeviceInfo& info() const { return info_; }
-    const Counters& counters() const { return counters_; }
+    Counters counters() const;
 
     // At least one byte is allocated, so that an empty array still has something to bind.
     // Throws Error(device) naming the buffer, its size and the limit.
@@ -91,7 +91,11 @@ class Device {
     void count(std::span<const Dispatch> dispatches);
 
     DeviceInfo info_;
-    Counters counters_;
+    // As Counters: what uses the device may go on beside who reads them.
+    struct {
+        std::atomic<std::uint64_t> dispatches = 0, submits = 0, kernel_builds = 0,
+                                   bytes_written = 0, bytes_read = 0, bytes_bound = 0;
+    } counters_;
 
   private:
     friend class InUse;

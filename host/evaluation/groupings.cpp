@@ -14,6 +14,7 @@
 #include "graph/joint_bias.h"
 #include "graph/stable_objects.h"
 #include "pipeline/ingest.h"
+#include "pipeline/solid_stage.h"
 #include "scenes/temporary_folder.h"
 
 namespace topple::evaluation {
@@ -118,8 +119,8 @@ RoomParts scan_parts(const RoomOptions& options) {
     StageClock stage(timings, options.parse);
     device::Device& device = *options.parse.device;
     const Ingested input = ingest(device, folder.path(), options.parse);
-    const GeometryStage geometry = find_primitives(device, input, options.parse, stage);
-    const VoxelStage voxels = make_solids(device, input, geometry, options.parse.voxel_m, stage);
+    const auto [geometry, voxels] =
+        find_solids(device, input, options.parse.voxel_m, options.parse, stage);
     ScenePoints points;
     points.x.assign(input.cloud.x.begin(), input.cloud.x.end());
     points.y.assign(input.cloud.y.begin(), input.cloud.y.end());

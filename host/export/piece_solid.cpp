@@ -116,11 +116,11 @@ void PieceSolids::add_corners(std::size_t cell, std::vector<Vec3>& out) {
 
 std::vector<Vec3> PieceSolids::corners_of(const Cell& cell) const {
     const double h = solids_.voxel_m();
-    if (!cell.whole()) {
-        const auto corners = solids::corners_of(solids_.boundary(), cell.boundary, h);
-        return {corners.begin(), corners.end()};
-    }
     std::vector<Vec3> out;
+    if (!cell.whole()) {
+        solids::add_corners(solids_.boundary(), cell.boundary, h, out);
+        return out;
+    }
     for (unsigned c = 0; c < 8; ++c)
         out.push_back({(cell.at[0] + int(c & 1)) * h, (cell.at[1] + int(c >> 1 & 1)) * h,
                        (cell.at[2] + int(c >> 2)) * h});

@@ -13,10 +13,6 @@
 
 namespace topple::geometry {
 
-// The order that sorts keys ascending; equal keys keep their order. Radix sort over the bits in
-// use.
-std::vector<std::uint32_t> sorted_order(std::span<const std::uint64_t> keys);
-
 // Equal keys together, by ascending key; within a group the places in `keys` ascend.
 struct KeyGroups {
     std::vector<std::uint32_t> order;  // places in `keys`

@@ -14,6 +14,7 @@ namespace {
 constexpr double surfels_per_cell = 2.5;  // along an axis
 constexpr double most_free_cells = 64e6;
 constexpr std::size_t most_lines = 100'000;
+constexpr std::uint64_t space_chunk = 1 << 14;  // cells or surfels handed to a thread at once
 // A line ends this many cells before its surfel: noise, and surfaces that it only grazes.
 constexpr double stop_cells = 1.5;
 // What is noted of a cell while lines are drawn, in any order: two must have crossed it, for one
@@ -63,18 +64,22 @@ FreeSpace::FreeSpace(const Surfels& s, const CloudView& cloud, std::span<const V
         const Vec3& eye = viewpoints[seen_from[i]];
         cross({eye[0], eye[1], eye[2]}, position(s, i));
     });
-    for (std::uint8_t& c : cell_)
+    threads.each(cell_.size(), space_chunk, [&](std::size_t n) {
+        std::uint8_t& c = cell_[n];
         if (c != occupied) c = (c & crossed_twice) != 0 ? is_free : 0;
+    });
     // A cell beside a surface may reach into the solid behind it.
-    for (std::size_t i = 0; i < s.size(); ++i)
+    threads.each(s.size(), space_chunk, [&](std::size_t i) {
         for (int a = 0; a < 3; ++a)
             for (const double side : {-cell_m_, cell_m_}) {
                 const std::int64_t at =
                     index(in_cells(position(s, i) + side * Eigen::Vector3d::Unit(a)));
                 if (at < 0) continue;
-                std::uint8_t& beside = cell_[static_cast<std::size_t>(at)];
-                if (beside != occupied) beside = 0;
+                const std::atomic_ref beside(cell_[static_cast<std::size_t>(at)]);
+                if (beside.load(std::memory_order_relaxed) == is_free)
+                    beside.store(0, std::memory_order_relaxed);
             }
+    });
 }
 
 std::int64_t FreeSpace::index(const Eigen::Vector3d& cells) const {

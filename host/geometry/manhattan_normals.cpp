@@ -11,12 +11,6 @@
 
 namespace topple::geometry {
 
-Vec3 unit_or_zero(const Vec3& v) {
-    const double length = std::sqrt(dot(v, v));
-    if (!(length > 1e-12)) return {0, 0, 0};
-    return {v[0] / length, v[1] / length, v[2] / length};
-}
-
 WeightedNormals weigh_normals(const Surfels& s, std::size_t most) {
     WeightedNormals normals;
     const std::size_t step = s.size() / std::max<std::size_t>(most, 1) + 1;

@@ -28,7 +28,4 @@ double weight_near(const WeightedNormals& normals, const Vec3& axis, double degr
 // is near.
 Vec3 refine_axis(const WeightedNormals& normals, const Vec3& axis);
 
-// The unit vector along v; zero where v is (nearly) zero.
-Vec3 unit_or_zero(const Vec3& v);
-
 }  // namespace topple::geometry

@@ -69,14 +69,20 @@ Profile profile_along(const Surfels& s, const WeightedNormals& normals, const Ve
         height[i] = s.x[k] * axis[0] + s.y[k] * axis[1] + s.z[k] * axis[2];
         facing[i] = normals.x[i] * axis[0] + normals.y[i] * axis[1] + normals.z[i] * axis[2];
     }
-    std::vector<double> sorted = height;
-    std::sort(sorted.begin(), sorted.end());
-    const double low = sorted.front(), bottom = sorted[sorted.size() / 100],
-                 top = sorted[sorted.size() - 1 - sorted.size() / 100];
+    const auto [lowest, highest] = std::ranges::minmax_element(height);
+    const double low = *lowest, high = *highest;
+    std::vector<double> ordered = height;
+    const auto ranked = [&](std::size_t rank) {
+        const auto at = ordered.begin() + static_cast<std::ptrdiff_t>(rank);
+        std::ranges::nth_element(ordered, at);
+        return *at;
+    };
+    const std::size_t outside = ordered.size() / 100;
+    const double bottom = ranked(outside), top = ranked(ordered.size() - 1 - outside);
     result.extent_m = top - bottom;
     const double bin = bin_cells * s.cell_m;
     const auto bin_of = [&](double h) { return static_cast<std::size_t>((h - low) / bin); };
-    std::vector<double> level(bin_of(sorted.back()) + 2);
+    std::vector<double> level(bin_of(high) + 2);
     for (std::size_t i = 0; i < normals.size(); ++i) {
         if (std::abs(facing[i]) >= level_cos) level[bin_of(height[i])] += normals.weight[i];
     }

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/sorted_order.h"
 #include "device/queue.h"
 #include "plane_mean.hpp"
 #include "topple/error.h"

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <numeric>
 
+#include "core/sorted_order.h"
 #include "geometry/algebraic_model.h"
 #include "geometry/face_limits.h"
 #include "geometry/split.h"
@@ -35,12 +36,11 @@ class Grower {
     }
 
     Regions run() {
-        std::vector<std::uint32_t> seeds(s_.size());
-        std::iota(seeds.begin(), seeds.end(), 0u);
-        std::stable_sort(seeds.begin(), seeds.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return s_.roughness_m[a] < s_.roughness_m[b];
-        });
-        for (const std::uint32_t seed : seeds) {
+        // Of lengths the bits sort as the numbers do.
+        std::vector<std::uint64_t> roughness(s_.size());
+        for (std::size_t i = 0; i < s_.size(); ++i)
+            roughness[i] = std::bit_cast<std::uint32_t>(s_.roughness_m[i]);
+        for (const std::uint32_t seed : sorted_order(roughness)) {
             if (out_.label[seed] >= 0 || normal(s_, seed).squaredNorm() < 0.5) continue;
             threads_.poll();
             grow_from(seed);

@@ -161,4 +161,19 @@ GapPoints close_gaps(const Surfels& s, std::span<const std::int32_t> face,
     return out;
 }
 
+PointCloud with_gaps(const CloudView& cloud, const GapPoints& gaps) {
+    PointCloud out;
+    const auto joined = [](const auto& first, const std::vector<float>& then) {
+        std::vector<float> all;
+        all.reserve(first.size() + then.size());
+        for (const float v : first) all.push_back(v);
+        all.insert(all.end(), then.begin(), then.end());
+        return all;
+    };
+    out.x = joined(cloud.x, gaps.x);
+    out.y = joined(cloud.y, gaps.y);
+    out.z = joined(cloud.z, gaps.z);
+    return out;
+}
+
 }  // namespace topple::geometry

@@ -7,6 +7,8 @@
 
 #include "core/thread_pool.h"
 #include "geometry/surfels.h"
+#include "topple/cloud_view.h"
+#include "topple/input.h"
 
 namespace topple::geometry {
 
@@ -23,5 +25,8 @@ struct GapPoints {
 // surfels, -1 for none. None where all neighbours lie within two steps. By primitive, ascending.
 GapPoints close_gaps(const Surfels& surfels, std::span<const std::int32_t> face,
                      std::span<const std::int32_t> primitive, double step_m, ThreadPool& pool);
+
+// The coordinates of a cloud, and after them of what closes its gaps.
+PointCloud with_gaps(const CloudView& cloud, const GapPoints& gaps);
 
 }  // namespace topple::geometry

@@ -11,17 +11,14 @@
 namespace topple::geometry {
 namespace {
 
+constexpr std::uint64_t sample_chunk = 1 << 15;  // points handed to a thread at once
+
+// A cell and a point in it.
 struct Key {
-    std::int32_t primitive, i, j, k;
+    std::int32_t i, j, k;
     std::uint32_t point;
-    bool same_cell(const Key& o) const {
-        return primitive == o.primitive && i == o.i && j == o.j && k == o.k;
-    }
-    bool operator<(const Key& o) const {
-        if (primitive != o.primitive) return primitive < o.primitive;
-        if (i != o.i) return i < o.i;
-        return j != o.j ? j < o.j : k < o.k;
-    }
+    bool same_cell(const Key& o) const { return i == o.i && j == o.j && k == o.k; }
+    friend auto operator<=>(const Key&, const Key&) = default;
 };
 
 // Numbers of this unit are added up exactly, whatever their order. As std::llround() does, which is
@@ -99,6 +96,82 @@ void add_colour(const Surfels& surfels, std::span<const Key> keys, SurfaceSample
     }
 }
 
+Vec3 turned(const SceneFrame& frame, double x, double y, double z) {
+    Vec3 p{};
+    for (std::size_t a = 0; a < 3; ++a)
+        p[a] = frame.axes[a][0] * x + frame.axes[a][1] * y + frame.axes[a][2] * z;
+    return p;
+}
+
+// The points by primitive, those without one first; within a primitive in their order.
+struct KeyedPoints {
+    std::vector<Key> key;
+    std::vector<std::ptrdiff_t> first;  // CSR over primitive + 1
+};
+
+KeyedPoints keyed_points(const CloudView& cloud, std::span<const std::int32_t> primitive_of_point,
+                         const SceneFrame& frame, double edge_m, ThreadPool& threads) {
+    KeyedPoints out;
+    const auto place = [&](std::size_t n) {
+        return static_cast<std::size_t>(primitive_of_point[n] + 1);
+    };
+    out.first.assign(2, 0);
+    for (std::size_t n = 0; n < cloud.size(); ++n) {
+        if (out.first.size() < place(n) + 2) out.first.resize(place(n) + 2, 0);
+        ++out.first[place(n) + 1];
+    }
+    std::partial_sum(out.first.begin(), out.first.end(), out.first.begin());
+    std::vector<std::ptrdiff_t> next(out.first.begin(), out.first.end() - 1);
+    std::vector<std::uint32_t> order(cloud.size());
+    for (std::size_t n = 0; n < cloud.size(); ++n)
+        order[static_cast<std::size_t>(next[place(n)]++)] = static_cast<std::uint32_t>(n);
+    out.key.resize(cloud.size());
+    threads.each(order.size(), sample_chunk, [&](std::size_t m) {
+        const std::uint32_t n = order[m];
+        const Vec3 p = turned(frame, cloud.x[n], cloud.y[n], cloud.z[n]);
+        const auto cell = [&](std::size_t a) {
+            return static_cast<std::int32_t>(std::floor(p[a] / edge_m));
+        };
+        out.key[m] = {cell(0), cell(1), cell(2), n};
+    });
+    return out;
+}
+
+// The mean of the points of a cell. Sums of fixed-point numbers: exact, so that the order of points
+// plays no part.
+void add_sample(const CloudView& cloud, const Surfels& surfels, const SceneFrame& frame,
+                std::span<const Key> keys, SurfaceSamples& out) {
+    std::array<std::int64_t, 6> sum{};
+    constexpr double unit = 1 << 20;
+    for (const Key& key : keys) {
+        const std::size_t n = key.point, s = surfels.of_point[n];
+        const std::array<double, 6> v{cloud.x[n],    cloud.y[n],    cloud.z[n],
+                                      surfels.nx[s], surfels.ny[s], surfels.nz[s]};
+        for (std::size_t a = 0; a < 6; ++a) sum[a] += in_units(v[a], unit);
+    }
+    const double count = static_cast<double>(keys.size()) * unit;
+    const auto mean = [&](std::size_t a) { return static_cast<double>(sum[a]) / count; };
+    const Vec3 p = turned(frame, mean(0), mean(1), mean(2)),
+               n = turned(frame, mean(3), mean(4), mean(5));
+    const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    out.x.push_back(static_cast<float>(p[0]));
+    out.y.push_back(static_cast<float>(p[1]));
+    out.z.push_back(static_cast<float>(p[2]));
+    const double scale = length > 1e-6 ? 1 / length : 0;
+    out.nx.push_back(static_cast<float>(scale * n[0]));
+    out.ny.push_back(static_cast<float>(scale * n[1]));
+    out.nz.push_back(static_cast<float>(scale * n[2]));
+    if (!surfels.lab_l.empty()) add_colour(surfels, keys, out);
+}
+
+void append(const SurfaceSamples& part, SurfaceSamples& out) {
+    const auto to = columns_of(out);
+    const auto from = columns_of(part);
+    for (std::size_t c = 0; c < to.size(); ++c)
+        to[c]->insert(to[c]->end(), from[c]->begin(), from[c]->end());
+    out.primitive.insert(out.primitive.end(), part.primitive.begin(), part.primitive.end());
+}
+
 SurfaceSamples taken(const SurfaceSamples& from, const std::vector<std::size_t>& which) {
     SurfaceSamples out;
     out.edge_m = from.edge_m;
@@ -118,51 +191,23 @@ SurfaceSamples taken(const SurfaceSamples& from, const std::vector<std::size_t>&
 
 SurfaceSamples sample_surface(const CloudView& cloud, const Surfels& surfels,
                               std::span<const std::int32_t> primitive_of_point,
-                              const SceneFrame& frame, double edge_m) {
+                              const SceneFrame& frame, double edge_m, ThreadPool& threads) {
+    const KeyedPoints points = keyed_points(cloud, primitive_of_point, frame, edge_m, threads);
+    std::vector<SurfaceSamples> parts(points.first.size() - 1);
+    threads.each(parts.size(), 1, [&](std::size_t p) {
+        std::vector<Key> keys(points.key.begin() + points.first[p],
+                              points.key.begin() + points.first[p + 1]);
+        std::ranges::sort(keys);
+        for (std::size_t first = 0, last = 0; first < keys.size(); first = last) {
+            while (last < keys.size() && keys[last].same_cell(keys[first])) ++last;
+            add_sample(cloud, surfels, frame, std::span(keys).subspan(first, last - first),
+                       parts[p]);
+        }
+        parts[p].primitive.resize(parts[p].x.size(), static_cast<std::int32_t>(p) - 1);
+    });
     SurfaceSamples out;
     out.edge_m = edge_m;
-    const auto turned = [&](double x, double y, double z) {
-        Vec3 p{};
-        for (std::size_t a = 0; a < 3; ++a)
-            p[a] = frame.axes[a][0] * x + frame.axes[a][1] * y + frame.axes[a][2] * z;
-        return p;
-    };
-    std::vector<Key> keys(cloud.size());
-    for (std::size_t n = 0; n < keys.size(); ++n) {
-        const Vec3 p = turned(cloud.x[n], cloud.y[n], cloud.z[n]);
-        const auto cell = [&](std::size_t a) {
-            return static_cast<std::int32_t>(std::floor(p[a] / edge_m));
-        };
-        keys[n] = {primitive_of_point[n], cell(0), cell(1), cell(2), static_cast<std::uint32_t>(n)};
-    }
-    std::ranges::stable_sort(keys, std::less<>());
-    for (std::size_t first = 0; first < keys.size();) {
-        std::size_t last = first;
-        // Sums of fixed-point numbers: exact, so that the order of points plays no part.
-        std::array<std::int64_t, 6> sum{};
-        const double unit = 1 << 20;
-        for (; last < keys.size() && keys[last].same_cell(keys[first]); ++last) {
-            const std::size_t n = keys[last].point, s = surfels.of_point[n];
-            const std::array<double, 6> v{cloud.x[n],    cloud.y[n],    cloud.z[n],
-                                          surfels.nx[s], surfels.ny[s], surfels.nz[s]};
-            for (std::size_t a = 0; a < 6; ++a) sum[a] += in_units(v[a], unit);
-        }
-        const double count = static_cast<double>(last - first) * unit;
-        const auto mean = [&](std::size_t a) { return static_cast<double>(sum[a]) / count; };
-        const Vec3 p = turned(mean(0), mean(1), mean(2)), n = turned(mean(3), mean(4), mean(5));
-        const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        out.x.push_back(static_cast<float>(p[0]));
-        out.y.push_back(static_cast<float>(p[1]));
-        out.z.push_back(static_cast<float>(p[2]));
-        const double scale = length > 1e-6 ? 1 / length : 0;
-        out.nx.push_back(static_cast<float>(scale * n[0]));
-        out.ny.push_back(static_cast<float>(scale * n[1]));
-        out.nz.push_back(static_cast<float>(scale * n[2]));
-        out.primitive.push_back(keys[first].primitive);
-        if (!surfels.lab_l.empty())
-            add_colour(surfels, std::span(keys).subspan(first, last - first), out);
-        first = last;
-    }
+    for (const SurfaceSamples& part : parts) append(part, out);
     out.spacing_m = find_spacing(out);
     return out;
 }
@@ -184,10 +229,24 @@ SurfaceSamples samples_where(const SurfaceSamples& samples,
 }
 
 void sort_by_primitive(SurfaceSamples& samples) {
-    std::vector<std::size_t> order(samples.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, {}, [&](std::size_t n) { return samples.primitive[n]; });
-    samples = taken(samples, order);
+    const std::vector<std::int32_t>& primitive = samples.primitive;
+    std::int32_t most = -1;
+    for (const std::int32_t p : primitive) most = std::max(most, p);
+    std::vector<std::size_t> next(static_cast<std::size_t>(most) + 3, 0);
+    for (const std::int32_t p : primitive) ++next[static_cast<std::size_t>(p + 2)];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<std::uint32_t> order(primitive.size());
+    for (std::size_t n = 0; n < primitive.size(); ++n)
+        order[next[static_cast<std::size_t>(primitive[n] + 1)]++] = static_cast<std::uint32_t>(n);
+    const auto sort = [&](auto& values) {
+        std::remove_reference_t<decltype(values)> sorted;
+        sorted.reserve(order.size());
+        for (const std::uint32_t n : order) sorted.push_back(values[n]);
+        values = std::move(sorted);
+    };
+    for (auto* values : columns_of(samples))
+        if (!values->empty()) sort(*values);
+    sort(samples.primitive);
 }
 
 }  // namespace topple::geometry

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/thread_pool.h"
 #include "geometry/manhattan.h"
 #include "geometry/surfels.h"
 #include "topple/cloud_view.h"
@@ -50,6 +51,6 @@ inline constexpr double finest_sample_m = 0.02;
 // least the spacing of points.
 SurfaceSamples sample_surface(const CloudView& cloud, const Surfels& surfels,
                               std::span<const std::int32_t> primitive_of_point,
-                              const SceneFrame& frame, double edge_m);
+                              const SceneFrame& frame, double edge_m, ThreadPool& threads);
 
 }  // namespace topple::geometry

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/object_json.h"
 
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -36,7 +37,8 @@ Json to_json(const Advice& a) {
             {"risk_J", number(a.risk_J)},
             {"hold_N", number(a.hold_N)},
             {"hold_height_m", number(a.hold_height_m)},
-            {"sentence", a.sentence}};
+            {"sentence", a.sentence},
+            {"action", a.action}};
 }
 
 Json to_json(const Overturning& o) {
@@ -119,6 +121,7 @@ Advice advice_of(const Json& json) {
     a.hold_N = number_at(json, "hold_N");
     a.hold_height_m = number_at(json, "hold_height_m");
     a.sentence = json.at("sentence").get<std::string>();
+    if (json.contains("action")) a.action = json.at("action").get<std::string>();
     return a;
 }
 
@@ -182,6 +185,9 @@ OrderedJson json_of_object(const Object& o) {
         {"mass_model", o.mass_model},
         {"center_of_mass_m", vector(o.center_of_mass_m)},
         {"size_m", vector(o.size_m)},
+        {"box_middle_m", std::isfinite(o.box_middle_m[0]) ? vector(o.box_middle_m) : Json(nullptr)},
+        {"piece_of", o.piece_of},
+        {"piece_probability", number(o.piece_probability)},
         {"inertia_kg_m2", matrix(o.inertia_kg_m2)},
         {"mass_error_kg", number(o.mass_error_kg)},
         {"center_of_mass_error_m", vector(o.center_of_mass_error_m)},
@@ -226,6 +232,12 @@ Object object_of(const OrderedJson& json) {
     o.mass_kg = number_at(json, "mass_kg");
     o.center_of_mass_m = vector_at(json, "center_of_mass_m");
     if (json.contains("size_m")) o.size_m = vector_at(json, "size_m");
+    if (json.contains("box_middle_m") && !json.at("box_middle_m").is_null())
+        o.box_middle_m = vector_at(json, "box_middle_m");
+    if (json.contains("piece_of")) {
+        o.piece_of = json.at("piece_of").get<std::int32_t>();
+        o.piece_probability = number_at(json, "piece_probability");
+    }
     o.barrier_J = number_at(json, "barrier_J");
     // Earlier versions did not write it.
     if (json.contains("barrier_error_J")) o.barrier_error_J = number_at(json, "barrier_error_J");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/json.h"
+#include "io/acceleration_units.h"
 #include "io/at2.h"
 #include "io/json_text.h"
 #include "io/text.h"
@@ -17,9 +18,8 @@ namespace topple {
 namespace {
 
 namespace fs = std::filesystem;
-using io::counted, io::fail, io::in_quotes, io::lower_case, io::short_number;
+using io::counted, io::fail, io::g_m_s2, io::in_quotes, io::lower_case, io::short_number;
 
-constexpr double g_m_s2 = 9.80665;
 // Strong motion lasts a minute or two, sampled 50 to 1000 times a second. More than an hour would
 // only take long.
 constexpr double shortest_step_s = 1e-5, longest_step_s = 0.5, longest_s = 3600;
@@ -29,17 +29,6 @@ constexpr std::uint64_t most_bytes = 100'000'000;
 constexpr double highest_g = 10, highest_assumed_g = 3;
 
 const char* const mend = "name it with --accelerogram-unit g, m/s2 or cm/s2";
-
-// m/s^2 in a unit, by its name in lower case; none where it is no unit of acceleration.
-std::optional<double> unit_of(std::string_view name) {
-    if (name == "g") return g_m_s2;
-    for (const char* metres : {"m/s^2", "m/s2", "m/s/s", "m/s\u00b2", "m/sec^2", "m/sec2"})
-        if (name == metres) return 1;
-    for (const char* gal :
-         {"gal", "gals", "cm/s^2", "cm/s2", "cm/s/s", "cm/s\u00b2", "cm/sec^2", "cm/sec2"})
-        if (name == gal) return 0.01;
-    return std::nullopt;
-}
 
 // The samples as a file has them.
 struct Raw {
@@ -111,7 +100,7 @@ Raw read_json(const fs::path& file, std::string_view text) {
         if (!unit.json->is_string())
             fail(file, unit.name + " must be a string, not " + unit.json->type_name());
         const auto name = unit.json->get<std::string>();
-        raw.unit_m_s2 = unit_of(lower_case(name));
+        raw.unit_m_s2 = io::acceleration_unit_m_s2(name);
         if (!raw.unit_m_s2)
             fail(file,
                  unit.name + " is " + in_quotes(name) + ", but must be g, m/s^2, cm/s^2 or gal");
@@ -127,7 +116,7 @@ void collect_units(std::string_view line, std::set<double>& units) {
     }
     std::string_view rest = text;
     for (auto word = io::next_token(rest, true); !word.empty(); word = io::next_token(rest, true)) {
-        if (const auto unit = unit_of(word)) units.insert(*unit);
+        if (const auto unit = io::acceleration_unit_m_s2(word)) units.insert(*unit);
     }
 }
 
@@ -154,7 +143,7 @@ Raw read_peer(const fs::path& file, io::At2Record record, bool unit_given) {
         std::string_view rest = std::string_view(text).substr(at + 8);
         std::string_view word = io::next_token(rest, true);
         while (word.ends_with('.')) word.remove_suffix(1);
-        if (const auto unit = unit_of(word)) units.insert(*unit);
+        if (const auto unit = io::acceleration_unit_m_s2(word)) units.insert(*unit);
     }
     raw.unit_m_s2 = only_unit(file, units, unit_given);
     return raw;
@@ -231,7 +220,7 @@ Raw read_text(const fs::path& file, std::string_view text, bool unit_given) {
 }  // namespace
 
 double acceleration_unit_m_s2(const std::string& name) {
-    if (const std::optional<double> unit = unit_of(lower_case(name))) return *unit;
+    if (const std::optional<double> unit = io::acceleration_unit_m_s2(name)) return *unit;
     throw Error(ErrorKind::usage, "--accelerogram-unit " + name + ": expected g, m/s2 or cm/s2");
 }
 

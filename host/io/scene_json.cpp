@@ -9,7 +9,6 @@
 #include "io/json_text.h"
 #include "io/json_values.h"
 #include "io/object_json.h"
-#include "io/object_middles.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -131,9 +130,6 @@ OrderedJson scene_document(const Scene& scene) {
     json["events"] = numbers_by_name(scene.events);
     json["primitives"] = list(scene.primitives, [](const Primitive& p) { return to_json(p); });
     json["objects"] = list(scene.objects, json_of_object);
-    const auto middles = object_middles_m(scene);
-    for (std::size_t o = 0; o < middles.size(); ++o)
-        json["objects"][o]["box_middle_m"] = middles[o] ? Json(vector(*middles[o])) : Json(nullptr);
     json["contacts"] = list(scene.contacts, [](const Contact& c) { return to_json(c); });
     json["supports"] = list(scene.supports, [](const Support& s) { return to_json(s); });
     if (!scene.corrections.empty())

@@ -13,10 +13,10 @@ add_library(topple::topple ALIAS libtopple)
 add_dependencies(libtopple topple_readers)
 
 # What those objects need when they are linked, by package, target and library; what they need of others are headers.
-set(TOPPLE_LINKED_LIBRARIES png z jpeg lzf qhull_r openvdb tbb OpenCL vulkan assimp octomap octomath cairo stdc++ m pthread)
-set(TOPPLE_LINKED_PACKAGES Threads PNG ZLIB JPEG liblzf Qhull TBB OpenCL Vulkan assimp octomap)  # and OpenVDB, cairo
-target_link_libraries(libtopple PRIVATE Threads::Threads PNG::PNG ZLIB::ZLIB JPEG::JPEG liblzf::liblzf Qhull::qhull_r OpenVDB::openvdb
-                                        TBB::tbb OpenCL::OpenCL Vulkan::Vulkan assimp::assimp octomap cairo)
+set(TOPPLE_LINKED_LIBRARIES png deflate jpeg lzf qhull_r openvdb tbb OpenCL vulkan assimp octomap octomath cairo stdc++ m pthread)
+set(TOPPLE_LINKED_PACKAGES Threads PNG JPEG liblzf Qhull TBB OpenCL Vulkan assimp octomap)  # and OpenVDB, cairo, libdeflate
+target_link_libraries(libtopple PRIVATE Threads::Threads PNG::PNG JPEG::JPEG liblzf::liblzf Qhull::qhull_r OpenVDB::openvdb
+                                        TBB::tbb OpenCL::OpenCL Vulkan::Vulkan assimp::assimp octomap cairo deflate)
 
 set(GENERATED_HEADERS ${CMAKE_CURRENT_BINARY_DIR}/include)
 file(GLOB HEADERS CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/include/topple/*.h)

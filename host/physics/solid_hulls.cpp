@@ -33,10 +33,7 @@ std::vector<std::vector<Vec3>> solid_hulls(const SolidCells& cells, const Bounda
         const double h = cells.voxel_m;
         std::vector<Vec3> points;
         for (const auto& c : coarse[p]) points.push_back({c[0] * h, c[1] * h, c[2] * h});
-        for (const std::size_t b : parts[p]) {
-            const std::vector<Vec3> corners = solids::corners_of(boundary, b, h);
-            points.insert(points.end(), corners.begin(), corners.end());
-        }
+        for (const std::size_t b : parts[p]) solids::add_corners(boundary, b, h, points);
         constexpr double alike = 0.005;  // of a voxel
         points = welded(points, alike * h);
         if (const auto hull = convex_hull(points)) {

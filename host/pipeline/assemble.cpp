@@ -13,7 +13,6 @@
 #include "io/text.h"
 #include "physics/overturning.h"
 #include "pipeline/explain.h"
-#include "pipeline/object_sizes.h"
 #include "pipeline/sentences.h"
 #include "safety/directions.h"
 #include "safety/disturbances.h"
@@ -80,10 +79,8 @@ DirectedBarrier directed(const StableObject& from, const ToInput& to_input) {
     return out;
 }
 
-void add_objects(const SolidScene& solids, const ObjectStage& objects, const SafetyStage& safety,
-                 const ToInput& to_input, Scene& scene) {
-    const std::vector<Vec3> size_m =
-        object_sizes_m(solids, objects.object_of_primitive, objects.objects.size());
+void add_objects(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,
+                 Scene& scene) {
     for (std::size_t o = 0; o < objects.objects.size(); ++o) {
         const StableObject& from = objects.objects[o];
         Object to;
@@ -92,7 +89,12 @@ void add_objects(const SolidScene& solids, const ObjectStage& objects, const Saf
         to.grounded = from.grounded;
         to.agreement = from.agreement;
         to.mass_kg = from.candidate.body.mass_kg;
-        to.size_m = size_m[o];
+        to.size_m = from.box.size_m;
+        to.box_middle_m = to_input(from.box.middle_m);
+        to.piece_probability = from.piece.probability;
+        if (from.piece.probability > 0.5)
+            to.piece_of =
+                objects.object_of_primitive[static_cast<std::size_t>(from.piece.primitive)];
         to.mass_model = from.hollow ? "hollow" : from.closed ? "closed" : "solid";
         to.center_of_mass_m = to_input(from.candidate.body.center);
         to.inertia_kg_m2 = to_input.tensor(from.inertia);
@@ -139,8 +141,7 @@ void add_objects(const SolidScene& solids, const ObjectStage& objects, const Saf
         const safety::CategoryEnds& category = safety.category[o];
         to.unsafety_category = to.seen_enough ? safety::to_string(category.lower) : "";
         to.unsafety_certain = to.seen_enough && category.lower == category.higher &&
-                              from.piece.probability <= 0.5 &&
-                              safety.advice[o].kind != Suggestion::Kind::check &&
+                              to.piece_of < 0 && safety.advice[o].kind != Suggestion::Kind::check &&
                               !stands_against_odds(from, safety.disturbances, safety.risk, o);
         to.name = objects.told.name[o];
         to.corrected = objects.told.corrected[o];
@@ -326,7 +327,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
         axes[0][0], axes[0][1], axes[0][2], 0, axes[1][0], axes[1][1], axes[1][2], 0,
         axes[2][0], axes[2][1], axes[2][2], 0, 0,          0,          0,          1};
     add_primitives(parts, objects, to_input, scene);
-    add_objects(*parts.solids, objects, safety, to_input, scene);
+    add_objects(objects, safety, to_input, scene);
     add_contacts(objects, to_input, scene);
     add_fields(safety, to_input, scene);
     add_walks(safety, to_input, scene);

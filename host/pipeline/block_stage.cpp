@@ -9,9 +9,8 @@
 #include <utility>
 
 #include "pipeline/cancelling.h"
-#include "pipeline/geometry_stage.h"
 #include "pipeline/ingest.h"
-#include "pipeline/voxel_stage.h"
+#include "pipeline/solid_stage.h"
 #include "tiles/binary_file.h"
 #include "tiles/work_files.h"
 
@@ -109,8 +108,8 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
     input.frame = layout.frame;
     constexpr double below = -std::numeric_limits<double>::infinity();
     input.storeys = {{block.floor_m, below, block.top_m}};
-    const GeometryStage geometry = find_primitives(device, input, quiet, stage);
-    const VoxelStage voxels = make_solids(device, input, geometry, layout.voxel_m, stage);
+    const auto [geometry, voxels] =
+        find_solids(device, input, layout.voxel_m, quiet, stage, SolidDetail::whole_voxels);
     for (std::size_t p = 0; p < voxels.number.size(); ++p) {
         if (voxels.number[p] < 0) continue;
         out.primitives.push_back({geometry.primitives.model[p].front(), geometry.role[p],

@@ -16,19 +16,27 @@ constexpr std::uint64_t least_surfels = 36;
 
 }  // namespace
 
-GeometryStage find_primitives(device::Device& device, const Ingested& input,
-                              const ParseOptions& options, StageClock& stage) {
-    GeometryStage g;
-    g.surfels = stage("normals", [&] {
+FramedSurfels find_surfels(device::Device& device, const Ingested& input,
+                           const ParseOptions& options, StageClock& stage) {
+    FramedSurfels out;
+    out.surfels = stage("normals", [&] {
         return geometry::make_surfels(device, input.cloud,
                                       input.surfels.value_or(surfel_cells * input.cell_m),
                                       input.viewpoints, input.viewpoint_of_point);
     });
-    g.frame = stage("frame", [&] {
+    out.frame = stage("frame", [&] {
         return input.frame
                    ? *input.frame
-                   : geometry::find_scene_frame(device, g.surfels, {options.up, input.camera_up});
+                   : geometry::find_scene_frame(device, out.surfels, {options.up, input.camera_up});
     });
+    return out;
+}
+
+GeometryStage find_primitives(device::Device& device, const Ingested& input, FramedSurfels surfels,
+                              StageClock& stage) {
+    GeometryStage g;
+    g.surfels = std::move(surfels.surfels);
+    g.frame = std::move(surfels.frame);
     const geometry::Regions regions =
         stage("splitting", [&] { return geometry::split(g.surfels, device.threads()); });
     g.primitives = stage("merging", [&] {
@@ -51,7 +59,8 @@ GeometryStage find_primitives(device::Device& device, const Ingested& input,
     }
     stage("shell", [&] {
         g.samples = geometry::sample_surface(input.cloud, g.surfels, g.primitive_of_point, g.frame,
-                                             std::max(geometry::finest_sample_m, input.cell_m));
+                                             std::max(geometry::finest_sample_m, input.cell_m),
+                                             device.threads());
         geometry::Shell shell =
             geometry::find_shell(g.samples, g.primitives.model.size(), device.threads(), g.storeys);
         g.role = std::move(shell.role);

@@ -19,6 +19,12 @@
 // Section 2.1 of the paper: from points to primitives.
 namespace topple {
 
+// Surfels and how the scene lies: all that voxels have to wait for.
+struct FramedSurfels {
+    geometry::Surfels surfels;
+    geometry::SceneFrame frame;
+};
+
 struct GeometryStage {
     geometry::Surfels surfels;
     geometry::SceneFrame frame;
@@ -30,8 +36,12 @@ struct GeometryStage {
     std::vector<std::int32_t> region_of_point, primitive_of_point;
 };
 
-GeometryStage find_primitives(device::Device& device, const Ingested& input,
-                              const ParseOptions& options, StageClock& stage);
+FramedSurfels find_surfels(device::Device& device, const Ingested& input,
+                           const ParseOptions& options, StageClock& stage);
+
+// Of the device it takes the threads alone.
+GeometryStage find_primitives(device::Device& device, const Ingested& input, FramedSurfels surfels,
+                              StageClock& stage);
 
 // The seen surface inside solids and at their seams; of all surfels, or of those that count. A pair
 // of neighbours counts with the first of the two. number: the solid of each primitive, -1: none.

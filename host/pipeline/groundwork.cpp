@@ -6,9 +6,9 @@
 #include "io/text.h"
 #include "pipeline/parse_memory.h"
 #include "pipeline/scale_checks.h"
+#include "pipeline/solid_stage.h"
 #include "pipeline/surface_extent.h"
 #include "pipeline/voxel_size.h"
-#include "pipeline/voxel_stage.h"
 
 namespace topple {
 namespace {
@@ -91,9 +91,8 @@ Groundwork lay_groundwork(device::Device& device, Ingested input, const ParseOpt
     const double extent = extent_m({input.cloud.x, input.cloud.y, input.cloud.z});
     note_small_extent(extent, input.origin, out.notes);
 
-    const GeometryStage geometry = find_primitives(device, input, options, stage);  // 2.1
+    auto [geometry, voxels] = find_solids(device, input, out.voxel_m, options, stage);  // 2
     if (!geometry.frame.note.empty()) out.notes.push_back(geometry.frame.note);
-    VoxelStage voxels = make_solids(device, input, geometry, out.voxel_m, stage);  // 2.2
     if (voxels.solids->primitives() == 0) no_surface(input, source, extent);
     out.parts = solid_parts(geometry, voxels);
     out.points = labelled_points(input, geometry, voxels);

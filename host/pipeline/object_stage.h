@@ -13,11 +13,13 @@
 #include "graph/stable_objects.h"
 #include "graph/supports.h"
 #include "physics/bodies.h"
+#include "physics/hidden_walls.h"
 #include "physics/inertia.h"
 #include "physics/landscape.h"
 #include "physics/sliding.h"
 #include "physics/toppling.h"
 #include "pipeline/hand_corrections.h"
+#include "pipeline/object_boxes.h"
 #include "pipeline/solid_parts.h"
 #include "pipeline/stage_clock.h"
 
@@ -48,10 +50,11 @@ struct StableObject {
     bool seen_enough() const {
         return rest != graph::RestKind::hidden && rest != graph::RestKind::none;
     }
-    double agreement = 1;  // share of the sampler's chains that found it
-    graph::PieceOf piece;  // what it may be a piece of
-    Landscape poses;       // grid frame; its places are those of `sliding`
-    double lowest_m = 0, highest_m = 0;
+    double agreement = 1;                // share of the sampler's chains that found it
+    graph::PieceOf piece;                // what it may be a piece of
+    Landscape poses;                     // grid frame; its places are those of `sliding`
+    double lowest_m = 0, highest_m = 0;  // of its voxels
+    ObjectBox box;
 };
 
 // S(W) by direction and height of an object that tips so, as it stands.
@@ -65,6 +68,7 @@ struct ObjectStage {
     graph::Grouping grouping;
     std::vector<std::int32_t> object_of_primitive;  // the ground, where there is one, is object 0
     std::vector<StableObject> objects;
+    physics::HiddenWalls hidden_walls;
     std::vector<Support> supports;  // sorted by (supporter, supported)
     HandCorrections::Told told;
     std::optional<TakenAway> taken;  // by hand from the parts, before all else here
@@ -81,10 +85,12 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
                       StageClock& stage);
 
 // What a push does to objects whose candidates are known, all in one batch: fills in the drops over
-// their edges, tipping, sliding, both together and their poses. What is grounded stops what falls.
+// their edges, tipping, sliding, both together, their poses and boxes. What is grounded stops what
+// falls, and so do walls behind what hides them.
 void find_barriers(device::Device& device, const physics::SupportTable& table,
-                   const SolidScene& solids, std::span<const std::int32_t> object_of_primitive,
-                   double friction, std::vector<StableObject>& objects);
+                   const SolidScene& solids, const physics::HiddenWalls& walls,
+                   std::span<const std::int32_t> object_of_primitive, double friction,
+                   std::vector<StableObject>& objects);
 
 // Takes from the parts what is not there by hand, and from the solids what turns out to be no
 // object's (graph/false_feet.h).

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <numeric>
 #include <optional>
 #include <span>
-#include <thread>
 
 #include "core/thread_pool.h"
 #include "pipeline/surface_colours.h"
@@ -52,42 +52,17 @@ std::vector<std::span<const solids::ObjectVoxel>> by_object(
     return out;
 }
 
-// Threads for work on all objects. These are worked on side by side, the largest first. Those that
-// are more than a thread's share of all, as the building may be, share out their own work
-// meanwhile: what such a one does on one thread holds up nobody.
-class ObjectPools {
-  public:
-    explicit ObjectPools(unsigned threads)
-        : threads_(threads), both_(std::min(threads, 2U)), within_(threads), beside_(threads) {}
-
-    // Calls what(n, pool) for each object.
-    template <class What>
-    void each(std::span<const std::span<const solids::ObjectVoxel>> objects, const What& what) {
-        std::size_t all = 0;
-        for (const auto& object : objects) all += object.size();
-        std::vector<std::size_t> large, small;
-        for (std::size_t n = 0; n < objects.size(); ++n)
-            (objects[n].size() <= all / threads_ ? small : large).push_back(n);
-        const auto voxels = [&](std::size_t n) { return objects[n].size(); };
-        std::ranges::stable_sort(small, std::greater{}, voxels);
-        both_.each(2, 1, [&](std::size_t which) {
-            if (which == 0) {
-                for (const std::size_t n : large) what(n, within_);
-                return;
-            }
-            beside_.each(small.size(), 1, [&](std::size_t n) {
-                ThreadPool alone(1);
-                what(small[n], alone);
-            });
-        });
-    }
-    // For all else.
-    ThreadPool& all() { return beside_; }
-
-  private:
-    unsigned threads_;
-    ThreadPool both_, within_, beside_;
-};
+// Calls what(n) for each object, side by side, the largest first: what such a one shares out, as
+// the building may, is helped with once the others are done.
+template <class What>
+void each_object(std::span<const std::span<const solids::ObjectVoxel>> objects, ThreadPool& threads,
+                 const What& what) {
+    std::vector<std::size_t> order(objects.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::greater{},
+                             [&](std::size_t n) { return objects[n].size(); });
+    threads.each(order.size(), 1, [&](std::size_t n) { what(order[n]); });
+}
 
 Vec3 in_input(const vdb::VoxelFrame& frame, const Vec3& v) {
     Vec3 out{};
@@ -109,25 +84,24 @@ std::vector<ObjectSurface> object_surfaces(const Scene& scene, const SolidCells&
     const auto objects = by_object(voxels);
     std::optional<SurfaceColours> colours;
     if (!scene.points.red.empty()) colours.emplace(scene.points, cells, object_of, frame);
-    ObjectPools pools(threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency()));
+    ThreadPool pool(threads);
     std::vector<solids::SurfaceMesh> meshes(objects.size());
-    pools.each(objects, [&](std::size_t n, ThreadPool& threads_of_it) {
-        meshes[n] =
-            solids::surface_mesh(objects[n], boundary, object_of, frame.voxel_m, threads_of_it);
+    each_object(objects, pool, [&](std::size_t n) {
+        meshes[n] = solids::surface_mesh(objects[n], boundary, object_of, frame.voxel_m, pool);
     });
     const auto found = static_cast<double>(triangles_of(meshes));
     for (const Level& level : levels) {
         if (level.least_left * found > most_triangles) continue;  // it would not be enough
-        pools.each(objects, [&](std::size_t n, ThreadPool& threads_of_it) {
+        each_object(objects, pool, [&](std::size_t n) {
             solids::simplify(meshes[n], boundary.patches,
                              {.tolerance_m = level.tolerance * frame.voxel_m,
                               .longest_m = colours ? level.coloured_edge * frame.voxel_m : 0},
-                             threads_of_it);
+                             pool);
         });
         if (triangles_of(meshes) <= most_triangles) break;
     }
     std::vector<ObjectSurface> out(objects.size());
-    pools.all().each(objects.size(), 1, [&](std::size_t n) {
+    pool.each(objects.size(), 1, [&](std::size_t n) {
         const solids::SurfaceMesh& mesh = meshes[n];
         ObjectSurface& to = out[n];
         to.object = objects[n].front().object;

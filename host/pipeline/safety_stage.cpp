@@ -66,7 +66,7 @@ std::vector<safety::RiskObject> risk_objects(std::span<const StableObject> objec
         r.slides = o.instability.mode == "slide" && o.sliding.found;
         r.base_m = o.candidate.support_height_m;
         r.center = o.candidate.body.center;
-        r.height_m = o.highest_m - r.base_m;
+        r.height_m = o.box.top_m() - r.base_m;
         r.base_width_m = least_width(o.candidate.support_polygon);
         r.base_error_share = physics::slope_error_share(o.overturning);
         if (o.sliding.found) {

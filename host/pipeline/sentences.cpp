@@ -9,7 +9,9 @@
 #include "io/text.h"
 #include "physics/drop.h"
 #include "pipeline/explain.h"
+#include "safety/action.h"
 #include "safety/disturbances.h"
+#include "safety/largest_risk.h"
 
 namespace topple {
 namespace {
@@ -79,10 +81,10 @@ class Sentence {
   private:
     // Whose figures are those of a piece.
     std::string piece() const {
-        const graph::PieceOf& of = from_.piece;
-        if (!(of.probability > 0.5)) return "";
-        return " It may be a piece of " + what(scene_, parts_, of.primitive) + " (" +
-               io::two_digits(100 * of.probability) + " % likely).";
+        if (object_.piece_of < 0) return "";
+        const Object& whole = scene_.objects[static_cast<std::size_t>(object_.piece_of)];
+        return " It may be a piece of " + numbered_object(whole) + " (" +
+               io::two_digits(100 * object_.piece_probability) + " % likely).";
     }
     std::string slides() const {
         if (!(why_.way_m > 0)) {
@@ -206,12 +208,8 @@ std::string joules(double value) {
 
 // Against what brings it the most risk, the first of equals.
 std::string mend_of(const Object& object) {
-    const auto kinds = safety::disturbance_kinds();
-    const auto risk = [&](const safety::DisturbanceKind* kind) {
-        const auto at = object.risk_J.find(kind->name);
-        return at == object.risk_J.end() ? 0.0 : at->second;
-    };
-    return (*std::ranges::max_element(kinds, {}, risk))->words.mend;
+    const safety::DisturbanceKind* worst = safety::largest_risk(object).kind;
+    return (worst != nullptr ? worst : safety::disturbance_kinds().front())->words.mend;
 }
 
 // The least of 1, 2, 5, 10, 20, ... kilograms whose weight is no less than the force: how straps
@@ -231,13 +229,11 @@ std::string fix_sentence(const Object& object, const Suggestion& what) {
     if (!(what.hold.force_N > 0)) return text + ".";
     return text + ", with a strap or bracket rated for " + rated_for(what.hold.force_N) +
            " or more (it must hold " + io::two_digits(what.hold.force_N) +
-           " N sideways at least, without a margin), " + length(what.hold.height_m) +
+           " N sideways at least, without a margin), at its top, " + length(what.hold.height_m) +
            " above what it stands on.";
 }
 
 std::string advice_sentence(const Object& object, const Suggestion& what) {
-    double worst = 0;
-    for (const auto& [name, risk] : object.risk_J) worst = std::max(worst, risk);
     switch (what.kind) {
         case Suggestion::Kind::nothing:
             break;
@@ -250,8 +246,8 @@ std::string advice_sentence(const Object& object, const Suggestion& what) {
             std::string text = "Move it " + length(std::hypot(what.move_m[0], what.move_m[1])) +
                                " to the " + compass(azimuth_deg(what.move_m));
             if (!object.fall.takes_along.empty()) text += ", with what stands on it";
-            return text + ": its risk falls from " + joules(worst) + " to " + joules(what.risk_J) +
-                   ".";
+            return text + ": its risk falls from " + joules(safety::largest_risk(object).risk_J) +
+                   " to " + joules(what.risk_J) + ".";
         }
         case Suggestion::Kind::fix:
             return fix_sentence(object, what);
@@ -265,15 +261,18 @@ void tell_why(const SolidParts& parts, const ObjectStage& objects,
               std::span<const Landing> landings, Scene& scene) {
     const physics::Swept free{};
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
-        const physics::Swept& swept = o < landings.size() ? landings[o].swept : free;
+        const physics::Swept& swept = o < landings.size() ? landings[o].easiest : free;
         scene.objects[o].why.sentence = Sentence(scene, parts, objects, swept, o).text();
     }
 }
 
 void tell_advice(std::span<const Suggestion> suggestions, Scene& scene) {
-    for (std::size_t o = 0; o < scene.objects.size(); ++o)
-        if (!scene.objects[o].grounded)
-            scene.objects[o].advice.sentence = advice_sentence(scene.objects[o], suggestions[o]);
+    for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+        Object& object = scene.objects[o];
+        if (object.grounded) continue;
+        object.advice.sentence = advice_sentence(object, suggestions[o]);
+        object.advice.action = safety::action_text(scene, object);
+    }
 }
 
 }  // namespace topple

@@ -16,7 +16,8 @@ namespace topple {
 void tell_why(const SolidParts& parts, const ObjectStage& objects,
               std::span<const Landing> landings, Scene& scene);
 
-// What is advised for each object, in plain words, from what was suggested, by object.
+// What is advised for each object, and what to do about it, in plain words, from what was
+// suggested, by object.
 void tell_advice(std::span<const Suggestion> suggestions, Scene& scene);
 
 }  // namespace topple

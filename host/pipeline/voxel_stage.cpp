@@ -9,19 +9,16 @@
 #include <utility>
 
 #include "core/thread_pool.h"
+#include "geometry/algebraic_model.h"
 #include "geometry/ledges.h"
+#include "geometry/split.h"
 #include "geometry/surface_gaps.h"
-#include "pipeline/view_coverage.h"
-#include "pipeline/voxel_size.h"
 #include "solids/boundary.h"
 #include "solids/patches.h"
 #include "vdb/completion.h"
 
 namespace topple {
 namespace {
-
-// Frames are carved in batches of this many bytes of depth, so that any number of them fits.
-constexpr std::uint64_t batch_bytes = 32u << 20;
 
 // The solids among so many primitives, by their voxels, numbered in their order.
 std::vector<std::int32_t> solid_numbers(const SolidCells& cells, std::size_t primitives) {
@@ -61,21 +58,6 @@ std::vector<vdb::StandsOn> ledges(const GeometryStage& geometry) {
     return out;
 }
 
-PointCloud with_gaps(const CloudView& cloud, const geometry::GapPoints& gaps) {
-    PointCloud out;
-    const auto joined = [](const auto& first, const std::vector<float>& then) {
-        std::vector<float> all;
-        all.reserve(first.size() + then.size());
-        for (const float v : first) all.push_back(v);
-        all.insert(all.end(), then.begin(), then.end());
-        return all;
-    };
-    out.x = joined(cloud.x, gaps.x);
-    out.y = joined(cloud.y, gaps.y);
-    out.z = joined(cloud.z, gaps.z);
-    return out;
-}
-
 // The faces of the primitives: what bounds the solids within their voxels.
 struct Faces {
     std::vector<SurfacePatch> patches;
@@ -95,7 +77,7 @@ solids::SeenCells seen_and_between(const CloudView& cloud, const geometry::GapPo
     std::vector<bool> left(static_cast<std::size_t>(faces), false);
     for (const std::int32_t f : face)
         if (f >= 0) left[static_cast<std::size_t>(f)] = true;
-    const PointCloud all = with_gaps(cloud, gaps);
+    const PointCloud all = geometry::with_gaps(cloud, gaps);
     for (std::size_t n = 0; n < gaps.size(); ++n) {
         const std::int32_t f = gaps.face[n];
         solid.push_back(number[static_cast<std::size_t>(gaps.primitive[n])]);
@@ -129,6 +111,30 @@ Faces find_faces(device::Device& device, const Ingested& input, const GeometrySt
     return out;
 }
 
+// Of the shell's solids those that were seen from one side only, by what their surfels' faces look
+// to.
+std::vector<bool> find_sheets(const GeometryStage& geometry,
+                              const std::vector<std::int32_t>& number,
+                              std::span<const Role> roles) {
+    const geometry::Surfels& s = geometry.surfels;
+    const geometry::Regions& faces = geometry.primitives.faces;
+    std::vector<Eigen::Vector3d> sum(roles.size(), Eigen::Vector3d::Zero());
+    std::vector<double> count(roles.size(), 0.0);
+    for (std::size_t n = 0; n < s.size(); ++n) {
+        const std::int32_t face = faces.label[n], primitive = geometry.primitives.label[n];
+        const std::int32_t p = primitive < 0 ? -1 : number[static_cast<std::size_t>(primitive)];
+        if (face < 0 || p < 0 || !in_shell(roles[static_cast<std::size_t>(p)])) continue;
+        const geometry::AlgebraicModel& model = faces.regions[static_cast<std::size_t>(face)].model;
+        sum[static_cast<std::size_t>(p)] +=
+            geometry::gradient(model, geometry::position(s, n)).normalized();
+        ++count[static_cast<std::size_t>(p)];
+    }
+    std::vector<bool> out;
+    for (std::size_t p = 0; p < roles.size(); ++p)
+        out.push_back(in_shell(roles[p]) && sum[p].norm() >= solids::one_way * count[p]);
+    return out;
+}
+
 // For each cell the unseen voxels right below it, up to what fits. What is below floors and behind
 // walls is of no interest.
 std::vector<std::uint8_t> unseen_below(const vdb::VolumeView& view,
@@ -157,6 +163,25 @@ std::vector<solids::KnownRest> known_rests(const GeometryStage& geometry,
 }
 
 // Strays are no body, and in no way.
+struct Parted {
+    SolidCells near, strays;
+};
+Parted part_strays(const SolidCells& cells, const vdb::VoxelScene& volume) {
+    Parted out;
+    out.near.voxel_m = out.strays.voxel_m = cells.voxel_m;
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const bool in_bounds = volume.in_bounds(cells.i[n], cells.j[n], cells.k[n]);
+        SolidCells& to = in_bounds ? out.near : out.strays;
+        to.i.push_back(cells.i[n]);
+        to.j.push_back(cells.j[n]);
+        to.k.push_back(cells.k[n]);
+        to.primitive.push_back(cells.primitive[n]);
+        to.basis.push_back(cells.basis[n]);
+        to.unseen_below.push_back(cells.unseen_below[n]);
+    }
+    return out;
+}
+
 std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Ingested& input,
                                               const GeometryStage& geometry,
                                               const geometry::GapPoints& gaps,
@@ -165,43 +190,23 @@ std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Inge
                                               std::vector<Role> roles) {
     Faces faces = find_faces(device, input, geometry, gaps, number, cells.voxel_m, roles);
     cells.unseen_below = unseen_below(vdb::VolumeView(volume, cells, roles), faces.sheet);
-    SolidCells near, strays;
-    near.voxel_m = strays.voxel_m = cells.voxel_m;
-    for (std::size_t n = 0; n < cells.size(); ++n) {
-        const bool in_bounds = volume.in_bounds(cells.i[n], cells.j[n], cells.k[n]);
-        SolidCells& to = in_bounds ? near : strays;
-        to.i.push_back(cells.i[n]);
-        to.j.push_back(cells.j[n]);
-        to.k.push_back(cells.k[n]);
-        to.primitive.push_back(cells.primitive[n]);
-        to.basis.push_back(cells.basis[n]);
-        to.unseen_below.push_back(cells.unseen_below[n]);
-    }
+    Parted parted = part_strays(cells, volume);
     BoundaryCells boundary =
-        solids::find_boundary(device, near, faces.seen, std::move(faces.patches), faces.sheet,
-                              known_rests(geometry, number));
-    return std::make_shared<const SolidScene>(std::move(near), std::move(roles), std::move(strays),
-                                              std::move(boundary));
+        solids::find_boundary(device, parted.near, faces.seen, std::move(faces.patches),
+                              faces.sheet, known_rests(geometry, number));
+    return std::make_shared<const SolidScene>(std::move(parted.near), std::move(roles),
+                                              std::move(parted.strays), std::move(boundary));
 }
 
-// Returns whether the frames show the scene from around.
-bool carve_all(device::Device& device, const FrameStream& frames, vdb::VoxelScene& scene,
-               StageClock& stage) {
-    ViewCoverage coverage(scene.frame().grid_from_input);
-    const Intrinsics& k = frames.intrinsics();
-    const std::uint64_t frame_bytes = std::uint64_t{2} * k.width * k.height;
-    const std::size_t per_batch =
-        static_cast<std::size_t>(std::clamp<std::uint64_t>(batch_bytes / frame_bytes, 1, 512));
-    std::vector<DepthFrame> batch;
-    for_each_frame(frames, device.threads(), [&](DepthFrame frame, std::size_t f) {
-        batch.push_back(std::move(frame));
-        coverage.add(batch.back().camera_to_world);
-        if (batch.size() < per_batch && f + 1 < frames.size()) return;
-        scene.carve(device, k, batch);
-        batch.clear();
-        stage.progress("carving", static_cast<double>(f + 1) / static_cast<double>(frames.size()));
-    });
-    return coverage.from_around();
+std::shared_ptr<const SolidScene> scene_of_whole_voxels(const GeometryStage& geometry,
+                                                        const std::vector<std::int32_t>& number,
+                                                        const vdb::VoxelScene& volume,
+                                                        SolidCells cells, std::vector<Role> roles) {
+    cells.unseen_below =
+        unseen_below(vdb::VolumeView(volume, cells, roles), find_sheets(geometry, number, roles));
+    Parted parted = part_strays(cells, volume);
+    return std::make_shared<const SolidScene>(std::move(parted.near), std::move(roles),
+                                              std::move(parted.strays));
 }
 
 constexpr const char* fraction_field = "fraction";
@@ -285,33 +290,21 @@ geometry::SurfaceSamples numbered(geometry::SurfaceSamples samples,
 }
 
 VoxelStage make_solids(device::Device& device, const Ingested& input, const GeometryStage& geometry,
-                       double voxel_m, StageClock& stage) {
+                       SpaceCarving& carving, StageClock& stage, SolidDetail detail) {
     VoxelStage out;
-    const vdb::VoxelFrame frame{voxel_m, geometry.frame.axes};
+    const double voxel_m = carving.frame().voxel_m;
     geometry::GapPoints gaps;
     stage("voxels", [&] {
-        // Larger voxels close gaps by themselves.
-        if (voxel_m < closing_cells * std::max(input.cell_m, input.sparse_cell_m))
+        if (carving.closes_gaps())
             gaps = geometry::close_gaps(geometry.surfels, geometry.primitives.faces.label,
                                         geometry.primitives.label, voxel_m / 2, device.threads());
-        if (gaps.size() == 0) {
-            out.scene =
-                std::make_shared<vdb::VoxelScene>(frame, input.cloud, geometry.primitive_of_point);
-            return;
-        }
-        std::vector<std::int32_t> label = geometry.primitive_of_point;
-        label.insert(label.end(), gaps.primitive.begin(), gaps.primitive.end());
-        out.scene = std::make_shared<vdb::VoxelScene>(frame, with_gaps(input.cloud, gaps), label);
     });
-    bool around = false;
-    stage("carving", [&] {
-        if (input.frames) around = carve_all(device, *input.frames, *out.scene, stage);
-        if (input.space) out.scene->set_free(*input.space);
-    });
+    const SpaceCarving::Carved carved = carving.finish(geometry.primitive_of_point, gaps, stage);
+    out.scene = carved.scene;
     stage("filling", [&] {
         SolidCells cells = out.scene->solid_cells();
         vdb::CompletionOptions options;
-        options.fill.columns = around;
+        options.fill.columns = carved.from_around;
         options.fill.lowest = floor_level(cells, geometry);
         options.fill.roles = geometry.role;
         options.ledges = ledges(geometry);
@@ -323,6 +316,11 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, const Geom
         std::vector<Role> roles;
         for (std::size_t p = 0; p < geometry.role.size(); ++p)
             if (out.number[p] >= 0) roles.push_back(geometry.role[p]);
+        if (detail == SolidDetail::whole_voxels) {
+            out.solids = scene_of_whole_voxels(geometry, out.number, *out.scene, std::move(cells),
+                                               std::move(roles));
+            return;
+        }
         out.solids = solid_scene(device, input, geometry, gaps, out.number, *out.scene,
                                  std::move(cells), std::move(roles));
         store_fractions(*out.solids, *out.scene);

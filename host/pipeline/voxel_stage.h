@@ -11,6 +11,7 @@
 #include "geometry/surface_samples.h"
 #include "pipeline/geometry_stage.h"
 #include "pipeline/ingest.h"
+#include "pipeline/space_carving.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/taken_away.h"
 #include "vdb/voxel_scene.h"
@@ -30,9 +31,14 @@ struct VoxelStage {
 // and too little to tell how it stands.
 constexpr std::uint64_t least_voxels = 8;
 
-// Voxels, carving and completion.
+// How finely solids are told: by what bounds them within their voxels, or by whole voxels.
+enum class SolidDetail { within_voxels, whole_voxels };
+
+// Voxels, what is left of carving, and completion. In whole voxels the solids have no boundary
+// cells, and the scene no field of fractions.
 VoxelStage make_solids(device::Device& device, const Ingested& input, const GeometryStage& geometry,
-                       double voxel_m, StageClock& stage);
+                       SpaceCarving& carving, StageClock& stage,
+                       SolidDetail detail = SolidDetail::within_voxels);
 
 // What of the solids is found to be no primitive's, the same cells being solid.
 void take_over(const SolidScene& before, const SolidScene& now, vdb::VoxelScene& scene);

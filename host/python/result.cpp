@@ -142,7 +142,8 @@ void bind_items(py::module_& module) {
         .def_readonly("risk_J", &Advice::risk_J)
         .def_readonly("hold_N", &Advice::hold_N)
         .def_readonly("hold_height_m", &Advice::hold_height_m)
-        .def_readonly("sentence", &Advice::sentence);
+        .def_readonly("sentence", &Advice::sentence)
+        .def_readonly("action", &Advice::action);
     py::class_<Fragility>(module, "Fragility")
         .def_readonly("pga_g", &Fragility::pga_g)
         .def_readonly("pga_dispersion", &Fragility::pga_dispersion)
@@ -181,6 +182,9 @@ void bind_items(py::module_& module) {
         .def_readonly("mass_kg", &Object::mass_kg)
         .def_readonly("center_of_mass_m", &Object::center_of_mass_m)
         .def_readonly("size_m", &Object::size_m)
+        .def_readonly("box_middle_m", &Object::box_middle_m)
+        .def_readonly("piece_of", &Object::piece_of)
+        .def_readonly("piece_probability", &Object::piece_probability)
         .def_readonly("barrier_J", &Object::barrier_J)
         .def_readonly("barrier_error_J", &Object::barrier_error_J)
         .def_readonly("mass_error_kg", &Object::mass_error_kg)
@@ -229,6 +233,7 @@ void bind_items(py::module_& module) {
         .def_readonly("fall", &Object::fall)
         .def_property_readonly("stands_on", [](const Object& o) { return o.why.stands_on; })
         .def_property_readonly("advice", [](const Object& o) { return o.advice.sentence; })
+        .def_property_readonly("action", [](const Object& o) { return o.advice.action; })
         .def_readonly("advice_figures", &Object::advice)
         .def_readonly("name", &Object::name)
         .def_readonly("corrected", &Object::corrected);

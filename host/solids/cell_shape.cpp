@@ -215,9 +215,8 @@ double error_beside(const BoundaryCells& b, std::size_t n, const Vec3& corner, d
 
 }  // namespace
 
-std::vector<Vec3> corners_of(const BoundaryCells& b, std::size_t n, double h) {
-    std::vector<Vec3> out;
-    if (b.share[n] == 0) return out;
+void add_corners(const BoundaryCells& b, std::size_t n, double h, std::vector<Vec3>& out) {
+    if (b.share[n] == 0) return;
     double most = 0;
     for (std::size_t s = 0; s < b.slots_used(n); ++s)
         most = std::max(most, bend(b.patches[b.slot[s][n]]));
@@ -245,7 +244,6 @@ std::vector<Vec3> corners_of(const BoundaryCells& b, std::size_t n, double h) {
             if (b.solid(n, corner, slack * h)) out.push_back(corner);
         }
     }
-    return out;
 }
 
 std::vector<UndersideCorner> underside_of(const BoundaryCells& b, std::int32_t i, std::int32_t j,
@@ -265,7 +263,8 @@ std::vector<UndersideCorner> underside_of(const BoundaryCells& b, std::int32_t i
                 out.push_back({{(i + di) * h, (j + dj) * h, k * h}, voxel_error * h});
         return out;
     }
-    const std::vector<Vec3> corners = corners_of(b, n, h);
+    std::vector<Vec3> corners;
+    add_corners(b, n, h, corners);
     const SurfacePatch* below = bound_below(b, n, h);
     double lowest = std::numeric_limits<double>::infinity(), nearest = lowest;
     for (const Vec3& c : corners) {

@@ -10,10 +10,11 @@
 // The outer form of solids, from the patches that bound them. Grid frame, metres.
 namespace topple::solids {
 
-// Points whose convex hull is about that of the solid part of a boundary voxel: corners of the
+// Adds points whose convex hull is about that of the solid part of a boundary voxel: corners of the
 // voxel, where patches cross its edges, where two patches meet on one of its sides, and three
 // within it. Where patches are curved, those of parts of the voxel.
-std::vector<Vec3> corners_of(const BoundaryCells& boundary, std::size_t n, double voxel_m);
+void add_corners(const BoundaryCells& boundary, std::size_t n, double voxel_m,
+                 std::vector<Vec3>& out);
 
 // How well a voxel's own sides are known where no patch bounds it, in voxels: one standard error.
 inline constexpr double voxel_error = 0.5;

@@ -7,6 +7,7 @@
 #include <string>
 #include <system_error>
 
+#include "core/sorted_order.h"
 #include "geometry/cell_grid.h"
 #include "tiles/binary_file.h"
 
@@ -193,7 +194,7 @@ void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const
         }
     });
     places.finish();
-    const std::vector<std::uint32_t> order = geometry::sorted_order(sums.keys());
+    const std::vector<std::uint32_t> order = sorted_order(sums.keys());
     std::vector<std::uint32_t> rank(order.size());
     ThinnedBin out;
     for (std::uint32_t n = 0; n < order.size(); ++n) {

@@ -18,13 +18,12 @@
 #include "geometry/surface_samples.h"
 #include "graph/joint_features.h"
 #include "physics/closed_furniture.h"
-#include "pipeline/geometry_stage.h"
 #include "pipeline/ingest.h"
 #include "pipeline/object_stage.h"
 #include "pipeline/solid_parts.h"
+#include "pipeline/solid_stage.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/voxel_size.h"
-#include "pipeline/voxel_stage.h"
 #include "topple/error.h"
 
 namespace {
@@ -66,8 +65,7 @@ void run(const std::filesystem::path& scan, const std::filesystem::path& folder)
     StageClock stage(timings, options);
     Ingested input = ingest(*device, scan, options);
     const double voxel_m = voxel_for_input(input, options);
-    GeometryStage geometry = find_primitives(*device, input, options, stage);
-    VoxelStage voxels = make_solids(*device, input, geometry, voxel_m, stage);
+    const auto [geometry, voxels] = find_solids(*device, input, voxel_m, options, stage);
     const SolidParts parts = solid_parts(geometry, voxels);
     const PartStage weighed = weigh_parts(*device, parts, options, stage);
     const geometry::SurfaceSamples& samples = parts.samples;

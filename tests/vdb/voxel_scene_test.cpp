@@ -228,6 +228,27 @@ TEST_P(Scenes, EmptyCloudOnePointOnePlane) {
     EXPECT_EQ(sheet.solid_cells().size(), 2500u);
 }
 
+// Labels that come later are those that would have been there from the start.
+TEST_P(Scenes, LabelsMayComeLater) {
+    std::vector<Vec3> points;
+    std::vector<std::int32_t> label;
+    for (int n = 0; n < 3000; ++n) {
+        points.push_back({0.001 * (n % 97), 0.003 * (n % 31), 0.002 * (n % 53)});
+        label.push_back(n % 7 - 1);
+    }
+    points.push_back({900, 0, 0});  // a stray
+    label.push_back(2);
+    const VoxelScene known({}, cloud_of(points), label);
+    VoxelScene later({}, cloud_of(points));
+    const Tiles tiles = known.tiles(true);
+    EXPECT_EQ(later.primitives(tiles), std::vector<std::int32_t>(tiles.size() * 512, -1));
+    later.set_labels(cloud_of(points), label);
+    EXPECT_EQ(later.tiles(true).x, tiles.x);
+    EXPECT_EQ(later.states(tiles), known.states(tiles));
+    EXPECT_EQ(later.primitives(tiles), known.primitives(tiles));
+    EXPECT_THROW(later.set_labels(cloud_of(points), std::vector<std::int32_t>{1}), Error);
+}
+
 // A scene ten times as long with the same views: the same leaves go to the device.
 TEST_P(Scenes, LeavesThatNoRayReachesCostNothing) {
     const Intrinsics k{64, 48, 50, 50, 31.5, 23.5, 1000};

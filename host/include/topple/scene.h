@@ -128,6 +128,10 @@ struct Advice {
     double hold_N = 0;         // "fix": horizontal force at hold_height_m that a fixing must take
     double hold_height_m = 0;  // above its support
     std::string sentence;
+    // What to do about it, so that it agrees with its category: the sentence, or that there is no
+    // need to act, or to look. "" for the ground, and where the category is not known and there is
+    // no sentence.
+    std::string action{};
 };
 
 // What it takes to overturn an object slowly, on its easiest way to tip: the figures of statics.
@@ -178,8 +182,16 @@ struct Object {
     // Share of the sampler's chains that found it, but for a tenth of its parts; 1 for the ground.
     double agreement = 1;
     double mass_kg = 0;
-    // Its box along the room's axes (Scene::manhattan_from_input), the third upright: end to end.
+    // Its box along the room's axes (Scene::manhattan_from_input), the third upright: end to end,
+    // and where its middle lies. Where nothing of it is solid: zeros, and NaN.
     Vec3 size_m{};
+    Vec3 box_middle_m{std::numeric_limits<double>::quiet_NaN(),
+                      std::numeric_limits<double>::quiet_NaN(),
+                      std::numeric_limits<double>::quiet_NaN()};
+    // The larger object that it is likelier than not a piece of, by a joint that grouping left
+    // apart; -1: none. And how likely the likeliest of its joints to larger objects is; 0: none.
+    std::int32_t piece_of = -1;
+    double piece_probability = 0;
     // "solid", of the density that was given all through; "closed": furniture that is boards of
     // that density around ParseOptions::contents_kg_m3; or "hollow": a shell, as a correction says.
     std::string mass_model = "solid";

@@ -289,6 +289,12 @@ typedef struct topple_object {
     const char* advice_kind;
     double advice_move_m[3], advice_risk_J, hold_N, hold_height_m;
     int32_t why_lands_on;
+    /* the larger object that it is likelier than not a piece of, or -1; and how likely the
+     * likeliest such joint is, 0 where there is none */
+    int32_t piece_of;
+    double piece_probability;
+    double box_middle_m[3]; /* the middle of the box of size_m; NaN: nothing of it is solid */
+    const char* action;     /* what to do about it, so that it agrees with its category */
 } topple_object;
 typedef struct topple_contact {
     size_t size;

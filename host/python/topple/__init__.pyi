@@ -161,6 +161,8 @@ class Advice:
     def hold_height_m(self) -> float: ...
     @property
     def sentence(self) -> str: ...
+    @property
+    def action(self) -> str: ...  # what to do about it, so that it agrees with the category
 
 class Fragility:  # of earthquakes; NaN: few fall at the strongest that is tried
     @property
@@ -242,6 +244,12 @@ class Object:
     @property
     def size_m(self) -> list[float]: ...  # along the room's axes, the third upright
     @property
+    def box_middle_m(self) -> list[float]: ...  # of that box; NaN: nothing of it is solid
+    @property
+    def piece_of(self) -> int: ...  # the larger object that it is likelier than not a piece of; -1: none
+    @property
+    def piece_probability(self) -> float: ...  # of the likeliest such joint
+    @property
     def barrier_J(self) -> float: ...
     @property
     def barrier_error_J(self) -> float: ...
@@ -303,6 +311,8 @@ class Object:
     def stands_on(self) -> list[int]: ...
     @property
     def advice(self) -> str: ...
+    @property
+    def action(self) -> str: ...
     @property
     def advice_figures(self) -> Advice: ...
 

@@ -17,18 +17,18 @@ _ADVICE = ('kind', 'move_m', 'risk_J', 'hold_N', 'hold_height_m')
 _BY_DISTURBANCE = ('risk_J', 'risk_error_J', 'fall_chance')
 _ITEMS = {
     'objects': ('id', 'name', 'grounded', 'mass_kg', 'mass_error_kg', 'mass_model', 'center_of_mass_m', 'center_of_mass_error_m', 'size_m',
-                'footprint_error_m', 'barrier_J', 'barrier_error_J', 'release_J', 'mode', 'direction', 'unsafety',
-                'unsafety_category', 'unsafety_certain', 'seen_enough', 'stands_on', 'rests_by', 'rest_probability', 'agreement', 'why', 'advice'),
+                'box_middle_m', 'piece_of', 'piece_probability', 'footprint_error_m', 'barrier_J', 'barrier_error_J', 'release_J', 'mode', 'direction', 'unsafety',
+                'unsafety_category', 'unsafety_certain', 'seen_enough', 'stands_on', 'rests_by', 'rest_probability', 'agreement', 'why', 'advice', 'action'),
     'primitives': ('id', 'object', 'model', 'points', 'solid_voxels', 'volume_m3', 'mass_kg', 'center_of_mass_m', 'name'),
     'contacts': ('a', 'b', 'area_m2', 'normal', 'relation', 'probability'),
     'supports': ('supporter', 'supported', 'area_m2', 'probability'),
 }
 _LISTS = ('stands_on', 'fall_takes_along')  # of ids
-_TEXT = ('advice_kind', 'name', 'mass_model', 'rests_by', 'mode', 'unsafety_category', 'why', 'advice', 'model', 'relation')
+_TEXT = ('advice_kind', 'name', 'mass_model', 'rests_by', 'mode', 'unsafety_category', 'why', 'advice', 'action', 'model', 'relation')
 _TYPES = {'id': np.int32, 'object': np.int32, 'a': np.int32, 'b': np.int32, 'supporter': np.int32, 'supported': np.int32,
-          'fall_lands_on': np.int32, 'why_lands_on': np.int32, 'points': np.uint64, 'solid_voxels': np.uint64, 'grounded': bool, 'unsafety_certain': bool, 'seen_enough': bool,
+          'piece_of': np.int32, 'fall_lands_on': np.int32, 'why_lands_on': np.int32, 'points': np.uint64, 'solid_voxels': np.uint64, 'grounded': bool, 'unsafety_certain': bool, 'seen_enough': bool,
           'fall_falls': bool, 'fall_leans_on': np.int32, **{name: object for name in _TEXT + _LISTS}}
-_VECTORS = ('center_of_mass_m', 'center_of_mass_error_m', 'size_m', 'direction', 'normal', 'fall_lands_m', 'why_edge_start_m', 'why_edge_end_m',
+_VECTORS = ('center_of_mass_m', 'center_of_mass_error_m', 'size_m', 'box_middle_m', 'direction', 'normal', 'fall_lands_m', 'why_edge_start_m', 'why_edge_end_m',
             'advice_move_m')
 _PUSHES = 'pushes'
 

@@ -71,10 +71,14 @@ function compareScenes(scene, other, otherIsBefore) {
     });
   } else {
     const matched = matchObjects(scene, other, earlier, box => (later.corrections || []).some(one => one.do === 'fixed' && spotWithin(scene, later, one, box)));
-    const match = new Map(matched.filter(row => row.mine && row.theirs).map(row => [row.mine, row.theirs.id]));
+    const both = matched.filter(row => row.mine && row.theirs), match = new Map(both.map(row => [row.mine, row.theirs.id]));
+    const stayed = new Map(both.filter(row => row.as === 'same' || row.as === 'apart').flatMap(row => [[row.mine, row.theirs], [row.theirs, row.mine]]));
     rows = matched.map(row => {
       const [first, last] = otherIsBefore ? [row.theirs, row.mine] : [row.mine, row.theirs], risk = risks(first, last);
-      return {...row, ...risk, ...outcome(scene, other, row, risk, first, match)};
+      const [side, far] = row.mine ? [scene, other] : [other, scene];
+      const of = row.as === 'alone' ? mayBePartOf(scene, side, far, row.mine || row.theirs, object => stayed.get(object)) : null;
+      return {...row, ...risk, ...outcome(scene, other, row, risk, first, match), ...of && {
+        text: `${last ? 'or was part of' : 'or now part of'} ${of.grounded ? 'the building' : sideName(scene, far, of)}`}};
     });
   }
   const change = row => Math.abs((row.after ? row.after.risk : 0) - (row.before ? row.before.risk : 0));
@@ -106,7 +110,7 @@ function outcome(scene, other, row, risk, first, match) {
 
 // What became of a row, as the table has it.
 function becameText({verdict: became, text}) {
-  if (['joined', 'now part', 'parted', 'not there'].includes(became)) return [became, text].filter(part => part).join(' ');
+  if (['joined', 'now part', 'parted', 'not there', 'gone', 'new'].includes(became)) return [became, text].filter(part => part).join(' ');
   if (became === 'fixed now' && text) return `${became}, ${text}`;
   const words = {alike: 'as before', unknown: 'not known', 'not told apart': 'not told apart (\u00b1 too large)'}[became] || became;
   return words + (text ? `: ${text}` : '');
@@ -166,7 +170,7 @@ class ComparePanel {
     const banner = sameScan ? element('p', {className: 'hint', text: 'The same scan: what changed follows from the corrections.'}) :
       element('p', {className: 'warning', text: 'The two scans may have been told apart differently; \u00b1 does not cover that: look at both pictures before believing a change.'});
     const how = sameScan ? 'Objects are the same that have the most points in common. ' : 'Objects are the same where their boxes overlap by a tenth or more, and size, mass and what holds them are alike within the errors: only of these ' +
-      'is said whether they became safer. Moved: of equal size and mass, elsewhere, both ends of their boxes by more than the voxels. Perhaps moved: of a like shape, elsewhere. Gone and new may also be one thing that was moved and then told apart otherwise, or what one of the parses took for part of the building. ';
+      'is said whether they became safer. Moved: of equal size and mass, elsewhere, both ends of their boxes by more than the voxels. Perhaps moved: of a like shape, elsewhere. Gone, or now part: the other thing has parts as large in its place, or has grown by as much. Gone and new may also be one thing that was moved and then told apart otherwise, or what one of the parses took for part of the building. ';
     this.out.replaceChildren(banner, element('p', {className: 'counts', text: line + counts}),
       element('div', {className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': 'Objects of both parses'}, [
         element('table', {}, [element('thead', {}, [element('tr', {}, head)]), element('tbody', {}, body)])]),

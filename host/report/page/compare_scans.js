@@ -148,6 +148,27 @@ function matchObjects(scene, other, earlier, isFixed) {
   return rows;
 }
 
+// Of an object that only one of the two scans has, the one of the other scan that it may be part of there, or null: what has parts in
+// its place that are as large together, or what stands where it stood, but has gained as much solid and reaches further. side, far: the
+// scenes of the object and of the other; stayed(other): what an object of the other scene is in the object's, where it stands there, too.
+function mayBePartOf(scene, side, far, object, stayed) {
+  const solids = (of, has) => (of.primitives || []).reduce((sum, part) => sum + (has(part) ? part.volume_m3 || 0 : 0), 0);
+  const of = whose => part => part.object === whose.id, own = solids(side, of(object)), place = comparedBox(scene, side, object), found = [];
+  if (!place || !(own > 0)) return null;
+  const slack = side.voxel_size_m + far.voxel_size_m;
+  const inPlace = part => otherPlace(scene, far, part.center_of_mass_m).every((value, k) => value >= place[k][0] - slack && value <= place[k][1] + slack);
+  const reachesOn = (box, before) => !!box && !!before && box.some(([low, high], k) => low < before[k][0] - slack || high > before[k][1] + slack);
+  for (const other of far.objects) {
+    const before = other.grounded ? null : stayed(other);
+    const solid = [solids(far, part => of(other)(part) && inPlace(part))];
+    if (before && reachesOn(comparedBox(scene, far, other), comparedBox(scene, side, before))) solid.push(solids(far, of(other)) - solids(side, of(before)));
+    const alike = Math.max(...solid.map(value => value > 0 ? Math.min(value, own) / Math.max(value, own) : 0));
+    if (alike >= 0.5) found.push([alike, other]);
+  }
+  found.sort(([p, a], [q, b]) => q - p || a.id - b.id);
+  return found.length ? found[0][1] : null;
+}
+
 // Whether two objects stand on the same: on the building, or on what was matched.
 function heldAlike(scene, other, a, b, match) {
   const grounded = new Set(other.objects.filter(object => object.grounded).map(object => object.id));

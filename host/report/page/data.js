@@ -121,9 +121,11 @@ function number(value, unit) {
   return unit ? text + '\u00a0' + unit : text;
 }
 
+const twoDigits = value => Number(value.toPrecision(2));
+
 // What one standard error adds to a figure.
 function within(error) {
-  return error > 0 ? ' \u00b1 ' + number(Number(error.toPrecision(2))) : '';
+  return error > 0 ? ' \u00b1 ' + number(twoDigits(error)) : '';
 }
 
 function plural(count, noun) {

@@ -27,32 +27,35 @@ function countedChance({counted}, pga) {
   return low.chance + Math.log(pga / low.pga_g) / Math.log(high.pga_g / low.pga_g) * (high.chance - low.chance);
 }
 
-// "about 5 of 100 earthquakes upset it"
+// How many of 100.
 function hundredText(chance) {
   const share = Math.round(100 * chance);
-  return share >= 100 ? 'nearly all' : share < 1 ? 'fewer than 1 of 100' : `about ${share} of 100`;
+  return share >= 100 ? 'nearly all' : share < 1 ? 'fewer than 1' : `about ${share}`;
 }
 
-// '' where nothing is known of it.
+// Of earthquakes that all peak as those of the risk do in the middle; and what the chance that its risk is of is over. '' where nothing is known of it.
 function fragilityText(scene, object) {
   const f = object.fragility;
   if (!f || !f.counted || !f.counted.length) return '';
-  const round = value => Number(value.toPrecision(2)), peak = (scene.events || {}).pga_m_s2, strongest = f.counted[f.counted.length - 1];
-  const at = peak > 0 ? peak / 9.80665 : round(strongest.pga_g), chance = chanceOfFall(f, at);
+  const events = scene.events || {}, peak = events.pga_m_s2, strongest = f.counted[f.counted.length - 1];
+  const at = peak > 0 ? peak / 9.80665 : twoDigits(strongest.pga_g), chance = chanceOfFall(f, at);
   // Friction is a guess: on what does not let it slide it may go over earlier.
   const firm = typeof f.firm_pga_g === 'number' ? chanceOfFall(f, at, f.firm_pga_g) : chance;
-  const text = `At ${round(at)} g${shakingText('pga_g', at)} ${hundredText(chance)}${chance >= 0.995 ? '' : ' earthquakes'} upset it` +
-    (firm > chance + 0.02 ? `; on a floor where it can\u2019t slide ${hundredText(firm)}.` : '.');
-  const half = f.pga_g === null ? ` None of the shakings that were tried, up to ${round(strongest.pga_g)} g, upsets it in half of the cases.`
-    : Math.abs(Math.log(f.pga_g / at)) < 0.1 ? '' : ` Half of those of ${round(f.pga_g)} g${shakingText('pga_g', f.pga_g)} do.`;
-  return text + half;
+  const text = `Of 100 earthquakes that all peak at ${twoDigits(at)} g${shakingText('pga_g', at)} ${hundredText(chance)} would upset it` +
+    (firm > chance + 0.02 ? `, and on a floor where it can\u2019t slide ${hundredText(firm)}.` : '.');
+  const half = f.pga_g === null ? ` None of the shakings that were tried, up to ${twoDigits(strongest.pga_g)} g, upsets it in half of the cases.`
+    : Math.abs(Math.log(f.pga_g / at)) < 0.1 ? '' : ` Half of those that peak at ${twoDigits(f.pga_g)} g${shakingText('pga_g', f.pga_g)} would.`;
+  const kind = disturbanceKinds.find(({figure}) => figure.key === 'pga_m_s2'), usual = usualPeaks(events);
+  const scattered = kind && usual && (object.fall_chance || {})[kind.name] > 0 ? ` Its risk is reckoned with earthquakes around ${twoDigits(at)} g, two of three from ${usual[0]} to ` +
+    `${usual[1]} g: of all these ${chanceText(kind.name, object.fall_chance[kind.name])}.` : '';
+  return text + half + scattered;
 }
 
 // "once in about 500 years": how often an earthquake upsets it where it stands, at most if the curve begins too late for it; '' without a curve.
 function onceIn(scene, object) {
   const years = (object.fragility || {}).return_years;
   if (typeof years !== 'number') return '';
-  return `once in ${scene.below_hazard.includes(object.id) ? 'at most' : 'about'} ${Number(years.toPrecision(2)).toLocaleString('en')} years`;
+  return `once in ${scene.below_hazard.includes(object.id) ? 'at most' : 'about'} ${twoDigits(years).toLocaleString('en')} years`;
 }
 
 function curveText(scene) {

@@ -181,8 +181,9 @@ function showStill(scene) {
   show(0);
 }
 
-function connectPointer(scene, view, parts, choose) {
-  const canvas = view.renderer.domElement, tip = document.getElementById('tip');
+// choose(id); chosen(): the object that is, or null.
+function connectPointer(scene, view, parts, choose, chosen) {
+  const canvas = view.renderer.domElement, tip = document.getElementById('tip'), line = new SightLine(view);
   let down = null;
   const place = event => {
     const box = canvas.getBoundingClientRect();
@@ -197,7 +198,13 @@ function connectPointer(scene, view, parts, choose) {
     const [part, id] = view.pickGroup(x, y) || [-1, -1];
     if (event.shiftKey && id >= 0) parts.toggleObject(id);
     else if (event.ctrlKey || event.metaKey || document.getElementById('mend-tap').checked) parts.togglePart(part);
-    else if (!event.shiftKey) choose(id >= 0 ? id : null);
+    else if (!event.shiftKey) choose(line.next(x, y, chosen()));
+  });
+  // By keys: in the middle of the view.
+  canvas.addEventListener('keydown', event => {
+    if (event.key !== 'Enter') return;
+    event.preventDefault();
+    choose(line.next(canvas.clientWidth / 2, canvas.clientHeight / 2, chosen()));
   });
   let asked = 0;
   canvas.addEventListener('pointermove', event => {
@@ -317,7 +324,7 @@ async function start() {
     fieldBoxes(scene, view, state);
     document.getElementById('through').addEventListener('change', event => view.setThrough(event.target.checked));
     document.getElementById('reset').addEventListener('click', () => view.reset());
-    connectPointer(scene, view, parts, choose);
+    connectPointer(scene, view, parts, choose, () => state.chosen);
     repaint();
     view.render();
     window.toppleView = view;
@@ -360,7 +367,7 @@ async function start() {
 // For screen readers, when one is chosen.
 function chosenText(scene, object) {
   return `${capital(objectName(scene, object.id))} chosen: ${number(object.mass_kg, 'kg')}` +
-    (object.grounded ? ', fixed.' : `, category ${object.unsafety_category ? categoryText(object) : 'not known'}. ${upsetText(object)}`);
+    (object.grounded ? ', fixed.' : `, category ${object.unsafety_category ? categoryText(object) : 'not known'}. ${upsetText(scene, object)}`);
 }
 
 window.toppleReady = start();

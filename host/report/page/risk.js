@@ -88,31 +88,14 @@ function howSureText(object) {
   return `How sure: ${parts.join('; ')}.`;
 }
 
-// "It may be a piece of object 5 (86 % likely).", as what is known of it says; "" where it is likelier a thing of its own.
-function pieceText(object) {
-  const [found] = ((object.why || {}).sentence || '').match(/It may be a piece of .*\(\d+ % likely\)\./) || [''];
-  return found;
+// "a piece of object 5 (86 % likely)"; "" where it is likelier a thing of its own.
+function pieceText(scene, object) {
+  return object.piece_of >= 0 ? `a piece of ${objectName(scene, object.piece_of)} (${twoDigits(100 * object.piece_probability)} % likely)` : '';
 }
 
 // What of it is in doubt more than usual.
 function isUnsure(object) {
   return !(object.agreement > 0.5) || object.rest_probability < 0.5;
-}
-
-// What to do, so that it does not seem to contradict the category.
-function actionText(scene, object) {
-  if (isNearly(object)) return nearlyText(object);
-  const advice = object.advice && object.advice.sentence, tolerable = (scene.events || {}).tolerable_J;
-  const limit = tolerable === undefined ? 'what is tolerated' : `the ${number(tolerable, 'J')} per event that this run tolerates`;
-  if (object.unsafety_category !== 'none' || isDoubtful(object)) {
-    return advice || (object.unsafety_category ? `Its risk is below ${limit}: if it must not fall all the same, fasten it.` : '');
-  }
-  if (!advice) return 'No need to act.';
-  return `No need to act. To bring its risk below ${limit} all the same: ${advice.charAt(0).toLowerCase()}${advice.slice(1)}`;
-}
-
-function nearlyText(object) {
-  return `Nothing upsets it as measured; if its foot is one error smaller, it falls with ${number(Number(object.release_J.toPrecision(2)), 'J')}: check that it stands firm.`;
 }
 
 // Whether there is more to do than to know about it.
@@ -136,15 +119,15 @@ function riskItem(scene, object, choose) {
   say('mass', [object.name ? `object ${object.id}` : '', shortMass(scene, object), sizeText(object)].filter(text => text).join(', '));
   if (plain || doubtful) say('standing', largestRiskText(object));
   say(isUnsure(object) ? 'doubt' : 'mass', howSureText(object));
-  const piece = pieceText(object);
-  if (piece) say('doubt', `Look first: ${piece.charAt(0).toLowerCase()}${piece.slice(1, -1)}. If so, choose both below the view, and say \u201cone thing\u201d.`);
+  const piece = pieceText(scene, object);
+  if (piece) say('doubt', `Look first: it may be ${piece}. If so, choose both below the view, and say \u201cone thing\u201d.`);
   say('mass', placeText(scene, object));
   if (doubtful) say('from', `As scanned a touch would upset it. ${happensText(scene, object)}`);
-  else if (plain) say('from', upsetText(object));
+  else if (plain) say('from', upsetText(scene, object));
   if (plain || doubtful) say('from', yearsText(scene, object));
   if (plain) for (const text of [happensText(scene, object), keepClearText(scene, object)]) say('then', text);
-  say(isAdvised(object) || unseen ? 'advice' : 'calm', unseen ? 'Go and look what holds it.' : actionText(scene, object));
-  if (plain) for (const text of [overturningText(object), fragilityText(scene, object)]) say('then figures', text);
+  say(isAdvised(object) || unseen ? 'advice' : 'calm', unseen ? 'Go and look what holds it.' : object.advice.action);
+  if (plain) say('then figures', overturningText(object));
   const item = element('button', {type: 'button', className: 'item', onclick: () => choose(object.id)}, [words]);
   const picture = pictureOf(scene, object.id);
   if (picture) item.prepend(picture);
@@ -192,11 +175,7 @@ function fillLooks(panel, scene, doubtful, choose) {
 }
 
 function eventsText(scene) {
-  const events = scene.events || {};
-  const all = disturbanceKinds.map(kind => {
-    const {key, follows, unit} = kind.figure, value = events[key];
-    return kind.one_event + (follows && value !== undefined ? follows + number(value, unit) + shakingText(key, value) : '');
-  }).filter((text, n) => scene.disturbances.includes(disturbanceKinds[n].name));
+  const all = disturbanceKinds.filter(kind => scene.disturbances.includes(kind.name)).map(kind => oneEventText(scene, kind));
   return all.length ? `An event is ${listed(all, 'or')}.` : '';
 }
 

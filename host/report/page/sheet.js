@@ -7,7 +7,8 @@ function sheetLine(scene, object, todo, more = []) {
   const place = planPlace(scene, object), what = [sizeText(object), place ? `${metreText(place.east)} E, ${metreText(place.north)} N, ` +
     `${metreText(place.from)} to ${metreText(place.to)} m high` : ''].filter(text => text).join(', at ');
   const badge = object.unsafety_category ? categoryText(object) : 'not known';
-  return element('li', {}, [element('span', {className: 'box'}), element('div', {}, [
+  const picture = pictureOf(scene, object.id);
+  return element('li', {}, [element('span', {className: 'box'}), ...picture ? [picture] : [], element('div', {}, [
     element('strong', {text: `${capital(objectName(scene, object.id))}${object.name ? ` (object ${object.id})` : ''}, ${badge}: `}), todo,
     element('small', {text: [what, ...more].filter(text => text).map(text => text.replace(/[.;]$/, '')).join('. ') + '.'})])]);
 }
@@ -15,7 +16,7 @@ function sheetLine(scene, object, todo, more = []) {
 // What it does and how often, in one line.
 function dangerText(scene, object) {
   const name = causesOf(object)[0];
-  return name ? `${upsetText(object).replace(/\.$/, '')}; sets free ${number(Number(releaseOf(object).toPrecision(2)), 'J')}` : '';
+  return name ? `${upsetText(scene, object).replace(/\.$/, '')}; sets free ${number(twoDigits(releaseOf(object)), 'J')}` : '';
 }
 
 function sheetYears(scene, object) {
@@ -35,11 +36,11 @@ function fillSheet(scene) {
   const list = (title, lines, left) => lines.length ? [node('h2', title), element('ol', {className: 'todo'}, lines),
     ...left > 0 ? [node('p', `And ${plural(left, 'more object')}: see the pages that follow.`, 'hint')] : []] : [];
   const doubtful = doubtfulOnes(scene), nearly = nearlyOnes(scene), unseen = unseenOnes(scene);
-  const look = object => pieceText(object).replace(/^It may be (.*)\.$/, 'first look whether it is $1, which is to be fastened as a whole then. ');
-  const doing = object => sheetLine(scene, object, look(object) + object.advice.sentence, [dangerText(scene, object), sheetYears(scene, object)]);
+  const look = piece => piece && `first look whether it is ${piece}, which is to be fastened as a whole then. `;
+  const doing = object => sheetLine(scene, object, look(pieceText(scene, object)) + object.advice.action, [dangerText(scene, object), sheetYears(scene, object)]);
   const looks = [...doubtful.slice(0, listedDoubts).map(object => sheetLine(scene, object, 'look whether it stands firm: as scanned a touch would upset it.', [sheetYears(scene, object)])),
-    ...nearly.slice(0, listedDoubts).map(object => sheetLine(scene, object, nearlyText(object))),
-    ...calm.map(object => sheetLine(scene, object, actionText(scene, object), [dangerText(scene, object)]))];
+    ...nearly.slice(0, listedDoubts).map(object => sheetLine(scene, object, object.advice.action)),
+    ...calm.map(object => sheetLine(scene, object, object.advice.action, [dangerText(scene, object)]))];
   const holds = unseen.slice(0, listedUnseen).map(object => sheetLine(scene, object, 'go and look what holds it.'));
   const kinds = disturbanceKinds.filter(kind => scene.disturbances.includes(kind.name));
   sheet.replaceChildren(
@@ -49,9 +50,6 @@ function fillSheet(scene) {
     ...!act.length ? [node('p', 'Nothing was found that has to be fastened or moved.')] : [],
     ...list('To be looked at', looks, doubtful.length + nearly.length + calm.length - looks.length),
     ...list('The scan does not show what holds these: go and look', holds, unseen.length - holds.length),
-    node('p', `Reckoned with: ${listed(kinds.map(kind => {
-      const {key, follows, unit} = kind.figure, value = (scene.events || {})[key];
-      return kind.one_event + (follows && value !== undefined ? follows + number(value, unit) + shakingText(key, value) : '');
-    })) || 'nothing'}.${scene.below_hazard.length ? ` \u201cAt most\u201d: ${curveText(scene)}.` : ''} Places are in metres east (E) of the plan\u2019s left edge and north (N) of its lower edge. A joule (J) lifts 1 kg by 10 cm; from about 40 J on injuries need more than first aid. ` +
+    node('p', `Reckoned with: ${listed(kinds.map(kind => oneEventText(scene, kind))) || 'nothing'}.${scene.below_hazard.length ? ` \u201cAt most\u201d: ${curveText(scene)}.` : ''} Places are in metres east (E) of the plan\u2019s left edge and north (N) of its lower edge. A joule (J) lifts 1 kg by 10 cm; from about 40 J on injuries need more than first aid. ` +
       'Straps must hold what is said at least: no safety margin is in it. ?: it may be less, or a piece of another thing.', 'hint'));
 }

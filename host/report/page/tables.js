@@ -10,7 +10,7 @@ function isDoubtful(object) {
 function barrierText(object, unit) {
   if (object.grounded || object.barrier_J === null) return number(null);
   if (!isDoubtful(object)) return number(object.barrier_J, unit);
-  return '0\u2013' + number(Number((object.barrier_J + object.barrier_error_J).toPrecision(2)), unit);
+  return '0\u2013' + number(twoDigits(object.barrier_J + object.barrier_error_J), unit);
 }
 
 // Object columns: heading, value to sort by, and what stands in the cell.
@@ -70,7 +70,7 @@ function riskCell(object, name) {
   if (!(risk > 0)) return [number(risk)];
   const error = riskError(object, name), chance = (object.fall_chance || {})[name];
   const cell = [number(risk)];
-  if (error !== undefined && error !== null) cell.push(element('span', {className: 'pm', text: ` \u00b1 ${error < risk / 1000 ? '0' : Number(error.toPrecision(2))}`}));
+  if (error !== undefined && error !== null) cell.push(element('span', {className: 'pm', text: ` \u00b1 ${error < risk / 1000 ? '0' : twoDigits(error)}`}));
   if (chance !== undefined && chance !== null) cell.push(element('small', {text: chanceText(name, chance)}));
   return cell;
 }
@@ -163,7 +163,7 @@ function figuresOf(scene, object) {
   }
   const f = object.fragility || {};
   if (f.pga_g) {
-    pairs.push(['Half of all earthquakes upset it from', `${Number(f.pga_g.toPrecision(2))} g` + (f.pgv_m_s ? `, or ${Number(f.pgv_m_s.toPrecision(2))} m/s` : '')]);
+    pairs.push(['Half of all earthquakes upset it from', `${twoDigits(f.pga_g)} g` + (f.pgv_m_s ? `, or ${twoDigits(f.pgv_m_s)} m/s` : '')]);
   }
   if (object.why.azimuth_deg !== null) pairs.push(['Weakest direction', azimuthText(object.why.azimuth_deg)]);
   for (const name of object.grounded ? [] : scene.disturbances) {
@@ -203,10 +203,10 @@ function showObject(panel, scene, id, choose, visit) {
   const picture = pictureOf(scene, id);
   if (picture) panel.append(picture);
   const say = (text, className = 'why') => { if (text) panel.append(element('p', {className, text})); };
-  if (!object.grounded) say(upsetText(object));
+  if (!object.grounded) say(upsetText(scene, object));
   if (fallKnown(object)) say(happensText(scene, object));
   say(keepClearText(scene, object), 'clear');
-  if (!object.grounded && object.unsafety_category !== undefined) say(actionText(scene, object), isAdvised(object) ? 'advice' : 'why');
+  if (!object.grounded && object.unsafety_category !== undefined) say(object.advice.action, isAdvised(object) ? 'advice' : 'why');
   say(object.why.sentence);
   say(overturningText(object));
   const curve = fragilityChart(object);

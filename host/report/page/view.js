@@ -395,6 +395,20 @@ class View {
     return this.groupOf(bytes, 0);
   }
 
+  // The same where the objects of the set `passed` are looked through.
+  pickBehind(x, y, passed) {
+    if (!passed.size) return this.pickGroup(x, y);
+    const shown = this.paletteBytes.slice();
+    this.scene.view.groups.forEach(([, id], i) => { if (passed.has(id)) this.paletteBytes[4 * i + 3] = 0; });
+    this.palette.needsUpdate = true;
+    this.drawGroups();
+    const group = this.pickGroup(x, y);
+    this.paletteBytes.set(shown);
+    this.palette.needsUpdate = true;
+    this.idsStale = true;
+    return group;
+  }
+
   groupOf(bytes, at) {
     const group = bytes[at] + 256 * bytes[at + 1] + 65536 * bytes[at + 2] - 1;
     return this.scene.view.groups[group] || null;

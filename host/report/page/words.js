@@ -43,7 +43,7 @@ function chanceText(name, chance) {
   if (chance >= 0.95) return `nearly every ${event}`;
   if (chance > 0.4) return `${Math.round(10 * chance)} ${event}s in 10`;
   if (chance < 1e-4) return `less than 1 ${event} in 10,000`;
-  return `1 ${event} in ${Math.round(Number((1 / chance).toPrecision(2))).toLocaleString('en')}`;
+  return `1 ${event} in ${Math.round(twoDigits(1 / chance)).toLocaleString('en')}`;
 }
 
 // The largest of an object's risks: 0 where it has none.
@@ -64,32 +64,54 @@ function releaseOf(object) {
   return chance > 0 ? object.risk_J[name] / chance : object.release_J;
 }
 
-function upsetText(object) {
+function upsetText(scene, object) {
   if (object.seen_enough === false) return 'Its risk is not known: nothing was seen to hold it.';
   const names = causesOf(object);
   if (!names.length) return 'Upset by none of the disturbances.';
-  const chances = names.map(name => chanceText(name, (object.fall_chance || {})[name])).filter(text => text);
+  const chances = names.map(name => ({name, text: chanceText(name, (object.fall_chance || {})[name])})).filter(({text}) => text)
+    .map(({name, text}) => text + peaksText(scene, name, text));
   if (!chances.length) return `At risk from ${listed(names.map(causeOf))}.`;
   return `Upset by ${listed(chances, 'or')}.`;
+}
+
+// Of which earthquakes a chance is: " of those around 0.31 g"; '' of other disturbances.
+function peaksText(scene, name, chance) {
+  const {key} = kindOf(name).figure || {}, peak = (scene.events || {})[key];
+  if (key !== 'pga_m_s2' || !(peak > 0)) return '';
+  const among = /^(no|nearly every) /.test(chance) ? '' : ' of those';
+  return `${among} ${scene.events.pga_spread > 0 ? 'around' : 'with a peak of'} ${twoDigits(peak / 9.80665)} g`;
+}
+
+// Between which peaks two of three of the earthquakes lie, g; null where all have the same.
+function usualPeaks({pga_m_s2: peak, pga_spread: spread}) {
+  return spread > 0 ? [-1, 1].map(sign => twoDigits(peak / 9.80665 * Math.exp(sign * spread))) : null;
+}
+
+// What one event of a kind is: "one earthquake of about 3 m/s² (0.31 g, very strong shaking, intensity VII; two of three from 0.19 to 0.5 g)".
+function oneEventText(scene, kind) {
+  const {key, follows, unit} = kind.figure, events = scene.events || {}, value = events[key];
+  if (!follows || value === undefined) return kind.one_event;
+  const usual = key === 'pga_m_s2' ? usualPeaks(events) : null, shaking = shakingText(key, value);
+  return kind.one_event + follows + number(value, unit) +
+    (usual ? shaking.replace(/\)$/, `; two of three from ${usual[0]} to ${usual[1]} g)`) : shaking);
 }
 
 // What overturns it slowly, in the figures of statics; '' where it can't tip.
 function overturningText(object) {
   const o = object.overturning;
   if (!o || o.tilt_deg === null) return '';
-  const round = value => Number(value.toPrecision(2));
   const about = (value, error) => {
-    if (!(error > 0)) return round(value);
+    if (!(error > 0)) return twoDigits(value);
     const digits = Math.min(3, Math.max(0, -Math.floor(Math.log10(error))));
     return `${value.toFixed(digits)} \u00b1 ${error.toFixed(digits)}`;
   };
   const hand = typeof o.hand_push_N === 'number' && o.hand_push_N > 1.05 * o.push_N ?
-    ` or of ${about(o.hand_push_N, o.hand_push_error_N)} N at ${metres(o.hand_height_m)} above its foot, where a hand pushes` : '';
+    ` or of ${about(o.hand_push_N, o.hand_push_error_N)} N at ${metres(o.hand_height_m)} above what it stands on, where a hand pushes` : '';
   const gust = typeof o.gust_m_s === 'number' ? `, or in gusts of ${about(o.gust_m_s, o.gust_error_m_s)} m/s` : '';
-  const push = `a steady push of ${about(o.push_N, o.push_error_N)} N at its top (the weight of ${round(o.push_N / 9.80665)} kg)${hand}${gust}`, slides = o.shake_g < 0.999 * Math.tan(o.tilt_deg * Math.PI / 180);
+  const push = `a steady push of ${about(o.push_N, o.push_error_N)} N at its top (the weight of ${twoDigits(o.push_N / 9.80665)} kg)${hand}${gust}`, slides = o.shake_g < 0.999 * Math.tan(o.tilt_deg * Math.PI / 180);
   return `Goes over once it leans ${about(o.tilt_deg, o.tilt_error_deg)}\u00b0, or at ${push}` +
-    (o.slide_N < o.push_N ? `, if ${round(o.slide_N)} N don't slide it before` : '') +
-    `; begins to ${slides ? 'slide' : 'rock'} where the ground shakes with ${round(o.shake_g)} g${shakingText('pga_g', o.shake_g)}.`;
+    (o.slide_N < o.push_N ? `, if ${twoDigits(o.slide_N)} N don't slide it before` : '') +
+    `; begins to ${slides ? 'slide' : 'rock'} where the ground shakes with ${twoDigits(o.shake_g)} g${shakingText('pga_g', o.shake_g)}.`;
 }
 
 // What the ground's peak means to people: [its upper end in g, words, intensity], from weak to strong; of the page's data.
@@ -100,7 +122,7 @@ function shakingText(key, value) {
   if (key !== 'pga_g' && key !== 'pga_m_s2') return '';
   const inG = key === 'pga_g' ? value : value / 9.80665, found = shakings.find(([end]) => end === null || inG <= end);
   if (!found) return '';
-  return ` (${key === 'pga_g' ? '' : `${Number(inG.toPrecision(2))} g, `}${found[1]}, intensity ${found[2]})`;
+  return ` (${key === 'pga_g' ? '' : `${twoDigits(inG)} g, `}${found[1]}, intensity ${found[2]})`;
 }
 
 // A mass is a guess from the volume, unless it was given.
@@ -151,7 +173,7 @@ function fallKnown(object) {
 function hitsText(object) {
   const fall = object.fall;
   if (!(fall.hits_J > 0)) return '';
-  const joules = value => number(Number(value.toPrecision(2)), 'J');
+  const joules = value => number(twoDigits(value), 'J');
   const people = 100 * fall.people_share, stopped = fall.leans_on >= 0 && fall.hits_J < 0.9 * releaseOf(object);
   // Risk and category are of what is not stopped.
   const energy = joules(fall.hits_J) + (stopped ? `, and ${joules(releaseOf(object))} if that gives way` : '');
@@ -191,5 +213,5 @@ function verifiedObjectText(verified, id) {
 
 // "230 N", "4.0 kN"
 function forceText(newtons) {
-  return newtons < 999.5 ? `${Number(newtons.toPrecision(2))} N` : `${newtons < 9950 ? (newtons / 1000).toFixed(1) : Math.round(newtons / 1000)} kN`;
+  return newtons < 999.5 ? `${twoDigits(newtons)} N` : `${newtons < 9950 ? (newtons / 1000).toFixed(1) : Math.round(newtons / 1000)} kN`;
 }

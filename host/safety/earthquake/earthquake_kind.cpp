@@ -53,6 +53,7 @@ const DisturbanceKind& earthquake_kind() {
                     {"pga_m_s2", options.pga_m_s2.value_or(options.accelerogram
                                                                ? options.accelerogram->peak_m_s2()
                                                                : EarthquakeOptions{}.pga_m_s2)}};
+                if (!options.accelerogram) events["pga_spread"] = EarthquakeOptions{}.spread;
                 if (options.floor_amplification != 1)
                     events["floor_amplification"] = options.floor_amplification;
                 if (options.hazard && !options.hazard->pga_g.empty())

@@ -39,7 +39,6 @@ struct Motion {
     bool overturned_behind() const;
     bool slid_off(const Profile& body) const;  // a slip came to where its support ends
     bool overturned() const { return overturned_ahead() || overturned_behind(); }
-    bool fell(const Profile& body) const { return overturned() || slid_off(body); }
     // Largest rise of its centre times g, J/kg: of the edge that it turned about.
     double raised_J_kg(const Profile& body) const;
 };

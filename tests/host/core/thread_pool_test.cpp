@@ -7,7 +7,9 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <mutex>
 #include <new>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -97,6 +99,86 @@ TEST(Threads, a_system_without_threads_leaves_the_callers) {
         std::exit(count == 1000 && pool.threads() < ThreadPool::most_threads ? 0 : 1);
     };
     EXPECT_EXIT(work(), testing::ExitedWithCode(0), "");
+}
+
+// What runs in a chunk may share out its own work, and threads with nothing to do help with that.
+TEST(Threads, runs_within_runs_share_the_threads) {
+    for (const unsigned threads : {1u, 2u, 5u}) {
+        ThreadPool pool(threads);
+        for (int repeat = 0; repeat < 50; ++repeat) {
+            std::vector<std::vector<std::atomic<int>>> calls(7);
+            for (std::size_t n = 0; n < calls.size(); ++n)
+                calls[n] = std::vector<std::atomic<int>>(100 * n);
+            pool.each(calls.size(), 1, [&](std::size_t n) {
+                pool.each(calls[n].size(), 3, [&](std::size_t m) { ++calls[n][m]; });
+            });
+            for (const auto& inner : calls)
+                for (const auto& c : inner) ASSERT_EQ(c, 1);
+        }
+    }
+}
+
+// A chunk that waits for another one of a run within another's chunk gets a thread for it.
+TEST(Threads, one_that_is_done_helps_with_what_others_share_out) {
+    ThreadPool pool(2);
+    std::atomic<int> at = 0;
+    pool.each(2, 1, [&](std::size_t n) {
+        if (n == 1) return;
+        pool.each(2, 1, [&](std::size_t) {
+            ++at;
+            const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+            while (at < 2 && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+        });
+        EXPECT_EQ(at, 2);
+    });
+}
+
+TEST(Threads, a_failure_within_a_run_within_a_run_reaches_the_caller) {
+    ThreadPool pool(3);
+    for (int repeat = 0; repeat < 50; ++repeat) {
+        EXPECT_THROW(pool.each(4, 1,
+                               [&](std::size_t n) {
+                                   pool.each(100, 1, [&](std::size_t m) {
+                                       if (n == 2 && m == 50) throw Stopped{};
+                                   });
+                               }),
+                     Stopped);
+    }
+}
+
+TEST(Threads, several_threads_may_call_at_a_time) {
+    ThreadPool pool(3);
+    std::vector<std::atomic<int>> calls(4);
+    {
+        std::vector<std::jthread> callers;
+        for (auto& c : calls) {
+            callers.emplace_back([&] {
+                for (int repeat = 0; repeat < 100; ++repeat)
+                    pool.each(50, 1, [&](std::size_t) { ++c; });
+            });
+        }
+    }
+    for (const auto& c : calls) EXPECT_EQ(c, 5000);
+}
+
+// One that stands in for a worker takes its place; afterwards there is work for that again.
+TEST(Threads, one_beside_has_a_worker_rest) {
+    ThreadPool pool(2);
+    const auto threads_at_work = [&] {
+        std::mutex mutex;
+        std::set<std::thread::id> seen;
+        pool.each(20, 1, [&](std::size_t) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            const std::lock_guard lock(mutex);
+            seen.insert(std::this_thread::get_id());
+        });
+        return seen.size();
+    };
+    {
+        const ThreadPool::Beside beside(pool);
+        EXPECT_EQ(threads_at_work(), 1u);
+    }
+    EXPECT_EQ(threads_at_work(), 2u);
 }
 
 TEST(Threads, only_the_thread_that_asked_for_it_polls) {

@@ -36,7 +36,8 @@ struct ScannedPoints {
         surfels.lab_b.push_back(b);
     }
     SurfaceSamples samples(double edge_m) const {
-        return sample_surface(cloud, surfels, primitive, frame, edge_m);
+        ThreadPool threads(2);
+        return sample_surface(cloud, surfels, primitive, frame, edge_m, threads);
     }
 };
 

@@ -322,26 +322,17 @@ TEST_F(Write, files_longer_than_the_buffer) {
     EXPECT_EQ(bytes_of_file(path("long")), text);
 }
 
-TEST_F(Write, says_where_the_boxes_of_objects_lie) {
+TEST_F(Write, what_is_not_solid_has_no_middle) {
     Scene scene;
-    const double c = std::cos(0.5), s = std::sin(0.5);
-    scene.manhattan_from_input = {c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     scene.objects.resize(2);
-    // An L along the room's axes: 1 by 0.4 by 0.2 m from (2, 3, 0) on.
-    for (const auto& [x, y, z, object] : {std::tuple{2.0, 3.0, 0.0, 0},
-                                          {3.0, 3.0, 0.2, 0},
-                                          {2.0, 3.4, 0.0, 0},
-                                          {9.0, 9.0, 9.0, -1}}) {
-        scene.solid.x.push_back(static_cast<float>(c * x - s * y));
-        scene.solid.y.push_back(static_cast<float>(s * x + c * y));
-        scene.solid.z.push_back(static_cast<float>(z));
-        scene.solid.object.push_back(object);
-    }
+    scene.objects[0].box_middle_m = {1, 2, 3};
     const auto json = nlohmann::json::parse(scene_json(scene));
-    const auto& middle = json["objects"][0]["box_middle_m"];
-    const Vec3 wanted{c * 2.5 - s * 3.2, s * 2.5 + c * 3.2, 0.1};
-    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(middle[a].get<double>(), wanted[a], 1e-6) << a;
-    EXPECT_TRUE(json["objects"][1]["box_middle_m"].is_null()) << "an object without voxels";
+    EXPECT_EQ(json["objects"][0]["box_middle_m"], nlohmann::json({1.0, 2.0, 3.0}));
+    EXPECT_TRUE(json["objects"][1]["box_middle_m"].is_null());
+    write_scene_json(path("scene.json"), scene);
+    const Scene back = read_scene_json(path("scene.json"));
+    EXPECT_EQ(back.objects[0].box_middle_m, scene.objects[0].box_middle_m);
+    EXPECT_TRUE(std::isnan(back.objects[1].box_middle_m[1]));
 }
 
 }  // namespace

@@ -284,9 +284,8 @@ TEST_F(CorrectedRoom, IsNotWhatContradictsItself) {
 TEST_F(CorrectedRoom, IsWrittenAndReadBack) {
     Correction name = correction(Kind::name, {on_crate});
     name.name = "chest";
-    Scene scene = parsed({name, apart(on_crate, on_box), correction(Kind::fixed, {in_air})}).scene;
-    // What voxels alone tell is not read back.
-    scene.solid = {};
+    const Scene scene =
+        parsed({name, apart(on_crate, on_box), correction(Kind::fixed, {in_air})}).scene;
     const std::string text = io::scene_json(scene);
     EXPECT_THAT(text, HasSubstr("\"name\": \"chest\""));
     EXPECT_THAT(text, HasSubstr("\"corrected\": ["));

@@ -45,8 +45,11 @@ TEST_F(Compare, tells_what_became_safer) {
     NEEDS_BROWSER();
     Scene scene = test::SyntheticScene(0.2).make();
     scene.voxel_size_m = 0.02;
-    scene.solid = {};  // boxes lie about the centres of mass, as in what earlier versions wrote
-    for (Object& object : scene.objects) object.size_m = {0.4, 0.3, 0.5};
+    for (Object& object : scene.objects) {
+        object.size_m = {0.4, 0.3, 0.5};
+        // Boxes lie about the centres of mass, as in what earlier versions wrote.
+        object.box_middle_m = Object{}.box_middle_m;
+    }
     for (std::size_t id = 1; id < 6; ++id)
         scene.objects[id].center_of_mass_m = {double(id), 1, 0.5};
     write_report(folder_ / "report.html", scene);
@@ -138,6 +141,32 @@ TEST_F(Compare, measures_moves_by_boxes) {
         "their object 2, 9.0 m away; object 5: gone; object 1: as before; object 4: as before");
     EXPECT_TRUE(page.data("banner").starts_with("The two scans may have been told apart"))
         << page.data("banner");
+}
+
+// What is gone may be part of what has its solid now: in its place, or beside where that was.
+TEST_F(Compare, tells_of_what_the_missing_may_be_part) {
+    NEEDS_BROWSER();
+    Scene scene = test::SyntheticScene(0.1).make();
+    for (Object& object : scene.objects) object.size_m = {0.3, 0.3, 0.5};
+    scene.voxel_size_m = 0.02;
+    const auto page = compared(write(scene), R"(
+        other.source = 'later.ply';
+        const [, table, cup, monitor, shelf, ball] = other.objects, part = object => other.primitives.find(each => each.id === object.primitives[0]);
+        part(cup).object = 1;
+        // The ball was rolled to the shelf.
+        part(ball).object = 4;
+        part(ball).center_of_mass_m = shelf.box_middle_m.map((value, k) => value + (k < 2 ? 0.25 : 0));
+        shelf.mass_kg += ball.mass_kg;
+        for (const k of [0, 1]) { shelf.size_m[k] += 0.2; shelf.box_middle_m[k] += 0.1; }
+        // Nothing is where the monitor was.
+        other.primitives = other.primitives.filter(each => each.object !== 3);
+        other.objects = [other.objects[0], table, shelf];
+    )");
+    EXPECT_EQ(page.data("error"), "(none)") << page.log.substr(0, 2000);
+    for (const char* row : {"object 2: gone or now part of their object 1",
+                            "object 5: gone or now part of their object 4", "object 3: gone;"})
+        EXPECT_NE((page.data("rows") + ";").find(row), std::string::npos)
+            << row << " in " << page.data("rows");
 }
 
 TEST_F(Compare, tells_errors_that_are_too_large_from_no_change) {

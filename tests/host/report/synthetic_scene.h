@@ -1,17 +1,28 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
+#include <utility>
 
+#include "safety/action.h"
 #include "topple/scene.h"
 
 // A made-up room with all that a report shows, built by rule: floor and walls (object 0), a table
 // (1) with a cup (2) and a monitor (3) on it, a shelf (4), a ball (5). It is turned against the
 // input's axes by `turn` radians about z.
 namespace topple::test {
+
+// As a parse fills them in.
+inline void say_actions(Scene& scene) {
+    for (Object& o : scene.objects)
+        if (!o.grounded) o.advice.action = safety::action_text(scene, o);
+}
 
 class SyntheticScene {
   public:
@@ -41,6 +52,7 @@ class SyntheticScene {
         fields();
         walks();
         falls();
+        say_actions(scene_);
         return scene_;
     }
 
@@ -183,6 +195,16 @@ class SyntheticScene {
         primitive.mass_kg = 700 * primitive.volume_m3;
         primitive.center_of_mass_m = object.center_of_mass_m =
             at((x0 + x1) / 2, (y0 + y1) / 2, (z0 + z1) / 2);
+        auto& ends = ends_.try_emplace(primitive.object, std::array{nowhere, nowhere, nowhere})
+                         .first->second;
+        const std::array<std::pair<long, long>, 3> cell{{{i0, i1}, {j0, j1}, {k0, k1}}};
+        Vec3 middle{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            ends[a].first = std::min(ends[a].first, cell[a].first);
+            ends[a].second = std::max(ends[a].second, cell[a].second);
+            middle[a] = h_ * double(ends[a].first + ends[a].second) / 2;
+        }
+        object.box_middle_m = at(middle[0], middle[1], middle[2]);
     }
 
     void relations() {
@@ -242,7 +264,10 @@ class SyntheticScene {
         cup.advice = {"move", at(0.2, 0, 0), 0.1, 0, 0, "Move it 20 cm to the east."};
     }
 
+    static constexpr std::pair<long, long> nowhere{std::numeric_limits<long>::max(),
+                                                   std::numeric_limits<long>::min()};
     double h_, c_, s_;
+    std::map<int, std::array<std::pair<long, long>, 3>> ends_;  // of objects, in voxels
     Scene scene_;
 };
 

@@ -110,8 +110,10 @@ TEST(Earthquake, ChancesOfFallingAreThoseOfBothPlanes) {
             const Motions motions =
                 shake_objects(*device, objects, which, records, events, mu, false);
             const auto falls = std::ranges::count_if(motions[o], [&](const PlaneMotions& m) {
-                return !objects[o].held || m.in[0].fell(objects[o].body[0]) ||
-                       m.in[1].fell(objects[o].body[1]);
+                const auto fell = [&](std::size_t plane) {
+                    return m.in[plane].overturned() || m.in[plane].slid_off(objects[o].body[plane]);
+                };
+                return !objects[o].held || fell(0) || fell(1);
             });
             EXPECT_EQ(chance, static_cast<double>(falls) / 16) << pga_g;
             falling += falls > 0;

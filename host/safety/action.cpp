@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "cli/action.h"
+#include "safety/action.h"
 
 #include <algorithm>
 
 #include "io/text.h"
+#include "safety/largest_risk.h"
 
-namespace topple::cli {
+namespace topple::safety {
 namespace {
 
-bool has_category(const Object& o) {
+bool may_fall_hard(const Object& o) {
     return !o.unsafety_category.empty() && o.unsafety_category != "none";
 }
 
@@ -29,10 +30,11 @@ bool upset_by_nothing(const Object& o) {
 
 std::string action_text(const Scene& scene, const Object& o) {
     const bool doubtful = barrier_within_error(o);
-    const std::string advice = o.advice.sentence;
-    if (!doubtful && o.seen_enough && has_category(o) && !o.unsafety_certain && upset_by_nothing(o))
+    const std::string& advice = o.advice.sentence;
+    if (!doubtful && o.seen_enough && may_fall_hard(o) && !o.unsafety_certain &&
+        upset_by_nothing(o))
         return "Nothing upsets it as measured; if its foot is one error smaller, it falls with " +
-               io::two_digits(o.release_J) + " J: check that it stands firm.";
+               io::two_digits(released_J(o)) + " J: check that it stands firm.";
     if (o.unsafety_category != "none" || doubtful) {
         if (!advice.empty() || o.unsafety_category.empty()) return advice;
         return "Its risk is below " + tolerated_text(scene) +
@@ -43,4 +45,4 @@ std::string action_text(const Scene& scene, const Object& o) {
            " all the same: " + io::lower_case(advice.substr(0, 1)) + advice.substr(1);
 }
 
-}  // namespace topple::cli
+}  // namespace topple::safety

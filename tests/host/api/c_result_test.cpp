@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "host/api/c_api.h"
+#include "io/read_cloud.h"
+#include "topple/parse.h"
+
+namespace topple::test {
+namespace {
+
+TEST_F(CApi, TakesCorrections) {
+    const std::string text = R"({"schema": "topple.corrections/1", "corrections": [
+        {"do": "one_thing", "at_m": [[1.0, 1.2, 0.25], [1.2, 1.2, 0.7]]},
+        {"do": "name", "at_m": [[1.0, 1.2, 0.25]], "name": "chest"},
+        {"do": "fixed", "at_m": [[0.5, 0.5, 0.9]]}]})";
+    const auto file = write("corrections.json", text);
+    options.corrections_json = text.c_str();
+    options.corrections_file = file.c_str();
+    EXPECT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_ERROR_USAGE);
+    for (const bool by_file : {true, false}) {
+        topple_result_release(result);
+        options.corrections_json = by_file ? nullptr : text.c_str();
+        options.corrections_file = by_file ? file.c_str() : nullptr;
+        ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK)
+            << status.message;
+        topple_scene scene{};
+        scene.size = sizeof(scene);
+        ASSERT_EQ(topple_result_scene(result, &scene, nullptr), TOPPLE_OK);
+        ASSERT_EQ(scene.corrections, 3u);
+        topple_correction named{};
+        named.size = sizeof(named);
+        ASSERT_EQ(topple_result_correction(result, 1, &named, nullptr), TOPPLE_OK);
+        EXPECT_STREQ(named.what, "name");
+        EXPECT_STREQ(named.outcome, "held");
+        EXPECT_TRUE(named.held);
+        ASSERT_EQ(named.object_count, 1u);
+        topple_object object{};
+        object.size = sizeof(object);
+        ASSERT_EQ(topple_result_object(result, static_cast<std::uint64_t>(named.objects[0]),
+                                       &object, nullptr),
+                  TOPPLE_OK);
+        EXPECT_STREQ(object.name, "chest");
+        ASSERT_EQ(object.corrected_count, 2u);
+        EXPECT_EQ(object.corrected[1], 2);
+        ASSERT_EQ(topple_result_correction(result, 2, &named, nullptr), TOPPLE_OK);
+        EXPECT_FALSE(named.held);
+        EXPECT_EQ(topple_result_correction(result, 3, &named, &status), TOPPLE_ERROR_USAGE);
+    }
+    options.corrections_json = "{}";
+    topple_result_release(result);
+    EXPECT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_ERROR_INPUT);
+    EXPECT_NE(std::string(status.message).find("schema"), std::string::npos) << status.message;
+}
+
+TEST_F(CApi, ParsesAsTheLibraryDoes) {
+    ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK) << status.message;
+    EXPECT_STREQ(status.message, "");
+    ParseOptions cpp;
+    cpp.device = device::open_device("native");
+    cpp.disturbances = {"wind"};
+    const Scene expected = parse(room.cloud, cpp).scene;
+    topple_scene scene{};
+    scene.size = sizeof(scene);
+    ASSERT_EQ(topple_result_scene(result, &scene, nullptr), TOPPLE_OK);
+    ASSERT_EQ(scene.objects, expected.objects.size());
+    ASSERT_EQ(scene.points, room.cloud.size());
+    EXPECT_EQ(scene.notes, expected.notes.size());
+    EXPECT_STREQ(scene.backend, "native");
+    EXPECT_EQ(std::memcmp(topple_result_point_objects(result), expected.points.object.data(),
+                          4 * scene.points),
+              0);
+    EXPECT_EQ(topple_result_point_normals(result, 2)[3], expected.points.nz[3]);
+    EXPECT_EQ(topple_result_point_index(result), nullptr);
+    for (std::size_t n = 0; n < scene.objects; ++n) {
+        topple_object object{};
+        object.size = sizeof(object);
+        ASSERT_EQ(topple_result_object(result, n, &object, nullptr), TOPPLE_OK);
+        const Object& o = expected.objects[n];
+        EXPECT_EQ(object.barrier_J, o.barrier_J);
+        double risk = 0, chance = 0;
+        EXPECT_EQ(topple_result_risk(result, n, "wind", &risk, &chance, &status), TOPPLE_OK);
+        EXPECT_EQ(risk, o.risk_J.at("wind"));
+        double error = 0, spread = 0;
+        EXPECT_EQ(topple_result_risk_error(result, n, "wind", &error, &spread, &status), TOPPLE_OK);
+        EXPECT_EQ(error, o.risk_error_J.at("wind"));
+        EXPECT_EQ(spread, o.risk_spread_J.at("wind"));
+        EXPECT_EQ(topple_result_risk_error(result, n, "flood", &error, nullptr, &status),
+                  TOPPLE_ERROR_USAGE);
+        EXPECT_EQ(topple_result_risk(result, n, "human", &risk, nullptr, &status), TOPPLE_OK);
+        EXPECT_TRUE(std::isnan(risk)) << "not asked for";
+        EXPECT_EQ(object.unsafety_category, o.unsafety_category);
+        EXPECT_EQ(object.unsafety_certain != 0, o.unsafety_certain);
+        EXPECT_EQ(object.hits_J, o.fall.hits_J);
+        EXPECT_EQ(object.lands_m[0], o.fall.lands_m[0]);
+        EXPECT_EQ(object.lands_on, o.fall.lands_on);
+        EXPECT_EQ(object.falls != 0, o.fall.falls);
+        EXPECT_TRUE(std::isnan(object.people_share)) << "nobody was asked for";
+        EXPECT_EQ(chance, o.fall_chance.at("wind"));
+        EXPECT_EQ(topple_result_risk(result, n, "flood", &risk, nullptr, &status),
+                  TOPPLE_ERROR_USAGE);
+        EXPECT_NE(std::string(status.message).find("earthquake"), std::string::npos);
+        const topple::DirectedBarrier& directed = o.barrier_by_direction;
+        ASSERT_EQ(object.blow_heights, directed.height_m.size());
+        for (std::size_t b = 0; b < directed.blow_J.size(); ++b)
+            EXPECT_EQ(object.blow_barrier_J[b], directed.blow_J[b]);
+        for (std::size_t b = 0; b < directed.push_J.size(); ++b)
+            EXPECT_EQ(object.push_barrier_J[b], directed.push_J[b]);
+        for (std::size_t b = 0; b < directed.push_N.size(); ++b) {
+            EXPECT_EQ(object.push_by_direction_N[b], directed.push_N[b]);
+            EXPECT_EQ(object.push_error_by_direction_N[b], directed.push_error_N[b]);
+            EXPECT_EQ(object.push_direction[3 * b + 1], directed.direction[b][1]);
+        }
+        EXPECT_EQ(object.push_by_direction_N == nullptr, directed.push_N.empty());
+        ASSERT_EQ(object.why_edge_ends, o.why.edge_m.size());
+        if (object.why_edge_ends > 0) {
+            EXPECT_EQ(object.why_edge_m[4], o.why.edge_m[1][1]);
+        }
+        EXPECT_EQ(object.why_way_m, o.why.way_m);
+        EXPECT_EQ(object.why_drop_m, o.why.drop_m);
+        EXPECT_EQ(object.why_lands_on, o.why.lands_on);
+        ASSERT_EQ(object.stands_on_count, o.why.stands_on.size());
+        for (std::size_t s = 0; s < o.why.stands_on.size(); ++s)
+            EXPECT_EQ(object.stands_on[s], o.why.stands_on[s]);
+        EXPECT_EQ(object.advice_kind, o.advice.kind);
+        EXPECT_EQ(object.advice_move_m[0], o.advice.move_m[0]);
+        EXPECT_EQ(object.hold_N, o.advice.hold_N);
+        EXPECT_EQ(object.why, o.why.sentence);
+        EXPECT_EQ(object.action, o.advice.action);
+        EXPECT_EQ(object.piece_of, o.piece_of);
+        EXPECT_EQ(object.piece_probability, o.piece_probability);
+        EXPECT_EQ(object.box_middle_m[0], o.box_middle_m[0]);
+        EXPECT_EQ(object.box_middle_m[2], o.box_middle_m[2]);
+        ASSERT_EQ(object.instability_count, o.instability.size());
+        if (!o.instability.empty()) {
+            EXPECT_EQ(object.instability[0].S_J, o.instability[0].S_J);
+        }
+        ASSERT_EQ(object.primitive_count, o.primitives.size());
+        EXPECT_EQ(object.primitives[0], o.primitives[0]);
+    }
+    topple_primitive primitive{};
+    primitive.size = sizeof(primitive);
+    EXPECT_EQ(topple_result_primitive(result, 0, &primitive, nullptr), TOPPLE_OK);
+    EXPECT_EQ(primitive.mass_kg, expected.primitives[0].mass_kg);
+    topple_contact contact{};
+    contact.size = sizeof(contact);
+    EXPECT_EQ(topple_result_contact(result, 0, &contact, nullptr), TOPPLE_OK);
+    EXPECT_EQ(contact.relation, expected.contacts[0].relation);
+    topple_support support{};
+    support.size = sizeof(support);
+    EXPECT_EQ(topple_result_support(result, 0, &support, nullptr), TOPPLE_OK);
+    EXPECT_EQ(support.area_m2, expected.supports[0].area_m2);
+    EXPECT_EQ(topple_result_write(result, path("map").c_str(), TOPPLE_WRITE_OCTOMAP, &status),
+              TOPPLE_OK);
+    EXPECT_TRUE(std::filesystem::exists(path("map/map.bt")));
+    EXPECT_EQ(topple_result_write(result, path("map").c_str(), 8, &status), TOPPLE_ERROR_USAGE);
+    EXPECT_EQ(topple_result_write(result, path("out").c_str(), 0, &status), TOPPLE_OK);
+    EXPECT_TRUE(std::filesystem::exists(path("out/scene.json")));
+    const std::string exported = path("mjcf").string();
+    EXPECT_EQ(topple_result_export(result, "mjcf", exported.c_str(), &status), TOPPLE_OK)
+        << status.message;
+    EXPECT_TRUE(std::filesystem::exists(path("mjcf/scene.xml")));
+    EXPECT_TRUE(std::filesystem::exists(path("mjcf/bodies.json")));
+    EXPECT_EQ(topple_result_export(result, "blend", exported.c_str(), &status), TOPPLE_ERROR_USAGE);
+    EXPECT_NE(std::string(status.message).find("\"blend\" is no format"), std::string::npos);
+    EXPECT_EQ(topple_result_export(result, "mjcf", "", &status), TOPPLE_ERROR_USAGE);
+    EXPECT_EQ(topple_result_export(result, nullptr, exported.c_str(), &status), TOPPLE_ERROR_USAGE);
+    EXPECT_EQ(topple_result_export(nullptr, "mjcf", exported.c_str(), &status), TOPPLE_ERROR_USAGE);
+    write("others/scene.xml", "<mujoco/>");
+    EXPECT_EQ(topple_result_export(result, "mjcf", path("others").c_str(), &status),
+              TOPPLE_ERROR_INPUT);
+    // The caller's colours, interleaved.
+    std::vector<std::uint8_t> rgb(3 * room.cloud.size(), 50);
+    cloud.red = &rgb[0];
+    cloud.green = &rgb[1];
+    cloud.blue = &rgb[2];
+    cloud.colour_stride_bytes = 3;
+    rgb[3] = 200;
+    topple_result* coloured = nullptr;
+    ASSERT_EQ(topple_parse_cloud(&cloud, &options, &coloured, &status), TOPPLE_OK)
+        << status.message;
+    EXPECT_EQ(topple_result_write(coloured, path("coloured").c_str(), 0, &status), TOPPLE_OK);
+    const PointCloud back = io::read_cloud(path("coloured/points.ply"));
+    ASSERT_EQ(back.red.size(), room.cloud.size());
+    EXPECT_EQ(back.red[0], 50);
+    EXPECT_EQ(back.red[1], 200);
+    EXPECT_EQ(back.blue[1], 50);
+    topple_result_release(coloured);
+    // A file that the library wrote, parsed by its path.
+    topple_result* again = nullptr;
+    EXPECT_EQ(topple_parse(path("out/points.ply").c_str(), &options, &again, &status), TOPPLE_OK)
+        << status.message;
+    topple_result_release(again);
+}
+
+TEST_F(CApi, CoordinatesMayStayOutside) {
+    options.without_coordinates = 1;
+    options.disturbances = 0;
+    ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK) << status.message;
+    EXPECT_EQ(topple_result_write(result, path("out").c_str(), 0, &status), TOPPLE_ERROR_USAGE);
+    EXPECT_EQ(topple_result_add_coordinates(result, &cloud, &status), TOPPLE_OK);
+    EXPECT_EQ(topple_result_write(result, path("out").c_str(), 0, &status), TOPPLE_OK)
+        << status.message;
+}
+
+}  // namespace
+}  // namespace topple::test

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/space_carving.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "topple/device.h"
+#include "topple/error.h"
+
+namespace topple {
+namespace {
+
+constexpr double voxel_m = 0.05;
+
+// A wall that fills the image, two metres ahead, over and over.
+class Wall final : public FrameStream {
+  public:
+    explicit Wall(std::size_t frames) : size_(frames) {}
+    const Intrinsics& intrinsics() const override { return intrinsics_; }
+    std::size_t size() const override { return size_; }
+    DepthFrame load(std::size_t i) const override {
+        ++loaded;
+        if (i >= broken_from) throw Error(ErrorKind::input, "broken frame");
+        DepthFrame frame;
+        frame.depth.assign(std::size_t{640} * 480, 2000);
+        frame.camera_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+        return frame;
+    }
+
+    std::size_t broken_from = ~std::size_t{0};
+    mutable std::atomic<std::size_t> loaded = 0;
+
+  private:
+    Intrinsics intrinsics_{640, 480, 500, 500, 319.5, 239.5, 1000};
+    std::size_t size_;
+};
+
+// A wall, frames of it, and a post beside what they see.
+class Carving : public testing::Test {
+  protected:
+    Ingested input_of(std::unique_ptr<Wall> wall, double cell_m = 0.02) {
+        Ingested input;
+        for (int x = -20; x < 20; ++x)
+            for (int y = -20; y < 20; ++y) {
+                input.own.x.push_back(static_cast<float>(x) * 0.05f + 0.02f);
+                input.own.y.push_back(static_cast<float>(y) * 0.05f + 0.02f);
+                input.own.z.push_back(2.02f);
+            }
+        for (int z = 0; z < 20; ++z) {
+            input.own.x.push_back(-0.98f);
+            input.own.y.push_back(-0.98f);
+            input.own.z.push_back(static_cast<float>(z) * 0.05f + 0.02f);
+        }
+        input.cloud = input.own;
+        input.cell_m = cell_m;
+        frames_ = wall.get();
+        input.frames = std::move(wall);
+        return input;
+    }
+    static std::shared_ptr<device::Device> device_of(unsigned threads) {
+        return device::open_device("native", threads);
+    }
+    SpaceCarving::Carved carved(device::Device& device, const Ingested& input) {
+        SpaceCarving carving(device, input, frame_);
+        const std::vector<std::int32_t> label(input.cloud.size(), 3);
+        return carving.finish(label, {}, stage_);
+    }
+
+    vdb::VoxelFrame frame_{voxel_m, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}};
+    ParseOptions options_;
+    std::vector<std::pair<std::string, double>> timings_;
+    StageClock stage_{timings_, options_};
+    const Wall* frames_ = nullptr;
+};
+
+TEST_F(Carving, GivesTheSameBesideAndAfterwards) {
+    const auto one = device_of(1), two = device_of(2);
+    const Ingested first = input_of(std::make_unique<Wall>(40));
+    const auto alone = carved(*one, first);
+    const Ingested second = input_of(std::make_unique<Wall>(40));
+    const auto beside = carved(*two, second);
+    const auto closing = input_of(std::make_unique<Wall>(40), voxel_m);
+    const auto late = carved(*two, closing);  // as gaps may come to hold points
+    const vdb::Tiles tiles = alone.scene->tiles(true);
+    EXPECT_EQ(alone.scene->state_at(0, 0, 20), vdb::State::empty);
+    EXPECT_EQ(alone.scene->state_at(0, 6, 40), vdb::State::surface);
+    for (const auto& other : {beside, late}) {
+        EXPECT_EQ(other.scene->tiles(true).x, tiles.x);
+        EXPECT_EQ(other.scene->states(tiles), alone.scene->states(tiles));
+        EXPECT_EQ(other.scene->primitives(tiles), alone.scene->primitives(tiles));
+        EXPECT_EQ(other.from_around, alone.from_around);
+    }
+}
+
+TEST_F(Carving, IsBegunOnlyWhereNothingElseHasASay) {
+    const auto one = device_of(1), two = device_of(2);
+    const Ingested dense = input_of(std::make_unique<Wall>(40));
+    EXPECT_FALSE(SpaceCarving(*one, dense, frame_).closes_gaps());
+    EXPECT_EQ(frames_->loaded, 0u);  // no thread for it
+    const Ingested sparse = input_of(std::make_unique<Wall>(40), voxel_m);
+    EXPECT_TRUE(SpaceCarving(*two, sparse, frame_).closes_gaps());
+    EXPECT_EQ(frames_->loaded, 0u);
+}
+
+TEST_F(Carving, WhatFailsBesideIsToldInTheEnd) {
+    const auto device = device_of(2);
+    auto wall = std::make_unique<Wall>(40);
+    wall->broken_from = 20;
+    const Ingested input = input_of(std::move(wall));
+    try {
+        carved(*device, input);
+        FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(), "broken frame");
+    }
+}
+
+// Nobody waits for a hundred thousand frames.
+TEST_F(Carving, EndsWithWhatHasNoUseForItAnyMore) {
+    const auto device = device_of(2);
+    const Ingested input = input_of(std::make_unique<Wall>(100'000));
+    { const SpaceCarving carving(*device, input, frame_); }
+    EXPECT_LT(frames_->loaded, 1000u);
+    options_.cancelled = [begun = std::chrono::steady_clock::now()] {
+        return std::chrono::steady_clock::now() - begun > std::chrono::milliseconds(100);
+    };
+    const Cancelling cancelling(*device, options_);
+    try {
+        carved(*device, input);
+        FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::cancelled);
+    }
+    EXPECT_LT(frames_->loaded, 50'000u);
+}
+
+}  // namespace
+}  // namespace topple

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "in_browser.h"
+#include "report/report.h"
+#include "synthetic_scene.h"
+
+// What the report's page says of what is at risk.
+namespace topple::report {
+namespace {
+
+class PageRisk : public test::InBrowser {};
+
+TEST_F(PageRisk, has_one_order_in_which_to_act) {
+    NEEDS_BROWSER();
+    Scene scene = test::SyntheticScene(0.2).make();
+    scene.events["tolerable_J"] = 0.1;
+    // The riskiest is harmless, and the one of the highest category tolerated.
+    scene.objects[3].unsafety_category = "none";
+    scene.objects[4].unsafety_category = "high";
+    scene.objects[4].unsafety = 9;
+    scene.objects[4].agreement = 0.5;
+    test::say_actions(scene);
+    write_report(folder_ / "report.html", scene);
+    const auto page = open(folder_ / "report.html", R"(
+        const out = document.body.dataset, card = id => document.querySelector(`.item[data-object="${id}"]`).textContent;
+        out.listed = [...document.querySelectorAll('.item')].map(item => item.dataset.object).join(' ');
+        out.rows = [...document.querySelectorAll('#objects tbody tr')].map(row => row.cells[0].textContent).join(' ');
+        out.harmless = card(3);
+        out.high = card(4);
+        topplePlan.paint();
+        out.plan = document.querySelectorAll('#plan .chip').length;
+        out.red = [...document.querySelectorAll('#objects .category, .item .category')].filter(badge => badge.textContent === 'none?')
+            .map(badge => badge.style.background).join(' ');
+    )");
+    EXPECT_EQ(page.data("error"), "(none)") << page.log;
+    EXPECT_EQ(page.data("listed"), "4 2 1 3");
+    EXPECT_EQ(page.data("rows").substr(0, 7), "4 2 1 3");
+    const auto holds = [&](const char* card, std::initializer_list<const char*> parts) {
+        for (const char* part : parts)
+            EXPECT_NE(test::text(page.data(card)).find(part), std::string::npos)
+                << part << " in " << page.data(card);
+    };
+    holds("harmless", {"none?", "Risk 6.5 \u00b1 1.3 J per walk",
+                       "No need to act. To bring its risk below the 0.1 J per event that this "
+                       "run tolerates all the same: fix it where it stands"});
+    holds("high", {"high", "How sure: one thing in only 50 % of the searches",
+                   "Its risk is below the 0.1", "m above the floor"});
+    EXPECT_EQ(page.data("red"), "rgb(222, 226, 230) rgb(222, 226, 230)");
+    EXPECT_EQ(page.data("plan"), "4");
+}
+
+TEST_F(PageRisk, lists_what_is_to_be_looked_at) {
+    NEEDS_BROWSER();
+    Scene scene = test::SyntheticScene(0.2).make();
+    scene.events = {{"pga_m_s2", 2.94}, {"pga_spread", 0.5}, {"hazard_from_g", 0.4}};
+    // Nothing upsets the table, but for its error; nobody saw what holds the shelf.
+    Object& table = scene.objects[1];
+    table.unsafety_category = "high";
+    table.unsafety_certain = false;
+    for (auto& [name, risk] : table.risk_J) risk = table.fall_chance[name] = 0;
+    Object& shelf = scene.objects[4];
+    shelf.seen_enough = false;
+    shelf.unsafety_category.clear();
+    for (auto& [name, risk] : shelf.risk_J) risk = shelf.fall_chance[name] = 0;
+    scene.objects[3].rest_probability = 0.4;
+    scene.objects[2].piece_of = 1;
+    scene.objects[2].piece_probability = 0.864;
+    test::say_actions(scene);
+    write_report(folder_ / "report.html", scene);
+    const auto page = open(folder_ / "report.html", R"(
+        const out = document.body.dataset, text = id => document.querySelector(`.item[data-object="${id}"]`).textContent;
+        out.listed = [...document.querySelectorAll('.item')].map(item => item.dataset.object).join(' ');
+        for (const id of [1, 2, 3, 4]) out[`card${id}`] = text(id);
+        out.headings = [...document.querySelectorAll('#risk h3')].map(node => node.textContent).join(', ');
+        topplePlan.paint();
+        out.chips = [...document.querySelectorAll('#plan .number')].map(node => node.textContent).join(', ');
+        out.advice = [...document.querySelectorAll('#objects tbody tr')].find(row => row.cells[0].textContent === '1').cells[8].textContent;
+        toppleChoose(3);
+        out.detail = document.getElementById('detail').textContent;
+        out.large = `${number(16234.5)}, ${number(0.00012)}`;
+    )");
+    EXPECT_EQ(page.data("error"), "(none)") << page.log;
+    EXPECT_EQ(page.data("listed"), "2 3 1 4");
+    EXPECT_EQ(page.data("headings"),
+              "To be looked at, The scan does not show what holds these: go and look");
+    EXPECT_EQ(page.data("chips"), "2, 3, 1, 4 ?");
+    EXPECT_EQ(page.data("advice"), "check");
+    EXPECT_EQ(page.data("large"), "16,200, 0.0001");
+    const std::vector<std::pair<const char*, const char*>> said{
+        {"card1",
+         "Nothing upsets it as measured; if its foot is one error smaller, it falls with "
+         "180 J: check that it stands firm."},
+        {"card3", "what holds it: seen, 40 % likely, one of several readings"},
+        {"card3",
+         "An earthquake upsets it once in at most 500 years: the curve of the hazard "
+         "begins at 0.4"},
+        {"card2", "Look first: it may be a piece of object 1 (86 % likely)."},
+        {"card3", "Upset by 1 walk in 40 or 1 earthquake in 40 of those around 0.3 g."},
+        {"detail",
+         "Of 100 earthquakes that all peak at 0.3 g (very strong shaking, intensity VII) about 15 "
+         "would upset it, and on a floor where it can\u2019t slide about 27. Half of those that "
+         "peak at 0.41 g"},
+        {"detail",
+         "Its risk is reckoned with earthquakes around 0.3 g, two of three from 0.18 to 0.49 g: of "
+         "all these 1 earthquake in 40."},
+        {"card4", "Go and look what holds it."}};
+    EXPECT_EQ(page.data("card3").find("Of 100 earthquakes"), std::string::npos);
+    for (const auto& [card, part] : said)
+        EXPECT_NE(test::text(page.data(card)).find(part), std::string::npos)
+            << part << " in " << page.data(card);
+}
+
+}  // namespace
+}  // namespace topple::report
