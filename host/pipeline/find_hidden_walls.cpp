@@ -51,12 +51,13 @@ std::vector<std::pair<std::size_t, std::size_t>> ranges_of(const SurfaceSamples&
 
 // Seen parts of walls, the largest first.
 std::vector<Line> wall_lines(const SolidParts& parts,
-                             std::span<const std::pair<std::size_t, std::size_t>> range) {
+                             std::span<const std::pair<std::size_t, std::size_t>> range,
+                             const std::vector<bool>& fixed) {
     const SurfaceSamples& s = parts.samples;
     std::vector<Line> out;
     for (std::size_t p = 0; p < range.size(); ++p) {
         const auto primitive = static_cast<std::int32_t>(p);
-        if (parts.solids->role(primitive) != Role::wall) continue;
+        if (!fixed[p] || parts.solids->role(primitive) != Role::wall) continue;
         Line line{primitive, 0, {}, {}};
         for (std::size_t n = range[p].first; n < range[p].second; ++n) {
             if (std::abs(s.nz[n]) > upright) continue;
@@ -227,11 +228,15 @@ physics::HiddenWalls find_hidden_walls(const SolidParts& parts,
                                        const std::vector<bool>& grounded) {
     const auto range = ranges_of(parts.samples, object_of_primitive.size());
     std::vector<std::vector<std::int32_t>> objects(grounded.size());
-    for (std::size_t p = 0; p < object_of_primitive.size(); ++p)
-        if (const std::int32_t o = object_of_primitive[p]; o >= 0)
-            objects[static_cast<std::size_t>(o)].push_back(static_cast<std::int32_t>(p));
+    std::vector<bool> fixed(object_of_primitive.size(), false);
+    for (std::size_t p = 0; p < object_of_primitive.size(); ++p) {
+        if (object_of_primitive[p] < 0) continue;
+        const auto o = static_cast<std::size_t>(object_of_primitive[p]);
+        objects[o].push_back(static_cast<std::int32_t>(p));
+        fixed[p] = grounded[o];
+    }
     std::vector<physics::HiddenWall> out;
-    for (const std::vector<Line>& lines : walls_of(wall_lines(parts, range))) {
+    for (const std::vector<Line>& lines : walls_of(wall_lines(parts, range, fixed))) {
         const Wall wall(parts.samples, range, lines);
         std::vector<Cover> covers;
         for (std::size_t o = 0; o < objects.size(); ++o)

@@ -19,6 +19,7 @@
 #include "pipeline/caller_points.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/cloud_views.h"
+#include "pipeline/frame_checks.h"
 #include "pipeline/memory_stream.h"
 #include "pipeline/scale_checks.h"
 #include "pipeline/voxel_stage.h"
@@ -66,11 +67,22 @@ double typical_depth(const Intrinsics& k, std::size_t count,
     return depths[depths.size() / 2];
 }
 
-// Fuses out.frames. posed: whether they have poses, and are no single frame.
-void fuse_frames(device::Device& device, bool posed, const ParseOptions& options, Ingested& out) {
-    out.cell_m = cell_for_frames(out.frames->intrinsics(), out.frames->size(),
-                                 [&](std::size_t f) { return out.frames->load(f); });
-    geometry::FrameFusion fusion(out.frames->intrinsics(), out.cell_m, device.threads().threads());
+// About the spacing of pixels where the scene typically is.
+double cell_at(const Intrinsics& k, double depth_m) {
+    if (depth_m <= 0) return 0.01;
+    const double noise = depth_sigma(depth_m);
+    return std::clamp(std::max(1.5 * depth_m / k.fx, 1.2 * noise), least_cell_m, 0.015);
+}
+
+// Fuses out.frames. poses: as they were given, of each; none of a single frame.
+void fuse_frames(device::Device& device, std::span<const Mat4> poses, const ParseOptions& options,
+                 Ingested& out) {
+    const Intrinsics& k = out.frames->intrinsics();
+    const double depth_m =
+        typical_depth(k, out.frames->size(), [&](std::size_t f) { return out.frames->load(f); });
+    out.cell_m = cell_at(k, depth_m);
+    geometry::FrameFusion fusion(k, out.cell_m, device.threads().threads());
+    geometry::PoseComparison comparison(k, poses, depth_m);
     const auto count = static_cast<double>(out.frames->size());
     constexpr double added_share = 0.4, polls = 5;  // of the stage; while it is finished
     const auto tell = [&](double done) {
@@ -79,9 +91,16 @@ void fuse_frames(device::Device& device, bool posed, const ParseOptions& options
     const auto add = [&](const DepthFrame& frame, std::size_t f) {
         end_if_cancelled(options);
         fusion.add(frame);
+        comparison.add(frame, f);
         tell(added_share * static_cast<double>(f + 1) / count);
     };
     for_each_frame(*out.frames, device.threads(), add, true);
+    note_principal_point(k, out.origin, out.notes);
+    // First, and at once: the shards that such poses give take long.
+    if (const std::string note = pose_convention_note(comparison, out.origin); !note.empty()) {
+        out.notes.insert(out.notes.begin(), note);
+        if (options.notice) options.notice(note);
+    }
     double polled = 0;
     geometry::FusedCloud fused = fusion.finish([&] {
         end_if_cancelled(options);
@@ -91,7 +110,7 @@ void fuse_frames(device::Device& device, bool posed, const ParseOptions& options
     out.cloud = out.own;
     out.viewpoints = std::move(fused.viewpoints);
     out.viewpoint_of_point = std::move(fused.viewpoint_of_point);
-    if (!posed)
+    if (poses.empty())
         out.notes.push_back("A single frame: what it does not show is completed by shape alone.");
 }
 
@@ -102,9 +121,11 @@ Ingested ingest_folder(device::Device& device, const std::filesystem::path& fold
     out.origin = ScanOrigin::frames_folder;
     out.camera_up = sequence.mean_camera_up();
     out.notes = sequence.colours().notes();
-    const bool posed = sequence.posed();
+    std::vector<Mat4> poses;
+    for (std::size_t i = 0; sequence.posed() && i < sequence.size(); ++i)
+        poses.push_back(sequence.camera_to_world(i));
     out.frames = std::make_unique<SequenceStream>(std::move(sequence));
-    fuse_frames(device, posed, options, out);
+    fuse_frames(device, poses, options, out);
     return out;
 }
 
@@ -112,10 +133,7 @@ Ingested ingest_folder(device::Device& device, const std::filesystem::path& fold
 
 double cell_for_frames(const Intrinsics& k, std::size_t count,
                        const std::function<DepthFrame(std::size_t)>& load) {
-    const double z = typical_depth(k, count, load);
-    if (z <= 0) return 0.01;
-    const double noise = depth_sigma(z);
-    return std::clamp(std::max(1.5 * z / k.fx, 1.2 * noise), least_cell_m, 0.015);
+    return cell_at(k, typical_depth(k, count, load));
 }
 
 std::string depth_scale_hint(const FrameStream& frames, ScanOrigin origin) {
@@ -249,7 +267,8 @@ Ingested ingest_frames_view(device::Device& device, const FramesView& frames,
     out.camera_up = io::mean_camera_up(given.poses());
     out.notes = given.notes();
     out.frames = std::move(stream);
-    fuse_frames(device, given.posed(), options, out);
+    fuse_frames(device, given.posed() ? std::span(given.poses()) : std::span<const Mat4>(), options,
+                out);
     check_camera_steps(out.viewpoints, given.source());
     if (out.cloud.size() == 0)
         throw Error(ErrorKind::input, given.source() + ": no points were found; " +
