@@ -213,7 +213,7 @@ def test_errors_say_what_is_wrong(given, words, device):
 
 def test_errors_of_options_and_devices(points):
     for option, value, words in (('friction', -1, '^friction -1: expected'), ('wind_from_deg', 400, '^wind_from_deg 400: '),
-                                 ('max_memory_bytes', 1, 'the 1 B of max_memory_bytes; use a larger voxel_m$'),
+                                 ('max_memory_bytes', 1, 'the 1 B of max_memory_bytes: allow that much, or use a larger voxel_m$'),
                                  ('disturbances', 'flood', '^disturbances flood: expected human, wind or')):
         with pytest.raises(topple.Error, match=words) as raised:
             topple.parse(points, **{option: value})
