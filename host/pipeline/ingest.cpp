@@ -19,6 +19,7 @@
 #include "pipeline/caller_points.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/cloud_views.h"
+#include "pipeline/frame_checks.h"
 #include "pipeline/limited_fusion.h"
 #include "pipeline/memory_stream.h"
 #include "pipeline/scale_checks.h"
@@ -68,6 +69,7 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std:
     out.cell_m = cell_for_frames(k, depth_m);
     LimitedFusion fusion({k, out.frames->size(), depth_m, source, out.origin}, out.cell_m, options,
                          device.threads().threads());
+    geometry::PoseComparison comparison(k, poses, depth_m);
     const auto count = static_cast<double>(out.frames->size());
     constexpr double added_share = 0.4, polls = 5;  // of the stage; while it is finished
     const auto tell = [&](double done) {
@@ -76,9 +78,16 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std:
     const auto add = [&](const DepthFrame& frame, std::size_t f) {
         end_if_cancelled(options);
         fusion.add(frame);
+        comparison.add(frame, f);
         tell(added_share * static_cast<double>(f + 1) / count);
     };
     for_each_frame(*out.frames, device.threads(), add, true);
+    note_principal_point(k, out.origin, out.notes);
+    // First, and at once: the shards that such poses give take long.
+    if (const std::string note = pose_convention_note(comparison, out.origin); !note.empty()) {
+        out.notes.insert(out.notes.begin(), note);
+        if (options.notice) options.notice(note);
+    }
     double polled = 0;
     geometry::FusedCloud fused = fusion.finish([&] {
         end_if_cancelled(options);

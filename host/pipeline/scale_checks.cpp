@@ -18,9 +18,10 @@ namespace {
 // full of things stays below.
 constexpr double least_room_m = 1.5, largest_room_m = 30, least_scan_m = 0.5;
 
+// To three digits, or all before the point.
 std::string text_of(double value) {
     char digits[32];
-    std::snprintf(digits, sizeof(digits), "%.3g", value);
+    std::snprintf(digits, sizeof(digits), value >= 1000 && value < 1e9 ? "%.0f" : "%.3g", value);
     return digits;
 }
 

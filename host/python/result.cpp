@@ -328,6 +328,8 @@ void bind_result(py::module_& module) {
                                        out[py::str(name)] = s;
                                    return out;
                                })
+        .def_property_readonly("in_blocks",
+                               [](const Parsed& p) { return p.result.tiled != nullptr; })
         .def_property_readonly("events", scene(&Scene::events))
         .def_property_readonly(
             "objects", [](const py::object& self) { return items(scene_of(self).objects, self); })

@@ -14,6 +14,7 @@ RESULT = {
     'manhattan_from_input': '16 numbers, a 4 x 4 matrix row by row: from the scan\'s frame to the room\'s, z up, walls along x and y.',
     'notes': 'list of str: what the reader of the result should know, a sentence each.',
     'corrections': 'list of AppliedCorrection: what became of those that were given, in their order.',
+    'in_blocks': 'bool: a cloud was parsed in blocks (docs/scale.md), and the arrays over its points are of a sample of them.',
     'timings_s': 'dict: seconds by stage, in the order of the stages.',
     'events': 'dict: what was reckoned with, by name: walks, wind_m_s, pga_m_s2 (and pga_spread), tolerable_J, as far as they were asked for.',
     'objects': 'list of Object, by id.',

@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from ._arrays import usage
+from ._shown import figure
 
 _OVERTURNING = ('tilt_deg', 'tilt_error_deg', 'push_N', 'push_error_N', 'slide_N', 'shake_g', 'hand_push_N', 'hand_push_error_N',
                 'hand_height_m', 'gust_m_s', 'gust_error_m_s')
@@ -100,9 +101,10 @@ _SHOWN = 12
 def _row(o):
     rank = f'{o.unsafety:.1f}' if not math.isnan(o.unsafety) else 'not ranked' if o.seen_enough else 'not seen enough'
     hue = 'transparent' if math.isnan(o.unsafety) else f'hsl({120 - 120 * (o.unsafety - 1) / 9:.0f} 70% 60%)'
-    barrier = f'{o.barrier_J:.2g} ± {o.barrier_error_J:.1g}' if o.barrier_J > o.barrier_error_J else f'below {o.barrier_J + o.barrier_error_J:.2g}'
+    barrier = f'{figure(o.barrier_J, 2)} ± {figure(o.barrier_error_J, 1)}' if o.barrier_J > o.barrier_error_J \
+        else f'below {figure(o.barrier_J + o.barrier_error_J, 2)}'
     category = (o.unsafety_category or '') + ('' if o.unsafety_certain or not o.unsafety_category else '?')
-    cells = [f'{o.id} {o.name}'.strip(), rank, category, f'{o.mass_kg:.3g} ± {o.mass_error_kg:.1g}', barrier, o.why]
+    cells = [f'{o.id} {o.name}'.strip(), rank, category, f'{figure(o.mass_kg)} ± {figure(o.mass_error_kg, 1)}', barrier, o.why]
     cells = [f'<td>{html.escape(cell)}</td>' for cell in cells]
     cells[1] = cells[1].replace('<td>', f'<td style="border-left: 0.6em solid {hue}">')
     return f'<tr>{"".join(cells)}</tr>'

@@ -186,6 +186,9 @@ TEST_F(FramesViews, EndWhereTheyAreCancelledOrWouldTakeTooMuch) {
     options = quick();
     options.unit_m = 0.001;
     EXPECT_THROW(parse(view(), options), Error);
+    options = quick();
+    options.tile_m = 5;
+    EXPECT_THROW(parse(view(), options), Error);
 }
 
 TEST_F(FramesViews, WhatTheCallersFunctionsThrowComesOutUnchanged) {
