@@ -5,10 +5,10 @@
 #include <cmath>
 #include <exception>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "core/depth_noise.h"
-#include "geometry/frames_fusion.h"
 #include "geometry/single_scan.h"
 #include "geometry/surfels.h"
 #include "io/frame_sequence.h"
@@ -20,6 +20,7 @@
 #include "pipeline/cancelling.h"
 #include "pipeline/cloud_views.h"
 #include "pipeline/frame_checks.h"
+#include "pipeline/limited_fusion.h"
 #include "pipeline/memory_stream.h"
 #include "pipeline/scale_checks.h"
 #include "pipeline/voxel_stage.h"
@@ -50,38 +51,24 @@ Vec3 position(const DepthFrame& frame) {
     return {m[3], m[7], m[11]};
 }
 
-// The median of readings of some frames, metres; 0 where there are none.
-double typical_depth(const Intrinsics& k, std::size_t count,
-                     const std::function<DepthFrame(std::size_t)>& load) {
-    std::vector<double> depths;
-    const std::size_t step = std::max<std::size_t>(1, count / 8);
-    for (std::size_t f = 0; f < count; f += step) {
-        const DepthFrame frame = load(f);
-        for (std::size_t i = 0; i < frame.depth.size(); i += 37) {
-            if (frame.depth[i]) depths.push_back(frame.depth[i] / k.depth_scale);
-        }
-    }
-    if (depths.empty()) return 0;
-    std::nth_element(depths.begin(),
-                     depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
-    return depths[depths.size() / 2];
+std::vector<Vec3> places_of(std::span<const Mat4> poses) {
+    std::vector<Vec3> places;
+    for (const Mat4& m : poses) places.push_back({m[3], m[7], m[11]});
+    return places;
 }
 
-// About the spacing of pixels where the scene typically is.
-double cell_at(const Intrinsics& k, double depth_m) {
-    if (depth_m <= 0) return 0.01;
-    const double noise = depth_sigma(depth_m);
-    return std::clamp(std::max(1.5 * depth_m / k.fx, 1.2 * noise), least_cell_m, 0.015);
-}
-
-// Fuses out.frames. poses: as they were given, of each; none of a single frame.
-void fuse_frames(device::Device& device, std::span<const Mat4> poses, const ParseOptions& options,
-                 Ingested& out) {
+// Fuses out.frames, called `source`. poses: as they were given, of each; none of a single frame.
+void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std::string& source,
+                 const ParseOptions& options, Ingested& out) {
     const Intrinsics& k = out.frames->intrinsics();
+    // Before anything is made of them.
+    check_camera_steps(places_of(poses), source);
     const double depth_m =
         typical_depth(k, out.frames->size(), [&](std::size_t f) { return out.frames->load(f); });
-    out.cell_m = cell_at(k, depth_m);
-    geometry::FrameFusion fusion(k, out.cell_m, device.threads().threads());
+    check_readings(k, out.frames->size(), depth_m, source, out.origin);
+    out.cell_m = cell_for_frames(k, depth_m);
+    LimitedFusion fusion({k, out.frames->size(), depth_m, source, out.origin}, out.cell_m, options,
+                         device.threads().threads());
     geometry::PoseComparison comparison(k, poses, depth_m);
     const auto count = static_cast<double>(out.frames->size());
     constexpr double added_share = 0.4, polls = 5;  // of the stage; while it is finished
@@ -125,15 +112,32 @@ Ingested ingest_folder(device::Device& device, const std::filesystem::path& fold
     for (std::size_t i = 0; sequence.posed() && i < sequence.size(); ++i)
         poses.push_back(sequence.camera_to_world(i));
     out.frames = std::make_unique<SequenceStream>(std::move(sequence));
-    fuse_frames(device, poses, options, out);
+    fuse_frames(device, poses, folder.string(), options, out);
     return out;
 }
 
 }  // namespace
 
-double cell_for_frames(const Intrinsics& k, std::size_t count,
-                       const std::function<DepthFrame(std::size_t)>& load) {
-    return cell_at(k, typical_depth(k, count, load));
+double typical_depth(const Intrinsics& k, std::size_t count,
+                     const std::function<DepthFrame(std::size_t)>& load) {
+    std::vector<double> depths;
+    const std::size_t step = std::max<std::size_t>(1, count / 8);
+    for (std::size_t f = 0; f < count; f += step) {
+        const DepthFrame frame = load(f);
+        for (std::size_t i = 0; i < frame.depth.size(); i += 37) {
+            if (frame.depth[i]) depths.push_back(frame.depth[i] / k.depth_scale);
+        }
+    }
+    if (depths.empty()) return 0;
+    std::nth_element(depths.begin(),
+                     depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+    return depths[depths.size() / 2];
+}
+
+double cell_for_frames(const Intrinsics& k, double typical_depth_m) {
+    if (typical_depth_m <= 0) return 0.01;
+    const double noise = depth_sigma(typical_depth_m);
+    return std::clamp(std::max(1.5 * typical_depth_m / k.fx, 1.2 * noise), least_cell_m, 0.015);
 }
 
 std::string depth_scale_hint(const FrameStream& frames, ScanOrigin origin) {
@@ -267,9 +271,8 @@ Ingested ingest_frames_view(device::Device& device, const FramesView& frames,
     out.camera_up = io::mean_camera_up(given.poses());
     out.notes = given.notes();
     out.frames = std::move(stream);
-    fuse_frames(device, given.posed() ? std::span(given.poses()) : std::span<const Mat4>(), options,
-                out);
-    check_camera_steps(out.viewpoints, given.source());
+    fuse_frames(device, given.posed() ? std::span(given.poses()) : std::span<const Mat4>(),
+                given.source(), options, out);
     if (out.cloud.size() == 0)
         throw Error(ErrorKind::input, given.source() + ": no points were found; " +
                                           depth_scale_hint(given, out.origin));
@@ -356,7 +359,6 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
                 "intrinsics.json, as depth_scale");
         }
         Ingested out = ingest_folder(device, input, options);
-        check_camera_steps(out.viewpoints, input.string());
         if (out.cloud.size() == 0)
             io::fail(input, "no points were found; " + depth_scale_hint(*out.frames, out.origin));
         return out;

@@ -92,6 +92,16 @@ void check_camera_steps(std::span<const Vec3> places, const std::string& source)
                                       "if these are mm, multiply them by 0.001");
 }
 
+void check_readings(const Intrinsics& k, std::size_t frames, double typical_depth_m,
+                    const std::string& source, ScanOrigin origin) {
+    const double pixel_m = typical_depth_m / std::max(k.fx, k.fy);
+    if (!(pixel_m > sparsest_m)) return;
+    throw Error(ErrorKind::input,
+                source + ": " + depth_scale_hint(frames, k.depth_scale, typical_depth_m, origin) +
+                    "; there its pixels are " + text_of(pixel_m) + " m apart, more than the " +
+                    text_of(sparsest_m) + " m at which surfaces can be found");
+}
+
 void note_spacing(double spacing_m, std::vector<std::string>& notes) {
     // Boards of fewer distances are seen with one side or with both now here, now there; a foot of
     // fewer has a border of a few points (docs/limits.md has figures). Closer points leave open
