@@ -70,7 +70,10 @@ class Sentence {
           why_(object_.why) {}
 
     std::string text() const {
-        if (object_.grounded) return "It is the building, or fixed to it: it can't fall.";
+        if (object_.grounded) {
+            return "It is counted as the building, or as fixed to it, and is not judged here: what "
+                   "of it is furniture has to be told.";
+        }
         if (!from_.seen_enough()) {
             return "The scan does not show what holds it up: it is taken to stand there, and is "
                    "not ranked.";

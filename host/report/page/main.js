@@ -264,6 +264,7 @@ function preparePrint(scene, state, plan, parts) {
 async function start() {
   const scene = await loadScene();
   scene.boxes = boxesOf(scene);
+  scene.partBoxes = partBoxesOf(scene);
   scene.floor = floorOf(scene, scene.boxes);
   scene.painter = new Painter(scene);
   scene.pictures = new Map();
@@ -304,6 +305,11 @@ async function start() {
     choose(id);
     document.querySelector('.stage').scrollIntoView({block: 'nearest'});
     if (!panel.hidden) panel.querySelector('h2').focus({preventScroll: true});
+  });
+  fillFurniture(document.getElementById('risk'), scene, (ids, box) => {
+    parts.take(ids);
+    if (view) view.fly(box);
+    document.getElementById('mend').scrollIntoView({block: 'nearest'});
   });
   const plan = new Plan(document.getElementById('plan'), scene, visit);
   const recolour = () => {

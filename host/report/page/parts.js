@@ -52,6 +52,14 @@ class PartsPanel {
     this.changed();
   }
 
+  // These and no others.
+  take(parts) {
+    this.marked = new Set(parts.filter(part => this.owner.has(part)));
+    this.say(`${plural(this.marked.size, 'part')} chosen.`);
+    this.fill();
+    this.changed();
+  }
+
   clear() {
     this.marked.clear();
     this.fill();

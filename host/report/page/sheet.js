@@ -4,13 +4,21 @@
 // The first page on paper: what to do, with boxes to tick, in words for whoever walks through the room with it.
 
 function sheetLine(scene, object, todo, more = []) {
-  const place = planPlace(scene, object), what = [sizeText(object), place ? `${metreText(place.east)} E, ${metreText(place.north)} N, ` +
-    `${metreText(place.from)} to ${metreText(place.to)} m high` : ''].filter(text => text).join(', at ');
+  const what = [sizeText(object), placeInShort(scene, scene.boxes.get(object.id))].filter(text => text).join(', at ');
   const badge = object.unsafety_category ? categoryText(object) : 'not known';
   const picture = pictureOf(scene, object.id);
   return element('li', {}, [element('span', {className: 'box'}), ...picture ? [picture] : [], element('div', {}, [
     element('strong', {text: `${capital(objectName(scene, object.id))}${object.name ? ` (object ${object.id})` : ''}, ${badge}: `}), todo,
     element('small', {text: [what, ...more].filter(text => text).map(text => text.replace(/[.;]$/, '')).join('. ') + '.'})])]);
+}
+
+// What is not judged, for whoever knows what is furniture.
+function greyLine(scene) {
+  const found = mayBeFurniture(scene);
+  return element('li', {}, [element('span', {className: 'box'}), element('div', {}, [element('strong', {text: 'Grey in the picture is not judged. '}),
+    'Is there a shelf or cabinet among it? Check that it is screwed to the wall.',
+    element('small', {text: found.length ? `These pieces of the building stand before a wall, and may be furniture: ${found.slice(0, listedFurniture).map(one => furnitureText(scene, one)).join('; ')}` +
+      `${found.length > listedFurniture ? `; and ${found.length - listedFurniture} smaller` : ''}.` : ''})])]);
 }
 
 // What it does and how often, in one line.
@@ -48,6 +56,7 @@ function fillSheet(scene) {
       'belongs together may have been told apart wrongly. Look before you act, and before you rely on it.', 'certificate'),
     ...list('To do, from the top', act.map(doing), 0),
     ...!act.length ? [node('p', 'Nothing was found that has to be fastened or moved.')] : [],
+    ...scene.objects.some(object => object.grounded) ? list('Not judged', [greyLine(scene)], 0) : [],
     ...list('To be looked at', looks, doubtful.length + nearly.length + calm.length - looks.length),
     ...list('The scan does not show what holds these: go and look', holds, unseen.length - holds.length),
     node('p', `Reckoned with: ${listed(kinds.map(kind => oneEventText(scene, kind))) || 'nothing'}.${scene.below_hazard.length ? ` \u201cAt most\u201d: ${curveText(scene)}.` : ''} Places are in metres east (E) of the plan\u2019s left edge and north (N) of its lower edge. A joule (J) lifts 1 kg by 10 cm; from about 40 J on injuries need more than first aid. ` +

@@ -208,6 +208,7 @@ function showObject(panel, scene, id, choose, visit) {
   say(keepClearText(scene, object), 'clear');
   if (!object.grounded && object.unsafety_category !== undefined) say(object.advice.action, isAdvised(object) ? 'advice' : 'why');
   say(object.why.sentence);
+  if (object.grounded) say('If you see furniture in grey, tick its parts below the view and say \u201ca thing by itself\u201d.', 'advice');
   say(overturningText(object));
   const curve = fragilityChart(object);
   say(fragilityText(scene, object));
