@@ -197,7 +197,7 @@ class Marker {
   }
 }
 
-// The numbers of the riskiest objects, and of the chosen one, where they stand in the view.
+// The numbers of the riskiest objects, or of the chosen one and of what it may be a piece of, where they stand in the view.
 class Labels {
   constructor(container, scene) {
     this.container = container;
@@ -212,7 +212,8 @@ class Labels {
     for (const node of this.nodes.values()) node.remove();
     this.nodes.clear();
     this.chosen = object;
-    for (const shown of object ? [object] : this.risky) {
+    const whole = object && this.scene.objectById.get(object.piece_of);
+    for (const shown of object ? [object, ...whole ? [whole] : []] : this.risky) {
       if (shown.center_of_mass_m.some(value => value === null)) continue;
       const node = element('span', {className: 'number', text: shown.name || String(shown.id)});
       this.container.append(node);

@@ -52,6 +52,23 @@ class PartsPanel {
     this.changed();
   }
 
+  // That two objects are one thing.
+  join(id, other) {
+    this.take([id, other].flatMap(each => (this.partsOf.get(each) || []).map(part => part.id)));
+    this.note('one_thing', {}, 'one thing');
+  }
+
+  // Objects that are to be one thing and don't hang together as scanned: a warning that names what each touches; '' where they do.
+  looseText(owners) {
+    const touched = id => new Set(contactsOf(this.scene, id).filter(contact => !contact.own && contact.object >= 0).map(contact => contact.object));
+    const reached = new Set([owners[0]]);
+    for (const id of reached) for (const other of touched(id)) if (owners.includes(other)) reached.add(other);
+    const left = owners.filter(id => !reached.has(id)), names = ids => listed(ids.map(id => objectName(this.scene, id)));
+    if (!left.length) return '';
+    const touches = id => `${objectName(this.scene, id)} touches ${names([...touched(id)].sort((a, b) => a - b)) || 'nothing'}`;
+    return `Noted, but ${names([...reached])} and ${names(left)} don\u2019t touch as scanned: ${listed([owners[0], ...left].map(touches))}. Undo it if another one was meant.`;
+  }
+
   // These and no others.
   take(parts) {
     this.marked = new Set(parts.filter(part => this.owner.has(part)));
@@ -137,6 +154,7 @@ class PartsPanel {
     const told = {...more, was: this.wasText(kind, parts)};
     this.corrections.add(kind === 'one_thing' ? this.corrections.oneThing(parts, told) : this.corrections.of(kind, this.enoughOf(kind, parts), told), `${capital(meant)}: ${what}`);
     this.done();
+    if (kind === 'one_thing') this.refuse(this.looseText([...new Set(parts.map(part => this.owner.get(part)))]));
   }
 
   // What is to be known of it after the next parse, which has other numbers: a line.
