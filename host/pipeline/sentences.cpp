@@ -226,12 +226,18 @@ std::string rated_for(double force_N) {
     return io::short_number(10 * decade) + " kg";
 }
 
+// What is to be held at least, rounded up: "154", "2.8".
+std::string at_least_N(double force_N) {
+    const double steps = force_N < 10 ? 10 : 1;
+    return io::two_digits(std::ceil(force_N * steps - 1e-9) / steps);
+}
+
 std::string fix_sentence(const Object& object, const Suggestion& what) {
     const std::string text =
         object.mass_kg < light_kg ? "Put it elsewhere, or fasten it" : mend_of(object);
     if (!(what.hold.force_N > 0)) return text + ".";
     return text + ", with a strap or bracket rated for " + rated_for(what.hold.force_N) +
-           " or more (it must hold " + io::two_digits(what.hold.force_N) +
+           " or more (it must hold " + at_least_N(what.hold.force_N) +
            " N sideways at least, without a margin), at its top, " + length(what.hold.height_m) +
            " above what it stands on.";
 }

@@ -108,7 +108,7 @@ function asInFile(one) {
 }
 
 // Of a correction that the scene was parsed with: where, what it said, and what became of it, as
-// "Bookcase at 1.56 m east, 0.35 m north (before: object 16, to be held with 4.0 kN at least): counted as fixed, ..".
+// "Bookcase at 1.56 m east, 0.35 m north (before: object 16, to be held with 3958 N at least): counted as fixed, ..".
 function givenText(scene, one) {
   const things = (one.objects || []).filter(id => scene.objectById.has(id) && !scene.objectById.get(id).grounded);
   const same = other => other.do === 'name' && other.at_m.some(a => one.at_m.some(b => a.every((value, k) => value === b[k])));
