@@ -111,14 +111,26 @@ function asInFile(one) {
 // "Bookcase at 1.56 m east, 0.35 m north (before: object 16, to be held with 3958 N at least): counted as fixed, ..".
 function givenText(scene, one) {
   const things = (one.objects || []).filter(id => scene.objectById.has(id) && !scene.objectById.get(id).grounded);
-  const same = other => other.do === 'name' && other.at_m.some(a => one.at_m.some(b => a.every((value, k) => value === b[k])));
-  const named = one.name ? one : (scene.corrections || []).find(same), at = correctedPlace(scene, one);
+  const named = nameToldWith(scene, one), at = correctedPlace(scene, one);
   const what = {
     one_thing: 'one thing', apart: 'apart from others', fixed: 'counted as fixed; this holds only while its strap does', not_there: 'counted as not there',
     hollow: `hollow, walls of ${metres(one.wall_m || 0)}`, mass: number(one.kg, 'kg'), name: `called \u201c${one.name}\u201d`,
   }[one.do] || one.do;
-  const who = things.length ? listed(things.map(id => objectName(scene, id))) : named ? named.name : one.at_m.length > 1 ? 'parts' : 'what is';
+  const who = things.length ? listed(things.map(id => objectName(scene, id))) : named || (one.at_m.length > 1 ? 'parts' : 'what is');
   return `${capital(who)}${at ? ` at ${at}` : ''}${one.was ? ` (before: ${one.was})` : ''}: ${what}${one.outcome && one.outcome !== 'held' ? ` (of this parse: ${one.outcome})` : ''}`;
+}
+
+// What is called so at one of the spots of a correction; '' for none.
+function nameToldWith(scene, one) {
+  const same = other => other.do === 'name' && other.at_m.some(a => one.at_m.some(b => a.every((value, k) => value === b[k])));
+  return one.name || ((scene.corrections || []).find(same) || {}).name || '';
+}
+
+// The box of a correction's spots in the view; null without any.
+function correctedBox(scene, one) {
+  if (!one.at_m || !one.at_m.length) return null;
+  const spots = one.at_m.map(spot => viewPlace(scene, spot)), ends = of => [0, 1, 2].map(k => of(...spots.map(spot => spot[k])));
+  return {low: ends(Math.min), high: ends(Math.max)};
 }
 
 // The middle of a correction's spots on the plan: "1.56 m east, 0.35 m north".

@@ -8,7 +8,7 @@ const furnitureDepth_m = [0.12, 0.9], furnitureHeight_m = 0.4, furnitureWidth_m 
 const listedFurniture = 6;
 
 // Upright pieces of the building that have other upright pieces of it behind them, seen from the room's middle: the largest first, as
-// {part, parts, box, size_m}. parts: those that lie between its front and that wall.
+// {part, parts, box, size_m}, but for what was said to be fixed. parts: those that lie between its front and that wall.
 function mayBeFurniture(scene) {
   const pieces = scene.primitives.filter(part => (scene.objectById.get(part.object) || {}).grounded && scene.partBoxes.has(part.id))
     .map(part => ({part: part.id, box: scene.partBoxes.get(part.id)}));
@@ -20,8 +20,9 @@ function mayBeFurniture(scene) {
     faces.push({...piece, across, along, out, middle: middle(across), front: out > 0 ? box.low[across] : box.high[across], back: out > 0 ? box.high[across] : box.low[across]});
   }
   const upright = faces.filter(({box, along}) => extent(box, 2) >= furnitureHeight_m && extent(box, along) >= furnitureWidth_m), top = Math.max(...faces.map(({box}) => box.high[2]));
-  const found = [];
+  const found = [], strapped = (scene.corrections || []).filter(one => one.do === 'fixed' && one.held !== false).flatMap(one => one.at_m.map(spot => viewPlace(scene, spot)));
   for (const one of upright) {
+    if (strapped.some(at => at.every((value, k) => value >= one.box.low[k] - scene.voxel_size_m && value <= one.box.high[k] + scene.voxel_size_m))) continue;
     // Where it goes up as far as walls do it is one, before another.
     if (extent(one.box, 2) > 2.2 && one.box.high[2] > top - 0.1) continue;
     const before = other => one.out * (other.back - one.front), shared = other => Math.min(one.box.high[one.along], other.box.high[one.along]) - Math.max(one.box.low[one.along], other.box.low[one.along]);

@@ -12,6 +12,15 @@ function sheetLine(scene, object, todo, more = []) {
     element('small', {text: [what, ...more].filter(text => text).map(text => text.replace(/[.;]$/, '')).join('. ') + '.'})])]);
 }
 
+// What was said to be fixed, and so is at no risk while its strap holds.
+function fixedLine(scene, one) {
+  const [was, hold] = (one.was || '').split(/, to be held with /), place = placeInShort(scene, correctedBox(scene, one));
+  const named = nameToldWith(scene, one), who = [named, was && `${was} before`].filter(text => text);
+  return element('li', {}, [element('span', {className: 'box'}), element('div', {}, [
+    element('strong', {text: capital(who.length > 1 ? `${who[0]} (${who[1]})` : was ? `${was} (before)` : named || 'What was fixed')}),
+    `${place ? `, where: ${place}` : ''}: ${hold ? `strap for ${hold.replace(/ at least$/, '')}, at least` : 'its strap or bracket'}.`])]);
+}
+
 // What is not judged, for whoever knows what is furniture.
 function greyLine(scene) {
   const found = mayBeFurniture(scene);
@@ -56,6 +65,7 @@ function fillSheet(scene) {
       'belongs together may have been told apart wrongly. Look before you act, and before you rely on it.', 'certificate'),
     ...list('To do, from the top', act.map(doing), 0),
     ...!act.length ? [node('p', 'Nothing was found that has to be fastened or moved.')] : [],
+    ...list('Already fixed: check the straps', (scene.corrections || []).filter(one => one.do === 'fixed' && one.held !== false).map(one => fixedLine(scene, one)), 0),
     ...scene.objects.some(object => object.grounded) ? list('Not judged', [greyLine(scene)], 0) : [],
     ...list('To be looked at', looks, doubtful.length + nearly.length + calm.length - looks.length),
     ...list('The scan does not show what holds these: go and look', holds, unseen.length - holds.length),
