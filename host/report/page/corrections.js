@@ -10,8 +10,8 @@ class Corrections {
   constructor(scene, changed) {
     this.scene = scene;
     this.changed = changed;
-    // Steps: one or two corrections of the file each, and what they say for the user.
-    this.list = (scene.corrections || []).map(one => ({ones: [asInFile(one)], text: givenText(scene, one)}));
+    // What the user said: of one correction of the file or more each, and in words.
+    this.list = sentencesOf(scene.corrections).map(ones => ({ones: ones.map(asInFile), text: givenText(scene, ones)}));
     this.saved = true;
     this.spots = new Map();
     scene.view.groups.forEach(([primitive], g) => {
@@ -42,8 +42,8 @@ class Corrections {
   }
 
   // That no part is in one object with any of the others.
-  apart(parts, others) {
-    return this.of('apart', parts).flatMap(one => chunks(this.at(others)).map(from_m => ({...one, from_m})));
+  apart(parts, others, more = {}) {
+    return this.of('apart', parts, more).flatMap(one => chunks(this.at(others)).map(from_m => ({...one, from_m})));
   }
 
   // One step; text: what it says.
@@ -107,9 +107,29 @@ function asInFile(one) {
   return out;
 }
 
-// Of a correction that the scene was parsed with: where, what it said, and what became of it, as
+// Corrections of a file by what was said with each, in lists: one sentence about several parts may take several entries, one after the
+// other. They share their line `was`, and are of one kind and value at other spots, or apart after one_thing; as host/pipeline/told_sentences.cpp has it.
+function sentencesOf(corrections) {
+  const out = [], key = value => JSON.stringify(value), alike = (a, b, names) => names.every(name => key(a[name]) === key(b[name]));
+  const goesOn = (before, one) => one.was && one.was === before.was && (one.do !== before.do ? before.do === 'one_thing' && one.do === 'apart' :
+    alike(before, one, ['wall_m', 'kg', 'name']) && !alike(before, one, ['at_m', 'from_m']));
+  for (const one of corrections || []) {
+    const last = out[out.length - 1];
+    if (last && goesOn(last[last.length - 1], one)) last.push(one);
+    else out.push([one]);
+  }
+  return out;
+}
+
+// The number, from 1 on, of what was said by each correction: as many as there are corrections.
+function sentenceNumbers(corrections) {
+  return sentencesOf(corrections).flatMap((ones, n) => ones.map(() => n + 1));
+}
+
+// Of a sentence's corrections that the scene was parsed with: where, what it said, and what became of it, as
 // "Bookcase at 1.56 m east, 0.35 m north (before: object 16, to be held with 3958 N at least): counted as fixed, ..".
-function givenText(scene, one) {
+function givenText(scene, ones) {
+  const one = ones[0], missed = ones.find(each => each.outcome && each.outcome !== 'held'), alone = ones.some(each => each.do !== one.do);
   const things = (one.objects || []).filter(id => scene.objectById.has(id) && !scene.objectById.get(id).grounded);
   const named = nameToldWith(scene, one), at = correctedPlace(scene, one);
   const what = {
@@ -117,7 +137,7 @@ function givenText(scene, one) {
     hollow: `hollow, walls of ${metres(one.wall_m || 0)}`, mass: number(one.kg, 'kg'), name: `called \u201c${one.name}\u201d`,
   }[one.do] || one.do;
   const who = things.length ? listed(things.map(id => objectName(scene, id))) : named || (one.at_m.length > 1 ? 'parts' : 'what is');
-  return `${capital(who)}${at ? ` at ${at}` : ''}${one.was ? ` (before: ${one.was})` : ''}: ${what}${one.outcome && one.outcome !== 'held' ? ` (of this parse: ${one.outcome})` : ''}`;
+  return `${capital(who)}${at ? ` at ${at}` : ''}${one.was ? ` (before: ${one.was})` : ''}: ${alone ? 'a thing by itself' : what}${missed ? ` (of this parse: ${missed.outcome})` : ''}`;
 }
 
 // What is called so at one of the spots of a correction; '' for none.

@@ -177,7 +177,8 @@ class PartsPanel {
     const rest = this.scene.primitives.filter(part => owners.has(part.object) && !parts.includes(part.id)).map(part => part.id);
     if (!this.corrections.told(rest).length) return this.refuse(`${capital(meant)} is by itself already: choose some of its parts.`);
     if (!this.corrections.told(parts).length) return this.refuse(`Of ${meant} no surface is drawn, by which it could be found again.`);
-    this.corrections.add([...this.corrections.oneThing(parts), ...this.corrections.apart(parts, rest)], `${capital(meant)}: a thing by itself`);
+    const told = {was: meant};
+    this.corrections.add([...this.corrections.oneThing(parts, told), ...this.corrections.apart(parts, rest, told)], `${capital(meant)}: a thing by itself`);
     this.done();
   }
 

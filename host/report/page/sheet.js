@@ -44,7 +44,7 @@ function sheetYears(scene, object) {
 // What was said by hand: of this parse, and since.
 function correctionLines(scene, parts) {
   const unsaved = parts.corrections.list.filter(entry => entry.isNew).map(entry => `Noted, but not in these figures yet: ${entry.text}`);
-  return [...(scene.corrections || []).map(one => givenText(scene, one)), ...unsaved];
+  return [...sentencesOf(scene.corrections).map(ones => givenText(scene, ones)), ...unsaved];
 }
 
 function fillSheet(scene) {
