@@ -179,13 +179,15 @@ class PartsPanel {
     if (!this.corrections.told(parts).length) return this.refuse(`Of ${meant} no surface is drawn, by which it could be found again.`);
     const told = {was: meant};
     this.corrections.add([...this.corrections.oneThing(parts, told), ...this.corrections.apart(parts, rest, told)], `${capital(meant)}: a thing by itself`);
-    this.done();
+    // It stays chosen, so that it can be named at once.
+    this.done(true);
   }
 
-  done() {
+  // kept: what is chosen stays so.
+  done(kept = false) {
     for (const id of ['mend-name', 'mend-kg']) document.getElementById(id).value = '';
     this.say(`Noted: ${this.corrections.list[this.corrections.list.length - 1].text}.`);
-    this.clear();
+    if (!kept) this.clear();
   }
 
   // The list of parts, and what is chosen of them.
@@ -214,7 +216,8 @@ class PartsPanel {
     const box = element('input', {type: 'checkbox', value: part.id, checked: this.marked.has(part.id), onchange: () => this.togglePart(part.id)});
     return element('label', {className: 'check'}, [box,
       element('span', {className: 'swatch', style: {background: css(colourOf(this.scene, part.id))}}),
-      `${part.name || `part ${part.id}`}${other ? ` of ${objectName(this.scene, part.object)}` : ''}, ${shapeText(part)}`,
+      element('span', {}, [`${part.name || `part ${part.id}`}${other ? ` of ${objectName(this.scene, part.object)}` : ''}, ${shapeText(part)}`,
+        element('small', {className: 'place', text: placeInShort(this.scene, this.scene.partBoxes.get(part.id))})]),
       element('span', {className: 'pm', text: part.volume_m3 === null ? '' : number(part.volume_m3 * 1000, 'l')})]);
   }
 
