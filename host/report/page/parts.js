@@ -89,13 +89,22 @@ class PartsPanel {
     return (this.partsOf.get(this.object) || []).map(part => part.id);  // the largest first
   }
 
-  // "part 3 of object 2", "parts 3 and 5 of objects 2 and 4", "object 2"
+  // "part 3 of object 2", "parts 3 and 5 of the building, and object 4", "objects 2 and 4"
   meant() {
-    const parts = this.parts(), owners = [...new Set(parts.map(part => this.owner.get(part)))].sort((a, b) => a - b);
-    const objects = owners.map(id => objectName(this.scene, id));
-    const whole = owners.every(id => this.partsOf.get(id).every(part => parts.includes(part.id)));
-    if (whole) return listed(objects);
-    return `${objectList(parts).replace('object', 'part')} of ${listed(objects)}`;
+    const parts = this.parts(), owners = this.ownersOf(parts), own = id => this.partsOf.get(id).map(part => part.id);
+    const isWhole = id => own(id).every(part => parts.includes(part)), whole = owners.filter(isWhole), some = owners.filter(id => !isWhole(id));
+    const pieces = some.map(id => `${objectList(own(id).filter(part => parts.includes(part)).sort((a, b) => a - b)).replace('object', 'part')} of ${objectName(this.scene, id)}`);
+    return [...pieces, ...whole.length ? [this.namesOf(whole)] : []].join(', and ');
+  }
+
+  ownersOf(parts) {
+    return [...new Set(parts.map(part => this.owner.get(part)))].sort((a, b) => a - b);
+  }
+
+  // "objects 2 and 4", "the building and object 4"
+  namesOf(ids) {
+    const plain = ids.every(id => objectName(this.scene, id) === `object ${id}`);
+    return plain ? objectList(ids) : listed(ids.map(id => objectName(this.scene, id)));
   }
 
   makeActions() {
@@ -159,9 +168,9 @@ class PartsPanel {
 
   // What is to be known of it after the next parse, which has other numbers: a line.
   wasText(kind, parts) {
-    const owners = [...new Set(parts.map(part => this.owner.get(part)))].sort((a, b) => a - b), holds = owners.map(id => ((this.scene.objectById.get(id) || {}).advice || {}).hold_N || 0);
+    const owners = this.ownersOf(parts), holds = owners.map(id => ((this.scene.objectById.get(id) || {}).advice || {}).hold_N || 0);
     const hold = kind === 'fixed' && Math.max(0, ...holds) > 0 ? `, to be held with ${forceText(Math.max(...holds))} at least` : '';
-    return objectList(owners) + hold;
+    return (owners.some(id => (this.scene.objectById.get(id) || {}).grounded) ? this.meant() : objectList(owners)) + hold;
   }
 
   // What is said of all of an object is said at a few of its parts.

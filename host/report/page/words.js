@@ -26,7 +26,7 @@ function listed(words, last = 'and') {
 // What an object is called: by its name where it has one.
 function objectName(scene, id) {
   const object = scene.objectById.get(id);
-  return object && object.name ? object.name : id < 0 ? 'no object' : `object ${id}`;
+  return object && object.name ? object.name : object && object.grounded ? 'the building' : id < 0 ? 'no object' : `object ${id}`;
 }
 
 function objectList(ids) {
