@@ -156,7 +156,7 @@ function correctedBox(scene, one) {
 // The middle of a correction's spots on the plan: "1.56 m east, 0.35 m north".
 function correctedPlace(scene, one) {
   if (!one.at_m || !one.at_m.length) return '';
-  const {low} = scene.boxes.get(null), middle = k => one.at_m.reduce((sum, spot) => sum + viewPlace(scene, spot)[k], 0) / one.at_m.length - low[k];
+  const {low} = scene.planBox, middle = k => one.at_m.reduce((sum, spot) => sum + viewPlace(scene, spot)[k], 0) / one.at_m.length - low[k];
   return `${metreText(middle(0))} m east, ${metreText(middle(1))} m north`;
 }
 

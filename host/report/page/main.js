@@ -264,6 +264,7 @@ function preparePrint(scene, state, plan, parts) {
 async function start() {
   const scene = await loadScene();
   scene.boxes = boxesOf(scene);
+  scene.planBox = planBoxOf(scene);
   scene.partBoxes = partBoxesOf(scene);
   scene.floor = floorOf(scene, scene.boxes);
   scene.painter = new Painter(scene);

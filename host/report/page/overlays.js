@@ -222,13 +222,16 @@ class Labels {
   }
 
   place(camera, fromInput) {
+    const placed = [];
     for (const [object, node] of this.nodes) {
       const at = fromInput(object.center_of_mass_m).project(camera);
       // The number of what a wall hides would stand on the wall.
       const hidden = !this.chosen && this.seen && !(this.seen.get(object.id) >= 4);
       node.hidden = hidden || at.z > 1 || Math.abs(at.x) > 1 || Math.abs(at.y) > 1;
-      node.style.left = (at.x + 1) / 2 * this.container.clientWidth + 'px';
-      node.style.top = (1 - at.y) / 2 * this.container.clientHeight + 'px';
+      if (node.hidden) continue;
+      const [left, top] = steppedAside(placed, [(at.x + 1) / 2 * this.container.clientWidth, (1 - at.y) / 2 * this.container.clientHeight], 14 + 8 * node.textContent.length, 18);
+      node.style.left = left + 'px';
+      node.style.top = top + 'px';
     }
   }
 }

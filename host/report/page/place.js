@@ -53,6 +53,16 @@ function partBoxesOf(scene) {
   return boxes;
 }
 
+// The box that the plan shows: of all, and no object that can move lies outside.
+function planBoxOf(scene) {
+  const {low, high} = scene.boxes.get(null), out = {low: [...low], high: [...high]};
+  for (const object of scene.objects) {
+    const box = object.grounded ? null : scene.boxes.get(object.id);
+    for (let k = 0; box && k < 3; ++k) { out.low[k] = Math.min(out.low[k], box.low[k]); out.high[k] = Math.max(out.high[k], box.high[k]); }
+  }
+  return out;
+}
+
 function wholeBox(view) {
   const {cell, count} = drawnRecords(view), box = {low: [-0.5, -0.5, -0.5], high: [0.5, 0.5, 0.5]};
   if (!count) return box;
@@ -83,9 +93,8 @@ function planPlace(scene, object) {
 }
 
 function boxPlace(scene, box) {
-  const whole = scene.boxes.get(null);
   if (!box) return null;
-  const middle = k => (box.low[k] + box.high[k]) / 2 - whole.low[k], {height_m} = scene.floor;
+  const middle = k => (box.low[k] + box.high[k]) / 2 - scene.planBox.low[k], {height_m} = scene.floor;
   // What stands on the floor ends there, whatever strays below it.
   const from = box.low[2] - height_m;
   return {east: middle(0), north: middle(1), from: from > -0.15 && from < 1.5 * scene.voxel_size_m ? 0 : from, to: box.high[2] - height_m};
