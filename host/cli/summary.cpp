@@ -14,6 +14,7 @@
 #include "core/listed.h"
 #include "io/text.h"
 #include "physics/landscape.h"
+#include "pipeline/told_sentences.h"
 #include "safety/action.h"
 #include "safety/disturbances.h"
 #include "safety/earthquake/fragility.h"
@@ -250,11 +251,15 @@ void print_summary(const Scene& scene, const std::filesystem::path& out, double 
         io::counted(scene.supports.size(), "support").c_str(), seconds, scene.backend.c_str(),
         scene.device.c_str());
     print_objects(scene);
-    if (!scene.corrections.empty())
+    if (!scene.corrections.empty()) {
+        const std::vector<std::size_t> said = told_sentences(scene.corrections);
+        std::vector<bool> held(said.back(), true);
+        for (std::size_t n = 0; n < said.size(); ++n)
+            held[said[n] - 1] = held[said[n] - 1] && scene.corrections[n].held;
         std::printf("\n%zu of %s held.\n",
-                    static_cast<std::size_t>(
-                        std::ranges::count_if(scene.corrections, &AppliedCorrection::held)),
-                    io::counted(scene.corrections.size(), "correction").c_str());
+                    static_cast<std::size_t>(std::ranges::count(held, true)),
+                    io::counted(held.size(), "correction").c_str());
+    }
     if (before) print_change(*before, scene);
     for (const std::string& note : scene.notes) std::printf("Note: %s\n", note.c_str());
     std::printf("\nReport: %s\n", (out / "report.html").c_str());

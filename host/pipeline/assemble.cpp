@@ -14,6 +14,7 @@
 #include "physics/overturning.h"
 #include "pipeline/explain.h"
 #include "pipeline/sentences.h"
+#include "pipeline/told_sentences.h"
 #include "safety/directions.h"
 #include "safety/disturbances.h"
 #include "safety/earthquake/fragility.h"
@@ -291,10 +292,11 @@ void note_light_density(Scene& scene) {
 }
 
 void note_corrections(Scene& scene) {
+    const std::vector<std::size_t> said = told_sentences(scene.corrections);
     for (std::size_t n = 0; n < scene.corrections.size(); ++n) {
         const AppliedCorrection& c = scene.corrections[n];
         if (c.outcome != "held")
-            scene.notes.push_back("Correction " + std::to_string(n + 1) + " (" +
+            scene.notes.push_back("Correction " + std::to_string(said[n]) + " (" +
                                   to_string(c.correction.kind) + ") " +
                                   (c.held ? "" : "did not hold: ") + c.outcome + ".");
     }

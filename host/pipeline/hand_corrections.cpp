@@ -8,20 +8,13 @@
 
 #include "core/union_find.h"
 #include "fitted/boosted_trees.h"
+#include "pipeline/told_sentences.h"
 
 namespace topple {
 namespace {
 
 // The log-odds of what somebody has said: no more than any model knows.
 const double surely_log_odds = fitted::log_odds(0.999);
-
-std::string numbered_correction(std::size_t n) {
-    return "correction " + std::to_string(n + 1);
-}
-
-std::string with_kind(std::size_t n, const Correction& c) {
-    return numbered_correction(n) + " (" + to_string(c.kind) + ")";
-}
 
 // The links that lead from one primitive to another, by the corrections that they are of.
 std::set<std::size_t> way_between(const graph::KnownLinks& links,
@@ -83,6 +76,14 @@ HandCorrections::HandCorrections(std::span<const Correction> corrections, const 
     find_contradictions();
 }
 
+std::string HandCorrections::numbered(std::size_t n) const {
+    return "correction " + std::to_string(told_sentences(applied_)[n]);
+}
+
+std::string HandCorrections::with_kind(std::size_t n) const {
+    return numbered(n) + " (" + to_string(applied_[n].correction.kind) + ")";
+}
+
 void HandCorrections::remark(std::size_t n, const std::string& what, bool held) {
     AppliedCorrection& to = applied_[n];
     to.held = to.held && held;
@@ -125,9 +126,9 @@ void HandCorrections::find_contradictions() const {
         std::string others;
         for (const std::size_t m : way_between(links_, together_by_, a, b))
             others.append(others.empty() ? "" : " and ")
-                .append(with_kind(m, applied_[m].correction));
+                .append(with_kind(m));
         throw Error(ErrorKind::input,
-                    "corrections: " + with_kind(apart_by_[n], applied_[apart_by_[n]].correction) +
+                    "corrections: " + with_kind(apart_by_[n]) +
                         " contradicts " + others + ": parts " + std::to_string(a) + " and " +
                         std::to_string(b) + " are to be one object and not; leave one of them out");
     }
@@ -201,8 +202,7 @@ std::optional<TakenAway> HandCorrections::take_from(SolidParts& parts, graph::Gr
     if (gone.empty()) return std::nullopt;
     if (gone.size() == parts.model.size())
         throw Error(ErrorKind::input, "corrections: nothing is left of the scan: " +
-                                          with_kind(gone.rbegin()->second,
-                                                    applied_[gone.rbegin()->second].correction) +
+                                          with_kind(gone.rbegin()->second) +
                                           " takes the last part of it away; leave it out");
     for (std::size_t n = 0; n < applied_.size(); ++n) {
         const std::vector<std::int32_t>& at = located_[n].at;
@@ -210,7 +210,7 @@ std::optional<TakenAway> HandCorrections::take_from(SolidParts& parts, graph::Gr
         if (applied_[n].correction.kind == Kind::not_there || at.empty() ||
             !std::ranges::all_of(at, is_gone))
             continue;
-        remark(n, "what is there is taken away by " + numbered_correction(gone.at(at.front())),
+        remark(n, "what is there is taken away by " + numbered(gone.at(at.front())),
                false);
     }
     std::vector<bool> kept(parts.model.size(), true);
@@ -259,7 +259,7 @@ void HandCorrections::fix(SolidParts& parts, graph::Grouping& grouping, graph::S
             if (g < 0) continue;
             if (const auto keeper = keeper_from_room(grouping, g))
                 remark(n,
-                       numbered_correction(*keeper) +
+                       numbered(*keeper) +
                            " keeps a part of its object apart from the building",
                        false);
             else
@@ -317,7 +317,7 @@ std::vector<KnownMass> HandCorrections::masses(std::span<const std::int32_t> obj
             const double own = hollow ? c.wall_m : c.mass_kg;
             if (by && *value != own) {
                 remark(n,
-                       numbered_correction(*by) + " says otherwise of object " + std::to_string(o),
+                       numbered(*by) + " says otherwise of object " + std::to_string(o),
                        false);
                 continue;
             }
@@ -341,8 +341,8 @@ HandCorrections::Told HandCorrections::tell(std::span<const std::int32_t> object
     for (std::size_t n = 0; n < applied_.size(); ++n) {
         AppliedCorrection& applied = applied_[n];
         std::set<std::int32_t> about;
-        for (const auto* parts : {&located_[n].at, &located_[n].from})
-            for (const std::int32_t p : *parts) about.insert(object(p));
+        // Of two that are apart it is about the one that was spoken of.
+        for (const std::int32_t p : located_[n].at) about.insert(object(p));
         applied.objects.assign(about.begin(), about.end());
         if (applied.correction.kind == Kind::name) {
             const std::string& name = applied.correction.name;
@@ -351,7 +351,7 @@ HandCorrections::Told HandCorrections::tell(std::span<const std::int32_t> object
                 std::string& to = part ? out.name_of_part[p] : entry(out.name, object(p));
                 if (!to.empty() && to != name) {
                     remark(n,
-                           numbered_correction(part ? part_named_by.at(p)
+                           numbered(part ? part_named_by.at(p)
                                                     : *entry(named_by, object(p))) +
                                " names it otherwise",
                            false);

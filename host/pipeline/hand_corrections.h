@@ -58,6 +58,9 @@ class HandCorrections {
     using Kind = Correction::Kind;
     void find_links();
     void find_contradictions() const;
+    // "correction 3", by the sentence that it is of, and the same with its kind.
+    std::string numbered(std::size_t n) const;
+    std::string with_kind(std::size_t n) const;
     // held: whether it holds all the same.
     void remark(std::size_t n, const std::string& what, bool held);
     void renumber(std::span<const std::int32_t> number);

@@ -70,7 +70,10 @@ class Sentence {
           why_(object_.why) {}
 
     std::string text() const {
-        if (object_.grounded) return "It is the building, or fixed to it: it can't fall.";
+        if (object_.grounded) {
+            return "It is counted as the building, or as fixed to it, and is not judged here: what "
+                   "of it is furniture has to be told.";
+        }
         if (!from_.seen_enough()) {
             return "The scan does not show what holds it up: it is taken to stand there, and is "
                    "not ranked.";
@@ -223,12 +226,18 @@ std::string rated_for(double force_N) {
     return io::short_number(10 * decade) + " kg";
 }
 
+// What is to be held at least, rounded up: "154", "2.8".
+std::string at_least_N(double force_N) {
+    const double steps = force_N < 10 ? 10 : 1;
+    return io::two_digits(std::ceil(force_N * steps - 1e-9) / steps);
+}
+
 std::string fix_sentence(const Object& object, const Suggestion& what) {
     const std::string text =
         object.mass_kg < light_kg ? "Put it elsewhere, or fasten it" : mend_of(object);
     if (!(what.hold.force_N > 0)) return text + ".";
     return text + ", with a strap or bracket rated for " + rated_for(what.hold.force_N) +
-           " or more (it must hold " + io::two_digits(what.hold.force_N) +
+           " or more (it must hold " + at_least_N(what.hold.force_N) +
            " N sideways at least, without a margin), at its top, " + length(what.hold.height_m) +
            " above what it stands on.";
 }

@@ -2,6 +2,7 @@
 #include "safety/action.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "io/text.h"
 #include "safety/largest_risk.h"
@@ -20,6 +21,15 @@ std::string tolerated_text(const Scene& scene) {
     return "the " + io::short_number(at->second) + " J per event that this run tolerates";
 }
 
+// The most that any way out of its place sets free, which its category reckons with where a smaller
+// foot makes it fall though nothing upsets it as measured.
+double most_released_J(const Object& o) {
+    double most = released_J(o);
+    for (const InstabilityStep& step : o.instability)
+        if (std::isfinite(step.S_J)) most = std::max(most, step.S_J);
+    return most;
+}
+
 }  // namespace
 
 bool upset_by_nothing(const Object& o) {
@@ -33,8 +43,8 @@ std::string action_text(const Scene& scene, const Object& o) {
     const std::string& advice = o.advice.sentence;
     if (!doubtful && o.seen_enough && may_fall_hard(o) && !o.unsafety_certain &&
         upset_by_nothing(o))
-        return "Nothing upsets it as measured; if its foot is one error smaller, it falls with " +
-               io::two_digits(released_J(o)) + " J: check that it stands firm.";
+        return "Nothing upsets it as measured; if its foot is one error smaller, it falls with up to " +
+               io::two_digits(most_released_J(o)) + " J: check that it stands firm.";
     if (o.unsafety_category != "none" || doubtful) {
         if (!advice.empty() || o.unsafety_category.empty()) return advice;
         return "Its risk is below " + tolerated_text(scene) +

@@ -59,6 +59,7 @@ function strapText(object) {
 function compareScenes(scene, other, otherIsBefore) {
   const reckoned = objects => new Set(objects.flatMap(object => Object.keys(object.risk_J || {})));
   const theirs = reckoned(other.objects), names = scene.disturbances.filter(name => theirs.has(name));
+  other.when = otherIsBefore ? 'before' : 'after';
   const later = otherIsBefore ? scene : other, earlier = otherIsBefore ? other : scene, common = commonParts(scene, other);
   const risks = (first, last) => ({before: first && comparedRisk(first, names), after: last && comparedRisk(last, names)});
   let rows;
@@ -90,8 +91,10 @@ function compareScenes(scene, other, otherIsBefore) {
 const verdicts = ['less safe', 'new', 'moved', 'perhaps moved', 'safer', 'fixed now', 'gone', 'joined', 'now part', 'parted', 'not there', 'told apart differently',
   'unknown', 'not told apart', 'alike'];
 
+// "object 9", and of the other parse "object 9 before".
 function sideName(scene, side, object) {
-  return side === scene ? objectName(scene, object.id) : `their ${object.name || `object ${object.id}`}`;
+  if (side === scene) return objectName(scene, object.id);
+  return `${object.name || (object.grounded ? 'the building' : `object ${object.id}`)} ${side.when}`;
 }
 
 // Of a row of two scans: what became of it, in a word, and a text on it.
@@ -112,8 +115,18 @@ function outcome(scene, other, row, risk, first, match) {
 function becameText({verdict: became, text}) {
   if (['joined', 'now part', 'parted', 'not there', 'gone', 'new'].includes(became)) return [became, text].filter(part => part).join(' ');
   if (became === 'fixed now' && text) return `${became}, ${text}`;
-  const words = {alike: 'as before', unknown: 'not known', 'not told apart': 'not told apart (\u00b1 too large)'}[became] || became;
+  const words = {alike: 'as before', unknown: 'not known', 'not told apart': 'too uncertain to say'}[became] || became;
   return words + (text ? `: ${text}` : '');
+}
+
+// Where two scans have hardly anything in one place: of the objects of the one that has fewer.
+const fewStay = 0.2;
+function strangersText(rows, sameScan) {
+  if (sameScan) return '';
+  const both = rows.filter(row => row.mine && row.theirs && !['perhaps moved', 'moved'].includes(row.verdict)).length;
+  const count = side => rows.filter(row => row[side]).length, fewer = Math.min(count('mine'), count('theirs'));
+  if (!rows.some(row => row.mine && row.theirs)) return 'No object of one is where one of the other is: is this another room, or another frame? ';
+  return fewer > 2 && both < fewStay * fewer ? 'Hardly anything is where it was: is this another room, or another frame? ' : '';
 }
 
 class ComparePanel {
@@ -149,11 +162,10 @@ class ComparePanel {
     if (!this.other) return;
     const {rows, names, sameScan} = compareScenes(this.scene, this.other, this.order.value === 'before');
     const count = what => rows.filter(row => row.verdict === what).length;
-    const line = rows.some(row => row.mine && row.theirs) ? '' :
-      'No object of one is where one of the other is: are both of the same room, in the same frame? ';
+    const line = strangersText(rows, sameScan);
     const always = sameScan ? ['safer', 'less safe', 'alike'] : ['safer', 'less safe', 'alike', 'moved', 'new', 'gone'];
     const counts = [...always, ...verdicts.filter(what => !always.includes(what) && count(what))].map(what =>
-      `${count(what)} ${{alike: 'as before within the errors', unknown: 'not known', 'now part': 'now part of others'}[what] || what}`).join(', ') + '.';
+      `${count(what)} ${{alike: 'as before within the errors', unknown: 'not known', 'not told apart': 'too uncertain to say', 'now part': 'now part of others'}[what] || what}`).join(', ') + '.';
     const risk = side => !side ? '\u2013' : side.unknown ? 'not known' : number(side.risk) + within(side.error);
     const category = side => !side ? '\u2013' : side.categoryText;
     const body = rows.map(row => {
@@ -165,16 +177,17 @@ class ComparePanel {
         ...[row.before, row.after].map(side => element('td', {className: 'text', text: category(side)})),
         ...[row.before, row.after].map(side => element('td', {text: risk(side)})), element('td', {className: 'text', text: becameText(row)})]);
     });
-    const head = ['Object here', `In ${this.name}`, 'Category before', 'Category after', 'Risk before (J)', 'Risk after (J)', 'Became'].map((text, i) =>
+    const head = ['Object here', this.other.when === 'before' ? 'Before' : 'After', 'Category before', 'Category after', 'Risk before (J)', 'Risk after (J)', 'Became'].map((text, i) =>
       element('th', {scope: 'col', text, className: i === 4 || i === 5 ? '' : 'text'}));
+    const stranger = line ? [element('p', {className: 'warning', text: line.trim()})] : [];
     const banner = sameScan ? element('p', {className: 'hint', text: 'The same scan: what changed follows from the corrections.'}) :
       element('p', {className: 'warning', text: 'The two scans may have been told apart differently; \u00b1 does not cover that: look at both pictures before believing a change.'});
     const how = sameScan ? 'Objects are the same that have the most points in common. ' : 'Objects are the same where their boxes overlap by a tenth or more, and size, mass and what holds them are alike within the errors: only of these ' +
       'is said whether they became safer. Moved: of equal size and mass, elsewhere, both ends of their boxes by more than the voxels. Perhaps moved: of a like shape, elsewhere. Gone, or now part: the other thing has parts as large in its place, or has grown by as much. Gone and new may also be one thing that was moved and then told apart otherwise, or what one of the parses took for part of the building. ';
-    this.out.replaceChildren(banner, element('p', {className: 'counts', text: line + counts}),
+    this.out.replaceChildren(banner, ...stranger, element('p', {className: 'counts', text: counts}),
       element('div', {className: 'scroll', tabIndex: 0, role: 'region', 'aria-label': 'Objects of both parses'}, [
         element('table', {}, [element('thead', {}, [element('tr', {}, head)]), element('tbody', {}, body)])]),
-      element('p', {className: 'hint', text: `${how}Risk is the largest of ${listed(names.map(causeOf)) || 'none that both parses have'}, in joules per event; a change within two standard errors is none, and is not told apart where these ` +
+      element('p', {className: 'hint', text: `${how}Risk is the largest of ${listed(names.map(causeOf)) || 'none that both parses have'}, in joules per event; a change within two standard errors is none, and too uncertain to say where these ` +
         `exceed the risks or the category is another. Objects have the colours of ${this.name} now, whose numbers are beside theirs.`}));
     this.say(line + counts);
     this.takeColours(rows);

@@ -30,7 +30,8 @@ function pointsByObject(parsed, number = part => part.id) {
 
 // " (correction 2)": those of some kinds that an object of the later parse follows; '' for none.
 function followed(later, object, kinds) {
-  const numbers = (object.corrected || []).filter(n => kinds.includes(((later.corrections || [])[n - 1] || {}).do));
+  const said = sentenceNumbers(later.corrections);
+  const numbers = [...new Set((object.corrected || []).filter(n => kinds.includes(((later.corrections || [])[n - 1] || {}).do)).map(n => said[n - 1]))];
   return numbers.length ? ` (correction${numbers.length > 1 ? 's' : ''} ${listed(numbers.map(String))})` : '';
 }
 
@@ -51,7 +52,8 @@ function rowsByParts(earlier, later, partsOf, name, isSpotOf) {
     const away = [...partsOf.get(first).keys()].some(part => !later.objects.some(each => partsOf.get(each).has(part)));
     const notes = [...gained.length ? [`with ${listed(gained.map(each => share(earlier, each, last)))}${followed(later, last, ['one_thing'])}`] : [],
       ...lost.length ? [`without what is now ${listed(lost.map(each => each.grounded ? 'part of the building' : name(later, each)))}${followed(later, last, ['apart'])}`] : [],
-      ...away ? ['without what is not there'] : []];
+      ...away ? ['without what is not there'] : [],
+      ...[['mass', 'of the mass that was given'], ['hollow', 'hollow, as was said'], ['name', 'named']].filter(([kind]) => followed(later, last, [kind])).map(([kind, what]) => what + followed(later, last, [kind]))];
     return {first, last, verdict: '', text: notes.join(', ')};
   });
   const gone = movable(earlier).filter(object => !takenFirst.has(object));
@@ -65,7 +67,7 @@ function rowsByParts(earlier, later, partsOf, name, isSpotOf) {
     const into = most(later.objects, first);
     if (!into) {
       const by = told(first, 'not_there')[0];
-      rows.push({first, last: null, verdict: 'not there', text: by ? `(correction ${later.corrections.indexOf(by) + 1})` : ''});
+      rows.push({first, last: null, verdict: 'not there', text: by ? `(correction ${sentenceNumbers(later.corrections)[later.corrections.indexOf(by)]})` : ''});
     } else if (!into.grounded) {
       const by = followed(later, into, ['one_thing']);
       rows.push({first, last: null, verdict: by ? 'joined' : 'now part', text: by ? `to ${name(later, into)}${by}` : `of ${name(later, into)}`});

@@ -49,7 +49,7 @@ function contactGraph(scene, id, choose) {
   const rows = Math.max(left.length, right.length), height = top + step * rows + 4;
   const row = (list, at) => top + step * ((rows - list.length) / 2 + list.indexOf(at) + 0.5);
   const svg = svgElement('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img', class: 'contacts',
-    'aria-label': `Contacts of object ${id}`});
+    'aria-label': `Contacts of ${objectName(scene, id)}`});
   const say = (x, y, anchor, text, style) => svg.append(svgElement('text', {x, y, 'text-anchor': anchor, class: style || ''}, text));
   say(xLeft, 12, 'end', 'its parts', 'strong');
   if (right.length) say(xRight, 12, 'start', 'what it touches', 'strong');

@@ -10,8 +10,8 @@ class Corrections {
   constructor(scene, changed) {
     this.scene = scene;
     this.changed = changed;
-    // Steps: one or two corrections of the file each, and what they say for the user.
-    this.list = (scene.corrections || []).map(one => ({ones: [asInFile(one)], text: givenText(scene, one)}));
+    // What the user said: of one correction of the file or more each, and in words.
+    this.list = sentencesOf(scene.corrections).map(ones => ({ones: ones.map(asInFile), text: givenText(scene, ones)}));
     this.saved = true;
     this.spots = new Map();
     scene.view.groups.forEach(([primitive], g) => {
@@ -42,8 +42,8 @@ class Corrections {
   }
 
   // That no part is in one object with any of the others.
-  apart(parts, others) {
-    return this.of('apart', parts).flatMap(one => chunks(this.at(others)).map(from_m => ({...one, from_m})));
+  apart(parts, others, more = {}) {
+    return this.of('apart', parts, more).flatMap(one => chunks(this.at(others)).map(from_m => ({...one, from_m})));
   }
 
   // One step; text: what it says.
@@ -107,24 +107,56 @@ function asInFile(one) {
   return out;
 }
 
-// Of a correction that the scene was parsed with: where, what it said, and what became of it, as
-// "Bookcase at 1.56 m east, 0.35 m north (before: object 16, to be held with 4.0 kN at least): counted as fixed, ..".
-function givenText(scene, one) {
+// Corrections of a file by what was said with each, in lists: one sentence about several parts may take several entries, one after the
+// other. They share their line `was`, and are of one kind and value at other spots, or apart after one_thing; as host/pipeline/told_sentences.cpp has it.
+function sentencesOf(corrections) {
+  const out = [], key = value => JSON.stringify(value), alike = (a, b, names) => names.every(name => key(a[name]) === key(b[name]));
+  const goesOn = (before, one) => one.was && one.was === before.was && (one.do !== before.do ? before.do === 'one_thing' && one.do === 'apart' :
+    alike(before, one, ['wall_m', 'kg', 'name']) && !alike(before, one, ['at_m', 'from_m']));
+  for (const one of corrections || []) {
+    const last = out[out.length - 1];
+    if (last && goesOn(last[last.length - 1], one)) last.push(one);
+    else out.push([one]);
+  }
+  return out;
+}
+
+// The number, from 1 on, of what was said by each correction: as many as there are corrections.
+function sentenceNumbers(corrections) {
+  return sentencesOf(corrections).flatMap((ones, n) => ones.map(() => n + 1));
+}
+
+// Of a sentence's corrections that the scene was parsed with: where, what it said, and what became of it, as
+// "Bookcase at 1.56 m east, 0.35 m north (before: object 16, to be held with 3958 N at least): counted as fixed, ..".
+function givenText(scene, ones) {
+  const one = ones[0], missed = ones.find(each => each.outcome && each.outcome !== 'held'), alone = ones.some(each => each.do !== one.do);
   const things = (one.objects || []).filter(id => scene.objectById.has(id) && !scene.objectById.get(id).grounded);
-  const same = other => other.do === 'name' && other.at_m.some(a => one.at_m.some(b => a.every((value, k) => value === b[k])));
-  const named = one.name ? one : (scene.corrections || []).find(same), at = correctedPlace(scene, one);
+  const named = nameToldWith(scene, one), at = correctedPlace(scene, one);
   const what = {
     one_thing: 'one thing', apart: 'apart from others', fixed: 'counted as fixed; this holds only while its strap does', not_there: 'counted as not there',
     hollow: `hollow, walls of ${metres(one.wall_m || 0)}`, mass: number(one.kg, 'kg'), name: `called \u201c${one.name}\u201d`,
   }[one.do] || one.do;
-  const who = things.length ? listed(things.map(id => objectName(scene, id))) : named ? named.name : one.at_m.length > 1 ? 'parts' : 'what is';
-  return `${capital(who)}${at ? ` at ${at}` : ''}${one.was ? ` (before: ${one.was})` : ''}: ${what}${one.outcome && one.outcome !== 'held' ? ` (of this parse: ${one.outcome})` : ''}`;
+  const who = things.length ? listed(things.map(id => objectName(scene, id))) : named || (one.at_m.length > 1 ? 'parts' : 'what is');
+  return `${capital(who)}${at ? ` at ${at}` : ''}${one.was ? ` (before: ${one.was})` : ''}: ${alone ? 'a thing by itself' : what}${missed ? ` (of this parse: ${missed.outcome})` : ''}`;
+}
+
+// What is called so at one of the spots of a correction; '' for none.
+function nameToldWith(scene, one) {
+  const same = other => other.do === 'name' && other.at_m.some(a => one.at_m.some(b => a.every((value, k) => value === b[k])));
+  return one.name || ((scene.corrections || []).find(same) || {}).name || '';
+}
+
+// The box of a correction's spots in the view; null without any.
+function correctedBox(scene, one) {
+  if (!one.at_m || !one.at_m.length) return null;
+  const spots = one.at_m.map(spot => viewPlace(scene, spot)), ends = of => [0, 1, 2].map(k => of(...spots.map(spot => spot[k])));
+  return {low: ends(Math.min), high: ends(Math.max)};
 }
 
 // The middle of a correction's spots on the plan: "1.56 m east, 0.35 m north".
 function correctedPlace(scene, one) {
   if (!one.at_m || !one.at_m.length) return '';
-  const {low} = scene.boxes.get(null), middle = k => one.at_m.reduce((sum, spot) => sum + viewPlace(scene, spot)[k], 0) / one.at_m.length - low[k];
+  const {low} = scene.planBox, middle = k => one.at_m.reduce((sum, spot) => sum + viewPlace(scene, spot)[k], 0) / one.at_m.length - low[k];
   return `${metreText(middle(0))} m east, ${metreText(middle(1))} m north`;
 }
 

@@ -4,7 +4,7 @@
 // The words that the page doesn't explain where they stand.
 const glossary = {
   object: ['object', 'What moves as one body: all parts that are fixed to each other.'],
-  ground: ['building (ground)', 'Floor, walls, ceiling and what is built in, with all that is fixed to them: object 0. It can\u2019t fall.'],
+  ground: ['building (ground)', 'Floor, walls, ceiling and what is built in, with all that is fixed to them, or is counted as such: object 0. It is not judged.'],
   north: ['north', 'One of the room\u2019s own directions, as the compass of the view and the plan have it; not the earth\u2019s.'],
   part: ['part (primitive)', 'Pieces of surface that meet convexly, and the solid behind them: about one convex part of a thing. Objects are made of parts.'],
   support: ['support', 'That one object carries another; also the area that carries it.'],

@@ -265,6 +265,8 @@ function preparePrint(scene, state, plan, parts) {
 async function start() {
   const scene = await loadScene();
   scene.boxes = boxesOf(scene);
+  scene.planBox = planBoxOf(scene);
+  scene.partBoxes = partBoxesOf(scene);
   scene.floor = floorOf(scene, scene.boxes);
   scene.painter = new Painter(scene);
   scene.pictures = new Map();
@@ -282,9 +284,22 @@ async function start() {
     legend(scene, state, view);
   };
   const parts = new PartsPanel(scene, repaint, say);
+  const on = {
+    // Another one while this one stays chosen: the view labels both.
+    show: (id, other) => {
+      if (state.chosen !== id) choose(id);
+      if (!view || !scene.boxes.has(other)) return;
+      view.fly(scene.boxes.get(other));
+      document.querySelector('.stage').scrollIntoView({block: 'nearest'});
+    },
+    join: (id, other) => {
+      parts.join(id, other);
+      document.getElementById('mend-result').scrollIntoView({block: 'nearest'});
+    },
+  };
   const choose = id => {
     state.chosen = id === state.chosen || !scene.objectById.has(id) ? null : id;
-    showObject(panel, scene, state.chosen, choose, visit);
+    showObject(panel, scene, state.chosen, choose, visit, on);
     table.choose(state.chosen);
     parts.choose(state.chosen);
     if (state.chosen === null) delete document.body.dataset.chosen;
@@ -301,10 +316,16 @@ async function start() {
     if (view && scene.boxes.has(id)) view.fly(scene.boxes.get(id));
   };
   const table = new ObjectTable(document.getElementById('objects'), scene, choose);
-  fillRisk(document.getElementById('risk'), scene, id => {
+  on.choose = id => {
     choose(id);
     document.querySelector('.stage').scrollIntoView({block: 'nearest'});
     if (!panel.hidden) panel.querySelector('h2').focus({preventScroll: true});
+  };
+  fillRisk(document.getElementById('risk'), scene, on);
+  fillFurniture(document.getElementById('risk'), scene, (ids, box) => {
+    parts.take(ids);
+    if (view) view.fly(box);
+    document.getElementById('mend').scrollIntoView({block: 'nearest'});
   });
   const plan = new Plan(document.getElementById('plan'), scene, visit);
   const recolour = () => {

@@ -197,7 +197,7 @@ class Marker {
   }
 }
 
-// The numbers of the riskiest objects, and of the chosen one, where they stand in the view.
+// The numbers of the riskiest objects, or of the chosen one and of what it may be a piece of, where they stand in the view.
 class Labels {
   constructor(container, scene) {
     this.container = container;
@@ -212,7 +212,8 @@ class Labels {
     for (const node of this.nodes.values()) node.remove();
     this.nodes.clear();
     this.chosen = object;
-    for (const shown of object ? [object] : this.risky) {
+    const whole = object && this.scene.objectById.get(object.piece_of);
+    for (const shown of object ? [object, ...whole ? [whole] : []] : this.risky) {
       if (shown.center_of_mass_m.some(value => value === null)) continue;
       const node = element('span', {className: 'number', text: shown.name || String(shown.id)});
       this.container.append(node);
@@ -221,13 +222,16 @@ class Labels {
   }
 
   place(camera, fromInput) {
+    const placed = [];
     for (const [object, node] of this.nodes) {
       const at = fromInput(object.center_of_mass_m).project(camera);
       // The number of what a wall hides would stand on the wall.
       const hidden = !this.chosen && this.seen && !(this.seen.get(object.id) >= 4);
       node.hidden = hidden || at.z > 1 || Math.abs(at.x) > 1 || Math.abs(at.y) > 1;
-      node.style.left = (at.x + 1) / 2 * this.container.clientWidth + 'px';
-      node.style.top = (1 - at.y) / 2 * this.container.clientHeight + 'px';
+      if (node.hidden) continue;
+      const [left, top] = steppedAside(placed, [(at.x + 1) / 2 * this.container.clientWidth, (1 - at.y) / 2 * this.container.clientHeight], 14 + 8 * node.textContent.length, 18);
+      node.style.left = left + 'px';
+      node.style.top = top + 'px';
     }
   }
 }

@@ -241,13 +241,15 @@ function paintScene(scene, canvas, mode, turn) {
   const context = canvas.getContext('2d');
   context.clearRect(0, 0, width, height);
   context.drawImage(picture.canvas, 0, 0);
-  context.font = '600 13px system-ui, sans-serif';
+  context.font = `600 ${Math.round(13 * width / 960)}px system-ui, sans-serif`;
   context.textAlign = 'center';
   context.lineWidth = 4;
   context.strokeStyle = '#fff';
+  const placed = [];
   for (const object of riskiest(scene)) {
     if (object.center_of_mass_m.some(value => value === null)) continue;
-    const [x, y] = picture.place(viewPlace(scene, object.center_of_mass_m)), text = object.name || String(object.id);
+    const text = object.name || String(object.id), at = picture.place(viewPlace(scene, object.center_of_mass_m));
+    const [x, y] = steppedAside(placed, at, context.measureText(text).width + 6, 16 * width / 960);
     context.strokeText(text, x, y);
     context.fillText(text, x, y);
   }

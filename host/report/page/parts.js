@@ -52,6 +52,31 @@ class PartsPanel {
     this.changed();
   }
 
+  // That two objects are one thing.
+  join(id, other) {
+    this.take([id, other].flatMap(each => (this.partsOf.get(each) || []).map(part => part.id)));
+    this.note('one_thing', {}, 'one thing');
+  }
+
+  // Objects that are to be one thing and don't hang together as scanned: a warning that names what each touches; '' where they do.
+  looseText(owners) {
+    const touched = id => new Set(contactsOf(this.scene, id).filter(contact => !contact.own && contact.object >= 0).map(contact => contact.object));
+    const reached = new Set([owners[0]]);
+    for (const id of reached) for (const other of touched(id)) if (owners.includes(other)) reached.add(other);
+    const left = owners.filter(id => !reached.has(id)), names = ids => listed(ids.map(id => objectName(this.scene, id)));
+    if (!left.length) return '';
+    const touches = id => `${objectName(this.scene, id)} touches ${names([...touched(id)].sort((a, b) => a - b)) || 'nothing'}`;
+    return `Noted, but ${names([...reached])} and ${names(left)} don\u2019t touch as scanned: ${listed([owners[0], ...left].map(touches))}. Undo it if another one was meant.`;
+  }
+
+  // These and no others.
+  take(parts) {
+    this.marked = new Set(parts.filter(part => this.owner.has(part)));
+    this.say(`${plural(this.marked.size, 'part')} chosen.`);
+    this.fill();
+    this.changed();
+  }
+
   clear() {
     this.marked.clear();
     this.fill();
@@ -64,13 +89,22 @@ class PartsPanel {
     return (this.partsOf.get(this.object) || []).map(part => part.id);  // the largest first
   }
 
-  // "part 3 of object 2", "parts 3 and 5 of objects 2 and 4", "object 2"
+  // "part 3 of object 2", "parts 3 and 5 of the building, and object 4", "objects 2 and 4"
   meant() {
-    const parts = this.parts(), owners = [...new Set(parts.map(part => this.owner.get(part)))].sort((a, b) => a - b);
-    const objects = owners.map(id => objectName(this.scene, id));
-    const whole = owners.every(id => this.partsOf.get(id).every(part => parts.includes(part.id)));
-    if (whole) return listed(objects);
-    return `${objectList(parts).replace('object', 'part')} of ${listed(objects)}`;
+    const parts = this.parts(), owners = this.ownersOf(parts), own = id => this.partsOf.get(id).map(part => part.id);
+    const isWhole = id => own(id).every(part => parts.includes(part)), whole = owners.filter(isWhole), some = owners.filter(id => !isWhole(id));
+    const pieces = some.map(id => `${objectList(own(id).filter(part => parts.includes(part)).sort((a, b) => a - b)).replace('object', 'part')} of ${objectName(this.scene, id)}`);
+    return [...pieces, ...whole.length ? [this.namesOf(whole)] : []].join(', and ');
+  }
+
+  ownersOf(parts) {
+    return [...new Set(parts.map(part => this.owner.get(part)))].sort((a, b) => a - b);
+  }
+
+  // "objects 2 and 4", "the building and object 4"
+  namesOf(ids) {
+    const plain = ids.every(id => objectName(this.scene, id) === `object ${id}`);
+    return plain ? objectList(ids) : listed(ids.map(id => objectName(this.scene, id)));
   }
 
   makeActions() {
@@ -129,13 +163,14 @@ class PartsPanel {
     const told = {...more, was: this.wasText(kind, parts)};
     this.corrections.add(kind === 'one_thing' ? this.corrections.oneThing(parts, told) : this.corrections.of(kind, this.enoughOf(kind, parts), told), `${capital(meant)}: ${what}`);
     this.done();
+    if (kind === 'one_thing') this.refuse(this.looseText([...new Set(parts.map(part => this.owner.get(part)))]));
   }
 
   // What is to be known of it after the next parse, which has other numbers: a line.
   wasText(kind, parts) {
-    const owners = [...new Set(parts.map(part => this.owner.get(part)))].sort((a, b) => a - b), holds = owners.map(id => ((this.scene.objectById.get(id) || {}).advice || {}).hold_N || 0);
+    const owners = this.ownersOf(parts), holds = owners.map(id => ((this.scene.objectById.get(id) || {}).advice || {}).hold_N || 0);
     const hold = kind === 'fixed' && Math.max(0, ...holds) > 0 ? `, to be held with ${forceText(Math.max(...holds))} at least` : '';
-    return objectList(owners) + hold;
+    return (owners.some(id => (this.scene.objectById.get(id) || {}).grounded) ? this.meant() : objectList(owners)) + hold;
   }
 
   // What is said of all of an object is said at a few of its parts.
@@ -151,14 +186,17 @@ class PartsPanel {
     const rest = this.scene.primitives.filter(part => owners.has(part.object) && !parts.includes(part.id)).map(part => part.id);
     if (!this.corrections.told(rest).length) return this.refuse(`${capital(meant)} is by itself already: choose some of its parts.`);
     if (!this.corrections.told(parts).length) return this.refuse(`Of ${meant} no surface is drawn, by which it could be found again.`);
-    this.corrections.add([...this.corrections.oneThing(parts), ...this.corrections.apart(parts, rest)], `${capital(meant)}: a thing by itself`);
-    this.done();
+    const told = {was: meant};
+    this.corrections.add([...this.corrections.oneThing(parts, told), ...this.corrections.apart(parts, rest, told)], `${capital(meant)}: a thing by itself`);
+    // It stays chosen, so that it can be named at once.
+    this.done(true);
   }
 
-  done() {
+  // kept: what is chosen stays so.
+  done(kept = false) {
     for (const id of ['mend-name', 'mend-kg']) document.getElementById(id).value = '';
     this.say(`Noted: ${this.corrections.list[this.corrections.list.length - 1].text}.`);
-    this.clear();
+    if (!kept) this.clear();
   }
 
   // The list of parts, and what is chosen of them.
@@ -187,7 +225,8 @@ class PartsPanel {
     const box = element('input', {type: 'checkbox', value: part.id, checked: this.marked.has(part.id), onchange: () => this.togglePart(part.id)});
     return element('label', {className: 'check'}, [box,
       element('span', {className: 'swatch', style: {background: css(colourOf(this.scene, part.id))}}),
-      `${part.name || `part ${part.id}`}${other ? ` of ${objectName(this.scene, part.object)}` : ''}, ${shapeText(part)}`,
+      element('span', {}, [`${part.name || `part ${part.id}`}${other ? ` of ${objectName(this.scene, part.object)}` : ''}, ${shapeText(part)}`,
+        element('small', {className: 'place', text: placeInShort(this.scene, this.scene.partBoxes.get(part.id))})]),
       element('span', {className: 'pm', text: part.volume_m3 === null ? '' : number(part.volume_m3 * 1000, 'l')})]);
   }
 

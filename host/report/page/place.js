@@ -37,6 +37,32 @@ function boxesOf(scene) {
   return boxes;
 }
 
+// The box of each part that is drawn, by its number.
+function partBoxesOf(scene) {
+  const {view} = scene, {cell, count} = drawnRecords(view), boxes = new Map(), parts = view.groups.map(([part]) => part);
+  for (let i = 0; i < 4 * count; i += 4) {
+    const part = parts[cell[i + 3]];
+    if (!boxes.has(part)) boxes.set(part, {low: [65535, 65535, 65535], high: [0, 0, 0]});
+    const {low, high} = boxes.get(part);
+    for (let k = 0; k < 3; ++k) {
+      if (cell[i + k] < low[k]) low[k] = cell[i + k];
+      if (cell[i + k] > high[k]) high[k] = cell[i + k];
+    }
+  }
+  for (const {low, high} of boxes.values()) for (const ends of [low, high]) ends.forEach((value, k) => { ends[k] = view.origin_m[k] + view.step_m[k] * value; });
+  return boxes;
+}
+
+// The box that the plan shows: of all, and no object that can move lies outside.
+function planBoxOf(scene) {
+  const {low, high} = scene.boxes.get(null), out = {low: [...low], high: [...high]};
+  for (const object of scene.objects) {
+    const box = object.grounded ? null : scene.boxes.get(object.id);
+    for (let k = 0; box && k < 3; ++k) { out.low[k] = Math.min(out.low[k], box.low[k]); out.high[k] = Math.max(out.high[k], box.high[k]); }
+  }
+  return out;
+}
+
 function wholeBox(view) {
   const {cell, count} = drawnRecords(view), box = {low: [-0.5, -0.5, -0.5], high: [0.5, 0.5, 0.5]};
   if (!count) return box;
@@ -63,12 +89,21 @@ function floorOf(scene, boxes) {
 
 // Of an object's middle, in metres from the plan's south-west corner, and how high it reaches; null where it is not drawn.
 function planPlace(scene, object) {
-  const box = scene.boxes.get(object.id), whole = scene.boxes.get(null);
+  return boxPlace(scene, scene.boxes.get(object.id));
+}
+
+function boxPlace(scene, box) {
   if (!box) return null;
-  const middle = k => (box.low[k] + box.high[k]) / 2 - whole.low[k], {height_m} = scene.floor;
+  const middle = k => (box.low[k] + box.high[k]) / 2 - scene.planBox.low[k], {height_m} = scene.floor;
   // What stands on the floor ends there, whatever strays below it.
   const from = box.low[2] - height_m;
   return {east: middle(0), north: middle(1), from: from > -0.15 && from < 1.5 * scene.voxel_size_m ? 0 : from, to: box.high[2] - height_m};
+}
+
+// "1.20 E, 0.45 N, 0.76 to 1.20 m high" of a box's middle; '' for none.
+function placeInShort(scene, box) {
+  const place = boxPlace(scene, box);
+  return place ? `${metreText(place.east)} E, ${metreText(place.north)} N, ${metreText(place.from)} to ${metreText(place.to)} m high` : '';
 }
 
 const metreText = value => (Math.abs(value) < 0.005 ? 0 : value).toFixed(2).replace('-', '\u2212');

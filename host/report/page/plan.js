@@ -9,7 +9,7 @@ class Plan {
     this.visit = visit;
     this.shown = [...riskiest(scene), ...doubtfulOnes(scene).slice(0, listedDoubts), ...nearlyOnes(scene).slice(0, listedDoubts), ...unseenOnes(scene).slice(0, 2 * listedUnseen)]
       .filter(object => planPlace(scene, object));
-    const {low, high} = scene.boxes.get(null);
+    const {low, high} = scene.planBox;
     this.size = [high[0] - low[0], high[1] - low[1]];
     panel.hidden = !(this.size[0] > 0 && this.size[1] > 0) || !drawnRecords(scene.view).count;
     document.getElementById('plan-note').textContent = 'Seen from above, in metres from the south-west corner. North is one of the room\u2019s own ' +
@@ -58,13 +58,7 @@ class Plan {
     for (const object of this.shown) {
       const {east, north} = planPlace(this.scene, object), at = [x(east), y(north)];
       const text = (object.name || String(object.id)) + (object.seen_enough === false ? ' ?' : '');
-      const wide = 12 + 7.4 * text.length, to = [at[0], at[1]];
-      for (let turn = 0; turn < 40 && placed.some(other => Math.abs(other[0] - to[0]) < (other[2] + wide) / 2 && Math.abs(other[1] - to[1]) < 19); ++turn) {
-        const angle = 2.4 * turn, reach = 12 + 3 * turn;
-        to[0] = at[0] + reach * Math.cos(angle);
-        to[1] = at[1] + reach * Math.sin(angle);
-      }
-      placed.push([...to, wide]);
+      const wide = 12 + 7.4 * text.length, to = steppedAside(placed, at, wide, 19);
       const colour = categoryColour(this.scene, object.unsafety_category);
       if (to[0] !== at[0]) svg.append(svgElement('path', {class: 'axis', d: `M${at[0]} ${at[1]}L${to[0]} ${to[1]}`}), svgElement('circle', {cx: at[0], cy: at[1], r: 2}));
       const chip = svgElement('rect', {class: 'chip', x: to[0] - wide / 2, y: to[1] - 9, width: wide, height: 18, rx: 9, fill: css(colour)});
@@ -77,14 +71,26 @@ class Plan {
 
   // As a data URL; null where there are no solids to draw.
   picture(width, height) {
-    const {scene} = this, camera = (box, fineWidth, fineHeight) => planCamera(scene.boxes.get(null), fineWidth, fineHeight);
+    const {scene} = this, camera = (box, fineWidth, fineHeight) => planCamera(scene.planBox, fineWidth, fineHeight);
     const colours = g => {
       const object = scene.objectById.get(scene.view.groups[g][1]);
       return !object || object.grounded ? groundColour : objectColour(scene, object.id);
     };
-    const made = scene.painter.picture(scene.boxes.get(null), {width, height, chosen: null, colourOf: colours, own: scene.coloured, camera});
+    const made = scene.painter.picture(scene.planBox, {width, height, chosen: null, colourOf: colours, own: scene.coloured, camera});
     return made && made.canvas.toDataURL('image/png');
   }
+}
+
+// Where a label of that width goes that is to stand at a place: beside it, in a spiral, where it would hide one of those placed, to which it is added.
+function steppedAside(placed, at, wide, tall) {
+  const to = [at[0], at[1]];
+  for (let turn = 0; turn < 40 && placed.some(other => Math.abs(other[0] - to[0]) < (other[2] + wide) / 2 && Math.abs(other[1] - to[1]) < tall); ++turn) {
+    const angle = 2.4 * turn, reach = 12 + 3 * turn;
+    to[0] = at[0] + reach * Math.cos(angle);
+    to[1] = at[1] + reach * Math.sin(angle);
+  }
+  placed.push([...to, wide]);
+  return to;
 }
 
 // Straight down, and from so far that nothing leans.

@@ -110,7 +110,8 @@ function shortMass(scene, object) {
   return massIsGiven(scene, object) ? mass : mass + ({solid: ' if solid', closed: ' if of boards', hollow: ' as a shell'}[object.mass_model] || '');
 }
 
-function riskItem(scene, object, choose) {
+// on: what its buttons do: choose(id), show(id, other) what it may be a piece of, join(id, other).
+function riskCard(scene, object, on) {
   const doubtful = isDoubtful(object), unseen = object.seen_enough === false, plain = !doubtful && !unseen && !isNearly(object);
   const words = element('span', {className: 'words'}, [
     element('span', {className: 'head'}, [objectSwatch(scene, object.id), element('strong', {text: capital(objectName(scene, object.id))}),
@@ -120,7 +121,7 @@ function riskItem(scene, object, choose) {
   if (plain || doubtful) say('standing', largestRiskText(object));
   say(isUnsure(object) ? 'doubt' : 'mass', howSureText(object));
   const piece = pieceText(scene, object);
-  if (piece) say('doubt', `Look first: it may be ${piece}. If so, choose both below the view, and say \u201cone thing\u201d.`);
+  if (piece) say('doubt', `Look first: it may be ${piece}. If so, say so below this card.`);
   say('mass', placeText(scene, object));
   if (doubtful) say('from', `As scanned a touch would upset it. ${happensText(scene, object)}`);
   else if (plain) say('from', upsetText(scene, object));
@@ -128,14 +129,23 @@ function riskItem(scene, object, choose) {
   if (plain) for (const text of [happensText(scene, object), keepClearText(scene, object)]) say('then', text);
   say(isAdvised(object) || unseen ? 'advice' : 'calm', unseen ? 'Go and look what holds it.' : object.advice.action);
   if (plain) say('then figures', overturningText(object));
-  const item = element('button', {type: 'button', className: 'item', onclick: () => choose(object.id)}, [words]);
+  const item = element('button', {type: 'button', className: 'item', onclick: () => on.choose(object.id)}, [words]);
   const picture = pictureOf(scene, object.id);
   if (picture) item.prepend(picture);
   item.dataset.object = object.id;
-  return item;
+  return element('div', {className: 'card'}, [item, ...pieceButtons(scene, object, on)]);
 }
 
-function fillRisk(panel, scene, choose) {
+// To say that it is one thing with what it may be a piece of, and to see that.
+function pieceButtons(scene, object, on) {
+  if (!(object.piece_of >= 0)) return [];
+  const other = object.piece_of, name = objectName(scene, other);
+  return [element('p', {className: 'row piece'}, [
+    element('button', {type: 'button', text: `one thing with ${name}`, 'data-join': other, onclick: () => on.join(object.id, other)}),
+    element('button', {type: 'button', className: 'link', text: `show ${name}`, 'data-show': other, onclick: () => on.show(object.id, other)})])];
+}
+
+function fillRisk(panel, scene, on) {
   const worst = riskiest(scene), doubtful = doubtfulOnes(scene);
   const movable = scene.objects.filter(object => !object.grounded).length;
   panel.append(element('h2', {text: 'What is at risk, and what to do'}));
@@ -146,15 +156,15 @@ function fillRisk(panel, scene, choose) {
     panel.append(element('p', {className: 'hint', text: !movable ? 'No object was found that could fall.'
       : `None of the disturbances puts ${doubtful.length ? 'any other' : 'an'} object at risk.`}));
   } else {
-    fillRiskiest(panel, scene, worst, movable, choose);
+    fillRiskiest(panel, scene, worst, movable, on);
   }
-  fillLooks(panel, scene, doubtful, choose);
+  fillLooks(panel, scene, doubtful, on);
 }
 
 // What is to be looked at: since it would fall at once, since it might with a smaller foot, and since nobody saw what holds it.
-function fillLooks(panel, scene, doubtful, choose) {
+function fillLooks(panel, scene, doubtful, on) {
   const nearly = nearlyOnes(scene), unseen = unseenOnes(scene);
-  const cards = (objects, most) => panel.append(element('div', {className: 'items'}, objects.slice(0, most).map(object => riskItem(scene, object, choose))),
+  const cards = (objects, most) => panel.append(element('div', {className: 'items'}, objects.slice(0, most).map(object => riskCard(scene, object, on))),
     ...objects.length > most ? [element('p', {className: 'hint', text: `And ${listed(objects.slice(most, most + 12).map(object => objectName(scene, object.id)))}` +
       (objects.length > most + 12 ? `, and ${objects.length - most - 12} more` : '') + '.'})] : []);
   if (doubtful.length || nearly.length) panel.append(element('h3', {text: 'To be looked at'}));
@@ -200,7 +210,7 @@ function rankedText(scene, shown, movable) {
     (atRisk.length ? `below, under \u201cTo be looked at\u201d${urgent ? `, ${urgent} of them perhaps medium or high` : ''}.` : 'nothing puts them at risk.');
 }
 
-function fillRiskiest(panel, scene, worst, movable, choose) {
+function fillRiskiest(panel, scene, worst, movable, on) {
   panel.append(element('p', {className: 'order'}, ['Act from the top: cards go by ', term('category', 'category'),
     ', which says how likely an event makes the thing fall and how hard it then lands, within one those of which it is certain first (? it may be lower), and then by ', term('risk', 'risk'), '.']));
   panel.append(element('p', {className: 'hint', text: rankedText(scene, worst.length, movable)}));
@@ -212,7 +222,7 @@ function fillRiskiest(panel, scene, worst, movable, choose) {
   if (worst.every(object => object.unsafety_category === 'none' && !(object.advice && object.advice.kind))) {
     panel.append(element('p', {className: 'hint', text: 'All of these risks are tolerated: nothing needs to be done.'}));
   }
-  const list = element('div', {className: 'items'}, worst.map(object => riskItem(scene, object, choose)));
+  const list = element('div', {className: 'items'}, worst.map(object => riskCard(scene, object, on)));
   panel.append(list);
   if (worst.length > listedOnPhones) {
     panel.append(element('button', {type: 'button', className: 'more', text: `show ${worst.length - listedOnPhones} more`,

@@ -4,8 +4,7 @@
 // The first page on paper: what to do, with boxes to tick, in words for whoever walks through the room with it.
 
 function sheetLine(scene, object, todo, more = []) {
-  const place = planPlace(scene, object), what = [sizeText(object), place ? `${metreText(place.east)} E, ${metreText(place.north)} N, ` +
-    `${metreText(place.from)} to ${metreText(place.to)} m high` : ''].filter(text => text).join(', at ');
+  const what = [sizeText(object), placeInShort(scene, scene.boxes.get(object.id))].filter(text => text).join(', at ');
   const badge = object.unsafety_category ? categoryText(object) : 'not known';
   const picture = pictureOf(scene, object.id);
   return element('li', {}, [element('span', {className: 'box'}), ...picture ? [picture] : [], element('div', {}, [
@@ -13,10 +12,33 @@ function sheetLine(scene, object, todo, more = []) {
     element('small', {text: [what, ...more].filter(text => text).map(text => text.replace(/[.;]$/, '')).join('. ') + '.'})])]);
 }
 
+// What was said to be fixed, and so is at no risk while its strap holds.
+function fixedLine(scene, one) {
+  const [was, hold] = (one.was || '').split(/, to be held with /), place = placeInShort(scene, correctedBox(scene, one));
+  const named = nameToldWith(scene, one), who = [named, was && `${was} before`].filter(text => text);
+  return element('li', {}, [element('span', {className: 'box'}), element('div', {}, [
+    element('strong', {text: capital(who.length > 1 ? `${who[0]} (${who[1]})` : was ? `${was} (before)` : named || 'What was fixed')}),
+    `${place ? `, where: ${place}` : ''}: ${hold ? `strap for ${hold.replace(/ at least$/, '')}, at least` : 'its strap or bracket'}.`])]);
+}
+
+// What is not judged, for whoever knows what is furniture.
+function greyLine(scene) {
+  const found = mayBeFurniture(scene);
+  return element('li', {}, [element('span', {className: 'box'}), element('div', {}, [element('strong', {text: 'Grey in the picture is not judged. '}),
+    'Is there a shelf or cabinet among it? Check that it is screwed to the wall.',
+    element('small', {text: found.length ? `These pieces of the building stand before a wall, and may be furniture: ${found.slice(0, listedFurniture).map(one => furnitureText(scene, one)).join('; ')}` +
+      `${found.length > listedFurniture ? `; and ${found.length - listedFurniture} smaller` : ''}.` : ''})])]);
+}
+
 // What it does and how often, in one line.
 function dangerText(scene, object) {
   const name = causesOf(object)[0];
-  return name ? `${upsetText(scene, object).replace(/\.$/, '')}; sets free ${number(twoDigits(releaseOf(object)), 'J')}` : '';
+  return name ? `${upsetText(scene, object).replace(/\.$/, '')}; sets free ${number(twoDigits(releaseOf(object)), 'J')}: ${severityText(releaseOf(object))}` : '';
+}
+
+// What such an energy does, by the thresholds that categories have (docs/output.md).
+function severityText(joules) {
+  return joules >= 79 ? 'can kill' : joules >= 15 ? 'injures badly' : joules >= 1 ? 'injures slightly' : 'harmless';
 }
 
 function sheetYears(scene, object) {
@@ -27,7 +49,7 @@ function sheetYears(scene, object) {
 // What was said by hand: of this parse, and since.
 function correctionLines(scene, parts) {
   const unsaved = parts.corrections.list.filter(entry => entry.isNew).map(entry => `Noted, but not in these figures yet: ${entry.text}`);
-  return [...(scene.corrections || []).map(one => givenText(scene, one)), ...unsaved];
+  return [...sentencesOf(scene.corrections).map(ones => givenText(scene, ones)), ...unsaved];
 }
 
 function fillSheet(scene) {
@@ -48,8 +70,10 @@ function fillSheet(scene) {
       'belongs together may have been told apart wrongly. Look before you act, and before you rely on it.', 'certificate'),
     ...list('To do, from the top', act.map(doing), 0),
     ...!act.length ? [node('p', 'Nothing was found that has to be fastened or moved.')] : [],
+    ...list('Already fixed: check the straps', (scene.corrections || []).filter(one => one.do === 'fixed' && one.held !== false).map(one => fixedLine(scene, one)), 0),
+    ...scene.objects.some(object => object.grounded) ? list('Not judged', [greyLine(scene)], 0) : [],
     ...list('To be looked at', looks, doubtful.length + nearly.length + calm.length - looks.length),
     ...list('The scan does not show what holds these: go and look', holds, unseen.length - holds.length),
-    node('p', `Reckoned with: ${listed(kinds.map(kind => oneEventText(scene, kind))) || 'nothing'}.${scene.below_hazard.length ? ` \u201cAt most\u201d: ${curveText(scene)}.` : ''} Places are in metres east (E) of the plan\u2019s left edge and north (N) of its lower edge. A joule (J) lifts 1 kg by 10 cm; from about 40 J on injuries need more than first aid. ` +
+    node('p', `Reckoned with: ${listed(kinds.map(kind => oneEventText(scene, kind))) || 'nothing'}.${scene.below_hazard.length ? ` \u201cAt most\u201d: ${curveText(scene)}.` : ''} Places are in metres east (E) of the plan\u2019s left edge and north (N) of its lower edge. A joule (J) lifts 1 kg by 10 cm; what lands with less than 1 J is harmless, from 15 J on it injures badly, from 79 J on it can kill. ` +
       'Straps must hold what is said at least: no safety margin is in it. ?: it may be less, or a piece of another thing.', 'hint'));
 }

@@ -189,8 +189,8 @@ function objectLinks(scene, ids, choose) {
     element('button', {type: 'button', text: objectName(scene, id) + (text ? ' \u00b7 ' + text : ''), onclick: () => choose(id)})));
 }
 
-// Fills the panel, or hides it where nothing is chosen.
-function showObject(panel, scene, id, choose, visit) {
+// Fills the panel, or hides it where nothing is chosen. acts: as riskCard() takes it.
+function showObject(panel, scene, id, choose, visit, acts) {
   panel.replaceChildren();
   panel.scrollTop = 0;
   const object = scene.objectById.get(id);
@@ -213,6 +213,8 @@ function showObject(panel, scene, id, choose, visit) {
   say(keepClearText(scene, object), 'clear');
   if (!object.grounded && object.unsafety_category !== undefined) say(object.advice.action, isAdvised(object) ? 'advice' : 'why');
   say(object.why.sentence);
+  panel.append(...pieceButtons(scene, object, acts));
+  if (object.grounded) say('If you see furniture in grey, tick its parts below the view and say \u201ca thing by itself\u201d.', 'advice');
   say(overturningText(object));
   const curve = fragilityChart(object);
   say(fragilityText(scene, object));

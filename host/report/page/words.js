@@ -26,7 +26,7 @@ function listed(words, last = 'and') {
 // What an object is called: by its name where it has one.
 function objectName(scene, id) {
   const object = scene.objectById.get(id);
-  return object && object.name ? object.name : id < 0 ? 'no object' : `object ${id}`;
+  return object && object.name ? object.name : object && object.grounded ? 'the building' : id < 0 ? 'no object' : `object ${id}`;
 }
 
 function objectList(ids) {
@@ -211,7 +211,8 @@ function verifiedObjectText(verified, id) {
   return `Moved in ${verified.simulator}: by ${metres(object.moved_m)}, turned by ${Math.round(object.turned_deg)}\u00b0.`;
 }
 
-// "230 N", "4.0 kN"
+// What is to be held at least, rounded up as the program's sentences have it: "154 N", "2.8 N".
 function forceText(newtons) {
-  return newtons < 999.5 ? `${twoDigits(newtons)} N` : `${newtons < 9950 ? (newtons / 1000).toFixed(1) : Math.round(newtons / 1000)} kN`;
+  const steps = newtons < 10 ? 10 : 1;
+  return `${(Math.ceil(newtons * steps - 1e-9) / steps).toFixed(newtons < 10 ? 1 : 0)} N`;
 }

@@ -339,7 +339,7 @@ TEST(CorrectedScan, IsCutWhereTwoThingsWereOne) {
         ASSERT_TRUE(scene.corrections[0].held) << scene.corrections[0].outcome;
         EXPECT_NE(scene.points.object[nearest_point(scene, cloud, one)],
                   scene.points.object[nearest_point(scene, cloud, other)]);
-        EXPECT_EQ(scene.corrections[0].objects.size(), 2u);
+        EXPECT_EQ(scene.corrections[0].objects.size(), 1u);
     }
 }
 

@@ -94,8 +94,8 @@ TEST_F(PageRisk, lists_what_is_to_be_looked_at) {
     EXPECT_EQ(page.data("large"), "16,200, 0.0001");
     const std::vector<std::pair<const char*, const char*>> said{
         {"card1",
-         "Nothing upsets it as measured; if its foot is one error smaller, it falls with "
-         "180 J: check that it stands firm."},
+         "Nothing upsets it as measured; if its foot is one error smaller, it falls with up "
+         "to 180 J: check that it stands firm."},
         {"card3", "what holds it: seen, 40 % likely, one of several readings"},
         {"card3",
          "An earthquake upsets it once in at most 500 years: the curve of the hazard "

@@ -56,8 +56,11 @@ TEST_F(Action, is_to_look_where_only_its_errors_upset_it) {
     o_.fall_chance["earthquake"] = 0.00009;
     EXPECT_TRUE(upset_by_nothing(o_));
     EXPECT_EQ(text(),
-              "Nothing upsets it as measured; if its foot is one error smaller, it falls with 123 "
-              "J: check that it stands firm.");
+              "Nothing upsets it as measured; if its foot is one error smaller, it falls with up "
+              "to 120 J: check that it stands firm.");
+    // Harder pushes than the easiest may free more.
+    o_.instability = {{2, 0}, {9, 229}};
+    EXPECT_NE(text().find("with up to 229 J"), std::string::npos) << text();
 }
 
 TEST_F(Action, is_to_see_what_was_not_seen) {
