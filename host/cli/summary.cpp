@@ -256,8 +256,7 @@ void print_summary(const Scene& scene, const std::filesystem::path& out, double 
         std::vector<bool> held(said.back(), true);
         for (std::size_t n = 0; n < said.size(); ++n)
             held[said[n] - 1] = held[said[n] - 1] && scene.corrections[n].held;
-        std::printf("\n%zu of %s held.\n",
-                    static_cast<std::size_t>(std::ranges::count(held, true)),
+        std::printf("\n%zu of %s held.\n", static_cast<std::size_t>(std::ranges::count(held, true)),
                     io::counted(held.size(), "correction").c_str());
     }
     if (before) print_change(*before, scene);

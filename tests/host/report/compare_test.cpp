@@ -182,8 +182,8 @@ TEST_F(Compare, tells_errors_that_are_too_large_from_no_change) {
         shelf.unsafety_category = 'medium';
     )");
     EXPECT_EQ(page.data("error"), "(none)") << page.log.substr(0, 2000);
-    for (const char* row : {"object 3: too uncertain to say",
-                            "object 4: too uncertain to say", "object 1: as before"})
+    for (const char* row : {"object 3: too uncertain to say", "object 4: too uncertain to say",
+                            "object 1: as before"})
         EXPECT_NE(page.data("rows").find(row), std::string::npos)
             << row << " in " << page.data("rows");
 }
