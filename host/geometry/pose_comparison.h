@@ -46,16 +46,24 @@ class PoseComparison {
         std::uint64_t carried = 0;      // all
         std::uint64_t compared = 0;     // that fall on a surface there, which both see or one hides
         std::uint64_t agreeing = 0;     // that lie on it, to three standard deviations of readings
+        std::uint64_t before = 0;       // that lie before it, where the other frame looks through
         double agreeing_share() const;  // of those compared; 0 of none
+        double before_share() const;    // of those compared; 0 of none
         double common_share() const;    // of all, that agree; 0 of none
     };
-    // In each convention, over the pairs whose frames were both added.
-    std::array<Agreement, pose_conventions> agreements() const;
-    std::size_t pairs() const;  // such pairs
-
-    // The conventions, best first, in which the frames agree where they clearly do not in
-    // `camera_to_world`; of several the frames do not tell which. Mostly none.
-    std::vector<PoseConvention> better() const;
+    // Over the pairs whose frames were both added.
+    struct Verdict {
+        std::size_t pairs = 0;
+        std::array<Agreement, pose_conventions> agreement;  // in each convention
+        // The conventions, best first, in which the frames agree where they clearly do not in
+        // `camera_to_world`; of several the frames do not tell which. Mostly none.
+        std::vector<PoseConvention> better;
+        // Whether the frames contradict each other, as they are given: few readings agree, and many
+        // lie where others look through. Without a better convention the poses are of other images,
+        // or the intrinsics are wrong.
+        bool contradict = false;
+    };
+    Verdict verdict() const;
 
   private:
     struct Pair {

@@ -41,7 +41,7 @@ namespace {
 constexpr double probe_reference_s = 0.027;
 constexpr double point_s = 2.57e-6, pixel_s = 6e-8, voxel_s = 2.53e-6, patch_m_s = 0.0224,
                  rough_surfel_s = 2.03e-4, fixed_s = 0.095;
-constexpr double tiled_point_s = 0.27e-6, tiled_cell_s = 5e-6, tiled_m2_s = 0.014,
+constexpr double tiled_point_s = 0.27e-6, tiled_cell_s = 3.4e-6, tiled_m2_s = 0.014,
                  tiled_fixed_s = 0.01;
 // What of that one thread does alone; threads share the rest.
 constexpr double serial_share = 0.15;

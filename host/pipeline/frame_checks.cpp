@@ -73,27 +73,36 @@ void note_principal_point(const Intrinsics& k, ScanOrigin origin, std::vector<st
                     io::short_number(0.5 * (k.height - 1.0)) + ").");
 }
 
-std::string pose_convention_note(const geometry::PoseComparison& frames, ScanOrigin origin) {
-    const std::vector<PoseConvention> better = frames.better();
-    if (better.empty()) return {};
-    const auto found = frames.agreements();
+std::string pose_note(const geometry::PoseComparison& frames, ScanOrigin origin) {
+    const bool in_folder = origin == ScanOrigin::frames_folder;
+    const geometry::PoseComparison::Verdict found = frames.verdict();
     const auto agreeing = [&](PoseConvention convention) {
-        return percent(found[static_cast<std::size_t>(convention)].agreeing_share());
+        return percent(found.agreement[static_cast<std::size_t>(convention)].agreeing_share());
     };
+    const std::string seen = "of the readings of " + io::counted(found.pairs, "pair") +
+                             " of frames that look at the same place " +
+                             agreeing(PoseConvention::camera_to_world) +
+                             " lie on what the other frame sees there";
+    const std::vector<PoseConvention>& better = found.better;
+    if (better.empty()) {
+        if (!found.contradict) return {};
+        return "The frames contradict each other: " + seen + ", and " +
+               percent(found.agreement[0].before_share()) +
+               " lie before it, where that frame looks through. Check that the poses are those of "
+               "the images, in their order, and in metres, and that fx, fy, cx, cy and "
+               "depth_scale of " +
+               (in_folder ? "intrinsics.json" : "the intrinsics") + " are the depth camera's.";
+    }
     std::string words, mends;
     for (const PoseConvention convention : better) {
         words.append(words.empty() ? "" : ", or ").append(words_of(convention));
         mends.append(mends.empty() ? "" : ", or ").append(mend_of(convention));
     }
-    return "The poses seem to be in another convention: of the readings of " +
-           io::counted(frames.pairs(), "pair") + " of frames that look at the same place " +
-           agreeing(PoseConvention::camera_to_world) +
-           " lie on what the other frame sees there, but " + agreeing(better.front()) +
-           " if poses are taken to be " + words +
+    return "The poses seem to be in another convention: " + seen + ", but " +
+           agreeing(better.front()) + " if poses are taken to be " + words +
            (better.size() > 1 ? ", between which the frames do not tell" : "") +
            ". topple takes camera to world, camera x right, y down, z ahead: " +
-           (origin == ScanOrigin::frames_folder ? "write into the file of poses"
-                                                : "give as camera_to_world") +
+           (in_folder ? "write into the file of poses" : "give as camera_to_world") +
            ", in NumPy's words, " + mends + ".";
 }
 

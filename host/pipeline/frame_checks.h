@@ -16,8 +16,8 @@ namespace topple {
 void note_principal_point(const Intrinsics& intrinsics, ScanOrigin origin,
                           std::vector<std::string>& notes);
 
-// Poses in another convention, in which the frames agree where they don't as given; "": none. The
-// frames were added.
-std::string pose_convention_note(const geometry::PoseComparison& frames, ScanOrigin origin);
+// Poses in another convention, in which the frames agree where they don't as given, or frames that
+// contradict each other in any; "": neither. The frames were added.
+std::string pose_note(const geometry::PoseComparison& frames, ScanOrigin origin);
 
 }  // namespace topple

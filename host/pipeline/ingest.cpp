@@ -84,7 +84,7 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std:
     for_each_frame(*out.frames, device.threads(), add, true);
     note_principal_point(k, out.origin, out.notes);
     // First, and at once: the shards that such poses give take long.
-    if (const std::string note = pose_convention_note(comparison, out.origin); !note.empty()) {
+    if (const std::string note = pose_note(comparison, out.origin); !note.empty()) {
         out.notes.insert(out.notes.begin(), note);
         if (options.notice) options.notice(note);
     }

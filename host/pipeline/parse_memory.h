@@ -53,7 +53,7 @@ inline std::uint64_t one_piece_bytes(double points, double surface_m2, const Bou
 
 // While a block with so many cells in its core is parsed: it sees its halo's, too.
 inline double block_bytes(std::uint64_t cells) {
-    constexpr double fixed = 195e6, a_cell = 450, seen = 1.75;
+    constexpr double fixed = 195e6, a_cell = 300, seen = 1.75;
     return fixed + a_cell * seen * static_cast<double>(cells);
 }
 

@@ -255,6 +255,8 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
                                                      layout, std::move(joined.number));
     parts.points = tiled->count_points(parts.model.size());
     const ObjectStage objects = find_objects(device, options, stage, parts);
+    parts.samples = {};  // joints were judged by them, and by nothing else
+    parts.seams = {};
     if (objects.taken) tiled->take_away(*objects.taken);
     SafetyStage safety = assess_safety(device, parts, objects, options, stage);
     stage("assembly", [&] {

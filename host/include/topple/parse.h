@@ -103,7 +103,7 @@ struct ParseOptions {
     std::function<bool()> cancelled;
     // Called on the same thread with what a user may want to know while it runs, a line each: that
     // it goes on with what an earlier run has left in the work folder or the cache, makes what is
-    // damaged there anew, or that poses seem to be in another convention, as a note says later.
+    // damaged there anew, or that poses do not fit what their frames see, as a note says later.
     std::function<void(const std::string&)> notice;
 };
 

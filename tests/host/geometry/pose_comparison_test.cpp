@@ -83,7 +83,7 @@ PoseComparison comparison(const scenes::Sequence& frames, PoseConvention convent
 }
 
 std::vector<PoseConvention> better(const scenes::Sequence& frames, PoseConvention convention) {
-    return comparison(frames, convention).better();
+    return comparison(frames, convention).verdict().better;
 }
 
 TEST(PoseComparison, NamesTheConventionInWhichFramesAgree) {
@@ -100,6 +100,7 @@ TEST(PoseComparison, NamesTheConventionInWhichFramesAgree) {
                 EXPECT_THAT(found, IsEmpty()) << seed;
             else
                 EXPECT_THAT(found, ElementsAre(convention)) << seed;
+            EXPECT_EQ(comparison(frames, convention).verdict().contradict, n != 0) << seed;
             const Mat4& truth = frames.frames[7].camera_to_world;
             EXPECT_LT((matrix(pose_meant(given_as(convention, truth), convention)) - matrix(truth))
                           .cwiseAbs()
@@ -137,7 +138,7 @@ TEST(PoseComparison, FramesThatMoveWithoutTurningAreCompared) {
     }
     const scenes::Sequence frames =
         scenes::film(scenes::furnished_room({}), small_camera(12), poses);
-    EXPECT_GT(comparison(frames, PoseConvention::camera_to_world).pairs(), 3U);
+    EXPECT_GT(comparison(frames, PoseConvention::camera_to_world).verdict().pairs, 3U);
     EXPECT_THAT(better(frames, PoseConvention::camera_to_world), IsEmpty());
     EXPECT_THAT(better(frames, PoseConvention::world_to_camera),
                 testing::Contains(PoseConvention::world_to_camera));
@@ -153,14 +154,16 @@ TEST(PoseComparison, SaysNothingWhereFramesShareNothing) {
         scenes::Sequence one{walk.intrinsics, {walk.frames[0]}, {}, {}, {}};
         EXPECT_THAT(better(one, convention), IsEmpty());
         one.frames.resize(20, walk.frames[0]);
-        EXPECT_EQ(comparison(one, convention).pairs(), 0U);
+        EXPECT_EQ(comparison(one, convention).verdict().pairs, 0U);
         EXPECT_THAT(better(one, convention), IsEmpty());
+        EXPECT_FALSE(comparison(one, convention).verdict().contradict);
         one.frames.clear();
         EXPECT_THAT(better(one, convention), IsEmpty());
         // Without readings.
         scenes::Sequence blank = walk;
         for (DepthFrame& frame : blank.frames) frame.depth.assign(frame.depth.size(), 0);
         EXPECT_THAT(better(blank, convention), IsEmpty());
+        EXPECT_FALSE(comparison(blank, convention).verdict().contradict);
         // Of different places: each frame has the depth of another.
         scenes::Sequence shuffled = walk;
         for (std::size_t n = 0; n < walk.frames.size(); ++n)
@@ -176,6 +179,19 @@ TEST(PoseComparison, PoorPosesInTheRightConventionAreNoOther) {
     for (DepthFrame& frame : scaled.frames)
         for (const std::size_t axis : {3U, 7U, 11U}) frame.camera_to_world[axis] *= 3;
     EXPECT_THAT(better(scaled, PoseConvention::camera_to_world), IsEmpty());
+    scenes::Sequence backwards = walk;
+    for (std::size_t n = 0; n < walk.frames.size(); ++n)
+        backwards.frames[n].depth = walk.frames[walk.frames.size() - 1 - n].depth;
+    EXPECT_THAT(better(backwards, PoseConvention::camera_to_world), IsEmpty());
+    EXPECT_TRUE(comparison(backwards, PoseConvention::camera_to_world).verdict().contradict);
+    scenes::Sequence zoomed = walk;
+    zoomed.intrinsics.fx = zoomed.intrinsics.fy = 2 * walk.intrinsics.fx;
+    EXPECT_THAT(better(zoomed, PoseConvention::camera_to_world), IsEmpty());
+    EXPECT_TRUE(comparison(zoomed, PoseConvention::camera_to_world).verdict().contradict);
+    scenes::Sequence few = walk;  // every sixth
+    for (std::size_t n = 0; n < 5; ++n) few.frames[n] = walk.frames[6 * n];
+    few.frames.resize(5);
+    EXPECT_FALSE(comparison(few, PoseConvention::camera_to_world).verdict().contradict);
     for (std::size_t n = 0; n < walk.frames.size(); ++n) {
         const auto share = static_cast<double>(n) / static_cast<double>(walk.frames.size());
         walk.frames[n].camera_to_world[3] += 1.5 * share;

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "scenes/depth_camera.h"
 #include "scenes/furnished_room.h"
 
@@ -37,22 +39,26 @@ TEST(FrameChecks, PosesOfAnotherConvention) {
     camera.intrinsics = {96, 72, 83, 83, 47.5, 35.5, 1000};
     camera.frames = 30;
     const scenes::Sequence walk = scenes::walk(scenes::furnished_room({}), camera);
-    const auto note = [&](bool flipped, ScanOrigin origin) {
+    const auto note = [&](bool flipped, ScanOrigin origin, bool backwards = false) {
         std::vector<Mat4> poses;
         for (const DepthFrame& frame : walk.frames) {
             poses.push_back(frame.camera_to_world);
             for (const std::size_t n : {1U, 5U, 9U, 2U, 6U, 10U})
                 if (flipped) poses.back()[n] *= -1;
         }
+        if (backwards) std::ranges::reverse(poses);
         geometry::PoseComparison frames(walk.intrinsics, poses, 2);
         for (std::size_t n = 0; n < poses.size(); ++n) frames.add(walk.frames[n], n);
-        return pose_convention_note(frames, origin);
+        return pose_note(frames, origin);
     };
     EXPECT_EQ(note(false, ScanOrigin::frames_folder), "");
     EXPECT_THAT(note(true, ScanOrigin::frames_folder),
                 AllOf(HasSubstr("OpenGL"), HasSubstr("write into the file of poses"),
                       HasSubstr("pose @ np.diag([1, -1, -1, 1])")));
     EXPECT_THAT(note(true, ScanOrigin::frames_in_memory), HasSubstr("give as camera_to_world"));
+    EXPECT_THAT(note(false, ScanOrigin::frames_folder, true),
+                AllOf(HasSubstr("The frames contradict each other"), HasSubstr("in their order"),
+                      HasSubstr("of intrinsics.json are")));
 }
 
 }  // namespace

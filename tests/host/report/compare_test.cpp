@@ -132,6 +132,7 @@ TEST_F(Compare, measures_moves_by_boxes) {
         shelf.size_m[2] += 0.03;
         shelf.box_middle_m[2] += 0.015;
         ball.box_middle_m[1] -= 9;
+        other.primitives.find(part => part.object === ball.id).center_of_mass_m[1] -= 9;
         ball.size_m[2] /= 2;
     )");
     EXPECT_EQ(page.data("error"), "(none)") << page.log.substr(0, 2000);

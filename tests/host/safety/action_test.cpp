@@ -56,7 +56,7 @@ TEST_F(Action, is_to_look_where_only_its_errors_upset_it) {
     o_.fall_chance["earthquake"] = 0.00009;
     EXPECT_TRUE(upset_by_nothing(o_));
     EXPECT_EQ(text(),
-              "Nothing upsets it as measured; if its foot is one error smaller, it falls with 120 "
+              "Nothing upsets it as measured; if its foot is one error smaller, it falls with 123 "
               "J: check that it stands firm.");
 }
 
