@@ -149,7 +149,7 @@ TEST(Explain, straps_are_told_by_what_they_carry) {
     const auto told = [&](std::size_t o) { return scene.objects[o].advice.sentence; };
     EXPECT_EQ(told(0),
               "Fasten it to the wall or to what carries it, with a strap or bracket rated for 1 kg "
-              "or more (it must hold 3.7 N sideways at least, without a margin), 1.5 m above what "
+              "or more (it must hold 3.7 N sideways at least, without a margin), at its top, 1.5 m above what "
               "it stands on.");
     EXPECT_NE(told(1).find("rated for 10 kg or more (it must hold 98 N"), std::string::npos)
         << told(1);
