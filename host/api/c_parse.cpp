@@ -141,9 +141,10 @@ topple_result::topple_result(ParseResult parsed, const topple_allocator* allocat
         objects.push_back({arrays.hand(o.primitives),
                            reinterpret_cast<const topple_step*>(arrays.hand(o.instability)),
                            arrays.hand(directed.height_m), arrays.hand(directed.push_J),
-                           arrays.hand(directed.blow_J), arrays.hand(directed.direction),
-                           arrays.hand(directed.push_N), arrays.hand(directed.push_error_N),
-                           arrays.hand(o.why.edge_m), arrays.hand(o.why.stands_on)});
+                           arrays.hand(directed.blow_J), arrays.hand(directed.blow_Ns),
+                           arrays.hand(directed.direction), arrays.hand(directed.push_N),
+                           arrays.hand(directed.push_error_N), arrays.hand(o.why.edge_m),
+                           arrays.hand(o.why.stands_on)});
         corrected.push_back(arrays.hand(o.corrected));
     }
     for (const AppliedCorrection& c : result.scene.corrections)

@@ -164,6 +164,9 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         to.piece_probability = from.piece_probability;
         copy_vector(from.box_middle_m, to.box_middle_m);
         to.action = from.advice.action.c_str();
+        to.support_height_m = from.support_height_m;
+        to.center_height_m = from.center_height_m;
+        to.blow_barrier_Ns = result->objects[index].blow_barrier_Ns;
         give(to, object, "object");
     });
 }

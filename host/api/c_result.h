@@ -53,7 +53,7 @@ struct topple_result {
     struct OfObject {
         const std::int32_t* primitives;
         const topple_step* instability;
-        const double *blow_height_m, *push_barrier_J, *blow_barrier_J;
+        const double *blow_height_m, *push_barrier_J, *blow_barrier_J, *blow_barrier_Ns;
         const double *push_direction, *push_N, *push_error_N, *edge_m;
         const std::int32_t* stands_on;
     };

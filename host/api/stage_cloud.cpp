@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "api/arrays.h"
@@ -33,10 +35,11 @@ class Usable {
     std::optional<FinitePoints> finite_;
 };
 
+constexpr double large_m = 30;  // of rooms; the spacing of their points need not be measured
+
 // Who gives millimetres for metres would get nothing but cells of one point each. cell_m: into
 // which the points are sorted; what they are further apart than shows no surface.
 void check_metres(const CloudView& view, double cell_m) {
-    constexpr double large_m = 30;  // of rooms; their spacing need not be measured
     if (extent_m({view.x, view.y, view.z}) <= large_m) return;
     const double spacing_m = geometry::point_spacing(view).nearest_m;
     if (spacing_m > cell_m) check_spacing(view, spacing_m, ScanOrigin::cloud_in_memory);
@@ -53,10 +56,69 @@ geometry::SensorPlaces eyes_of(const CloudView& view, const Vec3* eye_m) {
 // Frames are copied in batches of this many bytes of depth.
 constexpr std::uint64_t batch_bytes = 16u << 20;
 
+// Buildings stay below this; rooms in millimetres start above, and no depth camera reads so far.
+constexpr double farthest_apart_m = 300;
+
+double beyond_box_m(const std::array<Vec3, 2>& box, const Vec3& at) {
+    double square = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const double off = std::max({0.0, box[0][a] - at[a], at[a] - box[1][a]});
+        square += off * off;
+    }
+    return std::sqrt(square);
+}
+
+std::array<Vec3, 2> box_around(const CloudView& cloud) {
+    std::array<Vec3, 2> box{};
+    if (cloud.size() == 0) return box;
+    const std::array<const FloatColumn*, 3> axes{&cloud.x, &cloud.y, &cloud.z};
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto [low, high] = std::minmax_element(axes[a]->begin(), axes[a]->end());
+        box[0][a] = *low;
+        box[1][a] = *high;
+    }
+    return box;
+}
+
+// Cameras in another unit than the points see nothing of them, and readings in another carve all.
+void check_cameras(const std::array<Vec3, 2>& box, const Intrinsics& intrinsics,
+                   std::span<const DepthView> frames) {
+    std::vector<Vec3> places;
+    std::vector<double> beyond, readings;
+    for (const DepthView& frame : frames) {
+        const Mat4& pose = frame.camera_to_world;
+        places.push_back({pose[3], pose[7], pose[11]});
+        beyond.push_back(beyond_box_m(box, places.back()));
+        for (std::size_t i = 0; i < frame.depth.size(); i += 37)
+            if (frame.depth[i] > 0) readings.push_back(frame.depth[i] / intrinsics.depth_scale);
+    }
+    const auto median = [](std::vector<double>& values) {
+        if (values.empty()) return 0.0;
+        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+        std::nth_element(values.begin(), middle, values.end());
+        return *middle;
+    };
+    check_camera_steps(places, "carve");
+    if (const double off = median(beyond); off > farthest_apart_m)
+        throw Error(ErrorKind::input,
+                    "carve: the cameras are " + io::short_number(off) +
+                        " m from the points: places of poses are metres, in the points' frame; if "
+                        "these are mm, multiply them by 0.001");
+    if (const double typical = median(readings); typical > farthest_apart_m)
+        throw Error(ErrorKind::input,
+                    "carve: " + depth_scale_hint(frames.size(), intrinsics.depth_scale, typical,
+                                                 ScanOrigin::frames_in_memory));
+}
+
 }  // namespace
 
 double point_spacing(const CloudView& cloud) {
-    return geometry::point_spacing(Usable(cloud).view()).nearest_m;
+    const Usable usable(cloud);
+    const double spacing_m = geometry::point_spacing(usable.view()).nearest_m;
+    const CloudView& view = usable.view();
+    if (extent_m({view.x, view.y, view.z}) > large_m)
+        check_spacing(view, spacing_m, ScanOrigin::cloud_in_memory);
+    return spacing_m;
 }
 
 void normals(device::Device& device, const CloudView& cloud, double cell_m, const Vec3* eye_m,
@@ -100,6 +162,7 @@ Volume::Volume(const CloudView& cloud, std::span<const std::int32_t> label, doub
                 io::short_number(least_voxel_m) + " to " + io::short_number(largest_voxel_m));
     const Usable usable(cloud);
     check_metres(usable.view(), voxel_m);
+    box_m_ = box_around(usable.view());
     std::vector<std::int32_t> kept;
     for (std::size_t i = 0; i < usable.view().size(); ++i) {
         kept.push_back(label[usable.place(i)]);
@@ -123,10 +186,12 @@ void Volume::carve(device::Device& device, const Intrinsics& intrinsics,
     const device::InUse in_use(device);
     const std::uint64_t pixels = std::uint64_t{intrinsics.width} * intrinsics.height;
     std::vector<DepthFrame> batch;
-    for (std::size_t f = 0; f < frames.size(); ++f) {
+    for (std::size_t f = 0; f < frames.size(); ++f)
         require(frames[f].depth.size() == pixels, "carve",
                 "frame " + std::to_string(f) + " has " + std::to_string(frames[f].depth.size()) +
                     " pixels, not " + std::to_string(pixels));
+    check_cameras(box_m_, intrinsics, frames);
+    for (std::size_t f = 0; f < frames.size(); ++f) {
         batch.push_back(
             {{frames[f].depth.begin(), frames[f].depth.end()}, frames[f].camera_to_world});
         if (f + 1 < frames.size() && batch.size() < 64 && batch.size() * pixels * 2 < batch_bytes)

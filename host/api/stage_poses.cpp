@@ -79,6 +79,27 @@ void check_density(const std::string& name, const StandingBody& body, double res
                     " kg/m^3: points must be in metres, and its mass in kilograms");
 }
 
+// A centre of mass lies within its body, or of one that was seen from one side beside its points;
+// so many times as far off as they extend it is in another unit.
+constexpr double farthest_off = 5;
+
+void check_center(const std::string& name, const StandingBody& body, double resolution_m) {
+    double off = 0, size = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto along = [&](const Vec3& p) { return p[a]; };
+        const auto [low, high] = std::ranges::minmax(body.points, {}, along);
+        const double at = body.center_of_mass_m[a];
+        off = std::max({off, low[a] - at, at - high[a]});
+        size = std::max(size, high[a] - low[a]);
+    }
+    if (off <= farthest_off * (size + resolution_m)) return;
+    throw Error(ErrorKind::input,
+                "barriers: the centre of mass of " + name + " lies " + io::short_number(off) +
+                    " m off its points, which extend over " + io::short_number(size) +
+                    " m: it must be in metres, in their frame; if it is in mm, multiply it by "
+                    "0.001");
+}
+
 }  // namespace
 
 void support_functions(device::Device& device, const Coordinates& vertices,
@@ -151,6 +172,7 @@ std::vector<Barrier> barriers(device::Device& device, std::span<const StandingBo
             }
         }
         check_density(name, body, resolution_m);
+        check_center(name, body, resolution_m);
         physics::Candidate c;
         c.primitives = {static_cast<std::int32_t>(points.size())};
         c.body.mass_kg = body.mass_kg;

@@ -208,7 +208,8 @@ void print_objects(const Scene& scene) {
     for (std::size_t i = 0; i < std::min(rows_shown, movable.size()); ++i) {
         const Object& o = *movable[i];
         char unsafety[32] = "-";
-        if (o.seen_enough) std::snprintf(unsafety, sizeof(unsafety), "%.1f", o.unsafety);
+        if (std::isfinite(o.unsafety))
+            std::snprintf(unsafety, sizeof(unsafety), "%.1f", o.unsafety);
         const std::string barrier = barrier_text(o);
         std::printf("%-12s %8s %8s %8s %9s %9s %6s ", (std::to_string(o.id) + name_text(o)).c_str(),
                     category_text(o).c_str(), unsafety, three_digits(o.mass_kg).c_str(),
@@ -255,8 +256,7 @@ void print_summary(const Scene& scene, const std::filesystem::path& out, double 
         std::vector<bool> held(said.back(), true);
         for (std::size_t n = 0; n < said.size(); ++n)
             held[said[n] - 1] = held[said[n] - 1] && scene.corrections[n].held;
-        std::printf("\n%zu of %s held.\n",
-                    static_cast<std::size_t>(std::ranges::count(held, true)),
+        std::printf("\n%zu of %s held.\n", static_cast<std::size_t>(std::ranges::count(held, true)),
                     io::counted(held.size(), "correction").c_str());
     }
     if (before) print_change(*before, scene);

@@ -194,6 +194,18 @@ void WaitingReadings::clear() {
     last_ = nullptr;
 }
 
+std::size_t CellTable::bytes() const {
+    return slots_.capacity() * sizeof(std::uint32_t) + cubes_.capacity() * sizeof(Cube) +
+           blocks_.capacity() * (sizeof(Block) + sizeof(BlockPlace)) +
+           cells_.capacity() * sizeof(CellSums) + cells_.size() * sizeof(CellSums);
+}
+
+std::size_t CellTables::bytes() const {
+    std::size_t sum = 0;
+    for (const CellTable& table : shards) sum += table.bytes();
+    return sum;
+}
+
 SortedCells CellTables::sorted(ThreadPool& pool) const {
     std::vector<BlockPlace> blocks;
     for (const CellTable& table : shards) {

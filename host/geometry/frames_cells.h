@@ -94,6 +94,8 @@ class CellTable {
     void add(std::span<const Reading> readings, std::uint32_t frame);
     const std::vector<CellSums>& cells() const { return cells_; }
     const std::vector<Block>& blocks() const { return blocks_; }
+    // That it holds, and that sorting its cells takes besides.
+    std::size_t bytes() const;
 
   private:
     struct Cube {
@@ -132,6 +134,7 @@ struct CellTables {
     void add(std::span<const std::span<const CellSums>> parts, ThreadPool& pool);
     // All cells by ascending key.
     SortedCells sorted(ThreadPool& pool) const;
+    std::size_t bytes() const;
 };
 
 // Readings of some rows of frames, in the order in which they came, and the tables they go to.
@@ -139,6 +142,7 @@ class WaitingReadings {
   public:
     void add(const Reading& reading, std::uint32_t frame);
     std::size_t size() const { return readings_.size(); }
+    std::size_t bytes() const { return readings_.capacity() * sizeof(Reading); }
     void add_to(CellTable& table, std::size_t shard) const;
     void clear();
 
@@ -162,7 +166,8 @@ struct FrameFusion::Cells {
     CellTables tables;
     Witnesses witnesses;
     std::array<WaitingReadings, block_count> waiting;
-    void flush();  // what waits to the tables
+    void flush();  // what waits to the tables, unless they come to hold more than most_bytes
+    std::size_t most_bytes = SIZE_MAX;
     std::vector<Vec3> viewpoints;
     std::array<std::uint64_t, block_count> outside{};  // readings beyond the grid's reach
 };

@@ -2,6 +2,7 @@
 #include "geometry/frames_fusion.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <string>
 
@@ -117,9 +118,28 @@ void FrameFusion::add(const DepthFrame& frame) {
     if (waiting >= most_waiting) c.flush();
 }
 
+std::size_t FrameFusion::bytes() const {
+    return cells_->tables.bytes();
+}
+
+void FrameFusion::set_most_bytes(std::size_t most_bytes) {
+    cells_->most_bytes = most_bytes;
+}
+
+void FrameFusion::flush() {
+    cells_->flush();
+}
+
 void FrameFusion::Cells::flush() {
+    // Table by table, so that what is held at the end exceeds the limit by little, however much
+    // waits.
+    std::atomic<std::size_t> held = tables.bytes();
     pool.each(CellTables::shard_count, 1, [&](std::size_t shard) {
-        for (const WaitingReadings& block : waiting) block.add_to(tables.shards[shard], shard);
+        if (held > most_bytes) return;
+        CellTable& table = tables.shards[shard];
+        const std::size_t before = table.bytes();
+        for (const WaitingReadings& block : waiting) block.add_to(table, shard);
+        held += table.bytes() - before;
     });
     for (WaitingReadings& block : waiting) block.clear();
 }

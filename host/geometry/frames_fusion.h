@@ -31,6 +31,12 @@ class FrameFusion {
     ~FrameFusion();
     FrameFusion(FrameFusion&&) noexcept;
     void add(const DepthFrame& frame);
+    // That it holds, and that finish() takes besides, but for readings that wait: up to 100 MB.
+    std::size_t bytes() const;
+    // Once it would hold more than this, bytes() does say more, and what is added gets lost.
+    void set_most_bytes(std::size_t most_bytes);
+    // Takes up what waits. finish() does so, too.
+    void flush();
     // poll: called now and then; what it throws ends the fusion.
     FusedCloud finish(const std::function<void()>& poll = [] {});
 

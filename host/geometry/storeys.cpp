@@ -14,8 +14,6 @@ namespace {
 constexpr double least_peak_share = 0.3;
 // Nobody builds thicker or thinner slabs.
 constexpr double thickest_slab_m = 0.8, thinnest_slab_m = 0.08;
-// A level's surface spreads over its noise.
-constexpr double spread_m = 0.05;
 
 struct Level {
     double height_m = 0, area_m2 = 0;
@@ -24,7 +22,8 @@ struct Level {
 // Levels by rising height: where a window of the spread holds more surface than any other that it
 // touches, the lowest of equals; at the middle of that surface.
 std::vector<Level> find_levels(const std::vector<double>& area, double low, double step) {
-    const auto reach = static_cast<std::ptrdiff_t>(std::max(1.0, std::round(spread_m / step)));
+    const auto reach =
+        static_cast<std::ptrdiff_t>(std::max(1.0, std::round(level_spread_m / step)));
     const auto count = static_cast<std::ptrdiff_t>(area.size());
     const auto at = [](const std::vector<double>& values, std::ptrdiff_t n) {
         return values[static_cast<std::size_t>(n)];

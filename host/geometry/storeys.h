@@ -7,11 +7,14 @@
 
 namespace topple::geometry {
 
+// A level's surface spreads over its noise.
+inline constexpr double level_spread_m = 0.05;
+
 // Where a building may be cut between its storeys: in the slab between a ceiling and the floor
 // above.
 struct Storey {
     double floor_m = 0;  // height of its floor along up
-    double below_m = 0;  // where it begins: within the slab below its floor
+    double below_m = 0;  // where it begins: the middle of the slab below its floor
 };
 
 // Of a building, or a part of one: what lies beyond its edge is not seen, and walls have rooms on

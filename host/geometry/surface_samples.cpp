@@ -229,10 +229,24 @@ SurfaceSamples samples_where(const SurfaceSamples& samples,
 }
 
 void sort_by_primitive(SurfaceSamples& samples) {
-    std::vector<std::size_t> order(samples.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, {}, [&](std::size_t n) { return samples.primitive[n]; });
-    samples = taken(samples, order);
+    const std::vector<std::int32_t>& primitive = samples.primitive;
+    std::int32_t most = -1;
+    for (const std::int32_t p : primitive) most = std::max(most, p);
+    std::vector<std::size_t> next(static_cast<std::size_t>(most) + 3, 0);
+    for (const std::int32_t p : primitive) ++next[static_cast<std::size_t>(p + 2)];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<std::uint32_t> order(primitive.size());
+    for (std::size_t n = 0; n < primitive.size(); ++n)
+        order[next[static_cast<std::size_t>(primitive[n] + 1)]++] = static_cast<std::uint32_t>(n);
+    const auto sort = [&](auto& values) {
+        std::remove_reference_t<decltype(values)> sorted;
+        sorted.reserve(order.size());
+        for (const std::uint32_t n : order) sorted.push_back(values[n]);
+        values = std::move(sorted);
+    };
+    for (auto* values : columns_of(samples))
+        if (!values->empty()) sort(*values);
+    sort(samples.primitive);
 }
 
 }  // namespace topple::geometry

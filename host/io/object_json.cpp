@@ -71,17 +71,23 @@ Json to_json(const Fragility& f) {
             {"return_years", number(f.return_years)}};
 }
 
-Json to_json(const DirectedBarrier& b) {
-    auto blows = Json::array();
+// A row of blows at each height for each direction.
+Json rows(const std::vector<double>& blows, const DirectedBarrier& b) {
+    auto out = Json::array();
     for (std::size_t n = 0; n < b.push_J.size(); ++n) {
         auto row = Json::array();
         for (std::size_t h = 0; h < b.height_m.size(); ++h)
-            row.push_back(number(b.blow_J[n * b.height_m.size() + h]));
-        blows.push_back(std::move(row));
+            row.push_back(number(blows[n * b.height_m.size() + h]));
+        out.push_back(std::move(row));
     }
-    return {{"height_m", numbers(b.height_m)}, {"push_J", numbers(b.push_J)},
-            {"blow_J", std::move(blows)},      {"direction", list(b.direction, vector)},
-            {"push_N", numbers(b.push_N)},     {"push_error_N", numbers(b.push_error_N)}};
+    return out;
+}
+
+Json to_json(const DirectedBarrier& b) {
+    return {{"height_m", numbers(b.height_m)},        {"push_J", numbers(b.push_J)},
+            {"blow_Ns", rows(b.blow_Ns, b)},          {"blow_J", rows(b.blow_J, b)},
+            {"direction", list(b.direction, vector)}, {"push_N", numbers(b.push_N)},
+            {"push_error_N", numbers(b.push_error_N)}};
 }
 
 Why why_of(const Json& json) {
@@ -162,9 +168,18 @@ DirectedBarrier directed_of(const Json& json) {
     DirectedBarrier b;
     b.height_m = json.at("height_m").get<std::vector<double>>();
     for (const Json& value : json.at("push_J")) b.push_J.push_back(number_of(value, never));
-    for (const Json& row : json.at("blow_J")) {
-        for (const Json& value : row) b.blow_J.push_back(number_of(value, never));
-    }
+    const auto blows = [&](const char* name) {
+        std::vector<double> out;
+        for (const Json& row : json.at(name))
+            for (const Json& value : row) out.push_back(number_of(value, never));
+        return out;
+    };
+    b.blow_J = blows("blow_J");
+    // Earlier versions did not write it.
+    b.blow_Ns =
+        json.contains("blow_Ns")
+            ? blows("blow_Ns")
+            : std::vector<double>(b.blow_J.size(), std::numeric_limits<double>::quiet_NaN());
     if (!json.contains("push_N")) return b;
     for (const Json& way : json.at("direction")) b.direction.push_back(vector_of(way));
     for (const Json& value : json.at("push_N")) b.push_N.push_back(number_of(value, never));
@@ -184,6 +199,8 @@ OrderedJson json_of_object(const Object& o) {
         {"mass_kg", number(o.mass_kg)},
         {"mass_model", o.mass_model},
         {"center_of_mass_m", vector(o.center_of_mass_m)},
+        {"support_height_m", number(o.support_height_m)},
+        {"center_height_m", number(o.center_height_m)},
         {"size_m", vector(o.size_m)},
         {"box_middle_m", std::isfinite(o.box_middle_m[0]) ? vector(o.box_middle_m) : Json(nullptr)},
         {"piece_of", o.piece_of},
@@ -231,6 +248,10 @@ Object object_of(const OrderedJson& json) {
     if (json.contains("agreement")) o.agreement = number_at(json, "agreement");
     o.mass_kg = number_at(json, "mass_kg");
     o.center_of_mass_m = vector_at(json, "center_of_mass_m");
+    if (json.contains("support_height_m")) {  // earlier versions did not write these
+        o.support_height_m = number_at(json, "support_height_m");
+        o.center_height_m = number_at(json, "center_height_m");
+    }
     if (json.contains("size_m")) o.size_m = vector_at(json, "size_m");
     if (json.contains("box_middle_m") && !json.at("box_middle_m").is_null())
         o.box_middle_m = vector_at(json, "box_middle_m");

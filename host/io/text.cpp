@@ -71,14 +71,29 @@ std::string two_digits(double value) {
     return digits;
 }
 
-std::string bytes_text(std::uint64_t bytes) {
+namespace {
+
+std::string bytes_text_of(double value, int digits) {
     static constexpr std::array<const char*, 5> units{"B", "KiB", "MiB", "GiB", "TiB"};
-    auto value = static_cast<double>(bytes);
     std::size_t unit = 0;
     for (; unit + 1 < units.size() && value >= 999.5; ++unit) value /= 1024;
     char text[32];
-    std::snprintf(text, sizeof(text), "%.3g %s", value, units[unit]);
+    std::snprintf(text, sizeof(text), "%.*g %s", digits, value, units[unit]);
     return text;
+}
+
+}  // namespace
+
+std::string bytes_text(std::uint64_t bytes, int digits) {
+    return bytes_text_of(static_cast<double>(bytes), digits);
+}
+
+std::string sufficient_bytes_text(std::uint64_t bytes) {
+    double unit = 1;
+    while (static_cast<double>(bytes) / unit >= 999.5) unit *= 1024;
+    const double value = static_cast<double>(bytes) / unit;
+    const double last = value < 10 ? 0.01 : value < 100 ? 0.1 : 1;  // place of the third digit
+    return bytes_text_of(std::ceil(value / last) * last * unit, 3);
 }
 
 FileBytes read_file(const std::filesystem::path& file, std::uint64_t limit) {

@@ -31,8 +31,10 @@ std::string short_number(double value);
 // Two digits, or all before the point, without an exponent; below half a thousandth it is nothing.
 std::string two_digits(double value);
 
-// "512 B", "200 MiB", "1.5 GiB": to three digits.
-std::string bytes_text(std::uint64_t bytes);
+// "512 B", "200 MiB", "1.5 GiB": to so many digits.
+std::string bytes_text(std::uint64_t bytes, int digits = 3);
+// The same to three digits, and no less than these bytes.
+std::string sufficient_bytes_text(std::uint64_t bytes);
 
 // A file's bytes, held once and not initialised before they are read.
 struct FileBytes {

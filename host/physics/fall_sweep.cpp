@@ -28,8 +28,9 @@ std::optional<std::int32_t> other_at(const SolidCells& cells, const CellColumns&
 
 }  // namespace
 
-Swept sweep_over_edge(const SolidCells& cells, const CellColumns& columns, const Candidate& body,
-                      double support_m, const Vec3& direction, double beside_m, double top_m) {
+Swept sweep_over_edge(const SolidCells& cells, const CellColumns& columns, const HiddenWalls& walls,
+                      const Candidate& body, double support_m, const Vec3& direction,
+                      double beside_m, double top_m, const std::vector<bool>& stops) {
     const Vec3& c = body.body.center;
     const double voxel = cells.voxel_m;
     const double height = std::max(c[2] - support_m, 0.0), beside = std::max(beside_m, 0.0);
@@ -52,7 +53,10 @@ Swept sweep_over_edge(const SolidCells& cells, const CellColumns& columns, const
             const double above = points > 1 ? height + (top - height) * n / (points - 1) : height;
             const Vec3 at = turned(angle, 0, above);
             if (at[2] < support_m + 2 * voxel) continue;
-            const auto by = other_at(cells, columns, body, at);
+            auto by = other_at(cells, columns, body, at);
+            const bool gives_way =
+                by && !stops.empty() && (*by < 0 || !stops[static_cast<std::size_t>(*by)]);
+            if (!by || gives_way) by = walls.between(c, at);
             if (by && ++met == enough) return {turned(angle, -beside, height), true, *by};
         }
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/cell_columns.h"
+#include "physics/hidden_walls.h"
 #include "physics/landscape.h"
 
 namespace topple::physics {
@@ -16,8 +17,10 @@ struct Swept {
 };
 // support_m: the height of what carries it; direction: horizontal, unit; beside_m: how far the edge
 // is from the centre of mass that way; top_m: the body's highest point. A twentieth of the front
-// must meet something; what reaches less than two voxels above the support is no stop.
-Swept sweep_over_edge(const SolidCells& cells, const CellColumns& columns, const Candidate& body,
-                      double support_m, const Vec3& direction, double beside_m, double top_m);
+// must meet something; what reaches less than two voxels above the support is no stop. Walls that
+// go on behind what hides them stop it, too. stops: by primitive, which of them do; empty: all do.
+Swept sweep_over_edge(const SolidCells& cells, const CellColumns& columns, const HiddenWalls& walls,
+                      const Candidate& body, double support_m, const Vec3& direction,
+                      double beside_m, double top_m, const std::vector<bool>& stops = {});
 
 }  // namespace topple::physics

@@ -30,17 +30,18 @@ double footing_reach(const Candidate& candidate, const Vec3& way) {
 }
 
 std::optional<Stability> beside_fixed(const SolidCells& cells, const CellColumns& columns,
-                                      const Candidate& body, const std::vector<bool>& fixed,
-                                      double top_m, const Stability& open) {
+                                      const HiddenWalls& walls, const Candidate& body,
+                                      const std::vector<bool>& fixed, double top_m,
+                                      const Stability& open) {
     const Vec3& center = body.body.center;
     const double height = center[2] - body.support_height_m;
     if (body.support_polygon.empty() || !(height > 0)) return std::nullopt;
     const auto stop_on = [&](const Vec3& way) -> std::optional<Stop> {
         const double beside = footing_reach(body, way);
-        const Swept swept =
-            sweep_over_edge(cells, columns, body, body.support_height_m, way, beside, top_m);
-        if (!swept.stopped || swept.by < 0 || !fixed[static_cast<std::size_t>(swept.by)])
-            return std::nullopt;
+        // What is not fixed gives way until it, too, meets what is.
+        const Swept swept = sweep_over_edge(cells, columns, walls, body, body.support_height_m, way,
+                                            beside, top_m, fixed);
+        if (!swept.stopped) return std::nullopt;
         Stop stop{std::hypot(height, beside) - height, 0};
         const double ahead =
             dot({swept.center[0] - center[0], swept.center[1] - center[1], 0}, way);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/cell_columns.h"
+#include "physics/hidden_walls.h"
 #include "physics/landscape.h"
 
 namespace topple::physics {
@@ -14,12 +15,14 @@ namespace topple::physics {
 // releases what it has come down until there, nothing where it leans before it is over the edge,
 // and what lies beyond that way is out of reach. Barriers stay as they are. Nothing where nothing
 // stops it.
+//   walls   of the building, where nobody saw them
 //   fixed   by primitive, whether it is the building's
 //   top_m   of the body, grid frame
 //   open    with exact passes, whose ways are known
 std::optional<Stability> beside_fixed(const SolidCells& cells, const CellColumns& columns,
-                                      const Candidate& body, const std::vector<bool>& fixed,
-                                      double top_m, const Stability& open);
+                                      const HiddenWalls& walls, const Candidate& body,
+                                      const std::vector<bool>& fixed, double top_m,
+                                      const Stability& open);
 
 // How far the footing reaches from under the centre of mass: to the line across the way that a body
 // turns over.

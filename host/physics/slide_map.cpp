@@ -3,10 +3,42 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include "physics/tipping.h"
 
 namespace topple::physics {
+namespace {
+
+// Columns of a footprint, and those that have some on all four sides.
+std::vector<std::array<std::int32_t, 2>> enclosed_columns(
+    std::span<const Footprint::Column> columns) {
+    struct Span {
+        std::int32_t low = std::numeric_limits<std::int32_t>::max();
+        std::int32_t high = std::numeric_limits<std::int32_t>::min();
+        void add(std::int32_t at) {
+            low = std::min(low, at);
+            high = std::max(high, at);
+        }
+    };
+    std::map<std::int32_t, Span> along_j, along_i;  // by i, by j
+    for (const Footprint::Column& c : columns) {
+        along_j[c.i].add(c.j);
+        along_i[c.j].add(c.i);
+    }
+    std::vector<std::array<std::int32_t, 2>> out;
+    for (const auto& [i, row] : along_j) {
+        for (std::int32_t j = row.low; j <= row.high; ++j) {
+            const auto across = along_i.find(j);
+            if (across != along_i.end() && i >= across->second.low && i <= across->second.high)
+                out.push_back({i, j});
+        }
+    }
+    return out;
+}
+
+}  // namespace
 
 SlideMap::SlideMap(const SolidCells& cells, const CellColumns& columns,
                    std::span<const std::int32_t> object, std::int32_t self, const Footprint& foot,
@@ -39,11 +71,13 @@ SlideMap::SlideMap(const SolidCells& cells, const CellColumns& columns,
         if (!has(c.i - 1, c.j) || !has(c.i + 1, c.j) || !has(c.i, c.j - 1) || !has(c.i, c.j + 1)) {
             outline_.push_back(n);
         }
-        // What reaches into the outline at the start moves with the object.
-        ground(c.i, c.j);
-        ground_[static_cast<std::size_t>(c.i - start_i_ + margin_) *
-                    static_cast<std::size_t>(side_) +
-                static_cast<std::size_t>(c.j - start_j_ + margin_)]
+    }
+    // What reaches into the outline at the start moves with the object, also where it hides the
+    // object's own middle.
+    for (const auto& [i, j] : enclosed_columns(foot.columns)) {
+        ground(i, j);
+        ground_[static_cast<std::size_t>(i - start_i_ + margin_) * static_cast<std::size_t>(side_) +
+                static_cast<std::size_t>(j - start_j_ + margin_)]
             .obstacle = false;
     }
 }

@@ -232,6 +232,10 @@ double Toppling::blow_barrier_J(const Vec3& way, double height) const {
     return least;
 }
 
+double Toppling::impulse_Ns(double W_J, const Vec3& way, double height) const {
+    return std::sqrt(2 * met_mass_kg(way, height) * W_J);
+}
+
 double Toppling::over_edge_J(const Vec3& way) const {
     const Tip* const first = met_first(way);
     const double barrier = push_barrier_J(way);

@@ -37,6 +37,8 @@ class Toppling {
     double pushed_J(double W_J, const Vec3& way) const;
     // Least W for which these are above 0; infinite where there is none.
     double blow_barrier_J(const Vec3& way, double height_m) const;
+    // The impulse, in newton seconds, of a blow that gives W so.
+    double impulse_Ns(double W_J, const Vec3& way, double height_m) const;
     double push_barrier_J(const Vec3& way) const;
     // No more than it takes to turn it over the edge that the line ahead meets first, whatever that
     // releases.

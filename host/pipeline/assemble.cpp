@@ -66,8 +66,10 @@ DirectedBarrier directed(const StableObject& from, const ToInput& to_input) {
             (safety::direction_count + safety::direction_count / 4 - n) % safety::direction_count);
         const Vec3 way{x, y, 0};
         out.push_J.push_back(toppling.push_barrier_J(way));
-        for (const double height : out.height_m)
+        for (const double height : out.height_m) {
             out.blow_J.push_back(toppling.blow_barrier_J(way, height));
+            out.blow_Ns.push_back(toppling.impulse_Ns(out.blow_J.back(), way, height));
+        }
         out.direction.push_back(to_input(way));
         if (std::isnan(from.overturning.hand_height_m)) continue;  // it hangs
         const physics::Toppling::EdgeAhead edge = toppling.edge_ahead(way);
@@ -106,7 +108,11 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
             to.footprint_error_m = from.margin_error_m;
             to.barrier_error_J = from.barrier_error_J;
             to.release_J = from.instability.release_J;
-            if (from.seen_enough()) to.overturning = from.overturning;
+            if (from.seen_enough()) {
+                to.support_height_m = from.candidate.support_height_m;
+                to.center_height_m = from.candidate.body.center[2] - to.support_height_m;
+                to.overturning = from.overturning;
+            }
             to.overturning.direction = to_input(to.overturning.direction);
             if (from.seen_enough()) {
                 // Its force is the push times what its area is to its top's height: errors are as
@@ -136,13 +142,15 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
         to.seen_enough = from.grounded || from.seen_enough();
         to.rests_by = from.grounded ? "ground" : graph::to_string(from.rest);
         to.rest_probability = from.rest_probability;
-        to.unsafety = from.grounded    ? 1
-                      : to.seen_enough ? safety.unsafety[o]
-                                       : std::numeric_limits<double>::quiet_NaN();
+        // Without a disturbance nothing is known of what may fall, and nothing is safe.
+        const bool ranked = from.grounded || (to.seen_enough && !safety.disturbances.empty());
+        to.unsafety = from.grounded ? 1
+                      : ranked      ? safety.unsafety[o]
+                                    : std::numeric_limits<double>::quiet_NaN();
         const safety::CategoryEnds& category = safety.category[o];
-        to.unsafety_category = to.seen_enough ? safety::to_string(category.lower) : "";
-        to.unsafety_certain = to.seen_enough && category.lower == category.higher &&
-                              to.piece_of < 0 && safety.advice[o].kind != Suggestion::Kind::check &&
+        to.unsafety_category = ranked ? safety::to_string(category.lower) : "";
+        to.unsafety_certain = ranked && category.lower == category.higher && to.piece_of < 0 &&
+                              safety.advice[o].kind != Suggestion::Kind::check &&
                               !stands_against_odds(from, safety.disturbances, safety.risk, o);
         to.name = objects.told.name[o];
         to.corrected = objects.told.corrected[o];
@@ -235,8 +243,14 @@ void note_crowded_objects(Scene& scene) {
     }
 }
 
-// What comes in only where something is open.
-void note_indoors(const SolidParts& parts, const SafetyStage& safety, Scene& scene) {
+// What was not reckoned with; some comes in only where something is open.
+void note_left_out(const SolidParts& parts, const SafetyStage& safety, Scene& scene) {
+    if (safety.disturbances.empty()) {
+        scene.notes.emplace_back(
+            "No disturbance was asked for: there are no risks, and no object has an unsafety or a "
+            "category. Barriers, and what pushes and blows do, hold.");
+        return;
+    }
     const auto roles = parts.solids->primitives();
     bool ceiling = false;
     for (std::size_t p = 0; p < roles; ++p)
@@ -339,7 +353,7 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     note_unsettled_search(scene);
     note_crowded_objects(scene);
     note_uncertain_barriers(scene);
-    note_indoors(parts, safety, scene);
+    note_left_out(parts, safety, scene);
     note_short_hazard(scene);
     scene.swc_energy = objects.grouping.energy_curve;
     explain(objects, to_input, scene);

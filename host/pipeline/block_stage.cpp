@@ -108,7 +108,8 @@ BlockParts parse_block(device::Device& device, const tiles::BlockPoints& points,
     input.frame = layout.frame;
     constexpr double below = -std::numeric_limits<double>::infinity();
     input.storeys = {{block.floor_m, below, block.top_m}};
-    const auto [geometry, voxels] = find_solids(device, input, layout.voxel_m, quiet, stage);
+    const auto [geometry, voxels] =
+        find_solids(device, input, layout.voxel_m, quiet, stage, SolidDetail::whole_voxels);
     for (std::size_t p = 0; p < voxels.number.size(); ++p) {
         if (voxels.number[p] < 0) continue;
         out.primitives.push_back({geometry.primitives.model[p].front(), geometry.role[p],

@@ -41,7 +41,7 @@ namespace {
 constexpr double probe_reference_s = 0.027;
 constexpr double point_s = 2.57e-6, pixel_s = 6e-8, voxel_s = 2.53e-6, patch_m_s = 0.0224,
                  rough_surfel_s = 2.03e-4, fixed_s = 0.095;
-constexpr double tiled_point_s = 0.27e-6, tiled_cell_s = 5e-6, tiled_m2_s = 0.014,
+constexpr double tiled_point_s = 0.27e-6, tiled_cell_s = 3.4e-6, tiled_m2_s = 0.014,
                  tiled_fixed_s = 0.01;
 // What of that one thread does alone; threads share the rest.
 constexpr double serial_share = 0.15;
@@ -275,7 +275,10 @@ Looked look_at_frames(const std::filesystem::path& input, const ParseOptions& op
     const Intrinsics& k = frames.intrinsics();
     out.frames = frames.size();
     out.pixels = out.frames * k.width * k.height;
-    out.cell_m = cell_for_frames(k, frames.size(), [&](std::size_t f) { return frames.load(f); });
+    const double depth_m =
+        typical_depth(k, frames.size(), [&](std::size_t f) { return frames.load(f); });
+    check_readings(k, frames.size(), depth_m, input.string(), ScanOrigin::frames_folder);
+    out.cell_m = cell_for_frames(k, depth_m);
     out.spacing_m = out.cell_m;
     looked.hints.camera_up = frames.mean_camera_up();
     const geometry::BackProjection projection(k, out.cell_m);
@@ -367,7 +370,8 @@ void reckon_one_piece(device::Device& device, const ParseOptions& options, Looke
     out.memory_bytes = static_cast<std::uint64_t>(
         std::max(looked.fused_bytes, one_piece_peak({points, surface, out.box_voxels, out.ground_m2,
                                                      out.patches_m, out.views})));
-    out.least_bytes = one_piece_bytes(points, out.surface_m2, bounds_of(looked.cloud), h);
+    out.least_bytes = std::max(one_piece_bytes(points, out.surface_m2, bounds_of(looked.cloud), h),
+                               static_cast<std::uint64_t>(looked.fused_bytes));
 }
 
 }  // namespace

@@ -93,8 +93,9 @@ void foretell(const ObjectStage& objects, const SafetyStage& safety, const ToInp
         object.fall.hits_J = safety.landings[o].hits_J;
         if (o < safety.people_share.size()) object.fall.people_share = safety.people_share[o];
         object.fall.lands_m = to_input(swept.center);
-        object.fall.drop_m = swept.stopped ? 0 : object.why.drop_m;
-        object.fall.lands_on = swept.stopped ? -1 : object.why.lands_on;
+        object.fall.drop_m = swept.stopped ? 0 : safety.landings[o].drop_m;
+        const bool elsewhere = swept.stopped || !safety.landings[o].on_easiest;
+        object.fall.lands_on = elsewhere ? -1 : object.why.lands_on;
         if (swept.by >= 0)
             object.fall.leans_on = objects.object_of_primitive[static_cast<std::size_t>(swept.by)];
         // What stops it is not taken along.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "io/text.h"
+#include "pipeline/memory_limit.h"
 #include "pipeline/parse_memory.h"
 #include "pipeline/scale_checks.h"
 #include "pipeline/solid_stage.h"
@@ -13,22 +14,17 @@
 namespace topple {
 namespace {
 
-void check_memory(const CloudView& cloud, ScanOrigin origin, double voxel_m,
-                  const ParseOptions& options) {
+void check_memory_of(const CloudView& cloud, ScanOrigin origin, double voxel_m,
+                     const ParseOptions& options) {
     if (options.max_memory_bytes == 0) return;
     const std::uint64_t need = one_piece_bytes(
         static_cast<double>(cloud.size()), extent_of(cloud).area_m2(), bounds_of(cloud), voxel_m);
-    if (need > options.max_memory_bytes) {
-        throw Error(
-            ErrorKind::input,
-            std::to_string(cloud.size()) + " points at voxels of " + io::short_number(voxel_m) +
-                " m may need " + io::bytes_text(need) + ", more than the " +
-                io::bytes_text(options.max_memory_bytes) +
-                (in_memory(origin) ? " of max_memory_bytes; use a larger voxel_m"
-                                   : " of --max-memory; use a larger --voxel") +
-                (origin == ScanOrigin::cloud_file ? ", or --tile 5 to have it parsed in blocks"
-                                                  : ""));
-    }
+    check_memory(
+        std::to_string(cloud.size()) + " points at voxels of " + io::short_number(voxel_m) +
+            " m may need",
+        need, options, origin,
+        std::string("use a larger ") + (in_memory(origin) ? "voxel_m" : "--voxel") +
+            (origin == ScanOrigin::cloud_file ? ", or --tile 5 to have it parsed in blocks" : ""));
 }
 
 [[noreturn]] void no_surface(const Ingested& input, const std::string& source, double extent_m) {
@@ -85,7 +81,7 @@ Groundwork lay_groundwork(device::Device& device, Ingested input, const ParseOpt
                           const std::string& source, StageClock& stage) {
     Groundwork out;
     out.voxel_m = voxel_for_input(input, options);
-    check_memory(input.cloud, input.origin, out.voxel_m, options);
+    check_memory_of(input.cloud, input.origin, out.voxel_m, options);
     out.offset_m = input.own.offset_m;
     out.notes = input.notes;
     const double extent = extent_m({input.cloud.x, input.cloud.y, input.cloud.z});

@@ -125,12 +125,11 @@ void HandCorrections::find_contradictions() const {
             continue;
         std::string others;
         for (const std::size_t m : way_between(links_, together_by_, a, b))
-            others.append(others.empty() ? "" : " and ")
-                .append(with_kind(m));
-        throw Error(ErrorKind::input,
-                    "corrections: " + with_kind(apart_by_[n]) +
-                        " contradicts " + others + ": parts " + std::to_string(a) + " and " +
-                        std::to_string(b) + " are to be one object and not; leave one of them out");
+            others.append(others.empty() ? "" : " and ").append(with_kind(m));
+        throw Error(ErrorKind::input, "corrections: " + with_kind(apart_by_[n]) + " contradicts " +
+                                          others + ": parts " + std::to_string(a) + " and " +
+                                          std::to_string(b) +
+                                          " are to be one object and not; leave one of them out");
     }
 }
 
@@ -210,8 +209,7 @@ std::optional<TakenAway> HandCorrections::take_from(SolidParts& parts, graph::Gr
         if (applied_[n].correction.kind == Kind::not_there || at.empty() ||
             !std::ranges::all_of(at, is_gone))
             continue;
-        remark(n, "what is there is taken away by " + numbered(gone.at(at.front())),
-               false);
+        remark(n, "what is there is taken away by " + numbered(gone.at(at.front())), false);
     }
     std::vector<bool> kept(parts.model.size(), true);
     for (const auto& [p, n] : gone) entry(kept, p) = false;
@@ -258,9 +256,7 @@ void HandCorrections::fix(SolidParts& parts, graph::Grouping& grouping, graph::S
             const std::int32_t g = entry(grouping.group, p);
             if (g < 0) continue;
             if (const auto keeper = keeper_from_room(grouping, g))
-                remark(n,
-                       numbered(*keeper) +
-                           " keeps a part of its object apart from the building",
+                remark(n, numbered(*keeper) + " keeps a part of its object apart from the building",
                        false);
             else
                 fixed.insert(g);
@@ -316,9 +312,7 @@ std::vector<KnownMass> HandCorrections::masses(std::span<const std::int32_t> obj
             std::optional<double>& value = hollow ? entry(out, o).wall_m : entry(out, o).mass_kg;
             const double own = hollow ? c.wall_m : c.mass_kg;
             if (by && *value != own) {
-                remark(n,
-                       numbered(*by) + " says otherwise of object " + std::to_string(o),
-                       false);
+                remark(n, numbered(*by) + " says otherwise of object " + std::to_string(o), false);
                 continue;
             }
             by = by.value_or(n);
@@ -351,8 +345,7 @@ HandCorrections::Told HandCorrections::tell(std::span<const std::int32_t> object
                 std::string& to = part ? out.name_of_part[p] : entry(out.name, object(p));
                 if (!to.empty() && to != name) {
                     remark(n,
-                           numbered(part ? part_named_by.at(p)
-                                                    : *entry(named_by, object(p))) +
+                           numbered(part ? part_named_by.at(p) : *entry(named_by, object(p))) +
                                " names it otherwise",
                            false);
                     continue;

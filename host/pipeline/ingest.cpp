@@ -5,10 +5,10 @@
 #include <cmath>
 #include <exception>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "core/depth_noise.h"
-#include "geometry/frames_fusion.h"
 #include "geometry/single_scan.h"
 #include "geometry/surfels.h"
 #include "io/frame_sequence.h"
@@ -19,6 +19,8 @@
 #include "pipeline/caller_points.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/cloud_views.h"
+#include "pipeline/frame_checks.h"
+#include "pipeline/limited_fusion.h"
 #include "pipeline/memory_stream.h"
 #include "pipeline/scale_checks.h"
 #include "pipeline/voxel_stage.h"
@@ -49,7 +51,73 @@ Vec3 position(const DepthFrame& frame) {
     return {m[3], m[7], m[11]};
 }
 
-// The median of readings of some frames, metres; 0 where there are none.
+std::vector<Vec3> places_of(std::span<const Mat4> poses) {
+    std::vector<Vec3> places;
+    for (const Mat4& m : poses) places.push_back({m[3], m[7], m[11]});
+    return places;
+}
+
+// Fuses out.frames, called `source`. poses: as they were given, of each; none of a single frame.
+void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std::string& source,
+                 const ParseOptions& options, Ingested& out) {
+    const Intrinsics& k = out.frames->intrinsics();
+    // Before anything is made of them.
+    check_camera_steps(places_of(poses), source);
+    const double depth_m =
+        typical_depth(k, out.frames->size(), [&](std::size_t f) { return out.frames->load(f); });
+    check_readings(k, out.frames->size(), depth_m, source, out.origin);
+    out.cell_m = cell_for_frames(k, depth_m);
+    LimitedFusion fusion({k, out.frames->size(), depth_m, source, out.origin}, out.cell_m, options,
+                         device.threads().threads());
+    geometry::PoseComparison comparison(k, poses, depth_m);
+    const auto count = static_cast<double>(out.frames->size());
+    constexpr double added_share = 0.4, polls = 5;  // of the stage; while it is finished
+    const auto tell = [&](double done) {
+        if (options.progress) options.progress("ingest", done);
+    };
+    const auto add = [&](const DepthFrame& frame, std::size_t f) {
+        end_if_cancelled(options);
+        fusion.add(frame);
+        comparison.add(frame, f);
+        tell(added_share * static_cast<double>(f + 1) / count);
+    };
+    for_each_frame(*out.frames, device.threads(), add, true);
+    note_principal_point(k, out.origin, out.notes);
+    // First, and at once: the shards that such poses give take long.
+    if (const std::string note = pose_note(comparison, out.origin); !note.empty()) {
+        out.notes.insert(out.notes.begin(), note);
+        if (options.notice) options.notice(note);
+    }
+    double polled = 0;
+    geometry::FusedCloud fused = fusion.finish([&] {
+        end_if_cancelled(options);
+        tell(added_share + (1 - added_share) * std::min(1.0, ++polled / polls));
+    });
+    out.own = std::move(fused.cloud);
+    out.cloud = out.own;
+    out.viewpoints = std::move(fused.viewpoints);
+    out.viewpoint_of_point = std::move(fused.viewpoint_of_point);
+    if (poses.empty())
+        out.notes.push_back("A single frame: what it does not show is completed by shape alone.");
+}
+
+Ingested ingest_folder(device::Device& device, const std::filesystem::path& folder,
+                       const ParseOptions& options) {
+    io::FrameSequence sequence = io::FrameSequence::open(folder);
+    Ingested out;
+    out.origin = ScanOrigin::frames_folder;
+    out.camera_up = sequence.mean_camera_up();
+    out.notes = sequence.colours().notes();
+    std::vector<Mat4> poses;
+    for (std::size_t i = 0; sequence.posed() && i < sequence.size(); ++i)
+        poses.push_back(sequence.camera_to_world(i));
+    out.frames = std::make_unique<SequenceStream>(std::move(sequence));
+    fuse_frames(device, poses, folder.string(), options, out);
+    return out;
+}
+
+}  // namespace
+
 double typical_depth(const Intrinsics& k, std::size_t count,
                      const std::function<DepthFrame(std::size_t)>& load) {
     std::vector<double> depths;
@@ -66,56 +134,10 @@ double typical_depth(const Intrinsics& k, std::size_t count,
     return depths[depths.size() / 2];
 }
 
-// Fuses out.frames. posed: whether they have poses, and are no single frame.
-void fuse_frames(device::Device& device, bool posed, const ParseOptions& options, Ingested& out) {
-    out.cell_m = cell_for_frames(out.frames->intrinsics(), out.frames->size(),
-                                 [&](std::size_t f) { return out.frames->load(f); });
-    geometry::FrameFusion fusion(out.frames->intrinsics(), out.cell_m, device.threads().threads());
-    const auto count = static_cast<double>(out.frames->size());
-    constexpr double added_share = 0.4, polls = 5;  // of the stage; while it is finished
-    const auto tell = [&](double done) {
-        if (options.progress) options.progress("ingest", done);
-    };
-    const auto add = [&](const DepthFrame& frame, std::size_t f) {
-        end_if_cancelled(options);
-        fusion.add(frame);
-        tell(added_share * static_cast<double>(f + 1) / count);
-    };
-    for_each_frame(*out.frames, device.threads(), add, true);
-    double polled = 0;
-    geometry::FusedCloud fused = fusion.finish([&] {
-        end_if_cancelled(options);
-        tell(added_share + (1 - added_share) * std::min(1.0, ++polled / polls));
-    });
-    out.own = std::move(fused.cloud);
-    out.cloud = out.own;
-    out.viewpoints = std::move(fused.viewpoints);
-    out.viewpoint_of_point = std::move(fused.viewpoint_of_point);
-    if (!posed)
-        out.notes.push_back("A single frame: what it does not show is completed by shape alone.");
-}
-
-Ingested ingest_folder(device::Device& device, const std::filesystem::path& folder,
-                       const ParseOptions& options) {
-    io::FrameSequence sequence = io::FrameSequence::open(folder);
-    Ingested out;
-    out.origin = ScanOrigin::frames_folder;
-    out.camera_up = sequence.mean_camera_up();
-    out.notes = sequence.colours().notes();
-    const bool posed = sequence.posed();
-    out.frames = std::make_unique<SequenceStream>(std::move(sequence));
-    fuse_frames(device, posed, options, out);
-    return out;
-}
-
-}  // namespace
-
-double cell_for_frames(const Intrinsics& k, std::size_t count,
-                       const std::function<DepthFrame(std::size_t)>& load) {
-    const double z = typical_depth(k, count, load);
-    if (z <= 0) return 0.01;
-    const double noise = depth_sigma(z);
-    return std::clamp(std::max(1.5 * z / k.fx, 1.2 * noise), least_cell_m, 0.015);
+double cell_for_frames(const Intrinsics& k, double typical_depth_m) {
+    if (typical_depth_m <= 0) return 0.01;
+    const double noise = depth_sigma(typical_depth_m);
+    return std::clamp(std::max(1.5 * typical_depth_m / k.fx, 1.2 * noise), least_cell_m, 0.015);
 }
 
 std::string depth_scale_hint(const FrameStream& frames, ScanOrigin origin) {
@@ -249,8 +271,8 @@ Ingested ingest_frames_view(device::Device& device, const FramesView& frames,
     out.camera_up = io::mean_camera_up(given.poses());
     out.notes = given.notes();
     out.frames = std::move(stream);
-    fuse_frames(device, given.posed(), options, out);
-    check_camera_steps(out.viewpoints, given.source());
+    fuse_frames(device, given.posed() ? std::span(given.poses()) : std::span<const Mat4>(),
+                given.source(), options, out);
     if (out.cloud.size() == 0)
         throw Error(ErrorKind::input, given.source() + ": no points were found; " +
                                           depth_scale_hint(given, out.origin));
@@ -337,7 +359,6 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
                 "intrinsics.json, as depth_scale");
         }
         Ingested out = ingest_folder(device, input, options);
-        check_camera_steps(out.viewpoints, input.string());
         if (out.cloud.size() == 0)
             io::fail(input, "no points were found; " + depth_scale_hint(*out.frames, out.origin));
         return out;

@@ -60,8 +60,10 @@ struct Ingested {
 
 // The working resolution that suits a depth camera: about the spacing of its pixels at the scene's
 // typical depth, but not below its noise there, which only smears points over more cells.
-double cell_for_frames(const Intrinsics& intrinsics, std::size_t frames,
-                       const std::function<DepthFrame(std::size_t)>& load);
+double cell_for_frames(const Intrinsics& intrinsics, double typical_depth_m);
+// That depth: the median of readings of some frames, metres; 0 where there are none.
+double typical_depth(const Intrinsics& intrinsics, std::size_t frames,
+                     const std::function<DepthFrame(std::size_t)>& load);
 
 // What to look at where frames show nothing that makes sense; see scale_checks.h.
 std::string depth_scale_hint(const FrameStream& frames, ScanOrigin origin);

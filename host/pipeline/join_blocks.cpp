@@ -6,6 +6,8 @@
 #include <boost/pending/disjoint_sets.hpp>
 #include <map>
 #include <memory>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "core/sorted_order.h"
@@ -15,9 +17,17 @@
 namespace topple {
 namespace {
 
-// Of what two blocks have both seen, this share of the halo on each side of the border is compared:
+// Of what two blocks have both seen, half of the halo on each side of the border is compared:
 // further out a block sees things cut off.
-constexpr double compared_share = 0.5;
+tiles::VoxelBox compared(const tiles::Block& block) {
+    tiles::VoxelBox out;
+    for (std::size_t a = 0; a < 3; ++a) {
+        out.low[a] = block.core.low[a] - (block.core.low[a] - block.seen.low[a]) / 2;
+        out.high[a] = block.core.high[a] + (block.seen.high[a] - block.core.high[a]) / 2;
+    }
+    return out;
+}
+
 // Voxels that two primitives share at least, and their share of the smaller one.
 constexpr std::uint64_t least_shared = 6;
 constexpr double least_share = 0.5;
@@ -43,8 +53,9 @@ bool meet(const tiles::VoxelBox& a, const tiles::VoxelBox& b) {
     return true;
 }
 
-Border border_of(const BlockParts& parts, const tiles::VoxelBox& core, std::int32_t width) {
-    const tiles::VoxelBox outer = core.grown(width), inner = core.grown(-width);
+// halo: of the layout, which no neighbour sees further than.
+Border border_of(const BlockParts& parts, const tiles::Block& block, std::int32_t halo) {
+    const tiles::VoxelBox outer = compared(block), inner = block.core.grown(-halo / 2);
     Border out;
     const SolidCells& c = parts.cells;
     for (std::size_t n = 0; n < c.size(); ++n) {
@@ -96,29 +107,40 @@ const char* model_named(char initial) {
     return initial == 'p' ? "plane" : initial == 'q' ? "quadric" : "merged";
 }
 
-// Sorts the voxels of all cores, which come block by block, by (i, j, k).
+// Sorts the voxels of all cores, which come block by block, by (i, j, k): one i at a time, so that
+// what sorting takes beside them is little.
 void sort_cells(SolidCells& cells) {
     if (cells.size() == 0) return;
-    std::array<std::int64_t, 3> low{}, high{};
-    const std::array<std::vector<std::int32_t>*, 3> axes{&cells.i, &cells.j, &cells.k};
-    for (std::size_t a = 0; a < 3; ++a) {
-        const auto [least, most] = std::minmax_element(axes[a]->begin(), axes[a]->end());
-        low[a] = *least;
-        high[a] = *most;
+    const auto range_of = [](const std::vector<std::int32_t>& values) {
+        const auto [least, most] = std::ranges::minmax(values);
+        return std::pair<std::int64_t, std::int64_t>(least, most);
+    };
+    const auto [low_i, high_i] = range_of(cells.i);
+    const auto [low_j, high_j] = range_of(cells.j);
+    const auto [low_k, high_k] = range_of(cells.k);
+    const geometry::CellPacking packing({0, low_j, low_k}, {0, high_j, high_k});
+    std::vector<std::size_t> first(static_cast<std::size_t>(high_i - low_i) + 2, 0);
+    const auto slice = [&](std::int32_t i) { return static_cast<std::size_t>(i - low_i); };
+    for (const std::int32_t i : cells.i) ++first[slice(i) + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<std::uint32_t> order(cells.size());
+    auto next = first;
+    for (std::size_t n = 0; n < cells.size(); ++n)
+        order[next[slice(cells.i[n])]++] = static_cast<std::uint32_t>(n);
+    for (std::size_t s = 0; s + 1 < first.size(); ++s) {
+        const std::span<std::uint32_t> of_slice(order.data() + first[s], first[s + 1] - first[s]);
+        std::vector<std::uint64_t> keys;
+        for (const std::uint32_t n : of_slice) keys.push_back(packing(0, cells.j[n], cells.k[n]));
+        const std::vector<std::uint32_t> was(of_slice.begin(), of_slice.end());
+        const std::vector<std::uint32_t> sorted = sorted_order(keys);
+        for (std::size_t n = 0; n < sorted.size(); ++n) of_slice[n] = was[sorted[n]];
     }
-    const geometry::CellPacking packing(low, high);
-    std::vector<std::uint64_t> keys(cells.size());
-    for (std::size_t n = 0; n < keys.size(); ++n)
-        keys[n] = packing(cells.i[n], cells.j[n], cells.k[n]);
-    const std::vector<std::uint32_t> order = sorted_order(keys);
-    keys = {};
     const auto sort = [&](auto& values) {
         auto sorted = values;
         for (std::size_t n = 0; n < order.size(); ++n) sorted[n] = values[order[n]];
         values = std::move(sorted);
     };
-    for (auto* values : axes) sort(*values);
-    sort(cells.primitive);
+    for (auto* values : {&cells.i, &cells.j, &cells.k, &cells.primitive}) sort(*values);
     sort(cells.basis);
     sort(cells.unseen_below);
 }
@@ -130,21 +152,22 @@ class Joiner {
 
     JoinedBlocks join(StageClock& stage) {
         const std::size_t blocks = layout_.blocks.size();
-        const auto width = static_cast<std::int32_t>(compared_share * layout_.halo);
         std::vector<Border> border(blocks);
         // Voxels of each primitive in its block's core.
         std::vector<std::vector<std::uint64_t>> in_core(blocks);
         for (std::size_t b = 0; b < blocks; ++b) {
             const BlockParts parts = read_block(folder_, b);
             const tiles::VoxelBox& core = layout_.blocks[b].core;
-            border[b] = border_of(parts, core, width);
+            border[b] = border_of(parts, layout_.blocks[b], layout_.halo);
             first_.push_back(static_cast<std::int32_t>(members_.size()));
             in_core[b].resize(parts.primitives.size());
             for (std::size_t n = 0; n < parts.cells.size(); ++n) {
                 const SolidCells& c = parts.cells;
-                if (c.primitive[n] >= 0 && core.holds(c.i[n], c.j[n], c.k[n]))
-                    ++in_core[b][static_cast<std::size_t>(c.primitive[n])];
+                if (!core.holds(c.i[n], c.j[n], c.k[n])) continue;
+                ++cells_;
+                if (c.primitive[n] >= 0) ++in_core[b][static_cast<std::size_t>(c.primitive[n])];
             }
+            samples_ += parts.samples.size();
             for (std::size_t p = 0; p < parts.primitives.size(); ++p) {
                 members_.push_back({b, static_cast<std::int32_t>(p)});
                 about_.push_back(parts.primitives[p]);
@@ -153,7 +176,8 @@ class Joiner {
             stage.progress("joining",
                            0.5 * static_cast<double>(b + 1) / static_cast<double>(blocks));
         }
-        unite(border, width);
+        unite(border);
+        border = {};
         number();
         JoinedBlocks out = collect(stage);
         geometry::sort_by_primitive(out.parts.samples);
@@ -165,12 +189,12 @@ class Joiner {
         return first_[block] + primitive;
     }
 
-    void unite(const std::vector<Border>& border, std::int32_t width) {
+    void unite(const std::vector<Border>& border) {
         sets_ = Sets(members_.size());
         for (std::size_t a = 0; a < border.size(); ++a) {
-            const tiles::VoxelBox near = layout_.blocks[a].core.grown(width);
+            const tiles::VoxelBox near = compared(layout_.blocks[a]);
             for (std::size_t b = a + 1; b < border.size(); ++b) {
-                tiles::VoxelBox region = layout_.blocks[b].core.grown(width);
+                tiles::VoxelBox region = compared(layout_.blocks[b]);
                 if (!meet(near, region)) continue;
                 for (std::size_t axis = 0; axis < 3; ++axis) {
                     region.low[axis] = std::max(region.low[axis], near.low[axis]);
@@ -201,6 +225,10 @@ class Joiner {
         parts.frame = layout_.frame;
         SolidCells cells;
         cells.voxel_m = layout_.voxel_m;
+        for (auto* values : {&cells.i, &cells.j, &cells.k, &cells.primitive})
+            values->reserve(cells_);
+        cells.basis.reserve(cells_);
+        cells.unseen_below.reserve(cells_);
         std::vector<Role> roles = name(parts);
         parts.points.resize(parts.model.size());
         parts.seams.inside.resize(parts.model.size());
@@ -212,7 +240,7 @@ class Joiner {
                     number_[static_cast<std::size_t>(id(b, static_cast<std::int32_t>(p)))]);
             add_cells(block, layout_.blocks[b].core, numbers, cells);
             add_seams(block.seams, numbers, parts.seams);
-            add_samples(block.samples, numbers, parts.samples);
+            add_samples(block.samples, numbers, samples_, parts.samples);
             out.number.push_back(std::move(numbers));
             stage.progress("joining", 0.5 + 0.5 * static_cast<double>(b + 1) /
                                                 static_cast<double>(layout_.blocks.size()));
@@ -288,9 +316,9 @@ class Joiner {
         }
     }
 
-    // Of primitives that are kept. The spacing is the mean over all.
+    // Of primitives that are kept, of `all` at most. The spacing is the mean over all.
     static void add_samples(const geometry::SurfaceSamples& from,
-                            const std::vector<std::int32_t>& numbers,
+                            const std::vector<std::int32_t>& numbers, std::size_t all,
                             geometry::SurfaceSamples& to) {
         const auto count = static_cast<double>(to.size()), more = static_cast<double>(from.size());
         if (from.size() == 0) return;
@@ -298,6 +326,9 @@ class Joiner {
         to.spacing_m = (count * to.spacing_m + more * from.spacing_m) / (count + more);
         const auto columns = geometry::columns_of(to);
         const auto sources = geometry::columns_of(from);
+        for (std::size_t c = 0; c < columns.size(); ++c)
+            if (!sources[c]->empty()) columns[c]->reserve(all);
+        to.primitive.reserve(all);
         for (std::size_t n = 0; n < from.size(); ++n) {
             const std::int32_t p = numbers[static_cast<std::size_t>(from.primitive[n])];
             if (p < 0) continue;
@@ -313,6 +344,7 @@ class Joiner {
     std::vector<Member> members_;
     std::vector<BlockParts::Primitive> about_;  // by member
     std::vector<std::uint64_t> voxels_;         // of each member in its block's core
+    std::size_t cells_ = 0, samples_ = 0;       // of all cores
     Sets sets_{0};
     std::vector<std::int32_t> number_;  // by member
     std::int32_t count_ = 0;

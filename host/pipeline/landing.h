@@ -10,10 +10,16 @@
 
 namespace topple {
 
-// What an object does on the easiest way out of its pose: where its centre of mass then is, at its
-// first landing, what it sweeps until then, and the energy that it has there. Grid frame.
+// What an object does on the easiest way out of its pose on which it comes to rest lower: where its
+// centre of mass then is, at its first landing, what it sweeps until then, and the energy that it
+// has there. Grid frame.
 struct Landing {
     physics::Swept swept;
+    double drop_m = 0;  // beyond where its support ends
+    // Where no way takes less, the same; else where it comes to lean on the building on the easiest
+    // one, which releases nothing.
+    physics::Swept easiest;
+    bool on_easiest = true;
     // What it has given up since the top of the barrier, with the lowest push over it.
     double hits_J = 0;
     safety::FallZone zone;

@@ -16,6 +16,7 @@
 #include "physics/leaning.h"
 #include "physics/overturning.h"
 #include "physics/solid_hulls.h"
+#include "pipeline/find_hidden_walls.h"
 #include "pipeline/object_masses.h"
 #include "safety/directions.h"
 #include "solids/cell_shape.h"
@@ -191,8 +192,9 @@ physics::Toppling toppling_of(const StableObject& object, const physics::Stabili
 }
 
 void find_barriers(device::Device& device, const physics::SupportTable& table,
-                   const SolidScene& solids, std::span<const std::int32_t> object_of_primitive,
-                   double friction, std::vector<StableObject>& objects) {
+                   const SolidScene& solids, const physics::HiddenWalls& walls,
+                   std::span<const std::int32_t> object_of_primitive, double friction,
+                   std::vector<StableObject>& objects) {
     const SolidCells& cells = solids.cells();
     const CellColumns& columns = solids.columns();
     const std::vector<ObjectBox> boxes = object_boxes(solids, object_of_primitive, objects.size());
@@ -240,7 +242,7 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (objects[o].grounded) return;
         objects[o].open_tipping = tipping[o];
-        if (auto beside = physics::beside_fixed(cells, columns, candidates[o], fixed,
+        if (auto beside = physics::beside_fixed(cells, columns, walls, candidates[o], fixed,
                                                 objects[o].highest_m, tipping[o]))
             tipping[o] = std::move(*beside);
         physics::Instability& how = objects[o].instability;
@@ -313,8 +315,11 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
     });
     stage("barriers", [&] {
         collect_objects(*solid.solids, parts.shell.pinned, options, device.threads(), hand, out);
-        find_barriers(device, table, *solid.solids, out.object_of_primitive, options.friction,
-                      out.objects);
+        std::vector<bool> grounded;
+        for (const StableObject& o : out.objects) grounded.push_back(o.grounded);
+        out.hidden_walls = find_hidden_walls(solid, out.object_of_primitive, grounded);
+        find_barriers(device, table, *solid.solids, out.hidden_walls, out.object_of_primitive,
+                      options.friction, out.objects);
     });
     const std::vector<graph::PieceOf> pieces = graph::likely_pieces(
         parts.joints, hand.links(), out.object_of_primitive, seen_surface(cells, out));

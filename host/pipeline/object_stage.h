@@ -13,6 +13,7 @@
 #include "graph/stable_objects.h"
 #include "graph/supports.h"
 #include "physics/bodies.h"
+#include "physics/hidden_walls.h"
 #include "physics/inertia.h"
 #include "physics/landscape.h"
 #include "physics/sliding.h"
@@ -67,6 +68,7 @@ struct ObjectStage {
     graph::Grouping grouping;
     std::vector<std::int32_t> object_of_primitive;  // the ground, where there is one, is object 0
     std::vector<StableObject> objects;
+    physics::HiddenWalls hidden_walls;
     std::vector<Support> supports;  // sorted by (supporter, supported)
     HandCorrections::Told told;
     std::optional<TakenAway> taken;  // by hand from the parts, before all else here
@@ -84,10 +86,11 @@ PartStage weigh_parts(device::Device& device, const SolidParts& parts, const Par
 
 // What a push does to objects whose candidates are known, all in one batch: fills in the drops over
 // their edges, tipping, sliding, both together, their poses and boxes. What is grounded stops what
-// falls.
+// falls, and so do walls behind what hides them.
 void find_barriers(device::Device& device, const physics::SupportTable& table,
-                   const SolidScene& solids, std::span<const std::int32_t> object_of_primitive,
-                   double friction, std::vector<StableObject>& objects);
+                   const SolidScene& solids, const physics::HiddenWalls& walls,
+                   std::span<const std::int32_t> object_of_primitive, double friction,
+                   std::vector<StableObject>& objects);
 
 // Takes from the parts what is not there by hand, and from the solids what turns out to be no
 // object's (graph/false_feet.h).

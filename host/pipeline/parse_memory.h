@@ -30,11 +30,15 @@ inline double one_piece_peak(const OnePiece& of) {
            a_patch_m * of.patches_m;
 }
 
-// While frames with readings in so many cells are fused: the sums of each cell twice, and readings
-// that wait, of four million pixels at most.
+// While frames are fused: beside their cells, with readings that wait, of four million pixels at
+// most; and with readings in so many cells of surfaces, whose sums are held twice.
+inline double fusion_beside(double pixels) {
+    constexpr double fixed = 61e6, waiting = 20, most_waiting = 4.2e6;
+    return fixed + waiting * std::min(pixels, most_waiting);
+}
 inline double fusion_peak(double cells, double pixels) {
-    constexpr double fixed = 61e6, a_cell = 200, waiting = 20, most_waiting = 4.2e6;
-    return fixed + a_cell * cells + waiting * std::min(pixels, most_waiting);
+    constexpr double a_cell = 200;
+    return fusion_beside(pixels) + a_cell * cells;
 }
 
 // What a parse in one piece is sure to keep to, by the bounds along the input's own axes.
@@ -49,7 +53,7 @@ inline std::uint64_t one_piece_bytes(double points, double surface_m2, const Bou
 
 // While a block with so many cells in its core is parsed: it sees its halo's, too.
 inline double block_bytes(std::uint64_t cells) {
-    constexpr double fixed = 195e6, a_cell = 450, seen = 1.75;
+    constexpr double fixed = 195e6, a_cell = 300, seen = 1.75;
     return fixed + a_cell * seen * static_cast<double>(cells);
 }
 

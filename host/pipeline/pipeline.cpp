@@ -91,6 +91,14 @@ void refuse_cache(const ParseOptions& options) {
                                       "memory; leave it out, or parse its file");
 }
 
+void refuse_tiles(const ParseOptions& options) {
+    if (options.tile_m == 0) return;
+    throw Error(ErrorKind::usage,
+                "--tile " + number_text(options.tile_m) +
+                    ": only clouds in files are parsed in blocks (.ply, .pcd, .las and .xyz); "
+                    "leave it out");
+}
+
 bool keeps_groundwork(const ParseOptions& options) {
     return !options.cache_file.empty() && options.tile_m == 0;
 }
@@ -185,6 +193,7 @@ ParseResult parse_scan(const std::filesystem::path& input, ParseOptions options)
                 std::move(timings));
     }
     if (std::optional<ParseResult> tiled = parse_tiled(input, options)) return *std::move(tiled);
+    if (std::filesystem::exists(input, error)) refuse_tiles(options);
     return parse_whole(input, options, std::move(cache), std::move(timings));
 }
 
@@ -206,6 +215,7 @@ ParseResult parse(const std::filesystem::path& input, const ParseOptions& option
 ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
     check_options(options);
     refuse_cache(options);
+    refuse_tiles(options);
     const std::string source = cloud.source.empty() ? "cloud" : cloud.source;
     return tell_whole(WholeProgress::Input::cloud, options, [&](const ParseOptions& o) {
         return run(source, o, [&](device::Device& device, StageClock& stage) {
@@ -218,6 +228,7 @@ ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
 ParseResult parse(const FramesView& frames, const ParseOptions& options) {
     check_options(options);
     refuse_cache(options);
+    refuse_tiles(options);
     const std::string source = frames.source.empty() ? "frames" : frames.source;
     return tell_whole(WholeProgress::Input::frames, options, [&](const ParseOptions& o) {
         return run(source, o, [&](device::Device& device, StageClock& stage) {

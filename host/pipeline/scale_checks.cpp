@@ -18,9 +18,10 @@ namespace {
 // full of things stays below.
 constexpr double least_room_m = 1.5, largest_room_m = 30, least_scan_m = 0.5;
 
+// To three digits, or all before the point.
 std::string text_of(double value) {
     char digits[32];
-    std::snprintf(digits, sizeof(digits), "%.3g", value);
+    std::snprintf(digits, sizeof(digits), value >= 1000 && value < 1e9 ? "%.0f" : "%.3g", value);
     return digits;
 }
 
@@ -89,6 +90,16 @@ void check_camera_steps(std::span<const Vec3> places, const std::string& source)
     throw Error(ErrorKind::input, source + ": the camera moves by " + text_of(*middle) +
                                       " m from one frame to the next: places of poses are metres; "
                                       "if these are mm, multiply them by 0.001");
+}
+
+void check_readings(const Intrinsics& k, std::size_t frames, double typical_depth_m,
+                    const std::string& source, ScanOrigin origin) {
+    const double pixel_m = typical_depth_m / std::max(k.fx, k.fy);
+    if (!(pixel_m > sparsest_m)) return;
+    throw Error(ErrorKind::input,
+                source + ": " + depth_scale_hint(frames, k.depth_scale, typical_depth_m, origin) +
+                    "; there its pixels are " + text_of(pixel_m) + " m apart, more than the " +
+                    text_of(sparsest_m) + " m at which surfaces can be found");
 }
 
 void note_spacing(double spacing_m, std::vector<std::string>& notes) {

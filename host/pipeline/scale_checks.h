@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "topple/cloud_view.h"
+#include "topple/input.h"
 #include "topple/scene.h"
 
 // Whether a scan is of the size of rooms in metres: who gives another unit than the file's, or
@@ -41,6 +42,11 @@ void note_small_extent(double extent_m, ScanOrigin origin, std::vector<std::stri
 // Refuses frames between which the camera moved as nobody carries one: their poses are in another
 // unit. places: of the cameras, metres. Throws Error(input).
 void check_camera_steps(std::span<const Vec3> places, const std::string& source);
+
+// Refuses frames whose pixels lie too far apart for surfaces where their typical reading is, as
+// those of a depth_scale that is off by a thousand do. Throws Error(input).
+void check_readings(const Intrinsics& intrinsics, std::size_t frames, double typical_depth_m,
+                    const std::string& source, ScanOrigin origin);
 
 // Says what points of a cloud that are so far apart leave open, where that matters for things in
 // rooms: thin boards, and what stands on little.

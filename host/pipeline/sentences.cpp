@@ -270,7 +270,7 @@ void tell_why(const SolidParts& parts, const ObjectStage& objects,
               std::span<const Landing> landings, Scene& scene) {
     const physics::Swept free{};
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
-        const physics::Swept& swept = o < landings.size() ? landings[o].swept : free;
+        const physics::Swept& swept = o < landings.size() ? landings[o].easiest : free;
         scene.objects[o].why.sentence = Sentence(scene, parts, objects, swept, o).text();
     }
 }

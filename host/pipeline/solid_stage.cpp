@@ -8,12 +8,12 @@
 namespace topple {
 
 SolidStage find_solids(device::Device& device, const Ingested& input, double voxel_m,
-                       const ParseOptions& options, StageClock& stage) {
+                       const ParseOptions& options, StageClock& stage, SolidDetail detail) {
     FramedSurfels surfels = find_surfels(device, input, options, stage);
     SpaceCarving carving(device, input, {voxel_m, surfels.frame.axes});
     SolidStage out;
-    out.geometry = find_primitives(device, input, std::move(surfels), stage);  // 2.1
-    out.voxels = make_solids(device, input, out.geometry, carving, stage);     // 2.2
+    out.geometry = find_primitives(device, input, std::move(surfels), stage);       // 2.1
+    out.voxels = make_solids(device, input, out.geometry, carving, stage, detail);  // 2.2
     return out;
 }
 

@@ -18,6 +18,7 @@ struct SolidStage {
 
 // Free space is carved beside the finding of primitives, where that is possible.
 SolidStage find_solids(device::Device& device, const Ingested& input, double voxel_m,
-                       const ParseOptions& options, StageClock& stage);
+                       const ParseOptions& options, StageClock& stage,
+                       SolidDetail detail = SolidDetail::within_voxels);
 
 }  // namespace topple

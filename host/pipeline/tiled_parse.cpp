@@ -20,6 +20,7 @@
 #include "pipeline/explain.h"
 #include "pipeline/ingest.h"
 #include "pipeline/join_blocks.h"
+#include "pipeline/memory_limit.h"
 #include "pipeline/object_stage.h"
 #include "pipeline/parse_memory.h"
 #include "pipeline/safety_stage.h"
@@ -216,17 +217,15 @@ void add_notes(const tiles::SpilledPoints& points, const tiles::Layout& layout, 
 }
 
 // Before the blocks, which take most of the time.
-void check_memory(const tiles::Layout& layout, const fs::path& input, const ParseOptions& options) {
-    if (options.max_memory_bytes == 0) return;
+void check_memory_of(const tiles::Layout& layout, const fs::path& input,
+                     const ParseOptions& options) {
     double all = 0;
     for (const tiles::Block& b : layout.blocks) all += static_cast<double>(b.cells);
     const double need = std::max(whole_bytes(all), block_bytes(largest_block(layout)));
-    if (need <= static_cast<double>(options.max_memory_bytes)) return;
-    io::fail(input, "in blocks at voxels of " + io::short_number(layout.voxel_m) +
-                        " m it would need about " +
-                        io::bytes_text(static_cast<std::uint64_t>(need)) + ", more than the " +
-                        io::bytes_text(options.max_memory_bytes) +
-                        " of --max-memory; use a larger --voxel");
+    check_memory(io::path_text(input) + ": in blocks at voxels of " +
+                     io::short_number(layout.voxel_m) + " m it would need about",
+                 static_cast<std::uint64_t>(need), options, ScanOrigin::cloud_file,
+                 "use a larger --voxel");
 }
 
 ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
@@ -237,7 +236,7 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
     const std::vector<tiles::Bin> bins = bins_of(points);
     const tiles::Layout layout = or_remove(*work, [&] {
         tiles::Layout found = find_layout(shared, points, input, options, stage);
-        check_memory(found, input, options);
+        check_memory_of(found, input, options);
         return found;
     });
     stage("blocks", [&] { parse_blocks(shared, points, layout, options, stage); });
@@ -256,6 +255,8 @@ ParseResult parse_in_blocks(const fs::path& input, const ParseOptions& options,
                                                      layout, std::move(joined.number));
     parts.points = tiled->count_points(parts.model.size());
     const ObjectStage objects = find_objects(device, options, stage, parts);
+    parts.samples = {};  // joints were judged by them, and by nothing else
+    parts.seams = {};
     if (objects.taken) tiled->take_away(*objects.taken);
     SafetyStage safety = assess_safety(device, parts, objects, options, stage);
     stage("assembly", [&] {

@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "core/thread_pool.h"
+#include "geometry/algebraic_model.h"
 #include "geometry/ledges.h"
+#include "geometry/split.h"
 #include "geometry/surface_gaps.h"
 #include "solids/boundary.h"
 #include "solids/patches.h"
@@ -109,6 +111,30 @@ Faces find_faces(device::Device& device, const Ingested& input, const GeometrySt
     return out;
 }
 
+// Of the shell's solids those that were seen from one side only, by what their surfels' faces look
+// to.
+std::vector<bool> find_sheets(const GeometryStage& geometry,
+                              const std::vector<std::int32_t>& number,
+                              std::span<const Role> roles) {
+    const geometry::Surfels& s = geometry.surfels;
+    const geometry::Regions& faces = geometry.primitives.faces;
+    std::vector<Eigen::Vector3d> sum(roles.size(), Eigen::Vector3d::Zero());
+    std::vector<double> count(roles.size(), 0.0);
+    for (std::size_t n = 0; n < s.size(); ++n) {
+        const std::int32_t face = faces.label[n], primitive = geometry.primitives.label[n];
+        const std::int32_t p = primitive < 0 ? -1 : number[static_cast<std::size_t>(primitive)];
+        if (face < 0 || p < 0 || !in_shell(roles[static_cast<std::size_t>(p)])) continue;
+        const geometry::AlgebraicModel& model = faces.regions[static_cast<std::size_t>(face)].model;
+        sum[static_cast<std::size_t>(p)] +=
+            geometry::gradient(model, geometry::position(s, n)).normalized();
+        ++count[static_cast<std::size_t>(p)];
+    }
+    std::vector<bool> out;
+    for (std::size_t p = 0; p < roles.size(); ++p)
+        out.push_back(in_shell(roles[p]) && sum[p].norm() >= solids::one_way * count[p]);
+    return out;
+}
+
 // For each cell the unseen voxels right below it, up to what fits. What is below floors and behind
 // walls is of no interest.
 std::vector<std::uint8_t> unseen_below(const vdb::VolumeView& view,
@@ -137,6 +163,25 @@ std::vector<solids::KnownRest> known_rests(const GeometryStage& geometry,
 }
 
 // Strays are no body, and in no way.
+struct Parted {
+    SolidCells near, strays;
+};
+Parted part_strays(const SolidCells& cells, const vdb::VoxelScene& volume) {
+    Parted out;
+    out.near.voxel_m = out.strays.voxel_m = cells.voxel_m;
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+        const bool in_bounds = volume.in_bounds(cells.i[n], cells.j[n], cells.k[n]);
+        SolidCells& to = in_bounds ? out.near : out.strays;
+        to.i.push_back(cells.i[n]);
+        to.j.push_back(cells.j[n]);
+        to.k.push_back(cells.k[n]);
+        to.primitive.push_back(cells.primitive[n]);
+        to.basis.push_back(cells.basis[n]);
+        to.unseen_below.push_back(cells.unseen_below[n]);
+    }
+    return out;
+}
+
 std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Ingested& input,
                                               const GeometryStage& geometry,
                                               const geometry::GapPoints& gaps,
@@ -145,23 +190,23 @@ std::shared_ptr<const SolidScene> solid_scene(device::Device& device, const Inge
                                               std::vector<Role> roles) {
     Faces faces = find_faces(device, input, geometry, gaps, number, cells.voxel_m, roles);
     cells.unseen_below = unseen_below(vdb::VolumeView(volume, cells, roles), faces.sheet);
-    SolidCells near, strays;
-    near.voxel_m = strays.voxel_m = cells.voxel_m;
-    for (std::size_t n = 0; n < cells.size(); ++n) {
-        const bool in_bounds = volume.in_bounds(cells.i[n], cells.j[n], cells.k[n]);
-        SolidCells& to = in_bounds ? near : strays;
-        to.i.push_back(cells.i[n]);
-        to.j.push_back(cells.j[n]);
-        to.k.push_back(cells.k[n]);
-        to.primitive.push_back(cells.primitive[n]);
-        to.basis.push_back(cells.basis[n]);
-        to.unseen_below.push_back(cells.unseen_below[n]);
-    }
+    Parted parted = part_strays(cells, volume);
     BoundaryCells boundary =
-        solids::find_boundary(device, near, faces.seen, std::move(faces.patches), faces.sheet,
-                              known_rests(geometry, number));
-    return std::make_shared<const SolidScene>(std::move(near), std::move(roles), std::move(strays),
-                                              std::move(boundary));
+        solids::find_boundary(device, parted.near, faces.seen, std::move(faces.patches),
+                              faces.sheet, known_rests(geometry, number));
+    return std::make_shared<const SolidScene>(std::move(parted.near), std::move(roles),
+                                              std::move(parted.strays), std::move(boundary));
+}
+
+std::shared_ptr<const SolidScene> scene_of_whole_voxels(const GeometryStage& geometry,
+                                                        const std::vector<std::int32_t>& number,
+                                                        const vdb::VoxelScene& volume,
+                                                        SolidCells cells, std::vector<Role> roles) {
+    cells.unseen_below =
+        unseen_below(vdb::VolumeView(volume, cells, roles), find_sheets(geometry, number, roles));
+    Parted parted = part_strays(cells, volume);
+    return std::make_shared<const SolidScene>(std::move(parted.near), std::move(roles),
+                                              std::move(parted.strays));
 }
 
 constexpr const char* fraction_field = "fraction";
@@ -245,7 +290,7 @@ geometry::SurfaceSamples numbered(geometry::SurfaceSamples samples,
 }
 
 VoxelStage make_solids(device::Device& device, const Ingested& input, const GeometryStage& geometry,
-                       SpaceCarving& carving, StageClock& stage) {
+                       SpaceCarving& carving, StageClock& stage, SolidDetail detail) {
     VoxelStage out;
     const double voxel_m = carving.frame().voxel_m;
     geometry::GapPoints gaps;
@@ -271,6 +316,11 @@ VoxelStage make_solids(device::Device& device, const Ingested& input, const Geom
         std::vector<Role> roles;
         for (std::size_t p = 0; p < geometry.role.size(); ++p)
             if (out.number[p] >= 0) roles.push_back(geometry.role[p]);
+        if (detail == SolidDetail::whole_voxels) {
+            out.solids = scene_of_whole_voxels(geometry, out.number, *out.scene, std::move(cells),
+                                               std::move(roles));
+            return;
+        }
         out.solids = solid_scene(device, input, geometry, gaps, out.number, *out.scene,
                                  std::move(cells), std::move(roles));
         store_fractions(*out.solids, *out.scene);

@@ -31,9 +31,14 @@ struct VoxelStage {
 // and too little to tell how it stands.
 constexpr std::uint64_t least_voxels = 8;
 
-// Voxels, what is left of carving, and completion.
+// How finely solids are told: by what bounds them within their voxels, or by whole voxels.
+enum class SolidDetail { within_voxels, whole_voxels };
+
+// Voxels, what is left of carving, and completion. In whole voxels the solids have no boundary
+// cells, and the scene no field of fractions.
 VoxelStage make_solids(device::Device& device, const Ingested& input, const GeometryStage& geometry,
-                       SpaceCarving& carving, StageClock& stage);
+                       SpaceCarving& carving, StageClock& stage,
+                       SolidDetail detail = SolidDetail::within_voxels);
 
 // What of the solids is found to be no primitive's, the same cells being solid.
 void take_over(const SolidScene& before, const SolidScene& now, vdb::VoxelScene& scene);

@@ -23,6 +23,27 @@ void bind_labels(py::module_& module) {
             const LentCoordinates lent(view, parsed);
             return FrameLabeller(parsed.result);
         }))
+        // Of the columns that a pickle holds: coordinates, and the part and object of each point.
+        .def(py::init([](const std::vector<py::array>& points, const py::array& part,
+                         const py::array& object, double voxel_m) {
+            const auto copied = [](auto& to, const auto& from) {
+                to.assign(from.begin(), from.end());
+            };
+            ParseResult result;
+            result.scene.voxel_size_m = voxel_m;
+            ScenePoints& to = result.scene.points;
+            copied(to.x, row<const float>(points.at(0), "x"));
+            copied(to.y, row<const float>(points.at(1), "y"));
+            copied(to.z, row<const float>(points.at(2), "z"));
+            copied(to.primitive, row<const std::int32_t>(part, "point_primitive"));
+            copied(to.object, row<const std::int32_t>(object, "point_object"));
+            if (to.y.size() != to.x.size() || to.z.size() != to.x.size() ||
+                to.object.size() != to.primitive.size())
+                throw Error(ErrorKind::usage, "frame labels: the columns differ in length");
+            const Busy busy;
+            const py::gil_scoped_release release;
+            return FrameLabeller(result);
+        }))
         .def("of_file",
              [](const FrameLabeller& self, const std::string& folder, std::size_t number) {
                  FrameLabels found;

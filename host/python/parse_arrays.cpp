@@ -25,6 +25,15 @@ class Caller {
         stage_ = stage;
         ask([&] { progress_(stage, done); });
     }
+    // What may be worth an end before the parse's own, as poses that make nonsense.
+    void notice(const std::string& line) {
+        if (!mine() || stop_) return;
+        ask([&] {
+            constexpr py::ssize_t callers = 2;  // whose line the warning names
+            if (PyErr_WarnEx(PyExc_RuntimeWarning, with_own_names(line).c_str(), callers) != 0)
+                throw py::error_already_set();
+        });
+    }
     // Whether it was told to stop, by the callback or by a signal such as Ctrl-C.
     bool cancelled() {
         if (!stop_ && mine() && due(asked_)) {
@@ -77,6 +86,7 @@ std::shared_ptr<Parsed> run(const std::shared_ptr<SharedDevice>& device, ParseOp
     Caller caller(std::move(progress), std::move(cancelled));
     options.progress = [&](const std::string& stage, double done) { caller.progress(stage, done); };
     options.cancelled = [&] { return caller.cancelled(); };
+    options.notice = [&](const std::string& line) { caller.notice(line); };
     if (device) options.device = device->device;
     auto out = std::make_shared<Parsed>();
     try {
@@ -193,6 +203,11 @@ void bind_parse(py::module_& module) {
                               [&](const ParseOptions& o) { return parse(view, o); });
                });
     module.def("parse_frames", parse_frames);
+    // What Python has to say of a parse, before the library's own.
+    module.def("add_note", [](Parsed& parsed, const std::string& note) {
+        std::vector<std::string>& notes = parsed.result.scene.notes;
+        notes.insert(notes.begin(), note);
+    });
     // Of a scan that was parsed from a copy in another format.
     module.def("came_from", [](Parsed& parsed, const std::string& source,
                                const std::vector<std::string>& notes, const Vec3& offset_m) {

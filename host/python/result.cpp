@@ -48,6 +48,18 @@ auto pose_array(T Landscape::Pose::*value) {
     };
 }
 
+// Of blows, where they lie: (directions, heights).
+auto blow_rows(std::vector<double> DirectedBarrier::*blows) {
+    return [blows](const py::object& self) {
+        const auto& from = self.cast<const DirectedBarrier&>();
+        const auto directions = static_cast<py::ssize_t>(from.push_J.size());
+        const auto heights = static_cast<py::ssize_t>(from.height_m.size());
+        const auto width = static_cast<py::ssize_t>(sizeof(double));
+        return py::array_t<double>({directions, heights}, {heights * width, width},
+                                   (from.*blows).data(), self);
+    };
+}
+
 void bind_landscape(py::module_& module) {
     py::class_<Landscape>(module, "Landscape")
         .def_readonly("now", &Landscape::now)
@@ -101,16 +113,8 @@ void bind_items(py::module_& module) {
                                    return borrowed(self.cast<const DirectedBarrier&>().push_J,
                                                    self);
                                })
-        .def_property_readonly(
-            "blow_J",
-            [](const py::object& self) {
-                const auto& from = self.cast<const DirectedBarrier&>();
-                const auto rows = static_cast<py::ssize_t>(from.push_J.size());
-                const auto heights = static_cast<py::ssize_t>(from.height_m.size());
-                const auto width = static_cast<py::ssize_t>(sizeof(double));
-                return py::array_t<double>({rows, heights}, {heights * width, width},
-                                           from.blow_J.data(), self);
-            })
+        .def_property_readonly("blow_Ns", blow_rows(&DirectedBarrier::blow_Ns))
+        .def_property_readonly("blow_J", blow_rows(&DirectedBarrier::blow_J))
         .def_property_readonly("direction",
                                [](const py::object& self) {
                                    return vectors(self.cast<const DirectedBarrier&>().direction,
@@ -181,6 +185,8 @@ void bind_items(py::module_& module) {
         .def_readonly("agreement", &Object::agreement)
         .def_readonly("mass_kg", &Object::mass_kg)
         .def_readonly("center_of_mass_m", &Object::center_of_mass_m)
+        .def_readonly("support_height_m", &Object::support_height_m)
+        .def_readonly("center_height_m", &Object::center_height_m)
         .def_readonly("size_m", &Object::size_m)
         .def_readonly("box_middle_m", &Object::box_middle_m)
         .def_readonly("piece_of", &Object::piece_of)
@@ -322,6 +328,8 @@ void bind_result(py::module_& module) {
                                        out[py::str(name)] = s;
                                    return out;
                                })
+        .def_property_readonly("in_blocks",
+                               [](const Parsed& p) { return p.result.tiled != nullptr; })
         .def_property_readonly("events", scene(&Scene::events))
         .def_property_readonly(
             "objects", [](const py::object& self) { return items(scene_of(self).objects, self); })

@@ -43,7 +43,8 @@ std::string action_text(const Scene& scene, const Object& o) {
     const std::string& advice = o.advice.sentence;
     if (!doubtful && o.seen_enough && may_fall_hard(o) && !o.unsafety_certain &&
         upset_by_nothing(o))
-        return "Nothing upsets it as measured; if its foot is one error smaller, it falls with up to " +
+        return "Nothing upsets it as measured; if its foot is one error smaller, it falls with up "
+               "to " +
                io::two_digits(most_released_J(o)) + " J: check that it stands firm.";
     if (o.unsafety_category != "none" || doubtful) {
         if (!advice.empty() || o.unsafety_category.empty()) return advice;

@@ -63,6 +63,9 @@ SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primi
                      std::span<const std::int32_t> patch_of_point, const std::array<Vec3, 3>& axes,
                      double voxel_m, ThreadPool& threads);
 
+// Length of the mean normal of what faces one way, at least.
+inline constexpr double one_way = 0.95;
+
 // Whether each of so many primitives was seen from one side only: its patches face one way.
 std::vector<bool> one_sided(const SeenCells& seen, std::span<const SurfacePatch> patches,
                             std::size_t primitives);

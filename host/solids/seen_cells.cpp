@@ -119,7 +119,6 @@ SeenCells seen_cells(const CloudView& cloud, std::span<const std::int32_t> primi
 
 std::vector<bool> one_sided(const SeenCells& seen, std::span<const SurfacePatch> patches,
                             std::size_t primitives) {
-    constexpr double least = 0.95;  // length of the mean normal
     std::vector<Eigen::Vector3d> sum(primitives, Eigen::Vector3d::Zero());
     std::vector<double> count(primitives, 0.0);
     for (std::size_t n = 0; n < seen.size(); ++n) {
@@ -130,7 +129,7 @@ std::vector<bool> one_sided(const SeenCells& seen, std::span<const SurfacePatch>
         count[p] += seen.count[n];
     }
     std::vector<bool> out;
-    for (std::size_t p = 0; p < primitives; ++p) out.push_back(sum[p].norm() >= least * count[p]);
+    for (std::size_t p = 0; p < primitives; ++p) out.push_back(sum[p].norm() >= one_way * count[p]);
     return out;
 }
 

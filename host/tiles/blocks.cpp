@@ -57,9 +57,90 @@ std::int32_t block_edge(double voxel_m) {
            std::max(1, static_cast<std::int32_t>(std::lround(block_edge_m / (leaf * voxel_m))));
 }
 
+// Where storeys are cut, and up to where the lower one's blocks see, voxels.
+struct SlabCut {
+    std::int32_t at = 0, from_below = 0;
+};
+
+// At the leaf nearest to the middle of the slab. The lower storey's blocks see the slab, but not
+// the floor on it: from there they would see its back, and all that stands on it cut off. Where the
+// slab is so thin that its cut lies beside it, they see as much as sideways, and so do the upper
+// storey's downwards.
+SlabCut cut_slab(const geometry::Storey& above, double voxel_m, std::int32_t halo) {
+    SlabCut out;
+    out.at = leaf * static_cast<std::int32_t>(std::lround(above.below_m / (leaf * voxel_m)));
+    out.from_below = static_cast<std::int32_t>(
+        std::lround((above.floor_m - geometry::level_spread_m) / voxel_m));
+    if (out.from_below < out.at) out.from_below = out.at + halo;
+    return out;
+}
+
 std::int32_t floored(std::int32_t value, std::int32_t step) {
     const std::int32_t rest = value % step;
     return value - (rest < 0 ? rest + step : rest);
+}
+
+// A core to be, and how far the cells in it reach. Level, voxels.
+struct Place {
+    std::int32_t storey = 0;
+    std::array<std::int32_t, 2> low{}, high{}, from{}, to{};
+    std::uint64_t cells = 0;
+
+    Place(std::int32_t of_storey, const std::array<std::int32_t, 2>& at, std::int32_t edge)
+        : storey(of_storey),
+          low(at),
+          high{at[0] + edge, at[1] + edge},
+          from{high[0], high[1]},
+          to{low[0], low[1]} {}
+    void add(const std::array<std::int32_t, 3>& voxel) {
+        for (std::size_t a = 0; a < 2; ++a) {
+            from[a] = std::min(from[a], voxel[a]);
+            to[a] = std::max(to[a], voxel[a] + 1);
+        }
+        ++cells;
+    }
+    // With another's cells in its core.
+    Place with(const Place& rim) const {
+        Place out = *this;
+        for (std::size_t a = 0; a < 2; ++a) {
+            out.from[a] = std::min(from[a], rim.from[a]);
+            out.to[a] = std::max(to[a], rim.to[a]);
+            out.low[a] = std::min(low[a], floored(out.from[a], leaf));
+            out.high[a] = std::max(high[a], floored(out.to[a] + leaf - 1, leaf));
+        }
+        out.cells += rim.cells;
+        return out;
+    }
+    bool meets(const Place& other) const {
+        return storey == other.storey && low[0] < other.high[0] && other.low[0] < high[0] &&
+               low[1] < other.high[1] && other.low[1] < high[1];
+    }
+};
+
+// A building ends where it ends: of the outermost cores many hold but a wall, all of it within the
+// halo of the next one inwards, which sees all that they would see of it. They become part of that.
+void join_rims(std::int32_t halo, std::vector<Place>& places) {
+    for (std::size_t a = 0; a < 2; ++a) {
+        for (std::size_t r = 0; r < places.size();) {
+            const Place& rim = places[r];
+            const auto takes = [&](const Place& next) {
+                const bool below = next.high[a] == rim.low[a] && rim.to[a] - rim.low[a] <= halo;
+                const bool above = next.low[a] == rim.high[a] && rim.high[a] - rim.from[a] <= halo;
+                if (next.storey != rim.storey || !(below || above)) return false;
+                const Place both = next.with(rim);
+                return std::ranges::none_of(places, [&](const Place& other) {
+                    return &other != &rim && &other != &next && both.meets(other);
+                });
+            };
+            const auto next = std::ranges::find_if(places, takes);
+            if (next == places.end()) {
+                ++r;
+                continue;
+            }
+            *next = next->with(rim);
+            places.erase(places.begin() + static_cast<std::ptrdiff_t>(r));
+        }
+    }
 }
 
 }  // namespace
@@ -82,33 +163,39 @@ Layout cut_into_blocks(const fs::path& folder, std::span<const Bin> bins,
     out.halo = leaf * static_cast<std::int32_t>(std::ceil(halo_m / (leaf * voxel_m) - 1e-9));
     const std::int32_t edge = block_edge(voxel_m);
     const std::vector<geometry::Storey> storeys = storeys_of(folder, bins, frame, cell_m, voxel_m);
-    std::vector<std::int32_t> begins;  // of each storey, voxels
+    // Below each storey, and above the last.
+    std::vector<SlabCut> cuts;
     for (const geometry::Storey& s : storeys)
-        begins.push_back(
-            std::isinf(s.below_m)
-                ? -far
-                : floored(static_cast<std::int32_t>(std::lround(s.below_m / voxel_m)), leaf));
-    std::map<std::array<std::int32_t, 3>, std::uint64_t> cells;  // by storey, i, j
+        cuts.push_back(std::isinf(s.below_m) ? SlabCut{-far, -far}
+                                             : cut_slab(s, voxel_m, out.halo));
+    cuts.push_back({far, far});
+    std::map<std::array<std::int32_t, 3>, Place> places;  // by storey, i, j
     for (const Bin& bin : bins) {
         const ThinnedBin points = read_thinned(folder, bin);
         for (std::size_t n = 0; n < points.size(); ++n) {
             const auto at = voxel_at(frame, voxel_m, points.x[n], points.y[n], points.z[n]);
-            const auto storey = std::ranges::upper_bound(begins, at[2]) - begins.begin() - 1;
-            ++cells[{static_cast<std::int32_t>(storey), floored(at[0], edge),
-                     floored(at[1], edge)}];
+            const auto above = std::ranges::upper_bound(cuts, at[2], {}, &SlabCut::at);
+            const auto storey = static_cast<std::int32_t>(above - cuts.begin() - 1);
+            const std::array<std::int32_t, 3> low{storey, floored(at[0], edge),
+                                                  floored(at[1], edge)};
+            places.try_emplace(low, Place{storey, {low[1], low[2]}, edge}).first->second.add(at);
         }
     }
-    for (const auto& [at, count] : cells) {
-        if (count < least_cells) continue;
-        const auto storey = static_cast<std::size_t>(at[0]);
+    std::vector<Place> all;
+    for (const auto& [low, place] : places) all.push_back(place);
+    join_rims(out.halo, all);
+    for (const Place& place : all) {
+        if (place.cells < least_cells) continue;
+        const auto storey = static_cast<std::size_t>(place.storey);
         Block block;
-        block.core.low = {at[1], at[2], begins[storey]};
-        block.core.high = {at[1] + edge, at[2] + edge,
-                           storey + 1 < begins.size() ? begins[storey + 1] : far};
+        block.core.low = {place.low[0], place.low[1], cuts[storey].at};
+        block.core.high = {place.high[0], place.high[1], cuts[storey + 1].at};
+        block.seen = block.core.grown(out.halo);
+        block.seen.high[2] = cuts[storey + 1].from_below;
         block.floor_m = storeys[storey].floor_m;
         block.top_m = storey + 1 < storeys.size() ? storeys[storey + 1].below_m
                                                   : std::numeric_limits<double>::infinity();
-        block.cells = count;
+        block.cells = place.cells;
         out.blocks.push_back(block);
     }
     return out;
@@ -148,7 +235,7 @@ TileReader::TileReader(const fs::path& folder, std::span<const Bin> bins, const 
     : folder_(folder), bins_(bins), layout_(layout), blocks_(blocks) {}
 
 bool TileReader::sees(std::size_t block, std::size_t bin) const {
-    const VoxelBox seen = layout_.blocks[block].core.grown(layout_.halo);
+    const VoxelBox& seen = layout_.blocks[block].seen;
     // The bin's cube in voxels: its centre, and how far it reaches along each axis.
     for (std::size_t a = 0; a < 3; ++a) {
         const Vec3& axis = layout_.frame.axes[a];
@@ -167,7 +254,7 @@ bool TileReader::sees(std::size_t block, std::size_t bin) const {
 BlockPoints TileReader::next() {
     const std::size_t number = blocks_[next_++];
     const Block& block = layout_.blocks[number];
-    const VoxelBox seen = block.core.grown(layout_.halo);
+    const VoxelBox& seen = block.seen;
     BlockPoints out;
     for (std::size_t b = 0; b < bins_.size(); ++b) {
         if (!sees(number, b)) continue;
@@ -205,13 +292,14 @@ std::vector<std::vector<std::size_t>> tiles_of(const Layout& layout, double tile
     const auto blocks = std::max(1L, std::lround(tile_m / block_edge_m));
     // By storey, as its blocks begin at one height, and the square's place.
     std::map<std::array<std::int64_t, 3>, std::vector<std::size_t>> tiles;
-    const auto square = [&](std::int32_t low) {
-        const std::int64_t place = low / block;  // a multiple of it
+    // By a core's middle: at rims it is larger.
+    const auto square = [&](const VoxelBox& core, std::size_t a) {
+        const std::int64_t place = floored((core.low[a] + core.high[a]) / 2, block) / block;
         return (place >= 0 ? place : place - blocks + 1) / blocks;
     };
     for (std::size_t b = 0; b < layout.blocks.size(); ++b) {
         const VoxelBox& core = layout.blocks[b].core;
-        tiles[{core.low[2], square(core.low[0]), square(core.low[1])}].push_back(b);
+        tiles[{core.low[2], square(core, 0), square(core, 1)}].push_back(b);
     }
     std::vector<std::vector<std::size_t>> out;
     for (auto& [place, of_tile] : tiles) out.push_back(std::move(of_tile));

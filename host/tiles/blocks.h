@@ -28,9 +28,9 @@ struct VoxelBox {
 };
 
 // Part of a storey that is looked at in one piece. Each voxel is in the core of one block; around
-// its core a block sees `Layout::halo` voxels more.
+// its core a block sees `Layout::halo` voxels more, but nothing of the floor above.
 struct Block {
-    VoxelBox core;
+    VoxelBox core, seen;
     double floor_m = 0;       // of its storey, NaN where that has none
     double top_m = 0;         // where the next storey begins; infinite above the last
     std::uint64_t cells = 0;  // thinned cells in its core

@@ -25,6 +25,9 @@ TEST_F(Tiled, says_what_is_wrong_with_a_cloud) {
     expect_failure(1, {"parse", "cut.ply", "--tile", "5", "-o", "out", "--quiet"}, {"cut.ply"});
     put("far.xyz", "1e9 0 0\n");
     expect_failure(1, {"parse", "far.xyz", "--tile", "5", "-o", "out", "--quiet"}, {"1e+09"});
+    std::filesystem::create_directories(in("frames/depth"));
+    expect_failure(2, {"parse", "frames", "--tile", "5", "-o", "out", "--quiet"},
+                   {"--tile 5", "leave it out"});
     expect_failure(1, {"parse", "away.ply", "--tile", "5", "-o", "out", "--quiet"}, {"away.ply"});
 }
 

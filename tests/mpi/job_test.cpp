@@ -19,7 +19,7 @@ const fs::path& room() {
     static const scenes::TemporaryFolder folder("topple_mpi");
     static const fs::path cloud = [] {
         const fs::path file = folder.path() / "room.ply";
-        scenes::write_building(file, {.points = 20'000, .spacing_m = 0.03},
+        scenes::write_building(file, {.points = 170'000, .spacing_m = 0.05},
                                [](std::size_t, std::size_t) { return true; });
         return file;
     }();

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Installs what was built, and uses it as a stranger's project would.
 
-  package_test.py install|example|headers|adopt_opencl|examples|pkg_config|python|python_formats|python_example|notebooks
+  package_test.py install|example|headers|exports|adopt_opencl|examples|pkg_config|python|python_formats|python_example|notebooks
       --source DIR --build DIR --work DIR ...
 
 `install` comes first: it installs into WORK, moves the whole elsewhere, so that nothing can depend on where
@@ -10,6 +10,7 @@ it was first, and parses a small generated scan with the program there. Each of 
 and runs a project against it. Exits with 77 where a test is skipped.
 """
 import argparse
+import collections
 import json
 import os
 import re
@@ -107,12 +108,54 @@ class Package:
         printed = run(os.path.join(built, 'robot'), out)
         print(printed)
         for expected in (r'^3 objects$', r'^mass of object [12]: held$', r'^object [12]: .* 3\.0 kg', r'^  stands on object [12]$',
-                         r'^3 bodies in'):
+                         r'^  an arm may touch it', r'^3 bodies in'):
             check(re.search(expected, printed, re.M), f'the map\'s example did not print {expected}')
         check(os.path.exists(out + '-mujoco/scene.xml') and os.path.exists(out + '/report.html'), 'the map\'s example wrote too little')
 
     def headers(self):
         self.build(os.path.join(self.a.source, 'tests/package/consumer'), 'headers-build', 'headers')
+
+    def exports(self):
+        """What a shared library shows is what the public headers declare, whichever linker makes it."""
+        declared = collections.Counter()
+        for name in os.listdir(os.path.join(self.prefix, 'include/topple')):
+            with open(os.path.join(self.prefix, 'include/topple', name), encoding='utf-8') as file:
+                text = re.sub(r'//[^\n]*|/\*.*?\*/', '', file.read(), flags=re.S)
+            # Functions outside of classes begin at the margin; those with a body are no symbols of the library.
+            declared.update(re.findall(r'^(?!inline|typedef|using)[\w:][\w:<>,&* ]*?[ &*](\w+)\((?:[^;{}()]|\([^()]*\)|\{\})*\);', text, re.M))
+            self.members = getattr(self, 'members', '') + text
+        check(declared['parse'] == 3 and declared['topple_parse_cloud'] == 1, f'the headers declare {dict(declared)}')
+        libraries = [os.path.join(folder, name) for folder, _, names in os.walk(self.prefix) for name in names
+                     if name in ('libtopple.a', 'libtopple.so')]
+        check(len(libraries) == 1, f'libtopple lies in {libraries}')
+        if libraries[0].endswith('.so'):
+            return self.check_exports('its linker', libraries[0], declared)
+        linkers = [linker for linker in ('bfd', 'gold', 'lld', 'mold') if shutil.which('ld.' + linker)]
+        check(linkers, 'no linker was found')
+        os.environ['PKG_CONFIG_PATH'] = os.path.join(os.path.dirname(libraries[0]), 'pkgconfig')
+        needed = [flag for flag in run('pkg-config', '--libs', 'topple').split() if flag != '-ltopple']
+        for linker in linkers:
+            shared = os.path.join(self.a.work, f'libtopple-{linker}.so')
+            run(self.a.compiler, '-shared', '-fuse-ld=' + linker, '-Wl,--no-undefined',
+                '-Wl,--version-script=' + os.path.join(self.a.source, 'host/package/exports.map'),
+                '-Wl,--whole-archive', libraries[0], '-Wl,--no-whole-archive', *needed, '-o', shared)
+            self.check_exports(linker, shared, declared)
+            os.remove(shared)
+
+    def check_exports(self, linker, library, declared):
+        symbols = set(run('nm', '-DC', '--defined-only', '--format=posix', library).splitlines())
+        # "topple::parse(...) T 12 34", "topple_parse T 12 34"; of gold's standard library nothing is ours to hide.
+        shown = sorted({re.sub(r' [A-Za-z] [0-9a-f ]*$', '', symbol) for symbol in symbols if symbol.startswith('topple')})
+        found = collections.Counter()
+        for symbol in shown:
+            scopes = re.sub(r'\[abi:\w+\]', '', symbol).split('(')[0].split('::')
+            if scopes[0].startswith('topple_') or all(scope.islower() for scope in scopes[:-1]):
+                found[scopes[-1]] += 1
+            else:
+                name = scopes[-1].removeprefix('~')
+                check(name == scopes[-2] or re.search(rf'(?<!\w){re.escape(name)}\(', self.members), f'{linker}: {symbol} is shown, and no public header has it')
+        check(found == declared, f'{linker}: shown more often than declared: {dict(found - declared)}; less often: {dict(declared - found)}')
+        print(f'{linker}: {len(shown)} symbols')
 
     def adopt_opencl(self):
         source = os.path.join(self.a.source, 'tests/package/consumer')
@@ -212,7 +255,7 @@ class Package:
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument('test', choices=['install', 'example', 'headers', 'adopt_opencl', 'examples', 'pkg_config', 'python',
+    parser.add_argument('test', choices=['install', 'example', 'headers', 'exports', 'adopt_opencl', 'examples', 'pkg_config', 'python',
                                          'python_formats', 'python_example', 'notebooks'])
     for name in ('source', 'build', 'work', 'cmake', 'generator', 'c-compiler', 'compiler', 'build-type', 'venv-python'):
         parser.add_argument('--' + name, required=True)

@@ -105,8 +105,18 @@ void check_object(const Object& o, std::size_t objects) {
                            breaks.pgv_dispersion, breaks.falls_per_year, breaks.return_years})
         if (!std::isnan(v)) expect_amount(v, "how an earthquake upsets an object");
     const DirectedBarrier& directed = o.barrier_by_direction;
-    expect(directed.blow_J.size() == directed.push_J.size() * directed.height_m.size(),
+    expect(directed.blow_J.size() == directed.push_J.size() * directed.height_m.size() &&
+               directed.blow_Ns.size() == directed.blow_J.size(),
            "a table of barriers has another size than its sides say");
+    for (std::size_t n = 0; n < directed.blow_J.size(); ++n)
+        // P^2 / (2 W) is the mass that the blow meets.
+        expect(std::isinf(directed.blow_J[n]) ? std::isinf(directed.blow_Ns[n])
+                                              : std::pow(directed.blow_Ns[n], 2) <=
+                                                    2 * directed.blow_J[n] * o.mass_kg * (1 + 1e-9),
+               "a blow brings more than its impulse can");
+    expect(std::isnan(o.support_height_m) == std::isnan(o.center_height_m) &&
+               std::isnan(o.support_height_m) == (o.grounded || !o.seen_enough),
+           "what an object stands on is known in part");
     for (const auto* barriers : {&directed.push_J, &directed.blow_J})
         for (const double joules : *barriers)
             expect(joules >= 0 && joules > o.barrier_J * (1 - 1e-9) - 1e-9,

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
 """parse(frames=...): depth frames of memory give what a folder of them gives."""
+import pickle
+import warnings
+
 import numpy as np
 import pytest
 
@@ -96,11 +99,46 @@ def test_labels_of_pixels(walk, depth, sequence, points, device, result):
                         (lambda: result.frame_labels(0), 'points were parsed'), (lambda: parsed.frame_labels(depth[0]), 'takes camera_to_world'),
                         (lambda: parsed.frame_labels('first'), 'frame'), (lambda: parsed.frame_labels(True), 'no frame True'),
                         (lambda: parsed.frame_labels(0, intrinsics=INTRINSICS), 'are for a depth image'),
+                        (lambda: parsed.frame_labels(depth[:1], camera_to_world=POSES[0], intrinsics=INTRINSICS), 'of shape (1, 120, 160); give one of them'),
+                        (lambda: parsed.frame_labels(depth[0], camera_to_world=POSES, intrinsics=INTRINSICS), 'expected shape (4, 4), not (18, 4, 4)'),
+                        (lambda: parsed.frame_labels(depth[0], camera_to_world=POSES[0][:3], intrinsics=INTRINSICS), 'not (3, 4); add the row 0, 0, 0, 1'),
+                        (lambda: parsed.frame_labels(depth[0], camera_to_world=POSES[0], intrinsics=np.eye(3)), 'of a matrix K give Intrinsics(K[0, 0]'),
                         (lambda: parsed.frame_labels(depth, camera_to_world=POSES[0], intrinsics=INTRINSICS), 'of shape (H, W)'),
                         (lambda: parsed.frame_labels(depth[0], camera_to_world=np.diag([1, 1, -1, 1.0]), intrinsics=INTRINSICS), 'camera_to_world')):
         with pytest.raises(topple.Error) as raised:
             call()
         assert words in str(raised.value), raised.value
+
+
+def test_labels_of_pixels_after_a_pickle(depth, sequence, device, result, tmp_path, monkeypatch):
+    of_folder = pickle.loads(pickle.dumps(sequence))
+    monkeypatch.chdir(tmp_path)
+    for n in (0, 7):
+        assert np.array_equal(of_folder.frame_labels(n), sequence.frame_labels(n))
+    given = {'camera_to_world': POSES[7], 'intrinsics': INTRINSICS}
+    parsed = of_memory(depth, device)
+    of_frames, of_points = pickle.loads(pickle.dumps(parsed)), pickle.loads(pickle.dumps(result))
+    for back, whole in ((of_frames, parsed), (of_points, result), (pickle.loads(pickle.dumps(of_points)), result)):
+        assert np.array_equal(back.frame_labels(depth[7], **given), whole.frame_labels(depth[7], **given))
+    for back, words in ((of_frames, 'a pickle does not hold the frames that were parsed; give the depth image with its camera_to_world'),
+                        (of_points, 'points were parsed, and no depth frames')):
+        with pytest.raises(topple.Error) as raised:
+            back.frame_labels(0)
+        assert raised.value.kind == 'usage' and words in str(raised.value)
+
+
+def test_poses_and_principal_points_that_mean_something_else_are_noted(depth, sequence, device):
+    assert not any('convention' in note or 'principal point' in note for note in sequence.notes)
+    flipped = np.array(POSES) @ np.diag([1, -1, -1, 1])
+    with pytest.warns(RuntimeWarning, match='The poses seem to be in another convention'):
+        coarse = INTRINSICS._replace(fx=INTRINSICS.fx / 2, fy=INTRINSICS.fy / 2, cx=INTRINSICS.cx / 2, cy=INTRINSICS.cy / 2)
+        notes = of_memory(depth[:, ::2, ::2], device, camera_to_world=flipped, intrinsics=coarse, voxel_m=0.05).notes
+    assert notes[0].startswith('The poses seem to be in another convention') and 'pose @ np.diag([1, -1, -1, 1])' in notes[0]
+    with warnings.catch_warnings(), pytest.raises(RuntimeWarning):  # at once, and the parse ends
+        warnings.simplefilter('error')
+        of_memory(depth, device, camera_to_world=flipped)
+    notes = of_memory(depth[:1], device, camera_to_world=None, intrinsics=INTRINSICS._replace(cx=0)).notes
+    assert any('The principal point (0, 59.5)' in note for note in notes)
 
 
 def refused(kind, *parts, **options):
@@ -130,6 +168,7 @@ def test_what_makes_no_sense(depth, points, device):
     refused('usage', 'colours[0]', '(H, W, 3)', **(given | {'colours': np.zeros((18, 12, 16), np.uint8)}))
     refused('input', 'frame 0: colour is 12 x 16', **(given | {'colours': np.zeros((18, 16, 12, 3), np.uint8)}))
     refused('usage', 'unit_m', **(given | {'unit_m': 0.001}))
+    refused('usage', 'tile_m 5: only clouds in files', **(given | {'tile_m': 5}))
     refused('usage', 'cache_file', **(given | {'cache_file': 'cache'}))
     refused('usage', 'viewpoint', **(given | {'viewpoint': [0, 0, 0]}))
     refused('input', 'max_memory_bytes', **(given | {'max_memory_bytes': 1 << 20}))

@@ -211,9 +211,72 @@ def test_errors_say_what_is_wrong(given, words, device):
     assert raised.value.kind == ('usage' if usage else 'input')
 
 
+class Frame:
+    """Named columns, as pandas and polars have them."""
+
+    def __init__(self, **columns):
+        self._columns, self.columns = columns, list(columns)
+
+    def __getitem__(self, name):
+        return self._columns[name]
+
+
+def by_name(points, **more):
+    return Frame(z=points[:, 2], x=points[:, 0], **more, y=points[:, 1])
+
+
+def test_takes_tables_and_masked_arrays(points, result, device):
+    for given in (by_name(points, colour=None), {'y': points[:, 1], 'z': points[:, 2], 'x': points[:, 0]}, np.ma.masked_array(points),
+                  points.astype('>f4')):
+        assert np.array_equal(quick(given, device).point_object, result.point_object)
+    masked = np.ma.masked_array(np.concatenate([points[:5], [[9, 9, 9]], points[5:]]).astype(np.float32), False)
+    masked[5, 1] = np.ma.masked
+    parsed = quick(masked, device)
+    assert np.array_equal(parsed.point_object, result.point_object) and parsed.point_index[5] == 6
+    red = np.full(len(points), 200, np.uint8)
+    quick(points, device, colours={'green': red, 'blue': red, 'red': red}, viewpoint=Frame(vp_x=red / 100, vp_y=red / 100, vp_z=red / 100))
+    coarse = quick(points.astype(np.float16), device)  # to 2 mm
+    assert len(coarse.objects) == len(result.objects)
+
+
+class Open3D:
+    points = np.zeros((30, 3))
+
+
+class Learnt:
+    def __dlpack__(self, **options):
+        raise RuntimeError("Can't export tensors that require gradient, use tensor.detach()")
+
+
+@pytest.mark.parametrize('given, words', [
+    (np.zeros((4, 30), np.float32), 'points[:3].T has a row for each point'),
+    (np.zeros(30, np.float32), 'points.reshape(-1, 3) has a row for each point'),
+    (np.zeros((9, 3), object), "points.astype('float32') converts them"),
+    (np.ma.masked_less(np.arange(30).reshape(10, 3), 4), 'points: a masked array of int64'),
+    (Open3D(), 'of a point cloud of Open3D give np.asarray(points.points)'),
+    (Learnt(), 'give .detach()'),
+    (Frame(X=1, y=2, z=3), "points: there is no column 'x', but 'X', 'y', 'z'"),
+    ({'x': [0.5], 'y': [0.5]}, "points: there is no column 'z'"),
+    (Frame(x=np.zeros(3, int), y=np.zeros(3), z=np.zeros(3)), "points['x'].astype('float32') converts integers"),
+])
+def test_what_others_hold_is_told_how_to_give(given, words, device):
+    with pytest.raises(topple.Error) as raised:
+        quick(given, device)
+    assert words in str(raised.value) and raised.value.kind == 'usage'
+
+
+def test_a_peak_in_another_unit_is_told(points, device):
+    for peak, words in ((0.3, 'pga_m_s2=0.3 is 0.031 g: for 0.3 g give pga_m_s2=2.94.'), (30, 'for 30 % of g give pga_m_s2=2.94.')):
+        assert words in topple._options.unlikely_peak_note(peak)
+    for peak in (None, 1, 2.94, 19):
+        assert topple._options.unlikely_peak_note(peak) == ''
+    assert topple.parse(points, device=device, disturbances='earthquake', pga_m_s2=0.3).notes[0].startswith('pga_m_s2=0.3 is')
+    assert not any('pga' in note for note in quick(points, device, pga_m_s2=0.3).notes)
+
+
 def test_errors_of_options_and_devices(points):
-    for option, value, words in (('friction', -1, '^friction -1: expected'), ('wind_from_deg', 400, '^wind_from_deg 400: '),
-                                 ('max_memory_bytes', 1, 'the 1 B of max_memory_bytes; use a larger voxel_m$'),
+    for option, value, words in (('tile_m', 5, '^tile_m 5: only clouds in files'), ('friction', -1, '^friction -1: expected'), ('wind_from_deg', 400, '^wind_from_deg 400: '),
+                                 ('max_memory_bytes', 1, 'the 1 B of max_memory_bytes: allow that much, or use a larger voxel_m$'),
                                  ('disturbances', 'flood', '^disturbances flood: expected human, wind or')):
         with pytest.raises(topple.Error, match=words) as raised:
             topple.parse(points, **{option: value})
@@ -459,6 +522,7 @@ def test_exports_to_simulators(result, tmp_path):
     assert made.floor_m == written['floor_m'] == pytest.approx(0, abs=0.021)
     assert made.free_place_m == written['free_place_m'] and 0.4 < made.free_radius_m < 0.7
     assert result.export(mjcf=tmp_path / 'mjcf', threads=1) == made
+    assert repr(made).startswith(f'<topple.ExportSummary: {len(made.bodies)} bodies, 1 of them fixed, that overlap by ') and len(repr(made)) < 120
 
 
 def test_exports_to_nothing_or_over_others_files_are_refused(result, tmp_path):

@@ -80,6 +80,13 @@ def test_pushes_by_direction_are_in_the_frame_of_the_scan(result, points, device
     weight, reach = 9.80665 * box.mass_kg, box.overturning.hand_height_m
     expected = [weight * min(0.125 / max(abs(x), 1e-9), 0.1 / max(abs(y), 1e-9)) / reach for x, y, _ in box.barrier_by_direction.direction]
     assert np.allclose(box.barrier_by_direction.push_N, expected, rtol=0.25)
+    # What it stands on is the other box, 50 cm high; blows are impulses: that of a free box of half the height in z.
+    assert abs(box.support_height_m - 0.5) < 0.03 and abs(box.center_height_m - 0.175) < 0.03
+    assert box.support_height_m + box.center_height_m == pytest.approx(np.dot(result.up, box.center_of_mass_m))
+    blows = box.barrier_by_direction
+    assert blows.blow_Ns.shape == blows.blow_J.shape == (16, len(blows.height_m))
+    middle = np.abs(blows.height_m - box.center_height_m).argmin()
+    assert np.allclose(blows.blow_Ns[:, middle], np.sqrt(2 * box.mass_kg * blows.blow_J[:, middle]), rtol=0.05)
     table = result.columns('pushes')
     assert table['object'].tolist() == [o.id for o in loose for _ in range(16)] and table['direction'].shape == (16 * len(loose), 3)
     rows = table['object'] == box.id
@@ -92,6 +99,15 @@ def test_pushes_by_direction_are_in_the_frame_of_the_scan(result, points, device
     ahead = turn @ box.overturning.direction
     here = same.barrier_by_direction
     assert here.push_N[np.argmax(here.direction @ ahead)] == pytest.approx(box.overturning.hand_push_N, rel=0.3)
+
+
+def test_without_a_disturbance_nothing_is_said_to_be_safe(points, device):
+    quiet = topple.parse(points, device=device, disturbances=[])
+    assert any(n.startswith('No disturbance was asked for') for n in quiet.notes)
+    for o in quiet.objects:
+        assert o.risk_J == {} and (o.grounded or (np.isnan(o.unsafety) and o.unsafety_category is None and not o.unsafety_certain))
+        assert o.grounded or o.barrier_J > 0
+    assert 'not ranked' in quiet._repr_html_()
 
 
 def test_reprs_say_what_an_item_is(result):
@@ -149,6 +165,7 @@ def test_a_notebook_shows_the_riskiest_first(result):
     assert table.rows == 1 + min(len(loose), 12) and '<script' not in result._repr_html_()
     category = {'high': 3, 'medium': 2, 'low': 1}
     riskiest = max(loose, key=lambda o: (category.get(o.unsafety_category, 0), o.unsafety_category in category and o.unsafety_certain, np.nan_to_num(o.unsafety, nan=0)))
+    assert 'e+' not in table.words and topple._shown.figure(234.5, 1) == '234' and topple._shown.figure(0.0000234, 1) == '0.00002'
     places = [table.words.find(o.why) for o in loose]
     assert min(p for p in places if p >= 0) == table.words.find(riskiest.why)
 
@@ -175,7 +192,7 @@ def test_a_pickle_holds_all_that_can_be_asked_for(result, points, tmp_path):
     assert set(dir(back)) == set(dir(result))
     again = copy.deepcopy(back)
     assert np.array_equal(again.point_object, result.point_object)
-    for call in (lambda: back.write(tmp_path / 'out'), lambda: back.export(mjcf=tmp_path / 'mjcf'), lambda: back.frame_labels(0)):
+    for call in (lambda: back.write(tmp_path / 'out'), lambda: back.export(mjcf=tmp_path / 'mjcf')):
         with pytest.raises(topple.Error, match='before pickling'):
             call()
     assert not list(tmp_path.iterdir())

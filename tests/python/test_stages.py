@@ -187,6 +187,13 @@ def test_a_body_lighter_than_air_is_told(device):
 SQUARE = grid(side=10)
 POSE = np.eye(4)
 CAMERA = stages.Intrinsics(100, 100, 2, 2)
+SEEN = np.full((4, 4), 2000, np.uint16)
+
+
+def far_off(count, step_m):
+    poses = np.tile(POSE, (count, 1, 1))
+    poses[:, 0, 3] = step_m * np.arange(1, count + 1)
+    return poses
 
 
 def volume():
@@ -202,10 +209,12 @@ def volume():
     (lambda d: stages.normals(SQUARE, 0, device=d), 'cell_m 0: expected metres above 0'),
     (lambda d: stages.normals(SQUARE, 20, device=d), 'cell_m 20: expected metres above 0 and at most 1'),
     (lambda d: stages.normals(SQUARE * 1000, 0.02, device=d), 'the points extend over 90 m and are 10 m apart'),
+    (lambda d: stages.point_spacing(SQUARE * 1000), 'are 10 m apart, more than the 0.25 m'),
     (lambda d: stages.normals(SQUARE, 0.1, eye_m=np.zeros((9, 3)), device=d), 'eye_m: expected shape (3,) or (100, 3), one for each point, not 9'),
     (lambda d: stages.normals(SQUARE, 0.1, eye_m=np.zeros((100, 2)), device=d), 'eye_m: expected floats of shape (N, 3)'),
     (lambda d: stages.Volume(SQUARE, np.zeros(100, int), 20), 'voxel_m 20: expected metres from 0.001 to 1'),
     (lambda d: stages.barriers([(box_points(300, 300, 600), 10, (150, 150, 300))], 0.5, device=d), 'points must be in metres'),
+    (lambda d: stages.barriers([(box_points(0.3, 0.3, 0.6), 10, (150, 150, 300))], 0.005, device=d), 'of body 0 lies 299.4 m off its points'),
     (lambda d: stages.barriers([(box_points(1, 1, 1), 10, (0.5, 0.5, 0.5))], 20, device=d), 'resolution_m 20: expected metres from 0 to 1'),
     (lambda d: stages.normals(SQUARE, 'wide', device=d), "cell_m: expected a number, not 'wide'"),
     (lambda d: stages.normals(SQUARE, 0.1, eye_m=(0, np.inf, 1), device=d), 'eye_m: inf at (1,)'),
@@ -218,8 +227,8 @@ def volume():
     (lambda d: stages.Volume(SQUARE, np.full(100, 1 << 40), 0.05), 'label: 1099511627776 is beyond what int32 holds'),
     (lambda d: stages.Volume(SQUARE, np.zeros(100, int), 0), 'voxel'),
     (lambda d: volume().carve(np.full((4, 4), 1 << 20), POSE, CAMERA, device=d), 'depth 0: 1048576 is beyond'),
-    (lambda d: volume().carve(np.zeros(4, np.uint16), POSE, CAMERA, device=d), 'depth 0: expected integers of shape (N, N)'),
-    (lambda d: volume().carve([np.zeros((4, 4), np.uint16), np.zeros((4, 5), np.uint16)], [POSE, POSE], CAMERA, device=d), 'depth 1: expected'),
+    (lambda d: volume().carve(np.zeros(4, np.uint16), POSE, CAMERA, device=d), 'depth 0: expected uint16, metres times depth_scale, or floats, metres, of shape (H, W), not uint16 of shape (4,)'),
+    (lambda d: volume().carve([np.zeros((4, 4), np.uint16), np.zeros((4, 5), np.uint16)], [POSE, POSE], CAMERA, device=d), 'of shape (4, 4), as depth 0, not uint16 of shape (4, 5)'),
     (lambda d: volume().carve(np.zeros((2, 4, 4), np.uint16), POSE, CAMERA, device=d), 'camera_to_world: expected floats of shape (2, 4, 4)'),
     (lambda d: volume().carve(np.zeros((4, 4), np.uint16), POSE * np.nan, CAMERA, device=d), 'camera_to_world: nan at (0, 0, 0)'),
     (lambda d: volume().carve(np.zeros((4, 4), np.uint16), POSE * 1e300, CAMERA, device=d), 'camera_to_world 0: its rows are no rotation'),
@@ -240,11 +249,17 @@ def volume():
     (lambda d: stages.barriers([(np.eye(3), 1, (0, 0, 0))], 0, device=d), 'bodies[0].points: 3 of them make no solid'),
     (lambda d: stages.barriers([3], 0, device=d), 'bodies[0]: expected points, mass_kg, center_of_mass_m, not 3'),
     (lambda d: stages.barriers(5, 0, device=d), 'bodies: expected a list of StandingBody, not int'),
-    (lambda d: volume().carve(np.zeros((4, 4), np.uint16), POSE, (1, 1), device=d), 'intrinsics: expected fx, fy, cx, cy, depth_scale, not (1, 1)'),
+    (lambda d: volume().carve(np.zeros((4, 4), np.uint16), POSE, (1, 1), device=d), 'intrinsics: expected a topple.stages.Intrinsics(fx, fy, cx, cy, depth_scale), not (1, 1)'),
+    (lambda d: volume().carve(np.zeros((4, 4), np.uint16), POSE, np.eye(3), device=d), 'of a matrix K give Intrinsics(K[0, 0], K[1, 1], K[0, 2], K[1, 2])'),
+    (lambda d: volume().carve(SEEN, far_off(1, 1200), CAMERA, device=d), 'the cameras are 1199.91 m from the points: places of poses are metres'),
+    (lambda d: volume().carve(np.stack([SEEN] * 2), far_off(2, 1200), CAMERA, device=d), 'the camera moves by 1200 m from one frame to the next'),
+    (lambda d: volume().carve(SEEN.astype(float), POSE, CAMERA, device=d), 'depth 0: all its readings lie beyond 65.5 m; floats are metres: of millimetres give depth / 1000'),
+    (lambda d: volume().carve(SEEN, POSE, CAMERA._replace(depth_scale=1.0), device=d), 'at the depth_scale of the intrinsics, 1, the readings of 1 depth frame lie about 2000 m away'),
     (lambda d: volume().state_at([1, 2], [1, 2, 3], 0), 'i, j, k: shapes (2,), (3,) and () do not go together'),
     (lambda d: stages.normals(SQUARE, 0.1, eye_m=(1e300, 0, 0), device=d), 'eye_m 1e+300: expected metres up to'),
     (lambda d: stages.normals(SQUARE, 0.1, device='abacus'), 'backend abacus is unknown; take auto'),
-    (lambda d: stages.convolve(np.zeros((4, 4), np.float32), [[0, 0, 1.0]], [0, 1], device=d), 'primary: expected floats of shape (N, N, N)'),
+    (lambda d: stages.convolve(np.zeros((4, 4), np.float32), [[0, 0, 1.0]], [0, 1], device=d), 'primary: expected floats of shape (directions, height, width), not float32 of shape (4, 4)'),
+    (lambda d: stages.convolve(np.zeros((1, 4, 4), np.float32), [[0, 0, 1.0]], [0], device=d), 'first: expected integers of shape (2,)'),
     (lambda d: stages.convolve(np.zeros((1, 4, 4), np.float32), [[0.5, 0, 1]], [0, 1], device=d), 'whole cells'),
     (lambda d: stages.convolve(np.zeros((1, 4, 4), np.float32), [[1e12, 0, 1]], [0, 1], device=d), 'footprint dx: 1000000000000'),
     (lambda d: stages.convolve(np.zeros((1, 4, 4), np.float32), [[0, 0, 1.0]], [0, 2], device=d), 'first must rise'),

@@ -38,6 +38,8 @@ struct ParseOptions {
     double voxel_m = 0;      // edge of a solid voxel, metres; 0: found from the data
     double unit_m = 1;       // metres in the unit of a cloud file's coordinates: 0.001 for mm
     std::optional<Vec3> up;  // up in the input's frame (from an IMU, say); else found
+    // Empty: none, so that there are no risks, and no object has an unsafety or a category. What a
+    // push or a blow does is known all the same.
     std::vector<std::string> disturbances = known_disturbances();
     std::uint64_t seed = 1;
     std::uint64_t max_memory_bytes =
@@ -100,8 +102,8 @@ struct ParseOptions {
     // Polled now and then; true stops the parse with Error(cancelled).
     std::function<bool()> cancelled;
     // Called on the same thread with what a user may want to know while it runs, a line each: that
-    // it goes on with what an earlier run has left in the work folder or the cache, or makes what
-    // is damaged there anew.
+    // it goes on with what an earlier run has left in the work folder or the cache, makes what is
+    // damaged there anew, or that poses do not fit what their frames see, as a note says later.
     std::function<void(const std::string&)> notice;
 };
 
@@ -123,7 +125,7 @@ struct ParseResult {
 // faces), a map (.bt, .ot, .vdb), a sequence folder of depth frames with poses, or
 // a folder with a single frame. The result does not hold the device. Throws Error: input (can't be
 // parsed into a scene), usage (an option is out of range), device (it can't be opened, or failed),
-// cancelled.
+// cancelled. Besides, std::bad_alloc where memory runs out, and what the options' functions throw.
 ParseResult parse(const std::filesystem::path& input, const ParseOptions& options = {});
 
 // The same on a cloud in memory, a PointCloud or the caller's own arrays. No copy of the points is

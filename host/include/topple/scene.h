@@ -37,15 +37,21 @@ struct InstabilityStep {
 
 // What it takes to make an object fall by a push or a blow from where it comes: S(W) by direction
 // and height. `instability` is its envelope: no push and no blow takes less. Index n of the
-// directions is towards the azimuth n * 22.5 degrees (Why::azimuth_deg). Joules; infinity: that way
-// it does not fall. Empty for the ground, and what is held by nothing that was seen.
+// directions is towards the azimuth n * 22.5 degrees (Why::azimuth_deg). Infinity: no fall was
+// found that way, which is no promise: what stands in its way counts as its end, and a drop counts
+// only where a surface was scanned below. Empty for the ground, and what is held by nothing that
+// was seen.
 struct DirectedBarrier {
     static constexpr std::size_t directions = 16;
-    std::vector<double> height_m;  // of blows, above what the object stands on: ascending
-    std::vector<double> push_J;    // done by a slow push, by direction
-    // That the impulse of a level blow would give to the object if nothing held it, motion and
-    // turning together: by direction, then by height.
-    std::vector<double> blow_J;
+    // Of blows, above what the object stands on (Object::support_height_m): ascending.
+    std::vector<double> height_m;
+    std::vector<double> push_J;  // joules, done by a slow push, by direction
+    // Least level blow that makes it fall, by direction, then by height: that of direction n at
+    // height_m[h] is [n * height_m.size() + h]. As an impulse, in newton seconds: what comes at v
+    // m/s with m kg and stays brings m v, and up to twice that where it bounces back. And as the
+    // joules that this impulse would give to the object if nothing held it, motion and turning
+    // together, which are not the energy of what strikes.
+    std::vector<double> blow_Ns, blow_J;
     std::vector<Vec3> direction;  // unit and horizontal, towards where the push goes
     // Steady level push at Overturning::hand_height_m, in newtons, at which the object begins to
     // turn over the edge that the line ahead meets first, whatever that then releases, and one
@@ -196,6 +202,11 @@ struct Object {
     // that density around ParseOptions::contents_kg_m3; or "hollow": a shell, as a correction says.
     std::string mass_model = "solid";
     Vec3 center_of_mass_m{};
+    // How high what it stands on lies along Scene::up, so that a place p is dot(up, p) -
+    // support_height_m above that; and how high the centre of mass is above it, less than 0 for
+    // what hangs. NaN for the ground, and what is held by nothing that was seen.
+    double support_height_m = std::numeric_limits<double>::quiet_NaN();
+    double center_height_m = std::numeric_limits<double>::quiet_NaN();
     Mat3 inertia_kg_m2{};  // about its centre of mass, along the axes of the input, row-major
     double barrier_J = 0;  // least energy that moves it out of its basin
     // One standard error each: of the mass and, along each axis, of its centre, by what surfaces
@@ -220,11 +231,12 @@ struct Object {
     // One standard error of that risk, by disturbance: of the sampling, and of what is not known of
     // the barrier and the mass.
     std::map<std::string, double> risk_error_J;
-    // 1 (safest) to 10, by risk, over the scene's objects; NaN: not seen enough to be ranked.
+    // 1 (safest) to 10, by risk, over the scene's objects; NaN: not seen enough to be ranked, or no
+    // disturbance was asked for.
     double unsafety = 1;
     // "none" | "low" | "medium" | "high", by how likely one event makes it fall and how hard it
     // then falls, whatever else is in the scene, at the worse end of one standard error; "": not
-    // seen enough. Certain where the better end says the same.
+    // seen enough, or no disturbance was asked for. Certain where the better end says the same.
     std::string unsafety_category = "none";
     bool unsafety_certain = true;
     // Whether what holds it up was seen; else it is taken to stand where it is lowest, and has no
@@ -245,9 +257,9 @@ inline bool barrier_within_error(const Object& o) {
     return !o.grounded && o.barrier_J <= o.barrier_error_J;
 }
 
-// By which the riskiest come first; what was not seen enough comes last.
+// By which the riskiest come first; what has no rank comes last.
 inline double rank_of(const Object& o) {
-    return o.seen_enough ? o.unsafety : 0;
+    return o.unsafety >= 1 ? o.unsafety : 0;
 }
 
 // Two primitives that touch.

@@ -51,7 +51,8 @@ struct Array {
     bool on_device() const { return buffer.handle != nullptr; }
 };
 
-// Typical distance of a point to its nearest neighbour, metres; 0 for fewer than two places.
+// Typical distance of a point to its nearest neighbour, metres; 0 for fewer than two places. Throws
+// Error(input), too, where the points lie so far apart that they can't be in metres.
 double point_spacing(const CloudView& cloud);
 
 // Normals of a cloud, one for each point: that of the plane through its neighbourhood of cells,
@@ -95,7 +96,8 @@ class Volume {
     Volume& operator=(Volume&&) noexcept;
 
     // Voxels in front of a depth reading become empty. May be called for one batch of frames after
-    // the other.
+    // the other. Throws Error(input), too, where places or readings can't be in metres: cameras
+    // that leap, or are hundreds of metres from the cloud, and readings from as far away.
     void carve(device::Device& device, const Intrinsics& intrinsics,
                std::span<const DepthView> frames);
     // Voxels that no frame saw take the label that at least `votes` (1 to 6) of the rays along
@@ -109,6 +111,7 @@ class Volume {
 
   private:
     std::unique_ptr<vdb::VoxelScene> scene_;
+    std::array<Vec3, 2> box_m_{};  // around the points: its low and high corner
     std::int32_t labels_ = 0;
 };
 
@@ -142,7 +145,8 @@ struct Barrier {
 
 // Barriers of bodies, by tipping alone (paper, 3.2). resolution_m: to what the points are known,
 // up to 1; what is no higher above the lowest point bears the body. Throws Error(input), too, for a
-// body of a density that none has in metres and kilograms.
+// body of a density that none has in metres and kilograms, and for a centre of mass many times as
+// far from the points as these extend.
 std::vector<Barrier> barriers(device::Device& device, std::span<const StandingBody> bodies,
                               double resolution_m);
 

@@ -236,7 +236,7 @@ typedef struct topple_object {
     double direction[3];
     const topple_step* instability;
     uint64_t instability_count;
-    double unsafety; /* 1 to 10; NaN: not seen enough to be ranked */
+    double unsafety; /* 1 to 10; NaN: not seen enough to be ranked, or no disturbance given */
     double agreement;
     const char *why, *advice; /* sentences */
     /* one standard error each, as barrier_error_J */
@@ -252,8 +252,9 @@ typedef struct topple_object {
     double fragility_firm_pga_g;
     double falls_per_year, return_years;
     /* S(W) by direction and height (struct DirectedBarrier of topple/scene.h): blow_heights numbers
-     * in blow_height_m, 16 in push_barrier_J, 16 rows of blow_heights in blow_barrier_J; infinity:
-     * it does not fall so. NULL and 0 where nothing is known. */
+     * in blow_height_m, 16 in push_barrier_J, 16 rows of blow_heights in blow_barrier_J: that of
+     * direction n at blow_height_m[h] is [n * blow_heights + h]; infinity: no fall was found so.
+     * NULL and 0 where nothing is known. */
     const double *blow_height_m, *push_barrier_J, *blow_barrier_J;
     uint64_t blow_heights;
     double hand_push_N, hand_push_error_N, hand_height_m, gust_m_s, gust_error_m_s;
@@ -263,7 +264,7 @@ typedef struct topple_object {
     double lands_m[3], hits_J, people_share;
     int32_t falls, lands_on;
     /* "none", "low", "medium" or "high", at the worse end of one standard error, and whether the
-     * better end says the same; "": not seen enough */
+     * better end says the same; "": not seen enough, or no disturbance given */
     const char* unsafety_category;
     int32_t unsafety_certain;
     const char* name;         /* given by hand, or "" */
@@ -295,6 +296,10 @@ typedef struct topple_object {
     double piece_probability;
     double box_middle_m[3]; /* the middle of the box of size_m; NaN: nothing of it is solid */
     const char* action;     /* what to do about it, so that it agrees with its category */
+    /* how high what it stands on lies along the scene's `up`, and its centre of mass above that;
+     * NaN for the ground, and what is held by nothing that was seen */
+    double support_height_m, center_height_m;
+    const double* blow_barrier_Ns; /* blow_barrier_J as impulses, newton seconds */
 } topple_object;
 typedef struct topple_contact {
     size_t size;

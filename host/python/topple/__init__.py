@@ -21,7 +21,7 @@ from . import _described, _labels, _shown, _snapshot, _spots, _tables, _topple, 
 from ._arrays import channels as _channels, columns as _columns, has_rows as _has_rows, usage as _usage
 from ._device import open_device
 from ._frames import Frames as _Frames
-from ._options import option as _option
+from ._options import option as _option, unlikely_peak_note as _unlikely_peak_note
 from ._program import generate
 from ._topple import Advice, AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Landscape, Object, Overturning, Primitive, Support, Why, __version__
 from .foxglove import to_mcap
@@ -73,6 +73,11 @@ class ExportSummary(NamedTuple):
     free_radius_m: float  # of that place; 0: there is none
     notes: list  # of str: what is not as it was parsed, such as bodies that were cut to half
 
+    def __repr__(self):
+        fixed = sum(body.fixed for body in self.bodies)
+        return (f'<topple.ExportSummary: {len(self.bodies)} bodies, {fixed} of them fixed, that overlap by {_shown.figure(1000 * self.deepest_overlap_m, 2)} mm '
+                f'at most; {len(self.notes)} notes>')
+
 
 def devices():
     """Every device of every backend, as `topple devices` lists them."""
@@ -85,8 +90,8 @@ class Result:
     it alive, and writing to them changes what write() writes.
 
     It can be pickled, and so be sent between processes: objects, primitives, contacts, supports, labels, points, voxels
-    and fields come back as they were, objects as plain ones with the same attributes. What write() and export() need is
-    not among them: call these before."""
+    and fields come back as they were, objects as plain ones with the same attributes, and of depth frames the path of their
+    folder. What write() and export() need is not among them: call these before."""
 
     def __init__(self, parsed, points, colours=(), frames=None):
         self._parsed = parsed
@@ -105,10 +110,11 @@ class Result:
         return f'<topple.Result of {self.source}: {len(self.objects)} objects on {self.backend}>'
 
     def __getstate__(self):
-        return {'parsed': _snapshot.frozen(self._parsed), 'points': self._points, 'colours': self._colours}
+        return {'parsed': _snapshot.frozen(self._parsed), 'points': self._points, 'colours': self._colours,
+                'frames': _labels.kept(self._frames, self.source)}
 
     def __setstate__(self, state):
-        self.__init__(state['parsed'], state['points'], state['colours'])
+        self.__init__(state['parsed'], state['points'], state['colours'], state.get('frames', _labels.NOT_KEPT))
 
     def _whole(self, call):
         """What C++ made, which a pickle does not hold."""
@@ -173,7 +179,7 @@ class Result:
         a voxel, or three standard deviations of a reading from so far away. Raises Error of kind "usage" where there is no such frame."""
         with self._writing:
             if self._labeller is None:
-                self._labeller = _topple.Labeller(self._whole('frame_labels'), list(self._points or []))
+                self._labeller = _labels.labeller(self)
         return _labels.of_frame(self._labeller, self._frames, frame, camera_to_world, intrinsics, primitives)
 
     def write(self, folder, *, pictures=False, glb=False, octomap=False):
@@ -253,7 +259,8 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     COLMAP, Polycam, Record3D); or points in metres: an array of shape (N, 3), records with
     fields x, y, z, a tuple of three arrays, or whatever has __dlpack__. float32 is read where it lies, with any
     strides, and must not change meanwhile; float64 is converted, which takes 12 bytes a point, and integers are
-    refused: hardly ever are they metres. Points that are not finite are left out: Result.point_index then says
+    refused: hardly ever are they metres. A table with columns x, y, z, as a pandas.DataFrame or a dict, is taken, too, and what a masked
+    array masks is left out. Points that are not finite are left out: Result.point_index then says
     where the others are.
 
     frames: instead of a source, depth frames in memory, of which the result is that of the same in a folder: an array of shape (F, H, W),
@@ -329,12 +336,13 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
             raise _usage('normals, colours, viewpoint and name are for points in memory; a file brings its own')
         with formats.opened(source, formats.Options(unit_m=unit_m, isolate=isolate), cancelled) as converted:
             if converted is None:
-                return Result(_topple.parse_path(os.fspath(source), device, options, progress, cancelled), None, frames=os.fspath(source))
+                parsed = _topple.parse_path(os.fspath(source), device, options, progress, cancelled)
+                return _noted(Result(parsed, None, frames=os.fspath(source)), pga_m_s2)
             if converted.is_sequence:
                 options.unit_m = 1.0
             parsed = _topple.parse_path(os.fspath(converted.path), device, options, progress, cancelled)
             _topple.came_from(parsed, os.fspath(source), converted.notes, list(converted.offset * unit_m))
-            converted.needed_by = result = Result(parsed, None, frames=os.fspath(converted.path))
+            converted.needed_by = result = _noted(Result(parsed, None, frames=os.fspath(converted.path)), pga_m_s2)
             return result
     if name is None:
         name = 'points' if frames is None else 'frames'
@@ -344,7 +352,7 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
         if normals is not None or viewpoint is not None:
             raise _usage('normals and viewpoint are for points; frames have camera_to_world')
         given = _Frames(frames, camera_to_world, intrinsics, colours, colour_intrinsics)
-        return Result(given.parse(name, device, options, progress, cancelled), None, frames=given)
+        return _noted(Result(given.parse(name, device, options, progress, cancelled), None, frames=given), pga_m_s2)
     points = _columns(source, ('x', 'y', 'z'), 'points')
     directions = [] if normals is None else _columns(normals, ('nx', 'ny', 'nz'), 'normals')
     channels = [] if colours is None else _channels(colours)
@@ -352,4 +360,12 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
         if given and len(given[0]) != len(points[0]):
             raise _usage(f'{what}: expected shape ({len(points[0])}, 3), one for each point, not {len(given[0])} of them')
     parsed = _topple.parse_arrays(points, directions, channels, viewpoint, viewpoints, name, device, options, progress, cancelled)
-    return Result(parsed, points, channels)
+    return _noted(Result(parsed, points, channels), pga_m_s2)
+
+
+def _noted(result, pga_m_s2):
+    """The result, with a note where the peak of earthquakes looks as if it was given in another unit."""
+    note = _unlikely_peak_note(None if pga_m_s2 is None else float(pga_m_s2))
+    if note and 'pga_m_s2' in result.events:
+        _topple.add_note(result._parsed, note)
+    return result

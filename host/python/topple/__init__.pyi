@@ -114,11 +114,13 @@ class Overturning:  # all NaN where it can't tip
     @property
     def gust_error_m_s(self) -> float: ...
 
-class DirectedBarrier:  # direction n is towards the azimuth n * 22.5 degrees; inf: it does not fall
+class DirectedBarrier:  # direction n is towards the azimuth n * 22.5 degrees; inf: no fall was found
     @property
     def height_m(self) -> NDArray[np.float64]: ...
     @property
     def push_J(self) -> NDArray[np.float64]: ...  # (16,)
+    @property
+    def blow_Ns(self) -> NDArray[np.float64]: ...  # (16, heights)
     @property
     def blow_J(self) -> NDArray[np.float64]: ...  # (16, heights)
     @property
@@ -242,6 +244,10 @@ class Object:
     @property
     def center_of_mass_m(self) -> list[float]: ...
     @property
+    def support_height_m(self) -> float: ...  # of what it stands on, along Result.up; NaN: not known, or the ground
+    @property
+    def center_height_m(self) -> float: ...  # of its centre of mass above that
+    @property
     def size_m(self) -> list[float]: ...  # along the room's axes, the third upright
     @property
     def box_middle_m(self) -> list[float]: ...  # of that box; NaN: nothing of it is solid
@@ -288,9 +294,9 @@ class Object:
     @property
     def fall_chance(self) -> dict[str, float]: ...
     @property
-    def unsafety(self) -> float: ...  # NaN: not seen enough to be ranked
+    def unsafety(self) -> float: ...  # NaN: not seen enough to be ranked, or no disturbance given
     @property
-    def unsafety_category(self) -> Optional[Literal["none", "low", "medium", "high"]]: ...  # None: not seen enough
+    def unsafety_category(self) -> Optional[Literal["none", "low", "medium", "high"]]: ...  # None: not seen enough, or no disturbance given
     @property
     def unsafety_certain(self) -> bool: ...
     @property
@@ -363,6 +369,8 @@ class Result:
     def notes(self) -> list[str]: ...
     @property
     def corrections(self) -> list[AppliedCorrection]: ...  # those that were given, in their order
+    @property
+    def in_blocks(self) -> bool: ...
     @property
     def timings_s(self) -> dict[str, float]: ...
     @property

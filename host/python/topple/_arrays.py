@@ -16,30 +16,64 @@ def usage(message):
 
 
 def as_array(source, name):
-    """A NumPy array of the same memory, of whatever has __dlpack__ too."""
+    """A NumPy array of the same memory, of whatever has __dlpack__ too. What is masked is NaN."""
+    if isinstance(source, np.ma.MaskedArray):
+        return _unmasked(source, name)
     if hasattr(source, '__dlpack__') and not isinstance(source, np.ndarray):
         try:
             return np.from_dlpack(source)
         except (BufferError, RuntimeError, TypeError) as error:
-            raise usage(f'{name}: its memory is not NumPy\'s to read ({error}); copy it to the CPU first, as .cpu() or '
-                        '.get() do') from error
+            mend = 'give .detach()' if 'grad' in str(error) else 'copy it to the CPU first, as .cpu() or .get() do'
+            raise usage(f'{name}: its memory is not NumPy\'s to read ({error}); {mend}') from error
     try:
         return np.asarray(source)
     except ValueError as error:
         raise usage(f'{name}: no array can be made of it: {error}') from error
 
 
+def _unmasked(source, name):
+    if not np.ma.is_masked(source):
+        return source.data
+    if source.dtype.kind != 'f':
+        raise usage(f'{name}: a masked array of {source.dtype}, which has no value for what is masked; {name}.filled(0) makes it 0')
+    return source.filled(np.nan)
+
+
+def _by_name(source, names, what):
+    """The columns of these names of a table, such as a pandas.DataFrame or a dict; None where it is none, or has no names."""
+    if isinstance(source, (dict, np.ndarray)):
+        there = list(source) if isinstance(source, dict) else []
+    else:
+        there = [name for name in getattr(source, 'columns', ()) if isinstance(name, str)]
+    if not there:
+        return None
+    missing = [name for name in names if name not in there]
+    if missing:
+        raise usage(f"{what}: there is no column {missing[0]!r}, but {', '.join(map(repr, there))}"[:300])
+    return [source[name] for name in names]
+
+
 def wrong_array(values, name, shape, variable, columns='', source=None):
     """The Error that says what an array is and what it should be, with the mend; of what it was made of, too."""
     mend = ''
-    if isinstance(source, (list, tuple)) and values.dtype.kind in 'iub':
+    if hasattr(source, 'to_numpy'):  # of pandas or polars
+        variable += '.to_numpy()'
+    if values.dtype.kind == 'O' and hasattr(source, 'points'):
+        mend = f'; of a point cloud of Open3D give np.asarray({variable}.points)'
+    elif values.dtype.kind == 'O' and hasattr(source, 'point'):
+        mend = f'; of a point cloud of Open3D give {variable}.point.positions.numpy()'
+    elif isinstance(source, (list, tuple)) and values.dtype.kind in 'iub':
         mend = f"; np.array({variable}, 'float32') converts integers, and they must be metres"
-    elif not columns and values.ndim == 2 and 3 == values.shape[0] != values.shape[1]:
-        mend = f'; {variable}.T has a row for each point'
+    elif values.ndim == 2 and 3 <= values.shape[0] <= 9 and values.shape[1] > values.shape[0]:
+        mend = f"; {variable}{'' if values.shape[0] == 3 else '[:3]'}.T has a row for each point"
     elif not columns and values.ndim > 2 and values.shape[-1] == 3:
         mend = f'; {variable}.reshape(-1, 3) has a row for each point'
     elif values.dtype.kind in 'iub':
         mend = f"; {variable}{columns}.astype('float32') converts integers, and they must be metres"
+    elif values.dtype.kind == 'O' and values.ndim == 2 and values.shape[1] == 3:
+        mend = f"; {variable}.astype('float32') converts them"
+    elif not columns and values.ndim == 1 and shape == '(N, 3)' and values.size % 3 == 0 < values.size and values.dtype.kind == 'f':
+        mend = f'; {variable}.reshape(-1, 3) has a row for each point'
     elif columns:
         mend = f'; {variable}{columns} takes the first three columns'
     return usage(f'{name}: expected floats of shape {shape}, not {values.dtype} of shape {values.shape}{mend}')
@@ -57,6 +91,9 @@ def columns(source, names, what):
     """The three coordinates of an array, of records with fields of these names, or of three arrays."""
     if isinstance(source, tuple) and len(source) == 3:
         return [column(c, f'{what} {name}', name) for c, name in zip(source, names)]
+    by_name = _by_name(source, names, what)
+    if by_name is not None:
+        return [column(c, f'{what} {name}', f"{what}['{name}']") for c, name in zip(by_name, names)]
     given, source = source, as_array(source, what)
     if source.dtype.names:
         missing = [name for name in names if name not in source.dtype.names]
@@ -73,6 +110,8 @@ def columns(source, names, what):
 
 def has_rows(given):
     """Whether it is something for each point, as columns() takes it, and no single place."""
+    if isinstance(given, dict) or hasattr(given, 'columns'):
+        return True
     if hasattr(given, '__dlpack__') and not isinstance(given, np.ndarray):
         given = as_array(given, 'it')
     if isinstance(given, (list, tuple)):
@@ -85,6 +124,8 @@ def channels(source):
     names = ('red', 'green', 'blue')
     if isinstance(source, tuple) and len(source) == 3:
         channels = [as_array(c, 'colours') for c in source]
+    elif (by_name := _by_name(source, names, 'colours')) is not None:
+        channels = [as_array(c, 'colours') for c in by_name]
     else:
         source = as_array(source, 'colours')
         if source.dtype.names:
@@ -104,12 +145,12 @@ def channels(source):
 
 
 def exactly(source, name, shape, dtype):
-    """An array without gaps of that type and shape, where None stands for any length: a copy only where it is none.
-    Floats must be finite, and integers fit."""
+    """An array without gaps of that type and shape, where None, or a name, stands for any length: a copy only where it is
+    none. Floats must be finite, and integers fit."""
     values, wanted = as_array(source, name), np.dtype(dtype)
     expected = f"({', '.join('N' if n is None else str(n) for n in shape)}{',' if len(shape) == 1 else ''})"
     same_kind = values.dtype.kind == 'f' if wanted.kind == 'f' else values.dtype.kind in 'iu' or values.size == 0
-    fits = values.ndim == len(shape) and all(n in (None, m) for n, m in zip(shape, values.shape))
+    fits = values.ndim == len(shape) and all(n is None or isinstance(n, str) or n == m for n, m in zip(shape, values.shape))
     if not same_kind or not fits:
         mend = f"; {name}.astype('{wanted}') converts them" if fits and values.dtype.kind in 'iuf' else ''
         raise usage(f"{name}: expected {'floats' if wanted.kind == 'f' else 'integers'} of shape {expected}, not "

@@ -14,6 +14,7 @@ RESULT = {
     'manhattan_from_input': '16 numbers, a 4 x 4 matrix row by row: from the scan\'s frame to the room\'s, z up, walls along x and y.',
     'notes': 'list of str: what the reader of the result should know, a sentence each.',
     'corrections': 'list of AppliedCorrection: what became of those that were given, in their order.',
+    'in_blocks': 'bool: a cloud was parsed in blocks (docs/scale.md), and the arrays over its points are of a sample of them.',
     'timings_s': 'dict: seconds by stage, in the order of the stages.',
     'events': 'dict: what was reckoned with, by name: walks, wind_m_s, pga_m_s2 (and pga_spread), tolerable_J, as far as they were asked for.',
     'objects': 'list of Object, by id.',
@@ -43,6 +44,8 @@ _ITEMS = {
         'mass_error_kg': 'One standard error of the mass, at the density that was given.',
         'mass_model': 'str: "solid", "closed" (furniture of boards) or "hollow" (a shell, as a correction says).',
         'center_of_mass_m': '[x, y, z], metres.',
+        'support_height_m': 'How high what it stands on lies along Result.up, metres; NaN: the ground, or nothing was seen that holds it.',
+        'center_height_m': 'Of its centre of mass above that, metres; less than 0 for what hangs.',
         'center_of_mass_error_m': 'One standard error of it along each axis, metres.',
         'size_m': 'Its box along the room\'s axes, the third upright, metres.',
         'box_middle_m': '[x, y, z]: the middle of that box, metres; NaN: nothing of it is solid.',
@@ -65,8 +68,8 @@ _ITEMS = {
         'risk_error_J': 'dict: one standard error of that, of all that is not known.',
         'risk_spread_J': 'dict: the part of it that is from the sampling of events.',
         'fall_chance': 'dict: chance per event, 0 to 1, that it falls.',
-        'unsafety': '1 (safest) to 10, by its risk among the scene\'s objects; NaN: not seen enough to be ranked.',
-        'unsafety_category': 'str: "none", "low", "medium" or "high", by itself; None: not seen enough.',
+        'unsafety': '1 (safest) to 10, by its risk among the scene\'s objects; NaN: not seen enough to be ranked, or no disturbance was asked for.',
+        'unsafety_category': 'str: "none", "low", "medium" or "high", by itself; None: not seen enough, or no disturbance was asked for.',
         'unsafety_certain': 'bool: whether the category is the same at the better end of one standard error, and the object likelier a whole than a piece of another.',
         'seen_enough': 'bool: whether what holds it up was seen; else its risks are 0 and mean nothing.',
         'rests_by': 'str: how it is held up: "seen" contacts, "near", "leaning", "hidden", "none", or "ground".',
@@ -129,10 +132,14 @@ _ITEMS = {
         'return_years': 'Years; NaN without a hazard curve.',
     }),
     'DirectedBarrier': ('What makes an object fall, by direction: n is towards the azimuth n * 22.5 degrees, clockwise from the room\'s y as '
-                        'seen from above. Joules; inf: that way it does not fall.', {
-                            'height_m': '(heights,): of blows, above what it stands on, metres.',
-                            'push_J': '(16,): work of a slow push.',
-                            'blow_J': '(16, heights): energy that a level blow would give to the object if nothing held it.',
+                        'seen from above. inf: no fall was found that way, which is no promise: what stands in its way counts as its end, and '
+                        'a drop counts only where a surface was scanned below.', {
+                            'height_m': '(heights,): of blows, above what it stands on (Object.support_height_m), metres.',
+                            'push_J': '(16,): work of a slow push, joules.',
+                            'blow_Ns': '(16, heights): least level blow that makes it fall, as an impulse, newton seconds: what comes at v m/s with '
+                                       'm kg and stays brings m v, and up to twice that where it bounces back.',
+                            'blow_J': '(16, heights): the energy that this impulse would give to the object if nothing held it, joules; not that of '
+                                      'what strikes.',
                             'direction': '(16, 3): horizontal unit vectors in the scan\'s frame, where the push or blow goes; it comes from the '
                                          'opposite side.',
                             'push_N': '(16,): steady level push at Overturning.hand_height_m, newtons, at which it begins to turn over the edge that '

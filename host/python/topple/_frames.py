@@ -4,14 +4,17 @@ import numpy as np
 
 from . import _topple
 from ._arrays import as_array, error, exactly, usage
-from .stages import Intrinsics
+from .stages import camera
 
 
 def _depth(source, name):
     """(height, width) uint16 or float32, its rows without gaps."""
+    if isinstance(source, np.ma.MaskedArray) and source.dtype.kind == 'u':
+        source = source.filled(0)
     values = as_array(source, name)
     if values.ndim != 2 or (values.dtype.kind != 'f' and values.dtype != np.uint16):
-        mend = f"; {name}.astype('uint16') converts them" if values.ndim == 2 and values.dtype.kind in 'iu' else ''
+        mend = f"; {name}.astype('uint16') converts them" if values.ndim == 2 and values.dtype.kind in 'iu' else \
+            '; give one of them' if values.ndim == 3 else ''
         raise usage(f'{name}: expected uint16, metres times depth_scale, or floats, metres, of shape (H, W), not {values.dtype} of shape '
                     f'{values.shape}{mend}')
     return _without_gaps(values, np.uint16 if values.dtype.kind == 'u' else np.float32)
@@ -31,13 +34,6 @@ def _without_gaps(values, dtype):
     return values if inner.flags.c_contiguous else np.ascontiguousarray(values)
 
 
-def _camera(given, name):
-    try:
-        return [float(value) for value in Intrinsics(*given)]
-    except (TypeError, ValueError):
-        raise usage(f'{name}: expected a topple.stages.Intrinsics: {", ".join(Intrinsics._fields)}, not {given!r}'[:300]) from None
-
-
 def _poses(given, count):
     """16 numbers for each frame, in a row; none for a single frame without a pose."""
     if given is None:
@@ -48,7 +44,9 @@ def _poses(given, count):
     if poses.shape == (4, 4):
         poses = poses[None]
     if poses.shape != (count, 4, 4):
-        raise usage(f'camera_to_world: expected shape ({count}, 4, 4), a pose for each of the frames, not {poses.shape}')
+        expected = f'({count}, 4, 4), a pose for each of the frames' if count != 1 else '(4, 4)'
+        mend = '; add the row 0, 0, 0, 1' if poses.shape in ((3, 4), (count, 3, 4)) else ''
+        raise usage(f'camera_to_world: expected shape {expected}, not {poses.shape}{mend}')
     if not np.issubdtype(poses.dtype, np.number) or poses.dtype.kind == 'c':
         raise usage(f'camera_to_world: expected floats, not {poses.dtype}')
     if not np.isfinite(poses).all():
@@ -63,8 +61,8 @@ class Frames:
     def __init__(self, frames, camera_to_world, intrinsics, colours, colour_intrinsics):
         if intrinsics is None:
             raise usage('intrinsics: depth frames take a topple.stages.Intrinsics(fx, fy, cx, cy, depth_scale)')
-        self._camera = _camera(intrinsics, 'intrinsics')
-        self._colour_camera = None if colour_intrinsics is None else _camera(colour_intrinsics, 'colour_intrinsics')
+        self._camera = camera(intrinsics, 'intrinsics')
+        self._colour_camera = None if colour_intrinsics is None else camera(colour_intrinsics, 'colour_intrinsics')
         self._frames, self._colours = _images(frames, 'frames', ()), None if colours is None else _images(colours, 'colours', (3,))
         try:
             self._count = len(self._frames)
@@ -109,7 +107,7 @@ def one_frame(frame, camera_to_world, intrinsics):
     """A depth image of its own as labelled() takes it: depth, pose and camera."""
     if intrinsics is None or camera_to_world is None:
         raise usage('frame_labels: a depth image takes camera_to_world, a (4, 4) array, and a topple.stages.Intrinsics')
-    return _depth(frame, 'frame'), _poses(camera_to_world, 1), _camera(intrinsics, 'intrinsics')
+    return _depth(frame, 'frame'), _poses(camera_to_world, 1), camera(intrinsics, 'intrinsics')
 
 
 def _images(given, name, pixel):

@@ -2,7 +2,16 @@
 """What repr() says of the items of a result, of those that come back from pickles, too."""
 import math
 
+import numpy as np
+
 from . import _topple
+
+
+def figure(value, digits=3):
+    """A number as people write it: so many digits, or all before the point, and no power of ten."""
+    if 10**digits <= abs(value) < math.inf:
+        return f'{value:.0f}'
+    return np.format_float_positional(value, precision=digits, unique=False, fractional=False, trim='-')
 
 
 def _named(item):
@@ -16,7 +25,7 @@ def _rank(unsafety):
 def _directions(item):
     if len(item.push_J) == 0:
         return 'nothing known'
-    lowest = f', a push from {min(item.push_N):.2g} N' if len(item.push_N) else ''
+    lowest = f', a push from {figure(min(item.push_N), 2)} N' if len(item.push_N) else ''
     return f'{len(item.push_J)} directions{lowest}'
 
 
@@ -25,17 +34,17 @@ def _landing(item):
         return 'nothing upsets it'
     onto = '' if item.lands_on < 0 else f' onto object {item.lands_on}'
     against = '' if item.leans_on < 0 else f' against object {item.leans_on}'
-    return f'falls {item.drop_m:.2g} m{onto}{against}'
+    return f'falls {figure(item.drop_m, 2)} m{onto}{against}'
 
 
 _TEXTS = {
     'Object': lambda o: f' {_named(o)}, {_rank(o.unsafety)}',
-    'Primitive': lambda p: f' {_named(p)}: {p.model}, of object {p.object}, {p.mass_kg:.3g} kg',
-    'Contact': lambda c: f': primitives {c.a} and {c.b}, {c.relation}, joint {c.probability:.2f} probable, {c.area_m2:.2g} m2',
-    'Support': lambda s: f': object {s.supporter} carries {s.supported}, {s.area_m2:.2g} m2, {s.probability:.2f} probable',
+    'Primitive': lambda p: f' {_named(p)}: {p.model}, of object {p.object}, {figure(p.mass_kg)} kg',
+    'Contact': lambda c: f': primitives {c.a} and {c.b}, {c.relation}, joint {c.probability:.2f} probable, {figure(c.area_m2, 2)} m2',
+    'Support': lambda s: f': object {s.supporter} carries {s.supported}, {figure(s.area_m2, 2)} m2, {s.probability:.2f} probable',
     'AppliedCorrection': lambda c: f' {c.do}: {c.outcome}',
-    'Overturning': lambda o: ': does not tip' if math.isnan(o.tilt_deg) else f': tips at {o.tilt_deg:.3g} deg, or {o.hand_push_N:.3g} N at a hand\'s height',
-    'Fragility': lambda f: f': half of earthquakes of {f.pga_g:.2g} g upset it' if math.isfinite(f.pga_g) else ': no median',
+    'Overturning': lambda o: ': does not tip' if math.isnan(o.tilt_deg) else f': tips at {figure(o.tilt_deg)} deg, or {figure(o.hand_push_N)} N at a hand\'s height',
+    'Fragility': lambda f: f': half of earthquakes of {figure(f.pga_g, 2)} g upset it' if math.isfinite(f.pga_g) else ': no median',
     'DirectedBarrier': lambda b: f': {_directions(b)}',
     'Landscape': lambda item: f': {len(item.energy_J)} poses, in {item.now}',
     'Fall': lambda f: f': {_landing(f)}',

@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from ._arrays import usage
+from ._shown import figure
 
 _OVERTURNING = ('tilt_deg', 'tilt_error_deg', 'push_N', 'push_error_N', 'slide_N', 'shake_g', 'hand_push_N', 'hand_push_error_N',
                 'hand_height_m', 'gust_m_s', 'gust_error_m_s')
@@ -15,7 +16,8 @@ _WHY = ('azimuth_deg', 'W_J', 'S_J', 'way_m', 'drop_m', 'lands_on')
 _ADVICE = ('kind', 'move_m', 'risk_J', 'hold_N', 'hold_height_m')
 _BY_DISTURBANCE = ('risk_J', 'risk_error_J', 'fall_chance')
 _ITEMS = {
-    'objects': ('id', 'name', 'grounded', 'mass_kg', 'mass_error_kg', 'mass_model', 'center_of_mass_m', 'center_of_mass_error_m', 'size_m',
+    'objects': ('id', 'name', 'grounded', 'mass_kg', 'mass_error_kg', 'mass_model', 'center_of_mass_m', 'center_of_mass_error_m',
+                'support_height_m', 'center_height_m', 'size_m',
                 'box_middle_m', 'piece_of', 'piece_probability', 'footprint_error_m', 'barrier_J', 'barrier_error_J', 'release_J', 'mode', 'direction', 'unsafety',
                 'unsafety_category', 'unsafety_certain', 'seen_enough', 'stands_on', 'rests_by', 'rest_probability', 'agreement', 'why', 'advice', 'action'),
     'primitives': ('id', 'object', 'model', 'points', 'solid_voxels', 'volume_m3', 'mass_kg', 'center_of_mass_m', 'name'),
@@ -97,11 +99,12 @@ _SHOWN = 12
 
 
 def _row(o):
-    rank = 'not seen enough' if math.isnan(o.unsafety) else f'{o.unsafety:.1f}'
+    rank = f'{o.unsafety:.1f}' if not math.isnan(o.unsafety) else 'not ranked' if o.seen_enough else 'not seen enough'
     hue = 'transparent' if math.isnan(o.unsafety) else f'hsl({120 - 120 * (o.unsafety - 1) / 9:.0f} 70% 60%)'
-    barrier = f'{o.barrier_J:.2g} ± {o.barrier_error_J:.1g}' if o.barrier_J > o.barrier_error_J else f'below {o.barrier_J + o.barrier_error_J:.2g}'
+    barrier = f'{figure(o.barrier_J, 2)} ± {figure(o.barrier_error_J, 1)}' if o.barrier_J > o.barrier_error_J \
+        else f'below {figure(o.barrier_J + o.barrier_error_J, 2)}'
     category = (o.unsafety_category or '') + ('' if o.unsafety_certain or not o.unsafety_category else '?')
-    cells = [f'{o.id} {o.name}'.strip(), rank, category, f'{o.mass_kg:.3g} ± {o.mass_error_kg:.1g}', barrier, o.why]
+    cells = [f'{o.id} {o.name}'.strip(), rank, category, f'{figure(o.mass_kg)} ± {figure(o.mass_error_kg, 1)}', barrier, o.why]
     cells = [f'<td>{html.escape(cell)}</td>' for cell in cells]
     cells[1] = cells[1].replace('<td>', f'<td style="border-left: 0.6em solid {hue}">')
     return f'<tr>{"".join(cells)}</tr>'

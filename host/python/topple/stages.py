@@ -24,6 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ._arrays import as_array, columns, exactly, has_rows, number, usage
+from ._shown import figure
 from ._topple import Device, open_device
 from ._topple import stages as _stages
 
@@ -101,6 +102,17 @@ def _fields(kind, given, name):
         raise usage(f'{name}: expected {", ".join(kind._fields)}, not {given!r}') from error
 
 
+def camera(given, name):
+    """fx, fy, cx, cy and depth_scale as floats."""
+    try:
+        return [float(value) for value in Intrinsics(*given)]
+    except (TypeError, ValueError):
+        of_matrix = getattr(given, 'shape', None) == (3, 3) or isinstance(given, (list, tuple)) and list(map(np.size, given)) == [3, 3, 3]
+        mend = '; of a matrix K give Intrinsics(K[0, 0], K[1, 1], K[0, 2], K[1, 2])' if of_matrix else ''
+        raise usage(f"{name}: expected a topple.stages.Intrinsics({', '.join(Intrinsics._fields)}), not "
+                    + ' '.join(f'{given!r}'.split())[:200] + mend) from None
+
+
 def _target(out, shape, name='out'):
     """Where a stage writes, as one row: the caller's array, or a new one."""
     if out is None:
@@ -114,7 +126,8 @@ def _target(out, shape, name='out'):
 
 
 def point_spacing(points):
-    """Typical distance of a point to its nearest neighbour, metres; 0 for fewer than two places."""
+    """Typical distance of a point to its nearest neighbour, metres; 0 for fewer than two places. Points so far apart that they
+    can't be in metres are refused."""
     return _stages.point_spacing(_points(points))
 
 
@@ -149,14 +162,22 @@ def _eyes(given, count):
     return eyes
 
 
-def _stored(depth, depth_scale):
-    """Depth as it is stored; metres are rounded to that, as those of frames are."""
-    depth = as_array(depth, 'depth')
+def _stored(depth, depth_scale, shape, name):
+    """Depth as it is stored; metres are rounded to that, as those of frames are. shape: of the first image; None: this is it."""
+    depth = as_array(depth, name)
+    if depth.ndim != 2 or depth.dtype.kind not in 'fiu' or shape not in (None, depth.shape):
+        expected = '(H, W)' if shape is None or len(shape) != 2 else f'{shape}, as depth 0'
+        raise usage(f'{name}: expected uint16, metres times depth_scale, or floats, metres, of shape {expected}, not {depth.dtype} of '
+                    f'shape {depth.shape}')
     if depth.dtype.kind != 'f' or not depth_scale > 0:
-        return depth
+        return exactly(depth, name, depth.shape, np.uint16)
     with np.errstate(invalid='ignore'):
         stored = np.round(depth * depth_scale)
-        return np.where((stored >= 0) & (stored <= 65535), stored, 0).astype(np.uint16)
+        held = (stored >= 0) & (stored <= 65535)
+    if (stored[np.isfinite(stored)] > 65535).any() and not (stored[held] > 0).any():
+        raise usage(f'{name}: all its readings lie beyond {figure(65535 / depth_scale)} m; floats are metres: of millimetres give '
+                    f'{name.split()[0]} / 1000')
+    return np.where(held, stored, 0).astype(np.uint16)
 
 
 class Volume:
@@ -174,21 +195,21 @@ class Volume:
 
         depth: (F, H, W) uint16, metres times intrinsics.depth_scale, or floats, metres; or a list of (H, W), or one; 0, and of
         floats what is not finite or not above 0: no reading. camera_to_world: (F, 4, 4) float64, or (4, 4):
-        rigid, metres, row by row. intrinsics: Intrinsics."""
+        rigid, metres, row by row. intrinsics: Intrinsics. Cameras and readings that can't be in metres are refused: cameras
+        that leap, or are hundreds of metres from the points, and readings from as far away."""
         if not isinstance(depth, (list, tuple)):
             depth = as_array(depth, 'depth')
             depth = [depth] if depth.ndim == 2 else list(depth) if depth.ndim == 3 else [depth]
         if not depth:
             return
-        shape = np.shape(depth[0])
         poses = as_array(camera_to_world, 'camera_to_world')
         poses = exactly(poses[None] if poses.ndim == 2 else poses, 'camera_to_world', (len(depth), 4, 4), float)
         _check_rigid(poses)
-        camera = _fields(Intrinsics, intrinsics, 'intrinsics')
-        camera = [number(value, f'intrinsics {name}') for name, value in zip(Intrinsics._fields, camera)]
-        shape_of_all = shape if len(shape) == 2 else (None, None)
-        frames = [exactly(_stored(d, camera[-1]), f'depth {n}', shape_of_all, np.uint16) for n, d in enumerate(depth)]
-        self._volume.carve([f.reshape(-1) for f in frames], poses.reshape(-1), shape[1], shape[0], camera, _opened(device))
+        seen_by = camera(intrinsics, 'intrinsics')
+        frames = [_stored(depth[0], seen_by[-1], None, 'depth 0')]
+        height, width = frames[0].shape
+        frames += [_stored(d, seen_by[-1], (height, width), f'depth {n}') for n, d in enumerate(depth[1:], 1)]
+        self._volume.carve([f.reshape(-1) for f in frames], poses.reshape(-1), width, height, seen_by, _opened(device))
 
     def fill(self, votes, hollow=(), *, device=None):
         """Voxels that no frame saw take the label that at least `votes` (1 to 6) of the rays along their six axes hit
@@ -250,8 +271,8 @@ def barriers(bodies, resolution_m, *, device=None):
     """What it takes to make each of the bodies fall by tipping (paper, 3.2): a list of Barrier.
 
     bodies: of StandingBody. resolution_m: to what their points are known, 0 to 1; what is no higher than that above the lowest
-    point bears the body, and is its footing. What would be denser than any matter is refused, and what would be lighter than
-    air, as by a density in g/cm3, is told by a RuntimeWarning.
+    point bears the body, and is its footing. What would be denser than any matter is refused, as is a centre of mass many times as
+    far from the points as these extend, and what would be lighter than air, as by a density in g/cm3, is told by a RuntimeWarning.
 
     Points must go all around the body: its corners, or the solid voxels of an object, result.solid. Of a scan that saw it
     from one side the footing is a strip below that side, and a centre of mass that is not above it makes the body fall by
@@ -271,7 +292,7 @@ def barriers(bodies, resolution_m, *, device=None):
     for n, (points, mass_kg, _) in enumerate(given):
         size = np.ptp(points.reshape(-1, 3), axis=0) + resolution_m
         if mass_kg < _AIR_KG_M3 * size.prod():
-            warnings.warn(f'bodies[{n}]: {mass_kg:.3g} kg in a box of {size.prod():.3g} m3 are less than air weighs; mass_kg is in kilograms, of '
+            warnings.warn(f'bodies[{n}]: {figure(mass_kg)} kg in a box of {figure(size.prod())} m3 are less than air weighs; mass_kg is in kilograms, of '
                           'a density in kg/m3', RuntimeWarning, stacklevel=2)
     for n, ((points, _, center), (barrier_J, *_)) in enumerate(zip(given, found)):
         if barrier_J == 0 and _beside_footing(points.reshape(-1, 3), center, resolution_m):
@@ -287,7 +308,7 @@ def convolve(primary, footprint, first, *, device=None, out=None):
     primary: (directions, height, width) float32. footprint: records of footprint_dtype, or an array of shape (n, 3) whose
     columns are dx, dy (whole cells, along width and height) and weight. first: (directions + 1,) uint32, where each
     direction's entries start, and last n. Returns an array of primary's shape; out: an array for it."""
-    planes = exactly(primary, 'primary', (None, None, None), np.float32)
+    planes = exactly(primary, 'primary', ('directions', 'height', 'width'), np.float32)
     entries = as_array(footprint, 'footprint')
     if entries.dtype.names is None:
         table = exactly(entries, 'footprint', (None, 3), float)
@@ -301,6 +322,6 @@ def convolve(primary, footprint, first, *, device=None, out=None):
         entries = [entries[name] for name in footprint_dtype.names]
     fields = [exactly(e, f'footprint {name}', (None,), footprint_dtype[name]) for e, name in zip(entries, footprint_dtype.names)]
     out = _target(out, planes.shape)
-    _stages.convolve(planes.reshape(-1), planes.shape, fields, exactly(first, 'first', (None,), np.uint32), _opened(device),
-                     out.reshape(-1))
+    _stages.convolve(planes.reshape(-1), planes.shape, fields, exactly(first, 'first', (len(planes) + 1,), np.uint32),
+                     _opened(device), out.reshape(-1))
     return out

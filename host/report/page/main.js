@@ -91,7 +91,8 @@ function legend(scene, state, view) {
   if (state.mode === 'risk') {
     const line = (category, text) => element('div', {}, [element('span', {className: 'swatch', style: {background: css(categoryColour(scene, category))}}), text]);
     box.append(element('div', {text: 'Category'}), ...[...categories].reverse().map(category => line(category, category)));
-    if (scene.objects.some(object => !object.grounded && !object.unsafety_category)) box.append(line('', 'not known: nothing was seen to hold it'));
+    const unknown = scene.objects.find(object => !object.grounded && !object.unsafety_category);
+    if (unknown) box.append(line('', `not known: ${noCategoryText(unknown)}`));
   }
   if (state.fieldsOn.includes('walks')) {
     box.append(element('div', {text: 'Floor: how many of 100 walks pass there'}), bar(scene.ramp.colours), ends('0', number(100 * scene.view.walks.most)));

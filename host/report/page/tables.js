@@ -81,8 +81,13 @@ function textOn(colour) {
   return 0.2126 * red + 0.7152 * green + 0.0722 * blue > 0.179 ? '#000' : '#fff';
 }
 
+// Why it has none.
+function noCategoryText(object) {
+  return object.seen_enough === false ? 'nothing was seen to hold it' : 'no disturbance was asked for';
+}
+
 function categoryBadge(scene, object) {
-  if (!object.unsafety_category) return element('span', {className: 'category', text: 'not known', title: 'nothing was seen to hold it'});
+  if (!object.unsafety_category) return element('span', {className: 'category', text: 'not known', title: noCategoryText(object)});
   const colour = categoryColour(scene, object.unsafety_category);
   return element('span', {
     className: 'category', title: 'category' + (object.unsafety_certain ? '' : `: ${uncertainText(object)}`), text: categoryText(object),

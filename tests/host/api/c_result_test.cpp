@@ -104,8 +104,15 @@ TEST_F(CApi, ParsesAsTheLibraryDoes) {
         EXPECT_NE(std::string(status.message).find("earthquake"), std::string::npos);
         const topple::DirectedBarrier& directed = o.barrier_by_direction;
         ASSERT_EQ(object.blow_heights, directed.height_m.size());
-        for (std::size_t b = 0; b < directed.blow_J.size(); ++b)
+        for (std::size_t b = 0; b < directed.blow_J.size(); ++b) {
             EXPECT_EQ(object.blow_barrier_J[b], directed.blow_J[b]);
+            EXPECT_EQ(object.blow_barrier_Ns[b], directed.blow_Ns[b]);
+        }
+        EXPECT_EQ(std::isnan(object.support_height_m), std::isnan(o.support_height_m));
+        if (!std::isnan(o.support_height_m)) {
+            EXPECT_EQ(object.support_height_m, o.support_height_m);
+            EXPECT_EQ(object.center_height_m, o.center_height_m);
+        }
         for (std::size_t b = 0; b < directed.push_J.size(); ++b)
             EXPECT_EQ(object.push_barrier_J[b], directed.push_J[b]);
         for (std::size_t b = 0; b < directed.push_N.size(); ++b) {

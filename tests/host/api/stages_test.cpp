@@ -114,10 +114,30 @@ TEST(Stages, UnitsThatAreNoneOfRoomsAreRefused) {
               "twice the points' spacing");
     EXPECT_EQ(of_volume(20), "Volume: voxel_m 20: expected metres from 0.001 to 1");
     EXPECT_EQ(of_volume(NAN), "Volume: voxel_m nan: expected metres from 0.001 to 1");
+    EXPECT_NE(refusal([&] { point_spacing(cloud); }).find("are 10 m apart"), std::string::npos);
     for (auto* values : {&cloud.x, &cloud.y})
         for (float& v : *values) v *= 0.001f;
     EXPECT_EQ(of_normals(0.02), "taken");
     EXPECT_EQ(of_volume(0.02), "taken");
+    EXPECT_EQ(refusal([&] { point_spacing(cloud); }), "taken");
+
+    Volume volume(cloud, label, 0.02);
+    const std::vector<std::uint16_t> depth(64 * 48, 700);
+    const auto of_frames = [&](std::vector<double> places, double depth_scale) {
+        const Intrinsics camera{64, 48, 60, 60, 31.5, 23.5, depth_scale};
+        std::vector<DepthView> frames;
+        for (const double x : places)
+            frames.push_back({depth, {1, 0, 0, x, 0, -1, 0, 0.1, 0, 0, -1, 0.7, 0, 0, 0, 1}});
+        return refusal([&] { volume.carve(*device, camera, frames); });
+    };
+    EXPECT_NE(of_frames({1500}, 1000).find("the cameras are 1499.71 m from the points"),
+              std::string::npos);
+    EXPECT_NE(of_frames({0, 1500, 2600}, 1000).find("the camera moves by 1500 m"),
+              std::string::npos);
+    EXPECT_NE(of_frames({0.1}, 1).find("the readings of 1 depth frame lie about 700 m away"),
+              std::string::npos);
+    EXPECT_EQ(of_frames({0.1, 0.2, 9, 250}, 1000), "taken");
+    EXPECT_EQ(of_frames({}, 1000), "taken");
 }
 
 TEST(Stages, AVolumeIsCarvedAndFilled) {
@@ -248,6 +268,17 @@ TEST(Stages, BarrierOfABox) {
     EXPECT_NE(refusal(1, 10000, 0).find("125000 kg/m^3"), std::string::npos);
     EXPECT_EQ(refusal(1, 10, 20), "barriers: resolution_m 20: expected metres from 0 to 1");
     EXPECT_EQ(refusal(1, 0.02, 0), "taken");
+    const auto off = [&](double z) {
+        const StandingBody body{corners, 10, {0.2, 0.1, z}};
+        try {
+            barriers(*device, std::span(&body, 1), 0.001);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string("taken");
+    };
+    EXPECT_NE(off(500).find("lies 499 m off its points, which extend over 1 m"), std::string::npos);
+    EXPECT_EQ(off(4), "taken");
     EXPECT_THROW(barriers(*device, std::span(&none, 1), 0.001), Error);
     EXPECT_THROW(barriers(*device, std::span(&light, 1), 0.001), Error);
 }

@@ -54,6 +54,19 @@ TEST(Fusion, WallBecomesThinAndStraysGo) {
     EXPECT_LT(off.back(), 0.1);  // nothing between the two surfaces
 }
 
+TEST(Fusion, KeepsToItsLimitOfMemory) {
+    FrameFusion all(camera, 0.01), some(camera, 0.01);
+    constexpr std::size_t most = 1'000'000;
+    some.set_most_bytes(most);
+    for (FrameFusion* fusion : {&all, &some}) {
+        for (int i = 0; i < 12; ++i) fusion->add(view(static_cast<std::uint64_t>(i), 0.3 * i));
+        fusion->flush();
+    }
+    EXPECT_GT(all.bytes(), 3 * most);
+    EXPECT_GT(some.bytes(), most);
+    EXPECT_LT(some.bytes(), most + most / 2);  // a table a thread
+}
+
 // A wall with a board of 4 cm and a post of 2 cm before it. A sensor that bends depths as real ones
 // do sees the wall 5 cm off from 3.5 m, to either side; from 1.5 m it sees it right.
 DepthFrame bent_view(double from_m, double bend, std::uint64_t seed) {

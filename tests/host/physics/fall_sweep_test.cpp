@@ -16,7 +16,8 @@ using test::Solid;
 // A bookcase, label 0, 0.3 m deep and 2 m high, that falls along +x; its edge is at x = 0.3.
 constexpr double grid_m = 0.02, edge_m = 0.3, inside_m = 0.15, middle_m = 1, summit_m = 2;
 
-Swept falling(const std::vector<Solid>& others) {
+Swept falling(const std::vector<Solid>& others, const HiddenWalls& walls = {},
+              const std::vector<bool>& stops = {}) {
     std::vector<Solid> all{{0, box({0, 0, 0}, {edge_m, 0.6, summit_m})},
                            {1, box({-1, -1, -0.1}, {4, 2, 0})}};
     all.insert(all.end(), others.begin(), others.end());
@@ -24,7 +25,8 @@ Swept falling(const std::vector<Solid>& others) {
     Candidate body;
     body.primitives = {0};
     body.body.center = {edge_m - inside_m, 0.3, middle_m};
-    return sweep_over_edge(cells, CellColumns(cells), body, 0, {1, 0, 0}, inside_m, summit_m);
+    return sweep_over_edge(cells, CellColumns(cells), walls, body, 0, {1, 0, 0}, inside_m, summit_m,
+                           stops);
 }
 
 TEST(FallSweep, WithRoomItLiesOnItsSide) {
@@ -65,6 +67,24 @@ TEST(FallSweep, BehindAWallItStaysWhereItIs) {
     ASSERT_TRUE(swept.stopped);
     EXPECT_NEAR(swept.center[0], edge_m - inside_m, 2 * grid_m);
     EXPECT_NEAR(swept.center[2], middle_m, 2 * grid_m);
+}
+
+TEST(FallSweep, AWallThatNobodySawStopsIt) {
+    const HiddenWalls walls({{7, {1, 0}, {0, 1}, 0.5, -1, 3, 0, {2.5f}}});
+    const Swept swept = falling({}, walls), seen = falling({{2, box({0.5, -1, 0}, {0.6, 2, 2.5})}});
+    ASSERT_TRUE(swept.stopped);
+    EXPECT_EQ(swept.by, 7);
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(swept.center[a], seen.center[a], 2 * grid_m);
+    EXPECT_FALSE(falling({}, HiddenWalls({{7, {1, 0}, {0, 1}, 0.5, 1, 3, 0, {2.5f}}})).stopped);
+}
+
+// What gives way leaves it to what does not.
+TEST(FallSweep, OnlyWhatIsToStopItDoes) {
+    const std::vector<Solid> others{{2, box({0.5, -1, 0}, {0.6, 2, 2.5})},
+                                    {3, box({1, -1, 0}, {1.1, 2, 2.5})}};
+    EXPECT_EQ(falling(others).by, 2);
+    EXPECT_EQ(falling(others, {}, {false, true, false, true}).by, 3);
+    EXPECT_FALSE(falling(others, {}, {false, true, false, false}).stopped);
 }
 
 TEST(FallSweep, CrumbsAndWhatIsOutOfReachAreNoStop) {

@@ -184,6 +184,30 @@ TEST_F(Sliding, RimsBlockAndAWayAroundIsFound) {
     EXPECT_FALSE(slide(pit, {-2, -2, -0.1}, {3, 3, 1}, 0.025, 3)[2].found);
 }
 
+// A bowl hides the middle of the plate that it stands on, and is taken to reach down to the table.
+TEST_F(Sliding, WhatStandsInItsMiddleMovesAlong) {
+    auto laid = room;
+    laid.back() = {2, [](double x, double y, double z) {
+                       return box({0.1, 0.3, 0.75}, {0.3, 0.5, 0.85})(x, y, z) &&
+                              !box({0.15, 0.35, 0.7}, {0.25, 0.45, 0.9})(x, y, z);
+                   }};
+    const SlideResult empty = slide(laid, {-2, -2, -0.1}, {3, 3, 1}, 0.025, 3)[2];
+    laid.push_back({3, box({0.15, 0.35, 0.75}, {0.25, 0.45, 0.9})});
+    const SlideResult laden = slide(laid, {-2, -2, -0.1}, {3, 3, 1}, 0.025, 4)[2];
+    ASSERT_TRUE(empty.found);
+    ASSERT_TRUE(laden.found);
+    EXPECT_NEAR(laden.distance_m, empty.distance_m, 1e-9);
+    // What it goes around on three sides stays where it is.
+    auto fork = room;
+    fork.back() = {2, [](double x, double y, double z) {
+                       return box({0.1, 0.3, 0.75}, {0.3, 0.5, 0.85})(x, y, z) &&
+                              !box({0, 0.35, 0.7}, {0.25, 0.45, 0.9})(x, y, z);
+                   }};
+    fork.push_back({3, box({0.15, 0.375, 0.75}, {0.2, 0.425, 0.9})});
+    const SlideResult held = slide(fork, {-2, -2, -0.1}, {3, 3, 1}, 0.025, 4)[2];
+    EXPECT_TRUE(!held.found || held.distance_m > empty.distance_m + 0.05);
+}
+
 TEST_F(Sliding, HolesNarrowerThanTheFootAreNoEdge) {
     const auto drilled = [this](const Vec3& low, const Vec3& high) {
         auto solids = room;

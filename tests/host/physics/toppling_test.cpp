@@ -73,6 +73,8 @@ TEST(Toppling, AboutEachEdgeIsTheClosedFormOfTheBlow) {
             EXPECT_NEAR(toppling.blow_barrier_J(way, z) / (mass * v * v / 2 * free_share(side, z)),
                         1, 2e-3)
                 << z;
+            const double W = toppling.blow_barrier_J(way, z);
+            EXPECT_NEAR(toppling.impulse_Ns(W, way, z) / (mass * v), 1, 1e-3) << z;
         }
         EXPECT_NEAR(toppling.push_barrier_J(way), brick_rise_J(brick, half), 1e-6);
     }

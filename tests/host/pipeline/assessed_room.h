@@ -57,7 +57,7 @@ struct AssessedRoom {
             object.inertia = inertia[o];
             objects.push_back(std::move(object));
         }
-        find_barriers(device, table, solids, room.object_of_primitive, friction, objects);
+        find_barriers(device, table, solids, {}, room.object_of_primitive, friction, objects);
         at_risk = risk_objects(objects);
     }
 };

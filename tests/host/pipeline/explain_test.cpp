@@ -37,8 +37,8 @@ std::string sentence_of_leaning(double barrier_J, double error_J, bool stopped =
     const std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     explain(objects, ToInput(axes), scene);
     std::vector<Landing> landings(2);
-    landings[0].swept.stopped = stopped;
-    landings[0].swept.by = stopped ? 0 : -1;
+    landings[0].easiest.stopped = stopped;
+    landings[0].easiest.by = stopped ? 0 : -1;
     SolidParts parts;
     parts.solids = std::make_shared<const SolidScene>(SolidCells{}, std::vector<Role>{Role::wall});
     tell_why(parts, objects, landings, scene);
@@ -149,8 +149,8 @@ TEST(Explain, straps_are_told_by_what_they_carry) {
     const auto told = [&](std::size_t o) { return scene.objects[o].advice.sentence; };
     EXPECT_EQ(told(0),
               "Fasten it to the wall or to what carries it, with a strap or bracket rated for 1 kg "
-              "or more (it must hold 3.7 N sideways at least, without a margin), at its top, 1.5 m above what "
-              "it stands on.");
+              "or more (it must hold 3.7 N sideways at least, without a margin), at its top, 1.5 m "
+              "above what it stands on.");
     EXPECT_NE(told(1).find("rated for 10 kg or more (it must hold 98 N"), std::string::npos)
         << told(1);
     EXPECT_NE(told(2).find("rated for 20 kg"), std::string::npos) << told(2);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <new>
 #include <set>
 #include <string>
 #include <vector>
@@ -164,20 +165,44 @@ TEST_F(FramesViews, EndWhereTheyAreCancelledOrWouldTakeTooMuch) {
         EXPECT_EQ(error.kind(), ErrorKind::cancelled);
     }
     EXPECT_EQ(stages, std::vector<std::string>{"ingest"});
-    options = quick();
-    options.max_memory_bytes = 1 << 20;
-    try {
-        parse(view(), options);
-        ADD_FAILURE();
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("of max_memory_bytes; use a larger voxel_m"),
-                  std::string::npos)
-            << error.what();
-        EXPECT_EQ(std::string(error.what()).find("--"), std::string::npos);
+    // Before they are fused, while they are, and once they are.
+    for (const auto& [bytes, text] :
+         {std::pair{1u << 20, "frames: to fuse 6 depth frames takes at least"},
+          {63'000'000u,
+           "frames: the surfaces of 6 depth frames take more than the 60.1 MiB of "
+           "max_memory_bytes; "
+           "allow more, or give fewer frames; at the depth_scale of the intrinsics, 1000, the "},
+          {270u << 20, " of max_memory_bytes: allow that much, or use a larger voxel_m"}}) {
+        options = quick();
+        options.max_memory_bytes = bytes;
+        try {
+            parse(view(), options);
+            ADD_FAILURE() << bytes;
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
+            EXPECT_EQ(std::string(error.what()).find("--"), std::string::npos);
+        }
     }
     options = quick();
     options.unit_m = 0.001;
     EXPECT_THROW(parse(view(), options), Error);
+    options = quick();
+    options.tile_m = 5;
+    EXPECT_THROW(parse(view(), options), Error);
+}
+
+TEST_F(FramesViews, WhatTheCallersFunctionsThrowComesOutUnchanged) {
+    struct Mine {};
+    ParseOptions telling = quick(), asking = quick();
+    telling.progress = [](const std::string&, double) { throw Mine(); };
+    asking.cancelled = []() -> bool { throw Mine(); };
+    EXPECT_THROW(parse(view(), telling), Mine);
+    EXPECT_THROW(parse(view(), asking), Mine);
+    FramesView frames = view();
+    frames.images.clear();
+    frames.image = [](std::size_t) -> FrameView { throw std::bad_alloc(); };
+    telling.progress = nullptr;  // on the device that was in use
+    EXPECT_THROW(parse(frames, telling), std::bad_alloc);
 }
 
 TEST_F(FramesViews, ThatMakeNoSenseAreRefused) {
@@ -229,6 +254,14 @@ TEST_F(FramesViews, ThatMakeNoSenseAreRefused) {
         " m from one frame to the next: places of poses are metres; if these are mm, multiply "
         "them by 0.001"))
         << refusal(wrong);
+    wrong = view();
+    wrong.intrinsics.depth_scale = 1;
+    EXPECT_TRUE(
+        refusal(wrong).starts_with("frames: at the depth_scale of the intrinsics, 1, the readings "
+                                   "of 6 depth frames lie about"))
+        << refusal(wrong);
+    EXPECT_TRUE(
+        refusal(wrong).ends_with(" m apart, more than the 0.25 m at which surfaces can be found"));
     wrong = view();
     wrong.camera_to_world[3][15] = 0;
     EXPECT_NE(refusal(wrong).find("the last row"), std::string::npos);

@@ -23,12 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Two rooms with a door, sparse enough that the test takes seconds.
+// Four rooms with doors, sparse enough that the test takes seconds.
 const fs::path& building() {
     static const scenes::TemporaryFolder folder("topple_tiles");
     static const fs::path cloud = [] {
         const fs::path file = folder.path() / "building.ply";
-        scenes::write_building(file, {.seed = 4, .points = 350'000, .spacing_m = 0.025},
+        scenes::write_building(file, {.seed = 4, .points = 275'000, .spacing_m = 0.04},
                                [](std::size_t, std::size_t) { return true; });
         return file;
     }();

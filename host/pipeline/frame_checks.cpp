@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/frame_checks.h"
+
+#include <cmath>
+
+#include "io/text.h"
+
+namespace topple {
+namespace {
+
+using geometry::PoseConvention;
+
+const char* words_of(PoseConvention convention) {
+    switch (convention) {
+        case PoseConvention::camera_to_world:
+            return "camera to world";
+        case PoseConvention::world_to_camera:
+            return "world to camera";
+        case PoseConvention::opengl:
+            return "of a camera with y up and z back, as in OpenGL, Blender and ARKit";
+        case PoseConvention::world_to_camera_opengl:
+            return "world to camera, with the camera's y up and z back, as OpenGL's view matrix";
+        case PoseConvention::body:
+            return "of a body with x ahead, y left and z up, as in ROS";
+        case PoseConvention::world_to_camera_body:
+            return "world to body, with x ahead, y left and z up, as in ROS";
+        case PoseConvention::w_first:
+            return "made of quaternions with w first";
+    }
+    return "";
+}
+
+// What gives the pose that is meant, in NumPy.
+const char* mend_of(PoseConvention convention) {
+    switch (convention) {
+        case PoseConvention::camera_to_world:
+            return "pose";
+        case PoseConvention::world_to_camera:
+            return "np.linalg.inv(pose)";
+        case PoseConvention::opengl:
+            return "pose @ np.diag([1, -1, -1, 1])";
+        case PoseConvention::world_to_camera_opengl:
+            return "np.linalg.inv(pose) @ np.diag([1, -1, -1, 1])";
+        case PoseConvention::body:
+            return "pose @ [[0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]]";
+        case PoseConvention::world_to_camera_body:
+            return "np.linalg.inv(pose) @ [[0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, "
+                   "1]]";
+        case PoseConvention::w_first:
+            return "poses of their quaternions as x, y, z, w, q[[1, 2, 3, 0]]";
+    }
+    return "";
+}
+
+std::string percent(double share) {
+    return std::to_string(std::lround(100 * share)) + " %";
+}
+
+}  // namespace
+
+void note_principal_point(const Intrinsics& k, ScanOrigin origin, std::vector<std::string>& notes) {
+    const auto in_the_middle = [](double at, std::uint32_t size) {
+        return at >= 0.25 * size && at <= 0.75 * size;
+    };
+    if (in_the_middle(k.cx, k.width) && in_the_middle(k.cy, k.height)) return;
+    notes.push_back("The principal point (" + io::short_number(k.cx) + ", " +
+                    io::short_number(k.cy) + ") lies outside of the middle half of the images of " +
+                    std::to_string(k.width) + " x " + std::to_string(k.height) +
+                    " pixels, so that all is seen askew unless they were cut out of larger ones: " +
+                    "check cx and cy of " +
+                    (origin == ScanOrigin::frames_folder ? "intrinsics.json" : "the intrinsics") +
+                    ", mostly near (" + io::short_number(0.5 * (k.width - 1.0)) + ", " +
+                    io::short_number(0.5 * (k.height - 1.0)) + ").");
+}
+
+std::string pose_note(const geometry::PoseComparison& frames, ScanOrigin origin) {
+    const bool in_folder = origin == ScanOrigin::frames_folder;
+    const geometry::PoseComparison::Verdict found = frames.verdict();
+    const auto agreeing = [&](PoseConvention convention) {
+        return percent(found.agreement[static_cast<std::size_t>(convention)].agreeing_share());
+    };
+    const std::string seen = "of the readings of " + io::counted(found.pairs, "pair") +
+                             " of frames that look at the same place " +
+                             agreeing(PoseConvention::camera_to_world) +
+                             " lie on what the other frame sees there";
+    const std::vector<PoseConvention>& better = found.better;
+    if (better.empty()) {
+        if (!found.contradict) return {};
+        return "The frames contradict each other: " + seen + ", and " +
+               percent(found.agreement[0].before_share()) +
+               " lie before it, where that frame looks through. Check that the poses are those of "
+               "the images, in their order, and in metres, and that fx, fy, cx, cy and "
+               "depth_scale of " +
+               (in_folder ? "intrinsics.json" : "the intrinsics") + " are the depth camera's.";
+    }
+    std::string words, mends;
+    for (const PoseConvention convention : better) {
+        words.append(words.empty() ? "" : ", or ").append(words_of(convention));
+        mends.append(mends.empty() ? "" : ", or ").append(mend_of(convention));
+    }
+    return "The poses seem to be in another convention: " + seen + ", but " +
+           agreeing(better.front()) + " if poses are taken to be " + words +
+           (better.size() > 1 ? ", between which the frames do not tell" : "") +
+           ". topple takes camera to world, camera x right, y down, z ahead: " +
+           (in_folder ? "write into the file of poses" : "give as camera_to_world") +
+           ", in NumPy's words, " + mends + ".";
+}
+
+}  // namespace topple

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/limited_fusion.h"
+
+#include "io/text.h"
+#include "pipeline/memory_limit.h"
+#include "pipeline/parse_memory.h"
+#include "topple/error.h"
+
+namespace topple {
+
+LimitedFusion::LimitedFusion(const Frames& frames, double cell_m, const ParseOptions& options,
+                             unsigned threads)
+    : frames_(frames), options_(options), fusion_(frames.intrinsics, cell_m, threads) {
+    if (options.max_memory_bytes == 0) return;
+    const auto pixels =
+        static_cast<double>(frames.count) * frames.intrinsics.width * frames.intrinsics.height;
+    const auto beside = static_cast<std::uint64_t>(fusion_beside(pixels));
+    check_memory(
+        frames.source + ": to fuse " + io::counted(frames.count, "depth frame") + " takes at least",
+        beside, options, frames.origin, "give points in their place");
+    most_bytes_ = options.max_memory_bytes - beside;
+    fusion_.set_most_bytes(most_bytes_);
+}
+
+void LimitedFusion::add(const DepthFrame& frame) {
+    fusion_.add(frame);
+    ++added_;
+    check();
+}
+
+geometry::FusedCloud LimitedFusion::finish(const std::function<void()>& poll) {
+    fusion_.flush();
+    check();
+    return fusion_.finish(poll);
+}
+
+void LimitedFusion::check() const {
+    if (fusion_.bytes() <= most_bytes_) return;
+    const std::string frames = added_ < frames_.count
+                                   ? "the first " + std::to_string(added_) + " of " +
+                                         io::counted(frames_.count, "depth frame")
+                                   : io::counted(frames_.count, "depth frame");
+    throw Error(ErrorKind::input,
+                frames_.source + ": the surfaces of " + frames + " take more than the " +
+                    io::bytes_text(options_.max_memory_bytes) + " of " +
+                    memory_option(frames_.origin) + "; allow more, or give fewer frames; " +
+                    depth_scale_hint(frames_.count, frames_.intrinsics.depth_scale,
+                                     frames_.typical_depth_m, frames_.origin));
+}
+
+}  // namespace topple

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/frame_checks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "scenes/depth_camera.h"
+#include "scenes/furnished_room.h"
+
+// What is noted about a depth camera that may mean something else than it says.
+namespace topple {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::vector<std::string> notes_of_principal_point(double cx, double cy) {
+    std::vector<std::string> notes;
+    note_principal_point({640, 480, 525, 525, cx, cy, 1000}, ScanOrigin::frames_folder, notes);
+    return notes;
+}
+
+TEST(FrameChecks, APrincipalPointOutsideOfTheMiddleHalf) {
+    for (const auto& [cx, cy] : {std::pair(319.5, 239.5), {160.0, 120.0}, {480.0, 360.0}})
+        EXPECT_THAT(notes_of_principal_point(cx, cy), IsEmpty()) << cx;
+    EXPECT_THAT(notes_of_principal_point(0, 0),
+                ElementsAre(AllOf(HasSubstr("(0, 0)"), HasSubstr("640 x 480"),
+                                  HasSubstr("intrinsics.json, mostly near (319.5, 239.5)"))));
+    EXPECT_THAT(notes_of_principal_point(319.5, 479), testing::SizeIs(1));
+    EXPECT_THAT(notes_of_principal_point(159, 239.5), testing::SizeIs(1));
+}
+
+TEST(FrameChecks, PosesOfAnotherConvention) {
+    scenes::CameraOptions camera;
+    camera.intrinsics = {96, 72, 83, 83, 47.5, 35.5, 1000};
+    camera.frames = 30;
+    const scenes::Sequence walk = scenes::walk(scenes::furnished_room({}), camera);
+    const auto note = [&](bool flipped, ScanOrigin origin, bool backwards = false) {
+        std::vector<Mat4> poses;
+        for (const DepthFrame& frame : walk.frames) {
+            poses.push_back(frame.camera_to_world);
+            for (const std::size_t n : {1U, 5U, 9U, 2U, 6U, 10U})
+                if (flipped) poses.back()[n] *= -1;
+        }
+        if (backwards) std::ranges::reverse(poses);
+        geometry::PoseComparison frames(walk.intrinsics, poses, 2);
+        for (std::size_t n = 0; n < poses.size(); ++n) frames.add(walk.frames[n], n);
+        return pose_note(frames, origin);
+    };
+    EXPECT_EQ(note(false, ScanOrigin::frames_folder), "");
+    EXPECT_THAT(note(true, ScanOrigin::frames_folder),
+                AllOf(HasSubstr("OpenGL"), HasSubstr("write into the file of poses"),
+                      HasSubstr("pose @ np.diag([1, -1, -1, 1])")));
+    EXPECT_THAT(note(true, ScanOrigin::frames_in_memory), HasSubstr("give as camera_to_world"));
+    EXPECT_THAT(note(false, ScanOrigin::frames_folder, true),
+                AllOf(HasSubstr("The frames contradict each other"), HasSubstr("in their order"),
+                      HasSubstr("of intrinsics.json are")));
+}
+
+}  // namespace
+}  // namespace topple
