@@ -212,7 +212,7 @@ TEST_F(Compare, follows_the_parts_of_a_scan_that_was_corrected) {
     EXPECT_EQ(page.data("error"), "(none)") << page.log.substr(0, 2000);
     EXPECT_EQ(page.data("banner"), "The same scan: what changed follows from the corrections.");
     for (const char* row :
-         {"object 2: joined to their Desk (correction 1)", "object 4: fixed now, which holds only",
+         {"object 2: joined to Desk after (correction 1)", "object 4: fixed now, which holds only",
           "object 3: fixed now, with object 4", "object 5: not there (correction 4)",
           "object 2 after: parted from object 1 (correction 5)",
           "object 1: as before: with object 2 (correction 1), without what is now object 2 after"})

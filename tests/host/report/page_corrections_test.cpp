@@ -128,6 +128,47 @@ TEST_F(PageCorrections, joins_the_chosen_object_to_another) {
     EXPECT_EQ(page.data("listed"), "1");
 }
 
+// From its card; what does not touch it is warned of. What is told by itself stays chosen, to be
+// named, and both entries of the file are one correction.
+TEST_F(PageCorrections, joins_what_is_a_piece_and_names_what_is_of_the_building) {
+    NEEDS_BROWSER();
+    Scene scene = test::SyntheticScene(0.2).make();
+    scene.objects[2].piece_of = 1;
+    scene.objects[2].piece_probability = 0.86;
+    write_report(folder_ / "report.html", scene);
+    const auto page = open(folder_ / "report.html", R"(
+        const out = document.body.dataset, note = () => document.getElementById('mend-note').textContent;
+        document.querySelector('[data-join="1"]').click();
+        out.joined = document.getElementById('mend-list').textContent;
+        toppleParts.join(4, 5);
+        out.warned = note();
+        document.querySelector('[data-show="1"]').click();
+        out.labels = [...document.querySelectorAll('.canvas .number')].map(label => label.textContent).join(' ');
+        toppleChoose(0);
+        const parts = [...document.querySelectorAll('#mend-parts input')].map(box => Number(box.value));
+        toppleParts.take(parts.slice(0, 2));
+        document.querySelector('[data-do=apart]').click();
+        out.meant = document.getElementById('mend-meant').textContent;
+        out.named = !document.querySelector('[data-do=name]').disabled;
+        const said = toppleParts.corrections.document().corrections;
+        out.numbers = sentenceNumbers(said.map(one => ({...one, held: true}))).join(' ');
+        out.kinds = said.map(one => one.do).join(' ');
+        out.forces = `${forceText(153.2)}, ${forceText(2.71)}`;
+    )");
+    EXPECT_EQ(page.data("error"), "(none)") << page.log;
+    EXPECT_EQ(page.data("joined"), "Objects 1 and 2: one thing undo");
+    EXPECT_NE(page.data("warned").find("object 4 and object 5 don\u2019t touch as scanned"),
+              std::string::npos)
+        << page.data("warned");
+    EXPECT_EQ(page.data("labels"), "2 1");
+    EXPECT_NE(page.data("meant").find(" of the building."), std::string::npos)
+        << page.data("meant");
+    EXPECT_EQ(page.data("named"), "true");
+    EXPECT_EQ(page.data("kinds"), "one_thing one_thing one_thing apart");
+    EXPECT_EQ(page.data("numbers"), "1 2 3 3");
+    EXPECT_EQ(page.data("forces"), "154 N, 2.8 N");
+}
+
 TEST_F(PageCorrections, joins_objects_and_says_what_they_are) {
     NEEDS_BROWSER();
     const Scene scene = test::SyntheticScene(0.08).make();

@@ -88,7 +88,8 @@ TEST_F(PageRisk, lists_what_is_to_be_looked_at) {
     EXPECT_EQ(page.data("error"), "(none)") << page.log;
     EXPECT_EQ(page.data("listed"), "2 3 1 4");
     EXPECT_EQ(page.data("headings"),
-              "To be looked at, The scan does not show what holds these: go and look");
+              "To be looked at, The scan does not show what holds these: go and look, Not judged: "
+              "what is grey in the view");
     EXPECT_EQ(page.data("chips"), "2, 3, 1, 4 ?");
     EXPECT_EQ(page.data("advice"), "check");
     EXPECT_EQ(page.data("large"), "16,200, 0.0001");

@@ -223,9 +223,9 @@ TEST_F(Report, shows_the_scene_in_a_browser) {
           "6.5\u00a0J \u00b1 1.3", "Contacts", "Category",
           "high, or lower: its errors, or what it may be a piece of, leave a lower one "
           "open",
-          "At 0.8 g (violent shaking, intensity IX) about 99 of 100 "
-          "earthquakes upset it. Half of those of 0.41 g (severe shaking, "
-          "intensity VIII) do.",
+          "Of 100 earthquakes that all peak at 0.8 g (violent shaking, intensity IX) about 99 "
+          "would upset it. Half of those that peak at 0.41 g (severe shaking, intensity VIII) "
+          "would.",
           "An earthquake upsets it once in about 500 years.",
           "Chance of falling, over an earthquake\u2019s peak"}) {
         EXPECT_NE(test::text(page.data("clicked")).find(part), std::string::npos)

@@ -57,7 +57,7 @@ TEST_F(Action, is_to_look_where_only_its_errors_upset_it) {
     EXPECT_TRUE(upset_by_nothing(o_));
     EXPECT_EQ(text(),
               "Nothing upsets it as measured; if its foot is one error smaller, it falls with up "
-              "to 120 J: check that it stands firm.");
+              "to 123 J: check that it stands firm.");
     // Harder pushes than the easiest may free more.
     o_.instability = {{2, 0}, {9, 229}};
     EXPECT_NE(text().find("with up to 229 J"), std::string::npos) << text();
