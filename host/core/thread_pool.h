@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -9,6 +10,7 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <numeric>
 #include <thread>
 #include <vector>
 
@@ -44,6 +46,16 @@ class ThreadPool {
         run(count, chunk, [&](std::uint64_t first, std::uint64_t last) {
             for (std::uint64_t i = first; i < last; ++i) body(static_cast<std::size_t>(i));
         });
+    }
+
+    // The same for as many as there are sizes, one at a time, the largest first, of equals the
+    // lower: what such a one shares out itself is helped with once the others are done.
+    template <class Body>
+    void each_largest_first(const std::vector<std::size_t>& sizes, const Body& body) {
+        std::vector<std::size_t> order(sizes.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return sizes[i]; });
+        each(order.size(), 1, [&](std::size_t n) { body(order[n]); });
     }
 
     // While it lives, the thread that made it stands in for one of the pool's, beside the caller's:

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <functional>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -28,14 +26,11 @@ std::uint32_t cut_at_ledges(const Surfels& s, const Vec3& upwards,
         if (!cuts.members[k].empty()) regions_of_root[solid[k]].push_back(k);
     std::vector<std::vector<std::size_t>> regions_of;
     for (auto& [root, regions] : regions_of_root) regions_of.push_back(std::move(regions));
-    std::vector<std::size_t> surfels(regions_of.size(), 0), order(regions_of.size());
+    std::vector<std::size_t> surfels(regions_of.size(), 0);
     for (std::size_t n = 0; n < regions_of.size(); ++n)
         for (const std::size_t k : regions_of[n]) surfels[n] += cuts.members[k].size();
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, std::greater{}, [&](std::size_t n) { return surfels[n]; });
     std::vector<std::optional<double>> ledge(regions_of.size());
-    threads.each(order.size(), 1, [&](std::size_t place) {
-        const std::size_t n = order[place];
+    threads.each_largest_first(surfels, [&](std::size_t n) {
         std::vector<std::uint32_t> members;
         members.reserve(surfels[n]);
         for (const std::size_t k : regions_of[n])

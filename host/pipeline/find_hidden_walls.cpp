@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -225,23 +226,18 @@ class Wall {
 
 physics::HiddenWalls find_hidden_walls(const SolidParts& parts,
                                        std::span<const std::int32_t> object_of_primitive,
-                                       const std::vector<bool>& grounded) {
+                                       const std::vector<bool>& fixed) {
     const auto range = ranges_of(parts.samples, object_of_primitive.size());
-    std::vector<std::vector<std::int32_t>> objects(grounded.size());
-    std::vector<bool> fixed(object_of_primitive.size(), false);
-    for (std::size_t p = 0; p < object_of_primitive.size(); ++p) {
-        if (object_of_primitive[p] < 0) continue;
-        const auto o = static_cast<std::size_t>(object_of_primitive[p]);
-        objects[o].push_back(static_cast<std::int32_t>(p));
-        fixed[p] = grounded[o];
-    }
+    std::map<std::int32_t, std::vector<std::int32_t>> objects;  // those that can move
+    for (std::size_t p = 0; p < object_of_primitive.size(); ++p)
+        if (object_of_primitive[p] >= 0 && !fixed[p])
+            objects[object_of_primitive[p]].push_back(static_cast<std::int32_t>(p));
     std::vector<physics::HiddenWall> out;
     for (const std::vector<Line>& lines : walls_of(wall_lines(parts, range, fixed))) {
         const Wall wall(parts.samples, range, lines);
         std::vector<Cover> covers;
-        for (std::size_t o = 0; o < objects.size(); ++o)
-            if (!grounded[o])
-                if (const auto cover = wall.cover(objects[o])) covers.push_back(*cover);
+        for (const auto& [o, primitives] : objects)
+            if (const auto cover = wall.cover(primitives)) covers.push_back(*cover);
         if (auto hidden = wall.behind(std::move(covers), lines.front().primitive))
             out.push_back(std::move(*hidden));
     }

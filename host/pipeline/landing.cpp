@@ -139,9 +139,7 @@ std::vector<Landing> landings(const SolidParts& parts, const ObjectStage& object
     for (const StableObject& from : objects.objects)
         ways.push_back(from.grounded ? Way{} : falling_way(from));
     const std::vector<Reach> reach = reaches(*parts.solids, objects, ways);
-    std::vector<bool> fixed;  // by primitive
-    for (const std::int32_t o : objects.object_of_primitive)
-        fixed.push_back(o >= 0 && objects.objects[static_cast<std::size_t>(o)].grounded);
+    const std::vector<bool> fixed = fixed_primitives(objects.object_of_primitive, objects.objects);
     std::vector<Landing> out(objects.objects.size());
     for (std::size_t o = 0; o < out.size(); ++o) {
         const StableObject& from = objects.objects[o];

@@ -191,6 +191,14 @@ physics::Toppling toppling_of(const StableObject& object, const physics::Stabili
             object.sliding,   friction};
 }
 
+std::vector<bool> fixed_primitives(std::span<const std::int32_t> object_of_primitive,
+                                   const std::vector<StableObject>& objects) {
+    std::vector<bool> out;
+    for (const std::int32_t o : object_of_primitive)
+        out.push_back(o >= 0 && objects[static_cast<std::size_t>(o)].grounded);
+    return out;
+}
+
 void find_barriers(device::Device& device, const physics::SupportTable& table,
                    const SolidScene& solids, const physics::HiddenWalls& walls,
                    std::span<const std::int32_t> object_of_primitive, double friction,
@@ -236,9 +244,7 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
                             .ways = safety::directions(),
                             .threads = &device.threads()});
     const std::vector<double> floors = floor_levels(solids);
-    std::vector<bool> fixed;  // by primitive
-    for (const std::int32_t o : object_of_primitive)
-        fixed.push_back(o >= 0 && objects[static_cast<std::size_t>(o)].grounded);
+    const std::vector<bool> fixed = fixed_primitives(object_of_primitive, objects);
     device.threads().each(objects.size(), 1, [&](std::size_t o) {
         if (objects[o].grounded) return;
         objects[o].open_tipping = tipping[o];
@@ -315,9 +321,8 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
     });
     stage("barriers", [&] {
         collect_objects(*solid.solids, parts.shell.pinned, options, device.threads(), hand, out);
-        std::vector<bool> grounded;
-        for (const StableObject& o : out.objects) grounded.push_back(o.grounded);
-        out.hidden_walls = find_hidden_walls(solid, out.object_of_primitive, grounded);
+        out.hidden_walls = find_hidden_walls(
+            solid, out.object_of_primitive, fixed_primitives(out.object_of_primitive, out.objects));
         find_barriers(device, table, *solid.solids, out.hidden_walls, out.object_of_primitive,
                       options.friction, out.objects);
     });

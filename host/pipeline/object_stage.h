@@ -84,6 +84,10 @@ struct PartStage {
 PartStage weigh_parts(device::Device& device, const SolidParts& parts, const ParseOptions& options,
                       StageClock& stage);
 
+// By primitive, whether it is of the building, or of what is fixed to it.
+std::vector<bool> fixed_primitives(std::span<const std::int32_t> object_of_primitive,
+                                   const std::vector<StableObject>& objects);
+
 // What a push does to objects whose candidates are known, all in one batch: fills in the drops over
 // their edges, tipping, sliding, both together, their poses and boxes. What is grounded stops what
 // falls, and so do walls behind what hides them.

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
-#include <numeric>
 #include <optional>
 #include <span>
 
@@ -52,18 +50,6 @@ std::vector<std::span<const solids::ObjectVoxel>> by_object(
     return out;
 }
 
-// Calls what(n) for each object, side by side, the largest first: what such a one shares out, as
-// the building may, is helped with once the others are done.
-template <class What>
-void each_object(std::span<const std::span<const solids::ObjectVoxel>> objects, ThreadPool& threads,
-                 const What& what) {
-    std::vector<std::size_t> order(objects.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, std::greater{},
-                             [&](std::size_t n) { return objects[n].size(); });
-    threads.each(order.size(), 1, [&](std::size_t n) { what(order[n]); });
-}
-
 Vec3 in_input(const vdb::VoxelFrame& frame, const Vec3& v) {
     Vec3 out{};
     for (std::size_t a = 0; a < 3; ++a)
@@ -85,14 +71,16 @@ std::vector<ObjectSurface> object_surfaces(const Scene& scene, const SolidCells&
     std::optional<SurfaceColours> colours;
     if (!scene.points.red.empty()) colours.emplace(scene.points, cells, object_of, frame);
     ThreadPool pool(threads);
+    std::vector<std::size_t> sizes;
+    for (const auto& object : objects) sizes.push_back(object.size());
     std::vector<solids::SurfaceMesh> meshes(objects.size());
-    each_object(objects, pool, [&](std::size_t n) {
+    pool.each_largest_first(sizes, [&](std::size_t n) {
         meshes[n] = solids::surface_mesh(objects[n], boundary, object_of, frame.voxel_m, pool);
     });
     const auto found = static_cast<double>(triangles_of(meshes));
     for (const Level& level : levels) {
         if (level.least_left * found > most_triangles) continue;  // it would not be enough
-        each_object(objects, pool, [&](std::size_t n) {
+        pool.each_largest_first(sizes, [&](std::size_t n) {
             solids::simplify(meshes[n], boundary.patches,
                              {.tolerance_m = level.tolerance * frame.voxel_m,
                               .longest_m = colours ? level.coloured_edge * frame.voxel_m : 0},

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <exception>
 #include <functional>
 #include <future>
 #include <memory>
-#include <optional>
 #include <span>
 #include <thread>
 

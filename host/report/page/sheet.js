@@ -36,9 +36,12 @@ function dangerText(scene, object) {
   return name ? `${upsetText(scene, object).replace(/\.$/, '')}; sets free ${number(twoDigits(releaseOf(object)), 'J')}: ${severityText(releaseOf(object))}` : '';
 }
 
-// What such an energy does, by the thresholds that categories have (docs/output.md).
+// The thresholds that categories have (docs/output.md).
+const slight_J = 1, serious_J = 15, deadly_J = 79;
+
+// What such an energy does.
 function severityText(joules) {
-  return joules >= 79 ? 'can kill' : joules >= 15 ? 'injures badly' : joules >= 1 ? 'injures slightly' : 'harmless';
+  return joules >= deadly_J ? 'can kill' : joules >= serious_J ? 'injures badly' : joules >= slight_J ? 'injures slightly' : 'harmless';
 }
 
 function sheetYears(scene, object) {
@@ -74,6 +77,6 @@ function fillSheet(scene) {
     ...scene.objects.some(object => object.grounded) ? list('Not judged', [greyLine(scene)], 0) : [],
     ...list('To be looked at', looks, doubtful.length + nearly.length + calm.length - looks.length),
     ...list('The scan does not show what holds these: go and look', holds, unseen.length - holds.length),
-    node('p', `Reckoned with: ${listed(kinds.map(kind => oneEventText(scene, kind))) || 'nothing'}.${scene.below_hazard.length ? ` \u201cAt most\u201d: ${curveText(scene)}.` : ''} Places are in metres east (E) of the plan\u2019s left edge and north (N) of its lower edge. A joule (J) lifts 1 kg by 10 cm; what lands with less than 1 J is harmless, from 15 J on it injures badly, from 79 J on it can kill. ` +
+    node('p', `Reckoned with: ${listed(kinds.map(kind => oneEventText(scene, kind))) || 'nothing'}.${scene.below_hazard.length ? ` \u201cAt most\u201d: ${curveText(scene)}.` : ''} Places are in metres east (E) of the plan\u2019s left edge and north (N) of its lower edge. A joule (J) lifts 1 kg by 10 cm; what lands with less than ${slight_J} J is harmless, from ${serious_J} J on it injures badly, from ${deadly_J} J on it can kill. ` +
       'Straps must hold what is said at least: no safety margin is in it. ?: it may be less, or a piece of another thing.', 'hint'));
 }

@@ -32,7 +32,7 @@ class HiddenWall : public testing::Test {
         parts_.solids = std::make_shared<const SolidScene>(
             std::move(cells), std::vector<Role>{Role::wall, Role::wall, Role::none});
         const std::vector<std::int32_t> object{0, 0, 1};
-        return find_hidden_walls(parts_, object, {true, false});
+        return find_hidden_walls(parts_, object, {true, true, false});
     }
     void seen_scene() {
         add_x(left, 0, -2, -1.1, 1);
