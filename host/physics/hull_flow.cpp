@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "physics/hull_polytope.h"
+#include "physics/infinity.h"
 
 namespace topple::physics {
 namespace {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "physics/infinity.h"
 #include "physics/qhull.h"
 #include "topple/error.h"
 
