@@ -42,6 +42,7 @@ ThreadPool& Device::threads() {
 }
 
 std::uint32_t Device::items_per_lane(const KernelSource& kernel) const {
+    if (as_gpu_) return kernel.items_gpu;
     switch (info_.backend) {
         case Backend::native:
             return kernel.items_native;

@@ -91,6 +91,7 @@ class Device {
     void count(std::span<const Dispatch> dispatches);
 
     DeviceInfo info_;
+    bool as_gpu_ = false;  // kernels take the form for real GPUs
     // As Counters: what uses the device may go on beside who reads them.
     struct {
         std::atomic<std::uint64_t> dispatches = 0, submits = 0, kernel_builds = 0,

@@ -36,10 +36,9 @@ struct NativeEntries {
 // cache what they build of it under its address, so it must outlive them.
 struct KernelSource {
     const char* name;
-    std::uint32_t group_size;    // work-items in a group
-    std::uint32_t items_native;  // elements that one work-item handles, per backend
-    std::uint32_t items_opencl;
-    std::uint32_t items_vulkan;
+    std::uint32_t group_size;  // work-items in a group
+    // Elements that one work-item handles, per backend; and on a real GPU, by OpenCL or Vulkan.
+    std::uint32_t items_native, items_opencl, items_vulkan, items_gpu;
     bool per_group;  // the work is counted in groups (BEGIN_GROUP), not in elements
     std::uint32_t params_bytes;
     std::span<const Binding> bindings;

@@ -86,16 +86,19 @@ class Kernel:
             fail(path, f'expected one PARAMS(Type, name), found {len(params)}')
         self.params_type, self.params_name = params[0]
         self.shared = re.findall(r'\bSHARED\(\s*(\w+)\s*,\s*(\w+)\s*,\s*(\w+)\s*\)', code)
-        items = re.findall(r'\bITEMS_PER_LANE\(\s*(\d+)\s*,\s*(\d+)\s*,\s*(\d+)\s*\)', code)
-        self.items = dict(zip(('native', 'opencl', 'vulkan'), map(int, items[0] if items else (1, 1, 1))))
+        columns = ('native', 'opencl', 'vulkan', 'gpu')
+        items = re.findall(r'\bITEMS_PER_LANE\(([^)]*)\)', code)
+        numbers = [int(n) for n in items[0].split(',')] if items else [1] * len(columns)
+        if len(numbers) != len(columns):
+            fail(path, f'ITEMS_PER_LANE has {len(numbers)} numbers, expected {len(columns)}: {", ".join(columns)}')
+        self.items = dict(zip(columns, numbers))
         self.per_group = 'BEGIN_GROUP' in code
         if not self.per_group and ('BARRIER' in code or 'LANES' in code.replace('ITEMS_PER_LANE', '')):
             fail(path, 'LANES needs BEGIN_GROUP ... END_GROUP')
 
-    def body(self, backend):
-        """The source as that backend's compiler gets it."""
-        items = f'#define ITEMS {self.items[backend]}\n#define ITEMS_PER_LANE(native, opencl, vulkan)\n'
-        return items + f'#line 1 "kernels/{self.name}.kernel"\n' + self.text
+    def body(self, items):
+        """The source as a backend's compiler gets it, behind what gives it ITEMS."""
+        return items + f'#define ITEMS_PER_LANE(native, opencl, vulkan, gpu)\n#line 1 "kernels/{self.name}.kernel"\n' + self.text
 
 
 def params_fields(params_h, kind):
@@ -134,20 +137,44 @@ def add_no_contraction(words):
     return words[:insert] + extra + words[insert:]
 
 
+OP_NAME, OP_FUNCTION, OP_FUNCTION_END, OP_FUNCTION_CALL, OP_FDIV = 5, 54, 56, 57, 136
+
+
+def call_divide(words):
+    """Lets topple_divide of the prelude do every division but its own, which may be of less than IEEE's precision."""
+    divide, inside, out, at = None, False, words[:5], 5
+    while at < len(words):
+        opcode, length = words[at] & 0xffff, words[at] >> 16
+        instruction = words[at:at + length]
+        if opcode == OP_NAME and struct.pack('<%dI' % (length - 2), *instruction[2:]).startswith(b'topple_divide('):
+            divide = instruction[1]
+        if opcode == OP_FUNCTION:
+            inside = instruction[2] == divide
+        if opcode == OP_FDIV and not inside:
+            kind, result, a, b = instruction[1:]
+            instruction = [(6 << 16) | OP_FUNCTION_CALL, kind, result, divide, a, b]
+        out += instruction
+        at += length
+    if divide is None:
+        sys.exit('kernels/dialect/glsl/prelude.glsl: no topple_divide')
+    return out
+
+
 def spirv(kernel, shared_text, glslang, out_dir):
     glsl = ('#version 450\n#extension GL_GOOGLE_cpp_style_line_directive : require\n' + shared_text
-            + kernel.body('vulkan'))
+            + kernel.body(f"layout(constant_id = 0) const int ITEMS = {kernel.items['vulkan']};\n"))
     source = os.path.join(out_dir, kernel.name + '.comp')
     binary = os.path.join(out_dir, kernel.name + '.spv')
     with open(source, 'w', encoding='utf-8') as f:
         f.write(glsl)
-    run = subprocess.run([glslang, '-V', '--target-env', 'vulkan1.1', '-S', 'comp', '-o', binary, source],
+    run = subprocess.run([glslang, '-V', '--keep-uncalled', '--target-env', 'vulkan1.1', '-S', 'comp', '-o', binary,
+                          source],
                          capture_output=True, text=True)
     if run.returncode:
         sys.exit(f'glslang refuses {kernel.path}:\n{run.stdout}{run.stderr}')
     with open(binary, 'rb') as f:
         data = f.read()
-    words = add_no_contraction(list(struct.unpack('<%dI' % (len(data) // 4), data)))
+    words = add_no_contraction(call_divide(list(struct.unpack('<%dI' % (len(data) // 4), data))))
     with open(binary, 'wb') as f:
         f.write(struct.pack('<%dI' % len(words), *words))
     return words
@@ -213,7 +240,7 @@ def native(kernel):
 namespace topple::kernels {{
 #include "params.h"
 #include "math.h"
-{kernel.body('native')}
+{kernel.body(f"#define ITEMS {kernel.items['native']}" + chr(10))}
 }}  // namespace topple::kernels
 '''.replace(f'{kernel.name}_TOPPLE_ISA', 'TOPPLE_RUN_NAME')
 
@@ -251,7 +278,7 @@ constexpr const char* opencl =
 const device::KernelSource& {camel}::source() {{
     static const device::KernelSource source{{
         "{kernel.name}", {kernel.group},
-        {kernel.items['native']}, {kernel.items['opencl']}, {kernel.items['vulkan']},
+        {kernel.items['native']}, {kernel.items['opencl']}, {kernel.items['vulkan']}, {kernel.items['gpu']},
         {str(kernel.per_group).lower()}, sizeof(Params), bindings, spirv, opencl,
 #ifdef TOPPLE_NATIVE_ISAS
         {{{scope}::run_baseline, {scope}::run_avx2, {scope}::run_avx512}}
@@ -289,7 +316,8 @@ def main():
     fields = params_fields(text('params.h'), kernel.params_type)
     common = '#line 1 "kernels/params.h"\n' + text('params.h') + '#line 1 "kernels/math.h"\n' + text('math.h')
     words = spirv(kernel, text('dialect', 'glsl', 'prelude.glsl') + common, options.glslang, options.out)
-    opencl_text = text('dialect', 'opencl', 'prelude.cl') + common + kernel.body('opencl')
+    # The driver is given ITEMS as an option.
+    opencl_text = text('dialect', 'opencl', 'prelude.cl') + common + kernel.body('')
     at = os.path.join(options.out, kernel.name)
     write(at + '.hpp', header(kernel, fields))
     write(at + '.native.cpp', native(kernel))

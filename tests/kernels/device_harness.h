@@ -8,17 +8,18 @@
 #include <string>
 
 #include "device/devices.h"
+#include "device/vulkan/vulkan_device.h"
 #include "topple/error.h"
 
 namespace topple::test {
 
-// A test that runs once on each backend. A missing backend skips by name; with
-// TOPPLE_REQUIRE_BACKENDS=1 (as in CI) it fails instead.
+// A test that runs once on each backend, and by Vulkan also with the kernels' form for real GPUs. A
+// missing backend skips by name; with TOPPLE_REQUIRE_BACKENDS=1 (as in CI) it fails instead.
 class EachBackend : public ::testing::TestWithParam<const char*> {
   protected:
     void SetUp() override {
         try {
-            device = device::open_device(GetParam());
+            device = open(GetParam());
         } catch (const Error& error) {
             const char* required = std::getenv("TOPPLE_REQUIRE_BACKENDS");
             if (required && std::string(required) == "1") {
@@ -26,13 +27,20 @@ class EachBackend : public ::testing::TestWithParam<const char*> {
             }
             GTEST_SKIP() << "backend " << GetParam() << " is missing: " << error.what();
         }
-        ASSERT_STREQ(device::to_string(device->info().backend), GetParam());
+        ASSERT_TRUE(std::string(GetParam()).starts_with(device::to_string(device->info().backend)));
     }
+    static std::shared_ptr<device::Device> open(const std::string& name) {
+        if (name != gpu_form) return device::open_device(name);
+        return std::make_shared<device::VulkanDevice>(
+            device::open_vulkan_context(), device::VulkanOptions{.force_gpu_form = true});
+    }
+    static constexpr const char* gpu_form = "vulkan_as_gpu";
+
     std::shared_ptr<device::Device> device;
 };
 
 inline auto all_backends() {
-    return ::testing::Values("native", "opencl", "vulkan");
+    return ::testing::Values("native", "opencl", "vulkan", "vulkan_as_gpu");
 }
 inline std::string backend_name(const ::testing::TestParamInfo<const char*>& info) {
     return info.param;

@@ -91,7 +91,7 @@ TEST_P(DeviceOpenEach, IsAmongTheListed) {
 
 // Two devices of one backend live side by side.
 TEST_P(DeviceOpenEach, OpensTwice) {
-    const auto other = device::open_device(GetParam());
+    const auto other = open(GetParam());
     device::Buffer<float> a(*device, std::vector<float>{1, 2}, "a"),
         b(*other, std::vector<float>{3, 4}, "b");
     EXPECT_EQ(a.download(), (std::vector<float>{1, 2}));

@@ -56,6 +56,7 @@ std::string one_line(std::string text) {
 
 OpenClDevice::OpenClDevice(OpenClContext context) : context_(std::move(context)) {
     info_ = describe_opencl(context_.device);
+    as_gpu_ = info_.gpu;
     shares_host_memory_ =
         cl_value<cl_device_type>(context_.device, CL_DEVICE_TYPE) & CL_DEVICE_TYPE_CPU;
     const std::uint64_t alignment =
@@ -159,8 +160,9 @@ OpenClDevice::Built OpenClDevice::build(const KernelSource& source) const {
     built.program = clCreateProgramWithSource(
         context_.context, 1, const_cast<const char**>(&source.opencl), nullptr, &code);
     cl_check(code, where);
-    code = clBuildProgram(built.program, 1, &context_.device, build_options_.c_str(), nullptr,
-                          nullptr);
+    const std::string options =
+        build_options_ + " -D ITEMS=" + std::to_string(items_per_lane(source));
+    code = clBuildProgram(built.program, 1, &context_.device, options.c_str(), nullptr, nullptr);
     std::size_t group = 0;
     if (code == CL_SUCCESS) built.kernel = clCreateKernel(built.program, source.name, &code);
     if (code == CL_SUCCESS) {

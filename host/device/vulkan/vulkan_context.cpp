@@ -54,7 +54,20 @@ Function entry(VkInstance instance, const char* name) {
     return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
 }
 
+// Loaders unload drivers with their last instance, and some drivers can't be loaded again as often
+// as devices are opened: NVIDIA's 25 times in a process. So one instance is never destroyed.
+void keep_drivers_loaded() {
+    static const VkInstance kept = [] {
+        const auto info = vk_struct<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
+        VkInstance made = VK_NULL_HANDLE;
+        if (vkCreateInstance(&info, nullptr, &made) != VK_SUCCESS) made = VK_NULL_HANDLE;
+        return made;
+    }();
+    static_cast<void>(kept);
+}
+
 void create_instance(VulkanContext& context) {
+    keep_drivers_loaded();
     auto application = vk_struct<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
     application.pApplicationName = "topple";
     application.apiVersion = VK_API_VERSION_1_1;
@@ -165,6 +178,12 @@ void create_device(VulkanContext& context) {
     auto info = vk_struct<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
+    context.float_controls = float_controls_of(context.physical);
+    const char* extension = VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME;
+    if (context.float_controls.any()) {
+        info.enabledExtensionCount = 1;
+        info.ppEnabledExtensionNames = &extension;
+    }
     vk_check(vkCreateDevice(context.physical, &info, nullptr, &context.device),
              std::string("opening Vulkan device ") + properties_of(context.physical).deviceName);
     vkGetDeviceQueue(context.device, context.queue_family, 0, &context.queue);
@@ -180,6 +199,7 @@ VulkanContext::VulkanContext(VulkanContext&& other) noexcept
       queue(other.queue),
       queue_family(other.queue_family),
       owned(std::exchange(other.owned, false)),
+      float_controls(other.float_controls),
       log(std::move(other.log)) {}
 
 VulkanContext::~VulkanContext() {
@@ -237,7 +257,8 @@ DeviceInfo describe_vulkan(VkPhysicalDevice physical) {
         std::min<std::uint64_t>(largest.maxMemoryAllocationSize, info.limits.memory_bytes);
     info.limits.max_allocation_bytes =
         allocation > slice_alignment ? allocation - slice_alignment : 0;
-    info.limits.max_binding_bytes = properties.limits.maxStorageBufferRange;
+    info.limits.max_binding_bytes = std::min<std::uint64_t>(properties.limits.maxStorageBufferRange,
+                                                            info.limits.max_allocation_bytes);
     info.limits.max_group_size = std::min(properties.limits.maxComputeWorkGroupInvocations,
                                           properties.limits.maxComputeWorkGroupSize[0]);
     info.limits.shared_bytes = properties.limits.maxComputeSharedMemorySize;

@@ -10,6 +10,7 @@
 
 #include "device/device.h"
 #include "device/devices.h"
+#include "device/vulkan/float_controls.h"
 
 namespace topple::device {
 
@@ -28,6 +29,8 @@ struct VulkanContext {
     VkQueue queue = VK_NULL_HANDLE;
     std::uint32_t queue_family = 0;
     bool owned = false;
+    // What the device was opened with; of one that is the caller's nothing is known.
+    FloatControls float_controls;
     std::unique_ptr<ValidationLog> log;  // null without validation
 
     VulkanContext() = default;

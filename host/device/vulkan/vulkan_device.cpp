@@ -13,6 +13,7 @@ namespace topple::device {
 VulkanDevice::VulkanDevice(VulkanContext context, const VulkanOptions& options)
     : context_(std::move(context)), options_(options) {
     info_ = describe_vulkan(context_.physical);
+    as_gpu_ = info_.gpu || options_.force_gpu_form;
     vkGetPhysicalDeviceMemoryProperties(context_.physical, &memory_);
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(context_.physical, &properties);
@@ -117,8 +118,9 @@ VulkanDevice::Built VulkanDevice::build(const KernelSource& source) const {
     if (result == VK_SUCCESS) {
         auto info =
             vk_struct<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-        info.codeSize = source.spirv.size_bytes();
-        info.pCode = source.spirv.data();
+        const auto words = with_float_controls(source.spirv, context_.float_controls);
+        info.codeSize = words.size() * sizeof(words[0]);
+        info.pCode = words.data();
         result = vkCreateShaderModule(context_.device, &info, nullptr, &module);
     }
     if (result == VK_SUCCESS) {
@@ -130,6 +132,15 @@ VulkanDevice::Built VulkanDevice::build(const KernelSource& source) const {
         info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
         info.stage.module = module;
         info.stage.pName = "main";
+        // ITEMS, and whether the driver divides as IEEE 754 says
+        // (kernels/dialect/glsl/prelude.glsl).
+        struct {
+            std::uint32_t items;
+            VkBool32 driver_is_exact;
+        } const constants{items_per_lane(source), as_gpu_ ? VK_FALSE : VK_TRUE};
+        const VkSpecializationMapEntry entries[] = {{0, 0, 4}, {1, 4, 4}};
+        const VkSpecializationInfo specialization{2, entries, sizeof(constants), &constants};
+        info.stage.pSpecializationInfo = &specialization;
         info.layout = built.layout;
         result = vkCreateComputePipelines(context_.device, VK_NULL_HANDLE, 1, &info, nullptr,
                                           &built.pipeline);

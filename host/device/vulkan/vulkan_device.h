@@ -16,7 +16,8 @@ namespace topple::device {
 // Choices that follow from the device; tests set them to run, on any driver, the paths that others
 // need.
 struct VulkanOptions {
-    bool force_staging = false;  // copy through a staging buffer even where memory is unified
+    bool force_gpu_form = false;  // kernels as for real GPUs, which may divide inexactly
+    bool force_staging = false;   // copy through a staging buffer even where memory is unified
     std::uint64_t staging_bytes = 16u << 20;
     std::uint32_t max_groups = 0;  // groups in one command; 0: the device's limit
     std::uint32_t dispatches_per_submit = 4096;
