@@ -282,15 +282,6 @@ void note_short_hazard(Scene& scene) {
                           "nothing minds.");
 }
 
-// Of g/cm^3 instead, all would weigh a thousandth.
-void note_light_density(Scene& scene) {
-    constexpr double lightest_kg_m3 = 10;  // foams for packing
-    if (scene.density_kg_m3 >= lightest_kg_m3) return;
-    scene.notes.push_back("The density of " + io::short_number(scene.density_kg_m3) +
-                          " kg/m\u00b3 is less than that of the lightest foam; if it is in "
-                          "g/cm\u00b3, give --density 1000 times as large.");
-}
-
 void note_corrections(Scene& scene) {
     const std::vector<std::size_t> said = told_sentences(scene.corrections);
     for (std::size_t n = 0; n < scene.corrections.size(); ++n) {
@@ -317,6 +308,15 @@ void note_uncertain_barriers(Scene& scene) {
 }
 
 }  // namespace
+
+// Of g/cm^3 instead, all would weigh a thousandth.
+std::string light_density_note(double density_kg_m3) {
+    constexpr double lightest_kg_m3 = 10;  // foams for packing
+    if (density_kg_m3 >= lightest_kg_m3) return {};
+    return "The density of " + io::short_number(density_kg_m3) +
+           " kg/m\u00b3 is less than that of the lightest foam; if it is in g/cm\u00b3, give "
+           "--density 1000 times as large.";
+}
 
 void record_run(const device::Device& device, const ParseOptions& options, double voxel_m,
                 Scene& scene) {
@@ -348,7 +348,8 @@ void assemble_objects(const SolidParts& parts, const ObjectStage& objects,
     add_fields(safety, to_input, scene);
     add_walks(safety, to_input, scene);
     scene.corrections = objects.told.corrections;
-    note_light_density(scene);
+    const std::string light = light_density_note(scene.density_kg_m3);
+    if (!light.empty()) scene.notes.push_back(light);
     note_corrections(scene);
     note_unsettled_search(scene);
     note_crowded_objects(scene);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
+
 #include "pipeline/groundwork.h"
 #include "pipeline/object_stage.h"
 #include "pipeline/safety_stage.h"
@@ -12,6 +14,9 @@ namespace topple {
 // Notes what is parsed with what: version, device, options and voxel size.
 void record_run(const device::Device& device, const ParseOptions& options, double voxel_m,
                 Scene& scene);
+
+// What to say of a density that is that of nothing, as in another unit; "" of others.
+std::string light_density_note(double density_kg_m3);
 
 // Gathers what was found of primitives, objects and fields into the public result, in the input's
 // frame.

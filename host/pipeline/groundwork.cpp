@@ -27,6 +27,18 @@ void check_memory_of(const CloudView& cloud, ScanOrigin origin, double voxel_m,
             (origin == ScanOrigin::cloud_file ? ", or --tile 5 to have it parsed in blocks" : ""));
 }
 
+// What find() makes. A scene that is too large for it is in another unit, perhaps, which is said.
+template <class Find>
+auto with_unit_hint(double extent_m, ScanOrigin origin, const Find& find) {
+    try {
+        return find();
+    } catch (const Error& error) {
+        const std::string hint = large_extent_hint(extent_m, origin);
+        if (error.kind() != ErrorKind::input || hint.empty()) throw;
+        throw Error(ErrorKind::input, hint + ", else: " + error.what());
+    }
+}
+
 [[noreturn]] void no_surface(const Ingested& input, const std::string& source, double extent_m) {
     const std::string scale = of_frames(input.origin) && input.frames
                                   ? depth_scale_hint(*input.frames, input.origin)
@@ -81,17 +93,21 @@ Groundwork lay_groundwork(device::Device& device, Ingested input, const ParseOpt
                           const std::string& source, StageClock& stage) {
     Groundwork out;
     out.voxel_m = voxel_for_input(input, options);
-    check_memory_of(input.cloud, input.origin, out.voxel_m, options);
     out.offset_m = input.own.offset_m;
     out.notes = input.notes;
     const double extent = extent_m({input.cloud.x, input.cloud.y, input.cloud.z});
     note_small_extent(extent, input.origin, out.notes);
 
-    auto [geometry, voxels] = find_solids(device, input, out.voxel_m, options, stage);  // 2
+    auto [geometry, voxels] = with_unit_hint(extent, input.origin, [&] {
+        check_memory_of(input.cloud, input.origin, out.voxel_m, options);
+        return find_solids(device, input, out.voxel_m, options, stage);  // 2
+    });
     if (!geometry.frame.note.empty()) out.notes.push_back(geometry.frame.note);
     if (voxels.solids->primitives() == 0) no_surface(input, source, extent);
     out.parts = solid_parts(geometry, voxels);
     out.points = labelled_points(input, geometry, voxels);
+    out.image_width = input.image_width;
+    out.image_height = input.image_height;
     if (options.coordinates) take_coordinates(input, out.points);
     out.voxels = std::move(voxels.scene);
     out.weighed = weigh_parts(device, out.parts, options, stage);  // 4.2

@@ -20,7 +20,8 @@ struct Groundwork {
     double voxel_m = 0;
     Vec3 offset_m{};
     std::vector<std::string> notes;
-    ScenePoints points;  // without their objects
+    ScenePoints points;                               // without their objects
+    std::uint32_t image_width = 0, image_height = 0;  // as in ParseResult
     std::shared_ptr<vdb::VoxelScene> voxels;
     SolidParts parts;  // samples and seams are gone where it comes from a file
     PartStage weighed;

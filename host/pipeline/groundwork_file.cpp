@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Changes with what is written below.
-constexpr std::string_view groundwork_mark = "topple groundwork 2";
+constexpr std::string_view groundwork_mark = "topple groundwork 3";
 
 // --- What it depends on ---
 
@@ -193,6 +193,8 @@ void ground_fields(Io& io, Ground& g) {
     io(p.region);
     for (auto* array : {&p.red, &p.green, &p.blue}) io(*array);
     io(p.index);
+    io(g.image_width);
+    io(g.image_height);
     auto& f = g.parts.frame;
     io(f.axes);
     io(f.found);
@@ -233,7 +235,8 @@ bool coherent(const Groundwork& g, const FlatSolids& solids) {
         right = right && (array->size() == points || array->empty());
     for (const auto* array : {&g.points.nx, &g.points.ny, &g.points.nz})
         right = right && array->size() == points;
-    right = right && g.points.region.size() == points;
+    right = right && g.points.region.size() == points &&
+            (g.points.index.empty() || g.points.index.size() == points);
     for (const physics::TouchingPair& pair : c.pairs)
         right = right && is_part(pair.a) && is_part(pair.b);
     for (const graph::Carrying& carrying : c.carryings)

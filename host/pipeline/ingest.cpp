@@ -13,6 +13,7 @@
 #include "geometry/surfels.h"
 #include "io/frame_sequence.h"
 #include "io/octomap.h"
+#include "io/read_cloud.h"
 #include "io/rigid_pose.h"
 #include "io/text.h"
 #include "pipeline/caller_frames.h"
@@ -57,6 +58,14 @@ std::vector<Vec3> places_of(std::span<const Mat4> poses) {
     return places;
 }
 
+void note_single_frame(Ingested& out) {
+    out.notes.push_back("A single frame: what it does not show is completed by shape alone.");
+}
+
+void note_colours(Ingested& out) {
+    if (out.cloud.red.empty()) out.notes.emplace_back(no_colours_note);
+}
+
 // Fuses out.frames, called `source`. poses: as they were given, of each; none of a single frame.
 void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std::string& source,
                  const ParseOptions& options, Ingested& out) {
@@ -97,8 +106,8 @@ void fuse_frames(device::Device& device, std::span<const Mat4> poses, const std:
     out.cloud = out.own;
     out.viewpoints = std::move(fused.viewpoints);
     out.viewpoint_of_point = std::move(fused.viewpoint_of_point);
-    if (poses.empty())
-        out.notes.push_back("A single frame: what it does not show is completed by shape alone.");
+    if (poses.empty()) note_single_frame(out);
+    note_colours(out);
 }
 
 Ingested ingest_folder(device::Device& device, const std::filesystem::path& folder,
@@ -214,6 +223,7 @@ void look_at_cloud(device::Device& device, const ParseOptions& options, Ingested
         std::vector<DepthFrame> frames;
         frames.push_back(std::move(frame));
         out.frames = std::make_unique<MemoryStream>(intrinsics, std::move(frames));
+        note_single_frame(out);
         return;
     }
     std::optional<geometry::SingleScan> scan;
@@ -234,6 +244,11 @@ void look_at_cloud(device::Device& device, const ParseOptions& options, Ingested
 Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options) {
     Ingested out;
     out.own = std::move(cloud);
+    if (out.own.height > 1) {
+        out.image_width = out.own.width;
+        out.image_height = out.own.height;
+        if (out.own.dropped > 0) out.index.assign(out.own.pixel.begin(), out.own.pixel.end());
+    }
     out.cloud = out.own;
     look_at_cloud(device, options, out);
     return out;
@@ -253,7 +268,9 @@ Ingested ingest_view(device::Device& device, const CloudView& cloud, const Parse
         out.index = std::move(finite->index);
         out.cloud = out.own;
     }
+    check_viewpoint_distance(out.cloud);
     look_at_cloud(device, options, out);
+    note_colours(out);
     return out;
 }
 
@@ -366,7 +383,9 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
     ScannedMap map = read_input(input, options);
     if (io::looks_like_octomap(input)) return ingest_octomap(std::move(map), options);
     if (vdb::looks_like_volume(input)) return ingest_volume(device, std::move(map), options);
-    return ingest_cloud(device, std::move(map.cloud), options);
+    Ingested out = ingest_cloud(device, std::move(map.cloud), options);
+    if (!io::is_mesh(input)) note_colours(out);
+    return out;
 }
 
 }  // namespace topple

@@ -25,6 +25,11 @@ namespace topple {
 inline constexpr double least_cell_m = 0.003, largest_cell_m = 0.05;
 inline constexpr double sparsest_m = 5 * largest_cell_m;
 
+// Of a cloud or frames without: grouping goes by colours, too, where there are any
+// (graph/borders.h).
+inline constexpr const char* no_colours_note =
+    "No colours were given: things that touch are told apart less well than with them.";
+
 // Calls use(frame, i) for each frame in order. Frames are decoded by all threads, as many at once,
 // unless they must be loaded one by one.
 void for_each_frame(const FrameStream& frames, ThreadPool& threads,
@@ -39,11 +44,12 @@ constexpr double surfel_cells = 1.85;
 struct Ingested {
     ScanOrigin origin = ScanOrigin::cloud_file;
     // The points, in the caller's memory or in `own`: what came from a file or from frames, or lost
-    // points that were not finite; then `index` holds the place of each in the caller's arrays.
+    // points that were not finite; then `index` holds the place of each in the arrays or the file.
     CloudView cloud;
     PointCloud own;
     std::vector<std::uint64_t> index;
-    std::vector<Vec3> viewpoints;                   // where the sensor was
+    std::uint32_t image_width = 0, image_height = 0;  // as in ParseResult
+    std::vector<Vec3> viewpoints;                     // where the sensor was
     std::vector<std::uint32_t> viewpoint_of_point;  // of each point, or empty: viewpoint 0 for all
     std::unique_ptr<FrameStream> frames;            // what carves the free space; null: nothing can
     std::optional<Vec3> camera_up;

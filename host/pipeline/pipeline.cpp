@@ -56,7 +56,8 @@ ParseResult build_on(device::Device& device, Groundwork ground, const ParseOptio
     }
     take_over(*solids, *parts.solids, *ground.voxels);
     const SafetyStage safety = assess_safety(device, parts, objects, options, stage);  // 5
-    ParseResult result{{}, ground.voxels, nullptr, parts.solids};
+    ParseResult result{{},           ground.voxels,      nullptr,
+                       parts.solids, ground.image_width, ground.image_height};
     stage("assembly", [&] {
         assemble_objects(parts, objects, safety, scene);
         assemble_points(std::move(ground), objects, safety, scene);
@@ -176,6 +177,13 @@ std::vector<std::string> known_disturbances() {
 
 namespace {
 
+// Checks the options, and tells at once of one that was meant otherwise, perhaps.
+void take_options(const ParseOptions& options) {
+    check_options(options);
+    const std::string note = light_density_note(options.density_kg_m3);
+    if (!note.empty() && options.notice) options.notice(note);
+}
+
 ParseResult parse_scan(const std::filesystem::path& input, ParseOptions options) {
     GroundworkFile cache;
     Timings timings;
@@ -200,7 +208,7 @@ ParseResult parse_scan(const std::filesystem::path& input, ParseOptions options)
 }  // namespace
 
 ParseResult parse(const std::filesystem::path& input, const ParseOptions& options) {
-    check_options(options);
+    take_options(options);
     // First, as it is told early what can't be read.
     std::vector<std::string> notes = io::scan_notes(input);
     const auto kind =
@@ -213,7 +221,7 @@ ParseResult parse(const std::filesystem::path& input, const ParseOptions& option
 }
 
 ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
-    check_options(options);
+    take_options(options);
     refuse_cache(options);
     refuse_tiles(options);
     const std::string source = cloud.source.empty() ? "cloud" : cloud.source;
@@ -226,7 +234,7 @@ ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
 }
 
 ParseResult parse(const FramesView& frames, const ParseOptions& options) {
-    check_options(options);
+    take_options(options);
     refuse_cache(options);
     refuse_tiles(options);
     const std::string source = frames.source.empty() ? "frames" : frames.source;

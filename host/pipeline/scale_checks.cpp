@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 #include <utility>
 
 #include "core/vectors.h"
@@ -16,13 +17,34 @@ namespace {
 
 // What a scan of rooms extends over, for guesses at its unit; and what not even that of a table
 // full of things stays below.
-constexpr double least_room_m = 1.5, largest_room_m = 30, least_scan_m = 0.5;
+constexpr double largest_room_m = 30, least_scan_m = 0.5;
+// The smallest that a scan may be for its unit to be guessed at: some things on a table.
+constexpr double least_table_m = 0.2;
 
 // To three digits, or all before the point.
 std::string text_of(double value) {
     char digits[32];
     std::snprintf(digits, sizeof(digits), value >= 1000 && value < 1e9 ? "%.0f" : "%.3g", value);
     return digits;
+}
+
+// "if the coordinates are in mm, multiply them by 0.001 (0.94 m), in cm by 0.01 (9.4 m)": the units
+// in which points that extend so far would be those of a table or a room; "" where there is none.
+std::string other_units(double extent_m, bool from_file) {
+    std::string out;
+    for (const auto& [unit, unit_m] : {std::pair("mm", 0.001), {"cm", 0.01}, {"in", 0.0254}}) {
+        const double then_m = extent_m * unit_m;
+        if (then_m < least_table_m || then_m > largest_room_m) continue;
+        const bool first = out.empty();
+        out += first ? "if the coordinates are in " : ", in ";
+        out += std::string_view(unit) == "in" ? "inches" : unit;
+        if (from_file)
+            (out += first ? ", say --unit " : " --unit ") += unit;
+        else
+            (out += first ? ", multiply them by " : " by ") += text_of(unit_m);
+        out += " (" + io::two_digits(then_m) + " m)";
+    }
+    return out;
 }
 
 }  // namespace
@@ -41,24 +63,43 @@ double extent_m(const std::array<FloatColumn, 3>& axes) {
 }
 
 void check_spacing(const CloudView& cloud, double spacing_m, ScanOrigin origin) {
-    const bool from_file = !in_memory(origin);
     if (spacing_m <= sparsest_m) return;
     const double extent = extent_m({cloud.x, cloud.y, cloud.z});
-    std::string units, options;
-    for (const auto& [unit, unit_m] : {std::pair("mm", 0.001), {"cm", 0.01}, {"in", 0.0254}}) {
-        if (extent * unit_m < least_room_m || extent * unit_m > largest_room_m) continue;
-        units.append(units.empty() ? "" : " or ").append(unit);
-        options.append(options.empty() ? "" : " or ");
-        options.append(from_file ? "--unit " + std::string(unit) : "by " + text_of(unit_m));
-    }
+    const std::string units = other_units(extent, !in_memory(origin));
     throw Error(ErrorKind::input,
                 cloud.source + ": the points extend over " + text_of(extent) + " m and are " +
                     text_of(spacing_m) + " m apart, more than the " + text_of(sparsest_m) +
                     " m at which surfaces can be found; " +
-                    (units.empty() ? "give a denser scan"
-                                   : "if the coordinates are in " + units +
-                                         (from_file ? ", say " : ", multiply them ") + options +
-                                         ", else give a denser scan"));
+                    (units.empty() ? units : units + ", else ") + "give a denser scan");
+}
+
+void check_viewpoint_distance(const CloudView& cloud) {
+    // What a scanner sees across a hall; and what was cut out of its scan lies far off, as well.
+    constexpr double far_m = 30, far_sizes = 10;
+    if (!cloud.has_viewpoint) return;
+    double off = 0, size = 0;
+    const std::array<const FloatColumn*, 3> axes{&cloud.x, &cloud.y, &cloud.z};
+    for (std::size_t a = 0; a < 3; ++a) {
+        double low = INFINITY, high = -INFINITY;
+        for (const float value : *axes[a]) {
+            low = std::min(low, double{value});
+            high = std::max(high, double{value});
+        }
+        off = std::max({off, low - cloud.viewpoint[a], cloud.viewpoint[a] - high});
+        size = std::max(size, high - low);
+    }
+    if (off <= std::max(far_m, far_sizes * size)) return;
+    throw Error(ErrorKind::input,
+                cloud.source + ": its viewpoint lies " + text_of(off) +
+                    " m off the points, which extend over " + text_of(size) +
+                    " m: it must be in metres, in their frame; if it is in mm, multiply it by "
+                    "0.001");
+}
+
+std::string large_extent_hint(double extent_m, ScanOrigin origin) {
+    if (extent_m <= largest_room_m || of_frames(origin)) return {};
+    const std::string units = other_units(extent_m, !in_memory(origin));
+    return units.empty() ? units : "it all extends over " + text_of(extent_m) + " m: " + units;
 }
 
 std::string small_extent_hint(double extent_m, ScanOrigin origin) {

@@ -33,6 +33,14 @@ double extent_m(const std::array<FloatColumn, 3>& axes);
 void check_spacing(const CloudView& cloud, double spacing_m,
                    ScanOrigin origin = ScanOrigin::cloud_file);
 
+// Refuses a cloud whose sensor lies so far off its points that its place is in another unit. Throws
+// Error(input).
+void check_viewpoint_distance(const CloudView& cloud);
+
+// Of what extends over more than a room, and would be one in another unit: "it all extends over
+// 115 m: if the coordinates are in cm, multiply them by 0.01 (1.1 m)", or how else an input from
+// there is mended; else "".
+std::string large_extent_hint(double extent_m, ScanOrigin origin);
 // Of what extends over less than things in a room do: "it all extends over X m: check --unit", or
 // what else gives the unit of such an input; else "".
 std::string small_extent_hint(double extent_m, ScanOrigin origin);

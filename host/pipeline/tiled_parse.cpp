@@ -209,6 +209,7 @@ void add_notes(const tiles::SpilledPoints& points, const tiles::Layout& layout, 
                               std::to_string(points.dropped() + points.points()) +
                               (points.dropped() == 1 ? " was" : " were") +
                               " not finite and left out.");
+    if (!points.coloured()) scene.notes.emplace_back(no_colours_note);
     scene.notes.push_back("The cloud of " + io::counted(points.points(), "point") +
                           " was parsed in " + io::counted(layout.blocks.size(), "block") +
                           ", thinned to one point per " +

@@ -28,11 +28,7 @@ class Caller {
     // What may be worth an end before the parse's own, as poses that make nonsense.
     void notice(const std::string& line) {
         if (!mine() || stop_) return;
-        ask([&] {
-            constexpr py::ssize_t callers = 2;  // whose line the warning names
-            if (PyErr_WarnEx(PyExc_RuntimeWarning, with_own_names(line).c_str(), callers) != 0)
-                throw py::error_already_set();
-        });
+        ask([&] { py::module_::import("topple._arrays").attr("warn")(with_own_names(line)); });
     }
     // Whether it was told to stop, by the callback or by a signal such as Ctrl-C.
     bool cancelled() {

@@ -353,6 +353,12 @@ void bind_result(py::module_& module) {
         .def_property_readonly("point_object", point_array(&ScenePoints::object))
         .def_property_readonly("point_region", point_array(&ScenePoints::region))
         .def_property_readonly("point_index", point_array(&ScenePoints::index))
+        .def_property_readonly("image_shape",
+                               [](const Parsed& p) -> py::object {
+                                   if (p.result.image_height == 0) return py::none();
+                                   return py::make_tuple(p.result.image_height,
+                                                         p.result.image_width);
+                               })
         .def_property_readonly("solid", solid)
         .def_property_readonly("fields", fields);
 }

@@ -3,6 +3,7 @@
 import gc
 import json
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -14,6 +15,7 @@ import pytest
 
 import topple
 from exported import Exported
+from made_scans import CAMERA, POSES, colours_of, seen_from
 
 
 def quick(points, device, **options):
@@ -192,7 +194,8 @@ def test_points_that_are_not_finite_are_left_out(points, result, device):
     (np.zeros((3, 30), np.float32), 'not float32 of shape (3, 30); points.T has a row'),
     (np.zeros((4, 5, 3), np.float32), 'points.reshape(-1, 3) has a row'),
     ([[1, 2, 3]] * 9, "np.array(points, 'float32') converts integers"),
-    (np.random.default_rng(1).random((3000, 3)).astype(np.float32) * 3000, 'are in mm or cm, multiply them by 0.001 or by 0.01, else'),
+    (np.random.default_rng(1).random((3000, 3)).astype(np.float32) * 3000, 'in mm, multiply them by 0.001 (3.0 m), in cm by 0.01 (30 m), else'),
+    (np.random.default_rng(1).random((3000, 3)).astype(np.float32) * 938, 'in mm, multiply them by 0.001 (0.94 m), in cm by 0.01 (9.4 m), in inches by'),
     (np.zeros((30, 3), int), "not int64 of shape (30, 3); points.astype('float32') converts"),
     (np.zeros((30, 4), np.int32), "points[:, :3].astype('float32')"),
     ((np.zeros(3, np.float32),) * 2 + (np.zeros(3, int),), "points z: expected floats of shape (N,), not int64 of shape (3,); z.as"),
@@ -320,6 +323,59 @@ def test_viewpoints_that_are_not_finite_are_told(points, device):
     assert any('not finite: they count as not known' in note for note in quick(few, device, viewpoint=seen_from).notes)
     with pytest.raises(topple.Error, match='viewpoint: expected three finite numbers'):
         quick(points, device, viewpoint=(0, 0, np.nan))
+
+
+def test_points_in_centimetres_are_told(device):
+    patch = np.random.default_rng(3).random((2000, 3), np.float32) * np.float32([4, 4, 0.001])
+    corners = np.concatenate([patch + np.float32(at) for at in ((0, 0, 0), (120, 0, 0), (0, 120, 0), (0, 0, 120))])
+    with pytest.raises(topple.Error, match=r'^it all extends over 124 m: if .* in cm, multiply them by 0.01 \(1.2 m\), .*, else: .*voxel_m .* or larger') as raised:
+        quick(corners, device, voxel_m=0.02)
+    assert raised.value.kind == 'input'
+
+
+def test_a_viewpoint_in_millimetres_is_refused(points, device):
+    with pytest.raises(topple.Error, match=r'^points: its viewpoint lies 1499 m off the points, which extend over 2.8 m: .* in mm, multiply it by 0.001') as raised:
+        quick(points, device, viewpoint=(0, 0, 1500))
+    assert raised.value.kind == 'input'
+    assert len(quick(points, device, viewpoint=(1.4, 0.4, 1.0)).objects) > 2
+
+
+def test_that_there_are_no_colours_is_noted(points, result, sequence, coloured_sequence, ply, device, tmp_path):
+    note = 'No colours were given: things that touch are told apart less well than with them.'
+    assert result.notes.count(note) == 1 and sequence.notes.count(note) == 1
+    assert note not in ply.notes and note not in coloured_sequence.notes
+    assert note not in quick(points, device, colours=np.full(points.shape, 90, np.uint8)).notes
+    (tmp_path / 'crate.obj').write_text('v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 1\nv 2 0 1\nf 1 2 3 4\nf 1 2 6 5\n')
+    assert note not in quick(tmp_path / 'crate.obj', device).notes  # of meshes the shape is known
+
+
+def test_misspelt_arguments_are_told_which_were_meant(points):
+    for name, words in (('colors', "; did you mean 'colours'?"), ('voxel', "; did you mean 'voxel_m'?"), ('disturbance', "; did you mean 'disturbances'?"),
+                        ('pga', "; did you mean 'pga_m_s2'?"), ('poses', None)):
+        with pytest.raises(TypeError) as raised:
+            topple.parse(points, **{name: 3})
+        assert str(raised.value) == f'parse() has no argument {name!r}' + (words or '')
+
+
+def test_an_organised_cloud_is_a_frame(device, tmp_path):
+    depth = seen_from(POSES[0])[0]
+    v, u = np.mgrid[:CAMERA.height, :CAMERA.width]
+    seen = np.stack([(u - CAMERA.cx) / CAMERA.fx * depth, (v - CAMERA.cy) / CAMERA.fy * depth, depth], axis=-1).astype('<f4')
+    seen[:9] = np.nan
+    file = tmp_path / 'seen.pcd'
+    file.write_bytes(f'VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {CAMERA.width}\nHEIGHT {CAMERA.height}\n'
+                     f'VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {depth.size}\nDATA binary\n'.encode() + seen.tobytes())
+    parsed = quick(file, device)
+    assert parsed.image_shape == depth.shape and any(note.startswith('A single frame') for note in parsed.notes)
+    assert np.array_equal(np.stack(parsed.xyz, 1), seen.reshape(-1, 3)[parsed.point_index])
+    labels = np.full(depth.size, -1, np.int32)
+    labels[parsed.point_index] = parsed.point_object
+    for got in (parsed, pickle.loads(pickle.dumps(parsed))):
+        assert np.array_equal(got.frame_labels(0), labels.reshape(depth.shape)) and (got.frame_labels(0)[:9] == -1).all()
+        assert np.array_equal(got.frame_labels(primitives=True) >= 0, labels.reshape(depth.shape) >= 0)
+        with pytest.raises(topple.Error, match='no frame 1: they count from 0, and there are 1'):
+            got.frame_labels(1)
+    assert quick(seen[9:].reshape(-1, 3), device).image_shape is None
 
 
 def test_a_density_in_other_units_is_told(points, device):

@@ -103,7 +103,8 @@ struct ParseOptions {
     std::function<bool()> cancelled;
     // Called on the same thread with what a user may want to know while it runs, a line each: that
     // it goes on with what an earlier run has left in the work folder or the cache, makes what is
-    // damaged there anew, or that poses do not fit what their frames see, as a note says later.
+    // damaged there anew, or, as a note says later, that poses do not fit what their frames see, or
+    // that the density is that of nothing.
     std::function<void(const std::string&)> notice;
 };
 
@@ -119,6 +120,9 @@ struct ParseResult {
     std::shared_ptr<const TiledResult> tiled;
     // The solids, finer than the voxels; null for a cloud that was parsed in blocks.
     std::shared_ptr<const SolidScene> solids;
+    // The size of the depth image that an organised cloud in a file is: scene.points are its
+    // pixels, or those that ScenePoints::index says, row by row. 0: it is none.
+    std::uint32_t image_width = 0, image_height = 0;
 };
 
 // Parses a scan: a point cloud (.ply, .pcd, .xyz, .las), a mesh (.obj, .stl, .glb, .gltf, .ply with

@@ -288,8 +288,9 @@ struct ScenePoints {
     // The scan's own colours, sRGB, 0 to 255; empty where it has none, or without
     // ParseOptions::coordinates. 0, 0, 0: this point's is not known.
     std::vector<std::uint8_t> red{}, green{}, blue{};
-    // Of a cloud in memory with points that are not finite: the place of each of the others in the
-    // caller's arrays, ascending. Empty: all are here.
+    // Of a cloud with points that are not finite, in memory or an organised one in a file: the
+    // place of each of the others there, ascending. Empty: all are here, or nothing is known of
+    // others.
     std::vector<std::uint64_t> index{};
 };
 

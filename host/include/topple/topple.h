@@ -352,7 +352,7 @@ const int32_t* topple_result_point_primitives(const topple_result* result);
 const int32_t* topple_result_point_objects(const topple_result* result);
 const float* topple_result_point_normals(const topple_result* result, int axis); /* 0, 1, 2 */
 /* Where points that are not finite were left out: the place of each other one in the caller's
- * arrays; else NULL. */
+ * arrays, or in an organised file; else NULL. */
 const uint64_t* topple_result_point_index(const topple_result* result);
 
 /* What pixels of depth frames show of a result (topple/frame_labels.h), which must hold its points'

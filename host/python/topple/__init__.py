@@ -21,7 +21,7 @@ from . import _described, _labels, _shown, _snapshot, _spots, _tables, _topple, 
 from ._arrays import channels as _channels, columns as _columns, has_rows as _has_rows, usage as _usage
 from ._device import open_device
 from ._frames import Frames as _Frames
-from ._options import option as _option, unlikely_peak_note as _unlikely_peak_note
+from ._options import named as _named, option as _option, unlikely_peak_note as _unlikely_peak_note
 from ._program import generate
 from ._topple import Advice, AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Landscape, Object, Overturning, Primitive, Support, Why, __version__
 from .foxglove import to_mcap
@@ -173,10 +173,12 @@ class Result:
         """The object that each pixel of a depth frame shows, (height, width) int32: ids, and -1 where the pixel has no reading, or shows
         nothing that the parse knows. With primitives=True the part.
 
-        frame: the number of one that was parsed, from a folder or frames=...; or any depth image of the same place, (height, width)
+        frame: the number of one that was parsed, from a folder or frames=..., or 0 of an organised .pcd, which is one; or any depth image of the same place, (height, width)
         uint16 or floats as in parse(frames=...), with its camera_to_world, (4, 4), metres, in the frame of the result's points, and
         its intrinsics, a topple.stages.Intrinsics. A pixel shows what the point is of that is nearest to its reading, within the edge of
         a voxel, or three standard deviations of a reading from so far away. Raises Error of kind "usage" where there is no such frame."""
+        if camera_to_world is None and intrinsics is None and _labels.numbered(frame) and getattr(self._parsed, 'image_shape', None):
+            return _labels.of_image(self, frame, primitives)
         with self._writing:
             if self._labeller is None:
                 self._labeller = _labels.labeller(self)
@@ -248,6 +250,7 @@ def _components(accelerogram):
     return [None if file is None else os.fspath(file) for file in given + [None] * (3 - len(given))]
 
 
+@_named
 def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturbances=None,
           seed=1, max_memory_bytes=0, density_kg_m3=700.0, friction=0.3, contents_kg_m3=68.0, walks=500, motion=None, motion_unit=None,
           motion_rate=None, motion_up=None, wind_m_s=12.0, wind_from_deg=None, pga_m_s2=None, accelerogram=None, accelerogram_unit=None, floor_amplification=1.0, hazard=None, tolerable_J=0.1, grouping_time_s=None, corrections=None, cache_file=None, normals=None,
@@ -279,7 +282,8 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     "g", "m/s2" or "cm/s2", else what the file says, else g. hazard: a file. normals: of
     points, as they are given. viewpoint: where the sensor was, three numbers, or (N, 3) where each point was seen from, NaN where it is not
     known, which Result.notes says: of several scans, or a sensor that moved. colours: of points, sRGB as uint8, an array of shape (N, 3),
-    records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. progress(stage, done) is called as stages start and go on: done is about
+    records with fields red, green, blue, or a tuple of three arrays; 0, 0, 0 where it is not known. Give them where you have them: they help to
+    tell things apart that touch (docs/formats.md). progress(stage, done) is called as stages start and go on: done is about
     how much of the whole parse is done, 0 to 1, and never falls. pga_m_s2: the peak of earthquakes in m/s2, of which 0.3 g are 2.94. contents_kg_m3: of closed furniture, or None where all is solid.
     corrections: what you know of the room beside the scan: a file, or a list of dicts such as {"do": "fixed", "at_m":
     [[x, y, z]]} (docs/corrections.md); Result.corrections says what became of each. cache_file: keeps what does not

@@ -396,6 +396,8 @@ class Result:
     @property
     def point_index(self) -> NDArray[np.uint64]: ...
     @property
+    def image_shape(self) -> Optional[tuple[int, int]]: ...  # height, width
+    @property
     def solid(self) -> dict[str, NDArray[Any]]: ...  # x, y, z, primitive, object, state
     @property
     def fields(self) -> dict[str, dict[str, _Floats]]: ...  # x, y, z, vx, vy, vz, density

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What is given as arrays, as the library takes it: where it lies, if it is that already."""
+import sys
+import warnings
+
 import numpy as np
 
 from ._topple import Error
@@ -13,6 +16,14 @@ def error(kind, message):
 
 def usage(message):
     return error('usage', message)
+
+
+def warn(message):
+    """A RuntimeWarning that names the line which called the package, however deep in it this is."""
+    frame, level = sys._getframe(1), 2
+    while frame is not None and frame.f_globals.get('__name__', '').split('.')[0] == __package__:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, RuntimeWarning, stacklevel=level)
 
 
 def as_array(source, name):

@@ -25,7 +25,9 @@ RESULT = {
     'point_object': '(N,) int32: the object of each point that is finite, -1: none. Where points of the input were left out, point_index '
                     'says which of the input\'s these are.',
     'point_region': '(N,) int32: the smooth piece of surface of each point that is finite, -1: none.',
-    'point_index': 'uint64: of arrays with points that are not finite, the places in them of the N others, ascending; empty where all are finite.',
+    'point_index': 'uint64: of arrays, and organised clouds in files, with points that are not finite, the places in them of the N others, ascending; '
+                   'empty where all are finite, and of other files.',
+    'image_shape': '(height, width) of the depth image that an organised .pcd is, whose pixels are its places, row by row; None: it is none.',
     'solid': 'dict of arrays over the solid voxels: "x", "y", "z", their centres in metres, float32; "primitive", "object", int32; "state", uint8, '
              '0: seen surface, 1: completed.',
     'fields': 'dict by disturbance, of dicts of float32 arrays: "x", "y", "z" in metres; "vx", "vy", "vz", mean direction times strength (m/s; '

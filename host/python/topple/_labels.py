@@ -30,21 +30,36 @@ def kept(frames, source):
     return NOT_KEPT
 
 
+def numbered(frame):
+    """Whether it is the number of a frame, and no image."""
+    return hasattr(frame, '__index__') and getattr(frame, 'ndim', 0) == 0
+
+
 def _number(frame, count):
     if isinstance(frame, bool) or not 0 <= operator.index(frame) < count:
         raise usage(f'frame_labels: there is no frame {frame!r}: they count from 0, and there are {count}')
     return operator.index(frame)
 
 
+def of_image(result, frame, primitives):
+    """Of an organised cloud, which is one depth image: what its pixels' points are of."""
+    _number(frame, 1)
+    height, width = result.image_shape
+    index, ids = result.point_index, result.point_primitive if primitives else result.point_object
+    labels = np.full(height * width, -1, np.int32)
+    labels[index if len(index) else slice(None)] = ids
+    return labels.reshape(height, width)
+
+
 def of_frame(labeller, frames, frame, camera_to_world, intrinsics, primitives):
     """frames: where those that were parsed are: a path, Frames, or None. frame: the number of one, or a depth image."""
-    if not hasattr(frame, '__index__') or getattr(frame, 'ndim', 0) > 0:
+    if not numbered(frame):
         found = _frames.labelled(labeller, *_frames.one_frame(frame, camera_to_world, intrinsics), 'frame')
     elif camera_to_world is not None or intrinsics is not None:
         raise usage('frame_labels: camera_to_world and intrinsics are for a depth image; frames that were parsed have their own')
     elif isinstance(frames, str):
         if not os.path.isdir(frames):
-            raise usage(f'frame_labels: {frames} is no folder of depth frames; give a depth image with its camera_to_world and intrinsics')
+            raise usage(f'frame_labels: {frames} is no folder of depth frames and no organised .pcd; give a depth image with its camera_to_world and intrinsics')
         if isinstance(frame, bool) or operator.index(frame) < 0:
             raise usage(f'frame_labels: there is no frame {frame!r}: they count from 0')
         found = labeller.of_file(frames, operator.index(frame))

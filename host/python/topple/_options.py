@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Whether what parse() and export() are given for options has their types; the library checks their ranges."""
+import difflib
+import functools
+import inspect
 import math
 import operator
 
@@ -90,6 +93,20 @@ def unlikely_peak_note(pga_m_s2):
         return f'{is_so}: for {figure(pga_m_s2)} g give pga_m_s2={figure(pga_m_s2 * _GRAVITY)}.'
     return (f'{is_so}, stronger than nearly all that were recorded; for {figure(pga_m_s2)} % of g give '
             f'pga_m_s2={figure(pga_m_s2 / 100 * _GRAVITY)}.')
+
+
+def named(call):
+    """The function, which says of an argument that it has not which one was meant, perhaps."""
+    names = list(inspect.signature(call).parameters)
+
+    @functools.wraps(call)
+    def checked(*arguments, **options):
+        for name in options:
+            if name not in names:
+                near = [known for known in names if known.startswith(name)] or difflib.get_close_matches(name, names, 1, 0.7)
+                raise TypeError(f'{call.__name__}() has no argument {name!r}' + (f'; did you mean {near[0]!r}?' if near else ''))
+        return call(*arguments, **options)
+    return checked
 
 
 def option(name, value):

@@ -18,12 +18,11 @@ Other threads of Python run meanwhile, and must not write to the arrays. What is
 names the argument, what it is and what it should be.
 """
 import enum
-import warnings
 from typing import NamedTuple
 
 import numpy as np
 
-from ._arrays import as_array, columns, exactly, has_rows, number, usage
+from ._arrays import as_array, columns, exactly, has_rows, number, usage, warn
 from ._shown import figure
 from ._topple import Device, open_device
 from ._topple import stages as _stages
@@ -157,8 +156,8 @@ def _eyes(given, count):
         raise usage(f'eye_m: expected shape (3,) or ({count}, 3), one for each point, not {len(eyes[0])} of them')
     unknown = count - np.count_nonzero(np.isfinite(eyes[0]) & np.isfinite(eyes[1]) & np.isfinite(eyes[2]))
     if unknown:
-        warnings.warn(f'eye_m: of {count} points {unknown} have no finite place that they were seen from: '
-                      + ('they count as not known' if unknown == count else 'the nearest one of the others is taken'), RuntimeWarning, stacklevel=3)
+        warn(f'eye_m: of {count} points {unknown} have no finite place that they were seen from: '
+             + ('they count as not known' if unknown == count else 'the nearest one of the others is taken'))
     return eyes
 
 
@@ -292,12 +291,12 @@ def barriers(bodies, resolution_m, *, device=None):
     for n, (points, mass_kg, _) in enumerate(given):
         size = np.ptp(points.reshape(-1, 3), axis=0) + resolution_m
         if mass_kg < _AIR_KG_M3 * size.prod():
-            warnings.warn(f'bodies[{n}]: {figure(mass_kg)} kg in a box of {figure(size.prod())} m3 are less than air weighs; mass_kg is in kilograms, of '
-                          'a density in kg/m3', RuntimeWarning, stacklevel=2)
+            warn(f'bodies[{n}]: {figure(mass_kg)} kg in a box of {figure(size.prod())} m3 are less than air weighs; mass_kg is in kilograms, of '
+                 'a density in kg/m3')
     for n, ((points, _, center), (barrier_J, *_)) in enumerate(zip(given, found)):
         if barrier_J == 0 and _beside_footing(points.reshape(-1, 3), center, resolution_m):
-            warnings.warn(f'bodies[{n}]: its centre of mass is not above its footing, so that it falls by itself; of a body that a scan saw '
-                          'from one side give points of its whole footing', RuntimeWarning, stacklevel=2)
+            warn(f'bodies[{n}]: its centre of mass is not above its footing, so that it falls by itself; of a body that a scan saw '
+                 'from one side give points of its whole footing')
     return [Barrier(*energies, curve.reshape(-1, 2)) for *energies, curve in found]
 
 

@@ -108,7 +108,7 @@ TEST(Stages, UnitsThatAreNoneOfRoomsAreRefused) {
         return refusal([&] { Volume(cloud, label, voxel_m); });
     };
     EXPECT_NE(of_normals(0.02).find("290 m and are 10 m apart"), std::string::npos);
-    EXPECT_NE(of_volume(0.02).find("multiply them by 0.01"), std::string::npos);
+    EXPECT_NE(of_volume(0.02).find("in cm by 0.01 (2.9 m)"), std::string::npos);
     EXPECT_EQ(of_normals(20),
               "normals: cell_m 20: expected metres above 0 and at most 1, about "
               "twice the points' spacing");
