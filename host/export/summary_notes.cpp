@@ -9,6 +9,21 @@
 namespace topple::exports {
 namespace {
 
+// " (object_3, object_9)" of the bodies that are so, the first few of many; "" of none.
+template <class IsSo>
+std::string names_of(const ExportSummary& summary, const IsSo& is_so) {
+    constexpr std::size_t most_names = 20;
+    std::string out;
+    std::size_t named = 0;
+    for (const ExportedBody& body : summary.bodies) {
+        if (!is_so(body)) continue;
+        if (named == most_names) return out + ", ...)";
+        out += named++ == 0 ? " (" : ", ";
+        out += body.name;
+    }
+    return out.empty() ? out : out + ")";
+}
+
 void add_footings(const ExportSummary& summary, std::vector<std::string>& notes) {
     std::uint64_t pads = 0, held = 0, struts = 0;
     for (const ExportedBody& body : summary.bodies) {
@@ -17,10 +32,14 @@ void add_footings(const ExportSummary& summary, std::vector<std::string>& notes)
         struts += body.struts;
     }
     if (pads + held + struts == 0) return;
-    notes.push_back(
-        "Without a footing, which was not seen or lay in others: " + std::to_string(pads) +
-        " stand on pads made for them, " + std::to_string(held) + " are held where they are; " +
-        std::to_string(struts) + " struts stand for feet.");
+    std::string note = "Without a footing, which was not seen or lay in others: ";
+    note += std::to_string(pads) + " stand on pads made for them";
+    note += names_of(summary, [](const ExportedBody& body) { return body.on_pad; });
+    note += ", " + std::to_string(held) + " are held where they are";
+    note += names_of(summary, [](const ExportedBody& body) { return body.held; });
+    note += "; " + std::to_string(struts) + " struts stand for feet";
+    note += names_of(summary, [](const ExportedBody& body) { return body.struts > 0; });
+    notes.push_back(note + ".");
 }
 
 // Those that lost most first.

@@ -12,11 +12,12 @@
 #include "export/summary_notes.h"
 #include "io/frame_sequence.h"
 #include "io/output_folder.h"
-#include "io/points_colours.h"
+#include "io/read_result_ply.h"
 #include "io/replace_file.h"
 #include "io/scene_json.h"
 #include "io/solids_file.h"
 #include "io/text.h"
+#include "pipeline/check_scene.h"
 #include "pipeline/make_sim_scene.h"
 #include "topple/export.h"
 
@@ -90,36 +91,6 @@ ExportSummary write_formats(const Scene& scene, const SolidScene& solids,
     return summary;
 }
 
-// What a scene.json must keep to, so that exports can be made of it: a file says anything.
-void check_scene(const Scene& scene, const std::filesystem::path& file) {
-    const auto object = [&](std::int32_t id) {
-        return id >= 0 && static_cast<std::size_t>(id) < scene.objects.size();
-    };
-    const auto need = [&](bool holds, const std::string& what) {
-        if (!holds) io::fail(file, what + "; the file is damaged: parse the scan again");
-    };
-    for (std::size_t n = 0; n < scene.objects.size(); ++n) {
-        const Object& o = scene.objects[n];
-        const std::string name = "object " + std::to_string(n);
-        need(o.id == static_cast<std::int32_t>(n), name + " has another id");
-        for (const std::int32_t p : o.primitives)
-            need(p >= 0 && static_cast<std::size_t>(p) < scene.primitives.size(),
-                 name + " names a primitive that there is not");
-        bool known = o.grounded || (o.mass_kg > 0 && std::isfinite(o.mass_kg));
-        for (const double x : o.center_of_mass_m) known = known && std::isfinite(x);
-        for (const double x : o.inertia_kg_m2) known = known && (o.grounded || std::isfinite(x));
-        need(known, name + " has no mass, centre of mass or inertia");
-    }
-    for (const Primitive& p : scene.primitives)
-        need(p.object == -1 || object(p.object),
-             "primitive " + std::to_string(p.id) + " names an object that there is not");
-    for (const Support& s : scene.supports)
-        need(object(s.supporter) && object(s.supported),
-             "a support names an object that there is not");
-    for (const double x : scene.manhattan_from_input)
-        need(std::isfinite(x), "manhattan_from_input holds what is no number");
-}
-
 }  // namespace
 
 void check_export(const ExportOptions& options) {
@@ -161,7 +132,10 @@ ExportSummary export_output(const std::filesystem::path& output, const ExportOpt
         io::fail(solids,
                  "is missing; parse the scan again (a cloud that was parsed in blocks has none and "
                  "can't be exported)");
-    if (options.visuals) scene.points = io::read_points_colours(output / "points.ply");
+    // Only for colours.
+    const std::filesystem::path points = output / "points.ply";
+    if (options.visuals && std::filesystem::exists(points, error))
+        scene.points = io::read_points_ply(points);
     return write_formats(scene, *io::read_solids(solids), options);
 }
 

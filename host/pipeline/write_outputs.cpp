@@ -128,6 +128,10 @@ void write_outputs(const ParseResult& result, const std::filesystem::path& folde
         throw Error(ErrorKind::usage,
                     "the result has no coordinates of its points: call add_coordinates() first");
     }
+    if (!result.voxels && !result.tiled)
+        throw Error(ErrorKind::usage,
+                    "the result was read from a folder, which has no voxel grids to write: parse "
+                    "the scan again, or copy that folder");
     io::check_not_replaced(result.scene.source, folder);
     io::OutputFolder out(folder);
     const Poll poll = [&] {

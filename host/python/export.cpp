@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "arrays.h"
 #include "busy.h"
-#include "python.h"
 
 namespace topple::python {
 namespace {
@@ -22,10 +22,12 @@ py::tuple body_tuple(const ExportedBody& b) {
 }  // namespace
 
 void bind_export(py::module_& module) {
-    // paths: by format. The bodies come in the order of ExportedBody's fields.
+    // paths: by format. points, colours: those of a result without, as of "write". The bodies come
+    // in the order of ExportedBody's fields.
     module.def(
-        "export_scene", [](const Parsed& parsed, const std::map<std::string, std::string>& paths,
-                           bool visuals, unsigned threads) {
+        "export_scene", [](Parsed& parsed, const std::map<std::string, std::string>& paths,
+                           bool visuals, unsigned threads, const std::vector<py::array>& points,
+                           const std::vector<py::array>& colours) {
             static const std::map<std::string, std::filesystem::path ExportOptions::*> formats{
                 {"mjcf", &ExportOptions::mjcf},
                 {"urdf", &ExportOptions::urdf},
@@ -37,9 +39,11 @@ void bind_export(py::module_& module) {
             options.threads = threads;
             options.cancelled = Busy::must_stop;
             ExportSummary summary;
+            const std::optional<CloudView> view = caller_points(points, colours);
             {
                 const Busy busy;
                 const py::gil_scoped_release release;
+                const LentCoordinates lent(view, parsed);
                 summary = export_scene(parsed.result, options);
             }
             py::list bodies;

@@ -212,6 +212,13 @@ void bind_parse(py::module_& module) {
         scene.notes.insert(scene.notes.begin(), notes.begin(), notes.end());
         for (std::size_t axis = 0; axis < 3; ++axis) scene.offset_m[axis] += offset_m[axis];
     });
+    module.def("load", [](const std::string& folder) {
+        auto out = std::make_shared<Parsed>();
+        const Busy busy;
+        const py::gil_scoped_release release;
+        out->result = read_outputs(folder);
+        return out;
+    });
     module.def("write",
                [](Parsed& parsed, const std::string& folder, bool pictures, bool glb, bool octomap,
                   const std::vector<py::array>& points, const std::vector<py::array>& colours) {

@@ -581,6 +581,25 @@ def test_exports_to_simulators(result, tmp_path):
     assert repr(made).startswith(f'<topple.ExportSummary: {len(made.bodies)} bodies, 1 of them fixed, that overlap by ') and len(repr(made)) < 120
 
 
+def test_exports_have_the_colours_of_points_in_memory(points, device, ply, tmp_path):
+    def texture(result, name):
+        result.export(mjcf=tmp_path / name)
+        return (tmp_path / name / 'colours.png').read_bytes()
+    coloured = quick(points, device, colours=colours_of(points))
+    of_file = texture(ply, 'file')
+    assert texture(coloured, 'memory') == of_file == texture(coloured, 'again') != texture(quick(points, device), 'plain')
+
+
+def test_exports_into_what_looks_like_a_file_are_refused(result, tmp_path):
+    for name, file, top in (('mjcf', 'a.xml', 'scene.xml'), ('urdf', 'b.URDF', 'scene.urdf'), ('sdf', 'c.sdf', 'scene.sdf')):
+        with pytest.raises(topple.Error, match=rf'^{name}: .*{file} looks like a file; it is a folder, into which {top} is written') as raised:
+            result.export(**{name: tmp_path / file})
+        assert raised.value.kind == 'usage'
+    assert not list(tmp_path.iterdir())
+    (tmp_path / 'd.sdf').mkdir()
+    assert result.export(sdf=tmp_path / 'd.sdf').bodies
+
+
 def test_exports_to_nothing_or_over_others_files_are_refused(result, tmp_path):
     with pytest.raises(topple.Error, match='mjcf') as error:
         result.export()

@@ -161,8 +161,14 @@ struct OutputOptions {
 
 // Writes points.ply, solid.ply, volume.vdb, scene.json, landscapes.json and report.html into the
 // folder, which appears whole or not at all. Throws Error: input (it can't be written: the path and
-// why), usage (the result has no coordinates of its points).
+// why), usage (the result has no coordinates of its points, or comes from read_outputs()).
 void write_outputs(const ParseResult& result, const std::filesystem::path& folder,
                    const OutputOptions& options = {});
+
+// Reads back what write_outputs() has written: the scene with its points and solid voxels. Fields,
+// walks, regions of points and the voxel grids are not in it, so that it can be exported
+// (topple/export.h) and label frames, but not be written again. Throws Error(input) where a file is
+// missing, damaged or of another scene.
+ParseResult read_outputs(const std::filesystem::path& folder);
 
 }  // namespace topple

@@ -27,8 +27,8 @@ from ._topple import Advice, AppliedCorrection, Contact, Device, DirectedBarrier
 from .foxglove import to_mcap
 from .rerun_viewer import to_rerun
 
-__all__ = ['Advice', 'AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Landscape', 'Object', 'Overturning', 'Primitive', 'Result',
-           'Support', 'Why', '__version__', 'devices', 'formats', 'generate', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
+__all__ = ['Advice', 'AppliedCorrection', 'Contact', 'Device', 'DeviceInfo', 'DirectedBarrier', 'Error', 'ExportSummary', 'ExportedBody', 'Fall', 'Landscape', 'Object', 'Overturning', 'Primitive', 'RemovalOrder', 'Result',
+           'Support', 'Why', '__version__', 'devices', 'formats', 'generate', 'load', 'open_device', 'parse', 'plot', 'stages', 'to_mcap', 'to_rerun']
 
 _described.items()
 _shown.items()
@@ -200,9 +200,25 @@ class Result:
         Python run meanwhile."""
         paths = {'mjcf': mjcf, 'urdf': urdf, 'sdf': sdf, 'usd': usd}
         given = {name: _file(name, path) for name, path in paths.items() if path is not None}
+        for name, path in given.items():
+            if name != 'usd' and os.path.splitext(path)[1].lower() in ('.xml', '.mjcf', f'.{name}') and not os.path.isdir(path):
+                top = {'mjcf': 'scene.xml'}.get(name, f'scene.{name}')
+                raise _usage(f'{name}: {path} looks like a file; it is a folder, into which {top} is written: '
+                             f'give {name}={os.path.dirname(path) or "."!r}, say')
         visuals, threads = _option('visuals', visuals), _option('threads', threads)
-        bodies, *rest = _topple.export_scene(self._whole('export'), given, visuals, threads)
+        with self._writing:
+            bodies, *rest = _topple.export_scene(self._whole('export'), given, visuals, threads, list(self._points or []),
+                                                 list(self._colours))
         return ExportSummary([ExportedBody(*body) for body in bodies], *rest)
+
+
+def load(folder):
+    """The Result that a folder of outputs holds, as Result.write() or `topple parse -o` has written it: objects and all other items, labels,
+    points, solid voxels; spots, frame labels, plots and exports can be made of it. Not in such a folder, and so empty: fields,
+    point_region and point_index. It can't be written again. Raises Error of kind "input" where the folder or a file of it
+    is missing, damaged or of another scan."""
+    parsed = _topple.load(_file('folder', folder))
+    return Result(parsed, None, frames=parsed.source if os.path.isdir(parsed.source) else None)
 
 
 def _files(given):

@@ -111,7 +111,8 @@ TEST(ExportNotes, NameWhatWasCutToHalf) {
     made.bodies.resize(1);
     EXPECT_EQ(notes_of(made), std::vector<std::string>{});
     made.bodies[0].held = true;
-    EXPECT_NE(notes_of(made).at(0).find("1 are held where they are"), std::string::npos);
+    EXPECT_NE(notes_of(made).at(0).find("1 are held where they are (object_0); 0 struts"),
+              std::string::npos);
 }
 
 TEST_F(ExportScene, OfAFolderIsTheSameAsOfTheResult) {
