@@ -4,6 +4,7 @@
 # of its own, instead of the surfaces.
 import argparse
 import os
+import sys
 
 import mujoco
 import numpy as np
@@ -37,7 +38,11 @@ def main():
     shown = mujoco.MjvOption()
     shown.geomgroup[:] = 0
     shown.geomgroup[PARTS if options.parts else SURFACES] = 1
-    with mujoco.Renderer(model, HEIGHT, WIDTH) as renderer:
+    try:
+        renderer = mujoco.Renderer(model, HEIGHT, WIDTH)
+    except (mujoco.FatalError, RuntimeError, AttributeError, ImportError) as error:
+        sys.exit(f"picture.py: MuJoCo can't draw here ({error}); without a screen set MUJOCO_GL=egl, or osmesa with Debian's libosmesa6")
+    with renderer:
         renderer.update_scene(data, camera, shown)
         Image.fromarray(renderer.render()).save(options.picture, optimize=True)
 

@@ -140,7 +140,10 @@ def main():
     room = Room(arguments.export)
     print(f'MuJoCo {mujoco.mj_versionString()}; a ratio is over the barrier, which agrees within two standard errors')
     print(f"{'object':>6} {'mass kg':>8} {'barrier J':>18} {'turn J':>8} ratio {'':8} {'push J':>8} ratio {'':8} {'S(W) J':>7} {'cut':>5}")
-    for o in chosen(scene, arguments.objects):
+    objects = chosen(scene, arguments.objects)
+    if not objects:
+        print('none: no object stands free, was seen enough and would tip before it slides, with a barrier above twice its error; --objects names others')
+    for o in objects:
         turn, push = room.turn(o, world_from_input), room.push(o)
         print('\r' + 40 * ' ' + '\r', end='', file=sys.stderr, flush=True)
         sets_free = max((s['S_J'] for s in o['instability'] if push and s['W_J'] <= push), default=0)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "python.h"
@@ -22,6 +24,16 @@ py::array vectors(const std::vector<Vec3>& values, const py::object& owner) {
         {static_cast<py::ssize_t>(values.size()), py::ssize_t{3}},
         {static_cast<py::ssize_t>(sizeof(Vec3)), static_cast<py::ssize_t>(sizeof(double))},
         values.empty() ? nullptr : values.front().data(), owner);
+}
+
+// A few numbers as an array of their own.
+template <std::size_t count>
+py::array copied(const std::array<double, count>& values, std::vector<py::ssize_t> shape) {
+    return py::array_t<double>(std::move(shape), values.data());
+}
+template <class Item>
+auto vector(Vec3 Item::*member) {
+    return [member](const Item& item) { return copied(item.*member, {3}); };
 }
 
 // References to the items, each of which keeps the result alive.
@@ -87,12 +99,12 @@ void bind_items(py::module_& module) {
         .def_readonly("solid_voxels", &Primitive::solid_voxels)
         .def_readonly("volume_m3", &Primitive::volume_m3)
         .def_readonly("mass_kg", &Primitive::mass_kg)
-        .def_readonly("center_of_mass_m", &Primitive::center_of_mass_m)
+        .def_property_readonly("center_of_mass_m", vector(&Primitive::center_of_mass_m))
         .def_readonly("name", &Primitive::name);
     py::class_<Overturning>(module, "Overturning")
         .def_readonly("tilt_deg", &Overturning::tilt_deg)
         .def_readonly("tilt_error_deg", &Overturning::tilt_error_deg)
-        .def_readonly("direction", &Overturning::direction)
+        .def_property_readonly("direction", vector(&Overturning::direction))
         .def_readonly("push_N", &Overturning::push_N)
         .def_readonly("push_error_N", &Overturning::push_error_N)
         .def_readonly("slide_N", &Overturning::slide_N)
@@ -142,7 +154,7 @@ void bind_items(py::module_& module) {
         .def_readonly("sentence", &Why::sentence);
     py::class_<Advice>(module, "Advice")
         .def_readonly("kind", &Advice::kind)
-        .def_readonly("move_m", &Advice::move_m)
+        .def_property_readonly("move_m", vector(&Advice::move_m))
         .def_readonly("risk_J", &Advice::risk_J)
         .def_readonly("hold_N", &Advice::hold_N)
         .def_readonly("hold_height_m", &Advice::hold_height_m)
@@ -167,7 +179,7 @@ void bind_items(py::module_& module) {
         .def_readonly("return_years", &Fragility::return_years);
     py::class_<Fall>(module, "Fall")
         .def_readonly("falls", &Fall::falls)
-        .def_readonly("lands_m", &Fall::lands_m)
+        .def_property_readonly("lands_m", vector(&Fall::lands_m))
         .def_readonly("drop_m", &Fall::drop_m)
         .def_readonly("lands_on", &Fall::lands_on)
         .def_readonly("leans_on", &Fall::leans_on)
@@ -184,24 +196,22 @@ void bind_items(py::module_& module) {
         .def_readonly("grounded", &Object::grounded)
         .def_readonly("agreement", &Object::agreement)
         .def_readonly("mass_kg", &Object::mass_kg)
-        .def_readonly("center_of_mass_m", &Object::center_of_mass_m)
+        .def_property_readonly("center_of_mass_m", vector(&Object::center_of_mass_m))
         .def_readonly("support_height_m", &Object::support_height_m)
         .def_readonly("center_height_m", &Object::center_height_m)
-        .def_readonly("size_m", &Object::size_m)
-        .def_readonly("box_middle_m", &Object::box_middle_m)
+        .def_property_readonly("size_m", vector(&Object::size_m))
+        .def_property_readonly("box_middle_m", vector(&Object::box_middle_m))
         .def_readonly("piece_of", &Object::piece_of)
         .def_readonly("piece_probability", &Object::piece_probability)
         .def_readonly("barrier_J", &Object::barrier_J)
         .def_readonly("barrier_error_J", &Object::barrier_error_J)
         .def_readonly("mass_error_kg", &Object::mass_error_kg)
-        .def_readonly("center_of_mass_error_m", &Object::center_of_mass_error_m)
+        .def_property_readonly("center_of_mass_error_m", vector(&Object::center_of_mass_error_m))
         .def_readonly("footprint_error_m", &Object::footprint_error_m)
         .def_readonly("mass_model", &Object::mass_model)
         .def_property_readonly("inertia_kg_m2",
                                [](const Object& o) {
-                                   py::array_t<double> out({3, 3});
-                                   std::ranges::copy(o.inertia_kg_m2, out.mutable_data());
-                                   return out;
+                                   return copied(o.inertia_kg_m2, {3, 3});
                                })
         .def_readonly("release_J", &Object::release_J)
         .def_readonly("overturning", &Object::overturning)
@@ -210,7 +220,7 @@ void bind_items(py::module_& module) {
         .def_readonly("landscape", &Object::landscape)
         .def_property_readonly("drop_m", [](const Object& o) { return o.why.drop_m; })
         .def_readonly("mode", &Object::mode)
-        .def_readonly("direction", &Object::direction)
+        .def_property_readonly("direction", vector(&Object::direction))
         .def_readonly("risk_J", &Object::risk_J)
         .def_readonly("risk_spread_J", &Object::risk_spread_J)
         .def_readonly("risk_error_J", &Object::risk_error_J)
@@ -247,15 +257,16 @@ void bind_items(py::module_& module) {
         .def_readonly("a", &Contact::a)
         .def_readonly("b", &Contact::b)
         .def_readonly("area_m2", &Contact::area_m2)
-        .def_readonly("normal", &Contact::normal)
+        .def_property_readonly("normal", vector(&Contact::normal))
         .def_readonly("relation", &Contact::relation)
         .def_readonly("probability", &Contact::probability);
-    py::class_<Support>(module, "Support")
+    // Python gives these the names of the objects that they are about.
+    py::class_<Support>(module, "Support", py::dynamic_attr())
         .def_readonly("supporter", &Support::supporter)
         .def_readonly("supported", &Support::supported)
         .def_readonly("area_m2", &Support::area_m2)
         .def_readonly("probability", &Support::probability);
-    py::class_<AppliedCorrection>(module, "AppliedCorrection")
+    py::class_<AppliedCorrection>(module, "AppliedCorrection", py::dynamic_attr())
         .def_property_readonly(
             "do", [](const AppliedCorrection& c) { return to_string(c.correction.kind); })
         .def_readonly("held", &AppliedCorrection::held)
@@ -304,16 +315,24 @@ void bind_result(py::module_& module) {
     const auto scene = [](auto member) {
         return [member](const Parsed& p) { return p.result.scene.*member; };
     };
+    const auto vector_of = [](Vec3 Scene::*member) {
+        return [member](const Parsed& p) { return copied(p.result.scene.*member, {3}); };
+    };
     py::class_<Parsed, std::shared_ptr<Parsed>>(module, "Parsed")
         .def_property_readonly("source", scene(&Scene::source))
         .def_property_readonly("backend", scene(&Scene::backend))
         .def_property_readonly("device", scene(&Scene::device))
         .def_property_readonly("seed", scene(&Scene::seed))
         .def_property_readonly("voxel_size_m", scene(&Scene::voxel_size_m))
-        .def_property_readonly("offset_m", scene(&Scene::offset_m))
-        .def_property_readonly("up", scene(&Scene::up))
+        .def_property_readonly("offset_m", vector_of(&Scene::offset_m))
+        .def_property_readonly("up", vector_of(&Scene::up))
         .def_property_readonly("up_method", scene(&Scene::up_method))
-        .def_property_readonly("manhattan_from_input", scene(&Scene::manhattan_from_input))
+        .def_property_readonly("manhattan_from_input",
+                               [](const Parsed& p) {
+                                   return copied(p.result.scene.manhattan_from_input, {4, 4});
+                               })
+        .def_property_readonly("density_kg_m3", scene(&Scene::density_kg_m3))
+        .def_property_readonly("friction", scene(&Scene::friction))
         .def_property_readonly("notes",
                                [](const Parsed& p) {
                                    std::vector<std::string> out;

@@ -379,7 +379,9 @@ def test_an_organised_cloud_is_a_frame(device, tmp_path):
 
 
 def test_a_density_in_other_units_is_told(points, device):
-    notes = quick(points[::6], device, density_kg_m3=0.7).notes
+    with pytest.warns(RuntimeWarning, match='give density_kg_m3 1000 times') as warned:
+        notes = quick(points[::6], device, density_kg_m3=0.7).notes
+    assert [w.filename for w in warned] == [__file__]
     assert any('0.7 kg/m³' in note and 'give density_kg_m3 1000 times' in note for note in notes)
 
 
@@ -398,7 +400,7 @@ def test_a_cache_serves_any_number_of_threads(points, tmp_path):
 
 def test_options_of_numpy_are_taken(points, result, device):
     parsed = quick(points, device, seed=np.int64(1), up=np.array([0, 0, 1]), friction=np.float32(0.3), walks=np.uint8(9))
-    assert parsed.up == [0, 0, 1] and len(parsed.objects) == len(result.objects)
+    assert parsed.up.tolist() == [0, 0, 1] and parsed.friction == np.float32(0.3) and parsed.density_kg_m3 == 700 and len(parsed.objects) == len(result.objects)
 
 
 def test_a_cache_is_of_files_and_a_name_of_arrays(points, device, tmp_path):
@@ -408,7 +410,7 @@ def test_a_cache_is_of_files_and_a_name_of_arrays(points, device, tmp_path):
     with pytest.raises(topple.Error, match='name are for points in memory'):
         quick(tmp_path, device, name='desk')
     parsed = quick(points, device, name='desk')
-    assert parsed.source == 'desk' and 'desk' in repr(parsed) and parsed.offset_m == [0, 0, 0]
+    assert parsed.source == 'desk' and 'desk' in repr(parsed) and parsed.offset_m.tolist() == [0, 0, 0]
     with pytest.raises(topple.Error, match='^desk: '):
         quick(points[:4], device, name='desk')
 
@@ -513,6 +515,10 @@ def test_takes_corrections(points, device, tmp_path):
     assert (chest.name, chest.corrected) == ('chest', [1, 2, 3]) and abs(chest.mass_kg - 12.5) < 1e-6
     assert [c.do for c in corrected.corrections] == ['one_thing', 'mass', 'name', 'fixed']
     assert [c.outcome for c in corrected.corrections[:3]] == ['held'] * 3
+    assert repr(corrected.corrections[1]) == '<topple.AppliedCorrection mass of chest: held>'
+    carried = next(s for s in corrected.supports if s.supported == chest.id)
+    assert repr(carried).startswith(f'<topple.Support: object 0 carries {chest.id} (chest), ')
+    assert repr(pickle.loads(pickle.dumps(corrected)).supports) == repr(corrected.supports)
     assert not corrected.corrections[3].held and 'nothing' in corrected.corrections[3].outcome
     assert not quick(points, device).corrections
     for wrong, why in (([{'do': 'one_thing', 'objects': [1, 2]}], r'correction 1 \(one_thing\) has no "at_m".*result.spot'), (7, 'list of dicts'), ([7], 'list of dicts'), ([{'do': 'glue'}], 'correction 1'),

@@ -6,6 +6,7 @@ import pickle
 import subprocess
 import sys
 from html.parser import HTMLParser
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ def test_columns_have_what_the_objects_have(result):
     assert table['id'].dtype == np.int32 and table['grounded'].dtype == bool
     for o in result.objects:
         assert table['barrier_J'][o.id] == o.barrier_J and table['why'][o.id] == o.why and table['mode'][o.id] == o.mode
-        assert table['center_of_mass_m'][o.id].tolist() == o.center_of_mass_m
+        assert np.array_equal(table['center_of_mass_m'][o.id], o.center_of_mass_m)
         for column, value in (('overturning_tilt_deg', o.overturning.tilt_deg), ('fragility_pga_g', o.fragility.pga_g),
                               ('risk_wind_J', o.risk_J['wind']), ('risk_error_wind_J', o.risk_error_J['wind']),
                               ('fall_chance_wind', o.fall_chance['wind']), ('fall_hits_J', o.fall.hits_J), ('unsafety', o.unsafety)):
@@ -35,14 +36,14 @@ def test_columns_of_the_other_items(result, what):
     items, table = getattr(result, what), result.columns(what)
     assert items and set(table) == {n for n in dir(items[0]) if not n.startswith('_')}
     for name, column in table.items():
-        assert [np.asarray(v).tolist() for v in column] == [getattr(item, name) for item in items], name
+        assert [np.asarray(v).tolist() for v in column] == [np.asarray(getattr(item, name)).tolist() for item in items], name
 
 
 def test_columns_of_a_scene_without_contacts_have_their_shapes(device):
     square = np.random.default_rng(4).random((4000, 3), np.float32) * np.array([2, 2, 0.002], np.float32)
     table = topple.parse(square, device=device, disturbances=[]).columns('supports')
     assert table['supporter'].shape == (0,) and table['supporter'].dtype == np.int32
-    with pytest.raises(topple.Error, match='what: expected objects, primitives, contacts, supports, pushes, not 3') as raised:
+    with pytest.raises(topple.Error, match='what: expected objects, primitives, contacts, supports, pushes, blows, not 3') as raised:
         topple.parse(square, device=device, disturbances=[]).columns(3)
     assert raised.value.kind == 'usage'
 
@@ -68,7 +69,7 @@ def test_pushes_by_direction_are_in_the_frame_of_the_scan(result, points, device
         by = o.barrier_by_direction
         assert by.direction.shape == (16, 3) and by.push_N.shape == by.push_error_N.shape == (16,)
         assert np.allclose(np.linalg.norm(by.direction, axis=1), 1) and np.allclose(by.direction @ result.up, 0)
-        turned = np.degrees(np.arctan2(*(by.direction @ np.reshape(result.manhattan_from_input, (4, 4))[:2, :3].T).T))
+        turned = np.degrees(np.arctan2(*(by.direction @ result.manhattan_from_input[:2, :3].T).T))
         off = (turned - np.arange(16) * 22.5 + 180) % 360 - 180
         assert np.allclose(off, 0, atol=1e-6)
         # No side takes less than the easiest way, and those across it more than that way itself.
@@ -92,6 +93,11 @@ def test_pushes_by_direction_are_in_the_frame_of_the_scan(result, points, device
     rows = table['object'] == box.id
     assert np.array_equal(table['push_N'][rows], box.barrier_by_direction.push_N) and (table['slide_N'][rows] == box.overturning.slide_N).all()
     assert table['azimuth_deg'][rows][3] == 67.5
+    table = result.columns('blows')
+    rows = table['object'] == box.id
+    assert np.array_equal(table['blow_Ns'][rows], blows.blow_Ns.ravel()) and np.array_equal(table['height_m'][rows], np.tile(blows.height_m, 16))
+    assert np.array_equal(table['direction'][rows], blows.direction.repeat(len(blows.height_m), 0)) and table['azimuth_deg'][rows][-1] == 337.5
+    assert len(rows) == sum(o.barrier_by_direction.blow_J.size for o in loose)
     # A scan that is turned has them turned.
     turn = np.array([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1]])
     again = topple.parse(points.astype(float) @ turn.T, device=device, disturbances=[])
@@ -132,7 +138,7 @@ def test_a_data_frame_splits_vectors(result):
     assert frame.center_of_mass_z_m[1] == result.objects[1].center_of_mass_m[2] and 'direction_x' in frame
     assert result.to_dataframe('contacts').normal_y[0] == result.contacts[0].normal[1]
     assert {'why_edge_start_x_m', 'advice_move_z_m', 'advice_hold_N', 'why_azimuth_deg'} <= set(frame)
-    assert list(result.to_dataframe('pushes'))[:3] == ['object', 'azimuth_deg', 'direction_x']
+    assert list(result.to_dataframe('pushes'))[:3] == list(result.to_dataframe('blows'))[:3] == ['object', 'azimuth_deg', 'direction_x']
 
 
 def test_without_pandas_the_error_says_so(result, monkeypatch):
@@ -226,17 +232,78 @@ def test_spots_lie_in_the_midst_of_their_parts(result, points, device):
         assert away[others].min() >= result.voxel_size_m * 0.99 and away[largest].min() == away.min()
     for o in result.objects:
         listed = result.spots(o.id)
-        assert sorted(listed) == sorted(spots[p] for p in o.primitives)
+        assert sorted(map(tuple, listed)) == sorted(tuple(spots[p]) for p in o.primitives)
         largest = max(o.primitives, key=lambda p: (result.primitives[p].solid_voxels, -p))
-        assert result.spot(o) == listed[0] == spots[largest]
+        assert np.array_equal(result.spot(o), listed[0]) and np.array_equal(listed[0], spots[largest])
     loose = [o.id for o in result.objects if not o.grounded]
     again = topple.parse(points, device=device, disturbances=[], corrections=[
         {'do': 'one_thing', 'at_m': [result.spot(n) for n in loose]}, {'do': 'name', 'at_m': [result.spot(loose[0])], 'name': 'pile'}])
     assert [c.held for c in again.corrections] == [True, True] and len(again.objects) == len(result.objects) - len(loose) + 1
-    assert pickle.loads(pickle.dumps(result)).spot(1) == result.spot(1)
+    assert np.array_equal(pickle.loads(pickle.dumps(result)).spot(1), result.spot(1))
     for wrong in (99, -1, 1.5, 'box', True):
         with pytest.raises(topple.Error, match='object: expected one of the result'):
             result.spot(wrong)
+
+
+def test_vectors_are_arrays(result):
+    vectors = [result.up, result.offset_m, result.spot(1), *result.spots(1), result.contacts[0].normal, result.primitives[0].center_of_mass_m]
+    for o in result.objects:
+        vectors += [o.center_of_mass_m, o.center_of_mass_error_m, o.size_m, o.box_middle_m, o.direction, o.overturning.direction, o.fall.lands_m, o.advice_figures.move_m]
+    assert all(isinstance(v, np.ndarray) and v.dtype == np.float64 and v.shape == (3,) for v in vectors)
+    assert result.manhattan_from_input.shape == (4, 4) and np.allclose(result.manhattan_from_input[2, :3], result.up)
+    before = result.up.copy()
+    result.up[0] = 7  # they are copies: nobody's result changes
+    assert np.array_equal(result.up, before)
+
+
+def test_what_can_be_taken_away_first(result):
+    below, above = sorted((o.id for o in result.objects if not o.grounded), key=lambda n: result.objects[n].support_height_m)
+    assert result.removal_order() == ([[above], [below]], []) and repr(result.removal_order()) == f'<topple.RemovalOrder: [[{above}], [{below}]]>'
+
+    def of(count, *supports):
+        items = [SimpleNamespace(id=n, grounded=n == 0) for n in range(count)]
+        return SimpleNamespace(objects=items, supports=[SimpleNamespace(supporter=a, supported=b, probability=p) for a, b, p in supports])
+    order = topple._removal.order
+    room = of(7, (0, 1, 1), (1, 2, 0.9), (1, 3, 0.6), (3, 4, 0.3), (0, 5, 1), (5, 6, 0.8))
+    assert order(room, 0.5) == ([[2, 3, 4, 6], [1, 5]], []) and order(room, 0) == ([[2, 4, 6], [3, 5], [1]], [])
+    torn = of(5, (1, 2, 1), (2, 3, 0.7), (3, 2, 0.7), (0, 1, 1))  # 2 and 3 carry each other, on 1
+    assert order(torn, 0.5) == ([[4]], [1, 2, 3]) and 'objects 1, 2, 3 carry each other' in repr(order(torn, 0.5))
+    for wrong in (-0.1, 1.1, 'half', np.nan):
+        with pytest.raises(topple.Error, match='^min_probability: expected a number') as raised:
+            result.removal_order(wrong)
+        assert raised.value.kind == 'usage'
+
+
+def test_a_folder_can_be_loaded(ply, coloured_sequence, points, tmp_path):
+    for result, folder in ((ply, tmp_path / 'cloud'), (coloured_sequence, tmp_path / 'frames')):
+        result.write(folder)
+        back = topple.load(folder)
+        for name in ('objects', 'primitives', 'contacts', 'supports'):
+            assert repr(getattr(back, name)) == repr(getattr(result, name))
+        for name, column in result.columns().items():
+            assert column.dtype == object or np.allclose(column, back.columns()[name], rtol=1e-9, atol=1e-12, equal_nan=True), name
+        for name in ('point_object', 'point_primitive', 'up', 'manhattan_from_input', 'friction', 'density_kg_m3', 'notes', 'seed', 'source'):
+            assert same(getattr(back, name), getattr(result, name)), name
+        assert same(back.xyz, result.xyz) and same(back.normals, result.normals) and same(back.solid, result.solid)
+        assert np.array_equal(back.spot(1), result.spot(1)) and back.removal_order() == result.removal_order()
+        assert all(np.allclose(a.landscape.energy_J, b.landscape.energy_J, rtol=1e-3) for a, b in zip(back.objects, result.objects))
+        assert back.export(mjcf=tmp_path / 'back').notes == result.export(mjcf=tmp_path / 'was').notes
+        for file in (tmp_path / 'was').rglob('*.*'):
+            assert file.read_bytes() == (tmp_path / 'back' / file.relative_to(tmp_path / 'was')).read_bytes(), file
+        assert back.fields == {} and len(back.point_region) == 0
+        with pytest.raises(topple.Error, match='read from a folder, which has no voxel grids') as raised:
+            back.write(tmp_path / 'again')
+        assert raised.value.kind == 'usage' and not (tmp_path / 'again').exists()
+        assert pickle.loads(pickle.dumps(back)).columns().keys() == result.columns().keys()
+    assert np.array_equal(topple.load(tmp_path / 'frames').frame_labels(3), coloured_sequence.frame_labels(3))
+    cut = tmp_path / 'cloud' / 'points.ply'
+    cut.write_bytes(cut.read_bytes()[:-1])
+    with pytest.raises(topple.Error, match='points.ply') as raised:
+        topple.load(tmp_path / 'cloud')
+    assert raised.value.kind == 'input'
+    for wrong, words in ((tmp_path / 'nowhere', 'nowhere: No such file'), (tmp_path, 'no scene.json'), (3, 'folder: expected')):
+        with pytest.raises(topple.Error, match=words):
+            topple.load(wrong)
 
 
 def test_a_pickle_is_read_by_another_process(result, tmp_path):

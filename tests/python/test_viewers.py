@@ -163,6 +163,9 @@ def test_curves(shaken, pyplot):
     lines = np.concatenate([line.get_ydata() for line in tree.lines])
     finite = poses.joins_at_J[np.isfinite(poses.joins_at_J)]
     assert lines.max() >= (finite.min() if len(finite) else 0)
+    with pytest.raises(topple.Error, match=r"^barriers: axes must be polar: matplotlib's subplots\(subplot_kw=") as raised:
+        topple.plot.barriers(item, axes=tree)
+    assert raised.value.kind == 'usage' and topple.plot.barriers(item, axes=compass) is compass
     ground = next(o for o in shaken.objects if o.grounded)
     for plot in (topple.plot.instability, topple.plot.fragility, topple.plot.barriers, topple.plot.disconnectivity):
         with pytest.raises(topple.Error, match=f'object {ground.id}'):

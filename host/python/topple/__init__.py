@@ -17,12 +17,13 @@ import os
 import threading
 from typing import NamedTuple
 
-from . import _described, _labels, _shown, _snapshot, _spots, _tables, _topple, formats, plot, stages
+from . import _described, _labels, _removal, _shown, _snapshot, _spots, _tables, _topple, formats, plot, stages
 from ._arrays import channels as _channels, columns as _columns, has_rows as _has_rows, usage as _usage
 from ._device import open_device
 from ._frames import Frames as _Frames
 from ._options import named as _named, option as _option, unlikely_peak_note as _unlikely_peak_note
 from ._program import generate
+from ._removal import RemovalOrder
 from ._topple import Advice, AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Landscape, Object, Overturning, Primitive, Support, Why, __version__
 from .foxglove import to_mcap
 from .rerun_viewer import to_rerun
@@ -125,8 +126,8 @@ class Result:
 
     def columns(self, what='objects'):
         """What there is, as NumPy arrays by name: one entry for each of `what`, "objects", "primitives", "contacts" or
-        "supports", in the order of ids; or "pushes": for each direction of each object, what it takes to push it over
-        (Object.barrier_by_direction). Names are those of the items' attributes; of an object's parts with theirs before,
+        "supports", in the order of ids; or "pushes": for each direction of each object, what it takes to push it over, or "blows": for
+        each direction and height, the least impulse that makes it fall (Object.barrier_by_direction). Names are those of the items' attributes; of an object's parts with theirs before,
         as overturning_tilt_deg, why_drop_m, advice_hold_N; by disturbance as risk_wind_J, risk_error_wind_J, fall_chance_wind.
         Vectors are (N, 3), sentences and words of dtype object. NaN: none, or not asked for."""
         return _tables.columns(self, what)
@@ -135,6 +136,11 @@ class Result:
         """The columns() as a pandas.DataFrame, vectors as three: center_of_mass_x_m and so on. Raises ImportError where
         pandas is not installed."""
         return _tables.dataframe(self, what)
+
+    def removal_order(self, min_probability=0.5):
+        """In which order objects can be taken away one by one, so that nothing loses what carries it: a RemovalOrder. A support counts
+        from min_probability on, 0 to 1 (Support.probability): with 0 all do, which is the safe side."""
+        return _removal.order(self, min_probability)
 
     def _repr_html_(self):
         return _tables.page(self)
@@ -154,14 +160,14 @@ class Result:
         return self._parsed.nx, self._parsed.ny, self._parsed.nz
 
     def spot(self, item, part=False):
-        """A spot for corrections (docs/corrections.md): [x, y, z], metres, in the midst of the largest part of an object, an
+        """A spot for corrections (docs/corrections.md): (3,) float64, metres, in the midst of the largest part of an object, an
         Object or its id; with part=True of a part, a Primitive or its id. A correction of a later parse that names it in
         "at_m" is about that part, also where numbers have changed; of a whole object give spots(). Raises Error where there is
         no solid."""
         return _spots.spot(self, self._solid_parts(), item, part)
 
     def spots(self, item):
-        """A spot of each part of an object that has a solid, the largest part first: a list of [x, y, z], metres."""
+        """A spot of each part of an object that has a solid, the largest part first: a list of (3,) float64, metres."""
         return _spots.spots(self, self._solid_parts(), item)
 
     def _solid_parts(self):

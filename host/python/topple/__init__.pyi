@@ -23,7 +23,7 @@ _Points = Union[NDArray[Any], _SupportsDLPack, Tuple[NDArray[Any], NDArray[Any],
 _Path = Union[str, os.PathLike[str]]
 _Disturbance = Literal["human", "wind", "earthquake"]
 _Backend = Literal["auto", "native", "opencl", "vulkan"]
-_What = Literal["objects", "primitives", "contacts", "supports", "pushes"]
+_What = Literal["objects", "primitives", "contacts", "supports", "pushes", "blows"]
 
 class Error(RuntimeError):
     kind: Literal["input", "usage", "device", "cancelled"]
@@ -60,6 +60,10 @@ class ExportSummary(NamedTuple):
     free_radius_m: float
     notes: list[str]
 
+class RemovalOrder(NamedTuple):
+    layers: list[list[int]]
+    entangled: list[int]
+
 class Device:
     @property
     def backend(self) -> str: ...
@@ -86,7 +90,7 @@ class Primitive:
     @property
     def mass_kg(self) -> float: ...
     @property
-    def center_of_mass_m(self) -> list[float]: ...
+    def center_of_mass_m(self) -> NDArray[np.float64]: ...  # (3,)
 
 class Overturning:  # all NaN where it can't tip
     @property
@@ -94,7 +98,7 @@ class Overturning:  # all NaN where it can't tip
     @property
     def tilt_error_deg(self) -> float: ...
     @property
-    def direction(self) -> list[float]: ...
+    def direction(self) -> NDArray[np.float64]: ...  # (3,)
     @property
     def push_N(self) -> float: ...
     @property
@@ -154,7 +158,7 @@ class Advice:
     @property
     def kind(self) -> Literal["", "see", "check", "move", "fix"]: ...
     @property
-    def move_m(self) -> list[float]: ...
+    def move_m(self) -> NDArray[np.float64]: ...  # (3,)
     @property
     def risk_J(self) -> float: ...
     @property
@@ -202,7 +206,7 @@ class Fall:
     @property
     def falls(self) -> bool: ...
     @property
-    def lands_m(self) -> list[float]: ...
+    def lands_m(self) -> NDArray[np.float64]: ...  # (3,)
     @property
     def drop_m(self) -> float: ...
     @property
@@ -242,15 +246,15 @@ class Object:
     @property
     def mass_kg(self) -> float: ...
     @property
-    def center_of_mass_m(self) -> list[float]: ...
+    def center_of_mass_m(self) -> NDArray[np.float64]: ...  # (3,)
     @property
     def support_height_m(self) -> float: ...  # of what it stands on, along Result.up; NaN: not known, or the ground
     @property
     def center_height_m(self) -> float: ...  # of its centre of mass above that
     @property
-    def size_m(self) -> list[float]: ...  # along the room's axes, the third upright
+    def size_m(self) -> NDArray[np.float64]: ...  # (3,), along the room's axes, the third upright
     @property
-    def box_middle_m(self) -> list[float]: ...  # of that box; NaN: nothing of it is solid
+    def box_middle_m(self) -> NDArray[np.float64]: ...  # (3,), of that box; NaN: nothing of it is solid
     @property
     def piece_of(self) -> int: ...  # the larger object that it is likelier than not a piece of; -1: none
     @property
@@ -262,7 +266,7 @@ class Object:
     @property
     def mass_error_kg(self) -> float: ...
     @property
-    def center_of_mass_error_m(self) -> list[float]: ...
+    def center_of_mass_error_m(self) -> NDArray[np.float64]: ...  # (3,)
     @property
     def footprint_error_m(self) -> float: ...
     @property
@@ -284,7 +288,7 @@ class Object:
     @property
     def mode(self) -> Literal["tip", "slide", "none"]: ...
     @property
-    def direction(self) -> list[float]: ...
+    def direction(self) -> NDArray[np.float64]: ...  # (3,)
     @property
     def risk_J(self) -> dict[str, float]: ...
     @property
@@ -330,7 +334,7 @@ class Contact:
     @property
     def area_m2(self) -> float: ...
     @property
-    def normal(self) -> list[float]: ...
+    def normal(self) -> NDArray[np.float64]: ...  # (3,)
     @property
     def relation(self) -> Literal["fixed", "support", "adjacent"]: ...
     @property
@@ -358,13 +362,17 @@ class Result:
     @property
     def voxel_size_m(self) -> float: ...
     @property
-    def offset_m(self) -> list[float]: ...
+    def offset_m(self) -> NDArray[np.float64]: ...  # (3,)
     @property
-    def up(self) -> list[float]: ...
+    def up(self) -> NDArray[np.float64]: ...  # (3,)
     @property
     def up_method(self) -> str: ...
     @property
-    def manhattan_from_input(self) -> list[float]: ...  # row-major 4x4
+    def manhattan_from_input(self) -> NDArray[np.float64]: ...  # (4, 4)
+    @property
+    def density_kg_m3(self) -> float: ...
+    @property
+    def friction(self) -> float: ...
     @property
     def notes(self) -> list[str]: ...
     @property
@@ -401,10 +409,11 @@ class Result:
     def solid(self) -> dict[str, NDArray[Any]]: ...  # x, y, z, primitive, object, state
     @property
     def fields(self) -> dict[str, dict[str, _Floats]]: ...  # x, y, z, vx, vy, vz, density
-    def spot(self, item: Union[Object, Primitive, int], part: bool = ...) -> list[float]: ...
-    def spots(self, item: Union[Object, int]) -> list[list[float]]: ...
+    def spot(self, item: Union[Object, Primitive, int], part: bool = ...) -> NDArray[np.float64]: ...  # (3,)
+    def spots(self, item: Union[Object, int]) -> list[NDArray[np.float64]]: ...  # (3,) each
     def frame_labels(self, frame: Union[int, NDArray[Any], _SupportsDLPack] = ..., *, camera_to_world: Optional[NDArray[np.floating[Any]]] = ..., intrinsics: Optional[stages.Intrinsics] = ..., primitives: bool = ...) -> NDArray[np.int32]: ...  # (H, W)
     def columns(self, what: _What = ...) -> dict[str, NDArray[Any]]: ...  # (N,), vectors (N, 3)
+    def removal_order(self, min_probability: float = ...) -> RemovalOrder: ...
     def to_dataframe(self, what: _What = ...) -> Any: ...  # pandas.DataFrame
     def write(self, folder: _Path, *, pictures: bool = ..., glb: bool = ..., octomap: bool = ...) -> None: ...
     def export(self, *, mjcf: Optional[_Path] = ..., urdf: Optional[_Path] = ..., sdf: Optional[_Path] = ..., usd: Optional[_Path] = ..., visuals: bool = ..., threads: int = ...) -> ExportSummary: ...

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What help() says of a result and its items: each attribute with its unit. docs/output.md says how they are found."""
-from . import _topple
+from . import _shown, _topple
 
 RESULT = {
     'source': 'str: the path that was parsed; of arrays the name that was given, or "points".',
@@ -8,10 +8,12 @@ RESULT = {
     'device': 'str: name of that device.',
     'seed': 'int.',
     'voxel_size_m': 'Edge of a solid voxel, metres.',
-    'offset_m': '[x, y, z], metres: what to add to any coordinate here to have the input\'s own. Zeros but for maps far from their origin.',
-    'up': '[x, y, z]: unit vector, upwards.',
+    'density_kg_m3': 'Of all solids that no correction says other of, kg/m3, as it was given.',
+    'friction': 'Coefficient of friction, one for all, as it was given.',
+    'offset_m': '(3,), metres: what to add to any coordinate here to have the input\'s own. Zeros but for maps far from their origin.',
+    'up': '(3,): unit vector, upwards.',
     'up_method': 'str: "given", or how up was found.',
-    'manhattan_from_input': '16 numbers, a 4 x 4 matrix row by row: from the scan\'s frame to the room\'s, z up, walls along x and y.',
+    'manhattan_from_input': '(4, 4): the rigid transform from the scan\'s frame to the room\'s, z up, walls along x and y.',
     'notes': 'list of str: what the reader of the result should know, a sentence each.',
     'corrections': 'list of AppliedCorrection: what became of those that were given, in their order.',
     'in_blocks': 'bool: a cloud was parsed in blocks (docs/scale.md), and the arrays over its points are of a sample of them.',
@@ -45,12 +47,12 @@ _ITEMS = {
         'mass_kg': 'Kilograms.',
         'mass_error_kg': 'One standard error of the mass, at the density that was given.',
         'mass_model': 'str: "solid", "closed" (furniture of boards) or "hollow" (a shell, as a correction says).',
-        'center_of_mass_m': '[x, y, z], metres.',
+        'center_of_mass_m': '(3,), metres.',
         'support_height_m': 'How high what it stands on lies along Result.up, metres; NaN: the ground, or nothing was seen that holds it.',
         'center_height_m': 'Of its centre of mass above that, metres; less than 0 for what hangs.',
-        'center_of_mass_error_m': 'One standard error of it along each axis, metres.',
-        'size_m': 'Its box along the room\'s axes, the third upright, metres.',
-        'box_middle_m': '[x, y, z]: the middle of that box, metres; NaN: nothing of it is solid.',
+        'center_of_mass_error_m': '(3,), metres: one standard error of it along each axis.',
+        'size_m': '(3,), metres: its box along the room\'s axes, the third upright.',
+        'box_middle_m': '(3,): the middle of that box, metres; NaN: nothing of it is solid.',
         'piece_of': 'int: the larger object that it is likelier than not a piece of, which grouping left apart from it; -1: none.',
         'piece_probability': 'How likely the likeliest of its joints to larger objects is, 0 to 1; 0: it has none.',
         'inertia_kg_m2': '(3, 3): tensor about its centre of mass.',
@@ -61,7 +63,7 @@ _ITEMS = {
         'landscape': 'Landscape: the poses in which it could lie on level ground, and what keeps them apart.',
         'drop_m': 'Metres that its easiest way leads down beyond its support; 0: it stays on that.',
         'mode': 'str: its easiest way, "tip", "slide" or "none".',
-        'direction': '[x, y, z]: horizontal unit vector of that way; zeros for "none".',
+        'direction': '(3,): horizontal unit vector of that way; zeros for "none".',
         'instability': '(steps, 2): W_J and S_J, the energy that it can release once it was given W.',
         'overturning': 'Overturning: the figures of statics.',
         'fragility': 'Fragility: how strong an earthquake upsets it.',
@@ -93,13 +95,13 @@ _ITEMS = {
         'solid_voxels': 'int.',
         'volume_m3': 'Cubic metres.',
         'mass_kg': 'Kilograms.',
-        'center_of_mass_m': '[x, y, z], metres.',
+        'center_of_mass_m': '(3,), metres.',
     }),
     'Contact': ('Two primitives that touch.', {
         'a': 'int: id of the one primitive, not of an object.',
         'b': 'int: id of the other primitive.',
         'area_m2': 'Square metres.',
-        'normal': '[x, y, z]: unit vector from a to b.',
+        'normal': '(3,): unit vector from a to b.',
         'relation': 'str: "fixed" (of one object), "support" (one carries the other) or "adjacent".',
         'probability': 'That the joint is fixed, 0 to 1: that both are of one object, whatever `relation` says.',
     }),
@@ -112,7 +114,7 @@ _ITEMS = {
     'Overturning': ('What overturns an object slowly, on its easiest way to tip. NaN where it can\'t tip; errors are one standard error.', {
         'tilt_deg': 'Degrees of lean from which it goes over.',
         'tilt_error_deg': 'Degrees.',
-        'direction': '[x, y, z]: horizontal unit vector towards there; zeros: any.',
+        'direction': '(3,): horizontal unit vector towards there; zeros: any.',
         'push_N': 'Steady level push at its top that tips it, newtons.',
         'push_error_N': 'Newtons.',
         'slide_N': 'Level push that slides it, newtons.',
@@ -161,7 +163,7 @@ _ITEMS = {
     }),
     'Advice': ('What would lower an object\'s risk to what is tolerated, of which Object.advice tells in words.', {
         'kind': 'str: "" (nothing is needed), "see" (nothing was seen that holds it), "check", "move" or "fix".',
-        'move_m': '[x, y, z], metres: for "move" the smallest that does, horizontal, in the scan\'s frame.',
+        'move_m': '(3,), metres: for "move" the smallest that does, horizontal, in the scan\'s frame.',
         'risk_J': 'Its largest risk afterwards, joules per event; for "check" its present one.',
         'hold_N': 'For "fix": the horizontal force that a fixing must take, newtons,',
         'hold_height_m': 'at that height above its support, metres.',
@@ -178,7 +180,7 @@ _ITEMS = {
     }),
     'Fall': ('Where an object comes to lie, and what that takes along.', {
         'falls': 'bool: whether any disturbance can upset it.',
-        'lands_m': '[x, y, z]: about its centre of mass at its first landing, metres.',
+        'lands_m': '(3,): about its centre of mass at its first landing, metres.',
         'drop_m': 'Metres fallen from its support to there.',
         'lands_on': 'int: the object below that drop, -1: none.',
         'leans_on': 'int: the object that stops it on its way, -1: none.',
@@ -213,6 +215,9 @@ def result(kind):
     """Gives the class Result the attributes of what was parsed."""
     def attribute(name, text):
         return property(lambda self: getattr(self._parsed, name), doc=text)
+
+    def named(name, text):
+        return property(lambda self: _shown.with_names(getattr(self._parsed, name), self.objects), doc=text)
     for name, text in RESULT.items():
-        setattr(kind, name, attribute(name, text))
+        setattr(kind, name, (named if name in ('supports', 'corrections') else attribute)(name, text))
     return kind

@@ -18,6 +18,24 @@ def _named(item):
     return f'{item.id}{", " + item.name if item.name else ""}'
 
 
+def with_names(items, objects):
+    """The items, which know what the objects that they are about are called, for their repr()."""
+    names = {o.id: o.name for o in objects if o.name}
+    for item in items if names else ():
+        item._names = names
+    return items
+
+
+def _object(item, id):
+    name = getattr(item, '_names', {}).get(id)
+    return f'{id} ({name})' if name else f'{id}'
+
+
+def _corrected(item):
+    names = [name for name in map(getattr(item, '_names', {}).get, item.objects) if name]
+    return f' of {", ".join(names)}' if names else ''
+
+
 def _rank(unsafety):
     return 'not ranked' if math.isnan(unsafety) else f'unsafety {unsafety:.1f}'
 
@@ -41,8 +59,8 @@ _TEXTS = {
     'Object': lambda o: f' {_named(o)}, {_rank(o.unsafety)}',
     'Primitive': lambda p: f' {_named(p)}: {p.model}, of object {p.object}, {figure(p.mass_kg)} kg',
     'Contact': lambda c: f': primitives {c.a} and {c.b}, {c.relation}, joint {c.probability:.2f} probable, {figure(c.area_m2, 2)} m2',
-    'Support': lambda s: f': object {s.supporter} carries {s.supported}, {figure(s.area_m2, 2)} m2, {s.probability:.2f} probable',
-    'AppliedCorrection': lambda c: f' {c.do}: {c.outcome}',
+    'Support': lambda s: f': object {_object(s, s.supporter)} carries {_object(s, s.supported)}, {figure(s.area_m2, 2)} m2, {s.probability:.2f} probable',
+    'AppliedCorrection': lambda c: f' {c.do}{_corrected(c)}: {c.outcome}',
     'Overturning': lambda o: ': does not tip' if math.isnan(o.tilt_deg) else f': tips at {figure(o.tilt_deg)} deg, or {figure(o.hand_push_N)} N at a hand\'s height',
     'Fragility': lambda f: f': half of earthquakes of {figure(f.pga_g, 2)} g upset it' if math.isfinite(f.pga_g) else ': no median',
     'DirectedBarrier': lambda b: f': {_directions(b)}',

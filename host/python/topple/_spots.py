@@ -22,7 +22,7 @@ class Parts:
     def spot(self, part):
         """A point [x, y, z] of the part's solid, in its midst; None where it has none."""
         at = self._spots[part] if 0 <= part < len(self._spots) else -1
-        return None if at < 0 else [float(x) for x in self._at[at]]
+        return None if at < 0 else self._at[at].copy()
 
 
 def _numbered(items, item, what):

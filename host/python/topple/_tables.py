@@ -31,7 +31,6 @@ _TYPES = {'id': np.int32, 'object': np.int32, 'a': np.int32, 'b': np.int32, 'sup
           'fall_falls': bool, 'fall_leans_on': np.int32, **{name: object for name in _TEXT + _LISTS}}
 _VECTORS = ('center_of_mass_m', 'center_of_mass_error_m', 'size_m', 'box_middle_m', 'direction', 'normal', 'fall_lands_m', 'why_edge_start_m', 'why_edge_end_m',
             'advice_move_m')
-_PUSHES = 'pushes'
 
 
 def _column(name, values):
@@ -57,11 +56,23 @@ def _pushes(result):
     return table
 
 
+def _blows(result):
+    """A row for each height of each direction of each object that blows may upset."""
+    rows = [(o.id, o.barrier_by_direction, n, at) for o in result.objects for n in range(len(o.barrier_by_direction.blow_Ns))
+            for at in range(len(o.barrier_by_direction.height_m))]
+    return {'object': [o for o, *_ in rows], 'azimuth_deg': [360 * n / len(b.blow_Ns) for _, b, n, _ in rows],
+            'direction': [b.direction[n] for _, b, n, _ in rows], 'height_m': [b.height_m[at] for _, b, _, at in rows],
+            **{name: [getattr(b, name)[n, at] for _, b, n, at in rows] for name in ('blow_Ns', 'blow_J')}}
+
+
+_BY_DIRECTION = {'pushes': _pushes, 'blows': _blows}
+
+
 def columns(result, what):
-    if what == _PUSHES:
-        return {name: _column(name, values) for name, values in _pushes(result).items()}
-    if what not in _ITEMS:
-        raise usage(f'what: expected {", ".join([*_ITEMS, _PUSHES])}, not {what!r}')
+    if not isinstance(what, str) or what not in {**_ITEMS, **_BY_DIRECTION}:
+        raise usage(f'what: expected {", ".join([*_ITEMS, *_BY_DIRECTION])}, not {what!r}')
+    if what in _BY_DIRECTION:
+        return {name: _column(name, values) for name, values in _BY_DIRECTION[what](result).items()}
     items = getattr(result, what)
     table = {name: [getattr(item, name) for item in items] for name in _ITEMS[what]}
     if what == 'objects':

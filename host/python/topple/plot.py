@@ -120,6 +120,8 @@ def barriers(item, *, axes=None):
     push = np.asarray(item.barrier_by_direction.push_J)
     if len(push) == 0 or not np.isfinite(push).any():
         raise usage(f'barriers: object {item.id} falls in no direction, or was not seen enough')
+    if axes is not None and not hasattr(axes, 'set_theta_zero_location'):
+        raise usage("barriers: axes must be polar: matplotlib's subplots(subplot_kw={'projection': 'polar'}) makes such")
     axes = _axes(axes, subplot_kw={'projection': 'polar'})
     angles = np.arange(len(push) + 1) * 2 * np.pi / len(push)
     axes.set_theta_zero_location('N')
