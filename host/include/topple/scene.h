@@ -289,8 +289,7 @@ struct ScenePoints {
     // ParseOptions::coordinates. 0, 0, 0: this point's is not known.
     std::vector<std::uint8_t> red{}, green{}, blue{};
     // Of a cloud with points that are not finite, in memory or an organised one in a file: the
-    // place of each of the others there, ascending. Empty: all are here, or nothing is known of
-    // others.
+    // place of each of the others there, ascending. Empty: all are here, or others aren't known.
     std::vector<std::uint64_t> index{};
 };
 
