@@ -148,8 +148,8 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
                       : ranked      ? safety.unsafety[o]
                                     : std::numeric_limits<double>::quiet_NaN();
         const safety::CategoryEnds& category = safety.category[o];
-        to.unsafety_category = ranked ? safety::to_string(category.lower) : "";
-        to.unsafety_certain = ranked && category.lower == category.higher && to.piece_of < 0 &&
+        to.unsafety_category = ranked ? safety::to_string(category.worst()) : "";
+        to.unsafety_certain = ranked && category.certain() && to.piece_of < 0 &&
                               safety.advice[o].kind != Suggestion::Kind::check &&
                               !stands_against_odds(from, safety.disturbances, safety.risk, o);
         to.name = objects.told.name[o];

@@ -98,6 +98,7 @@ void weigh_risks(std::span<const safety::RiskObject> at_risk, SafetyStage& out) 
                 safety::risk_error_J(out.risk.back()[o], {lower[o], higher[o]}, share));
             safety::CategoryEnds& ends = out.category[o];
             ends.lower = std::max(ends.lower, safety::category(lower[o], 1 + share));
+            ends.measured = std::max(ends.measured, safety::category(out.risk.back()[o], 1));
             ends.higher =
                 std::max(ends.higher, safety::category(higher[o], std::max(0.0, 1 - share)));
         }

@@ -176,7 +176,7 @@ function figuresOf(scene, object) {
   }
   if (!object.grounded && object.unsafety_category) {
     pairs.push([element('span', {}, [term('category', 'Category'), ', by which to act']),
-      object.unsafety_category + (object.unsafety_certain ? '' : `, or lower: ${uncertainText(object)}`)]);
+      object.unsafety_category + (object.unsafety_certain ? '' : `, ${object.unsafety_category === 'none' ? 'but not certain' : 'or lower'}: ${uncertainText(object)}`)]);
   }
   if (!object.grounded) {
     pairs.push([element('span', {}, [term('unsafety', 'Unsafety'), ', 1 to 10 within this scene']), object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
