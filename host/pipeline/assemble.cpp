@@ -295,10 +295,13 @@ void note_corrections(Scene& scene) {
     const std::vector<std::size_t> said = told_sentences(scene.corrections);
     for (std::size_t n = 0; n < scene.corrections.size(); ++n) {
         const AppliedCorrection& c = scene.corrections[n];
-        if (c.outcome != "held")
-            scene.notes.push_back("Correction " + std::to_string(said[n]) + " (" +
-                                  to_string(c.correction.kind) + ") " +
-                                  (c.held ? "" : "did not hold: ") + c.outcome + ".");
+        if (c.outcome == "held") continue;
+        std::string note = "Correction " + std::to_string(said[n]) + " (" +
+                           to_string(c.correction.kind) + ") " + (c.held ? "" : "did not hold: ") +
+                           c.outcome + ".";
+        // One sentence may take several entries.
+        if (scene.notes.empty() || scene.notes.back() != note)
+            scene.notes.push_back(std::move(note));
     }
 }
 
