@@ -7,6 +7,8 @@
 #include <memory>
 
 #include "physics/overturning.h"
+#include "pipeline/find_fastenings.h"
+#include "pipeline/legs.h"
 #include "safety/disturbances.h"
 #include "safety/risk_error.h"
 #include "safety/wind/wind_field.h"
@@ -143,6 +145,13 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
         out.advice =
             advise(*parts.solids, objects.object_of_primitive, objects.objects, at_risk,
                    out.disturbances, out.risk, fields, options.friction, options.tolerable_J);
+        const std::vector<Fastening> fastenings = find_fastenings(parts, objects);
+        const std::vector<std::int32_t> legs =
+            find_legs(*parts.solids, objects.object_of_primitive, objects.objects);
+        for (std::size_t o = 0; o < out.advice.size(); ++o) {
+            out.advice[o].fasten = fastenings[o];
+            out.advice[o].leg_of = legs[o];
+        }
     });
     return out;
 }
