@@ -110,7 +110,7 @@ function shortMass(scene, object) {
   return massIsGiven(scene, object) ? mass : mass + ({solid: ' if solid', closed: ' if of boards', hollow: ' as a shell'}[object.mass_model] || '');
 }
 
-// on: what its buttons do: choose(id), show(id, other) what it may be a piece of, join(id, other).
+// on: what its buttons do: choose(id, event), show(id, other) what it may be a piece of, join(id, other) and undo that, joined(id, other): whether that was said.
 function riskCard(scene, object, on) {
   const doubtful = isDoubtful(object), unseen = object.seen_enough === false, plain = !doubtful && !unseen && !isNearly(object);
   const words = element('span', {className: 'words'}, [
@@ -129,19 +129,24 @@ function riskCard(scene, object, on) {
   if (plain) for (const text of [happensText(scene, object), keepClearText(scene, object)]) say('then', text);
   say(isAdvised(object) || unseen ? 'advice' : 'calm', unseen ? 'Go and look what holds it.' : object.advice.action);
   if (plain) say('then figures', overturningText(object));
-  const item = element('button', {type: 'button', className: 'item', onclick: () => on.choose(object.id)}, [words]);
+  const item = element('button', {type: 'button', className: 'item', onclick: event => on.choose(object.id, event)}, [words]);
   const picture = pictureOf(scene, object.id);
   if (picture) item.prepend(picture);
   item.dataset.object = object.id;
   return element('div', {className: 'card'}, [item, ...pieceButtons(scene, object, on)]);
 }
 
+function joinText(scene, other, joined) {
+  return joined ? 'noted, undo' : `one thing with ${objectName(scene, other)}`;
+}
+
 // To say that it is one thing with what it may be a piece of, and to see that.
 function pieceButtons(scene, object, on) {
   if (!(object.piece_of >= 0)) return [];
   const other = object.piece_of, name = objectName(scene, other);
-  return [element('p', {className: 'row piece'}, [
-    element('button', {type: 'button', text: `one thing with ${name}`, 'data-join': other, onclick: () => on.join(object.id, other)}),
+  const join = element('button', {type: 'button', text: joinText(scene, other, on.joined(object.id, other)), 'data-join': other, onclick: () => on.join(object.id, other)});
+  join.dataset.of = object.id;
+  return [element('p', {className: 'row piece'}, [join,
     element('button', {type: 'button', className: 'link', text: `show ${name}`, 'data-show': other, onclick: () => on.show(object.id, other)})])];
 }
 

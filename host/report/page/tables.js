@@ -111,7 +111,9 @@ class ObjectTable {
       const cells = this.columns.map(column => element('td', {className: column.text ? 'text' : ''},
         column.cell ? column.cell(object) : [number(column.number ? column.number(object) : column.value(object))]));
       const minor = object.grounded || object.unsafety_category === 'none';
-      const row = element('tr', {className: minor ? 'minor' : '', onclick: () => choose(object.id)}, cells);
+      const row = element('tr', {className: minor ? 'minor' : '', onclick: event => choose(object.id, event)}, cells);
+      // Shift-click takes parts, and no text.
+      row.addEventListener('mousedown', event => { if (event.shiftKey) event.preventDefault(); });
       this.rows.set(object.id, row);
     }
     this.sort(this.columns.length - 1, -1);
