@@ -55,8 +55,8 @@ function riskError(object, name) {
 function uncertainText(object) {
   if (object.rest_probability < 0.5) return 'how it stands is one of several readings of the scan';
   if ((object.overturning || {}).tilt_deg < 3) return 'it stands, although the slightest lean would upset it by these figures';
-  if ((object.fall_chance || {}).human >= 0.05) return 'it stands, although walks like those before would have upset it by these figures';
-  return 'its errors, or what it may be a piece of, leave a lower one open';
+  if (stoodText(object)) return 'it stands, although walks like those before would have upset it by these figures';
+  return object.unsafety_category === 'none' ? 'it may be a piece of another thing, or the scan hardly shows what holds it' : 'its errors, or what it may be a piece of, leave a lower one open';
 }
 
 // The category, with a question mark where the errors leave it open.
@@ -67,7 +67,10 @@ function categoryText(object) {
 // Joules per event, their error, and the chance per event that it falls.
 function riskCell(object, name) {
   const risk = object.risk_J[name];
-  if (!(risk > 0)) return [number(risk)];
+  if (!(risk > 0)) {
+    const open = isNearly(object) && riskError(object, name) > 0;
+    return [number(risk), ...open ? [element('small', {text: `if its foot is smaller up to ${number(mostReleased(object), 'J')}`})] : []];
+  }
   const error = riskError(object, name), chance = (object.fall_chance || {})[name];
   const cell = [number(risk)];
   if (error !== undefined && error !== null) cell.push(element('span', {className: 'pm', text: ` \u00b1 ${error < risk / 1000 ? '0' : twoDigits(error)}`}));
