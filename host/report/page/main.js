@@ -265,8 +265,8 @@ function preparePrint(scene, state, plan, parts) {
 async function start() {
   const scene = await loadScene();
   scene.boxes = boxesOf(scene);
-  scene.planBox = planBoxOf(scene);
   scene.partBoxes = partBoxesOf(scene);
+  scene.planBox = planBoxOf(scene);
   scene.floor = floorOf(scene, scene.boxes);
   scene.painter = new Painter(scene);
   scene.pictures = new Map();
