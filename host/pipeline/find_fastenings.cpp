@@ -73,14 +73,16 @@ bool on_floor(const SolidScene& solids, const ObjectStage& objects, double floor
               std::int32_t o) {
     constexpr double hardly_m = 0.15;  // set by hand
     const graph::Carrying* most = nullptr;
+    const auto object = [&](std::int32_t p) {
+        return p < 0 ? -1 : objects.object_of_primitive[static_cast<std::size_t>(p)];
+    };
     for (const graph::Carrying& c : objects.contacts.carryings) {
-        if (objects.object_of_primitive[static_cast<std::size_t>(c.supported)] == o &&
+        if (object(c.supported) == o && object(c.supporter) != o &&
             (!most || c.area_m2 > most->area_m2))
             most = &c;
     }
     if (!most || most->supporter < 0 || solids.role(most->supporter) == Role::floor) return true;
-    const auto by = static_cast<std::size_t>(most->supporter);
-    const auto at = static_cast<std::size_t>(objects.object_of_primitive[by]);
+    const auto at = static_cast<std::size_t>(object(most->supporter));
     return objects.objects[at].grounded &&
            objects.objects[static_cast<std::size_t>(o)].candidate.support_height_m <
                floor_m + hardly_m;
