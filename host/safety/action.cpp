@@ -32,10 +32,11 @@ double most_released_J(const Object& o) {
 }
 
 // What kills if it comes down all the same, as in an event stronger than this run's: higher than a
-// child, and with enough to free.
+// child and than it is deep, and with enough to free.
 bool tall_and_heavy(const Object& o) {
     constexpr double tall_m = 1.2;  // set by hand
-    return o.size_m[2] > tall_m && most_released_J(o) >= deadly_J;
+    return o.size_m[2] > std::max(tall_m, std::min(o.size_m[0], o.size_m[1])) &&
+           most_released_J(o) >= deadly_J;
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ class Plan {
     this.panel = panel;
     this.scene = scene;
     this.visit = visit;
-    this.shown = [...riskiest(scene), ...doubtfulOnes(scene).slice(0, listedDoubts), ...nearlyOnes(scene).slice(0, listedDoubts), ...unseenOnes(scene).slice(0, 2 * listedUnseen)]
+    this.shown = [...riskiest(scene), ...doubtfulOnes(scene).slice(0, listedDoubts), ...nearlyOnes(scene).slice(0, listedDoubts), ...tallOnes(scene).slice(0, listedDoubts), ...unseenOnes(scene).slice(0, 2 * listedUnseen)]
       .filter(object => planPlace(scene, object));
     const {low, high} = scene.planBox;
     this.size = [high[0] - low[0], high[1] - low[1]];

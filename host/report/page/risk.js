@@ -34,6 +34,12 @@ function nearlyOnes(scene) {
   return scene.objects.filter(isNearly).sort((a, b) => level(b) - level(a) || b.release_J - a.release_J || a.id - b.id);
 }
 
+// What nothing in this run upsets, but is to be seen fastened, as its action says: what may set free most first.
+function tallOnes(scene) {
+  return scene.objects.filter(object => !object.grounded && object.unsafety_category === 'none' && / tall and heavy: /.test((object.advice || {}).action))
+    .sort((a, b) => mostReleased(b) - mostReleased(a) || a.id - b.id);
+}
+
 // What may move, and nothing was seen to hold it: the largest first.
 function unseenOnes(scene) {
   const bulk = object => Array.isArray(object.size_m) ? object.size_m.reduce((product, side) => product * (side || 0), 1) : 0;
@@ -213,6 +219,11 @@ function fillLooks(panel, scene, doubtful, on) {
   if (nearly.length) {
     panel.append(element('p', {className: 'hint', text: `${doubtful.length ? 'And ' : ''}${plural(nearly.length, 'object')} that nothing upsets as measured, but might:`}));
     cards(nearly, listedDoubts);
+  }
+  const tall = tallOnes(scene);
+  if (tall.length) {
+    panel.append(element('h3', {text: 'Tall and heavy: see that it is fastened'}), element('p', {className: 'hint', text: 'Nothing in this run upsets these.'}),
+      objectLinks(scene, tall.map(object => [object.id, sizeText(object)]), on.choose));
   }
   if (!unseen.length) return;
   panel.append(element('h3', {text: 'The scan does not show what holds these: go and look'}),

@@ -79,13 +79,13 @@ function fillSheet(scene) {
   const act = riskiest(scene).filter(isAdvised), calm = riskiest(scene).filter(object => !isAdvised(object) && /medium|high/.test(object.unsafety_category));
   const list = (title, lines, left) => lines.length ? [node('h2', title), element('ol', {className: 'todo'}, lines),
     ...left > 0 ? [node('p', `And ${plural(left, 'more object')}: see the pages that follow.`, 'hint')] : []] : [];
-  const doubtful = doubtfulOnes(scene), nearly = nearlyOnes(scene), unseen = unseenOnes(scene);
+  const doubtful = doubtfulOnes(scene), nearly = nearlyOnes(scene), unseen = unseenOnes(scene), tall = tallOnes(scene);
   const look = piece => piece && `first look whether it is ${piece}, which is to be fastened as a whole then. `;
   const stood = object => stoodText(object) && `${stoodText(object)} `;
   const doing = object => sheetLine(scene, object, look(pieceText(scene, object)) + stood(object) + object.advice.action, [bracketText(object), dangerText(scene, object), sheetYears(scene, object)]);
   // What sets most free first.
   const looks = [...doubtful.slice(0, listedDoubts).map(object => [object, `look whether it stands firm. ${doubtText(object)}`, [setsFreeText(object), sheetYears(scene, object)]]),
-    ...nearly.slice(0, listedDoubts).map(object => [object, object.advice.action, []]),
+    ...[...nearly.slice(0, listedDoubts), ...tall.slice(0, listedDoubts)].map(object => [object, object.advice.action, []]),
     ...calm.map(object => [object, object.advice.action, [dangerText(scene, object)]])]
     .sort(([a], [b]) => mostReleased(b) - mostReleased(a) || a.id - b.id).map(([object, todo, more]) => sheetLine(scene, object, todo, more, false));
   const holds = unseen.slice(0, listedUnseen).map(object => sheetLine(scene, object, 'go and look what holds it.', [], false));
@@ -98,7 +98,7 @@ function fillSheet(scene) {
     ...!act.length ? [node('p', 'Nothing was found that has to be fastened or moved.')] : [],
     ...list('Already fixed: check the straps', (scene.corrections || []).filter(one => one.do === 'fixed' && one.held !== false).map(one => fixedLine(scene, one)), 0),
     ...scene.objects.some(object => object.grounded) ? list('Not judged', [greyLine(scene)], 0) : [],
-    ...list('To be looked at', looks, doubtful.length + nearly.length + calm.length - looks.length),
+    ...list('To be looked at', looks, doubtful.length + nearly.length + tall.length + calm.length - looks.length),
     ...list('The scan does not show what holds these: go and look', holds, unseen.length - holds.length),
     node('p', `Reckoned with: ${listed(kinds.map(kind => oneEventText(scene, kind))) || 'nothing'}.${scene.below_hazard.length ? ` \u201cAt most\u201d: ${curveText(scene)}.` : ''} Places are in metres east (E) of the plan\u2019s left edge and north (N) of its lower edge. A joule (J) lifts 1 kg by 10 cm; what lands with less than ${slight_J} J is harmless, from ${serious_J} J on it injures badly, from ${deadly_J} J on it can kill. ` +
       'Straps must hold what is said at least: no safety margin is in it. ?: it may be less, or a piece of another thing.', 'hint'));

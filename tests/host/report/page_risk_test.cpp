@@ -144,11 +144,15 @@ TEST_F(PageRisk, says_what_is_not_known_and_what_to_try_by_hand) {
     Object& cup = scene.objects[2];
     cup.unsafety_category = "none";
     cup.unsafety_certain = false;
+    Object& ball = scene.objects[5];  // taken for a wardrobe
+    ball.size_m = {0.4, 2.7, 1.96};
+    ball.instability = {{20, 595}};
     test::say_actions(scene);
     write_report(folder_ / "report.html", scene);
     const auto page = open(folder_ / "report.html", R"(
         const out = document.body.dataset, card = id => document.querySelector(`.item[data-object="${id}"]`).textContent;
         for (const id of [1, 3, 4]) out[`card${id}`] = card(id);
+        out.tall = [...document.querySelectorAll('#risk h3')].find(node => node.textContent.startsWith('Tall and heavy')).nextElementSibling.nextElementSibling.textContent;
         out.coarse = document.querySelector('#risk .warning').textContent;
         toppleChoose(2);
         out.pane = document.getElementById('detail').textContent;
@@ -177,6 +181,10 @@ TEST_F(PageRisk, says_what_is_not_known_and_what_to_try_by_hand) {
         {"coarse",
          "Coarse scan (points 5 cm apart): barriers of all things narrower than 52 cm are "
          "doubtful, here 4: a denser scan tells."},
+        {"tall", "object 5"},
+        {"sheet",
+         "Object 5, none: Nothing in this run upsets it. It is tall and heavy: see that it is "
+         "fastened."},
         {"pane", "none, but not certain: it"}};
     for (const auto& [where, part] : said)
         EXPECT_NE(test::text(page.data(where)).find(part), std::string::npos)
@@ -186,7 +194,7 @@ TEST_F(PageRisk, says_what_is_not_known_and_what_to_try_by_hand) {
         EXPECT_EQ(page.data(where).find("touch would"), std::string::npos) << page.data(where);
         EXPECT_EQ(page.data(where).find("57 % likely"), std::string::npos) << page.data(where);
     }
-    EXPECT_EQ(page.data("order"), "3 4 1") << "what is to be looked at by energy";
+    EXPECT_EQ(page.data("order"), "3 5 4 1") << "what is to be looked at by energy";
 }
 
 }  // namespace

@@ -59,7 +59,9 @@ TEST_F(Action, is_to_see_that_what_is_tall_and_heavy_is_fastened) {
               "Nothing in this run upsets it. It is tall and heavy: see that it is fastened.");
     o_.size_m[2] = 1.1;
     EXPECT_EQ(text(), "No need to act.");
-    o_.size_m[2] = 1.96;
+    o_.size_m = {2.4, 2.7, 1.96};
+    EXPECT_EQ(text(), "No need to act.") << "it is deeper than high";
+    o_.size_m[0] = 0.4;
     o_.release_J = 78;
     EXPECT_EQ(text(), "No need to act.");
     o_.instability = {{20, 595}};
