@@ -214,6 +214,8 @@ function showObject(panel, scene, id, choose, visit, acts) {
   if (picture) panel.append(picture);
   const say = (text, className = 'why') => { if (text) panel.append(element('p', {className, text})); };
   if (!object.grounded) say(upsetText(scene, object));
+  if (isDoubtful(object)) say(doubtText(object));
+  if (object.seen_enough !== false) say(stoodText(object));
   if (fallKnown(object)) say(happensText(scene, object));
   say(keepClearText(scene, object), 'clear');
   if (!object.grounded && object.unsafety_category !== undefined) say(object.advice.action, isAdvised(object) ? 'advice' : 'why');

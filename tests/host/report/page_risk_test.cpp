@@ -156,6 +156,8 @@ TEST_F(PageRisk, says_what_is_not_known_and_what_to_try_by_hand) {
         out.coarse = document.querySelector('#risk .warning').textContent;
         toppleChoose(2);
         out.pane = document.getElementById('detail').textContent;
+        toppleChoose(4);
+        out.doubt = document.getElementById('detail').textContent;
         dispatchEvent(new Event('beforeprint'));
         out.sheet = document.getElementById('sheet').textContent;
         out.order = [...document.querySelectorAll('#sheet li strong')].map(node => node.textContent.match(/Object (\d)/)).filter(found => found).map(found => found[1]).join(' ');
@@ -169,6 +171,7 @@ TEST_F(PageRisk, says_what_is_not_known_and_what_to_try_by_hand) {
         "first.";
     const std::vector<std::pair<const char*, std::string>> said{
         {"card4", foot},
+        {"doubt", foot},
         {"sheet", "look whether it stands firm. " + foot},
         {"sheet", "It may set free up to 410\u00a0J: can kill."},
         {"card1", "from 240 N on it slides. Push it by hand, and look."},
