@@ -150,8 +150,8 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
                       : ranked      ? safety.unsafety[o]
                                     : std::numeric_limits<double>::quiet_NaN();
         const safety::CategoryEnds& category = safety.category[o];
-        to.unsafety_category = ranked ? safety::to_string(category.lower) : "";
-        to.unsafety_certain = ranked && category.lower == category.higher && to.piece_of < 0 &&
+        to.unsafety_category = ranked ? safety::to_string(category.worst()) : "";
+        to.unsafety_certain = ranked && category.certain() && to.piece_of < 0 &&
                               !from.weakest.doubtful() &&
                               safety.advice[o].kind != Suggestion::Kind::check &&
                               !stands_against_odds(from, safety.disturbances, safety.risk, o);
@@ -299,10 +299,13 @@ void note_corrections(Scene& scene) {
     const std::vector<std::size_t> said = told_sentences(scene.corrections);
     for (std::size_t n = 0; n < scene.corrections.size(); ++n) {
         const AppliedCorrection& c = scene.corrections[n];
-        if (c.outcome != "held")
-            scene.notes.push_back("Correction " + std::to_string(said[n]) + " (" +
-                                  to_string(c.correction.kind) + ") " +
-                                  (c.held ? "" : "did not hold: ") + c.outcome + ".");
+        if (c.outcome == "held") continue;
+        std::string note = "Correction " + std::to_string(said[n]) + " (" +
+                           to_string(c.correction.kind) + ") " + (c.held ? "" : "did not hold: ") +
+                           c.outcome + ".";
+        // One sentence may take several entries.
+        if (scene.notes.empty() || scene.notes.back() != note)
+            scene.notes.push_back(std::move(note));
     }
 }
 

@@ -73,6 +73,15 @@ physics::Swept swept(const SolidParts& parts, const physics::HiddenWalls& walls,
     physics::Swept out = physics::sweep_over_edge(parts.solids->cells(), parts.solids->columns(),
                                                   walls, from.candidate, along, support,
                                                   way.direction, beside, from.highest_m, stops);
+    // What has sunk nearly as low as it lies on its side lies, and leans on nothing.
+    constexpr double nearly_all = 0.9;
+    const double lies = std::min(std::max(beside, 0.0), height),
+                 sunk = support + height - out.center[2];
+    if (out.stopped && sunk >= nearly_all * (height - lies)) {
+        out.stopped = false;
+        out.by = -1;
+        return out;
+    }
     if (!out.stopped) out.center[2] -= way.drop_m;
     return out;
 }
