@@ -292,7 +292,7 @@ void note_light_density(Scene& scene) {
     if (scene.density_kg_m3 >= lightest_kg_m3) return;
     scene.notes.push_back("The density of " + io::short_number(scene.density_kg_m3) +
                           " kg/m\u00b3 is less than that of the lightest foam; if it is in "
-                          "g/cm\u00b3, give --density 1000 times as large.");
+                          "g/cm\u00b3, give ParseOptions::density_kg_m3 1000 times as large.");
 }
 
 void note_corrections(Scene& scene) {

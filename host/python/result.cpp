@@ -316,13 +316,7 @@ void bind_result(py::module_& module) {
         .def_property_readonly("up", scene(&Scene::up))
         .def_property_readonly("up_method", scene(&Scene::up_method))
         .def_property_readonly("manhattan_from_input", scene(&Scene::manhattan_from_input))
-        .def_property_readonly("notes",
-                               [](const Parsed& p) {
-                                   std::vector<std::string> out;
-                                   for (const std::string& note : p.result.scene.notes)
-                                       out.push_back(with_own_names(note));
-                                   return out;
-                               })
+        .def_property_readonly("notes", scene(&Scene::notes))
         .def_property_readonly("timings_s",
                                [](const Parsed& p) {
                                    py::dict out;

@@ -8,7 +8,8 @@
 /* topple for C, and for what calls C: C99, no other headers of topple.
  *
  * - Functions return TOPPLE_OK or another code of topple_code, and then say why in `status`, which
- *   may be NULL. A message is one line that names the object, the value, the limit and the mend.
+ *   may be NULL. A message is one line that names the object, the value, the limit and the mend,
+ *   and options as the fields here.
  *   Nothing is global, nothing is printed, no exception leaves a function.
  * - Structs with a member `size` grow with the library: set it to sizeof of the struct, or call the
  *   struct's _init where there is one. What lies beyond the caller's size keeps its default.
@@ -187,6 +188,7 @@ typedef struct topple_options {
      * one of both at most. NULL: nothing. */
     const char *corrections_file, *corrections_json;
     const char* cache_file; /* what does not depend on corrections (topple/parse.h); NULL: none */
+    double tile_m;          /* not 0: any cloud file is parsed in blocks (topple/parse.h) */
 } topple_options;
 void topple_options_init(topple_options* options, size_t size);
 
