@@ -23,7 +23,7 @@ struct Groundwork {
     ScenePoints points;                               // without their objects
     std::uint32_t image_width = 0, image_height = 0;  // as in ParseResult
     std::shared_ptr<vdb::VoxelScene> voxels;
-    SolidParts parts;  // samples and seams are gone where it comes from a file
+    SolidParts parts;  // the seams, which joints alone ask for, are gone where it comes from a file
     PartStage weighed;
 };
 

@@ -39,7 +39,8 @@ std::string other_units(double extent_m, bool from_file) {
         out += first ? "if the coordinates are in " : ", in ";
         out += std::string_view(unit) == "in" ? "inches" : unit;
         if (from_file)
-            (out += first ? ", say --unit " : " --unit ") += unit;
+            (out += first ? ", say ParseOptions::unit_m = " : " ParseOptions::unit_m = ") +=
+                text_of(unit_m);
         else
             (out += first ? ", multiply them by " : " by ") += text_of(unit_m);
         out += " (" + io::two_digits(then_m) + " m)";
@@ -108,7 +109,7 @@ std::string small_extent_hint(double extent_m, ScanOrigin origin) {
                         : origin == ScanOrigin::frames_in_memory ? "depth_scale of the intrinsics"
                         : origin == ScanOrigin::cloud_in_memory
                             ? "that the coordinates are metres, which they must be in memory"
-                            : "--unit";
+                            : "ParseOptions::unit_m";
     return "it all extends over " + text_of(extent_m) + " m: check " + check;
 }
 

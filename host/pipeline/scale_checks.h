@@ -41,8 +41,8 @@ void check_viewpoint_distance(const CloudView& cloud);
 // 115 m: if the coordinates are in cm, multiply them by 0.01 (1.1 m)", or how else an input from
 // there is mended; else "".
 std::string large_extent_hint(double extent_m, ScanOrigin origin);
-// Of what extends over less than things in a room do: "it all extends over X m: check --unit", or
-// what else gives the unit of such an input; else "".
+// Of what extends over less than things in a room do: "it all extends over X m: check
+// ParseOptions::unit_m", or what else gives the unit of such an input; else "".
 std::string small_extent_hint(double extent_m, ScanOrigin origin);
 // The same as a note of a scene from there, which else shows shards of nothing in particular.
 void note_small_extent(double extent_m, ScanOrigin origin, std::vector<std::string>& notes);

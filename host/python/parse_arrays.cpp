@@ -6,6 +6,7 @@
 
 #include "arrays.h"
 #include "busy.h"
+#include "topple/option_names.h"
 
 namespace topple::python {
 namespace {
@@ -28,7 +29,10 @@ class Caller {
     // What may be worth an end before the parse's own, as poses that make nonsense.
     void notice(const std::string& line) {
         if (!mine() || stop_) return;
-        ask([&] { py::module_::import("topple._arrays").attr("warn")(with_own_names(line)); });
+        ask([&] {
+            py::module_::import("topple._arrays")
+                .attr("warn")(in_words_of(Interface::python, line));
+        });
     }
     // Whether it was told to stop, by the callback or by a signal such as Ctrl-C.
     bool cancelled() {
@@ -94,6 +98,7 @@ std::shared_ptr<Parsed> run(const std::shared_ptr<SharedDevice>& device, ParseOp
         throw;
     }
     caller.rethrow();
+    for (std::string& note : out->result.scene.notes) note = in_words_of(Interface::python, note);
     return out;
 }
 

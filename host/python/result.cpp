@@ -203,6 +203,8 @@ void bind_items(py::module_& module) {
         .def_property_readonly("box_middle_m", vector(&Object::box_middle_m))
         .def_readonly("piece_of", &Object::piece_of)
         .def_readonly("piece_probability", &Object::piece_probability)
+        .def_readonly("joint_probability", &Object::joint_probability)
+        .def_readonly("weakest_joint", &Object::weakest_joint)
         .def_readonly("barrier_J", &Object::barrier_J)
         .def_readonly("barrier_error_J", &Object::barrier_error_J)
         .def_readonly("mass_error_kg", &Object::mass_error_kg)
@@ -333,13 +335,7 @@ void bind_result(py::module_& module) {
                                })
         .def_property_readonly("density_kg_m3", scene(&Scene::density_kg_m3))
         .def_property_readonly("friction", scene(&Scene::friction))
-        .def_property_readonly("notes",
-                               [](const Parsed& p) {
-                                   std::vector<std::string> out;
-                                   for (const std::string& note : p.result.scene.notes)
-                                       out.push_back(with_own_names(note));
-                                   return out;
-                               })
+        .def_property_readonly("notes", scene(&Scene::notes))
         .def_property_readonly("timings_s",
                                [](const Parsed& p) {
                                    py::dict out;
