@@ -79,7 +79,7 @@ class Sentence {
             return "The scan does not show what holds it up: it is taken to stand there, and is "
                    "not ranked.";
         }
-        return (object_.mode == "slide" ? slides() : tips()) + piece();
+        return (object_.mode == "slide" ? slides() : tips()) + piece() + several();
     }
 
   private:
@@ -89,6 +89,13 @@ class Sentence {
         const Object& whole = scene_.objects[static_cast<std::size_t>(object_.piece_of)];
         return " It may be a piece of " + numbered_object(whole) + " (" +
                io::two_digits(100 * object_.piece_probability) + " % likely).";
+    }
+    // Whose figures are those of two together.
+    std::string several() const {
+        if (!from_.weakest.doubtful()) return "";
+        return " It may be two things (" + io::two_digits(100 * (1 - object_.joint_probability)) +
+               " % likely): look whether its parts " + std::to_string(object_.weakest_joint[0]) +
+               " and " + std::to_string(object_.weakest_joint[1]) + " are one.";
     }
     std::string slides() const {
         if (!(why_.way_m > 0)) {
