@@ -191,6 +191,8 @@ void bind_items(py::module_& module) {
         .def_readonly("box_middle_m", &Object::box_middle_m)
         .def_readonly("piece_of", &Object::piece_of)
         .def_readonly("piece_probability", &Object::piece_probability)
+        .def_readonly("joint_probability", &Object::joint_probability)
+        .def_readonly("weakest_joint", &Object::weakest_joint)
         .def_readonly("barrier_J", &Object::barrier_J)
         .def_readonly("barrier_error_J", &Object::barrier_error_J)
         .def_readonly("mass_error_kg", &Object::mass_error_kg)

@@ -302,6 +302,10 @@ typedef struct topple_object {
      * NaN for the ground, and what is held by nothing that was seen */
     double support_height_m, center_height_m;
     const double* blow_barrier_Ns; /* blow_barrier_J as impulses, newton seconds */
+    /* the least likely joint at which two parts of it meet: how likely it is one, and its
+     * primitives; 1 and -1 where it has one part. Below 0.6 it is about as likely two things */
+    double joint_probability;
+    int32_t weakest_joint[2];
 } topple_object;
 typedef struct topple_contact {
     size_t size;
