@@ -293,11 +293,11 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
     motion->allow_extra_args(false);
     app.add_option("--motion-unit", a->motion_file.unit_m,
                    "Metres in the recording's unit (default: from the size of the body)")
-        ->check(CLI::PositiveNumber)
+        ->check(number_above_0)
         ->needs(motion);
     app.add_option("--motion-rate", a->motion_file.rate_hz,
                    "Frames a second of a recording that has no times")
-        ->check(CLI::PositiveNumber)
+        ->check(number_above_0)
         ->needs(motion);
     app.add_option("--motion-up", a->motion_up,
                    "Up in the recording, X,Y,Z (default: from head and feet)")

@@ -16,7 +16,8 @@ const std::filesystem::path source = TOPPLE_SOURCE_DIR;
 std::string without_comments(std::string code) {
     std::size_t at = 0;
     while ((at = code.find("//")) != std::string::npos) code.erase(at, code.find('\n', at) - at);
-    while ((at = code.find("/*")) != std::string::npos) code.erase(at, code.find("*/", at) + 2 - at);
+    while ((at = code.find("/*")) != std::string::npos)
+        code.erase(at, code.find("*/", at) + 2 - at);
     return code;
 }
 
