@@ -31,6 +31,7 @@ std::string with_own_names(std::string text);
 void bind_export(py::module_& module);
 void bind_labels(py::module_& module);
 void bind_parse(py::module_& module);
+void bind_places(py::module_& module);
 void bind_result(py::module_& module);
 void bind_stages(py::module_& module);
 

@@ -119,7 +119,7 @@ class Result:
     def _whole(self, call):
         """What C++ made, which a pickle does not hold."""
         if isinstance(self._parsed, _snapshot.Item):
-            raise _usage(f'{call}: this result was pickled or copied, which leaves out the grids that it takes; call it on the '
+            raise _usage(f'{call}: this result was pickled or copied, which leaves out what it takes; call it on the '
                          'result of parse(), before pickling')
         return self._parsed
 
@@ -181,6 +181,25 @@ class Result:
             if self._labeller is None:
                 self._labeller = _labels.labeller(self)
         return _labels.of_frame(self._labeller, self._frames, frame, camera_to_world, intrinsics, primitives)
+
+    def stays(self, item, place_m, way=None, *, force_N=0.0, impulse_Ns=0.0, slack_m=0.02):
+        """Whether an object, an Object or its id, stays where it is, to two standard errors of its mass and its foot, when it is pushed
+        steadily with force_N newtons, or bumped with impulse_Ns newton seconds (m v of what comes with m kg at v m/s, and up to twice that
+        where it bounces back), at place_m, metres in the frame of the result's points, towards `way`, a level unit vector, or to any side
+        (None). Push and bump each by itself.
+
+        True: the push is below what tips it there, in the directions next to `way`, and below what friction holds; the bump is below the
+        least that makes it fall (barrier_by_direction.blow_Ns; where that is infinite, it brings less energy than the barrier), and sets it
+        sliding no farther than slack_m metres. What is of the ground stays whatever is done. False also where nobody knows: what holds it
+        was not seen, or is likelier than not something else than was found; it hangs; its barrier is 0; it is likelier than not a piece of
+        another object (piece_of: ask about that one); the place is lower than what it stands on, or higher than its top, by more than a voxel.
+
+        It promises nothing about what the figures leave out: that density and friction are as they were given, and what is solid to topple
+        is not hollow; touches beside the line above its centre of mass, which turn it; many of them; what it carries or holds. Raises Error of
+        kind "usage" for what makes no sense: a place that is not finite, a way that is not level or not of unit length, a figure that is
+        negative or not finite; and for a result that was pickled."""
+        given = _option('place_m', place_m), _option('way', way), _option('force_N', force_N), _option('impulse_Ns', impulse_Ns), _option('slack_m', slack_m)
+        return _topple.stays(self._whole('stays'), _spots.numbered(self.objects, item, 'object').id, *given)
 
     def write(self, folder, *, pictures=False, glb=False, octomap=False):
         """Writes the folder of outputs (docs/output.md), which appears whole or not at all: with view-*.png,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether what parse() and export() are given for options has their types; the library checks their ranges."""
+"""Whether what parse(), export() and stays() are given has their types; the library checks their ranges."""
 import math
 import operator
 
@@ -62,12 +62,14 @@ def _names(value):
 
 
 _KINDS = {
-    'a number': (_number, ('voxel_m', 'unit_m', 'density_kg_m3', 'friction', 'wind_m_s', 'floor_amplification', 'tolerable_J', 'tile_m')),
+    'a number': (_number, ('voxel_m', 'unit_m', 'density_kg_m3', 'friction', 'wind_m_s', 'floor_amplification', 'tolerable_J', 'tile_m',
+                          'force_N', 'impulse_Ns', 'slack_m')),
     'a number, or None': (_number, ('contents_kg_m3', 'wind_from_deg', 'pga_m_s2', 'grouping_time_s', 'motion_unit', 'motion_rate')),
     'a whole number from 0': (_whole(64), ('seed', 'max_memory_bytes')),
     'a whole number, 1 or more': (_whole(32), ('walks',)),
     'a whole number, 0 for all cores': (_whole(32), ('threads',)),
-    'three finite numbers, as [0, 0, 1], or None': (_vector, ('up', 'viewpoint', 'motion_up')),
+    'three finite numbers, as [0, 0, 1], or None': (_vector, ('up', 'viewpoint', 'motion_up', 'way')),
+    'three finite numbers, as [0.5, 1, 0.2]': (_vector, ('place_m',)),
     '"g", "m/s2", "cm/s2", or None': (_text, ('accelerogram_unit',)),
     'True or False': (_flag, ('isolate', 'visuals')),
     'a name, a list of names, or None': (_names, ('disturbances',)),

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#include "arrays.h"
+#include "topple/stays.h"
+
+// What a result is asked about a place.
+namespace topple::python {
+
+void bind_places(py::module_& module) {
+    module.def("stays", [](const Parsed& parsed, std::size_t object, const Vec3& place_m,
+                           const std::optional<Vec3>& way, double force_N, double impulse_Ns,
+                           double slack_m) {
+        const Scene& scene = parsed.result.scene;
+        return stays(scene, scene.objects.at(object),
+                     {place_m, way.value_or(Vec3{}), force_N, impulse_Ns, slack_m});
+    });
+}
+
+}  // namespace topple::python
