@@ -295,3 +295,14 @@ def test_stays_is_not_pickled(result):
     with pytest.raises(topple.Error, match='stays: this result was pickled') as raised:
         pickle.loads(pickle.dumps(result)).stays(1, [1, 1, 0.3])
     assert raised.value.kind == 'usage'
+
+
+def test_object_at_goes_from_a_place_to_the_object(result, points):
+    floor, crate, box = (result.object_at(at, 0.05) for at in ([0.4, 0.4, 0], [1.05, 0.95, 0.5], (1.3, 1.2, 0.85)))
+    assert result.objects[floor].grounded and len({floor, crate, box}) == 3
+    assert result.object_at([1.3, 1.2, 1.2], 0.05) == -1 and result.object_at([1.3, 1.2, 1.2], np.inf) == box
+    assert pickle.loads(pickle.dumps(result)).object_at(points[5], 0) == result.point_object[5]
+    for wrong in ({'place_m': [0, 0, np.inf], 'within_m': 1}, {'place_m': [0, 0, 0], 'within_m': -1}, {'place_m': [0, 0, 0], 'within_m': None}):
+        with pytest.raises(topple.Error) as raised:
+            result.object_at(**wrong)
+        assert raised.value.kind == 'usage'

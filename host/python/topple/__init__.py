@@ -17,6 +17,8 @@ import os
 import threading
 from typing import NamedTuple
 
+import numpy as np
+
 from . import _described, _labels, _shown, _snapshot, _spots, _tables, _topple, formats, plot, stages
 from ._arrays import channels as _channels, columns as _columns, has_rows as _has_rows, usage as _usage
 from ._device import open_device
@@ -200,6 +202,15 @@ class Result:
         negative or not finite; and for a result that was pickled."""
         given = _option('place_m', place_m), _option('way', way), _option('force_N', force_N), _option('impulse_Ns', impulse_Ns), _option('slack_m', slack_m)
         return _topple.stays(self._whole('stays'), _spots.numbered(self.objects, item, 'object').id, *given)
+
+    def object_at(self, place_m, within_m):
+        """The id of the object at a place, three numbers, metres in the frame of the result's points: that of the nearest point that belongs
+        to one. -1: there is none within within_m metres (math.inf: however far). Looks at all points: for the pixels of an image take
+        frame_labels(). Of a cloud that was parsed in blocks the points are a sample. Raises Error of kind "usage" for a place that is
+        not finite, and a distance that is negative or NaN."""
+        place_m, within_m = _option('place_m', place_m), _option('within_m', within_m)
+        columns = [np.ascontiguousarray(axis, np.float32) for axis in self.xyz]
+        return _topple.object_at(columns, np.ascontiguousarray(self.point_object, np.int32), place_m, within_m)
 
     def write(self, folder, *, pictures=False, glb=False, octomap=False):
         """Writes the folder of outputs (docs/output.md), which appears whole or not at all: with view-*.png,
