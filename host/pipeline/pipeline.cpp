@@ -165,6 +165,12 @@ void check_options(const ParseOptions& o) {
     if (const auto wrong = fault_of(o.corrections))
         throw Error(ErrorKind::usage, "corrections: " + *wrong);
     for (const std::string& name : o.disturbances) safety::disturbance_kind(name);
+    for (std::size_t n = 0; n < o.motions.size(); ++n) {
+        if (!o.motions[n])
+            throw Error(ErrorKind::usage, "motions: number " + std::to_string(n) +
+                                              " is null; give what read_motion() returns, or leave "
+                                              "it out");
+    }
 }
 
 std::vector<std::string> known_disturbances() {
