@@ -164,7 +164,12 @@ void check_options(const ParseOptions& o) {
     if (o.grouping_time_s) check_range("--grouping-time", *o.grouping_time_s, 0, 86400);
     if (const auto wrong = fault_of(o.corrections))
         throw Error(ErrorKind::usage, "corrections: " + *wrong);
-    for (const std::string& name : o.disturbances) safety::disturbance_kind(name);
+    for (auto name = o.disturbances.begin(); name != o.disturbances.end(); ++name) {
+        safety::disturbance_kind(*name);
+        if (std::find(o.disturbances.begin(), name, *name) != name)
+            throw Error(ErrorKind::usage,
+                        "--disturbance: " + *name + " is given twice; name each once");
+    }
     for (std::size_t n = 0; n < o.motions.size(); ++n) {
         if (!o.motions[n])
             throw Error(ErrorKind::usage, "motions: number " + std::to_string(n) +

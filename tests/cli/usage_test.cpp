@@ -31,6 +31,8 @@ TEST_F(Usage, names_the_unknown_option_and_the_nearest_one) {
                    {"--scan glass: expected walk, sparse, cloud, laser or single"});
     expect_failure(2, {"parse", "plane.xyz", "--disturbance", "people"},
                    {"--disturbance people: expected human", "for people say human"});
+    expect_failure(2, {"parse", "plane.xyz", "--disturbance", "human,wind,human"},
+                   {"--disturbance: human is given twice"});
     // Nothing is near this one.
     const Finished far = run({"parse", "plane.xyz", "--kaleidoscope"});
     EXPECT_EQ(far.err.find("did you mean"), std::string::npos) << far.err;

@@ -42,5 +42,14 @@ TEST(Options, AMotionThatIsNullIsRefused) {
               "motions: number 1 is null; give what read_motion() returns, or leave it out");
 }
 
+TEST(Options, ADisturbanceThatIsGivenTwiceIsRefused) {
+    ParseOptions options;
+    options.disturbances = {"human", "wind", "human"};
+    EXPECT_EQ(refusal_before(SmallRoom::scattered().cloud, options),
+              "--disturbance: human is given twice; name each once");
+    EXPECT_EQ(refusal_of([&] { check_options(options); }),
+              "--disturbance: human is given twice; name each once");
+}
+
 }  // namespace
 }  // namespace topple::test
