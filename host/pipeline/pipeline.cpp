@@ -187,6 +187,21 @@ std::vector<std::string> known_disturbances() {
 
 namespace {
 
+// The result, whose notes begin with what the options make doubtful, and go on with `notes`.
+ParseResult noted(ParseResult result, const ParseOptions& options,
+                  std::vector<std::string> notes = {}) {
+    std::vector<std::string> all;
+    for (const std::string& name : options.disturbances) {
+        const auto doubt = safety::disturbance_kind(name).doubt;
+        if (std::string asked = doubt ? doubt(options) : ""; !asked.empty())
+            all.push_back(std::move(asked));
+    }
+    all.insert(all.end(), notes.begin(), notes.end());
+    std::vector<std::string>& own = result.scene.notes;
+    own.insert(own.begin(), all.begin(), all.end());
+    return result;
+}
+
 ParseResult parse_scan(const std::filesystem::path& input, ParseOptions options) {
     GroundworkFile cache;
     Timings timings;
@@ -216,11 +231,9 @@ ParseResult parse(const std::filesystem::path& input, const ParseOptions& option
     std::vector<std::string> notes = io::scan_notes(input);
     const auto kind =
         io::looks_like_sequence(input) ? WholeProgress::Input::frames : WholeProgress::Input::cloud;
-    ParseResult result =
-        tell_whole(kind, options, [&](const ParseOptions& o) { return parse_scan(input, o); });
-    std::vector<std::string>& all = result.scene.notes;
-    all.insert(all.begin(), notes.begin(), notes.end());
-    return result;
+    return noted(
+        tell_whole(kind, options, [&](const ParseOptions& o) { return parse_scan(input, o); }),
+        options, std::move(notes));
 }
 
 ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
@@ -228,12 +241,13 @@ ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
     refuse_cache(options);
     refuse_tiles(options);
     const std::string source = cloud.source.empty() ? "cloud" : cloud.source;
-    return tell_whole(WholeProgress::Input::cloud, options, [&](const ParseOptions& o) {
+    const auto parse_view = [&](const ParseOptions& o) {
         return run(source, o, [&](device::Device& device, StageClock& stage) {
             Ingested input = stage("ingest", [&] { return ingest_view(device, cloud, o); });
             return lay_groundwork(device, std::move(input), o, source, stage);
         });
-    });
+    };
+    return noted(tell_whole(WholeProgress::Input::cloud, options, parse_view), options);
 }
 
 ParseResult parse(const FramesView& frames, const ParseOptions& options) {
@@ -241,12 +255,13 @@ ParseResult parse(const FramesView& frames, const ParseOptions& options) {
     refuse_cache(options);
     refuse_tiles(options);
     const std::string source = frames.source.empty() ? "frames" : frames.source;
-    return tell_whole(WholeProgress::Input::frames, options, [&](const ParseOptions& o) {
+    const auto parse_view = [&](const ParseOptions& o) {
         return run(source, o, [&](device::Device& device, StageClock& stage) {
             Ingested input = stage("ingest", [&] { return ingest_frames_view(device, frames, o); });
             return lay_groundwork(device, std::move(input), o, source, stage);
         });
-    });
+    };
+    return noted(tell_whole(WholeProgress::Input::frames, options, parse_view), options);
 }
 
 void add_coordinates(const CloudView& cloud, ParseResult& result) {

@@ -23,7 +23,7 @@ from . import _described, _labels, _shown, _snapshot, _spots, _tables, _topple, 
 from ._arrays import channels as _channels, columns as _columns, has_rows as _has_rows, usage as _usage
 from ._device import open_device
 from ._frames import Frames as _Frames
-from ._options import option as _option, unlikely_peak_note as _unlikely_peak_note
+from ._options import option as _option
 from ._program import generate
 from ._topple import Advice, AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Landscape, Object, Overturning, Primitive, Support, Why, __version__
 from .foxglove import to_mcap
@@ -367,12 +367,12 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
         with formats.opened(source, formats.Options(unit_m=unit_m, isolate=isolate), cancelled) as converted:
             if converted is None:
                 parsed = _topple.parse_path(os.fspath(source), device, options, progress, cancelled)
-                return _noted(Result(parsed, None, frames=os.fspath(source)), pga_m_s2)
+                return Result(parsed, None, frames=os.fspath(source))
             if converted.is_sequence:
                 options.unit_m = 1.0
             parsed = _topple.parse_path(os.fspath(converted.path), device, options, progress, cancelled)
             _topple.came_from(parsed, os.fspath(source), converted.notes, list(converted.offset * unit_m))
-            converted.needed_by = result = _noted(Result(parsed, None, frames=os.fspath(converted.path)), pga_m_s2)
+            converted.needed_by = result = Result(parsed, None, frames=os.fspath(converted.path))
             return result
     if name is None:
         name = 'points' if frames is None else 'frames'
@@ -382,7 +382,7 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
         if normals is not None or viewpoint is not None:
             raise _usage('normals and viewpoint are for points; frames have camera_to_world')
         given = _Frames(frames, camera_to_world, intrinsics, colours, colour_intrinsics)
-        return _noted(Result(given.parse(name, device, options, progress, cancelled), None, frames=given), pga_m_s2)
+        return Result(given.parse(name, device, options, progress, cancelled), None, frames=given)
     points = _columns(source, ('x', 'y', 'z'), 'points')
     directions = [] if normals is None else _columns(normals, ('nx', 'ny', 'nz'), 'normals')
     channels = [] if colours is None else _channels(colours)
@@ -390,12 +390,4 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
         if given and len(given[0]) != len(points[0]):
             raise _usage(f'{what}: expected shape ({len(points[0])}, 3), one for each point, not {len(given[0])} of them')
     parsed = _topple.parse_arrays(points, directions, channels, viewpoint, viewpoints, name, device, options, progress, cancelled)
-    return _noted(Result(parsed, points, channels), pga_m_s2)
-
-
-def _noted(result, pga_m_s2):
-    """The result, with a note where the peak of earthquakes looks as if it was given in another unit."""
-    note = _unlikely_peak_note(None if pga_m_s2 is None else float(pga_m_s2))
-    if note and 'pga_m_s2' in result.events:
-        _topple.add_note(result._parsed, note)
-    return result
+    return Result(parsed, points, channels)

@@ -4,7 +4,6 @@ import math
 import operator
 
 from ._arrays import usage
-from ._shown import figure
 from ._topple import Device
 
 
@@ -77,21 +76,6 @@ _KINDS = {
     'a function, or None': (_callable, ('progress', 'cancelled')),
 }
 _CHECKS = {name: (check, words) for words, (check, names) in _KINDS.items() for name in names}
-
-
-# Below this a peak was meant in g, perhaps; of the peaks that were recorded only a few reach 2 g.
-_HARDLY_MEANT_M_S2, _HARDLY_RECORDED_G, _GRAVITY = 1, 2, 9.80665
-
-
-def unlikely_peak_note(pga_m_s2):
-    """What to say of a peak acceleration that was given in another unit, perhaps; '' of others."""
-    if pga_m_s2 is None or _HARDLY_MEANT_M_S2 <= pga_m_s2 < _HARDLY_RECORDED_G * _GRAVITY:
-        return ''
-    is_so = f'pga_m_s2={figure(pga_m_s2)} is {figure(pga_m_s2 / _GRAVITY, 2)} g'
-    if pga_m_s2 < _HARDLY_MEANT_M_S2:
-        return f'{is_so}: for {figure(pga_m_s2)} g give pga_m_s2={figure(pga_m_s2 * _GRAVITY)}.'
-    return (f'{is_so}, stronger than nearly all that were recorded; for {figure(pga_m_s2)} % of g give '
-            f'pga_m_s2={figure(pga_m_s2 / 100 * _GRAVITY)}.')
 
 
 def option(name, value):

@@ -51,5 +51,45 @@ TEST(Options, ADisturbanceThatIsGivenTwiceIsRefused) {
               "--disturbance: human is given twice; name each once");
 }
 
+// Once, and of what is reckoned with alone. A peak of 0.3 m/s^2 was meant in g, perhaps.
+TEST(Options, APeakInAnotherUnitIsAskedAbout) {
+    const SmallRoom room = SmallRoom::scattered();
+    ParseOptions options = on(device::open_device("native"));
+    options.walks = 10;
+    const auto notes = [&](double pga_m_s2) {
+        options.pga_m_s2 = pga_m_s2;
+        return parse(room.cloud, options).scene.notes;
+    };
+    const auto asked = testing::HasSubstr("--pga");
+    options.disturbances = {"wind"};
+    EXPECT_THAT(notes(0.3), testing::Each(testing::Not(asked)));
+    options.disturbances = {"earthquake"};
+    const std::vector<std::string> weak = notes(0.3);
+    ASSERT_FALSE(weak.empty());
+    EXPECT_EQ(weak.front(),
+              "--pga 0.3 m/s\u00b2 is 0.031 g (light shaking, intensity IV): for 0.3 g give --pga "
+              "2.94.");
+    EXPECT_THAT(std::vector(weak.begin() + 1, weak.end()), testing::Each(testing::Not(asked)));
+    EXPECT_EQ(notes(30).front(),
+              "--pga 30 m/s\u00b2 is 3.1 g (extreme shaking, intensity X or more), stronger than "
+              "nearly all that were recorded; for 30 % of g give --pga 2.94.");
+    EXPECT_THAT(notes(3), testing::Each(testing::Not(asked)));
+}
+
+class OptionsOfFiles : public Files {};
+
+TEST_F(OptionsOfFiles, APeakIsAskedAboutOfAFile) {
+    const SmallRoom room = SmallRoom::scattered();
+    std::string text;
+    for (std::size_t i = 0; i < room.cloud.size(); ++i)
+        text += std::to_string(room.cloud.x[i]) + " " + std::to_string(room.cloud.y[i]) + " " +
+                std::to_string(room.cloud.z[i]) + "\n";
+    ParseOptions options = on(device::open_device("native"));
+    options.disturbances = {"earthquake"};
+    options.pga_m_s2 = 0.3;
+    const Scene scene = parse(write("room.xyz", text), options).scene;
+    EXPECT_THAT(scene.notes.front(), testing::HasSubstr("for 0.3 g give --pga 2.94."));
+}
+
 }  // namespace
 }  // namespace topple::test
