@@ -8,6 +8,7 @@
 #include "device/device.h"
 #include "io/frame_sequence.h"
 #include "io/scan_notes.h"
+#include "io/text.h"
 #include "pipeline/assemble.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/groundwork.h"
@@ -84,11 +85,17 @@ ParseResult run(const std::string& source, const ParseOptions& options, Lay lay,
     return result;
 }
 
-void refuse_cache(const ParseOptions& options) {
-    if (options.cache_file.empty()) return;
-    throw Error(ErrorKind::usage, "cache_file " + options.cache_file.string() +
-                                      ": a cache is kept of a file or folder, and the scan is in "
-                                      "memory; leave it out, or parse its file");
+// Options that are about files, of a scan in memory.
+void refuse_file_options(const ParseOptions& options) {
+    if (!options.cache_file.empty())
+        throw Error(ErrorKind::usage, "cache_file " + io::path_text(options.cache_file) +
+                                          ": a cache is kept of a file or folder, and the scan is "
+                                          "in memory; leave it out, or parse its file");
+    if (!options.work_folder.empty())
+        throw Error(ErrorKind::usage,
+                    "work_folder " + io::path_text(options.work_folder) +
+                        ": only clouds in files are parsed in blocks, which are kept there, and "
+                        "the scan is in memory; leave it out");
 }
 
 void refuse_tiles(const ParseOptions& options) {
@@ -227,6 +234,7 @@ ParseResult parse_scan(const std::filesystem::path& input, ParseOptions options)
 
 ParseResult parse(const std::filesystem::path& input, const ParseOptions& options) {
     check_options(options);
+    check_path(input);
     // First, as it is told early what can't be read.
     std::vector<std::string> notes = io::scan_notes(input);
     const auto kind =
@@ -238,7 +246,7 @@ ParseResult parse(const std::filesystem::path& input, const ParseOptions& option
 
 ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
     check_options(options);
-    refuse_cache(options);
+    refuse_file_options(options);
     refuse_tiles(options);
     const std::string source = cloud.source.empty() ? "cloud" : cloud.source;
     const auto parse_view = [&](const ParseOptions& o) {
@@ -252,7 +260,7 @@ ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
 
 ParseResult parse(const FramesView& frames, const ParseOptions& options) {
     check_options(options);
-    refuse_cache(options);
+    refuse_file_options(options);
     refuse_tiles(options);
     const std::string source = frames.source.empty() ? "frames" : frames.source;
     const auto parse_view = [&](const ParseOptions& o) {

@@ -8,6 +8,7 @@
 #include "host/io/files.h"
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_room.h"
+#include "pipeline/estimate.h"
 #include "topple/parse.h"
 
 // Options that make no sense are told before anything is parsed, and doubtful ones with the result.
@@ -49,6 +50,24 @@ TEST(Options, ADisturbanceThatIsGivenTwiceIsRefused) {
               "--disturbance: human is given twice; name each once");
     EXPECT_EQ(refusal_of([&] { check_options(options); }),
               "--disturbance: human is given twice; name each once");
+}
+
+TEST(Options, AnEmptyPathIsNamed) {
+    const std::string expected =
+        "the path of the input is empty; give that of a file, or of a folder of depth frames";
+    EXPECT_EQ(refusal_before(std::filesystem::path(), {}), expected);
+    EXPECT_EQ(refusal_of([] { estimate("", {}); }), expected);
+}
+
+TEST(Options, WhatIsForFilesIsRefusedOfWhatIsInMemory) {
+    ParseOptions options;
+    options.work_folder = "work";
+    const std::string expected =
+        "work_folder work: only clouds in files are parsed in blocks, which are kept there, and "
+        "the "
+        "scan is in memory; leave it out";
+    EXPECT_EQ(refusal_before(FramesView{}, options), expected);
+    EXPECT_EQ(refusal_before(CloudView{}, options), expected);
 }
 
 // Once, and of what is reckoned with alone. A peak of 0.3 m/s^2 was meant in g, perhaps.
