@@ -9,6 +9,7 @@
 #include "host/pipeline/scan.h"
 #include "host/pipeline/small_room.h"
 #include "pipeline/estimate.h"
+#include "topple/frame_labels.h"
 #include "topple/parse.h"
 
 // Options that make no sense are told before anything is parsed, and doubtful ones with the result.
@@ -57,6 +58,14 @@ TEST(Options, AnEmptyPathIsNamed) {
         "the path of the input is empty; give that of a file, or of a folder of depth frames";
     EXPECT_EQ(refusal_before(std::filesystem::path(), {}), expected);
     EXPECT_EQ(refusal_of([] { estimate("", {}); }), expected);
+    EXPECT_EQ(refusal_of([] { FrameLabeller(ParseResult{}).label(std::filesystem::path(), 0); }),
+              expected);
+}
+
+TEST(Options, AResultOfNoParseIsRefused) {
+    EXPECT_EQ(
+        refusal_of([] { write_outputs(ParseResult{}, "out"); }),
+        "write_outputs: the result has no voxels: no parse returned it, or it was moved from");
 }
 
 TEST(Options, WhatIsForFilesIsRefusedOfWhatIsInMemory) {
