@@ -30,7 +30,7 @@ constexpr int life_descriptor = answer_descriptor + 1;
     throw Error(ErrorKind::input, std::string("no process to read in: ") + what + ": " +
                                       std::strerror(error) +
                                       "; raise the limits (ulimit), or read the file in this "
-                                      "process (--no-isolate) if you trust it");
+                                      "process (ParseOptions::isolate = false) if you trust it");
 }
 
 class Descriptor {

@@ -73,7 +73,7 @@ class Standing {
     bool known() const {
         const std::size_t heights = known_.height_m.size();
         return o_.seen_enough && o_.rest_probability >= 0.5 && o_.piece_of < 0 &&
-               o_.barrier_J > 0 && heights > 0 &&
+               o_.joint_probability >= 0.5 && o_.barrier_J > 0 && heights > 0 &&
                known_.push_N.size() == DirectedBarrier::directions &&
                known_.direction.size() == DirectedBarrier::directions &&
                known_.blow_Ns.size() == DirectedBarrier::directions * heights && sure() > 0 &&

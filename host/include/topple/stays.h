@@ -30,7 +30,8 @@ struct Touch {
 // False, where it may move, and where nobody knows:
 //   - what holds it was not seen (seen_enough), or is likelier than not something else than was
 //     found (rest_probability below 0.5); it hangs; its barrier is 0;
-//   - it is likelier than not a piece of another object: ask about that one, its piece_of;
+//   - it is likelier than not a piece of another object: ask about that one, its piece_of; or two
+//     things in one (joint_probability below 0.5);
 //   - the place is lower than what it stands on, or higher than the top of its box (box_middle_m,
 //     size_m), by more than a voxel;
 //   - one of these figures is NaN.

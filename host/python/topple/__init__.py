@@ -194,7 +194,7 @@ class Result:
         least that makes it fall (barrier_by_direction.blow_Ns; where that is infinite, it brings less energy than the barrier), and sets it
         sliding no farther than slack_m metres. What is of the ground stays whatever is done. False also where nobody knows: what holds it
         was not seen, or is likelier than not something else than was found; it hangs; its barrier is 0; it is likelier than not a piece of
-        another object (piece_of: ask about that one); the place is lower than what it stands on, or higher than its top, by more than a voxel.
+        another object (piece_of: ask about that one), or two in one (joint_probability below 0.5); the place is lower than what it stands on, or higher than its top, by more than a voxel.
 
         It promises nothing about what the figures leave out: that density and friction are as they were given, and what is solid to topple
         is not hollow; touches beside the line above its centre of mass, which turn it; many of them; what it carries or holds. Raises Error of

@@ -43,12 +43,12 @@ std::string unlikely_peak_note(double pga_m_s2) {
     char meant[32];
     std::snprintf(meant, sizeof(meant), "%.3g",
                   pga_m_s2 * physics::gravity * (weak ? 1 : hundredth));
-    std::string note = "--pga " + given;
-    note.append(" m/s\u00b2 is ").append(io::two_digits(in_g)).append(" g (");
+    std::string note = "ParseOptions::pga_m_s2 = " + given;
+    note.append(" is ").append(io::two_digits(in_g)).append(" g (");
     note.append(shaking_text(in_g)).append(")");
     if (!weak) note.append(", stronger than nearly all that were recorded");
     note.append(weak ? ": for " : "; for ").append(given).append(weak ? " g" : " % of g");
-    return note.append(" give --pga ").append(meant).append(".");
+    return note.append(" give ParseOptions::pga_m_s2 = ").append(meant).append(".");
 }
 
 }  // namespace topple::safety

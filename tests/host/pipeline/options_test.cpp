@@ -41,16 +41,17 @@ TEST(Options, AMotionThatIsNullIsRefused) {
     ParseOptions options;
     options.motions = {std::make_shared<BodyMotion>(), nullptr};
     EXPECT_EQ(refusal_before(SmallRoom::scattered().cloud, options),
-              "motions: number 1 is null; give what read_motion() returns, or leave it out");
+              "ParseOptions::motions: number 1 is null; give what read_motion() returns, or leave "
+              "it out");
 }
 
 TEST(Options, ADisturbanceThatIsGivenTwiceIsRefused) {
     ParseOptions options;
     options.disturbances = {"human", "wind", "human"};
     EXPECT_EQ(refusal_before(SmallRoom::scattered().cloud, options),
-              "--disturbance: human is given twice; name each once");
+              "ParseOptions::disturbances: human is given twice; name each once");
     EXPECT_EQ(refusal_of([&] { check_options(options); }),
-              "--disturbance: human is given twice; name each once");
+              "ParseOptions::disturbances: human is given twice; name each once");
 }
 
 TEST(Options, AnEmptyPathIsNamed) {
@@ -88,19 +89,21 @@ TEST(Options, APeakInAnotherUnitIsAskedAbout) {
         options.pga_m_s2 = pga_m_s2;
         return parse(room.cloud, options).scene.notes;
     };
-    const auto asked = testing::HasSubstr("--pga");
+    const auto asked = testing::HasSubstr("pga_m_s2");
     options.disturbances = {"wind"};
     EXPECT_THAT(notes(0.3), testing::Each(testing::Not(asked)));
     options.disturbances = {"earthquake"};
     const std::vector<std::string> weak = notes(0.3);
     ASSERT_FALSE(weak.empty());
-    EXPECT_EQ(weak.front(),
-              "--pga 0.3 m/s\u00b2 is 0.031 g (light shaking, intensity IV): for 0.3 g give --pga "
-              "2.94.");
+    EXPECT_EQ(
+        weak.front(),
+        "ParseOptions::pga_m_s2 = 0.3 is 0.031 g (light shaking, intensity IV): for 0.3 g give "
+        "ParseOptions::pga_m_s2 = 2.94.");
     EXPECT_THAT(std::vector(weak.begin() + 1, weak.end()), testing::Each(testing::Not(asked)));
-    EXPECT_EQ(notes(30).front(),
-              "--pga 30 m/s\u00b2 is 3.1 g (extreme shaking, intensity X or more), stronger than "
-              "nearly all that were recorded; for 30 % of g give --pga 2.94.");
+    EXPECT_EQ(
+        notes(30).front(),
+        "ParseOptions::pga_m_s2 = 30 is 3.1 g (extreme shaking, intensity X or more), stronger "
+        "than nearly all that were recorded; for 30 % of g give ParseOptions::pga_m_s2 = 2.94.");
     EXPECT_THAT(notes(3), testing::Each(testing::Not(asked)));
 }
 
@@ -116,7 +119,8 @@ TEST_F(OptionsOfFiles, APeakIsAskedAboutOfAFile) {
     options.disturbances = {"earthquake"};
     options.pga_m_s2 = 0.3;
     const Scene scene = parse(write("room.xyz", text), options).scene;
-    EXPECT_THAT(scene.notes.front(), testing::HasSubstr("for 0.3 g give --pga 2.94."));
+    EXPECT_THAT(scene.notes.front(),
+                testing::HasSubstr("for 0.3 g give ParseOptions::pga_m_s2 = 2.94."));
 }
 
 }  // namespace

@@ -193,6 +193,7 @@ TEST(Stays, WhatNobodyKnowsIsNo) {
     no("unseen", [](Object& o) { o.seen_enough = false; });
     no("held otherwise", [](Object& o) { o.rest_probability = 0.4; });
     no("a piece", [](Object& o) { o.piece_of = 0; });
+    no("two things", [](Object& o) { o.joint_probability = 0.4; });
     no("falls by itself", [](Object& o) { o.barrier_J = 0; });
     no("hangs", [](Object& o) { o.barrier_by_direction.push_N.clear(); });
     no("no figures", [](Object& o) { o.barrier_by_direction = {}; });
