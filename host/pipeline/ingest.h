@@ -25,6 +25,9 @@ namespace topple {
 inline constexpr double least_cell_m = 0.003, largest_cell_m = 0.05;
 inline constexpr double sparsest_m = 5 * largest_cell_m;
 
+// Throws Error(usage) for the path of an input that is empty, of which messages could name nothing.
+void check_path(const std::filesystem::path& input);
+
 // Calls use(frame, i) for each frame in order. Frames are decoded by all threads, as many at once,
 // unless they must be loaded one by one.
 void for_each_frame(const FrameStream& frames, ThreadPool& threads,

@@ -34,6 +34,8 @@ TEST_F(Usage, names_the_unknown_option_and_the_nearest_one) {
     expect_failure(2, {"parse", "plane.xyz", "--motion", "a.bvh", "--motion-unit", "0"},
                    {"--motion-unit 0: expected a number above 0"});
     expect_failure(2, {"parse", "plane.xyz", "--threads", "100000"}, {"--threads 100000: at most"});
+    expect_failure(2, {"parse", "plane.xyz", "--disturbance", "human,wind,human"},
+                   {"--disturbance: human is given twice"});
     // Nothing is near this one.
     const Finished far = run({"parse", "plane.xyz", "--kaleidoscope"});
     EXPECT_EQ(far.err.find("did you mean"), std::string::npos) << far.err;
