@@ -22,7 +22,7 @@ struct Groundwork {
     std::vector<std::string> notes;
     ScenePoints points;  // without their objects
     std::shared_ptr<vdb::VoxelScene> voxels;
-    SolidParts parts;  // samples and seams are gone where it comes from a file
+    SolidParts parts;  // the seams, which joints alone ask for, are gone where it comes from a file
     PartStage weighed;
 };
 

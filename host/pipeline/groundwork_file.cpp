@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Changes with what is written below.
-constexpr std::string_view groundwork_mark = "topple groundwork 2";
+constexpr std::string_view groundwork_mark = "topple groundwork 3";
 
 // --- What it depends on ---
 
@@ -202,6 +202,11 @@ void ground_fields(Io& io, Ground& g) {
     io(g.parts.model);
     io(g.parts.shell_log_odds);
     io(g.parts.points);
+    auto& s = g.parts.samples;
+    io(s.edge_m);
+    io(s.spacing_m);
+    for (auto* column : geometry::columns_of(s)) io(*column);
+    io(s.primitive);
     io(g.weighed.bodies);
     contact_fields(io, g.weighed.contacts);
     io(g.weighed.joints);
@@ -234,6 +239,16 @@ bool coherent(const Groundwork& g, const FlatSolids& solids) {
     for (const auto* array : {&g.points.nx, &g.points.ny, &g.points.nz})
         right = right && array->size() == points;
     right = right && g.points.region.size() == points;
+    const geometry::SurfaceSamples& samples = g.parts.samples;
+    const auto columns = geometry::columns_of(samples);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        const bool colour = columns[c] == &samples.lab_l || columns[c] == &samples.lab_a ||
+                            columns[c] == &samples.lab_b;
+        right = right && columns[c]->size() ==
+                             (colour && !samples.coloured() ? 0 : samples.primitive.size());
+    }
+    right = right && std::ranges::all_of(samples.primitive, is_label) &&
+            std::ranges::is_sorted(samples.primitive);
     for (const physics::TouchingPair& pair : c.pairs)
         right = right && is_part(pair.a) && is_part(pair.b);
     for (const graph::Carrying& carrying : c.carryings)

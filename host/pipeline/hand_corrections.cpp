@@ -218,8 +218,13 @@ std::optional<TakenAway> HandCorrections::take_from(SolidParts& parts, graph::Gr
     parts.model = left_of(out.number, parts.model);
     parts.shell_log_odds = left_of(out.number, parts.shell_log_odds);
     parts.points = left_of(out.number, parts.points);
+    // Numbers rise as before, so the samples stay sorted by them.
+    parts.samples = geometry::samples_where(parts.samples, [&](std::size_t n) {
+        return parts.samples.primitive[n] < 0 || entry(kept, parts.samples.primitive[n]);
+    });
+    for (std::int32_t& p : parts.samples.primitive)
+        if (p >= 0) p = entry(out.number, p);
     // Joints are found of these, and have been.
-    parts.samples = {};
     parts.seams = {};
     grouping.group = left_of(out.number, grouping.group);
     renumber_groups(grouping);
