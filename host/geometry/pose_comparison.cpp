@@ -83,6 +83,11 @@ Eigen::Isometry3d meant(const Eigen::Isometry3d& given, PoseConvention conventio
     }
 }
 
+        case PoseConvention::transposed: {
+            Eigen::Isometry3d out = given;
+            out.linear() = given.linear().transpose();
+            return out;
+        }
 double turn_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
     const double trace = (a.linear().transpose() * b.linear()).trace();
     return std::acos(std::clamp((trace - 1) / 2, -1.0, 1.0));

@@ -20,9 +20,10 @@ enum class PoseConvention : std::uint8_t {
     world_to_camera_opengl,
     body,  // x ahead, y left, z up: a robot's
     world_to_camera_body,
-    w_first,  // a quaternion w, x, y, z, read as x, y, z, w
+    w_first,     // a quaternion w, x, y, z, read as x, y, z, w
+    transposed,  // the rotation alone: column-major, or of conjugated quaternions
 };
-inline constexpr std::size_t pose_conventions = 7;
+inline constexpr std::size_t pose_conventions = 8;
 
 // The pose that was meant. given: rigid.
 Mat4 pose_meant(const Mat4& given, PoseConvention convention);

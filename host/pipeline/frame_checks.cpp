@@ -26,6 +26,8 @@ const char* words_of(PoseConvention convention) {
             return "world to body, with x ahead, y left and z up, as in ROS";
         case PoseConvention::w_first:
             return "made of quaternions with w first";
+        case PoseConvention::transposed:
+            return "of transposed rotations (column-major, or quaternions with x, y, z negated)";
     }
     return "";
 }
@@ -48,6 +50,8 @@ const char* mend_of(PoseConvention convention) {
                    "1]]";
         case PoseConvention::w_first:
             return "poses of their quaternions as x, y, z, w, q[[1, 2, 3, 0]]";
+        case PoseConvention::transposed:
+            return "poses of pose[:3, :3].T, as matrices are row-major";
     }
     return "";
 }

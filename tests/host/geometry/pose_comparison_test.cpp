@@ -59,6 +59,11 @@ Mat4 given_as(PoseConvention convention, const Mat4& truth) {
             return pose(body.inverse());
         case PoseConvention::w_first:
             break;
+        case PoseConvention::transposed: {
+            Matrix turned = right;
+            turned.topLeftCorner<3, 3>() = right.topLeftCorner<3, 3>().transpose().eval();
+            return pose(turned);
+        }
     }
     const Eigen::Quaterniond q(right.topLeftCorner<3, 3>().eval());
     Matrix out = right;
@@ -110,7 +115,7 @@ TEST(PoseComparison, NamesTheConventionInWhichFramesAgree) {
     }
 }
 
-// A tripod at the origin turns alike in all three.
+// A tripod at the origin turns alike in all four.
 TEST(PoseComparison, NamesAllThatTheFramesDoNotTellApart) {
     const scenes::World world = scenes::furnished_room({});
     std::vector<Mat4> poses;
@@ -126,7 +131,7 @@ TEST(PoseComparison, NamesAllThatTheFramesDoNotTellApart) {
     EXPECT_THAT(better(frames, PoseConvention::camera_to_world), IsEmpty());
     EXPECT_THAT(better(frames, PoseConvention::world_to_camera),
                 UnorderedElementsAre(PoseConvention::world_to_camera, PoseConvention::opengl,
-                                     PoseConvention::w_first));
+                                     PoseConvention::w_first, PoseConvention::transposed));
 }
 
 // A camera on a rail, which never turns.
