@@ -87,6 +87,15 @@ std::string pose_note(const geometry::PoseComparison& frames, ScanOrigin origin)
                              " of frames that look at the same place " +
                              agreeing(PoseConvention::camera_to_world) +
                              " lie on what the other frame sees there";
+    if (found.moved) {
+        const std::string poses = std::to_string(found.frames) + " poses are the same";
+        return (found.same_poses == found.frames
+                    ? "All " + poses
+                    : std::to_string(found.same_poses) + " of " + poses) +
+               ", but the images are not: only " + percent(found.at_one_pose.agreeing_share()) +
+               " of their readings are as near in the next that was compared. Were the poses "
+               "filled in?";
+    }
     const std::vector<PoseConvention>& better = found.better;
     if (better.empty()) {
         if (!found.contradict) return {};
