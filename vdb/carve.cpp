@@ -7,6 +7,7 @@
 
 #include "carve_leaves.hpp"
 #include "core/depth_noise.h"
+#include "core/short_number.h"
 #include "core/thread_pool.h"
 #include "device/buffer.h"
 #include "device/queue.h"
@@ -307,10 +308,11 @@ void Carver::judge(std::uint64_t leaf, std::span<const std::uint32_t> evidence) 
     if (e.slot[leaf] < 0) {
         if (e.free_slots.empty()) {
             if (e.voxels.size() >= max_slots) {
-                throw Error(ErrorKind::input,
-                            "carving needs more than " + std::to_string(max_slots) +
-                                " blocks of 8x8x8 voxels in detail; use a --voxel larger than " +
-                                std::to_string(g_.frame.voxel_m));
+                throw Error(ErrorKind::input, "carving needs more than " +
+                                                  std::to_string(max_slots) +
+                                                  " blocks of 8x8x8 voxels in detail; use a "
+                                                  "ParseOptions::voxel_m larger than " +
+                                                  short_number(g_.frame.voxel_m));
             }
             e.free_slots.push_back(static_cast<std::int32_t>(e.voxels.size()));
             e.voxels.emplace_back();

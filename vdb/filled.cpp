@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "core/short_number.h"
 #include "device/buffer.h"
 #include "device/queue.h"
 #include "six_fill_sweep.hpp"
@@ -61,9 +62,8 @@ void check_memory(const device::Device& device, const VoxelScene::Grids& g, std:
                 "filling: " + std::to_string(leaves) +
                     " blocks of 8x8x8 voxels lie between the scene's surfaces, unseen; they take " +
                     gigabytes(bytes) + ", more than the " + gigabytes(memory) + " of " +
-                    device.info().name + "; use --voxel " +
-                    std::to_string(std::ceil(g.frame.voxel_m * scale * 1100) / 1000) +
-                    " or larger");
+                    device.info().name + "; use ParseOptions::voxel_m = " +
+                    short_number(std::ceil(g.frame.voxel_m * scale * 1100) / 1000) + " or larger");
 }
 
 // Runs of leaves that follow one another along an axis, and what lies beyond them.
@@ -200,9 +200,10 @@ std::vector<Claim> filled(device::Device& device, const VoxelScene& volume,
             highest = std::max(highest, *voxel);
     }
     if (highest >= max_primitives) {
-        throw Error(ErrorKind::input,
-                    "filling: primitive " + std::to_string(highest) + " is beyond the limit of " +
-                        std::to_string(max_primitives) + " primitives; use a larger --voxel");
+        throw Error(ErrorKind::input, "filling: primitive " + std::to_string(highest) +
+                                          " is beyond the limit of " +
+                                          std::to_string(max_primitives) +
+                                          " primitives; use a larger ParseOptions::voxel_m");
     }
     std::vector<bool> fills;
     for (std::int32_t p = 0; p <= highest; ++p)

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/scene_bounds.h"
+#include "core/short_number.h"
 #include "core/sorted_order.h"
 #include "topple/error.h"
 #include "vdb/grids.h"
@@ -22,7 +23,7 @@ constexpr std::uint64_t max_leaves = std::uint64_t{1} << 23;
 void check(const VoxelFrame& frame) {
     if (!(frame.voxel_m > 0) || !std::isfinite(frame.voxel_m)) {
         throw Error(ErrorKind::usage,
-                    "voxel size " + std::to_string(frame.voxel_m) + " m: it must be positive");
+                    "voxel size " + short_number(frame.voxel_m) + " m: it must be positive");
     }
     for (int a = 0; a < 3; ++a) {
         for (int b = 0; b < 3; ++b) {
@@ -107,14 +108,14 @@ LeafTable box_of(const VoxelFrame& frame, const std::array<std::vector<std::int3
             std::cbrt(static_cast<double>(chosen.box_size()) / static_cast<double>(max_leaves));
         std::string size;
         for (int a = 0; a < 3; ++a) {
-            size += (a ? " x " : "") + std::to_string(chosen.count[a] * 8 * frame.voxel_m);
+            size += (a ? " x " : "") + short_number(chosen.count[a] * 8 * frame.voxel_m);
         }
         throw Error(
             ErrorKind::input,
             "the scene's bounds, " + size + " m, hold " + std::to_string(chosen.box_size()) +
                 " blocks of 8x8x8 voxels, more than the limit of " + std::to_string(max_leaves) +
-                "; use --voxel " + std::to_string(std::ceil(frame.voxel_m * scale * 1100) / 1000) +
-                " or larger");
+                "; use ParseOptions::voxel_m = " +
+                short_number(std::ceil(frame.voxel_m * scale * 1100) / 1000) + " or larger");
     }
     return chosen;
 }
@@ -150,7 +151,7 @@ SortedPoints sort_points(const VoxelFrame& frame, const CloudView& cloud) {
             throw Error(ErrorKind::input, "the points lie " +
                                               std::to_string(placed.median[a] * frame.voxel_m) +
                                               " m from the origin, too far for voxels of " +
-                                              std::to_string(frame.voxel_m) + " m; move the cloud");
+                                              short_number(frame.voxel_m) + " m; move the cloud");
         }
     }
     std::vector<std::size_t> within;

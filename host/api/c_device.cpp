@@ -3,6 +3,7 @@
 
 #include "api/c_support.h"
 #include "topple/embed.h"
+#include "topple/option_names.h"
 #include "topple/version.h"
 
 namespace topple::c_api {
@@ -31,6 +32,15 @@ int set(topple_status* status, int code, std::string_view message) noexcept {
         copy_text(message, status->message);
     }
     return code;
+}
+
+int set(topple_status* status, const Error& error) noexcept {
+    const int code = code_of(error.kind());
+    try {
+        return set(status, code, in_words_of(Interface::c, error.what()));
+    } catch (const std::bad_alloc&) {
+        return set(status, code, error.what());
+    }
 }
 
 int code_of(ErrorKind kind) noexcept {

@@ -6,6 +6,7 @@
 #include "api/c_result.h"
 #include "api/c_support.h"
 #include "export/formats.h"
+#include "topple/option_names.h"
 
 namespace topple::c_api {
 namespace {
@@ -78,6 +79,7 @@ ParseOptions parse_options(const topple_options& o) {
     if (o.corrections_file) to.corrections = read_corrections(o.corrections_file);
     if (o.corrections_json) to.corrections = corrections_of(o.corrections_json, "corrections_json");
     if (o.cache_file) to.cache_file = o.cache_file;
+    to.tile_m = o.tile_m;
     to.coordinates = !o.without_coordinates;
     to.isolate = !o.without_isolation;
     if (o.progress || o.log) {
@@ -98,8 +100,10 @@ int parsed(const topple_options* given_options, topple_result** result, topple_s
         needed(result, "result") = nullptr;
         const topple_options o = known(given_options, defaults(), "options");
         ParseResult done = parse_with(parse_options(o));
-        for (const std::string& note : done.scene.notes)
+        for (std::string& note : done.scene.notes) {
+            note = in_words_of(Interface::c, note);
             if (o.log) o.log(TOPPLE_LOG_WARNING, note.c_str(), o.user);
+        }
         *result = new topple_result(std::move(done), o.allocator);
     });
 }

@@ -162,6 +162,8 @@ int topple_result_object(const topple_result* result, uint64_t index, topple_obj
         to.why_lands_on = from.why.lands_on;
         to.piece_of = from.piece_of;
         to.piece_probability = from.piece_probability;
+        to.joint_probability = from.joint_probability;
+        std::ranges::copy(from.weakest_joint, to.weakest_joint);
         copy_vector(from.box_middle_m, to.box_middle_m);
         to.action = from.advice.action.c_str();
         to.support_height_m = from.support_height_m;

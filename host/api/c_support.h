@@ -28,6 +28,8 @@ struct OutOfMemory {
 };
 
 int set(topple_status* status, int code, std::string_view message) noexcept;
+// Its message names options as C does.
+int set(topple_status* status, const Error& error) noexcept;
 int code_of(ErrorKind kind) noexcept;
 
 // Runs `body`, and makes a code and a message of what it throws.
@@ -41,7 +43,7 @@ int guarded(topple_status* status, const Body& body) noexcept {
         std::snprintf(text.data(), text.size(), "the allocator gave no %zu bytes", e.bytes);
         return set(status, TOPPLE_ERROR_MEMORY, text.data());
     } catch (const Error& e) {
-        return set(status, code_of(e.kind()), e.what());
+        return set(status, e);
     } catch (const std::bad_alloc&) {
         return set(status, TOPPLE_ERROR_MEMORY, "memory ran out");
     } catch (const std::exception& e) {

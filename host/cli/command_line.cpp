@@ -11,6 +11,7 @@
 #include <string>
 
 #include "cli/unknown_option.h"
+#include "topple/option_names.h"
 #include "topple/version.h"
 
 namespace topple::cli {
@@ -105,7 +106,7 @@ void print_error(const Error& error) {
 int run_command_line(std::span<const CommandEntry> commands, int argc, char** argv,
                      const std::function<void(const Error&)>& tell) {
     const auto fail = [&](const Error& error) {
-        tell(error);
+        tell({error.kind(), in_words_of(Interface::command_line, error.what())});
         return exit_code(error.kind());
     };
     try {

@@ -26,6 +26,7 @@
 #include "pipeline/tiled_parse.h"
 #include "topple/device.h"
 #include "topple/export.h"
+#include "topple/option_names.h"
 #include "topple/parse.h"
 
 namespace topple::cli {
@@ -228,9 +229,12 @@ int run(ParseArguments& a) {
     const auto work = [&](Progress& progress) {
         a.options.notice = [&](const std::string& line) {
             progress.finish();
-            if (!a.quiet) std::fprintf(stderr, "%s\n", line.c_str());
+            if (!a.quiet)
+                std::fprintf(stderr, "%s\n", in_words_of(Interface::command_line, line).c_str());
         };
         ParseResult result = parse(a.input, a.options);
+        for (std::string& note : result.scene.notes)
+            note = in_words_of(Interface::command_line, note);
         note_unlikely_shaking(a, result.scene);
         const std::optional<Worst> before = worst_before(a, out);
         progress("output", 0);

@@ -104,13 +104,16 @@ std::string years_text(const Object& o, const Scene& scene) {
     return " It falls once in about " + io::two_digits(years) + " years.";
 }
 
-// Who passes where it lands; "" where that is not known, or it lands softly.
-std::string people_text(const Fall& fall) {
+// Who passes where it lands, with what its largest risk takes it to set free there, but for what
+// something stops; "" where that is not known, or it lands softly.
+std::string people_text(const Object& o) {
+    const Fall& fall = o.fall;
     if (!fall.falls || std::isnan(fall.people_share) || !(fall.hits_J > 0)) return "";
     char text[96];
     std::snprintf(text, sizeof(text),
                   " It lands with %s J; of 100 people who walk through, %.0f pass there.",
-                  io::two_digits(fall.hits_J).c_str(), 100 * fall.people_share);
+                  io::two_digits(fall.leans_on < 0 ? safety::released_J(o) : fall.hits_J).c_str(),
+                  100 * fall.people_share);
     return text;
 }
 
@@ -173,8 +176,8 @@ void print_sentences(const std::vector<const Object*>& riskiest_first, const Sce
         const Object& o = *told[i];
         const std::string& action = o.advice.action;
         std::printf("Object %d%s%s: %s%s%s%s%s\n", o.id, name_text(o).c_str(), size_text(o).c_str(),
-                    o.why.sentence.c_str(), people_text(o.fall).c_str(),
-                    years_text(o, scene).c_str(), action.empty() ? "" : " ", action.c_str());
+                    o.why.sentence.c_str(), people_text(o).c_str(), years_text(o, scene).c_str(),
+                    action.empty() ? "" : " ", action.c_str());
     }
 }
 

@@ -75,6 +75,23 @@ std::string unknown_option(const CLI::App& app, std::span<const char* const> wor
     return {};
 }
 
+namespace {
+
+// A title that the shell has taken apart: "" where it is one word.
+std::string title_in_words(std::span<const char* const> words) {
+    for (std::size_t n = 1; n + 2 < words.size(); ++n) {
+        if (std::string_view(words[n]) != "--title") continue;
+        std::string title = words[n + 1];
+        std::size_t more = n + 2;
+        for (; more < words.size() && words[more][0] != '-'; ++more)
+            title.append(" ").append(words[more]);
+        if (more > n + 2) return io::printable(title);
+    }
+    return {};
+}
+
+}  // namespace
+
 std::string value_with_space(std::span<const char* const> words) {
     const auto goes_on = [&](std::size_t n) {
         const std::string_view before = words[n - 1], word = words[n];
@@ -89,6 +106,8 @@ std::string value_with_space(std::span<const char* const> words) {
         for (; n < words.size() && goes_on(n); ++n) value.append(words[n]);
         return "write the list without spaces: " + io::printable(value);
     }
+    const std::string title = title_in_words(words);
+    if (!title.empty()) return "put a title of several words in quotes, as in \"" + title + "\"";
     return {};
 }
 

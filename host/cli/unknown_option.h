@@ -18,8 +18,8 @@ std::string unknown_option(const CLI::App& app, std::span<const char* const> wor
 std::string unknown_command(const CLI::App& app, std::span<const char* const> words);
 
 // What to say where a value was written with a space in it, so that its end was taken for an
-// argument: a list after a comma, or a number before its unit. 'write the list without spaces:
-// human,earthquake'; empty where there is none.
+// argument: a list after a comma, a number before its unit, or a title of several words. 'write the
+// list without spaces: human,earthquake'; empty where there is none.
 std::string value_with_space(std::span<const char* const> words);
 
 }  // namespace topple::cli

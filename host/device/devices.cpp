@@ -84,8 +84,8 @@ std::shared_ptr<Device> open_device(const std::string& backend, unsigned threads
         check_driver(Backend::vulkan);
         return open_vulkan();
     }
-    throw Error(ErrorKind::usage,
-                "--backend " + backend + " is unknown; take auto, native, opencl or vulkan");
+    throw Error(ErrorKind::usage, "open_device(): backend " + backend +
+                                      " is unknown; take auto, native, opencl or vulkan");
 }
 
 }  // namespace topple::device

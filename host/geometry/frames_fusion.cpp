@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/short_number.h"
 #include "geometry/frames_cells.h"
 #include "topple/error.h"
 
@@ -21,7 +22,7 @@ void check(const Intrinsics& k, double cell_m) {
     const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
     if (!positive(cell_m)) {
         throw Error(ErrorKind::usage,
-                    "fusion cell of " + std::to_string(cell_m) + " m: it must be positive");
+                    "fusion cell of " + short_number(cell_m) + " m: it must be positive");
     }
     if (!positive(k.fx) || !positive(k.fy) || !positive(k.depth_scale) || !std::isfinite(k.cx) ||
         !std::isfinite(k.cy)) {

@@ -43,16 +43,16 @@ constexpr double contradicted_degrees = 30, contradicted_log_odds = 3, rolled_sh
 
 constexpr auto seen_from_above =
     "Up was taken to be across a plane that the camera looks straight at, as from above; if it is "
-    "a wall, say where up is by --up.";
+    "a wall, say where up is by ParseOptions::up.";
 constexpr auto by_looks =
     "Nothing in the input says where up is, and it is not z: it was chosen by how the surfaces "
-    "lie; if it is wrong, say where up is by --up.";
+    "lie; if it is wrong, say where up is by ParseOptions::up.";
 constexpr auto by_walls =
     "No level surface was found: up is the direction along the upright ones that is nearest to the "
-    "camera's; if it is wrong, say where up is by --up.";
+    "camera's; if it is wrong, say where up is by ParseOptions::up.";
 constexpr auto not_found =
     "Up could not be found, as no large level or upright surface was seen: it is the camera's or "
-    "the input's own; if it is wrong, say where up is by --up.";
+    "the input's own; if it is wrong, say where up is by ParseOptions::up.";
 
 double degrees_between(const Vec3& a, const Vec3& b) {
     return std::acos(std::clamp(dot(a, b), -1.0, 1.0)) * 180 / std::numbers::pi;

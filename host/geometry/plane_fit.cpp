@@ -113,7 +113,7 @@ std::vector<PlaneFitter::Tile> PlaneFitter::make_tiles() const {
                                                    std::to_string(grid_.x[cell_[first]]) +
                                                    " do not fit the device's largest binding of " +
                                                    std::to_string(binding) +
-                                                   " bytes; use a larger --voxel");
+                                                   " bytes; use a larger ParseOptions::voxel_m");
             }
             tile = {first, first + count, lower(std::int64_t{grid_.x[cell_[first]]} - radius_),
                     lower(std::int64_t{grid_.x[cell_[first + count - 1]]} + radius_ + 1)};

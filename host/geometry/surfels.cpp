@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "core/short_number.h"
 #include "geometry/cell_grid.h"
 #include "geometry/plane_fit.h"
 #include "geometry/surfel_graph.h"
@@ -25,7 +26,7 @@ void check(const CloudView& cloud, double cell_m, std::span<const Vec3> viewpoin
            std::span<const std::uint32_t> viewpoint_of_point) {
     if (!(cell_m > 0) || !std::isfinite(cell_m)) {
         throw Error(ErrorKind::usage,
-                    "surfel size " + std::to_string(cell_m) + " m: it must be a positive number");
+                    "surfel size " + short_number(cell_m) + " m: it must be a positive number");
     }
     if (cloud.size() >= std::numeric_limits<std::uint32_t>::max()) {
         throw Error(ErrorKind::input, cloud.source + ": " + std::to_string(cloud.size()) +
@@ -61,12 +62,12 @@ CellPacking packing_of(const CloudView& cloud, const Axes& p, double cell_m, Thr
         constexpr double most_index = 1 << 30;
         if (!(std::abs(lo) < most_index && std::abs(hi) < most_index &&
               hi - lo < static_cast<double>(max_cells_per_axis))) {
-            throw Error(ErrorKind::input, cloud.source + ": the cloud reaches from " +
-                                              std::to_string(range[a][0]) + " to " +
-                                              std::to_string(range[a][1]) + " m, more than " +
-                                              std::to_string(max_cells_per_axis) + " cells of " +
-                                              std::to_string(cell_m) +
-                                              " m; remove stray points or use a larger --voxel");
+            throw Error(ErrorKind::input,
+                        cloud.source + ": the cloud reaches from " + short_number(range[a][0]) +
+                            " to " + short_number(range[a][1]) + " m, more than " +
+                            std::to_string(max_cells_per_axis) + " cells of " +
+                            short_number(cell_m) +
+                            " m; remove stray points or use a larger ParseOptions::voxel_m");
         }
         lowest[a] = static_cast<std::int64_t>(lo);
         highest[a] = static_cast<std::int64_t>(hi);

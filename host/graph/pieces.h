@@ -18,8 +18,32 @@ struct PieceOf {
     std::int32_t primitive = -1;  // the other's
 };
 
+// Of an object the joint that it hangs together by: of all where two larger parts of it meet, the
+// least likely. That it is several things in one is as likely as that this joint is none.
+struct WeakestJoint {
+    double probability = 1;       // that it is one
+    std::int32_t a = -1, b = -1;  // its primitives; -1 where all of it is one part
+
+    bool doubtful() const;
+};
+
+// Below this an object is about as likely two: in six scans of others' worlds five of seven were,
+// of the other 206 15 % held another thing of a seventh of it or more.
+inline constexpr double doubtful_joint = 0.6;
+
+// Of an object no part that holds less of the seen surface is asked for.
+inline constexpr double least_part = 0.05;
+
+// By object; surface: voxels of each primitive in which its surface was seen. Parts grow by the
+// likeliest joints first (single linkage), so that each pair of parts is judged by its likeliest.
+// What is known to be one object is one part.
+std::vector<WeakestJoint> weakest_joints(std::span<const Joint> joints, const KnownLinks& links,
+                                         std::span<const std::int32_t> object_of_primitive,
+                                         std::span<const std::uint64_t> surface,
+                                         std::size_t objects);
+
 // By object. surface: voxels of each in which its surface was seen; those of none are nobody's
-// whole, as the ground, which is no thing. What is known to be one object or none is no question.
+// whole, as the ground, which is no thing. Objects known to be one, or none, are no question.
 std::vector<PieceOf> likely_pieces(std::span<const Joint> joints, const KnownLinks& links,
                                    std::span<const std::int32_t> object_of_primitive,
                                    std::span<const std::uint64_t> surface);

@@ -151,8 +151,9 @@ void note_extent(PointCloud& cloud) {
     }
     // Rooms and buildings stay below 300 m; the same in millimetres starts at 1000.
     if (extent > 300) {
-        cloud.notes.push_back("The points extend over " + short_number(extent) +
-                              " m: if the file's unit is the millimetre, say --unit mm.");
+        cloud.notes.push_back(
+            "The points extend over " + short_number(extent) +
+            " m: if the file's unit is the millimetre, say ParseOptions::unit_m = 0.001.");
     }
     // Half a millimetre is what a float resolves at 8192 m.
     if (reach > 8192 && extent <= 300) {

@@ -205,6 +205,8 @@ OrderedJson json_of_object(const Object& o) {
         {"box_middle_m", std::isfinite(o.box_middle_m[0]) ? vector(o.box_middle_m) : Json(nullptr)},
         {"piece_of", o.piece_of},
         {"piece_probability", number(o.piece_probability)},
+        {"joint_probability", number(o.joint_probability)},
+        {"weakest_joint", o.weakest_joint},
         {"inertia_kg_m2", matrix(o.inertia_kg_m2)},
         {"mass_error_kg", number(o.mass_error_kg)},
         {"center_of_mass_error_m", vector(o.center_of_mass_error_m)},
@@ -258,6 +260,10 @@ Object object_of(const OrderedJson& json) {
     if (json.contains("piece_of")) {
         o.piece_of = json.at("piece_of").get<std::int32_t>();
         o.piece_probability = number_at(json, "piece_probability");
+    }
+    if (json.contains("weakest_joint")) {
+        o.joint_probability = number_at(json, "joint_probability");
+        o.weakest_joint = json.at("weakest_joint").get<std::array<std::int32_t, 2>>();
     }
     o.barrier_J = number_at(json, "barrier_J");
     // Earlier versions did not write it.

@@ -28,7 +28,7 @@ constexpr std::uint64_t most_bytes = 100'000'000;
 // Twice what was ever recorded horizontally; and more than all but a handful of records have.
 constexpr double highest_g = 10, highest_assumed_g = 3;
 
-const char* const mend = "name it with --accelerogram-unit g, m/s2 or cm/s2";
+const char* const mend = "name it with acceleration_unit_m_s2(): g, m/s2 or cm/s2";
 
 // The samples as a file has them.
 struct Raw {
@@ -221,7 +221,8 @@ Raw read_text(const fs::path& file, std::string_view text, bool unit_given) {
 
 double acceleration_unit_m_s2(const std::string& name) {
     if (const std::optional<double> unit = io::acceleration_unit_m_s2(name)) return *unit;
-    throw Error(ErrorKind::usage, "--accelerogram-unit " + name + ": expected g, m/s2 or cm/s2");
+    throw Error(ErrorKind::usage,
+                "acceleration_unit_m_s2() " + name + ": expected g, m/s2 or cm/s2");
 }
 
 Accelerogram read_accelerogram(const fs::path& file, std::optional<double> unit_m_s2) {
@@ -278,9 +279,9 @@ Accelerogram read_accelerogram(const fs::path& along, const std::optional<fs::pa
     const auto component = [&](const fs::path& file) {
         Accelerogram other = read_accelerogram(file, unit_m_s2);
         if (std::abs(other.step_s - record.step_s) > 1e-3 * record.step_s)
-            fail(file, "its samples are " + std::to_string(other.step_s) +
+            fail(file, "its samples are " + io::short_number(other.step_s) +
                            " s apart, but those of " + record.source + " " +
-                           std::to_string(record.step_s) + " s; give components of one record");
+                           io::short_number(record.step_s) + " s; give components of one record");
         other.m_s2.resize(record.m_s2.size(), 0.0);
         return std::move(other.m_s2);
     };

@@ -63,20 +63,34 @@ std::optional<std::string> fault_of_name(const std::string& name) {
     return fault_of_line(name);
 }
 
-std::optional<std::string> fault_of_one(const Correction& c) {
+// What the fields are called: in files, and as members.
+struct FieldNames {
+    std::string at_m, from_m, wall_m, mass_kg, name, was;
+};
+const FieldNames& in_files() {
+    static const FieldNames names{"\"at_m\"", "\"from_m\"", "\"wall_m\"",
+                                  "\"kg\"",   "\"name\"",   "\"was\""};
+    return names;
+}
+const FieldNames& as_members() {
+    static const FieldNames names{"at_m", "from_m", "wall_m", "mass_kg", "name", "was"};
+    return names;
+}
+
+std::optional<std::string> fault_of_one(const Correction& c, const FieldNames& names) {
     if (const auto wrong = fault_of_spots(c.at_m, c.kind == Kind::one_thing ? 2 : 1))
-        return "\"at_m\": " + *wrong;
+        return names.at_m + ": " + *wrong;
     if (c.kind == Kind::apart) {
-        if (const auto wrong = fault_of_spots(c.from_m, 1)) return "\"from_m\": " + *wrong;
+        if (const auto wrong = fault_of_spots(c.from_m, 1)) return names.from_m + ": " + *wrong;
     }
     if (c.kind == Kind::hollow && !(c.wall_m > 0 && c.wall_m <= thickest_m))
-        return "\"wall_m\" is " + range(c.wall_m, " m", thickest_m);
+        return names.wall_m + " is " + range(c.wall_m, " m", thickest_m);
     if (c.kind == Kind::mass && !(c.mass_kg > 0 && c.mass_kg <= heaviest_kg))
-        return "\"kg\" is " + range(c.mass_kg, " kg", heaviest_kg);
+        return names.mass_kg + " is " + range(c.mass_kg, " kg", heaviest_kg);
     if (c.kind == Kind::name) {
-        if (const auto wrong = fault_of_name(c.name)) return "\"name\" " + *wrong;
+        if (const auto wrong = fault_of_name(c.name)) return names.name + " " + *wrong;
     }
-    if (const auto wrong = fault_of_line(c.was)) return "\"was\" " + *wrong;
+    if (const auto wrong = fault_of_line(c.was)) return names.was + " " + *wrong;
     return std::nullopt;
 }
 
@@ -98,7 +112,7 @@ class Entry {
         if (out.kind == Kind::mass) out.mass_kg = number("kg");
         if (out.kind == Kind::name) out.name = text("name");
         if (json_.contains("was")) out.was = text("was");
-        if (const auto what = fault_of_one(out)) wrong(*what);
+        if (const auto what = fault_of_one(out, in_files())) wrong(*what);
         return out;
     }
 
@@ -168,7 +182,7 @@ std::optional<std::string> fault_of(const std::vector<Correction>& corrections) 
         return "there are " + std::to_string(corrections.size()) + ", more than the limit of " +
                std::to_string(most_corrections);
     for (std::size_t n = 0; n < corrections.size(); ++n) {
-        if (const auto wrong = fault_of_one(corrections[n]))
+        if (const auto wrong = fault_of_one(corrections[n], as_members()))
             return which(n) + " (" + to_string(corrections[n].kind) + "): " + *wrong;
     }
     return std::nullopt;

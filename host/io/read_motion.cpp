@@ -148,12 +148,13 @@ void check_motion_options(const MotionFileOptions& options) {
             throw Error(ErrorKind::usage, std::string(name) + " " + io::short_number(*value) +
                                               ": expected a number above 0");
     };
-    check("--motion-unit", options.unit_m);
-    check("--motion-rate", options.rate_hz);
+    check("MotionFileOptions::unit_m", options.unit_m);
+    check("MotionFileOptions::rate_hz", options.rate_hz);
     if (!options.up) return;
     const double length = std::hypot((*options.up)[0], (*options.up)[1], (*options.up)[2]);
     if (!(length > 0) || !std::isfinite(length))
-        throw Error(ErrorKind::usage, "--motion-up: expected three numbers, not all zero");
+        throw Error(ErrorKind::usage,
+                    "MotionFileOptions::up: expected three numbers, not all zero");
 }
 
 }  // namespace
@@ -187,7 +188,7 @@ BodyMotion read_motion(const std::filesystem::path& file, const MotionFileOption
     if (!(out.step_s > 0)) {
         io::fail(file,
                  "has no column \"time\": say how many frames a second were recorded "
-                 "(--motion-rate)");
+                 "(MotionFileOptions::rate_hz)");
     }
     if (out.step_s > 0.2) {
         io::fail(file, "its frames are " + io::short_number(out.step_s) +

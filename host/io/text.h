@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/printable.h"
+#include "core/short_number.h"
 #include "topple/error.h"
 
 // What the readers share: files as bytes, lines with numbers, tokens, numbers, and messages that
@@ -16,7 +17,8 @@
 namespace topple::io {
 
 using topple::printable;
-// The same, between double quotes.
+using topple::short_number;
+// As printable(), between double quotes.
 std::string in_quotes(std::string_view text);
 // A path, whole.
 std::string path_text(const std::filesystem::path& path);
@@ -26,8 +28,6 @@ std::string path_text(const std::filesystem::path& path);
 
 // "3 points", "1 point".
 std::string counted(std::uint64_t count, const char* noun);
-// A number as short as it reads back the same to 6 digits.
-std::string short_number(double value);
 // Two digits, or all before the point, without an exponent; below half a thousandth it is nothing.
 std::string two_digits(double value);
 

@@ -12,7 +12,8 @@ namespace {
 
 // The primitive of another body at a point, or nothing.
 std::optional<std::int32_t> other_at(const SolidCells& cells, const CellColumns& columns,
-                                     const Candidate& body, const Vec3& at) {
+                                     const Candidate& body, std::span<const std::int32_t> along,
+                                     const Vec3& at) {
     const double h = cells.voxel_m;
     const auto index = [h](double x) { return static_cast<std::int32_t>(std::floor(x / h)); };
     const auto [first, last] = columns.at(index(at[0]), index(at[1]));
@@ -22,15 +23,18 @@ std::optional<std::int32_t> other_at(const SolidCells& cells, const CellColumns&
     const auto found = std::lower_bound(from, to, index(at[2]));
     if (found == to || *found != index(at[2])) return std::nullopt;
     const std::int32_t primitive = cells.primitive[static_cast<std::size_t>(found - begin)];
-    if (std::ranges::binary_search(body.primitives, primitive)) return std::nullopt;
+    if (std::ranges::binary_search(body.primitives, primitive) ||
+        std::ranges::binary_search(along, primitive))
+        return std::nullopt;
     return primitive;
 }
 
 }  // namespace
 
 Swept sweep_over_edge(const SolidCells& cells, const CellColumns& columns, const HiddenWalls& walls,
-                      const Candidate& body, double support_m, const Vec3& direction,
-                      double beside_m, double top_m, const std::vector<bool>& stops) {
+                      const Candidate& body, std::span<const std::int32_t> along, double support_m,
+                      const Vec3& direction, double beside_m, double top_m,
+                      const std::vector<bool>& stops) {
     const Vec3& c = body.body.center;
     const double voxel = cells.voxel_m;
     const double height = std::max(c[2] - support_m, 0.0), beside = std::max(beside_m, 0.0);
@@ -53,7 +57,7 @@ Swept sweep_over_edge(const SolidCells& cells, const CellColumns& columns, const
             const double above = points > 1 ? height + (top - height) * n / (points - 1) : height;
             const Vec3 at = turned(angle, 0, above);
             if (at[2] < support_m + 2 * voxel) continue;
-            auto by = other_at(cells, columns, body, at);
+            auto by = other_at(cells, columns, body, along, at);
             const bool gives_way =
                 by && !stops.empty() && (*by < 0 || !stops[static_cast<std::size_t>(*by)]);
             if (!by || gives_way) by = walls.between(c, at);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/short_number.h"
 #include "physics/hull_polytope.h"
 #include "physics/tipping.h"
 #include "topple/error.h"
@@ -88,7 +89,7 @@ HullLandscape hull_landscape(std::span<const Vec3> points, const Vec3& center_of
                              const HullOptions& options) {
     if (!(options.resolution_m >= 0) || !std::isfinite(options.resolution_m)) {
         throw Error(ErrorKind::input, "hull_landscape: a resolution of " +
-                                          std::to_string(options.resolution_m) +
+                                          short_number(options.resolution_m) +
                                           " m; it must be 0 or more");
     }
     const HullPolytope hull = hull_polytope(points, center_of_mass);

@@ -39,8 +39,8 @@ std::optional<Stability> beside_fixed(const SolidCells& cells, const CellColumns
     const auto stop_on = [&](const Vec3& way) -> std::optional<Stop> {
         const double beside = footing_reach(body, way);
         // What is not fixed gives way until it, too, meets what is.
-        const Swept swept = sweep_over_edge(cells, columns, walls, body, body.support_height_m, way,
-                                            beside, top_m, fixed);
+        const Swept swept = sweep_over_edge(cells, columns, walls, body, {}, body.support_height_m,
+                                            way, beside, top_m, fixed);
         if (!swept.stopped) return std::nullopt;
         Stop stop{std::hypot(height, beside) - height, 0};
         const double ahead =

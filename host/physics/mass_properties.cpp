@@ -5,6 +5,7 @@
 #include <string>
 #include <tuple>
 
+#include "core/short_number.h"
 #include "device/queue.h"
 #include "physics/bodies.h"
 #include "segmented_sum.hpp"
@@ -65,7 +66,7 @@ void check_cells(const SolidCells& cells, std::int32_t count) {
                     "solid cells: the arrays i, j, k and primitive differ in length");
     }
     if (!(cells.voxel_m > 0) || !std::isfinite(cells.voxel_m)) {
-        throw Error(ErrorKind::input, "solid cells: voxel size " + std::to_string(cells.voxel_m) +
+        throw Error(ErrorKind::input, "solid cells: voxel size " + short_number(cells.voxel_m) +
                                           " m is not a positive number");
     }
     for (const std::int32_t label : cells.primitive) {
@@ -87,7 +88,7 @@ std::array<std::int32_t, 3> origin_of(const SolidCells& cells) {
                                               std::to_string(std::int64_t{*high} - *low + 1) +
                                               " voxels along axis " + std::to_string(axis) +
                                               ", more than " + std::to_string(index_extent) +
-                                              "; use a larger --voxel");
+                                              "; use a larger ParseOptions::voxel_m");
         }
     }
     return origin;

@@ -56,7 +56,7 @@ void make_tiles(device::Device& device, SupportTable::Rows& rows) {
                     "support table: " + std::to_string(primitives) +
                         " primitives are more than the " +
                         std::to_string(2 * tile_bytes / direction_block / sizeof(float)) +
-                        " that one tile can hold; use a larger --voxel");
+                        " that one tile can hold; use a larger ParseOptions::voxel_m");
     }
     const std::uint64_t blocks = std::max<std::uint64_t>(1, tile_bytes / row_bytes);
     for (std::uint32_t first = 0; first < rows.padded;) {

@@ -128,19 +128,21 @@ bool fell_before(std::span<const safety::Disturbance> disturbances,
 
 // What holds the object upright against the strongest push of what puts it at more risk than is
 // tolerated.
-safety::Push fixing(const safety::RiskObject& object,
-                    std::span<const safety::Disturbance> disturbances,
-                    std::span<const std::vector<safety::Risk>> risk, std::size_t o, double friction,
-                    double tolerable_J) {
+void find_fixing(const safety::RiskObject& object,
+                 std::span<const safety::Disturbance> disturbances,
+                 std::span<const std::vector<safety::Risk>> risk, std::size_t o, double friction,
+                 double tolerable_J, Suggestion& out) {
     const double weight = object.mass_kg * physics::gravity, top = std::max(object.height_m, 1e-3);
-    safety::Push out{0, top};
+    out.hold = {0, top};
     for (std::size_t d = 0; d < disturbances.size(); ++d) {
         if (o >= disturbances[d].strongest.size() || risk[d][o].mean_J <= tolerable_J) continue;
         const safety::Push& push = disturbances[d].strongest[o];
         const double tips = (push.force_N * push.height_m - weight * object.base_width_m / 2) / top;
-        out.force_N = std::max({out.force_N, tips, push.force_N - friction * weight});
+        const double force_N = std::max(tips, push.force_N - friction * weight);
+        if (!(force_N > out.hold.force_N)) continue;
+        out.hold.force_N = force_N;
+        out.hold_against = disturbances[d].name;
     }
-    return out;
 }
 
 }  // namespace
@@ -185,7 +187,7 @@ std::vector<Suggestion> advise(const SolidScene& solids,
             continue;
         }
         out[o].kind = Suggestion::Kind::fix;
-        out[o].hold = fixing(at_risk[o], disturbances, risk, o, friction, tolerable_J);
+        find_fixing(at_risk[o], disturbances, risk, o, friction, tolerable_J, out[o]);
         chosen.push_back(o);
     }
     std::stable_sort(chosen.begin(), chosen.end(),
@@ -216,6 +218,7 @@ std::vector<Suggestion> advise(const SolidScene& solids,
         to.move_m = {placements[n].di * cells.voxel_m, placements[n].dj * cells.voxel_m, 0};
         to.risk_J = all_J[n];
         to.hold = {};
+        to.hold_against.clear();
     }
     return out;
 }

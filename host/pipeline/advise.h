@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "pipeline/fastening.h"
 #include "pipeline/object_stage.h"
 #include "safety/fields.h"
 
@@ -17,9 +20,12 @@ struct Suggestion {
     // fault.
     enum class Kind { nothing, see, check, move, fix };
     Kind kind = Kind::nothing;
-    Vec3 move_m{};        // move: horizontal
-    double risk_J = 0;    // its largest afterwards
-    safety::Push hold{};  // fix: what a fixing must take, at the top of the object
+    Vec3 move_m{};               // move: horizontal
+    double risk_J = 0;           // its largest afterwards
+    safety::Push hold{};         // fix: what a fixing must take, at the top of the object
+    std::string hold_against{};  // the disturbance that asks for most of that
+    Fastening fasten{};          // what it may be fastened to (fastening.h)
+    std::int32_t leg_of = -1;    // the object that it may be a leg of (legs.h); -1: none
 };
 
 // `move` is the smallest way on the object's support to a place from where all disturbances bring

@@ -98,6 +98,8 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
         if (from.piece.probability > 0.5)
             to.piece_of =
                 objects.object_of_primitive[static_cast<std::size_t>(from.piece.primitive)];
+        to.joint_probability = from.weakest.probability;
+        to.weakest_joint = {from.weakest.a, from.weakest.b};
         to.mass_model = from.hollow ? "hollow" : from.closed ? "closed" : "solid";
         to.center_of_mass_m = to_input(from.candidate.body.center);
         to.inertia_kg_m2 = to_input.tensor(from.inertia);
@@ -148,8 +150,9 @@ void add_objects(const ObjectStage& objects, const SafetyStage& safety, const To
                       : ranked      ? safety.unsafety[o]
                                     : std::numeric_limits<double>::quiet_NaN();
         const safety::CategoryEnds& category = safety.category[o];
-        to.unsafety_category = ranked ? safety::to_string(category.lower) : "";
-        to.unsafety_certain = ranked && category.lower == category.higher && to.piece_of < 0 &&
+        to.unsafety_category = ranked ? safety::to_string(category.worst()) : "";
+        to.unsafety_certain = ranked && category.certain() && to.piece_of < 0 &&
+                              !from.weakest.doubtful() &&
                               safety.advice[o].kind != Suggestion::Kind::check &&
                               !stands_against_odds(from, safety.disturbances, safety.risk, o);
         to.name = objects.told.name[o];
@@ -232,7 +235,8 @@ constexpr std::size_t many_parts = 40;
 void note_crowded_objects(Scene& scene) {
     for (const Object& o : scene.objects) {
         const std::size_t parts = o.primitives.size();
-        if (o.grounded || parts < many_parts ||
+        // What somebody said of it is known.
+        if (o.grounded || parts < many_parts || !o.corrected.empty() ||
             static_cast<double>(parts) < many_share * static_cast<double>(scene.primitives.size()))
             continue;
         scene.notes.push_back(
@@ -288,17 +292,20 @@ void note_light_density(Scene& scene) {
     if (scene.density_kg_m3 >= lightest_kg_m3) return;
     scene.notes.push_back("The density of " + io::short_number(scene.density_kg_m3) +
                           " kg/m\u00b3 is less than that of the lightest foam; if it is in "
-                          "g/cm\u00b3, give --density 1000 times as large.");
+                          "g/cm\u00b3, give ParseOptions::density_kg_m3 1000 times as large.");
 }
 
 void note_corrections(Scene& scene) {
     const std::vector<std::size_t> said = told_sentences(scene.corrections);
     for (std::size_t n = 0; n < scene.corrections.size(); ++n) {
         const AppliedCorrection& c = scene.corrections[n];
-        if (c.outcome != "held")
-            scene.notes.push_back("Correction " + std::to_string(said[n]) + " (" +
-                                  to_string(c.correction.kind) + ") " +
-                                  (c.held ? "" : "did not hold: ") + c.outcome + ".");
+        if (c.outcome == "held") continue;
+        std::string note = "Correction " + std::to_string(said[n]) + " (" +
+                           to_string(c.correction.kind) + ") " + (c.held ? "" : "did not hold: ") +
+                           c.outcome + ".";
+        // One sentence may take several entries.
+        if (scene.notes.empty() || scene.notes.back() != note)
+            scene.notes.push_back(std::move(note));
     }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/explain.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -33,60 +32,14 @@ void explain(const ObjectStage& objects, const ToInput& to_input, Scene& scene) 
     }
 }
 
-namespace {
-
-// Of two pieces that carry each other the lighter one is no support of the heavier.
-bool carried_back(const Scene& scene, const std::vector<std::vector<Support>>& holders,
-                  const Support& s) {
-    const auto by = static_cast<std::size_t>(s.supporter),
-               on = static_cast<std::size_t>(s.supported);
-    if (scene.objects[by].grounded || scene.objects[by].mass_kg >= scene.objects[on].mass_kg)
-        return false;
-    return std::ranges::any_of(holders[by],
-                               [&](const Support& back) { return back.supporter == s.supported; });
-}
-
-// What goes along with object o: what has lost half of its support with it, and with what went
-// along before. Ascending.
-std::vector<std::int32_t> taken_along(const Scene& scene,
-                                      const std::vector<std::vector<Support>>& holders,
-                                      std::size_t o) {
-    std::vector<bool> gone(scene.objects.size());
-    gone[o] = true;
-    for (bool more = true; more;) {
-        more = false;
-        for (std::size_t x = 0; x < holders.size(); ++x) {
-            if (gone[x] || scene.objects[x].grounded) continue;
-            double all = 0, lost = 0;
-            for (const Support& s : holders[x]) {
-                if (carried_back(scene, holders, s)) continue;
-                all += s.area_m2;
-                if (gone[static_cast<std::size_t>(s.supporter)]) lost += s.area_m2;
-            }
-            if (lost > 0 && 2 * lost >= all) gone[x] = more = true;
-        }
-    }
-    gone[o] = false;
-    std::vector<std::int32_t> out;
-    for (std::size_t x = 0; x < gone.size(); ++x) {
-        if (gone[x]) out.push_back(static_cast<std::int32_t>(x));
-    }
-    return out;
-}
-
-}  // namespace
-
 void foretell(const ObjectStage& objects, const SafetyStage& safety, const ToInput& to_input,
               Scene& scene) {
-    std::vector<std::vector<Support>> holders(scene.objects.size());  // of each object
-    for (const Support& s : scene.supports)
-        holders[static_cast<std::size_t>(s.supported)].push_back(s);
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
         Object& object = scene.objects[o];
         const StableObject& from = objects.objects[o];
         object.fall.lands_m = object.center_of_mass_m;
         if (from.grounded) continue;
-        object.fall.takes_along = taken_along(scene, holders, o);
+        object.fall.takes_along = safety.landings[o].takes_along;
         for (const auto& [name, chance] : object.fall_chance)
             object.fall.falls = object.fall.falls || chance > 0;
         const physics::Swept& swept = safety.landings[o].swept;
@@ -98,8 +51,6 @@ void foretell(const ObjectStage& objects, const SafetyStage& safety, const ToInp
         object.fall.lands_on = elsewhere ? -1 : object.why.lands_on;
         if (swept.by >= 0)
             object.fall.leans_on = objects.object_of_primitive[static_cast<std::size_t>(swept.by)];
-        // What stops it is not taken along.
-        std::erase(object.fall.takes_along, object.fall.leans_on);
         const Suggestion& what = safety.advice[o];
         static constexpr std::array kinds{"", "see", "check", "move", "fix"};
         object.advice.kind = kinds[static_cast<std::size_t>(what.kind)];

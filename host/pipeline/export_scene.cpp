@@ -127,7 +127,7 @@ void check_export(const ExportOptions& options) {
     std::string known;
     for (const exports::Format& format : exports::formats()) {
         if (!known.empty()) known += ", ";
-        known += std::string("--") + format.name;
+        known.append("ExportOptions::").append(format.name);
         const std::filesystem::path& path = options.*format.path;
         if (path.empty()) continue;
         any = true;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/pose_mends.h"
 #include "io/text.h"
 
 namespace topple {
@@ -32,26 +33,25 @@ const char* words_of(PoseConvention convention) {
     return "";
 }
 
-// What gives the pose that is meant, in NumPy.
+// What gives the poses that are meant.
 const char* mend_of(PoseConvention convention) {
     switch (convention) {
         case PoseConvention::camera_to_world:
-            return "pose";
+            return "each pose as it is";
         case PoseConvention::world_to_camera:
-            return "np.linalg.inv(pose)";
+            return pose_mends::inverse.words;
         case PoseConvention::opengl:
-            return "pose @ np.diag([1, -1, -1, 1])";
+            return pose_mends::turned.words;
         case PoseConvention::world_to_camera_opengl:
-            return "np.linalg.inv(pose) @ np.diag([1, -1, -1, 1])";
+            return pose_mends::inverse_turned.words;
         case PoseConvention::body:
-            return "pose @ [[0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]]";
+            return pose_mends::reordered.words;
         case PoseConvention::world_to_camera_body:
-            return "np.linalg.inv(pose) @ [[0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, "
-                   "1]]";
+            return pose_mends::inverse_reordered.words;
         case PoseConvention::w_first:
-            return "poses of their quaternions as x, y, z, w, q[[1, 2, 3, 0]]";
+            return pose_mends::w_last.words;
         case PoseConvention::transposed:
-            return "poses of pose[:3, :3].T, as matrices are row-major";
+            return pose_mends::transposed.words;
     }
     return "";
 }
@@ -115,8 +115,8 @@ std::string pose_note(const geometry::PoseComparison& frames, ScanOrigin origin)
            agreeing(better.front()) + " if poses are taken to be " + words +
            (better.size() > 1 ? ", between which the frames do not tell" : "") +
            ". topple takes camera to world, camera x right, y down, z ahead: " +
-           (in_folder ? "write into the file of poses" : "give as camera_to_world") +
-           ", in NumPy's words, " + mends + ".";
+           (in_folder ? "write into the file of poses" : "give as camera_to_world") + " " + mends +
+           ".";
 }
 
 }  // namespace topple

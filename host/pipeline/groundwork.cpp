@@ -19,25 +19,26 @@ void check_memory_of(const CloudView& cloud, ScanOrigin origin, double voxel_m,
     if (options.max_memory_bytes == 0) return;
     const std::uint64_t need = one_piece_bytes(
         static_cast<double>(cloud.size()), extent_of(cloud).area_m2(), bounds_of(cloud), voxel_m);
-    check_memory(
-        std::to_string(cloud.size()) + " points at voxels of " + io::short_number(voxel_m) +
-            " m may need",
-        need, options, origin,
-        std::string("use a larger ") + (in_memory(origin) ? "voxel_m" : "--voxel") +
-            (origin == ScanOrigin::cloud_file ? ", or --tile 5 to have it parsed in blocks" : ""));
+    check_memory(std::to_string(cloud.size()) + " points at voxels of " +
+                     io::short_number(voxel_m) + " m may need",
+                 need, options,
+                 std::string("use a larger ParseOptions::voxel_m") +
+                     (origin == ScanOrigin::cloud_file
+                          ? ", or ParseOptions::tile_m = 5 to have it parsed in blocks"
+                          : ""));
 }
 
 [[noreturn]] void no_surface(const Ingested& input, const std::string& source, double extent_m) {
     const std::string scale = of_frames(input.origin) && input.frames
                                   ? depth_scale_hint(*input.frames, input.origin)
                                   : small_extent_hint(extent_m, input.origin);
-    throw Error(ErrorKind::input,
-                source + ": " + io::counted(input.cloud.size(), "point") +
-                    (input.cloud.size() == 1 ? " was" : " were") +
-                    " found, but no surface of them fills the " + std::to_string(least_voxels) +
-                    " voxels that a solid takes; give a denser scan, or a smaller " +
-                    (in_memory(input.origin) ? "voxel_m" : "--voxel") +
-                    (scale.empty() ? "" : "; " + scale));
+    throw Error(
+        ErrorKind::input,
+        source + ": " + io::counted(input.cloud.size(), "point") +
+            (input.cloud.size() == 1 ? " was" : " were") +
+            " found, but no surface of them fills the " + std::to_string(least_voxels) +
+            " voxels that a solid takes; give a denser scan, or a smaller ParseOptions::voxel_m" +
+            (scale.empty() ? "" : "; " + scale));
 }
 
 // The coordinates and colours of the points: moved, where they are the input's own.

@@ -87,6 +87,12 @@ std::string HandCorrections::with_kind(std::size_t n) const {
 void HandCorrections::remark(std::size_t n, const std::string& what, bool held) {
     AppliedCorrection& to = applied_[n];
     to.held = to.held && held;
+    // One reason that holds for several parts is said once.
+    if (std::string("; ")
+            .append(to.outcome)
+            .append("; ")
+            .find(std::string("; ").append(what).append("; ")) != std::string::npos)
+        return;
     to.outcome.append(to.outcome.empty() ? "" : "; ").append(what);
 }
 

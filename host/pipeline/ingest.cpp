@@ -242,7 +242,8 @@ Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptio
 Ingested ingest_view(device::Device& device, const CloudView& cloud, const ParseOptions& options) {
     if (options.unit_m != 1) {
         throw Error(ErrorKind::usage,
-                    "unit_m is for files; scale a cloud in memory to metres before it is parsed");
+                    "ParseOptions::unit_m is for files; scale a cloud in memory to metres before "
+                    "it is parsed");
     }
     Ingested out;
     out.origin = ScanOrigin::cloud_in_memory;
@@ -261,7 +262,8 @@ Ingested ingest_frames_view(device::Device& device, const FramesView& frames,
                             const ParseOptions& options) {
     if (options.unit_m != 1) {
         throw Error(ErrorKind::usage,
-                    "unit_m is for files; depth frames have their unit in their intrinsics, as "
+                    "ParseOptions::unit_m is for files; depth frames have their unit in their "
+                    "intrinsics, as "
                     "depth_scale");
     }
     auto stream = std::make_unique<CallerFrames>(frames);
@@ -353,10 +355,10 @@ Ingested ingest(device::Device& device, const std::filesystem::path& input,
     if (options.progress) options.progress("ingest", 0);
     if (io::looks_like_sequence(input)) {
         if (options.unit_m != 1) {
-            throw Error(
-                ErrorKind::usage,
-                "--unit is for point clouds, meshes and maps; depth frames have their unit in "
-                "intrinsics.json, as depth_scale");
+            throw Error(ErrorKind::usage,
+                        "ParseOptions::unit_m is for point clouds, meshes and maps; depth frames "
+                        "have their unit in "
+                        "intrinsics.json, as depth_scale");
         }
         Ingested out = ingest_folder(device, input, options);
         if (out.cloud.size() == 0)

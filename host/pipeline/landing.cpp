@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "physics/landscape.h"
+#include "pipeline/taken_along.h"
 
 namespace topple {
 namespace {
@@ -53,7 +55,7 @@ Way falling_way(const StableObject& from) {
 }
 
 physics::Swept swept(const SolidParts& parts, const physics::HiddenWalls& walls,
-                     const StableObject& from, const Way& way,
+                     const StableObject& from, const Way& way, std::span<const std::int32_t> along,
                      const std::vector<bool>& stops = {}) {
     const Vec3& center = from.candidate.body.center;
     const double support = support_m(from), height = std::max(center[2] - support, 0.0);
@@ -69,8 +71,17 @@ physics::Swept swept(const SolidParts& parts, const physics::HiddenWalls& walls,
             beside += ((a[c] + b[c]) / 2 - center[c]) * way.direction[c];
     }
     physics::Swept out = physics::sweep_over_edge(parts.solids->cells(), parts.solids->columns(),
-                                                  walls, from.candidate, support, way.direction,
-                                                  beside, from.highest_m, stops);
+                                                  walls, from.candidate, along, support,
+                                                  way.direction, beside, from.highest_m, stops);
+    // What has sunk nearly as low as it lies on its side lies, and leans on nothing.
+    constexpr double nearly_all = 0.9;
+    const double lies = std::min(std::max(beside, 0.0), height),
+                 sunk = support + height - out.center[2];
+    if (out.stopped && sunk >= nearly_all * (height - lies)) {
+        out.stopped = false;
+        out.by = -1;
+        return out;
+    }
     if (!out.stopped) out.center[2] -= way.drop_m;
     return out;
 }
@@ -141,15 +152,23 @@ std::vector<Landing> landings(const SolidParts& parts, const ObjectStage& object
     const std::vector<Reach> reach = reaches(*parts.solids, objects, ways);
     const std::vector<bool> fixed = fixed_primitives(objects.object_of_primitive, objects.objects);
     std::vector<Landing> out(objects.objects.size());
+    const std::vector<std::vector<std::int32_t>> taken = taken_along(objects);
     for (std::size_t o = 0; o < out.size(); ++o) {
         const StableObject& from = objects.objects[o];
         if (from.grounded) continue;
-        out[o].swept = swept(parts, objects.hidden_walls, from, ways[o]);
+        out[o].takes_along = taken[o];
+        std::vector<std::int32_t> along;  // primitives
+        for (const std::int32_t x : taken[o]) {
+            const auto& of = objects.objects[static_cast<std::size_t>(x)].candidate.primitives;
+            along.insert(along.end(), of.begin(), of.end());
+        }
+        std::ranges::sort(along);
+        out[o].swept = swept(parts, objects.hidden_walls, from, ways[o], along);
         out[o].drop_m = ways[o].drop_m;
         out[o].on_easiest = ways[o].easiest;
-        out[o].easiest = ways[o].easiest
-                             ? out[o].swept
-                             : swept(parts, objects.hidden_walls, from, easiest_way(from), fixed);
+        out[o].easiest = ways[o].easiest ? out[o].swept
+                                         : swept(parts, objects.hidden_walls, from,
+                                                 easiest_way(from), along, fixed);
         out[o].hits_J = hits_J(from, ways[o], out[o].swept);
         out[o].zone = zone(from, ways[o], out[o].swept, reach[o]);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "physics/fall_sweep.h"
@@ -23,12 +24,13 @@ struct Landing {
     // What it has given up since the top of the barrier, with the lowest push over it.
     double hits_J = 0;
     safety::FallZone zone;
+    std::vector<std::int32_t> takes_along;  // objects, ascending
 };
 
 // By object. Over an edge an object lands about its own height away, as high as its centre was
-// beside the edge, unless it meets something before; off a support's end by its height beyond it.
-// What does not stay on its support tumbles, and reaches as far around its centre as it is long or
-// high.
+// beside the edge, unless it meets something before that does not go along with it; off a support's
+// end by its height beyond it. What does not stay on its support tumbles, and reaches as far around
+// its centre as it is long or high.
 std::vector<Landing> landings(const SolidParts& parts, const ObjectStage& objects);
 
 }  // namespace topple

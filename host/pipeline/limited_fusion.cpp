@@ -17,7 +17,7 @@ LimitedFusion::LimitedFusion(const Frames& frames, double cell_m, const ParseOpt
     const auto beside = static_cast<std::uint64_t>(fusion_beside(pixels));
     check_memory(
         frames.source + ": to fuse " + io::counted(frames.count, "depth frame") + " takes at least",
-        beside, options, frames.origin, "give points in their place");
+        beside, options, "give points in their place");
     most_bytes_ = options.max_memory_bytes - beside;
     fusion_.set_most_bytes(most_bytes_);
 }
@@ -42,8 +42,8 @@ void LimitedFusion::check() const {
                                    : io::counted(frames_.count, "depth frame");
     throw Error(ErrorKind::input,
                 frames_.source + ": the surfaces of " + frames + " take more than the " +
-                    io::bytes_text(options_.max_memory_bytes) + " of " +
-                    memory_option(frames_.origin) + "; allow more, or give fewer frames; " +
+                    io::bytes_text(options_.max_memory_bytes) +
+                    " of ParseOptions::max_memory_bytes; allow more, or give fewer frames; " +
                     depth_scale_hint(frames_.count, frames_.intrinsics.depth_scale,
                                      frames_.typical_depth_m, frames_.origin));
 }

@@ -6,12 +6,8 @@
 
 namespace topple {
 
-const char* memory_option(ScanOrigin origin) {
-    return in_memory(origin) ? "max_memory_bytes" : "--max-memory";
-}
-
 void check_memory(const std::string& what, std::uint64_t need_bytes, const ParseOptions& options,
-                  ScanOrigin origin, const std::string& mend) {
+                  const std::string& mend) {
     const std::uint64_t limit = options.max_memory_bytes;
     if (limit == 0 || need_bytes <= limit) return;
     const std::string need = io::sufficient_bytes_text(need_bytes);
@@ -19,8 +15,9 @@ void check_memory(const std::string& what, std::uint64_t need_bytes, const Parse
     // More digits, where three say the same of both.
     for (int digits = 4; given == need && digits < 12; ++digits)
         given = io::bytes_text(limit, digits);
-    throw Error(ErrorKind::input, what + " " + need + ", more than the " + given + " of " +
-                                      memory_option(origin) + ": allow that much, or " + mend);
+    throw Error(ErrorKind::input, what + " " + need + ", more than the " + given +
+                                      " of ParseOptions::max_memory_bytes: allow that much, or " +
+                                      mend);
 }
 
 }  // namespace topple

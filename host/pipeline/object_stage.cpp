@@ -68,15 +68,32 @@ void number_objects(ObjectStage& out) {
         out.object_of_primitive.push_back(g + grounded + 1);
 }
 
-// By object the voxels that its surface was seen in; none of the ground.
-std::vector<std::uint64_t> seen_surface(const SolidCells& cells, const ObjectStage& of) {
-    std::vector<std::uint64_t> out(of.objects.size(), 0);
-    for (std::size_t n = 0; n < cells.size(); ++n) {
-        if (cells.primitive[n] < 0 || cells.basis[n] != Basis::surface) continue;
-        const std::int32_t o = of.object_of_primitive[static_cast<std::size_t>(cells.primitive[n])];
-        out[static_cast<std::size_t>(o)] += !of.objects[static_cast<std::size_t>(o)].grounded;
-    }
+// By primitive the voxels that its surface was seen in.
+std::vector<std::uint64_t> seen_surface(const SolidCells& cells, std::size_t primitives) {
+    std::vector<std::uint64_t> out(primitives, 0);
+    for (std::size_t n = 0; n < cells.size(); ++n)
+        if (cells.primitive[n] >= 0 && cells.basis[n] == Basis::surface)
+            ++out[static_cast<std::size_t>(cells.primitive[n])];
     return out;
+}
+
+// What objects may be pieces of, and whether they may be several.
+void doubt_objects(std::span<const graph::Joint> joints, const graph::KnownLinks& links,
+                   const SolidCells& cells, ObjectStage& out) {
+    const std::vector<std::uint64_t> seen = seen_surface(cells, out.object_of_primitive.size());
+    std::vector<std::uint64_t> of_objects(out.objects.size(), 0);  // none of the ground
+    for (std::size_t p = 0; p < seen.size(); ++p) {
+        const auto o = static_cast<std::size_t>(out.object_of_primitive[p]);
+        if (!out.objects[o].grounded) of_objects[o] += seen[p];
+    }
+    const std::vector<graph::PieceOf> pieces =
+        graph::likely_pieces(joints, links, out.object_of_primitive, of_objects);
+    const std::vector<graph::WeakestJoint> weakest =
+        graph::weakest_joints(joints, links, out.object_of_primitive, seen, out.objects.size());
+    for (std::size_t o = 0; o < out.objects.size(); ++o) {
+        out.objects[o].piece = pieces[o];
+        if (!out.objects[o].grounded) out.objects[o].weakest = weakest[o];
+    }
 }
 
 // The heights of the floors, ascending: levels with a hundredth of what is floor.
@@ -326,9 +343,7 @@ ObjectStage find_objects(device::Device& device, const ParseOptions& options, St
         find_barriers(device, table, *solid.solids, out.hidden_walls, out.object_of_primitive,
                       options.friction, out.objects);
     });
-    const std::vector<graph::PieceOf> pieces = graph::likely_pieces(
-        parts.joints, hand.links(), out.object_of_primitive, seen_surface(cells, out));
-    for (std::size_t o = 0; o < pieces.size(); ++o) out.objects[o].piece = pieces[o];
+    doubt_objects(parts.joints, hand.links(), cells, out);
     out.told = hand.tell(out.object_of_primitive, out.objects.size(), grounded_object(out));
     return out;
 }

@@ -52,6 +52,7 @@ struct StableObject {
     }
     double agreement = 1;                // share of the sampler's chains that found it
     graph::PieceOf piece;                // what it may be a piece of
+    graph::WeakestJoint weakest;         // what it hangs together by
     Landscape poses;                     // grid frame; its places are those of `sliding`
     double lowest_m = 0, highest_m = 0;  // of its voxels
     ObjectBox box;

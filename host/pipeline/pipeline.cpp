@@ -86,7 +86,7 @@ ParseResult run(const std::string& source, const ParseOptions& options, Lay lay,
 
 void refuse_cache(const ParseOptions& options) {
     if (options.cache_file.empty()) return;
-    throw Error(ErrorKind::usage, "cache_file " + options.cache_file.string() +
+    throw Error(ErrorKind::usage, "ParseOptions::cache_file " + options.cache_file.string() +
                                       ": a cache is kept of a file or folder, and the scan is in "
                                       "memory; leave it out, or parse its file");
 }
@@ -94,7 +94,7 @@ void refuse_cache(const ParseOptions& options) {
 void refuse_tiles(const ParseOptions& options) {
     if (options.tile_m == 0) return;
     throw Error(ErrorKind::usage,
-                "--tile " + number_text(options.tile_m) +
+                "ParseOptions::tile_m " + number_text(options.tile_m) +
                     ": only clouds in files are parsed in blocks (.ply, .pcd, .las and .xyz); "
                     "leave it out");
 }
@@ -125,45 +125,49 @@ ParseResult parse_whole(const std::filesystem::path& input, const ParseOptions& 
 }  // namespace
 
 void check_options(const ParseOptions& o) {
-    if (o.voxel_m != 0) check_range("--voxel", o.voxel_m, least_voxel_m, largest_voxel_m);
-    check_range("--unit", o.unit_m, 1e-6, 1e6);
+    if (o.voxel_m != 0)
+        check_range("ParseOptions::voxel_m", o.voxel_m, least_voxel_m, largest_voxel_m);
+    check_range("ParseOptions::unit_m", o.unit_m, 1e-6, 1e6);
     if (o.up)
-        check_range("--up: its length,", std::hypot((*o.up)[0], (*o.up)[1], (*o.up)[2]), 1e-6, 1e6);
-    check_range("--density", o.density_kg_m3, 0, 30000);
+        check_range("ParseOptions::up: its length,", std::hypot((*o.up)[0], (*o.up)[1], (*o.up)[2]),
+                    1e-6, 1e6);
+    check_range("ParseOptions::density_kg_m3", o.density_kg_m3, 0, 30000);
     if (o.contents_kg_m3 && *o.contents_kg_m3 != 0)
-        check_range("--contents", *o.contents_kg_m3, 0, 30000);
-    check_range("--friction", o.friction, 0, 10);
-    check_range("--walks", o.walks, 1, 1e6);
-    check_range("--wind", o.wind_m_s, 0, 150);
+        check_range("ParseOptions::contents_kg_m3", *o.contents_kg_m3, 0, 30000);
+    check_range("ParseOptions::friction", o.friction, 0, 10);
+    check_range("ParseOptions::walks", o.walks, 1, 1e6);
+    check_range("ParseOptions::wind_m_s", o.wind_m_s, 0, 150);
     // 0 is north, so the range is none of those that begin above 0.
     if (o.wind_from_deg && !(std::abs(*o.wind_from_deg) <= 360))
         throw Error(ErrorKind::usage,
-                    "--wind-from " + number_text(*o.wind_from_deg) +
+                    "ParseOptions::wind_from_deg " + number_text(*o.wind_from_deg) +
                         ": expected degrees clockwise from the scene's north, from -360 to 360");
-    if (o.pga_m_s2) check_range("--pga", *o.pga_m_s2, 0, 50);
+    if (o.pga_m_s2) check_range("ParseOptions::pga_m_s2", *o.pga_m_s2, 0, 50);
     if (o.accelerogram) {
-        check_range("accelerogram: step_s", o.accelerogram->step_s, 1e-5, 0.5);
+        check_range("ParseOptions::accelerogram: step_s", o.accelerogram->step_s, 1e-5, 0.5);
         double sum = 0;  // not finite if one of them isn't
         for (const auto* component :
              {&o.accelerogram->m_s2, &o.accelerogram->across_m_s2, &o.accelerogram->up_m_s2}) {
             if (!component->empty() && component->size() != o.accelerogram->m_s2.size())
-                throw Error(ErrorKind::usage,
-                            "accelerogram: its components have different numbers of samples");
+                throw Error(
+                    ErrorKind::usage,
+                    "ParseOptions::accelerogram: its components have different numbers of samples");
             for (const double a : *component) sum += std::abs(a);
         }
-        check_range("accelerogram: its peak in m/s^2,",
+        check_range("ParseOptions::accelerogram: its peak in m/s^2,",
                     std::isfinite(sum) ? o.accelerogram->peak_m_s2() : NAN, 0, 100);
     }
-    check_range("--floor-amplification", o.floor_amplification, 0, 20);
+    check_range("ParseOptions::floor_amplification", o.floor_amplification, 0, 20);
     if (o.hazard) {
         if (const auto wrong = o.hazard->fault())
-            throw Error(ErrorKind::usage, "--hazard: " + *wrong);
+            throw Error(ErrorKind::usage, "ParseOptions::hazard: " + *wrong);
     }
-    check_range("--tolerable", o.tolerable_J, 0, 1e9);
-    if (o.tile_m != 0) check_range("--tile", o.tile_m, least_tile_m, 1000);
-    if (o.grouping_time_s) check_range("--grouping-time", *o.grouping_time_s, 0, 86400);
+    check_range("ParseOptions::tolerable_J", o.tolerable_J, 0, 1e9);
+    if (o.tile_m != 0) check_range("ParseOptions::tile_m", o.tile_m, least_tile_m, 1000);
+    if (o.grouping_time_s)
+        check_range("ParseOptions::grouping_time_s", *o.grouping_time_s, 0, 86400);
     if (const auto wrong = fault_of(o.corrections))
-        throw Error(ErrorKind::usage, "corrections: " + *wrong);
+        throw Error(ErrorKind::usage, "ParseOptions::corrections: " + *wrong);
     for (const std::string& name : o.disturbances) safety::disturbance_kind(name);
 }
 

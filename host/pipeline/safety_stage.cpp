@@ -7,6 +7,8 @@
 #include <memory>
 
 #include "physics/overturning.h"
+#include "pipeline/find_fastenings.h"
+#include "pipeline/legs.h"
 #include "safety/disturbances.h"
 #include "safety/risk_error.h"
 #include "safety/wind/wind_field.h"
@@ -98,6 +100,7 @@ void weigh_risks(std::span<const safety::RiskObject> at_risk, SafetyStage& out) 
                 safety::risk_error_J(out.risk.back()[o], {lower[o], higher[o]}, share));
             safety::CategoryEnds& ends = out.category[o];
             ends.lower = std::max(ends.lower, safety::category(lower[o], 1 + share));
+            ends.measured = std::max(ends.measured, safety::category(out.risk.back()[o], 1));
             ends.higher =
                 std::max(ends.higher, safety::category(higher[o], std::max(0.0, 1 - share)));
         }
@@ -142,6 +145,13 @@ SafetyStage assess_safety(device::Device& device, const SolidParts& parts,
         out.advice =
             advise(*parts.solids, objects.object_of_primitive, objects.objects, at_risk,
                    out.disturbances, out.risk, fields, options.friction, options.tolerable_J);
+        const std::vector<Fastening> fastenings = find_fastenings(parts, objects);
+        const std::vector<std::int32_t> legs =
+            find_legs(*parts.solids, objects.object_of_primitive, objects.objects);
+        for (std::size_t o = 0; o < out.advice.size(); ++o) {
+            out.advice[o].fasten = fastenings[o];
+            out.advice[o].leg_of = legs[o];
+        }
     });
     return out;
 }

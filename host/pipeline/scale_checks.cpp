@@ -49,7 +49,7 @@ void check_spacing(const CloudView& cloud, double spacing_m, ScanOrigin origin) 
         if (extent * unit_m < least_room_m || extent * unit_m > largest_room_m) continue;
         units.append(units.empty() ? "" : " or ").append(unit);
         options.append(options.empty() ? "" : " or ");
-        options.append(from_file ? "--unit " + std::string(unit) : "by " + text_of(unit_m));
+        options.append(from_file ? "ParseOptions::unit_m = " : "by ").append(text_of(unit_m));
     }
     throw Error(ErrorKind::input,
                 cloud.source + ": the points extend over " + text_of(extent) + " m and are " +
@@ -67,7 +67,7 @@ std::string small_extent_hint(double extent_m, ScanOrigin origin) {
                         : origin == ScanOrigin::frames_in_memory ? "depth_scale of the intrinsics"
                         : origin == ScanOrigin::cloud_in_memory
                             ? "that the coordinates are metres, which they must be in memory"
-                            : "--unit";
+                            : "ParseOptions::unit_m";
     return "it all extends over " + text_of(extent_m) + " m: check " + check;
 }
 

@@ -33,8 +33,8 @@ double extent_m(const std::array<FloatColumn, 3>& axes);
 void check_spacing(const CloudView& cloud, double spacing_m,
                    ScanOrigin origin = ScanOrigin::cloud_file);
 
-// Of what extends over less than things in a room do: "it all extends over X m: check --unit", or
-// what else gives the unit of such an input; else "".
+// Of what extends over less than things in a room do: "it all extends over X m: check
+// ParseOptions::unit_m", or what else gives the unit of such an input; else "".
 std::string small_extent_hint(double extent_m, ScanOrigin origin);
 // The same as a note of a scene from there, which else shows shards of nothing in particular.
 void note_small_extent(double extent_m, ScanOrigin origin, std::vector<std::string>& notes);

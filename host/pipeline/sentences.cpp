@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "io/text.h"
 #include "physics/drop.h"
@@ -78,7 +79,7 @@ class Sentence {
             return "The scan does not show what holds it up: it is taken to stand there, and is "
                    "not ranked.";
         }
-        return (object_.mode == "slide" ? slides() : tips()) + piece();
+        return (object_.mode == "slide" ? slides() : tips()) + piece() + several();
     }
 
   private:
@@ -88,6 +89,13 @@ class Sentence {
         const Object& whole = scene_.objects[static_cast<std::size_t>(object_.piece_of)];
         return " It may be a piece of " + numbered_object(whole) + " (" +
                io::two_digits(100 * object_.piece_probability) + " % likely).";
+    }
+    // Whose figures are those of two together.
+    std::string several() const {
+        if (!from_.weakest.doubtful()) return "";
+        return " It may be two things (" + io::two_digits(100 * (1 - object_.joint_probability)) +
+               " % likely): look whether its parts " + std::to_string(object_.weakest_joint[0]) +
+               " and " + std::to_string(object_.weakest_joint[1]) + " are one.";
     }
     std::string slides() const {
         if (!(why_.way_m > 0)) {
@@ -209,10 +217,15 @@ std::string joules(double value) {
     return value < 0.0005 ? "nothing" : energy(value) + " per event";
 }
 
-// Against what brings it the most risk, the first of equals.
-std::string mend_of(const Object& object) {
+// Against what brings it the most risk, the first of equals; where no wall is within reach, to what
+// it stands on.
+std::string mend_of(const Object& object, const Fastening& to) {
+    if (!to.wall && to.floor) return "Bolt it to the floor, keep people away, or take it out";
     const safety::DisturbanceKind* worst = safety::largest_risk(object).kind;
-    return (worst != nullptr ? worst : safety::disturbance_kinds().front())->words.mend;
+    const auto& words = (worst != nullptr ? worst : safety::disturbance_kinds().front())->words;
+    return to.wall || std::string_view(words.mend).find("the wall") == std::string_view::npos
+               ? words.mend
+               : "Fasten it to what carries it";
 }
 
 // The least of 1, 2, 5, 10, 20, ... kilograms whose weight is no less than the force: how straps
@@ -233,16 +246,27 @@ std::string at_least_N(double force_N) {
 }
 
 std::string fix_sentence(const Object& object, const Suggestion& what) {
-    const std::string text =
-        object.mass_kg < light_kg ? "Put it elsewhere, or fasten it" : mend_of(object);
+    constexpr double one_strap_m = 1;  // what is wider turns about a single one; set by hand
+    const bool light = object.mass_kg < light_kg, bolted = !what.fasten.wall && what.fasten.floor;
+    std::string text = mend_of(object, what.fasten);
+    if (light) text = what.leg_of < 0 ? "Put it elsewhere, or fasten it" : "Fasten it";
     if (!(what.hold.force_N > 0)) return text + ".";
-    return text + ", with a strap or bracket rated for " + rated_for(what.hold.force_N) +
-           " or more (it must hold " + at_least_N(what.hold.force_N) +
-           " N sideways at least, without a margin), at its top, " + length(what.hold.height_m) +
-           " above what it stands on.";
+    const safety::DisturbanceKind* kind = safety::find_disturbance_kind(what.hold_against);
+    const std::string holds = at_least_N(what.hold.force_N) + " N sideways at least" +
+                              (kind ? std::string(", ") + kind->words.push : "") +
+                              ", without a margin";
+    const std::string where =
+        "at its top, " + length(what.hold.height_m) + " above what it stands on";
+    if (bolted && !light) return text + ": " + where + ", it must be held against " + holds + ".";
+    const std::string rated = "rated for " + rated_for(what.hold.force_N) + " or more (";
+    if (what.fasten.wall && std::max(object.size_m[0], object.size_m[1]) > one_strap_m)
+        return text + ", with two straps or brackets, at studs of the wall, each " + rated +
+               "together they must hold " + holds + "), " + where + ".";
+    return text + ", with a strap or bracket " + rated + "it must hold " + holds + "), " + where +
+           ".";
 }
 
-std::string advice_sentence(const Object& object, const Suggestion& what) {
+std::string plain_advice(const Object& object, const Suggestion& what) {
     switch (what.kind) {
         case Suggestion::Kind::nothing:
             break;
@@ -264,6 +288,14 @@ std::string advice_sentence(const Object& object, const Suggestion& what) {
     return "";
 }
 
+std::string advice_sentence(const Scene& scene, const Object& object, const Suggestion& what) {
+    std::string text = plain_advice(object, what);
+    if (what.leg_of < 0 || text.empty()) return text;
+    const Object& top = scene.objects[static_cast<std::size_t>(what.leg_of)];
+    return "Look first: this may be a leg of " + numbered_object(top) +
+           ". If it is none: " + io::lower_case(text.substr(0, 1)) + text.substr(1);
+}
+
 }  // namespace
 
 void tell_why(const SolidParts& parts, const ObjectStage& objects,
@@ -279,7 +311,7 @@ void tell_advice(std::span<const Suggestion> suggestions, Scene& scene) {
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
         Object& object = scene.objects[o];
         if (object.grounded) continue;
-        object.advice.sentence = advice_sentence(object, suggestions[o]);
+        object.advice.sentence = advice_sentence(scene, object, suggestions[o]);
         object.advice.action = safety::action_text(scene, object);
     }
 }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <array>
 #include <string>
-#include <utility>
 
 #include "busy.h"
 #include "python.h"
+#include "topple/option_names.h"
 #include "topple/stages.h"
 #include "topple/version.h"
 
@@ -36,8 +35,8 @@ void bind_error(py::module_& module) {
         try {
             if (thrown) std::rethrow_exception(thrown);
         } catch (const Error& error) {
-            py::object made =
-                py::reinterpret_borrow<py::object>(type)(with_own_names(error.what()));
+            py::object made = py::reinterpret_borrow<py::object>(type)(
+                in_words_of(Interface::python, error.what()));
             made.attr("kind") = name_of(error.kind());
             PyErr_SetObject(type, made.ptr());
         }
@@ -85,56 +84,6 @@ void bind_devices(py::module_& module) {
 }
 
 }  // namespace
-
-std::string with_own_names(std::string text) {
-    static constexpr std::array<std::pair<const char*, const char*>, 26> names{
-        {{"--backend", "backend"},
-         {"--voxel", "voxel_m"},
-         {"--unit", "unit_m"},
-         {"--tile", "tile_m"},
-         {"--up", "up"},
-         {"--disturbance", "disturbances"},
-         {"--seed", "seed"},
-         {"--max-memory", "max_memory_bytes"},
-         {"--density", "density_kg_m3"},
-         {"--friction", "friction"},
-         {"--contents", "contents_kg_m3"},
-         {"--walks", "walks"},
-         {"--motion-unit", "motion_unit"},
-         {"--motion-rate", "motion_rate"},
-         {"--motion-up", "motion_up"},
-         {"--accelerogram-unit", "accelerogram_unit"},
-         {"--wind", "wind_m_s"},
-         {"--wind-from", "wind_from_deg"},
-         {"--pga", "pga_m_s2"},
-         {"--tolerable", "tolerable_J"},
-         {"--grouping-time", "grouping_time_s"},
-         {"--octomap", "octomap"},
-         {"--mjcf", "mjcf"},
-         {"--urdf", "urdf"},
-         {"--sdf", "sdf"},
-         {"--usd", "usd"}}};
-    for (const auto& [option, own] : {std::pair{"--unit mm", "unit_m=0.001"},
-                                      {"--unit cm", "unit_m=0.01"},
-                                      {"--unit in", "unit_m=0.0254"}}) {
-        const std::size_t length = std::char_traits<char>::length(option);
-        for (std::size_t at; (at = text.find(option)) != std::string::npos;)
-            text.replace(at, length, own);
-    }
-    const auto in_name = [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; };
-    for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at + 1)) {
-        if (at > 0 && text[at - 1] != ' ' && text[at - 1] != '(') continue;  // in a file's name
-        std::size_t end = at;
-        while (end < text.size() && in_name(text[end])) ++end;
-        for (const auto& [option, own] : names) {
-            if (text.compare(at, end - at, option) == 0) {
-                text.replace(at, end - at, own);
-                break;
-            }
-        }
-    }
-    return text;
-}
 
 PYBIND11_MODULE(_topple, module) {
     module.attr("__version__") = version;

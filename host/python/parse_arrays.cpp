@@ -6,6 +6,7 @@
 
 #include "arrays.h"
 #include "busy.h"
+#include "topple/option_names.h"
 
 namespace topple::python {
 namespace {
@@ -30,7 +31,8 @@ class Caller {
         if (!mine() || stop_) return;
         ask([&] {
             constexpr py::ssize_t callers = 2;  // whose line the warning names
-            if (PyErr_WarnEx(PyExc_RuntimeWarning, with_own_names(line).c_str(), callers) != 0)
+            if (PyErr_WarnEx(PyExc_RuntimeWarning, in_words_of(Interface::python, line).c_str(),
+                             callers) != 0)
                 throw py::error_already_set();
         });
     }
@@ -98,6 +100,7 @@ std::shared_ptr<Parsed> run(const std::shared_ptr<SharedDevice>& device, ParseOp
         throw;
     }
     caller.rethrow();
+    for (std::string& note : out->result.scene.notes) note = in_words_of(Interface::python, note);
     return out;
 }
 

@@ -24,10 +24,6 @@ struct Parsed {
     ParseResult result;
 };
 
-// The library names options as the command line does, "--wind-from": as parse() does,
-// "wind_from_deg".
-std::string with_own_names(std::string text);
-
 void bind_export(py::module_& module);
 void bind_labels(py::module_& module);
 void bind_parse(py::module_& module);

@@ -191,6 +191,8 @@ void bind_items(py::module_& module) {
         .def_readonly("box_middle_m", &Object::box_middle_m)
         .def_readonly("piece_of", &Object::piece_of)
         .def_readonly("piece_probability", &Object::piece_probability)
+        .def_readonly("joint_probability", &Object::joint_probability)
+        .def_readonly("weakest_joint", &Object::weakest_joint)
         .def_readonly("barrier_J", &Object::barrier_J)
         .def_readonly("barrier_error_J", &Object::barrier_error_J)
         .def_readonly("mass_error_kg", &Object::mass_error_kg)
@@ -314,13 +316,7 @@ void bind_result(py::module_& module) {
         .def_property_readonly("up", scene(&Scene::up))
         .def_property_readonly("up_method", scene(&Scene::up_method))
         .def_property_readonly("manhattan_from_input", scene(&Scene::manhattan_from_input))
-        .def_property_readonly("notes",
-                               [](const Parsed& p) {
-                                   std::vector<std::string> out;
-                                   for (const std::string& note : p.result.scene.notes)
-                                       out.push_back(with_own_names(note));
-                                   return out;
-                               })
+        .def_property_readonly("notes", scene(&Scene::notes))
         .def_property_readonly("timings_s",
                                [](const Parsed& p) {
                                    py::dict out;

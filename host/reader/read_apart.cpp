@@ -51,8 +51,7 @@ ScannedMap read_scan_apart(const std::filesystem::path& file, double unit_m,
                     io::path_text(file) + ": such files are read by the program " + name +
                         ", in a process of its own, which was not found beside this one; name its "
                         "folder in the environment variable TOPPLE_READERS, or, for a file that "
-                        "you trust, say --no-isolate "
-                        "(ParseOptions::isolate = false)");
+                        "you trust, say ParseOptions::isolate = false");
     }
     const child::Limits limits = limits_of(file);
     const child::Ended ended =
@@ -60,8 +59,8 @@ ScannedMap read_scan_apart(const std::filesystem::path& file, double unit_m,
     if (!ended.started)
         throw Error(ErrorKind::usage, io::path_text(file) + ": is read by another program, and " +
                                           ended.how +
-                                          "; or, for a file that you trust, say --no-isolate "
-                                          "(ParseOptions::isolate = false)");
+                                          "; or, for a file that you trust, say "
+                                          "ParseOptions::isolate = false");
     try {
         if (ended.answer.whole()) return take_scan(ended.answer);
     } catch (const child::BadAnswer&) {
@@ -71,7 +70,7 @@ ScannedMap read_scan_apart(const std::filesystem::path& file, double unit_m,
                        " within its limits of " + io::bytes_text(limits.memory_bytes) + " and " +
                        std::to_string(limits.cpu_s) +
                        " s; the file is damaged, or of another kind than its name says: write it "
-                       "anew, or, if you trust it, say --no-isolate");
+                       "anew, or, if you trust it, say ParseOptions::isolate = false");
 }
 
 }  // namespace topple::reader

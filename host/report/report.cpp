@@ -278,11 +278,13 @@ Json disturbances_json() {
     static constexpr std::array strengths{"visits", "mean", "speed"};
     auto kinds = Json::array();
     for (const safety::DisturbanceKind* kind : safety::disturbance_kinds()) {
-        const auto& [cause, event, one_event, column, doing, mend, arrows, figure] = kind->words;
+        const auto& [cause, event, one_event, column, doing, mend, push, arrows, figure] =
+            kind->words;
         kinds.push_back({{"name", kind->name},
                          {"cause", cause},
                          {"event", event},
                          {"one_event", one_event},
+                         {"everyday", kind->everyday},
                          {"may_be_left_out", kind->left_out_below_none != nullptr},
                          {"strength", strengths[static_cast<std::size_t>(arrows.strength)]},
                          {"at_tip", arrows.at_tip},

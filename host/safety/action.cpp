@@ -6,6 +6,7 @@
 
 #include "io/text.h"
 #include "safety/largest_risk.h"
+#include "safety/unsafety_category.h"
 
 namespace topple::safety {
 namespace {
@@ -30,6 +31,14 @@ double most_released_J(const Object& o) {
     return most;
 }
 
+// What kills if it comes down all the same, as in an event stronger than this run's: higher than a
+// child and than it is deep, and with enough to free.
+bool tall_and_heavy(const Object& o) {
+    constexpr double tall_m = 1.2;  // set by hand
+    return o.size_m[2] > std::max(tall_m, std::min(o.size_m[0], o.size_m[1])) &&
+           most_released_J(o) >= deadly_J;
+}
+
 }  // namespace
 
 bool upset_by_nothing(const Object& o) {
@@ -50,6 +59,10 @@ std::string action_text(const Scene& scene, const Object& o) {
         if (!advice.empty() || o.unsafety_category.empty()) return advice;
         return "Its risk is below " + tolerated_text(scene) +
                ": if it must not fall all the same, fasten it.";
+    }
+    if (tall_and_heavy(o)) {
+        const std::string upset = upset_by_nothing(o) ? "Nothing" : "Hardly anything";
+        return upset + " in this run upsets it. It is tall and heavy: see that it is fastened.";
     }
     if (advice.empty()) return "No need to act.";
     return "No need to act. To bring its risk below " + tolerated_text(scene) +

@@ -41,7 +41,8 @@ const DisturbanceKind& disturbance_kind(std::string_view name) {
     if (const DisturbanceKind* kind = find_disturbance_kind(name)) return *kind;
     std::vector<std::string> known;
     for (const DisturbanceKind* kind : disturbance_kinds()) known.emplace_back(kind->name);
-    std::string message = "--disturbance " + std::string(name) + ": expected " + listed(known);
+    std::string message =
+        "ParseOptions::disturbances " + std::string(name) + ": expected " + listed(known);
     for (const DisturbanceKind* kind : disturbance_kinds()) {
         const auto& words = kind->words;
         const bool meant = std::ranges::any_of(

@@ -22,6 +22,7 @@ struct DisturbanceWords {
     const char* column;     // its short name above a column of risks
     const char* doing;      // what goes on while its field is made
     const char* mend;       // for what it endangers most and nobody carries away
+    const char* push;       // what a fixing must hold it against
 
     // How its arrows are drawn.
     struct Arrows {

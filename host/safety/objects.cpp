@@ -8,6 +8,7 @@
 
 #include "core/random.h"
 #include "core/scan_gaps.h"
+#include "core/short_number.h"
 #include "physics/landscape.h"
 #include "physics/sliding.h"
 #include "safety/columns.h"
@@ -160,9 +161,9 @@ double tipping_energy(double mass_kg, double height_m, double half_base_m) {
 
 void check_option(const char* name, double value, double least) {
     if (std::isfinite(value) && value >= least) return;
-    throw Error(ErrorKind::usage,
-                "disturbance option " + std::string(name) + " is " + std::to_string(value) +
-                    ", but must be a number of at least " + std::to_string(least));
+    throw Error(ErrorKind::usage, "disturbance option " + std::string(name) + " is " +
+                                      short_number(value) + ", but must be a number of at least " +
+                                      short_number(least));
 }
 
 // A heap of the arrows with the smallest random keys, the largest of these first.

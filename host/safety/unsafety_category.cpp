@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "safety/unsafety_category.h"
 
+#include <algorithm>
 #include <array>
 
 namespace topple::safety {
@@ -26,6 +27,14 @@ Category category(double chance, double energy_J) {
         default:
             return Category::high;
     }
+}
+
+Category CategoryEnds::worst() const {
+    return std::max({lower, measured, higher});
+}
+
+bool CategoryEnds::certain() const {
+    return lower == measured && measured == higher;
 }
 
 Category category(const Risk& risk, double mass_factor) {

@@ -28,10 +28,14 @@ inline constexpr double slight_J = 1, serious_J = 15, deadly_J = 79;
 //     rare       none    low      low
 Category category(double chance, double energy_J);
 
-// The worst category over the disturbances at both ends of what is known: `lower` where barriers
-// are one standard error lower and masses higher, `higher` where it is the other way round.
+// The worst category over the disturbances: as measured, and at both ends of what is known, `lower`
+// where barriers are one standard error lower and masses higher, `higher` where it is the other way
+// round. Rocking is not monotone: what goes over to a wall sooner may fall the other way less
+// often, so that the lower end need not be the worst.
 struct CategoryEnds {
-    Category lower = Category::none, higher = Category::none;
+    Category lower = Category::none, measured = Category::none, higher = Category::none;
+    Category worst() const;
+    bool certain() const;  // all three are the same
 };
 // One disturbance's category, its energy being the mean of what it releases when it makes the
 // object fall.

@@ -114,7 +114,7 @@ void PointSpill::add(const PointCloud& portion, const std::string& source) {
                                 source + ": the first " + std::to_string(points_) +
                                     " points lie in " + std::to_string(bins_.size()) +
                                     " cubes of 5 m, too sparsely for surfaces; if the unit is the "
-                                    "millimetre, say --unit mm");
+                                    "millimetre, say ParseOptions::unit_m = 0.001");
                 }
             }
             open = &bins_[at->second];

@@ -45,6 +45,8 @@ TEST_F(Usage, says_how_to_write_what_has_a_space_in_it) {
                    {"write the list without spaces: human,wind,earthquake"});
     expect_failure(2, {"parse", "plane.xyz", "--pga", "0.3", "g"},
                    {"write it without the space: 0.3g"});
+    expect_failure(2, {"parse", "plane.xyz", "--title", "Room", "12", "--voxel", "0.03"},
+                   {"12", "put a title of several words in quotes, as in \"Room 12\""});
     const Finished other = run({"parse", "plane.xyz", "--voxel", "0.03", "more.xyz"});
     EXPECT_EQ(other.err.find("without"), std::string::npos) << other.err;
 }

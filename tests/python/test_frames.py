@@ -133,7 +133,7 @@ def test_poses_and_principal_points_that_mean_something_else_are_noted(depth, se
     with pytest.warns(RuntimeWarning, match='The poses seem to be in another convention'):
         coarse = INTRINSICS._replace(fx=INTRINSICS.fx / 2, fy=INTRINSICS.fy / 2, cx=INTRINSICS.cx / 2, cy=INTRINSICS.cy / 2)
         notes = of_memory(depth[:, ::2, ::2], device, camera_to_world=flipped, intrinsics=coarse, voxel_m=0.05).notes
-    assert notes[0].startswith('The poses seem to be in another convention') and 'pose @ np.diag([1, -1, -1, 1])' in notes[0]
+    assert notes[0].startswith('The poses seem to be in another convention') and 'columns negated (pose @ np.diag([1, -1, -1, 1])).' in notes[0]
     with warnings.catch_warnings(), pytest.raises(RuntimeWarning):  # at once, and the parse ends
         warnings.simplefilter('error')
         of_memory(depth, device, camera_to_world=flipped)

@@ -281,7 +281,7 @@ def test_errors_of_options_and_devices(points):
         with pytest.raises(topple.Error, match=words) as raised:
             topple.parse(points, **{option: value})
         assert raised.value.kind == ('usage' if words[0] == '^' else 'input')
-    with pytest.raises(topple.Error) as raised:
+    with pytest.raises(topple.Error, match='^backend abacus is unknown') as raised:
         topple.parse(points, device='abacus')
     assert raised.value.kind == 'usage'
     assert 'native' in {d.backend for d in topple.devices() if d.usable}

@@ -234,7 +234,8 @@ TEST(Completion, WhatIsTooLargeToFillIsRefused) {
         FAIL() << "not refused";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::input);
-        EXPECT_NE(std::string(error.what()).find("use --voxel 0."), std::string::npos)
+        EXPECT_NE(std::string(error.what()).find("use ParseOptions::voxel_m = 0."),
+                  std::string::npos)
             << error.what();
     }
 }

@@ -339,7 +339,8 @@ TEST(VoxelScene, RefusesWhatItCannotHold) {
         ADD_FAILURE() << "accepted";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::input);
-        EXPECT_NE(std::string(error.what()).find("--voxel"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("ParseOptions::voxel_m"), std::string::npos)
+            << error.what();
     }
     EXPECT_THROW(VoxelScene({.voxel_m = 0}, {}, {}), Error);
     EXPECT_THROW(VoxelScene({.voxel_m = std::numeric_limits<double>::quiet_NaN()}, {}, {}), Error);

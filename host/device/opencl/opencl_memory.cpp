@@ -21,7 +21,7 @@ OpenClMemory::OpenClMemory(OpenClDevice& device, std::uint64_t bytes, std::strin
         if (!host_) {
             throw Error(ErrorKind::device, "buffer " + name_ + ": the system has no " +
                                                std::to_string(bytes) +
-                                               " bytes left; use a larger --voxel");
+                                               " bytes left; use a larger ParseOptions::voxel_m");
         }
         flags |= CL_MEM_USE_HOST_PTR;
     }

@@ -36,10 +36,11 @@ VulkanMemory::~VulkanMemory() {
 
 std::unique_ptr<Memory> VulkanDevice::allocate(std::uint64_t bytes, const std::string& name) {
     if (bytes > info_.limits.max_allocation_bytes) {
-        throw Error(ErrorKind::device,
-                    "buffer " + name + ": " + std::to_string(bytes) + " bytes are more than the " +
-                        std::to_string(info_.limits.max_allocation_bytes) + " that " + info_.name +
-                        " allocates at once; use a larger --voxel or --backend native");
+        throw Error(
+            ErrorKind::device,
+            "buffer " + name + ": " + std::to_string(bytes) + " bytes are more than the " +
+                std::to_string(info_.limits.max_allocation_bytes) + " that " + info_.name +
+                " allocates at once; use a larger ParseOptions::voxel_m, or the native backend");
     }
     return std::make_unique<VulkanMemory>(*this, bytes, name);
 }

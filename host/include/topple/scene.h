@@ -198,6 +198,11 @@ struct Object {
     // apart; -1: none. And how likely the likeliest of its joints to larger objects is; 0: none.
     std::int32_t piece_of = -1;
     double piece_probability = 0;
+    // The least likely joint at which two parts of it meet (each a twentieth of what of it was
+    // seen, or more), by how likely it is one: about as likely as not it is two things below 0.6. 1
+    // and no primitives where it has one part.
+    double joint_probability = 1;
+    std::array<std::int32_t, 2> weakest_joint{-1, -1};
     // "solid", of the density that was given all through; "closed": furniture that is boards of
     // that density around ParseOptions::contents_kg_m3; or "hollow": a shell, as a correction says.
     std::string mass_model = "solid";

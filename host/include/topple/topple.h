@@ -8,7 +8,8 @@
 /* topple for C, and for what calls C: C99, no other headers of topple.
  *
  * - Functions return TOPPLE_OK or another code of topple_code, and then say why in `status`, which
- *   may be NULL. A message is one line that names the object, the value, the limit and the mend.
+ *   may be NULL. A message is one line that names the object, the value, the limit and the mend,
+ *   and options as the fields here.
  *   Nothing is global, nothing is printed, no exception leaves a function.
  * - Structs with a member `size` grow with the library: set it to sizeof of the struct, or call the
  *   struct's _init where there is one. What lies beyond the caller's size keeps its default.
@@ -187,6 +188,7 @@ typedef struct topple_options {
      * one of both at most. NULL: nothing. */
     const char *corrections_file, *corrections_json;
     const char* cache_file; /* what does not depend on corrections (topple/parse.h); NULL: none */
+    double tile_m;          /* not 0: any cloud file is parsed in blocks (topple/parse.h) */
 } topple_options;
 void topple_options_init(topple_options* options, size_t size);
 
@@ -300,6 +302,10 @@ typedef struct topple_object {
      * NaN for the ground, and what is held by nothing that was seen */
     double support_height_m, center_height_m;
     const double* blow_barrier_Ns; /* blow_barrier_J as impulses, newton seconds */
+    /* the least likely joint at which two parts of it meet: how likely it is one, and its
+     * primitives; 1 and -1 where it has one part. Below 0.6 it is about as likely two things */
+    double joint_probability;
+    int32_t weakest_joint[2];
 } topple_object;
 typedef struct topple_contact {
     size_t size;

@@ -256,6 +256,10 @@ class Object:
     @property
     def piece_probability(self) -> float: ...  # of the likeliest such joint
     @property
+    def joint_probability(self) -> float: ...  # of the least likely joint inside it; 1: none
+    @property
+    def weakest_joint(self) -> list[int]: ...  # its two primitives; -1: none
+    @property
     def barrier_J(self) -> float: ...
     @property
     def barrier_error_J(self) -> float: ...

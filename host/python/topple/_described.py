@@ -50,6 +50,8 @@ _ITEMS = {
         'size_m': 'Its box along the room\'s axes, the third upright, metres.',
         'box_middle_m': '[x, y, z]: the middle of that box, metres; NaN: nothing of it is solid.',
         'piece_of': 'int: the larger object that it is likelier than not a piece of, which grouping left apart from it; -1: none.',
+        'joint_probability': 'How likely the least likely joint at which two parts of it meet is one, 0 to 1; below 0.6 it is about as likely two things.',
+        'weakest_joint': 'list of 2 int: the primitives of that joint; -1, -1: it has one part.',
         'piece_probability': 'How likely the likeliest of its joints to larger objects is, 0 to 1; 0: it has none.',
         'inertia_kg_m2': '(3, 3): tensor about its centre of mass.',
         'footprint_error_m': 'One standard error of where the border of its footing lies, metres.',

@@ -18,7 +18,7 @@ _BY_DISTURBANCE = ('risk_J', 'risk_error_J', 'fall_chance')
 _ITEMS = {
     'objects': ('id', 'name', 'grounded', 'mass_kg', 'mass_error_kg', 'mass_model', 'center_of_mass_m', 'center_of_mass_error_m',
                 'support_height_m', 'center_height_m', 'size_m',
-                'box_middle_m', 'piece_of', 'piece_probability', 'footprint_error_m', 'barrier_J', 'barrier_error_J', 'release_J', 'mode', 'direction', 'unsafety',
+                'box_middle_m', 'piece_of', 'piece_probability', 'joint_probability', 'footprint_error_m', 'barrier_J', 'barrier_error_J', 'release_J', 'mode', 'direction', 'unsafety',
                 'unsafety_category', 'unsafety_certain', 'seen_enough', 'stands_on', 'rests_by', 'rest_probability', 'agreement', 'why', 'advice', 'action'),
     'primitives': ('id', 'object', 'model', 'points', 'solid_voxels', 'volume_m3', 'mass_kg', 'center_of_mass_m', 'name'),
     'contacts': ('a', 'b', 'area_m2', 'normal', 'relation', 'probability'),

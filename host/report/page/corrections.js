@@ -46,9 +46,9 @@ class Corrections {
     return this.of('apart', parts, more).flatMap(one => chunks(this.at(others)).map(from_m => ({...one, from_m})));
   }
 
-  // One step; text: what it says.
-  add(ones, text) {
-    this.list.push({ones, text, isNew: true});
+  // One step; text: what it says; about: {kind, parts, others} that it is said of, others: what they are apart from.
+  add(ones, text, about) {
+    this.list.push({ones, text, about, isNew: true});
     this.saved = false;
     this.changed();
   }

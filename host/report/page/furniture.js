@@ -41,6 +41,14 @@ function mayBeFurniture(scene) {
   return found.filter((one, n) => !found.slice(0, n).some(larger => larger.parts.includes(one.part)));
 }
 
+// Those that are listed, A, B, C, ...: on the page, in print, on the plan and in the printed picture.
+function listedPieces(scene) {
+  if (!scene.furniture) scene.furniture = mayBeFurniture(scene).map((one, n) => ({...one, letter: n < listedFurniture ? String.fromCharCode(65 + n) : ''}));
+  return scene.furniture;
+}
+
+const middleOf = box => box.low.map((value, k) => (value + box.high[k]) / 2);
+
 // "0.40 \u00d7 2.60 \u00d7 1.90 m, at 1.20 E, 3.00 N, 0.00 to 1.90 m high"
 function furnitureText(scene, {box, size_m: size}) {
   return [sizeText({size_m: size}), placeInShort(scene, box)].join(', at ');
@@ -48,13 +56,15 @@ function furnitureText(scene, {box, size_m: size}) {
 
 // On the page: how to tell that it is no building. tick(parts, box): chooses them.
 function fillFurniture(panel, scene, tick) {
-  const found = mayBeFurniture(scene);
+  const found = listedPieces(scene);
   if (!scene.objects.some(object => object.grounded)) return;
-  panel.append(element('h3', {text: 'Not judged: what is grey in the view'}), element('p', {className: 'hint', text:
+  // A photo shows no grey.
+  const where = scene.coloured ? 'in the colours by object' : 'in the view';
+  panel.append(element('h3', {text: `Not judged: what is grey ${where}`}), element('p', {className: 'hint', text:
     'Grey is counted as the building, or as fixed to it. If you see furniture in grey, tick its parts below the view and say \u201ca thing by itself\u201d.' +
     (found.length ? ` ${found.length === 1 ? 'This stands' : 'These stand'} before a wall, and may be furniture:` : '')}));
   if (!found.length) return;
-  panel.append(element('ul', {className: 'furniture'}, found.slice(0, listedFurniture).map(one => element('li', {}, [`${furnitureText(scene, one)} `,
+  panel.append(element('ul', {className: 'furniture'}, found.slice(0, listedFurniture).map(one => element('li', {}, [element('strong', {text: `${one.letter}: `}), `${furnitureText(scene, one)} `,
     element('button', {type: 'button', text: one.parts.length > 1 ? `tick its ${one.parts.length} parts` : 'tick it', onclick: () => tick(one.parts, one.box)})]))),
   ...found.length > listedFurniture ? [element('p', {className: 'hint', text: `And ${found.length - listedFurniture} smaller.`})] : []);
 }

@@ -265,8 +265,8 @@ function preparePrint(scene, state, plan, parts) {
 async function start() {
   const scene = await loadScene();
   scene.boxes = boxesOf(scene);
-  scene.planBox = planBoxOf(scene);
   scene.partBoxes = partBoxesOf(scene);
+  scene.planBox = planBoxOf(scene);
   scene.floor = floorOf(scene, scene.boxes);
   scene.painter = new Painter(scene);
   scene.pictures = new Map();
@@ -296,6 +296,7 @@ async function start() {
       parts.join(id, other);
       document.getElementById('mend-result').scrollIntoView({block: 'nearest'});
     },
+    joined: (id, other) => !!parts.joinOf(id, other),
   };
   const choose = id => {
     state.chosen = id === state.chosen || !scene.objectById.has(id) ? null : id;
@@ -315,12 +316,14 @@ async function start() {
     if (id !== state.chosen) choose(id);
     if (view && scene.boxes.has(id)) view.fly(scene.boxes.get(id));
   };
-  const table = new ObjectTable(document.getElementById('objects'), scene, choose);
-  on.choose = id => {
-    choose(id);
+  // Shift takes all parts of it, as in the view.
+  const pick = (id, event, then) => event && event.shiftKey ? parts.toggleObject(id) : then(id);
+  const table = new ObjectTable(document.getElementById('objects'), scene, (id, event) => pick(id, event, choose));
+  on.choose = (id, event) => pick(id, event, chosen => {
+    choose(chosen);
     document.querySelector('.stage').scrollIntoView({block: 'nearest'});
     if (!panel.hidden) panel.querySelector('h2').focus({preventScroll: true});
-  };
+  });
   fillRisk(document.getElementById('risk'), scene, on);
   fillFurniture(document.getElementById('risk'), scene, (ids, box) => {
     parts.take(ids);

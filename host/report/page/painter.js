@@ -228,7 +228,7 @@ function objectPicture(scene, id) {
   return canvas.toDataURL('image/jpeg', 0.85);
 }
 
-// The whole scene as a picture, with the numbers of the riskiest objects; where there is no WebGL, and on paper.
+// The whole scene as a picture, with the numbers of the riskiest objects and the letters of what may be furniture; where there is no WebGL, and on paper.
 function paintScene(scene, canvas, mode, turn) {
   const {width, height} = canvas;
   const colours = ([, id]) => {
@@ -245,12 +245,11 @@ function paintScene(scene, canvas, mode, turn) {
   context.textAlign = 'center';
   context.lineWidth = 4;
   context.strokeStyle = '#fff';
-  const placed = [];
-  for (const object of riskiest(scene)) {
-    if (object.center_of_mass_m.some(value => value === null)) continue;
-    const text = object.name || String(object.id), at = picture.place(viewPlace(scene, object.center_of_mass_m));
-    const [x, y] = steppedAside(placed, at, context.measureText(text).width + 6, 16 * width / 960);
+  const placed = [], say = (text, place) => {
+    const [x, y] = steppedAside(placed, picture.place(place), context.measureText(text).width + 6, 16 * width / 960);
     context.strokeText(text, x, y);
     context.fillText(text, x, y);
-  }
+  };
+  for (const object of riskiest(scene).filter(one => one.center_of_mass_m.every(value => value !== null))) say(object.name || String(object.id), viewPlace(scene, object.center_of_mass_m));
+  for (const one of listedPieces(scene)) if (one.letter) say(one.letter, middleOf(one.box));
 }

@@ -22,8 +22,9 @@ class PartsPanel {
     addEventListener('beforeunload', event => { if (!this.corrections.saved) event.preventDefault(); });
   }
 
-  // The object whose parts are listed, or null.
+  // The object whose parts are listed, or null. What was ticked of others is so no longer: what is said next is about this one.
   choose(id) {
+    if (id !== null && id !== this.object && [...this.marked].some(part => this.owner.get(part) !== id)) this.marked.clear();
     this.object = id;
     this.fill();
   }
@@ -52,10 +53,45 @@ class PartsPanel {
     this.changed();
   }
 
-  // That two objects are one thing.
+  // That two objects are one thing; where that was said, it is undone.
   join(id, other) {
-    this.take([id, other].flatMap(each => (this.partsOf.get(each) || []).map(part => part.id)));
+    const said = this.joinOf(id, other);
+    if (said) return this.undo(said);
+    this.take(this.partsOfBoth(id, other));
     this.note('one_thing', {}, 'one thing');
+  }
+
+  partsOfBoth(id, other) {
+    return [id, other].flatMap(each => (this.partsOf.get(each) || []).map(part => part.id));
+  }
+
+  // What said that two objects are one thing, if anything did.
+  joinOf(id, other) {
+    const both = this.partsOfBoth(id, other);
+    return this.corrections.list.find(({about}) => about && about.kind === 'one_thing' && about.parts.length === both.length && both.every(part => about.parts.includes(part)));
+  }
+
+  undo(entry) {
+    this.corrections.remove(entry);
+    this.say(`Undone: ${entry.text}.`);
+  }
+
+  // Why something can't be said of parts beside what was said before: as the program would find it; '' where it can.
+  contradiction(kind, parts, others = []) {
+    const some = (a, b) => a.some(part => b.includes(part)), ofBuilding = list => list.some(part => (this.scene.objectById.get(this.owner.get(part)) || {}).grounded);
+    const first = text => `You said ${text}: undo that first.`, alike = (a, b) => a.length === b.length && a.every(part => b.includes(part));
+    for (const {about} of this.corrections.list) {
+      if (!about || !some([...about.parts, ...about.others], parts)) continue;
+      const same = about.kind === kind && alike(about.parts, parts);
+      if (same && ['one_thing', 'fixed', 'not_there', 'apart'].includes(kind)) return 'That is noted already.';
+      if (about.kind === kind && ['mass', 'hollow', 'name'].includes(kind) && some(about.parts, parts)) return first('otherwise of this already');
+      if (about.kind === 'not_there' && some(about.parts, parts)) return first('that this is not there');
+      if (about.kind === 'apart' && (kind === 'one_thing' && some(about.parts, parts) && some(about.others, parts) ||
+        kind === 'fixed' && some(about.parts, parts) && ofBuilding(about.others))) return first('that these are a thing by themselves');
+      if (kind === 'apart' && about.kind === 'one_thing' && some(about.parts, parts) && some(about.parts, others)) return first('that these are one thing');
+      if (kind === 'apart' && about.kind === 'fixed' && some(about.parts, parts) && ofBuilding(others)) return first('that these are fixed to the wall');
+    }
+    return '';
   }
 
   // Objects that are to be one thing and don't hang together as scanned: a warning that names what each touches; '' where they do.
@@ -97,6 +133,13 @@ class PartsPanel {
     return [...pieces, ...whole.length ? [this.namesOf(whole)] : []].join(', and ');
   }
 
+  // What the buttons are for: "object 9", "5 ticked parts of the building"
+  aimText() {
+    const owners = this.ownersOf(this.parts());
+    if (!this.marked.size) return objectName(this.scene, this.object);
+    return `${plural(this.marked.size, 'ticked part')}${owners.length === 1 ? ` of ${objectName(this.scene, owners[0])}` : ''}`;
+  }
+
   ownersOf(parts) {
     return [...new Set(parts.map(part => this.owner.get(part)))].sort((a, b) => a - b);
   }
@@ -121,6 +164,7 @@ class PartsPanel {
       return node;
     };
     box.append(
+      element('p', {id: 'mend-for'}),
       element('div', {className: 'row'}, [
         act('one_thing', 'one thing', () => this.note('one_thing', {}, 'one thing')),
         act('apart', 'a thing by itself', () => this.standAlone()),
@@ -160,8 +204,11 @@ class PartsPanel {
     if (kind === 'one_thing' && this.corrections.told(parts).length < 2) return this.refuse('Choose at least two parts, or two objects, first.');
     if (kind === 'one_thing' && new Set(parts.map(part => this.owner.get(part))).size < 2)
       return this.refuse('These are one thing already: Shift-click the other one, too.');
+    const against = this.contradiction(kind, parts);
+    if (against) return this.refuse(against);
     const told = {...more, was: this.wasText(kind, parts)};
-    this.corrections.add(kind === 'one_thing' ? this.corrections.oneThing(parts, told) : this.corrections.of(kind, this.enoughOf(kind, parts), told), `${capital(meant)}: ${what}`);
+    this.corrections.add(kind === 'one_thing' ? this.corrections.oneThing(parts, told) : this.corrections.of(kind, this.enoughOf(kind, parts), told),
+      `${capital(meant)}: ${what}`, {kind, parts, others: []});
     this.done();
     if (kind === 'one_thing') this.refuse(this.looseText([...new Set(parts.map(part => this.owner.get(part)))]));
   }
@@ -186,8 +233,11 @@ class PartsPanel {
     const rest = this.scene.primitives.filter(part => owners.has(part.object) && !parts.includes(part.id)).map(part => part.id);
     if (!this.corrections.told(rest).length) return this.refuse(`${capital(meant)} is by itself already: choose some of its parts.`);
     if (!this.corrections.told(parts).length) return this.refuse(`Of ${meant} no surface is drawn, by which it could be found again.`);
+    const against = this.contradiction('apart', parts, rest);
+    if (against) return this.refuse(against);
     const told = {was: meant};
-    this.corrections.add([...this.corrections.oneThing(parts, told), ...this.corrections.apart(parts, rest, told)], `${capital(meant)}: a thing by itself`);
+    this.corrections.add([...this.corrections.oneThing(parts, told), ...this.corrections.apart(parts, rest, told)], `${capital(meant)}: a thing by itself`,
+      {kind: 'apart', parts, others: rest});
     // It stays chosen, so that it can be named at once.
     this.done(true);
   }
@@ -213,6 +263,7 @@ class PartsPanel {
     const meant = this.meant(), any = this.parts().length > 0;
     document.getElementById('mend-meant').textContent = !any ? 'Nothing is chosen.'
       : `Chosen: ${meant}${this.marked.size ? '' : ', all of it'}.`;
+    document.getElementById('mend-for').textContent = any ? `For: ${this.aimText()}` : '';
     document.getElementById('mend-clear').hidden = !this.marked.size;
     document.getElementById('mend-note').textContent = '';
     list.hidden = !list.childNodes.length;
@@ -235,13 +286,14 @@ class PartsPanel {
     const {list, saved} = this.corrections, out = document.getElementById('mend-list');
     out.replaceChildren(...list.map(entry => element('li', {}, [entry.text + ' ',
       element('button', {type: 'button', text: 'undo', 'aria-label': `undo: ${entry.text}`, onclick: () => {
-        this.corrections.remove(entry);
-        this.say(`Undone: ${entry.text}.`);
+        this.undo(entry);
         document.getElementById('mend-list-heading').focus();
       }})])));
     document.getElementById('mend-result').hidden = !list.length && saved;
     document.getElementById('mend-list-heading').textContent = plural(list.length, 'correction');
     document.getElementById('mend-command').textContent = this.corrections.command();
+    for (const button of document.querySelectorAll('button[data-join]'))
+      button.textContent = joinText(this.scene, Number(button.dataset.join), this.joinOf(Number(button.dataset.of), Number(button.dataset.join)));
   }
 }
 

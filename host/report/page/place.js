@@ -53,11 +53,10 @@ function partBoxesOf(scene) {
   return boxes;
 }
 
-// The box that the plan shows: of all, and no object that can move lies outside.
+// The box that the plan shows: of all, and no object that can move, nor what may be furniture, lies outside.
 function planBoxOf(scene) {
   const {low, high} = scene.boxes.get(null), out = {low: [...low], high: [...high]};
-  for (const object of scene.objects) {
-    const box = object.grounded ? null : scene.boxes.get(object.id);
+  for (const box of [...scene.objects.map(object => object.grounded ? null : scene.boxes.get(object.id)), ...listedPieces(scene).filter(one => one.letter).map(one => one.box)]) {
     for (let k = 0; box && k < 3; ++k) { out.low[k] = Math.min(out.low[k], box.low[k]); out.high[k] = Math.max(out.high[k], box.high[k]); }
   }
   return out;

@@ -7,13 +7,14 @@ class Plan {
     this.panel = panel;
     this.scene = scene;
     this.visit = visit;
-    this.shown = [...riskiest(scene), ...doubtfulOnes(scene).slice(0, listedDoubts), ...nearlyOnes(scene).slice(0, listedDoubts), ...unseenOnes(scene).slice(0, 2 * listedUnseen)]
+    this.shown = [...riskiest(scene), ...doubtfulOnes(scene).slice(0, listedDoubts), ...nearlyOnes(scene).slice(0, listedDoubts), ...tallOnes(scene).slice(0, listedDoubts), ...unseenOnes(scene).slice(0, 2 * listedUnseen)]
       .filter(object => planPlace(scene, object));
     const {low, high} = scene.planBox;
     this.size = [high[0] - low[0], high[1] - low[1]];
     panel.hidden = !(this.size[0] > 0 && this.size[1] > 0) || !drawnRecords(scene.view).count;
     document.getElementById('plan-note').textContent = 'Seen from above, in metres from the south-west corner. North is one of the room\u2019s own ' +
-      'directions, as in the view; not the earth\u2019s. ' + (this.shown.length ? 'Numbers are those of the objects listed, coloured by category; with a ? where the scan does not show what holds them.' : '');
+      'directions, as in the view; not the earth\u2019s. ' + (this.shown.length ? 'Numbers are those of the objects listed, coloured by category; with a ? where the scan does not show what holds them.' : '') +
+      (listedPieces(scene).length ? ' Letters are pieces of the building that may be furniture.' : '');
   }
 
   paint() {
@@ -48,7 +49,12 @@ class Plan {
     say(left - 5, top - 9, 'start', 'm north');
     svg.append(svgElement('path', {class: 'needle', d: `M${left + wide + 16} ${top + 4}l6 21h-12z`}));
     say(left + wide + 16, top + 1, 'middle', 'N', 'strong');
-    this.numbers(svg, x, y, say);
+    const placed = this.numbers(svg, x, y, say);
+    for (const one of listedPieces(scene).filter(piece => piece.letter)) {
+      const [east, north] = middleOf(one.box).map((value, k) => value - scene.planBox.low[k]), to = steppedAside(placed, [x(east), y(north)], 18, 18);
+      svg.append(svgElement('rect', {class: 'letter', x: to[0] - 8, y: to[1] - 8, width: 16, height: 16}));
+      say(to[0], to[1] + 4.5, 'middle', one.letter, 'number');
+    }
     return svg;
   }
 
@@ -67,6 +73,7 @@ class Plan {
       say(to[0], to[1] + 4.5, 'middle', text, 'number');
       svg.lastChild.style.fill = textOn(colour);
     }
+    return placed;
   }
 
   // As a data URL; null where there are no solids to draw.

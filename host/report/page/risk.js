@@ -34,6 +34,12 @@ function nearlyOnes(scene) {
   return scene.objects.filter(isNearly).sort((a, b) => level(b) - level(a) || b.release_J - a.release_J || a.id - b.id);
 }
 
+// What nothing in this run upsets, but is to be seen fastened, as its action says: what may set free most first.
+function tallOnes(scene) {
+  return scene.objects.filter(object => !object.grounded && object.unsafety_category === 'none' && / tall and heavy: /.test((object.advice || {}).action))
+    .sort((a, b) => mostReleased(b) - mostReleased(a) || a.id - b.id);
+}
+
 // What may move, and nothing was seen to hold it: the largest first.
 function unseenOnes(scene) {
   const bulk = object => Array.isArray(object.size_m) ? object.size_m.reduce((product, side) => product * (side || 0), 1) : 0;
@@ -61,6 +67,18 @@ function missingText(scene) {
   return lines.join(' ');
 }
 
+// Of a scan whose points are so far apart that feet are badly seen: which of the objects listed stand on too little for it; '' of others.
+// The program's note has the limit.
+function coarseText(scene) {
+  const found = scene.notes.map(note => note.match(/^The points are about (\d+) mm apart: .* what stands on less than (\d+) mm /)).find(match => match);
+  if (!found) return '';
+  const narrow = Number(found[2]) / 1000, centimetres = text => `${Math.round(Number(text) / 10)} cm`;
+  const narrowOnes = [...riskiest(scene), ...doubtfulOnes(scene).slice(0, listedDoubts), ...nearlyOnes(scene).slice(0, listedDoubts)]
+    .filter(object => object.size_m && object.size_m[2] > 0 && Math.min(object.size_m[0], object.size_m[1]) < narrow).sort((a, b) => a.id - b.id);
+  return `Coarse scan (points ${centimetres(found[1])} apart): barriers of all things narrower than ${centimetres(found[2])} are doubtful` +
+    `${narrowOnes.length ? `, here ${listed(narrowOnes.map(object => objectName(scene, object.id).replace(/^object /, '')))}` : ''}: a denser scan tells.`;
+}
+
 // "Risk 6.5 ± 1.3 J per walk": the largest.
 function largestRiskText(object) {
   const name = causesOf(object)[0];
@@ -78,9 +96,7 @@ function howSureText(object) {
     : object.agreement > 0.5 ? `one thing in ${share(object.agreement)} of the searches` : `one thing in only ${share(object.agreement)} of the searches: its parts may belong together otherwise`);
   const held = {seen: 'seen', near: 'a gap that the scan left is bridged', leaning: 'it leans on what is beside it', hidden: 'not seen', none: 'not seen'}[object.rests_by];
   if (held && object.seen_enough === false) parts.push('what holds it was not seen');
-  else if (held && typeof object.rest_probability === 'number') {
-    parts.push(`what holds it: ${held}, ${share(object.rest_probability)} likely${object.rest_probability < 0.5 ? ', one of several readings' : ''}`);
-  }
+  else if (held && object.rest_probability < 0.5) parts.push(`what holds it: ${held}, ${share(object.rest_probability)} likely, one of several readings`);
   const ratio = (error, value) => error > 0 && value > 0 ? error / value : 0, mass = ratio(object.mass_error_kg, object.mass_kg);
   if (mass) parts.push(`mass \u00b1 ${share(mass)}`);
   const barrier = ratio(object.barrier_error_J, object.barrier_J);
@@ -91,6 +107,25 @@ function howSureText(object) {
 // "a piece of object 5 (86 % likely)"; "" where it is likelier a thing of its own.
 function pieceText(scene, object) {
   return object.piece_of >= 0 ? `a piece of ${objectName(scene, object.piece_of)} (${twoDigits(100 * object.piece_probability)} % likely)` : '';
+}
+
+// Of one whose barrier can't be told from 0: what would upset it.
+function doubtText(object) {
+  const {push_N: push, push_error_N: error, slide_N: slide} = object.overturning || {}, touch_N = 20, look = 'Push it by hand, and look.';
+  if (object.mode === 'slide' && slide > touch_N) return `How far it may slide on what carries it is too poorly seen to tell: from ${Math.round(slide)} N on it slides. ${look}`;
+  if (object.mode !== 'slide' && push > touch_N) return `Its foot is too poorly seen to tell: between nothing and ${Math.round(push + (error || 0))} N at its top would tip it. ${look}`;
+  return 'As scanned a touch would upset it.';
+}
+
+// Of one that events which have happened before would have upset by these figures, as host/pipeline/advise.h has it; '' of others.
+function stoodText(object) {
+  const often = 0.05, upset = disturbanceKinds.filter(kind => kind.everyday && (object.fall_chance || {})[kind.name] >= often);
+  return upset.length ? 'It stood there though so many pass: its foot was probably badly seen. Push it by hand first.' : '';
+}
+
+// The most that any way out of its place sets free.
+function mostReleased(object) {
+  return Math.max(releaseOf(object) || 0, ...(object.instability || []).map(step => step.S_J || 0));
 }
 
 // What of it is in doubt more than usual.
@@ -110,7 +145,7 @@ function shortMass(scene, object) {
   return massIsGiven(scene, object) ? mass : mass + ({solid: ' if solid', closed: ' if of boards', hollow: ' as a shell'}[object.mass_model] || '');
 }
 
-// on: what its buttons do: choose(id), show(id, other) what it may be a piece of, join(id, other).
+// on: what its buttons do: choose(id, event), show(id, other) what it may be a piece of, join(id, other) and undo that, joined(id, other): whether that was said.
 function riskCard(scene, object, on) {
   const doubtful = isDoubtful(object), unseen = object.seen_enough === false, plain = !doubtful && !unseen && !isNearly(object);
   const words = element('span', {className: 'words'}, [
@@ -123,25 +158,31 @@ function riskCard(scene, object, on) {
   const piece = pieceText(scene, object);
   if (piece) say('doubt', `Look first: it may be ${piece}. If so, say so below this card.`);
   say('mass', placeText(scene, object));
-  if (doubtful) say('from', `As scanned a touch would upset it. ${happensText(scene, object)}`);
+  if (!unseen) say('doubt', stoodText(object));
+  if (doubtful) say('from', `${doubtText(object)} ${happensText(scene, object)}`);
   else if (plain) say('from', upsetText(scene, object));
   if (plain || doubtful) say('from', yearsText(scene, object));
   if (plain) for (const text of [happensText(scene, object), keepClearText(scene, object)]) say('then', text);
   say(isAdvised(object) || unseen ? 'advice' : 'calm', unseen ? 'Go and look what holds it.' : object.advice.action);
   if (plain) say('then figures', overturningText(object));
-  const item = element('button', {type: 'button', className: 'item', onclick: () => on.choose(object.id)}, [words]);
+  const item = element('button', {type: 'button', className: 'item', onclick: event => on.choose(object.id, event)}, [words]);
   const picture = pictureOf(scene, object.id);
   if (picture) item.prepend(picture);
   item.dataset.object = object.id;
   return element('div', {className: 'card'}, [item, ...pieceButtons(scene, object, on)]);
 }
 
+function joinText(scene, other, joined) {
+  return joined ? 'noted, undo' : `one thing with ${objectName(scene, other)}`;
+}
+
 // To say that it is one thing with what it may be a piece of, and to see that.
 function pieceButtons(scene, object, on) {
   if (!(object.piece_of >= 0)) return [];
   const other = object.piece_of, name = objectName(scene, other);
-  return [element('p', {className: 'row piece'}, [
-    element('button', {type: 'button', text: `one thing with ${name}`, 'data-join': other, onclick: () => on.join(object.id, other)}),
+  const join = element('button', {type: 'button', text: joinText(scene, other, on.joined(object.id, other)), 'data-join': other, onclick: () => on.join(object.id, other)});
+  join.dataset.of = object.id;
+  return [element('p', {className: 'row piece'}, [join,
     element('button', {type: 'button', className: 'link', text: `show ${name}`, 'data-show': other, onclick: () => on.show(object.id, other)})])];
 }
 
@@ -150,7 +191,8 @@ function fillRisk(panel, scene, on) {
   const movable = scene.objects.filter(object => !object.grounded).length;
   panel.append(element('h2', {text: 'What is at risk, and what to do'}));
   for (const note of scene.notes.filter(text => /left out, as for/.test(text))) panel.append(element('p', {className: 'hint', text: note}));
-  const missing = missingText(scene);
+  const coarse = coarseText(scene), missing = missingText(scene);
+  if (coarse) panel.append(element('p', {className: 'warning', text: coarse}));
   if (missing) panel.append(element('p', {className: 'warning', text: missing}));
   if (!worst.length) {
     panel.append(element('p', {className: 'hint', text: !movable ? 'No object was found that could fall.'
@@ -170,13 +212,18 @@ function fillLooks(panel, scene, doubtful, on) {
   if (doubtful.length || nearly.length) panel.append(element('h3', {text: 'To be looked at'}));
   if (doubtful.length) {
     panel.append(element('p', {className: 'hint', text:
-      `As scanned, ${plural(doubtful.length, 'more object')} at risk would fall at the slightest push, and yet stood there: the scan hardly ` +
-      'shows what holds them, or they stand on edge.'}));
+      `Of ${plural(doubtful.length, 'more object')} at risk the scan hardly shows what holds ${doubtful.length === 1 ? 'it' : 'them'}, or ` +
+      `${doubtful.length === 1 ? 'it stands' : 'they stand'} on edge: the least push that upsets ${doubtful.length === 1 ? 'it' : 'them'} can\u2019t be told from nothing.`}));
     cards(doubtful, listedDoubts);
   }
   if (nearly.length) {
     panel.append(element('p', {className: 'hint', text: `${doubtful.length ? 'And ' : ''}${plural(nearly.length, 'object')} that nothing upsets as measured, but might:`}));
     cards(nearly, listedDoubts);
+  }
+  const tall = tallOnes(scene);
+  if (tall.length) {
+    panel.append(element('h3', {text: 'Tall and heavy: see that it is fastened'}), element('p', {className: 'hint', text: 'Nothing in this run upsets these.'}),
+      objectLinks(scene, tall.map(object => [object.id, sizeText(object)]), on.choose));
   }
   if (!unseen.length) return;
   panel.append(element('h3', {text: 'The scan does not show what holds these: go and look'}),

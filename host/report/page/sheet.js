@@ -3,12 +3,13 @@
 
 // The first page on paper: what to do, with boxes to tick, in words for whoever walks through the room with it.
 
-function sheetLine(scene, object, todo, more = []) {
+// shown: with its picture.
+function sheetLine(scene, object, todo, more = [], shown = true) {
   const what = [sizeText(object), placeInShort(scene, scene.boxes.get(object.id))].filter(text => text).join(', at ');
   const badge = object.unsafety_category ? categoryText(object) : 'not known';
-  const picture = pictureOf(scene, object.id);
+  const picture = shown && pictureOf(scene, object.id);
   return element('li', {}, [element('span', {className: 'box'}), ...picture ? [picture] : [], element('div', {}, [
-    element('strong', {text: `${capital(objectName(scene, object.id))}${object.name ? ` (object ${object.id})` : ''}, ${badge}: `}), todo,
+    element('strong', {text: `${capital(objectName(scene, object.id))}${object.name ? ` (object ${object.id})` : ''}, ${badge}: `}), `${todo} `,
     element('small', {text: [what, ...more].filter(text => text).map(text => text.replace(/[.;]$/, '')).join('. ') + '.'})])]);
 }
 
@@ -23,10 +24,10 @@ function fixedLine(scene, one) {
 
 // What is not judged, for whoever knows what is furniture.
 function greyLine(scene) {
-  const found = mayBeFurniture(scene);
-  return element('li', {}, [element('span', {className: 'box'}), element('div', {}, [element('strong', {text: 'Grey in the picture is not judged. '}),
-    'Is there a shelf or cabinet among it? Check that it is screwed to the wall.',
-    element('small', {text: found.length ? `These pieces of the building stand before a wall, and may be furniture: ${found.slice(0, listedFurniture).map(one => furnitureText(scene, one)).join('; ')}` +
+  const found = listedPieces(scene);
+  return element('li', {}, [element('span', {className: 'box'}), element('div', {}, [element('strong', {text: 'What is counted as the building is not judged. '}),
+    'Is there a shelf or cabinet among it? Check that it is screwed to the wall. ',
+    element('small', {text: found.length ? `These pieces of the building stand before a wall, and may be furniture: ${found.slice(0, listedFurniture).map(one => `${one.letter}: ${furnitureText(scene, one)}`).join('; ')}` +
       `${found.length > listedFurniture ? `; and ${found.length - listedFurniture} smaller` : ''}.` : ''})])]);
 }
 
@@ -42,6 +43,24 @@ const slight_J = 1, serious_J = 15, deadly_J = 79;
 // What such an energy does.
 function severityText(joules) {
   return joules >= deadly_J ? 'can kill' : joules >= serious_J ? 'injures badly' : joules >= slight_J ? 'injures slightly' : 'harmless';
+}
+
+function setsFreeText(object) {
+  const joules = mostReleased(object);
+  return joules > 0 ? `It may set free up to ${number(twoDigits(joules), 'J')}: ${severityText(joules)}` : '';
+}
+
+// What to buy for it: "brackets: 2, at 1.7 m"; '' where none are told.
+function bracketText(object) {
+  const {sentence = '', hold_N: force, hold_height_m: height} = object.advice;
+  return force > 0 && / strap| bracket/.test(sentence) ? `Brackets: ${/ two straps /.test(sentence) ? 2 : 1}, at ${metres(height)}` : '';
+}
+
+// The note on how little floor people walk on, where nothing but walks upsets what comes first.
+function fewWalksText(scene) {
+  const first = riskiest(scene)[0];
+  if (!first || causesOf(first).join() !== 'human') return '';
+  return scene.notes.find(note => /^People walk on only /.test(note)) || '';
 }
 
 function sheetYears(scene, object) {
@@ -60,22 +79,26 @@ function fillSheet(scene) {
   const act = riskiest(scene).filter(isAdvised), calm = riskiest(scene).filter(object => !isAdvised(object) && /medium|high/.test(object.unsafety_category));
   const list = (title, lines, left) => lines.length ? [node('h2', title), element('ol', {className: 'todo'}, lines),
     ...left > 0 ? [node('p', `And ${plural(left, 'more object')}: see the pages that follow.`, 'hint')] : []] : [];
-  const doubtful = doubtfulOnes(scene), nearly = nearlyOnes(scene), unseen = unseenOnes(scene);
+  const doubtful = doubtfulOnes(scene), nearly = nearlyOnes(scene), unseen = unseenOnes(scene), tall = tallOnes(scene);
   const look = piece => piece && `first look whether it is ${piece}, which is to be fastened as a whole then. `;
-  const doing = object => sheetLine(scene, object, look(pieceText(scene, object)) + object.advice.action, [dangerText(scene, object), sheetYears(scene, object)]);
-  const looks = [...doubtful.slice(0, listedDoubts).map(object => sheetLine(scene, object, 'look whether it stands firm: as scanned a touch would upset it.', [sheetYears(scene, object)])),
-    ...nearly.slice(0, listedDoubts).map(object => sheetLine(scene, object, object.advice.action)),
-    ...calm.map(object => sheetLine(scene, object, object.advice.action, [dangerText(scene, object)]))];
-  const holds = unseen.slice(0, listedUnseen).map(object => sheetLine(scene, object, 'go and look what holds it.'));
+  const stood = object => stoodText(object) && `${stoodText(object)} `;
+  const doing = object => sheetLine(scene, object, look(pieceText(scene, object)) + stood(object) + object.advice.action, [bracketText(object), dangerText(scene, object), sheetYears(scene, object)]);
+  // What sets most free first.
+  const looks = [...doubtful.slice(0, listedDoubts).map(object => [object, `look whether it stands firm. ${doubtText(object)}`, [setsFreeText(object), sheetYears(scene, object)]]),
+    ...[...nearly.slice(0, listedDoubts), ...tall.slice(0, listedDoubts)].map(object => [object, object.advice.action, []]),
+    ...calm.map(object => [object, object.advice.action, [dangerText(scene, object)]])]
+    .sort(([a], [b]) => mostReleased(b) - mostReleased(a) || a.id - b.id).map(([object, todo, more]) => sheetLine(scene, object, todo, more, false));
+  const holds = unseen.slice(0, listedUnseen).map(object => sheetLine(scene, object, 'go and look what holds it.', [], false));
   const kinds = disturbanceKinds.filter(kind => scene.disturbances.includes(kind.name));
   sheet.replaceChildren(
     node('p', 'This is no safety certificate. What follows was estimated from one scan: what was not seen is inferred, masses and friction are guessed, and what ' +
       'belongs together may have been told apart wrongly. Look before you act, and before you rely on it.', 'certificate'),
+    ...[coarseText(scene), fewWalksText(scene)].filter(text => text).map(text => node('p', text, 'warning')),
     ...list('To do, from the top', act.map(doing), 0),
     ...!act.length ? [node('p', 'Nothing was found that has to be fastened or moved.')] : [],
     ...list('Already fixed: check the straps', (scene.corrections || []).filter(one => one.do === 'fixed' && one.held !== false).map(one => fixedLine(scene, one)), 0),
     ...scene.objects.some(object => object.grounded) ? list('Not judged', [greyLine(scene)], 0) : [],
-    ...list('To be looked at', looks, doubtful.length + nearly.length + calm.length - looks.length),
+    ...list('To be looked at', looks, doubtful.length + nearly.length + tall.length + calm.length - looks.length),
     ...list('The scan does not show what holds these: go and look', holds, unseen.length - holds.length),
     node('p', `Reckoned with: ${listed(kinds.map(kind => oneEventText(scene, kind))) || 'nothing'}.${scene.below_hazard.length ? ` \u201cAt most\u201d: ${curveText(scene)}.` : ''} Places are in metres east (E) of the plan\u2019s left edge and north (N) of its lower edge. A joule (J) lifts 1 kg by 10 cm; what lands with less than ${slight_J} J is harmless, from ${serious_J} J on it injures badly, from ${deadly_J} J on it can kill. ` +
       'Straps must hold what is said at least: no safety margin is in it. ?: it may be less, or a piece of another thing.', 'hint'));

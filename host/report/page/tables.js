@@ -55,8 +55,8 @@ function riskError(object, name) {
 function uncertainText(object) {
   if (object.rest_probability < 0.5) return 'how it stands is one of several readings of the scan';
   if ((object.overturning || {}).tilt_deg < 3) return 'it stands, although the slightest lean would upset it by these figures';
-  if ((object.fall_chance || {}).human >= 0.05) return 'it stands, although walks like those before would have upset it by these figures';
-  return 'its errors, or what it may be a piece of, leave a lower one open';
+  if (stoodText(object)) return 'it stands, although walks like those before would have upset it by these figures';
+  return object.unsafety_category === 'none' ? 'it may be a piece of another thing, or the scan hardly shows what holds it' : 'its errors, or what it may be a piece of, leave a lower one open';
 }
 
 // The category, with a question mark where the errors leave it open.
@@ -67,7 +67,10 @@ function categoryText(object) {
 // Joules per event, their error, and the chance per event that it falls.
 function riskCell(object, name) {
   const risk = object.risk_J[name];
-  if (!(risk > 0)) return [number(risk)];
+  if (!(risk > 0)) {
+    const open = isNearly(object) && riskError(object, name) > 0;
+    return [number(risk), ...open ? [element('small', {text: `if its foot is smaller up to ${number(mostReleased(object), 'J')}`})] : []];
+  }
   const error = riskError(object, name), chance = (object.fall_chance || {})[name];
   const cell = [number(risk)];
   if (error !== undefined && error !== null) cell.push(element('span', {className: 'pm', text: ` \u00b1 ${error < risk / 1000 ? '0' : twoDigits(error)}`}));
@@ -111,7 +114,9 @@ class ObjectTable {
       const cells = this.columns.map(column => element('td', {className: column.text ? 'text' : ''},
         column.cell ? column.cell(object) : [number(column.number ? column.number(object) : column.value(object))]));
       const minor = object.grounded || object.unsafety_category === 'none';
-      const row = element('tr', {className: minor ? 'minor' : '', onclick: () => choose(object.id)}, cells);
+      const row = element('tr', {className: minor ? 'minor' : '', onclick: event => choose(object.id, event)}, cells);
+      // Shift-click takes parts, and no text.
+      row.addEventListener('mousedown', event => { if (event.shiftKey) event.preventDefault(); });
       this.rows.set(object.id, row);
     }
     this.sort(this.columns.length - 1, -1);
@@ -176,7 +181,7 @@ function figuresOf(scene, object) {
   }
   if (!object.grounded && object.unsafety_category) {
     pairs.push([element('span', {}, [term('category', 'Category'), ', by which to act']),
-      object.unsafety_category + (object.unsafety_certain ? '' : `, or lower: ${uncertainText(object)}`)]);
+      object.unsafety_category + (object.unsafety_certain ? '' : `, ${object.unsafety_category === 'none' ? 'but not certain' : 'or lower'}: ${uncertainText(object)}`)]);
   }
   if (!object.grounded) {
     pairs.push([element('span', {}, [term('unsafety', 'Unsafety'), ', 1 to 10 within this scene']), object.unsafety === null ? '\u2013' : object.unsafety.toFixed(1)]);
@@ -209,6 +214,8 @@ function showObject(panel, scene, id, choose, visit, acts) {
   if (picture) panel.append(picture);
   const say = (text, className = 'why') => { if (text) panel.append(element('p', {className, text})); };
   if (!object.grounded) say(upsetText(scene, object));
+  if (isDoubtful(object)) say(doubtText(object));
+  if (object.seen_enough !== false) say(stoodText(object));
   if (fallKnown(object)) say(happensText(scene, object));
   say(keepClearText(scene, object), 'clear');
   if (!object.grounded && object.unsafety_category !== undefined) say(object.advice.action, isAdvised(object) ? 'advice' : 'why');

@@ -175,8 +175,8 @@ function hitsText(object) {
   if (!(fall.hits_J > 0)) return '';
   const joules = value => number(twoDigits(value), 'J');
   const people = 100 * fall.people_share, stopped = fall.leans_on >= 0 && fall.hits_J < 0.9 * releaseOf(object);
-  // Risk and category are of what is not stopped.
-  const energy = joules(fall.hits_J) + (stopped ? `, and ${joules(releaseOf(object))} if that gives way` : '');
+  // Risk and category are of what is not stopped, and of all ways that events upset it.
+  const energy = stopped ? `${joules(fall.hits_J)}, and ${joules(releaseOf(object))} if that gives way` : joules(releaseOf(object) || fall.hits_J);
   if (typeof fall.people_share !== 'number') return ` It would land with ${energy}.`;
   const who = people <= 0 ? 'nobody passes who walks' : `${people < 0.5 ? 'less than 1' : Math.round(people)} of 100 people pass who walk`;
   return ` It would land where ${who} through the room, with ${energy}.`;
@@ -188,7 +188,8 @@ function happensText(scene, object) {
   const fall = object.fall;
   const way = wayOf(scene, fall.lands_m.map((value, k) => value - (object.center_of_mass_m[k] || 0)));
   const to = way ? ` to the ${way}` : '';
-  const verb = object.mode === 'tip' ? `It tips over${to}` : object.mode === 'slide' ? `It slides off${to}` : `It comes down${to}`;
+  const flat = object.mode === 'tip' && !(fall.leans_on >= 0) && !(fall.drop_m > 0);
+  const verb = flat ? `It falls flat${to}` : object.mode === 'tip' ? `It tips over${to}` : object.mode === 'slide' ? `It slides off${to}` : `It comes down${to}`;
   const goes = fall.takes_along.length, end = goes ? ` and takes ${objectList(fall.takes_along)} along.` : '.';
   const against = scene.objectById.get(fall.leans_on);
   const how = against ? `, against ${against.grounded ? 'a wall or what is fixed to it' : objectName(scene, against.id)}${goes ? ',' : ''}` :

@@ -26,6 +26,7 @@ const DisturbanceKind& earthquake_kind() {
                   .column = "quake",
                   .doing = "shaking the ground",
                   .mend = "Fasten it to the wall or to what carries it",
+                  .push = "the shaking of an earthquake",
                   .arrows = {.strength = DisturbanceWords::Arrows::Strength::speed,
                              .at_tip = false,
                              .below_things = true,

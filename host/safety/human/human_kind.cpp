@@ -12,6 +12,7 @@ const DisturbanceKind& human_kind() {
                   .column = "walk",
                   .doing = "walking people through the room",
                   .mend = "Keep the way past it clear, or fasten it",
+                  .push = "the push of a person who walks into it",
                   // Where as many come as go, the mean of their speeds is small.
                   .arrows = {.strength = DisturbanceWords::Arrows::Strength::visits,
                              .at_tip = false,

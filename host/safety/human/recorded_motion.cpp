@@ -7,6 +7,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/short_number.h"
 #include "safety/directions.h"
 #include "safety/human/body_parts.h"
 #include "safety/human/human_field.h"
@@ -256,7 +257,7 @@ Recordings recordings_of(const HumanOptions& options, std::vector<std::string>& 
         if (visits == 0) {
             refuse_motion(*motion,
                           "no limb was recorded with both of its ends, between the floor and " +
-                              std::to_string(options.body_height_m) + " m above it");
+                              short_number(options.body_height_m) + " m above it");
         }
         notes.insert(notes.end(), motion->notes.begin(), motion->notes.end());
         if (noise > 0) {

@@ -12,6 +12,7 @@ const DisturbanceKind& wind_kind() {
                   .column = "wind",
                   .doing = "blowing from all sides",
                   .mend = "Fasten it to the wall or to what carries it",
+                  .push = "the push of the wind",
                   .arrows = {.strength = DisturbanceWords::Arrows::Strength::mean,
                              .at_tip = true,
                              .below_things = false,

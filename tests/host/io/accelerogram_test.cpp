@@ -72,7 +72,7 @@ TEST_F(Accelerograms, UnitsOfTheHeaderAndOfTheOption) {
     }
     EXPECT_EQ(read(rows).notes.size(), 1u);
     EXPECT_DOUBLE_EQ(read(rows).m_s2[0], 0.980665);
-    refused("# cm/s2, 1 g = 980.665 cm/s2\n" + rows, {"several units", "--accelerogram-unit"});
+    refused("# cm/s2, 1 g = 980.665 cm/s2\n" + rows, {"several units", "acceleration_unit_m_s2()"});
     EXPECT_EQ(read("# cm/s2, not g\n" + rows, 0.01).notes.size(), 0u);
 }
 
@@ -128,7 +128,7 @@ TEST_F(Accelerograms, FaultsAreNamedWithTheirPlaceAndMend) {
             {"line 4", "0.09", "0.07 s", "equally"});
     refused("0 0\n0.01 0\n", {"no acceleration"});
     refused("0 0.1\n10 0\n", {"10 s apart", "0.5 s", "seconds"});
-    refused("# gal\n0 20000\n0.01 0\n", {"20.39", "limit of 10 g", "--accelerogram-unit"});
+    refused("# gal\n0 20000\n0.01 0\n", {"20.39", "limit of 10 g", "acceleration_unit_m_s2()"});
     refused("0 3.13\n0.01 0\n", {"3.13 g", "no unit", "limit of 3 g", "m/s2"});
     EXPECT_EQ(read("0 3.13\n0.01 0\n", 1.0).m_s2[0], 3.13);
     refused(std::string("0 1\0 1", 6), {"neither JSON nor text"});

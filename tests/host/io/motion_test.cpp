@@ -94,7 +94,7 @@ TEST_F(Motion, SaysWhatIsWrong) {
     EXPECT_NE(refused("a.csv", "a.x,a.y,a.z\n1,1,1\n1,1\n").find("2 columns"), std::string::npos);
     std::string still = "l_hip.x l_hip.y l_hip.z\n";
     for (int f = 0; f < 99; ++f) still += "1 1 1\n";
-    EXPECT_NE(refused("a.csv", still).find("--motion-rate"), std::string::npos);
+    EXPECT_NE(refused("a.csv", still).find("MotionFileOptions::rate_hz"), std::string::npos);
     MotionFileOptions options;
     options.rate_hz = 100;
     EXPECT_NE(refused("a.csv", still, options).find("size of the body"), std::string::npos);
@@ -111,9 +111,11 @@ TEST_F(Motion, OptionsThatMakeNoSenseAreRefusedByName) {
             return std::string(error.what());
         }
     };
-    EXPECT_EQ(wrong({0, {}, {}}), "--motion-unit 0: expected a number above 0");
-    EXPECT_EQ(wrong({{}, HUGE_VAL, {}}), "--motion-rate inf: expected a number above 0");
-    EXPECT_EQ(wrong({{}, {}, Vec3{0, 0, 0}}), "--motion-up: expected three numbers, not all zero");
+    EXPECT_EQ(wrong({0, {}, {}}), "MotionFileOptions::unit_m 0: expected a number above 0");
+    EXPECT_EQ(wrong({{}, HUGE_VAL, {}}),
+              "MotionFileOptions::rate_hz inf: expected a number above 0");
+    EXPECT_EQ(wrong({{}, {}, Vec3{0, 0, 0}}),
+              "MotionFileOptions::up: expected three numbers, not all zero");
 }
 
 }  // namespace

@@ -303,7 +303,7 @@ TEST_F(Ply, notes_what_looks_like_millimetres) {
     const auto millimetres = read_cloud(write("a.ply", text + "0 0 0\n4000 2500 3000\n"));
     ASSERT_EQ(millimetres.notes.size(), 1u);
     EXPECT_NE(millimetres.notes[0].find("4000 m"), std::string::npos);
-    EXPECT_NE(millimetres.notes[0].find("--unit mm"), std::string::npos);
+    EXPECT_NE(millimetres.notes[0].find("ParseOptions::unit_m = 0.001"), std::string::npos);
     const auto shifted = read_cloud(write("a.ply", text + "500000 0 0\n500004 2 3\n"));
     ASSERT_EQ(shifted.notes.size(), 1u);
     EXPECT_NE(shifted.notes[0].find("offset"), std::string::npos);

@@ -17,7 +17,7 @@ using test::Solid;
 constexpr double grid_m = 0.02, edge_m = 0.3, inside_m = 0.15, middle_m = 1, summit_m = 2;
 
 Swept falling(const std::vector<Solid>& others, const HiddenWalls& walls = {},
-              const std::vector<bool>& stops = {}) {
+              const std::vector<bool>& stops = {}, std::span<const std::int32_t> along = {}) {
     std::vector<Solid> all{{0, box({0, 0, 0}, {edge_m, 0.6, summit_m})},
                            {1, box({-1, -1, -0.1}, {4, 2, 0})}};
     all.insert(all.end(), others.begin(), others.end());
@@ -25,8 +25,8 @@ Swept falling(const std::vector<Solid>& others, const HiddenWalls& walls = {},
     Candidate body;
     body.primitives = {0};
     body.body.center = {edge_m - inside_m, 0.3, middle_m};
-    return sweep_over_edge(cells, CellColumns(cells), walls, body, 0, {1, 0, 0}, inside_m, summit_m,
-                           stops);
+    return sweep_over_edge(cells, CellColumns(cells), walls, body, along, 0, {1, 0, 0}, inside_m,
+                           summit_m, stops);
 }
 
 TEST(FallSweep, WithRoomItLiesOnItsSide) {
@@ -50,6 +50,13 @@ TEST(FallSweep, AWallStopsItsTop) {
                     2 * grid_m);
         EXPECT_LT(swept.center[0], wall);
     }
+}
+
+TEST(FallSweep, WhatGoesWithItIsNoStop) {
+    const std::int32_t along[] = {2};
+    const std::vector<Solid> hat{{2, box({0.2, 0, 1.9}, {0.7, 0.6, 2.2})}};
+    EXPECT_TRUE(falling(hat).stopped);
+    EXPECT_FALSE(falling(hat, {}, {}, along).stopped);
 }
 
 TEST(FallSweep, ATableHoldsItUp) {

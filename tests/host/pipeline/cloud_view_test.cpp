@@ -287,7 +287,8 @@ TEST(CloudView, AdviceIsOfItsOwnOptions) {
         }
     };
     const std::string large = said(room.cloud);
-    EXPECT_NE(large.find("of max_memory_bytes: allow that much, or use a larger voxel_m"),
+    EXPECT_NE(large.find("of ParseOptions::max_memory_bytes: allow that much, or use a larger "
+                         "ParseOptions::voxel_m"),
               std::string::npos)
         << large;
     EXPECT_EQ(large.find("--"), std::string::npos) << large;

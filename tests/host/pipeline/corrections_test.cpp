@@ -217,10 +217,14 @@ TEST_F(CorrectedRoom, MayHaveLessOfABuilding) {
     EXPECT_TRUE(object_at(scene, on_floor).grounded);
     EXPECT_FALSE(object_at(scene, on_east).grounded);
     EXPECT_THAT(object_at(scene, on_east).corrected, ElementsAre(1));
-    // Nor can it be fixed to what it is apart of.
-    const Scene both = parsed({apart(on_east, on_floor), correction(Kind::fixed, {on_east})}).scene;
+    // Nor can it be fixed to what it is apart of: a reason that holds for both parts is told once.
+    const Scene both = parsed({apart(on_east, on_floor), apart(on_crate, on_floor),
+                               correction(Kind::one_thing, {on_east, on_crate}),
+                               correction(Kind::fixed, {on_east, on_crate})})
+                           .scene;
     EXPECT_FALSE(object_at(both, on_east).grounded);
-    EXPECT_THAT(both.corrections[1].outcome, HasSubstr("correction 1"));
+    EXPECT_EQ(both.corrections[3].outcome,
+              "correction 1 keeps a part of its object apart from the building");
     const Scene things = parsed({apart(on_crate, on_box), correction(Kind::fixed, {on_crate}),
                                  correction(Kind::fixed, {on_box})})
                              .scene;

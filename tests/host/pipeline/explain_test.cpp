@@ -157,5 +157,43 @@ TEST(Explain, straps_are_told_by_what_they_carry) {
     EXPECT_EQ(told(3), "Fasten it to the wall or to what carries it.");
 }
 
+// What one asks before one fastens it: against what, to what, and with how many brackets.
+TEST(Explain, a_fixing_is_told_with_its_reason_and_what_it_goes_to) {
+    Scene scene;
+    scene.objects.resize(3);
+    std::vector<Suggestion> suggestions(3);
+    for (std::size_t o = 0; o < 3; ++o) {
+        scene.objects[o].id = static_cast<std::int32_t>(o);
+        scene.objects[o].mass_kg = 20;
+        scene.objects[o].risk_J = {{"earthquake", 1}};
+        scene.objects[o].size_m = {0.4, 1.9, 1.7};
+        suggestions[o].kind = Suggestion::Kind::fix;
+        suggestions[o].hold = {154, 1.7};
+        suggestions[o].hold_against = "human";
+    }
+    suggestions[1].fasten = {.wall = false, .floor = true};
+    scene.objects[2].mass_kg = 2;
+    suggestions[2].leg_of = 1;
+    tell_advice(suggestions, scene);
+    const auto told = [&](std::size_t o) { return scene.objects[o].advice.sentence; };
+    EXPECT_EQ(told(0),
+              "Fasten it to the wall or to what carries it, with two straps or brackets, at studs "
+              "of the wall, each rated for 20 kg or more (together they must hold 154 N sideways "
+              "at least, the push of a person who walks into it, without a margin), at its top, "
+              "1.7 m above what it stands on.");
+    EXPECT_EQ(told(1),
+              "Bolt it to the floor, keep people away, or take it out: at its top, 1.7 m above "
+              "what it stands on, it must be held against 154 N sideways at least, the push of a "
+              "person who walks into it, without a margin.");
+    EXPECT_TRUE(told(2).starts_with(
+        "Look first: this may be a leg of object 1. If it is none: fasten it, with two straps"))
+        << told(2);
+    // On a table, away from walls.
+    suggestions[1].fasten = {.wall = false, .floor = false};
+    tell_advice(suggestions, scene);
+    EXPECT_TRUE(told(1).starts_with("Fasten it to what carries it, with a strap or bracket rated"))
+        << told(1);
+}
+
 }  // namespace
 }  // namespace topple

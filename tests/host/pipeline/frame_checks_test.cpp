@@ -59,7 +59,7 @@ TEST(FrameChecks, PosesOfAnotherConvention) {
     EXPECT_EQ(note(false, ScanOrigin::frames_folder), "");
     EXPECT_THAT(note(true, ScanOrigin::frames_folder),
                 AllOf(HasSubstr("OpenGL"), HasSubstr("write into the file of poses"),
-                      HasSubstr("pose @ np.diag([1, -1, -1, 1])")));
+                      HasSubstr("each pose with its second and third columns negated.")));
     EXPECT_THAT(note(true, ScanOrigin::frames_in_memory), HasSubstr("give as camera_to_world"));
     EXPECT_THAT(note(false, ScanOrigin::frames_folder, true),
                 AllOf(HasSubstr("The frames contradict each other"), HasSubstr("in their order"),

@@ -170,9 +170,11 @@ TEST_F(FramesViews, EndWhereTheyAreCancelledOrWouldTakeTooMuch) {
          {std::pair{1u << 20, "frames: to fuse 6 depth frames takes at least"},
           {63'000'000u,
            "frames: the surfaces of 6 depth frames take more than the 60.1 MiB of "
-           "max_memory_bytes; "
+           "ParseOptions::max_memory_bytes; "
            "allow more, or give fewer frames; at the depth_scale of the intrinsics, 1000, the "},
-          {270u << 20, " of max_memory_bytes: allow that much, or use a larger voxel_m"}}) {
+          {270u << 20,
+           " of ParseOptions::max_memory_bytes: allow that much, or use a larger "
+           "ParseOptions::voxel_m"}}) {
         options = quick();
         options.max_memory_bytes = bytes;
         try {

@@ -117,6 +117,21 @@ TEST_F(Landings, WhatTheBuildingStopsReleasesWhatItHitsWith) {
     EXPECT_EQ(close.release_J, 0) << "it leans before it is over its edge";
 }
 
+// A step of the building where its top comes down is no wall to lean on.
+TEST_F(Landings, WhatMeetsSomethingLowFallsFlat) {
+    Room room(0.025);
+    room.floor(-2, 2, -2, 2);
+    room.box(0.85, 1.3, -0.5, 0.5, 0, 0.075);
+    room.box(-1.3, -0.85, -0.5, 0.5, 0, 0.075);
+    const auto post = static_cast<std::size_t>(room.box(-0.05, 0.05, -0.3, 0.3, 0, 1, false));
+    const Landing landing = of(room)[post];
+    EXPECT_NEAR(std::abs(landing.zone.way[0]), 1, 0.05);
+    EXPECT_FALSE(landing.swept.stopped);
+    EXPECT_EQ(landing.swept.by, -1);
+    EXPECT_LT(landing.swept.center[2], 0.1);
+    EXPECT_GT(landing.swept.center[2], 0.051) << "it lies on the step";
+}
+
 TEST_F(Landings, MorePeopleMeetWhatStandsByTheWay) {
     Room room(0.025);
     room.floor(-2, 2, -2, 2);

@@ -169,6 +169,57 @@ TEST_F(PageCorrections, joins_what_is_a_piece_and_names_what_is_of_the_building)
     EXPECT_EQ(page.data("forces"), "154 N, 2.8 N");
 }
 
+// What is said is about what was clicked last, is said once, and not against what was said before.
+TEST_F(PageCorrections, says_of_what_and_refuses_what_contradicts) {
+    NEEDS_BROWSER();
+    Scene scene = test::SyntheticScene(0.2).make();
+    scene.objects[2].piece_of = 1;
+    write_report(folder_ / "report.html", scene);
+    const auto page = open(folder_ / "report.html", R"(
+        const out = document.body.dataset, aim = () => document.getElementById('mend-for').textContent;
+        const say = kind => { document.querySelector(`[data-do=${kind}]`).click(); return document.getElementById('mend-note').textContent; };
+        const listed = () => document.querySelectorAll('#mend-list li').length;
+        toppleParts.take([0, 1]);
+        out.ticked = aim();
+        say('apart');
+        out.against = say('fixed');
+        toppleChoose(4);
+        out.aim = aim();
+        out.marked = toppleParts.marked.size;
+        out.fixed = say('fixed');
+        out.again = say('fixed');
+        out.listed = listed();
+        const join = document.querySelector('.card [data-join="1"]');
+        join.click();
+        out.noted = join.textContent;
+        out.joined = listed();
+        join.click();
+        out.undone = `${join.textContent}, ${listed()}`;
+        // Shift takes parts from the table and from cards, too.
+        const shift = node => node.dispatchEvent(new MouseEvent('click', {bubbles: true, shiftKey: true}));
+        toppleParts.clear();
+        toppleChoose(null);
+        shift([...document.querySelectorAll('#objects tbody tr')].find(row => row.cells[0].textContent === '1').cells[1]);
+        shift(document.querySelector('.item[data-object="3"]'));
+        out.shifted = document.getElementById('mend-meant').textContent;
+        out.chosen = out.chosen || 'none';
+    )");
+    EXPECT_EQ(page.data("error"), "(none)") << page.log;
+    EXPECT_EQ(page.data("ticked"), "For: 2 ticked parts of the building");
+    EXPECT_EQ(test::text(page.data("against")),
+              "You said that these are a thing by themselves: undo that first.");
+    EXPECT_EQ(page.data("aim"), "For: object 4");
+    EXPECT_EQ(page.data("marked"), "0");
+    EXPECT_EQ(page.data("fixed"), "");
+    EXPECT_EQ(page.data("again"), "That is noted already.");
+    EXPECT_EQ(page.data("listed"), "2");
+    EXPECT_EQ(page.data("noted"), "noted, undo");
+    EXPECT_EQ(page.data("joined"), "3");
+    EXPECT_EQ(page.data("undone"), "one thing with object 1, 2");
+    EXPECT_EQ(page.data("shifted"), "Chosen: objects 1 and 3.");
+    EXPECT_EQ(page.data("chosen"), "none");
+}
+
 TEST_F(PageCorrections, joins_objects_and_says_what_they_are) {
     NEEDS_BROWSER();
     const Scene scene = test::SyntheticScene(0.08).make();

@@ -117,5 +117,88 @@ TEST_F(PageRisk, lists_what_is_to_be_looked_at) {
             << part << " in " << page.data(card);
 }
 
+// What a barrier within its error leaves open is told in the figures of a push; what stood where so
+// many pass, in spite of its figures; what lies flat needs room.
+TEST_F(PageRisk, says_what_is_not_known_and_what_to_try_by_hand) {
+    NEEDS_BROWSER();
+    Scene scene = test::SyntheticScene(0.2).make();
+    scene.notes.push_back(
+        "The points are about 52 mm apart: boards thinner than 129 mm may come out too thick or "
+        "too thin, and what stands on less than 517 mm more or less firmly, by more than their "
+        "errors say. A denser scan tells.");
+    Object& shelf = scene.objects[4];  // nothing in the way of what it falls to
+    shelf.barrier_error_J = 30;
+    shelf.overturning = {9.5, 4, {}, 168, 140, 300, 0.1};
+    shelf.size_m = {0.39, 2.7, 1.96};
+    Object& slider = scene.objects[1];
+    slider.barrier_error_J = 100;
+    slider.mode = "slide";
+    slider.overturning = {11, 4, {}, 56, 24, 240, 0.1};
+    slider.size_m = {0.7, 1.3, 1.1};
+    Object& monitor = scene.objects[3];
+    monitor.fall_chance["human"] = 0.09;
+    monitor.fall.drop_m = 0;
+    monitor.fall.lands_on = -1;
+    monitor.rest_probability = 0.57;
+    monitor.advice.sentence = "Fasten it, with two straps or brackets.";
+    Object& cup = scene.objects[2];
+    cup.unsafety_category = "none";
+    cup.unsafety_certain = false;
+    Object& ball = scene.objects[5];  // taken for a wardrobe
+    ball.size_m = {0.4, 2.7, 1.96};
+    ball.instability = {{20, 595}};
+    test::say_actions(scene);
+    write_report(folder_ / "report.html", scene);
+    const auto page = open(folder_ / "report.html", R"(
+        const out = document.body.dataset, card = id => document.querySelector(`.item[data-object="${id}"]`).textContent;
+        for (const id of [1, 3, 4]) out[`card${id}`] = card(id);
+        out.tall = [...document.querySelectorAll('#risk h3')].find(node => node.textContent.startsWith('Tall and heavy')).nextElementSibling.nextElementSibling.textContent;
+        out.coarse = document.querySelector('#risk .warning').textContent;
+        toppleChoose(2);
+        out.pane = document.getElementById('detail').textContent;
+        toppleChoose(4);
+        out.doubt = document.getElementById('detail').textContent;
+        dispatchEvent(new Event('beforeprint'));
+        out.sheet = document.getElementById('sheet').textContent;
+        out.order = [...document.querySelectorAll('#sheet li strong')].map(node => node.textContent.match(/Object (\d)/)).filter(found => found).map(found => found[1]).join(' ');
+    )");
+    EXPECT_EQ(page.data("error"), "(none)") << page.log;
+    const std::string foot =
+        "Its foot is too poorly seen to tell: between nothing and 308 N at its top would tip it. "
+        "Push it by hand, and look.";
+    const std::string stood =
+        "It stood there though so many pass: its foot was probably badly seen. Push it by hand "
+        "first.";
+    const std::vector<std::pair<const char*, std::string>> said{
+        {"card4", foot},
+        {"doubt", foot},
+        {"sheet", "look whether it stands firm. " + foot},
+        {"sheet", "It may set free up to 410\u00a0J: can kill."},
+        {"card1", "from 240 N on it slides. Push it by hand, and look."},
+        {"card3", stood},
+        {"card3", "It falls flat to the"},
+        {"card3", "Keep "},
+        {"sheet", stood + " Fasten it, with two straps"},
+        {"sheet", "Brackets: 2, at 30 cm"},
+        {"sheet", "Coarse scan (points 5 cm apart)"},
+        {"coarse",
+         "Coarse scan (points 5 cm apart): barriers of all things narrower than 52 cm are "
+         "doubtful, here 4: a denser scan tells."},
+        {"tall", "object 5"},
+        {"sheet",
+         "Object 5, none: Nothing in this run upsets it. It is tall and heavy: see that it is "
+         "fastened."},
+        {"pane", "none, but not certain: it"}};
+    for (const auto& [where, part] : said)
+        EXPECT_NE(test::text(page.data(where)).find(part), std::string::npos)
+            << part << " in " << page.data(where);
+    for (const char* where : {"card1", "card3", "card4", "pane", "sheet"}) {
+        EXPECT_EQ(page.data(where).find("none, or lower"), std::string::npos) << page.data(where);
+        EXPECT_EQ(page.data(where).find("touch would"), std::string::npos) << page.data(where);
+        EXPECT_EQ(page.data(where).find("57 % likely"), std::string::npos) << page.data(where);
+    }
+    EXPECT_EQ(page.data("order"), "3 5 4 1") << "what is to be looked at by energy";
+}
+
 }  // namespace
 }  // namespace topple::report

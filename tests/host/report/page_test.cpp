@@ -143,7 +143,7 @@ TEST_F(Page, has_pictures_on_paper_and_without_webgl) {
     EXPECT_EQ(paper.data("scene"), "true");
     EXPECT_EQ(paper.data("boxes"), "3") << "what there is advice on, and what is grey";
     for (const char* part :
-         {"Grey in the picture is not judged.", "This is no safety certificate",
+         {"What is counted as the building is not judged.", "This is no safety certificate",
           "Object 3, high?: Fix it where it", "sets free 260\u00a0J", "once in about 500 years"})
         EXPECT_NE(test::text(paper.data("sheet")).find(part), std::string::npos)
             << part << " in " << paper.data("sheet");

@@ -49,6 +49,25 @@ TEST_F(Action, is_none_where_nothing_happens) {
     EXPECT_EQ(text(), o_.advice.sentence);
 }
 
+// What this run's events leave standing may fall in others.
+TEST_F(Action, is_to_see_that_what_is_tall_and_heavy_is_fastened) {
+    o_.unsafety_category = "none";
+    o_.fall_chance = {{"earthquake", 0}};
+    o_.advice.sentence.clear();
+    o_.size_m = {0.4, 2.7, 1.96};
+    EXPECT_EQ(text(),
+              "Nothing in this run upsets it. It is tall and heavy: see that it is fastened.");
+    o_.size_m[2] = 1.1;
+    EXPECT_EQ(text(), "No need to act.");
+    o_.size_m = {2.4, 2.7, 1.96};
+    EXPECT_EQ(text(), "No need to act.") << "it is deeper than high";
+    o_.size_m[0] = 0.4;
+    o_.release_J = 78;
+    EXPECT_EQ(text(), "No need to act.");
+    o_.instability = {{20, 595}};
+    EXPECT_NE(text().find("tall and heavy"), std::string::npos) << text();
+}
+
 TEST_F(Action, is_to_look_where_only_its_errors_upset_it) {
     o_.unsafety_certain = false;
     EXPECT_FALSE(upset_by_nothing(o_));

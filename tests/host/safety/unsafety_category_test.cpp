@@ -51,5 +51,21 @@ TEST(UnsafetyCategory, OfARiskTakesTheMeanEnergyOfAFall) {
     EXPECT_STREQ(to_string(Category::none), "none");
 }
 
+// A shelf before a wall, whose foot, one error smaller, lets it lean on that and never fall.
+TEST(UnsafetyCategory, IsTheWorstOfWhatWasMeasuredAndOfBothEnds) {
+    const Risk measured{26.3, 0, 0.0156};
+    CategoryEnds ends;
+    EXPECT_EQ(ends.worst(), Category::none);
+    EXPECT_TRUE(ends.certain());
+    ends.measured = category(measured, 1);
+    EXPECT_EQ(ends.worst(), Category::high);
+    EXPECT_FALSE(ends.certain());
+    ends.lower = ends.higher = Category::high;
+    EXPECT_TRUE(ends.certain());
+    ends.measured = Category::low;
+    EXPECT_EQ(ends.worst(), Category::high);
+    EXPECT_FALSE(ends.certain());
+}
+
 }  // namespace
 }  // namespace topple::safety

@@ -133,7 +133,7 @@ TEST(Spill, RefusesPointsThatAreSpreadTooThin) {
         FAIL();
     } catch (const Error& error) {
         EXPECT_THAT(error.what(), ::testing::HasSubstr("wide.ply"));
-        EXPECT_THAT(error.what(), ::testing::HasSubstr("--unit mm"));
+        EXPECT_THAT(error.what(), ::testing::HasSubstr("ParseOptions::unit_m = 0.001"));
     }
 }
 
