@@ -8,6 +8,7 @@
 #include "api/c_support.h"
 #include "safety/disturbances.h"
 #include "topple/frame_labels.h"
+#include "topple/stays.h"
 
 using namespace topple;
 using namespace topple::c_api;
@@ -230,6 +231,19 @@ int topple_result_risk_error(const topple_result* result, uint64_t index, const 
         safety::disturbance_kind(name);
         if (error_J) *error_J = figure(from.risk_error_J, name);
         if (spread_J) *spread_J = figure(from.risk_spread_J, name);
+    });
+}
+
+int topple_result_stays(const topple_result* result, uint64_t index, const double* place_m,
+                        const double* way, double force_N, double impulse_Ns, double slack_m,
+                        int* stays, topple_status* status) {
+    return guarded(status, [&] {
+        needed(stays, "stays") = 0;
+        const Scene& scene = scene_of(result);
+        Touch touch{{}, {}, force_N, impulse_Ns, slack_m};
+        std::copy_n(&needed(place_m, "place_m"), 3, touch.place_m.begin());
+        if (way) std::copy_n(way, 3, touch.way.begin());
+        *stays = topple::stays(scene, item(scene.objects, index, "object"), touch);
     });
 }
 

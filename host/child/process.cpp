@@ -16,7 +16,6 @@
 #include <utility>
 
 #include "child/answer_head.h"
-#include "topple/error.h"
 #include "topple/version.h"
 
 namespace topple::child {
@@ -26,11 +25,14 @@ constexpr int poll_ms = 20;
 // The child's side of a pipe that ends with it.
 constexpr int life_descriptor = answer_descriptor + 1;
 
-[[noreturn]] void no_process(const char* what, int error) {
-    throw Error(ErrorKind::input, std::string("no process to read in: ") + what + ": " +
-                                      std::strerror(error) +
-                                      "; raise the limits (ulimit), or read the file in this "
-                                      "process (ParseOptions::isolate = false) if you trust it");
+// Thrown where there is no process to run in.
+struct NotStarted {
+    std::string why;
+};
+
+[[noreturn]] void not_started(const std::string& what, int error) {
+    const bool limited = error == EMFILE || error == ENFILE || error == EAGAIN || error == ENOMEM;
+    throw NotStarted{what + std::strerror(error) + (limited ? "; raise the limits (ulimit)" : "")};
 }
 
 class Descriptor {
@@ -55,7 +57,7 @@ Descriptor moved_up(int descriptor) {
     const int up = ::fcntl(descriptor, F_DUPFD_CLOEXEC, life_descriptor + 1);
     const int error = errno;
     ::close(descriptor);
-    if (up < 0) no_process("a descriptor", error);
+    if (up < 0) not_started("no descriptor: ", error);
     return Descriptor(up);
 }
 
@@ -95,7 +97,8 @@ class Spawning {
         pid_t child = -1;
         const int error =
             ::posix_spawn(&child, program.c_str(), &actions_, &attributes_, argv.data(), environ);
-        if (error != 0) no_process(program.c_str(), error);
+        if (error != 0)
+            not_started(::access("/dev/null", R_OK | W_OK) == 0 ? "" : "/dev/null: ", error);
         return child;
     }
 
@@ -127,6 +130,11 @@ class Child {
             const pid_t got = ::waitpid(id_, &status_, 0);
             over_ = got >= 0 || errno != EINTR;
         }
+    }
+    // The exit code of the dynamic loader, and of shells, for a program that can't be run; else 0.
+    int loader_failed() const {
+        const int code = known_ && WIFEXITED(status_) ? WEXITSTATUS(status_) : 0;
+        return code == 126 || code == 127 ? code : 0;
     }
     std::string how(const Limits& limits) const {
         if (!known_) return "ended without an answer";
@@ -180,13 +188,15 @@ void Answer::release(std::size_t end) const {
     ::madvise(data_, answer_head + end, MADV_DONTNEED);
 }
 
-Ended run(const std::string& program, const std::vector<std::string>& task, const Limits& limits,
-          const std::function<void()>& poll) {
+namespace {
+
+Ended run_started(const std::string& program, const std::vector<std::string>& task,
+                  const Limits& limits, const std::function<void()>& poll) {
     const int memory = ::memfd_create("topple-answer", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-    if (memory < 0) no_process("memory to share", errno);
+    if (memory < 0) not_started("no memory to share: ", errno);
     Descriptor answer = moved_up(memory);
     int pipe[2];
-    if (::pipe2(pipe, O_CLOEXEC) != 0) no_process("a pipe", errno);
+    if (::pipe2(pipe, O_CLOEXEC) != 0) not_started("no pipe: ", errno);
     const Descriptor alive(pipe[0]);
     Descriptor life = moved_up(pipe[1]);
     std::vector<std::string> words{program, version, std::to_string(::getpid()),
@@ -213,8 +223,26 @@ Ended run(const std::string& program, const std::vector<std::string>& task, cons
         }
     }
     Answer got(answer.take());
-    std::string how = got.whole() ? std::string() : child.how(limits);
-    return {std::move(got), std::move(how)};
+    if (got.whole()) return {std::move(got), ""};
+    if (const int code = child.loader_failed()) {
+        return {Answer(),
+                program + " did not start (exit code " + std::to_string(code) +
+                    "): a shared library that it needs is missing here (ldd " + program +
+                    "); put it on the library path",
+                false};
+    }
+    return {Answer(), child.how(limits)};
+}
+
+}  // namespace
+
+Ended run(const std::string& program, const std::vector<std::string>& task, const Limits& limits,
+          const std::function<void()>& poll) {
+    try {
+        return run_started(program, task, limits, poll);
+    } catch (const NotStarted& failed) {
+        return {Answer(), program + " did not start: " + failed.why, false};
+    }
 }
 
 }  // namespace topple::child

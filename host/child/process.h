@@ -40,7 +40,9 @@ class Answer {
 
 struct Ended {
     Answer answer;
-    std::string how;  // where it is not whole: "crashed (Segmentation fault)", say
+    std::string how;  // where it is not whole: "crashed (Segmentation fault)", say; or, where it
+                      // never ran, "PROGRAM did not start", why, and the mend
+    bool started = true;
 };
 
 // The descriptor under which a child finds the memory for its answer; the answer begins after
@@ -51,8 +53,7 @@ void end_of_answer(int descriptor = answer_descriptor);
 
 // Runs one of program.h on a task: words that it knows. It gets no descriptors
 // but the answer's, no terminal, and ends with the caller's thread. poll: called about 50 times a
-// second; what it throws ends the child, and is thrown on. Throws Error(input) where no process can
-// be started.
+// second; what it throws ends the child, and is thrown on.
 Ended run(const std::string& program, const std::vector<std::string>& task, const Limits& limits,
           const std::function<void()>& poll);
 

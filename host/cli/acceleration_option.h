@@ -13,8 +13,4 @@ struct Acceleration {
 // Throws Error(usage).
 Acceleration parse_acceleration(const char* option, const std::string& text);
 
-// What to say of one so weak that it was meant in g, perhaps, or so strong that it was meant in
-// hundredths of g; "" of others.
-std::string unlikely_shaking_note(const Acceleration& pga);
-
 }  // namespace topple::cli

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/choice.h"
+#include "io/text.h"
 #include "scenes/scan/scan.h"
 #include "topple/crew.h"
 
@@ -25,6 +26,12 @@ inline std::string whole_number(const std::string& text) {
     const bool whole =
         !text.empty() && text.size() < 20 && std::all_of(text.begin(), text.end(), digit);
     return whole ? "" : text + ": expected a whole number from 0 to 10^19";
+}
+
+// The same for options that take numbers above 0.
+inline std::string number_above_0(const std::string& text) {
+    double value = 0;
+    return io::parse_number(text, value) && value > 0 ? "" : text + ": expected a number above 0";
 }
 
 // Adds --furniture, which sets whether generated rooms are the varied ones.

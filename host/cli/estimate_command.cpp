@@ -114,11 +114,11 @@ Command add_estimate(CLI::App& app) {
     app.add_option("INPUT", a->input, "What `topple parse` would be given")->required();
     app.add_option("--backend", a->backend, "As for parse")->capture_default_str();
     app.add_option("--voxel", a->options.voxel_m, "Edge of a solid voxel in metres, as for parse")
-        ->check(CLI::PositiveNumber);
+        ->check(number_above_0);
     add_unit_option(app, a->options.unit_m);
     add_isolate_option(app, a->options.isolate);
     app.add_option("--tile", a->options.tile_m, "Edge of the tiles in metres, as for parse")
-        ->check(CLI::PositiveNumber);
+        ->check(number_above_0);
     add_max_memory_option(app, a->options.max_memory_bytes,
                           "Memory to keep to, as for parse; whether it suffices is told");
     app.add_option("--threads", a->threads, "Threads of the native backend (default: all cores)");

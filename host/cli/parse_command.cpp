@@ -24,6 +24,7 @@
 #include "io/output_folder.h"
 #include "io/text.h"
 #include "pipeline/tiled_parse.h"
+#include "safety/earthquake/intensity.h"
 #include "topple/device.h"
 #include "topple/export.h"
 #include "topple/option_names.h"
@@ -185,11 +186,9 @@ void keep_cache(const io::OutputFolder& room, ParseArguments& a) {
     if (error) std::filesystem::copy_file(earlier, a.options.cache_file, error);
 }
 
-// One of m/s^2 that was meant in g would make a room look safe, and one of hundredths of g unsafe.
-void note_unlikely_shaking(const ParseArguments& a, Scene& scene) {
-    const std::string note = a.pga ? unlikely_shaking_note(*a.pga) : "";
-    if (!note.empty() && scene.events.contains("pga_m_s2"))
-        scene.notes.insert(scene.notes.begin(), note);
+// Who writes a peak's unit means it, and isn't asked.
+void keep_peak_as_written(const ParseArguments& a, Scene& scene) {
+    if (a.pga && a.pga->with_unit) std::erase(scene.notes, safety::unlikely_peak_note(a.pga->m_s2));
 }
 
 // What was worst in the parse that these corrections follow: in the output that this one replaces,
@@ -233,9 +232,9 @@ int run(ParseArguments& a) {
                 std::fprintf(stderr, "%s\n", in_words_of(Interface::command_line, line).c_str());
         };
         ParseResult result = parse(a.input, a.options);
+        keep_peak_as_written(a, result.scene);
         for (std::string& note : result.scene.notes)
             note = in_words_of(Interface::command_line, note);
-        note_unlikely_shaking(a, result.scene);
         const std::optional<Worst> before = worst_before(a, out);
         progress("output", 0);
         const auto start = std::chrono::steady_clock::now();
@@ -293,11 +292,11 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
     motion->allow_extra_args(false);
     app.add_option("--motion-unit", a->motion_file.unit_m,
                    "Metres in the recording's unit (default: from the size of the body)")
-        ->check(CLI::PositiveNumber)
+        ->check(number_above_0)
         ->needs(motion);
     app.add_option("--motion-rate", a->motion_file.rate_hz,
                    "Frames a second of a recording that has no times")
-        ->check(CLI::PositiveNumber)
+        ->check(number_above_0)
         ->needs(motion);
     app.add_option("--motion-up", a->motion_up,
                    "Up in the recording, X,Y,Z (default: from head and feet)")

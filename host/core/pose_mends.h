@@ -24,7 +24,10 @@ inline constexpr PoseMend inverse_reordered{
     "negated, the first, the fourth",
     "np.linalg.inv(pose) @ [[0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]]"};
 inline constexpr PoseMend w_last{"poses of their quaternions as x, y, z, w", "q[[1, 2, 3, 0]]"};
+inline constexpr PoseMend transposed{
+    "each pose with its 3 x 3 rotation transposed, as matrices are row-major",
+    "pose[:3, :3] = pose[:3, :3].T"};
 inline constexpr PoseMend all[] = {inverse,           turned, inverse_turned, reordered,
-                                   inverse_reordered, w_last};
+                                   inverse_reordered, w_last, transposed};
 
 }  // namespace topple::pose_mends

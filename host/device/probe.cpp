@@ -16,22 +16,27 @@ namespace {
 // A driver that builds its kernels when it is listed takes seconds at most.
 constexpr double patience_s = 30;
 
-Listing unusable(Backend backend, const std::string& why) {
+Listing unusable(Backend backend, const std::string& problem) {
     Listing listing;
     listing.backend = backend;
-    listing.problem = "its driver " + why +
-                      " when it was tried in a process of its own; mend or remove the driver";
+    listing.problem = problem;
     return listing;
+}
+
+std::string of_driver(const std::string& what) {
+    return "its driver " + what +
+           " when it was tried in a process of its own; mend or remove the driver";
 }
 
 std::vector<Listing> probe_apart(const std::string& program, Backend backend) {
     const child::Ended ended =
         child::run(program, {"devices", to_string(backend)}, {.wall_s = patience_s}, [] {});
-    if (!ended.answer.whole()) return {unusable(backend, ended.how)};
+    if (!ended.answer.whole())
+        return {unusable(backend, ended.started ? of_driver(ended.how) : ended.how)};
     try {
         return take_listings(ended.answer, backend);
     } catch (const child::BadAnswer&) {
-        return {unusable(backend, "gave an answer that makes no sense")};
+        return {unusable(backend, of_driver("gave an answer that makes no sense"))};
     }
 }
 

@@ -21,7 +21,7 @@ struct SceneFrame {
 };
 
 struct FrameHints {
-    std::optional<Vec3> up;         // the user's: always wins
+    std::optional<Vec3> up;         // the user's: always wins, with a note where it looks wrong
     std::optional<Vec3> camera_up;  // mean -y axis of the cameras, if there were any
 };
 

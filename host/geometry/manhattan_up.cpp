@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "geometry/manhattan_profile.h"
@@ -35,6 +36,10 @@ constexpr double extent_weight = -1.75, level_weight = 1.9, clutter_weight = 1.4
 constexpr double tilt_degrees = 10, odds_of_z = 50, odds_of_y = 5;
 // Farther from z than this, up is told to the user.
 constexpr double customary_degrees = 25;
+// An up that was given is told to be wrong where the scan's own is farther from it than any floor
+// is from level, and likelier by these log-odds, of 20 to 1. Of cameras one in 20 is not held
+// level, but on its side or upside down.
+constexpr double contradicted_degrees = 30, contradicted_log_odds = 3, rolled_share = 0.05;
 
 constexpr auto seen_from_above =
     "Up was taken to be across a plane that the camera looks straight at, as from above; if it is "
@@ -106,6 +111,17 @@ double prior_odds(const Vec3& up) {
     return 1 + odds_of_z * near({0, 0, 1}) + odds_of_y * (near({0, 1, 0}) + near({0, -1, 0}));
 }
 
+// How the scene lies along an axis, as log-odds of either end of it being up.
+struct AxisOdds {
+    double axis, side;  // of both ends; of the positive one, and as much against the other
+};
+AxisOdds axis_odds(const Profile& p, double cell_m) {
+    return {extent_weight * std::log(std::max(p.extent_m, 10 * cell_m)) +
+                turned_weight * std::log(p.turned + turned_floor),
+            level_weight * p.level_facing + clutter_weight * p.clutter_low +
+                lone_end_weight * p.lone_end};
+}
+
 // Without a camera: rooms are wider than high, what stands is turned about up alone, level surface
 // within faces up, and things lie low.
 Candidate without_camera(const Surfels& surfels, const WeightedNormals& normals,
@@ -114,10 +130,7 @@ Candidate without_camera(const Surfels& surfels, const WeightedNormals& normals,
     for (const Candidate& c : candidates) {
         const Profile p = profile_along(surfels, normals, c.up);
         if (p.along + p.against < least_plane_share) continue;
-        const double axis = extent_weight * std::log(std::max(p.extent_m, 10 * surfels.cell_m)) +
-                            turned_weight * std::log(p.turned + turned_floor);
-        const double side = level_weight * p.level_facing + clutter_weight * p.clutter_low +
-                            lone_end_weight * p.lone_end;
+        const auto [axis, side] = axis_odds(p, surfels.cell_m);
         for (const double sign : {1.0, -1.0}) {
             Candidate option = c;
             option.up = times(c.up, sign);
@@ -171,17 +184,34 @@ std::optional<Vec3> implied_camera(const WeightedNormals& normals) {
     return ahead ? std::optional(Vec3{0, -1, 0}) : std::nullopt;
 }
 
-}  // namespace
+// What surfaces, and the camera where there is one, tell of a direction.
+double log_odds_of(const Surfels& surfels, const WeightedNormals& normals, const Vec3& up,
+                   const std::optional<Vec3>& camera) {
+    const auto [axis, side] = axis_odds(profile_along(surfels, normals, up), surfels.cell_m);
+    if (!camera) return axis + side;
+    const double off = degrees_between(up, *camera) / usual_pitch_degrees;
+    return axis + side + std::log((1 - rolled_share) * std::exp(-off * off / 2) + rolled_share);
+}
 
-UpChoice choose_up(const Surfels& surfels, const WeightedNormals& normals,
-                   const std::vector<Vec3>& directions, const std::vector<Vec3>& manhattan,
-                   const FrameHints& hints) {
-    if (hints.up && dot(*hints.up, *hints.up) > 0) return {unit_or_zero(*hints.up), "given", ""};
-    std::optional<Vec3> camera;
-    if (hints.camera_up && dot(*hints.camera_up, *hints.camera_up) > 0)
-        camera = unit_or_zero(*hints.camera_up);
-    if (!camera && normals.size() > 0) camera = implied_camera(normals);
-    const UpChoice assumed{camera.value_or(Vec3{0, 0, 1}), "assumed", not_found};
+std::string text_of(const Vec3& v) {
+    std::string text;
+    for (const double value : v) {
+        char digits[32];
+        std::snprintf(digits, sizeof(digits), "%.3g", std::round(value * 100) / 100 + 0.0);
+        text.append(text.empty() ? "(" : ", ").append(digits);
+    }
+    return text.append(")");
+}
+
+// Where up is by the scan itself.
+struct FoundUp : UpChoice {
+    bool level = false;  // by level surface, of which no camera looked straight at a wall
+};
+
+FoundUp find_up(const Surfels& surfels, const WeightedNormals& normals,
+                const std::vector<Vec3>& directions, const std::vector<Vec3>& manhattan,
+                const std::optional<Vec3>& camera) {
+    const FoundUp assumed{{camera.value_or(Vec3{0, 0, 1}), "assumed", not_found}};
     if (normals.size() == 0) return assumed;
 
     std::vector<Candidate> candidates;
@@ -191,12 +221,42 @@ UpChoice choose_up(const Surfels& surfels, const WeightedNormals& normals,
     const Candidate best = camera ? with_camera(surfels, normals, candidates, *camera)
                                   : without_camera(surfels, normals, candidates);
     if (best.score > 0) {
-        return {refine_axis(normals, best.up), best.manhattan ? "manhattan" : "dominant-plane",
-                best.doubt};
+        return {{refine_axis(normals, best.up), best.manhattan ? "manhattan" : "dominant-plane",
+                 best.doubt},
+                best.doubt != seen_from_above};
     }
     Vec3 up = assumed.up;
-    if (camera && up_from_uprights(normals, up)) return {up, "upright-surfaces", by_walls};
+    if (camera && up_from_uprights(normals, up)) return {{up, "upright-surfaces", by_walls}};
     return assumed;
+}
+
+// Of an up that the scan contradicts: in which way; else "".
+std::string doubt_of_given(const Surfels& surfels, const WeightedNormals& normals, const Vec3& up,
+                           const FoundUp& found, const std::optional<Vec3>& camera) {
+    const double degrees = degrees_between(up, found.up);
+    if (!found.level || degrees <= contradicted_degrees) return {};
+    const double ahead = log_odds_of(surfels, normals, found.up, camera) -
+                         log_odds_of(surfels, normals, refine_axis(normals, up), camera);
+    if (ahead <= contradicted_log_odds) return {};
+    return "The up that was given, " + text_of(up) + ", is " +
+           std::to_string(std::lround(degrees)) + " degrees from what the surfaces " +
+           (camera ? "and cameras " : "") + "show, " + text_of(found.up) +
+           ": an accelerometer at rest reads along up, not down: check its sign and frame.";
+}
+
+}  // namespace
+
+UpChoice choose_up(const Surfels& surfels, const WeightedNormals& normals,
+                   const std::vector<Vec3>& directions, const std::vector<Vec3>& manhattan,
+                   const FrameHints& hints) {
+    std::optional<Vec3> camera;
+    if (hints.camera_up && dot(*hints.camera_up, *hints.camera_up) > 0)
+        camera = unit_or_zero(*hints.camera_up);
+    if (!camera && normals.size() > 0) camera = implied_camera(normals);
+    const FoundUp found = find_up(surfels, normals, directions, manhattan, camera);
+    if (!hints.up || !(dot(*hints.up, *hints.up) > 0)) return found;
+    const Vec3 given = unit_or_zero(*hints.up);
+    return {given, "given", doubt_of_given(surfels, normals, given, found, camera)};
 }
 
 }  // namespace topple::geometry

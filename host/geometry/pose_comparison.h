@@ -20,9 +20,10 @@ enum class PoseConvention : std::uint8_t {
     world_to_camera_opengl,
     body,  // x ahead, y left, z up: a robot's
     world_to_camera_body,
-    w_first,  // a quaternion w, x, y, z, read as x, y, z, w
+    w_first,     // a quaternion w, x, y, z, read as x, y, z, w
+    transposed,  // the rotation alone: column-major, or of conjugated quaternions
 };
-inline constexpr std::size_t pose_conventions = 7;
+inline constexpr std::size_t pose_conventions = 8;
 
 // The pose that was meant. given: rigid.
 Mat4 pose_meant(const Mat4& given, PoseConvention convention);
@@ -62,6 +63,12 @@ class PoseComparison {
         // lie where others look through. Without a better convention the poses are of other images,
         // or the intrinsics are wrong.
         bool contradict = false;
+        // Of all frames so many have one and the same pose, where half of them or more do, and are
+        // compared as they are; `moved`: mostly they see something else, as a camera that stands
+        // still does not.
+        std::size_t frames = 0, same_poses = 0;
+        Agreement at_one_pose;
+        bool moved = false;
     };
     Verdict verdict() const;
 
@@ -74,6 +81,7 @@ class PoseComparison {
         std::vector<std::uint16_t> depth;  // every step_-th pixel, row by row; empty: not added yet
     };
     void choose_pairs(double typical_depth_m);
+    void choose_same_poses();
     const Kept* kept(std::size_t number) const;
     void carry(const Kept& from, const Kept& to, const Mat4& to_from_from, Agreement& into) const;
 
@@ -81,6 +89,8 @@ class PoseComparison {
     std::uint32_t step_, width_, height_;  // of the small copies
     std::vector<Mat4> poses_;
     std::vector<Pair> pairs_;
+    std::vector<std::size_t> same_;  // frames of one pose to compare, of same_poses_
+    std::size_t same_poses_ = 0;
     std::vector<Kept> kept_;  // by number
 };
 

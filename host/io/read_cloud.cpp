@@ -102,9 +102,8 @@ PointCloud parse_cloud(const std::filesystem::path& file, std::string_view text,
         }
     }
     fail(file, "is no known kind of point cloud or mesh (its extension is " + in_quotes(extension) +
-                   "); give a .ply, .pcd, .xyz, .las, .obj, .stl, .glb, .gltf, .bt, .ot or .vdb "
-                   "file, or a "
-                   "folder with depth/*.png");
+                   "); give a .ply, .pcd, .xyz, .txt, .csv, .asc, .pts, .las, .obj, .stl, .glb, "
+                   ".gltf, .bt, .ot or .vdb file, or a folder with depth/*.png");
 }
 
 void scale(PointCloud& cloud, double unit_m) {

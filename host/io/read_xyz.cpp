@@ -8,6 +8,7 @@
 
 #include "io/cloud_builder.h"
 #include "io/formats.h"
+#include "io/pose_rows.h"
 #include "io/text.h"
 
 namespace topple::io {
@@ -113,8 +114,10 @@ class XyzParser {
                 if (count == 6) columns_.normal = {3, 4, 5};
             }
             add_row(count);
+            if (!columns_.by_name && !pose_rows_.full()) look_for_poses(count);
             if (sink_ && points_.size() == rows_at_once) hand_over();
         }
+        if (!pose_rows_.full()) refuse_poses();
         if (promised_ && *promised_ != rows_) {
             fail(file_, "its first line promises " + counted(*promised_, "point") +
                             ", the file has " + std::to_string(rows_) +
@@ -137,6 +140,20 @@ class XyzParser {
         if (!columns_.by_name && count != 6) columns_.normal = columns_.colour = Columns::nowhere;
         if (Columns::found(columns_.normal)) normals_.push_back(triple(columns_.normal, count));
         if (Columns::found(columns_.colour)) colours_.push_back(triple(columns_.colour, count));
+    }
+
+    void look_for_poses(std::size_t count) {
+        std::array<double, PoseRows::most_columns> values{};
+        for (std::size_t i = 0; i < std::min(count, values.size()); ++i)
+            if (!parse_number(tokens_[i], values[i])) values[i] = NAN;
+        pose_rows_.add(values, count);
+        if (pose_rows_.full()) refuse_poses();
+    }
+    void refuse_poses() const {
+        if (pose_rows_.are_poses())
+            fail(file_,
+                 "is a file of cameras' poses, not of points: give its folder, with the depth "
+                 "images in depth/ and intrinsics.json");
     }
 
     std::array<double, 3> triple(const std::array<std::size_t, 3>& which, std::size_t count) const {
@@ -189,6 +206,7 @@ class XyzParser {
     const CloudSink* sink_;
     std::optional<CloudBuilder> cloud_;
     std::uint64_t rows_ = 0;
+    PoseRows pose_rows_;
     Lines lines_;
     Columns columns_;
     std::optional<std::uint64_t> promised_;

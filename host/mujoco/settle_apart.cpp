@@ -45,9 +45,10 @@ Settled settle_apart(const std::filesystem::path& file, double seconds, double p
     Settled out;
     try {
         if (!ended.answer.whole())
-            throw Error(ErrorKind::device,
-                        std::string(simulator_program) + " " + ended.how +
-                            "; see that MuJoCo is installed (apt-get install libmujoco-dev)");
+            throw Error(
+                ErrorKind::device,
+                (ended.started ? std::string(simulator_program) + " " + ended.how : ended.how) +
+                    "; see that MuJoCo is installed (apt-get install libmujoco-dev)");
         out = read_settled(ended.answer);
     } catch (const child::BadAnswer&) {
         throw Error(ErrorKind::device,

@@ -378,6 +378,7 @@ void reckon_one_piece(device::Device& device, const ParseOptions& options, Looke
 
 Estimate estimate(const std::filesystem::path& input, const ParseOptions& options) {
     check_options(options);
+    check_path(input);
     const auto device = options.device ? options.device : device::open_device("auto");
     tell(options, 0);
     Estimate out;

@@ -27,6 +27,8 @@ const char* words_of(PoseConvention convention) {
             return "world to body, with x ahead, y left and z up, as in ROS";
         case PoseConvention::w_first:
             return "made of quaternions with w first";
+        case PoseConvention::transposed:
+            return "of transposed rotations (column-major, or quaternions with x, y, z negated)";
     }
     return "";
 }
@@ -48,6 +50,8 @@ const char* mend_of(PoseConvention convention) {
             return pose_mends::inverse_reordered.words;
         case PoseConvention::w_first:
             return pose_mends::w_last.words;
+        case PoseConvention::transposed:
+            return pose_mends::transposed.words;
     }
     return "";
 }
@@ -83,6 +87,15 @@ std::string pose_note(const geometry::PoseComparison& frames, ScanOrigin origin)
                              " of frames that look at the same place " +
                              agreeing(PoseConvention::camera_to_world) +
                              " lie on what the other frame sees there";
+    if (found.moved) {
+        const std::string poses = std::to_string(found.frames) + " poses are the same";
+        return (found.same_poses == found.frames
+                    ? "All " + poses
+                    : std::to_string(found.same_poses) + " of " + poses) +
+               ", but the images are not: only " + percent(found.at_one_pose.agreeing_share()) +
+               " of their readings are as near in the next that was compared. Were the poses "
+               "filled in?";
+    }
     const std::vector<PoseConvention>& better = found.better;
     if (better.empty()) {
         if (!found.contradict) return {};

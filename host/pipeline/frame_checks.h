@@ -16,8 +16,9 @@ namespace topple {
 void note_principal_point(const Intrinsics& intrinsics, ScanOrigin origin,
                           std::vector<std::string>& notes);
 
-// Poses in another convention, in which the frames agree where they don't as given, or frames that
-// contradict each other in any; "": neither. The frames were added.
+// One pose for frames that differ; poses in another convention, in which the frames agree where
+// they don't as given; or frames that contradict each other in any; "": none of that. The frames
+// were added.
 std::string pose_note(const geometry::PoseComparison& frames, ScanOrigin origin);
 
 }  // namespace topple

@@ -14,6 +14,7 @@
 #include "io/frame_sequence.h"
 #include "io/text.h"
 #include "pipeline/caller_frames.h"
+#include "pipeline/ingest.h"
 
 namespace topple {
 namespace {
@@ -185,6 +186,7 @@ FrameLabels FrameLabeller::label(const FramesView& frames, std::size_t number,
 
 FrameLabels FrameLabeller::label(const std::filesystem::path& folder, std::size_t number,
                                  unsigned threads) const {
+    check_path(folder);
     const io::FrameSequence sequence = io::FrameSequence::open(folder);
     check_number(io::path_text(folder), number, sequence.size());
     return labels_of(*points_, sequence.intrinsics(), sequence.load(number), threads);

@@ -25,10 +25,15 @@ FramedSurfels find_surfels(device::Device& device, const Ingested& input,
                                       input.viewpoints, input.viewpoint_of_point);
     });
     out.frame = stage("frame", [&] {
-        return input.frame
-                   ? *input.frame
-                   : geometry::find_scene_frame(device, out.surfels, {options.up, input.camera_up});
+        if (!input.frame)
+            return geometry::find_scene_frame(device, out.surfels, {options.up, input.camera_up});
+        geometry::SceneFrame frame = *input.frame;
+        if (options.up)
+            frame.note = geometry::find_scene_frame(device, out.surfels, {options.up, {}}).note;
+        return frame;
     });
+    // At once, where it says that the up that was given is wrong.
+    if (options.up && options.notice && !out.frame.note.empty()) options.notice(out.frame.note);
     return out;
 }
 

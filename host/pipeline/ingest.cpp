@@ -241,6 +241,13 @@ void look_at_cloud(device::Device& device, const ParseOptions& options, Ingested
 
 }  // namespace
 
+void check_path(const std::filesystem::path& input) {
+    if (input.empty())
+        throw Error(ErrorKind::usage,
+                    "the path of the input is empty; give that of a file, or of a folder of depth "
+                    "frames");
+}
+
 Ingested ingest_cloud(device::Device& device, PointCloud cloud, const ParseOptions& options) {
     Ingested out;
     out.own = std::move(cloud);

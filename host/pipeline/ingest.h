@@ -30,6 +30,9 @@ inline constexpr double sparsest_m = 5 * largest_cell_m;
 inline constexpr const char* no_colours_note =
     "No colours were given: things that touch are told apart less well than with them.";
 
+// Throws Error(usage) for the path of an input that is empty, of which messages could name nothing.
+void check_path(const std::filesystem::path& input);
+
 // Calls use(frame, i) for each frame in order. Frames are decoded by all threads, as many at once,
 // unless they must be loaded one by one.
 void for_each_frame(const FrameStream& frames, ThreadPool& threads,

@@ -8,6 +8,7 @@
 #include "device/device.h"
 #include "io/frame_sequence.h"
 #include "io/scan_notes.h"
+#include "io/text.h"
 #include "pipeline/assemble.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/groundwork.h"
@@ -85,11 +86,18 @@ ParseResult run(const std::string& source, const ParseOptions& options, Lay lay,
     return result;
 }
 
-void refuse_cache(const ParseOptions& options) {
-    if (options.cache_file.empty()) return;
-    throw Error(ErrorKind::usage, "ParseOptions::cache_file " + options.cache_file.string() +
-                                      ": a cache is kept of a file or folder, and the scan is in "
-                                      "memory; leave it out, or parse its file");
+// Options that are about files, of a scan in memory.
+void refuse_file_options(const ParseOptions& options) {
+    if (!options.cache_file.empty())
+        throw Error(ErrorKind::usage, "ParseOptions::cache_file " +
+                                          io::path_text(options.cache_file) +
+                                          ": a cache is kept of a file or folder, and the scan is "
+                                          "in memory; leave it out, or parse its file");
+    if (!options.work_folder.empty())
+        throw Error(ErrorKind::usage,
+                    "work_folder " + io::path_text(options.work_folder) +
+                        ": only clouds in files are parsed in blocks, which are kept there, and "
+                        "the scan is in memory; leave it out");
 }
 
 void refuse_tiles(const ParseOptions& options) {
@@ -169,7 +177,18 @@ void check_options(const ParseOptions& o) {
         check_range("ParseOptions::grouping_time_s", *o.grouping_time_s, 0, 86400);
     if (const auto wrong = fault_of(o.corrections))
         throw Error(ErrorKind::usage, "ParseOptions::corrections: " + *wrong);
-    for (const std::string& name : o.disturbances) safety::disturbance_kind(name);
+    for (auto name = o.disturbances.begin(); name != o.disturbances.end(); ++name) {
+        safety::disturbance_kind(*name);
+        if (std::find(o.disturbances.begin(), name, *name) != name)
+            throw Error(ErrorKind::usage,
+                        "ParseOptions::disturbances: " + *name + " is given twice; name each once");
+    }
+    for (std::size_t n = 0; n < o.motions.size(); ++n) {
+        if (!o.motions[n])
+            throw Error(ErrorKind::usage, "ParseOptions::motions: number " + std::to_string(n) +
+                                              " is null; give what read_motion() returns, or leave "
+                                              "it out");
+    }
 }
 
 std::vector<std::string> known_disturbances() {
@@ -186,6 +205,21 @@ void take_options(const ParseOptions& options) {
     check_options(options);
     const std::string note = light_density_note(options.density_kg_m3);
     if (!note.empty() && options.notice) options.notice(note);
+}
+
+// The result, whose notes begin with what the options make doubtful, and go on with `notes`.
+ParseResult noted(ParseResult result, const ParseOptions& options,
+                  std::vector<std::string> notes = {}) {
+    std::vector<std::string> all;
+    for (const std::string& name : options.disturbances) {
+        const auto doubt = safety::disturbance_kind(name).doubt;
+        if (std::string asked = doubt ? doubt(options) : ""; !asked.empty())
+            all.push_back(std::move(asked));
+    }
+    all.insert(all.end(), notes.begin(), notes.end());
+    std::vector<std::string>& own = result.scene.notes;
+    own.insert(own.begin(), all.begin(), all.end());
+    return result;
 }
 
 ParseResult parse_scan(const std::filesystem::path& input, ParseOptions options) {
@@ -213,41 +247,42 @@ ParseResult parse_scan(const std::filesystem::path& input, ParseOptions options)
 
 ParseResult parse(const std::filesystem::path& input, const ParseOptions& options) {
     take_options(options);
+    check_path(input);
     // First, as it is told early what can't be read.
     std::vector<std::string> notes = io::scan_notes(input);
     const auto kind =
         io::looks_like_sequence(input) ? WholeProgress::Input::frames : WholeProgress::Input::cloud;
-    ParseResult result =
-        tell_whole(kind, options, [&](const ParseOptions& o) { return parse_scan(input, o); });
-    std::vector<std::string>& all = result.scene.notes;
-    all.insert(all.begin(), notes.begin(), notes.end());
-    return result;
+    return noted(
+        tell_whole(kind, options, [&](const ParseOptions& o) { return parse_scan(input, o); }),
+        options, std::move(notes));
 }
 
 ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
     take_options(options);
-    refuse_cache(options);
+    refuse_file_options(options);
     refuse_tiles(options);
     const std::string source = cloud.source.empty() ? "cloud" : cloud.source;
-    return tell_whole(WholeProgress::Input::cloud, options, [&](const ParseOptions& o) {
+    const auto parse_view = [&](const ParseOptions& o) {
         return run(source, o, [&](device::Device& device, StageClock& stage) {
             Ingested input = stage("ingest", [&] { return ingest_view(device, cloud, o); });
             return lay_groundwork(device, std::move(input), o, source, stage);
         });
-    });
+    };
+    return noted(tell_whole(WholeProgress::Input::cloud, options, parse_view), options);
 }
 
 ParseResult parse(const FramesView& frames, const ParseOptions& options) {
     take_options(options);
-    refuse_cache(options);
+    refuse_file_options(options);
     refuse_tiles(options);
     const std::string source = frames.source.empty() ? "frames" : frames.source;
-    return tell_whole(WholeProgress::Input::frames, options, [&](const ParseOptions& o) {
+    const auto parse_view = [&](const ParseOptions& o) {
         return run(source, o, [&](device::Device& device, StageClock& stage) {
             Ingested input = stage("ingest", [&] { return ingest_frames_view(device, frames, o); });
             return lay_groundwork(device, std::move(input), o, source, stage);
         });
-    });
+    };
+    return noted(tell_whole(WholeProgress::Input::frames, options, parse_view), options);
 }
 
 void add_coordinates(const CloudView& cloud, ParseResult& result) {

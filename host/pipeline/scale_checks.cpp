@@ -129,9 +129,11 @@ void check_camera_steps(std::span<const Vec3> places, const std::string& source)
     const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
     std::nth_element(steps.begin(), middle, steps.end());
     if (*middle <= longest_step_m) return;
-    throw Error(ErrorKind::input, source + ": the camera moves by " + text_of(*middle) +
-                                      " m from one frame to the next: places of poses are metres; "
-                                      "if these are mm, multiply them by 0.001");
+    throw Error(ErrorKind::input,
+                source + ": the camera moves by " + text_of(*middle) +
+                    " m from one frame to the next: places of poses are metres; if these are mm, "
+                    "multiply them by 0.001" +
+                    (*middle * 0.01 <= longest_step_m ? ", by 0.01 if cm" : ""));
 }
 
 void check_readings(const Intrinsics& k, std::size_t frames, double typical_depth_m,

@@ -186,6 +186,7 @@ tiles::Layout find_layout(const SharedWork& shared, const tiles::SpilledPoints& 
     stage("thinning", [&] { thin_bins(shared, points, cell_m, stage); });
     const geometry::SceneFrame frame = stage(
         "frame", [&] { return find_frame(shared.device, shared.folder, points, cell_m, options); });
+    if (options.up && options.notice && !frame.note.empty()) options.notice(frame.note);
     return stage("layout", [&] {
         const std::vector<tiles::Bin> bins = bins_of(points);
         tiles::Layout layout = tiles::cut_into_blocks(shared.folder, bins, frame, cell_m, voxel_m);

@@ -124,6 +124,11 @@ std::vector<std::function<void()>> writers(const std::filesystem::path& folder,
 
 void write_outputs(const ParseResult& result, const std::filesystem::path& folder,
                    const OutputOptions& options) {
+    if (!result.tiled && !result.voxels)
+        throw Error(
+            ErrorKind::usage,
+            "write_outputs: the result has no voxels: no parse returned it, or it was moved "
+            "from");
     if (result.scene.points.x.size() != result.scene.points.primitive.size()) {
         throw Error(ErrorKind::usage,
                     "the result has no coordinates of its points: call add_coordinates() first");

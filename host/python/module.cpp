@@ -91,6 +91,7 @@ PYBIND11_MODULE(_topple, module) {
     bind_devices(module);
     bind_result(module);
     bind_parse(module);
+    bind_places(module);
     bind_labels(module);
     bind_export(module);
     bind_stages(module);

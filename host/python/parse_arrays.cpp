@@ -204,11 +204,6 @@ void bind_parse(py::module_& module) {
                               [&](const ParseOptions& o) { return parse(view, o); });
                });
     module.def("parse_frames", parse_frames);
-    // What Python has to say of a parse, before the library's own.
-    module.def("add_note", [](Parsed& parsed, const std::string& note) {
-        std::vector<std::string>& notes = parsed.result.scene.notes;
-        notes.insert(notes.begin(), note);
-    });
     // Of a scan that was parsed from a copy in another format.
     module.def("came_from", [](Parsed& parsed, const std::string& source,
                                const std::vector<std::string>& notes, const Vec3& offset_m) {

@@ -56,6 +56,11 @@ ScannedMap read_scan_apart(const std::filesystem::path& file, double unit_m,
     const child::Limits limits = limits_of(file);
     const child::Ended ended =
         child::run(program.string(), {"scan", unit_text(unit_m), file.string()}, limits, poll);
+    if (!ended.started)
+        throw Error(ErrorKind::usage, io::path_text(file) + ": is read by another program, and " +
+                                          ended.how +
+                                          "; or, for a file that you trust, say "
+                                          "ParseOptions::isolate = false");
     try {
         if (ended.answer.whole()) return take_scan(ended.answer);
     } catch (const child::BadAnswer&) {

@@ -24,7 +24,8 @@ ScannedMap read_points(const std::filesystem::path& file, double unit_m,
 
 // As read_scan(); but what takes_others() is read by topple-reader or topple-volume-reader, in a
 // process of its own, which may take memory and time by the file's size. What crashes there, or
-// breaks its limits, is an Error(input) here; where there is no such program, Error(usage).
+// breaks its limits, is an Error(input) here; where there is no such program, or it does not start,
+// Error(usage).
 ScannedMap read_scan_apart(const std::filesystem::path& file, double unit_m,
                            const std::function<void()>& poll);
 

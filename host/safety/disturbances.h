@@ -51,6 +51,8 @@ struct DisturbanceKind {
                                                const ParseOptions& options);
     // What it reckons with, by names.
     std::map<std::string, double> (*events)(const ParseOptions& options);
+    // What to ask where an option is in its range but was meant otherwise, perhaps; "": nothing.
+    std::string (*doubt)(const ParseOptions& options) = nullptr;
     bool everyday = false;                      // such events have happened before the scan
     const char* below_ceiling = nullptr;        // what to note where the scan has a ceiling
     const char* left_out_below_none = nullptr;  // and where it has none, and this is left out

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/short_number.h"
 #include "scenes/furnished_room.h"
 #include "scenes/random.h"
 #include "topple/error.h"
@@ -146,10 +147,10 @@ void check(const BuildingOptions& o) {
     }
     if (!(o.spacing_m >= 0.0005 && o.spacing_m <= 0.5)) {
         throw Error(ErrorKind::usage,
-                    "--spacing " + std::to_string(o.spacing_m) + ": expected 0.0005 to 0.5 metres");
+                    "--spacing " + short_number(o.spacing_m) + ": expected 0.0005 to 0.5 metres");
     }
     if (!(o.noise_m >= 0 && o.noise_m <= 0.1)) {
-        throw Error(ErrorKind::usage, "building: the noise is " + std::to_string(o.noise_m) +
+        throw Error(ErrorKind::usage, "building: the noise is " + short_number(o.noise_m) +
                                           " m and must be 0 to 0.1");
     }
 }
@@ -163,7 +164,7 @@ Building::Building(const BuildingOptions& options) : options_(options) {
     if (rooms > static_cast<double>(most_rooms)) {
         throw Error(ErrorKind::usage,
                     "--points " + std::to_string(options.points) + " at --spacing " +
-                        std::to_string(options.spacing_m) + " take " +
+                        short_number(options.spacing_m) + " take " +
                         std::to_string(static_cast<std::uint64_t>(rooms)) + " rooms, more than " +
                         std::to_string(most_rooms) + "; choose fewer points or a smaller spacing");
     }

@@ -81,15 +81,16 @@ TEST_F(Output, says_so_where_a_peak_is_meant_in_another_unit) {
             .out;
     };
     EXPECT_NE(parse("0.3", "weak")
-                  .find("Note: 0.3 m/s\u00b2 is 0.031 g (light shaking, intensity "
-                        "IV): for 0.3 g give --pga 0.3g."),
+                  .find("Note: --pga 0.3 is 0.031 g (light shaking, intensity "
+                        "IV): for 0.3 g give --pga 2.94."),
               std::string::npos);
-    EXPECT_EQ(parse("0.3g", "strong").find(" m/s\u00b2 is "), std::string::npos);
+    for (const char* pga : {"0.3g", "0.05g", "3g"})  // who writes a unit means it
+        EXPECT_EQ(parse(pga, pga).find("give --pga"), std::string::npos) << pga;
     EXPECT_NE(parse("30", "stronger")
-                  .find("Note: 30 m/s\u00b2 is 3.1 g (extreme shaking, intensity X or more), "
-                        "stronger than nearly all that were recorded; was 0.3g meant?"),
+                  .find("Note: --pga 30 is 3.1 g (extreme shaking, intensity X or more), "
+                        "stronger than nearly all that were recorded; for 30 % of g give"),
               std::string::npos);
-    EXPECT_NE(bytes_of_file(in("strong/scene.json")).find("\"pga_m_s2\": 2.941995"),
+    EXPECT_NE(bytes_of_file(in("0.3g/scene.json")).find("\"pga_m_s2\": 2.941995"),
               std::string::npos);
 }
 

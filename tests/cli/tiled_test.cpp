@@ -91,7 +91,7 @@ TEST_F(Tiled, estimates_without_parsing) {
     expect_failure(1, {"estimate", "away.ply", "--quiet"}, {"away.ply"});
     expect_failure(1, {"parse", "plane.xyz", "--unit", "mm", "--quiet"},
                    {"plane.xyz", "check --unit"});
-    expect_failure(2, {"estimate", "plane.xyz", "--voxel", "-1"}, {"--voxel"});
+    expect_failure(2, {"estimate", "plane.xyz", "--voxel", "-1"}, {"--voxel -1: expected"});
 }
 
 }  // namespace

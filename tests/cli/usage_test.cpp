@@ -31,6 +31,11 @@ TEST_F(Usage, names_the_unknown_option_and_the_nearest_one) {
                    {"--scan glass: expected walk, sparse, cloud, laser or single"});
     expect_failure(2, {"parse", "plane.xyz", "--disturbance", "people"},
                    {"--disturbance people: expected human", "for people say human"});
+    expect_failure(2, {"parse", "plane.xyz", "--motion", "a.bvh", "--motion-unit", "0"},
+                   {"--motion-unit 0: expected a number above 0"});
+    expect_failure(2, {"parse", "plane.xyz", "--threads", "100000"}, {"--threads 100000: at most"});
+    expect_failure(2, {"parse", "plane.xyz", "--disturbance", "human,wind,human"},
+                   {"--disturbance: human is given twice"});
     // Nothing is near this one.
     const Finished far = run({"parse", "plane.xyz", "--kaleidoscope"});
     EXPECT_EQ(far.err.find("did you mean"), std::string::npos) << far.err;
@@ -113,7 +118,8 @@ TEST_F(Usage, refuses_values_before_it_parses) {
     }
     expect_failure(2, {"parse", "plane.xyz", "--voxel", "-1"}, {"-1"});
     expect_failure(2, {"parse", "plane.xyz", "--disturbance", "flood"}, {"flood", "earthquake"});
-    expect_failure(2, {"parse", "plane.xyz", "--backend", "cuda"}, {"cuda", "vulkan"});
+    expect_failure(2, {"parse", "plane.xyz", "--backend", "cuda"},
+                   {"--backend cuda is unknown", "vulkan"});
     // Wrong usage counts before a backend that may be missing.
     expect_failure(2, {"parse", "plane.xyz", "--backend", "opencl", "--voxel", "0"}, {"--voxel"});
     expect_failure(2, {"generate", "scan", "--frames", "0"}, {"--frames"});

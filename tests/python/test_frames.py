@@ -141,6 +141,16 @@ def test_poses_and_principal_points_that_mean_something_else_are_noted(depth, se
     assert any('The principal point (0, 59.5)' in note for note in notes)
 
 
+def test_an_up_that_the_scan_contradicts_is_told_at_once(depth, sequence, device):
+    up = np.array(sequence.up)
+    with warnings.catch_warnings():
+        warnings.simplefilter('error')
+        given = of_memory(depth, device, up=9.81 * up + [0.5, 0.5, 0])
+        assert given.up_method == 'given' and not any('The up that was given' in note for note in given.notes)
+        with pytest.raises(RuntimeWarning, match='is 180 degrees from what the surfaces and cameras show'):
+            of_memory(depth, device, up=-9.81 * up)
+
+
 def refused(kind, *parts, **options):
     with pytest.raises(topple.Error) as error:
         topple.parse(**options)

@@ -332,3 +332,44 @@ def test_generates_a_room_that_parses(device, tmp_path):
     assert raised.value.kind == 'input'
     listed = subprocess.run([sys.executable, '-m', 'topple', '--version'], capture_output=True, text=True, timeout=60)
     assert topple.__version__ in listed.stdout
+
+
+def test_stays_says_what_may_be_touched(result):
+    loose = [o for o in result.objects if not o.grounded]
+    assert len(loose) == 2 and not any(o.piece_of >= 0 for o in loose)
+    for o in loose:
+        at = o.center_of_mass_m
+        assert result.stays(o, at, force_N=1) and result.stays(o.id, at, o.barrier_by_direction.direction[3], impulse_Ns=0.1)
+        assert not result.stays(o, at, force_N=1.1 * o.overturning.slide_N)
+        speed = np.sqrt(2 * 0.3 * 9.80665 * 0.02)  # slides by 2 cm
+        assert not result.stays(o, at, impulse_Ns=1.01 * speed * o.mass_kg) and not result.stays(o, at, impulse_Ns=0.1, slack_m=0)
+        assert not result.stays(o, np.add(at, [0, 0, 5]), force_N=1)
+    assert result.stays(0, [0, 0, 0], force_N=1e6)
+
+
+@pytest.mark.parametrize('given, words', [
+    ({'place_m': [0, 0]}, 'place_m: expected three finite numbers'), ({'place_m': [0, 0, np.nan]}, 'place_m: expected three finite numbers'),
+    ({'way': [2, 0, 0]}, r'stays: way \(2, 0, 0\) is 2 long: expected a unit vector'), ({'way': [0, 0, 1]}, 'expected a level way'),
+    ({'force_N': -1}, 'stays: force_N -1: expected newtons'), ({'impulse_Ns': np.nan}, 'stays: impulse_Ns nan: expected newton seconds'),
+    ({'slack_m': 'much'}, "slack_m: expected a number, not 'much'"), ({'item': 99}, 'object: expected one of the result')])
+def test_stays_refuses_what_makes_no_sense(result, given, words):
+    with pytest.raises(topple.Error, match=words) as raised:
+        result.stays(**{'item': 1, 'place_m': [1, 1, 0.3], **given})
+    assert raised.value.kind == 'usage'
+
+
+def test_stays_is_not_pickled(result):
+    with pytest.raises(topple.Error, match='stays: this result was pickled') as raised:
+        pickle.loads(pickle.dumps(result)).stays(1, [1, 1, 0.3])
+    assert raised.value.kind == 'usage'
+
+
+def test_object_at_goes_from_a_place_to_the_object(result, points):
+    floor, crate, box = (result.object_at(at, 0.05) for at in ([0.4, 0.4, 0], [1.05, 0.95, 0.5], (1.3, 1.2, 0.85)))
+    assert result.objects[floor].grounded and len({floor, crate, box}) == 3
+    assert result.object_at([1.3, 1.2, 1.2], 0.05) == -1 and result.object_at([1.3, 1.2, 1.2], np.inf) == box
+    assert pickle.loads(pickle.dumps(result)).object_at(points[5], 0) == result.point_object[5]
+    for wrong in ({'place_m': [0, 0, np.inf], 'within_m': 1}, {'place_m': [0, 0, 0], 'within_m': -1}, {'place_m': [0, 0, 0], 'within_m': None}):
+        with pytest.raises(topple.Error) as raised:
+            result.object_at(**wrong)
+        assert raised.value.kind == 'usage'

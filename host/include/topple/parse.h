@@ -102,8 +102,8 @@ struct ParseOptions {
     // Polled now and then; true stops the parse with Error(cancelled).
     std::function<bool()> cancelled;
     // Called on the same thread with what a user may want to know while it runs, a line each: that
-    // it goes on with what an earlier run has left in the work folder or the cache, makes what is
-    // damaged there anew, or, as a note says later, that poses do not fit what their frames see, or
+    // it goes on with what an earlier run left in the work folder or the cache, or makes anew what
+    // is damaged there; or, as a note says later, that poses or `up` do not fit what is seen, or
     // that the density is that of nothing.
     std::function<void(const std::string&)> notice;
 };

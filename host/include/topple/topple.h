@@ -361,6 +361,16 @@ const float* topple_result_point_normals(const topple_result* result, int axis);
  * arrays, or in an organised file; else NULL. */
 const uint64_t* topple_result_point_index(const topple_result* result);
 
+/* Whether object `index` stays where it is when it is touched: topple/stays.h says what that means,
+ * and what it does not promise. place_m and way: 3 numbers each, in the frame of the result's
+ * points; way NULL: to any side. force_N: of a steady push; impulse_Ns: of a bump; slack_m: metres
+ * that the bump may set it sliding, 0.02 say. *stays becomes 1 or 0. TOPPLE_ERROR_USAGE: an
+ * argument makes no sense.
+ */
+int topple_result_stays(const topple_result* result, uint64_t index, const double* place_m,
+                        const double* way, double force_N, double impulse_Ns, double slack_m,
+                        int* stays, topple_status* status);
+
 /* What pixels of depth frames show of a result (topple/frame_labels.h), which must hold its points'
  * coordinates, and need not outlive it. May be asked from several threads at once. */
 typedef struct topple_labeller topple_labeller;

@@ -17,11 +17,13 @@ import os
 import threading
 from typing import NamedTuple
 
+import numpy as np
+
 from . import _described, _labels, _removal, _shown, _snapshot, _spots, _tables, _topple, formats, plot, stages
 from ._arrays import channels as _channels, columns as _columns, has_rows as _has_rows, usage as _usage
 from ._device import open_device
 from ._frames import Frames as _Frames
-from ._options import named as _named, option as _option, unlikely_peak_note as _unlikely_peak_note
+from ._options import named as _named, option as _option
 from ._program import generate
 from ._removal import RemovalOrder
 from ._topple import Advice, AppliedCorrection, Contact, Device, DirectedBarrier, Error, Fall, Landscape, Object, Overturning, Primitive, Support, Why, __version__
@@ -120,7 +122,7 @@ class Result:
     def _whole(self, call):
         """What C++ made, which a pickle does not hold."""
         if isinstance(self._parsed, _snapshot.Item):
-            raise _usage(f'{call}: this result was pickled or copied, which leaves out the grids that it takes; call it on the '
+            raise _usage(f'{call}: this result was pickled or copied, which leaves out what it takes; call it on the '
                          'result of parse(), before pickling')
         return self._parsed
 
@@ -189,6 +191,34 @@ class Result:
             if self._labeller is None:
                 self._labeller = _labels.labeller(self)
         return _labels.of_frame(self._labeller, self._frames, frame, camera_to_world, intrinsics, primitives)
+
+    def stays(self, item, place_m, way=None, *, force_N=0.0, impulse_Ns=0.0, slack_m=0.02):
+        """Whether an object, an Object or its id, stays where it is, to two standard errors of its mass and its foot, when it is pushed
+        steadily with force_N newtons, or bumped with impulse_Ns newton seconds (m v of what comes with m kg at v m/s, and up to twice that
+        where it bounces back), at place_m, metres in the frame of the result's points, towards `way`, a level unit vector, or to any side
+        (None). Push and bump each by itself.
+
+        True: the push is below what tips it there, in the directions next to `way`, and below what friction holds; the bump is below the
+        least that makes it fall (barrier_by_direction.blow_Ns; where that is infinite, it brings less energy than the barrier), and sets it
+        sliding no farther than slack_m metres. What is of the ground stays whatever is done. False also where nobody knows: what holds it
+        was not seen, or is likelier than not something else than was found; it hangs; its barrier is 0; it is likelier than not a piece of
+        another object (piece_of: ask about that one), or two in one (joint_probability below 0.5); the place is lower than what it stands on, or higher than its top, by more than a voxel.
+
+        It promises nothing about what the figures leave out: that density and friction are as they were given, and what is solid to topple
+        is not hollow; touches beside the line above its centre of mass, which turn it; many of them; what it carries or holds. Raises Error of
+        kind "usage" for what makes no sense: a place that is not finite, a way that is not level or not of unit length, a figure that is
+        negative or not finite; and for a result that was pickled."""
+        given = _option('place_m', place_m), _option('way', way), _option('force_N', force_N), _option('impulse_Ns', impulse_Ns), _option('slack_m', slack_m)
+        return _topple.stays(self._whole('stays'), _spots.numbered(self.objects, item, 'object').id, *given)
+
+    def object_at(self, place_m, within_m):
+        """The id of the object at a place, three numbers, metres in the frame of the result's points: that of the nearest point that belongs
+        to one. -1: there is none within within_m metres (math.inf: however far). Looks at all points: for the pixels of an image take
+        frame_labels(). Of a cloud that was parsed in blocks the points are a sample. Raises Error of kind "usage" for a place that is
+        not finite, and a distance that is negative or NaN."""
+        place_m, within_m = _option('place_m', place_m), _option('within_m', within_m)
+        columns = [np.ascontiguousarray(axis, np.float32) for axis in self.xyz]
+        return _topple.object_at(columns, np.ascontiguousarray(self.point_object, np.int32), place_m, within_m)
 
     def write(self, folder, *, pictures=False, glb=False, octomap=False):
         """Writes the folder of outputs (docs/output.md), which appears whole or not at all: with view-*.png,
@@ -363,12 +393,12 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
         with formats.opened(source, formats.Options(unit_m=unit_m, isolate=isolate), cancelled) as converted:
             if converted is None:
                 parsed = _topple.parse_path(os.fspath(source), device, options, progress, cancelled)
-                return _noted(Result(parsed, None, frames=os.fspath(source)), pga_m_s2)
+                return Result(parsed, None, frames=os.fspath(source))
             if converted.is_sequence:
                 options.unit_m = 1.0
             parsed = _topple.parse_path(os.fspath(converted.path), device, options, progress, cancelled)
             _topple.came_from(parsed, os.fspath(source), converted.notes, list(converted.offset * unit_m))
-            converted.needed_by = result = _noted(Result(parsed, None, frames=os.fspath(converted.path)), pga_m_s2)
+            converted.needed_by = result = Result(parsed, None, frames=os.fspath(converted.path))
             return result
     if name is None:
         name = 'points' if frames is None else 'frames'
@@ -378,7 +408,7 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
         if normals is not None or viewpoint is not None:
             raise _usage('normals and viewpoint are for points; frames have camera_to_world')
         given = _Frames(frames, camera_to_world, intrinsics, colours, colour_intrinsics)
-        return _noted(Result(given.parse(name, device, options, progress, cancelled), None, frames=given), pga_m_s2)
+        return Result(given.parse(name, device, options, progress, cancelled), None, frames=given)
     points = _columns(source, ('x', 'y', 'z'), 'points')
     directions = [] if normals is None else _columns(normals, ('nx', 'ny', 'nz'), 'normals')
     channels = [] if colours is None else _channels(colours)
@@ -386,12 +416,4 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
         if given and len(given[0]) != len(points[0]):
             raise _usage(f'{what}: expected shape ({len(points[0])}, 3), one for each point, not {len(given[0])} of them')
     parsed = _topple.parse_arrays(points, directions, channels, viewpoint, viewpoints, name, device, options, progress, cancelled)
-    return _noted(Result(parsed, points, channels), pga_m_s2)
-
-
-def _noted(result, pga_m_s2):
-    """The result, with a note where the peak of earthquakes looks as if it was given in another unit."""
-    note = _unlikely_peak_note(None if pga_m_s2 is None else float(pga_m_s2))
-    if note and 'pga_m_s2' in result.events:
-        _topple.add_note(result._parsed, note)
-    return result
+    return Result(parsed, points, channels)

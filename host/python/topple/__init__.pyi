@@ -416,6 +416,8 @@ class Result:
     def spot(self, item: Union[Object, Primitive, int], part: bool = ...) -> NDArray[np.float64]: ...  # (3,)
     def spots(self, item: Union[Object, int]) -> list[NDArray[np.float64]]: ...  # (3,) each
     def frame_labels(self, frame: Union[int, NDArray[Any], _SupportsDLPack] = ..., *, camera_to_world: Optional[NDArray[np.floating[Any]]] = ..., intrinsics: Optional[stages.Intrinsics] = ..., primitives: bool = ...) -> NDArray[np.int32]: ...  # (H, W)
+    def stays(self, item: Union[Object, int], place_m: _Vec3, way: Optional[_Vec3] = ..., *, force_N: float = ..., impulse_Ns: float = ..., slack_m: float = ...) -> bool: ...
+    def object_at(self, place_m: _Vec3, within_m: float) -> int: ...  # -1: none
     def columns(self, what: _What = ...) -> dict[str, NDArray[Any]]: ...  # (N,), vectors (N, 3)
     def removal_order(self, min_probability: float = ...) -> RemovalOrder: ...
     def to_dataframe(self, what: _What = ...) -> Any: ...  # pandas.DataFrame

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether what parse() and export() are given for options has their types; the library checks their ranges."""
+"""Whether what parse(), export(), stays() and object_at() are given has their types; the library checks their ranges."""
 import difflib
 import functools
 import inspect
@@ -7,7 +7,6 @@ import math
 import operator
 
 from ._arrays import usage
-from ._shown import figure
 from ._topple import Device
 
 
@@ -65,12 +64,14 @@ def _names(value):
 
 
 _KINDS = {
-    'a number': (_number, ('voxel_m', 'unit_m', 'density_kg_m3', 'friction', 'wind_m_s', 'floor_amplification', 'tolerable_J', 'tile_m')),
+    'a number': (_number, ('voxel_m', 'unit_m', 'density_kg_m3', 'friction', 'wind_m_s', 'floor_amplification', 'tolerable_J', 'tile_m',
+                          'force_N', 'impulse_Ns', 'slack_m', 'within_m')),
     'a number, or None': (_number, ('contents_kg_m3', 'wind_from_deg', 'pga_m_s2', 'grouping_time_s', 'motion_unit', 'motion_rate')),
     'a whole number from 0': (_whole(64), ('seed', 'max_memory_bytes')),
     'a whole number, 1 or more': (_whole(32), ('walks',)),
     'a whole number, 0 for all cores': (_whole(32), ('threads',)),
-    'three finite numbers, as [0, 0, 1], or None': (_vector, ('up', 'viewpoint', 'motion_up')),
+    'three finite numbers, as [0, 0, 1], or None': (_vector, ('up', 'viewpoint', 'motion_up', 'way')),
+    'three finite numbers, as [0.5, 1, 0.2]': (_vector, ('place_m',)),
     '"g", "m/s2", "cm/s2", or None': (_text, ('accelerogram_unit',)),
     'True or False': (_flag, ('isolate', 'visuals')),
     'a name, a list of names, or None': (_names, ('disturbances',)),
@@ -78,21 +79,6 @@ _KINDS = {
     'a function, or None': (_callable, ('progress', 'cancelled')),
 }
 _CHECKS = {name: (check, words) for words, (check, names) in _KINDS.items() for name in names}
-
-
-# Below this a peak was meant in g, perhaps; of the peaks that were recorded only a few reach 2 g.
-_HARDLY_MEANT_M_S2, _HARDLY_RECORDED_G, _GRAVITY = 1, 2, 9.80665
-
-
-def unlikely_peak_note(pga_m_s2):
-    """What to say of a peak acceleration that was given in another unit, perhaps; '' of others."""
-    if pga_m_s2 is None or _HARDLY_MEANT_M_S2 <= pga_m_s2 < _HARDLY_RECORDED_G * _GRAVITY:
-        return ''
-    is_so = f'pga_m_s2={figure(pga_m_s2)} is {figure(pga_m_s2 / _GRAVITY, 2)} g'
-    if pga_m_s2 < _HARDLY_MEANT_M_S2:
-        return f'{is_so}: for {figure(pga_m_s2)} g give pga_m_s2={figure(pga_m_s2 * _GRAVITY)}.'
-    return (f'{is_so}, stronger than nearly all that were recorded; for {figure(pga_m_s2)} % of g give '
-            f'pga_m_s2={figure(pga_m_s2 / 100 * _GRAVITY)}.')
 
 
 def named(call):

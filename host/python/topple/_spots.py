@@ -25,7 +25,7 @@ class Parts:
         return None if at < 0 else self._at[at].copy()
 
 
-def _numbered(items, item, what):
+def numbered(items, item, what):
     """The item that is given by itself or by its id."""
     number = getattr(item, 'id', item)
     if isinstance(number, (bool, np.bool_)) or not isinstance(number, (int, np.integer)) or not 0 <= number < len(items):
@@ -36,7 +36,7 @@ def _numbered(items, item, what):
 def spots(result, parts, item):
     """A spot of each part of an object that has solid voxels, the largest part first."""
     primitives = result.primitives
-    of = _numbered(result.objects, item, 'object')
+    of = numbered(result.objects, item, 'object')
     largest = sorted(of.primitives, key=lambda p: (-primitives[p].solid_voxels, p))
     return [spot for spot in map(parts.spot, largest) if spot is not None]
 
@@ -44,7 +44,7 @@ def spots(result, parts, item):
 def spot(result, parts, item, part):
     """A spot of an object's largest part, or of the part itself."""
     if part:
-        found = parts.spot(_numbered(result.primitives, item, 'part').id)
+        found = parts.spot(numbered(result.primitives, item, 'part').id)
     else:
         found = next(iter(spots(result, parts, item)), None)
     if found is None:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "safety/earthquake/earthquake_field.h"
+#include "safety/earthquake/intensity.h"
 
 namespace topple::safety {
 namespace {
@@ -60,6 +61,10 @@ const DisturbanceKind& earthquake_kind() {
                 if (options.hazard && !options.hazard->pga_g.empty())
                     events["hazard_from_g"] = options.hazard->pga_g.front();
                 return events;
+            },
+        .doubt =
+            [](const ParseOptions& options) {
+                return options.pga_m_s2 ? unlikely_peak_note(*options.pga_m_s2) : "";
             }};
     return kind;
 }

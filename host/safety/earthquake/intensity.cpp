@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <limits>
+
+#include "io/text.h"
+#include "physics/landscape.h"
 
 namespace topple::safety {
 
@@ -27,6 +31,24 @@ std::string shaking_text(double pga_g) {
         std::ranges::find_if(all, [&](const Intensity& i) { return pga_g <= i.up_to_g; });
     const Intensity& felt = found == all.end() ? all.back() : *found;
     return std::string(felt.word) + ", intensity " + felt.number;
+}
+
+std::string unlikely_peak_note(double pga_m_s2) {
+    // Of the level peaks of strong-motion records only a few reach 2 g.
+    constexpr double hardly_meant_m_s2 = 1, hardly_recorded_g = 2, hundredth = 0.01;
+    const double in_g = pga_m_s2 / physics::gravity;
+    const bool weak = pga_m_s2 < hardly_meant_m_s2;
+    if (!weak && in_g < hardly_recorded_g) return "";
+    const std::string given = io::short_number(pga_m_s2);
+    char meant[32];
+    std::snprintf(meant, sizeof(meant), "%.3g",
+                  pga_m_s2 * physics::gravity * (weak ? 1 : hundredth));
+    std::string note = "ParseOptions::pga_m_s2 = " + given;
+    note.append(" is ").append(io::two_digits(in_g)).append(" g (");
+    note.append(shaking_text(in_g)).append(")");
+    if (!weak) note.append(", stronger than nearly all that were recorded");
+    note.append(weak ? ": for " : "; for ").append(given).append(weak ? " g" : " % of g");
+    return note.append(" give ParseOptions::pga_m_s2 = ").append(meant).append(".");
 }
 
 }  // namespace topple::safety

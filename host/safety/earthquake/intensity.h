@@ -19,4 +19,8 @@ std::span<const Intensity> intensities();
 // "very strong shaking, intensity VII"
 std::string shaking_text(double pga_g);
 
+// What to say of a peak so weak that it was meant in g, perhaps, or so strong that it was meant in
+// hundredths of g; "" of others.
+std::string unlikely_peak_note(double pga_m_s2);
+
 }  // namespace topple::safety

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/short_number.h"
 #include "core/thread_pool.h"
 #include "scenes/scan/smooth.h"
 #include "scenes/scan/viewpoints.h"
@@ -347,7 +348,7 @@ Scan scan(const World& world, const ScanOptions& options) {
                     "--frames " + std::to_string(options.frames) + ": expected 1 to 10000");
     if (options.spacing_m != 0 && !(options.spacing_m >= 0.002 && options.spacing_m <= 0.5))
         throw Error(ErrorKind::usage,
-                    "--spacing " + std::to_string(options.spacing_m) + ": expected 0.002 to 0.5 m");
+                    "--spacing " + short_number(options.spacing_m) + ": expected 0.002 to 0.5 m");
     return Scanner(world, options).take();
 }
 

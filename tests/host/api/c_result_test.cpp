@@ -55,6 +55,35 @@ TEST_F(CApi, TakesCorrections) {
     EXPECT_NE(std::string(status.message).find("schema"), std::string::npos) << status.message;
 }
 
+TEST_F(CApi, SaysWhatMayBeTouched) {
+    options.disturbances = 0;
+    ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK) << status.message;
+    topple_object crate{};
+    crate.size = sizeof(crate);
+    ASSERT_EQ(topple_result_object(result, 1, &crate, nullptr), TOPPLE_OK);
+    ASSERT_FALSE(crate.grounded);
+    const double level[3] = {1, 0, 0}, upwards[3] = {0, 0, 1};
+    const auto asked = [&](const double* way, double force_N, double impulse_Ns) {
+        int stays = -1;
+        const int code = topple_result_stays(result, 1, crate.center_of_mass_m, way, force_N,
+                                             impulse_Ns, 0.02, &stays, &status);
+        return code == TOPPLE_OK ? stays : -code;
+    };
+    EXPECT_EQ(asked(level, 1, 0.1), 1);
+    EXPECT_EQ(asked(nullptr, 1, 0.1), 1);
+    EXPECT_EQ(asked(nullptr, 2 * crate.slide_N, 0), 0);
+    EXPECT_EQ(asked(nullptr, 0, crate.mass_kg), 0);
+    EXPECT_EQ(asked(upwards, 1, 0), -TOPPLE_ERROR_USAGE);
+    EXPECT_NE(std::string(status.message).find("expected a level way"), std::string::npos);
+    EXPECT_EQ(asked(level, -1, 0), -TOPPLE_ERROR_USAGE);
+    int stays = -1;
+    EXPECT_EQ(topple_result_stays(result, 1, nullptr, level, 1, 0, 0.02, &stays, &status),
+              TOPPLE_ERROR_USAGE);
+    EXPECT_STREQ(status.message, "place_m is NULL");
+    EXPECT_EQ(topple_result_stays(result, 99, level, level, 1, 0, 0.02, &stays, &status),
+              TOPPLE_ERROR_USAGE);
+}
+
 TEST_F(CApi, ParsesAsTheLibraryDoes) {
     ASSERT_EQ(topple_parse_cloud(&cloud, &options, &result, &status), TOPPLE_OK) << status.message;
     EXPECT_STREQ(status.message, "");

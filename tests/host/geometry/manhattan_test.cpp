@@ -91,6 +91,53 @@ TEST_F(Manhattan, TheUsersUpWins) {
     EXPECT_LT(degrees_off(frame.axes[2], {0, 2, 0.1}), 1e-6);
 }
 
+// An accelerometer's reading with the wrong sign, and one in another frame than the cloud's.
+TEST_F(Manhattan, AnUpThatTheScanContradictsIsNoted) {
+    const Eigen::Matrix3d turn = tilt(40, {0.3, -0.8, 0.4});
+    const Surfels s = surfels(turn, true);
+    const Vector3d truth = turn * Vector3d(0, 0, 1), camera = turn * Vector3d(0, 0.4, 1);
+    const auto vec = [](const Vector3d& v) { return Vec3{v[0], v[1], v[2]}; };
+    for (const bool filmed : {false, true}) {
+        const auto note = [&](const Vector3d& given) {
+            FrameHints hints{.up = vec(given), .camera_up = {}};
+            if (filmed) hints.camera_up = vec(camera);
+            const SceneFrame frame = find_scene_frame(*device, s, hints);
+            EXPECT_EQ(frame.up_method, "given");
+            EXPECT_LT(degrees_off(frame.axes[2], given), 1e-4);
+            return frame.note;
+        };
+        EXPECT_EQ(note(9.81 * truth), "");
+        EXPECT_EQ(note(tilt(25, {1, 0, 0}) * truth), "");
+        EXPECT_NE(note(-9.81 * truth)
+                      .find("is 180 degrees from what the surfaces " +
+                            std::string(filmed ? "and cameras " : "") + "show, ("),
+                  std::string::npos)
+            << note(-truth);
+        EXPECT_NE(note(turn * Vector3d(1, 0, 0)).find("is 90 degrees from"), std::string::npos);
+        EXPECT_NE(note(turn * Vector3d(0.6, 0.3, 1)).find("is 34 degrees from"), std::string::npos);
+    }
+}
+
+// Where the surfaces don't tell, nobody is told that they do.
+TEST_F(Manhattan, AnUpThatNothingContradictsIsNot) {
+    test::Random random(9);
+    PointCloud ball;
+    for (int i = 0; i < 40'000; ++i) {
+        const Vector3d p = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+        ball.x.push_back(static_cast<float>(p[0]));
+        ball.y.push_back(static_cast<float>(p[1]));
+        ball.z.push_back(static_cast<float>(p[2]));
+    }
+    const Surfels s = make_surfels(*device, ball, 0.03, {}, {});
+    const Surfels none = make_surfels(*device, {}, 0.02, {}, {});
+    for (const Vec3& up : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{1, 0, 0}}) {
+        for (const auto& camera : {std::optional<Vec3>(), std::optional(Vec3{0, -1, 0})}) {
+            EXPECT_EQ(find_scene_frame(*device, s, {up, camera}).note, "");
+            EXPECT_EQ(find_scene_frame(*device, none, {up, camera}).note, "");
+        }
+    }
+}
+
 TEST_F(Manhattan, ATablePlaneAloneGivesUp) {
     // The camera's frame: y down, pitched down by 50 degrees.
     const Eigen::Matrix3d turn = tilt(50, {1, 0, 0}) * tilt(90, {1, 0, 0});

@@ -59,6 +59,11 @@ Mat4 given_as(PoseConvention convention, const Mat4& truth) {
             return pose(body.inverse());
         case PoseConvention::w_first:
             break;
+        case PoseConvention::transposed: {
+            Matrix turned = right;
+            turned.topLeftCorner<3, 3>() = right.topLeftCorner<3, 3>().transpose().eval();
+            return pose(turned);
+        }
     }
     const Eigen::Quaterniond q(right.topLeftCorner<3, 3>().eval());
     Matrix out = right;
@@ -110,7 +115,7 @@ TEST(PoseComparison, NamesTheConventionInWhichFramesAgree) {
     }
 }
 
-// A tripod at the origin turns alike in all three.
+// A tripod at the origin turns alike in all four.
 TEST(PoseComparison, NamesAllThatTheFramesDoNotTellApart) {
     const scenes::World world = scenes::furnished_room({});
     std::vector<Mat4> poses;
@@ -126,7 +131,7 @@ TEST(PoseComparison, NamesAllThatTheFramesDoNotTellApart) {
     EXPECT_THAT(better(frames, PoseConvention::camera_to_world), IsEmpty());
     EXPECT_THAT(better(frames, PoseConvention::world_to_camera),
                 UnorderedElementsAre(PoseConvention::world_to_camera, PoseConvention::opengl,
-                                     PoseConvention::w_first));
+                                     PoseConvention::w_first, PoseConvention::transposed));
 }
 
 // A camera on a rail, which never turns.
@@ -157,6 +162,7 @@ TEST(PoseComparison, SaysNothingWhereFramesShareNothing) {
         EXPECT_EQ(comparison(one, convention).verdict().pairs, 0U);
         EXPECT_THAT(better(one, convention), IsEmpty());
         EXPECT_FALSE(comparison(one, convention).verdict().contradict);
+        EXPECT_FALSE(comparison(one, convention).verdict().moved);
         one.frames.clear();
         EXPECT_THAT(better(one, convention), IsEmpty());
         // Without readings.
@@ -170,6 +176,43 @@ TEST(PoseComparison, SaysNothingWhereFramesShareNothing) {
             shuffled.frames[n].depth = walk.frames[(11 * n + 5) % walk.frames.size()].depth;
         EXPECT_THAT(better(shuffled, convention), IsEmpty());
     }
+}
+
+PoseComparison::Verdict verdict_of(const scenes::Sequence& frames) {
+    return comparison(frames, PoseConvention::camera_to_world).verdict();
+}
+
+TEST(PoseComparison, OnePoseForFramesThatDiffer) {
+    scenes::Sequence walk = scenes::walk(scenes::furnished_room({}), small_camera(30));
+    EXPECT_EQ(verdict_of(walk).same_poses, 0U);
+    // Filled in for the first half alone, then for none.
+    for (const std::size_t first : {15U, 0U}) {
+        for (std::size_t n = first; n < walk.frames.size(); ++n)
+            walk.frames[n].camera_to_world = walk.frames[0].camera_to_world;
+        const PoseComparison::Verdict found = verdict_of(walk);
+        EXPECT_EQ(found.frames, 30U);
+        EXPECT_EQ(found.same_poses, first == 0 ? 30U : 16U);
+        EXPECT_TRUE(found.moved);
+        EXPECT_LT(found.at_one_pose.agreeing_share(), 0.3);
+    }
+}
+
+// Each frame has noise of its own, and something goes past.
+TEST(PoseComparison, ACameraThatStandsStillDidNotMove) {
+    const scenes::World world = scenes::furnished_room({});
+    const Mat4 stand = scenes::look_at({0.5, 0.5, 1.4}, {2, 2, 0.8});
+    scenes::Sequence still = scenes::film(world, small_camera(20), std::vector<Mat4>(20, stand));
+    const auto agreeing = [&] { return verdict_of(still).at_one_pose.agreeing_share(); };
+    EXPECT_EQ(verdict_of(still).same_poses, 20U);
+    EXPECT_NE(still.frames[0].depth, still.frames[19].depth);
+    EXPECT_GT(agreeing(), 0.9);
+    EXPECT_FALSE(verdict_of(still).moved);
+    for (std::size_t n = 0; n < 20; ++n) {
+        for (std::size_t v = 0; v < 72; ++v)
+            for (std::size_t u = 0; u < 30; ++u) still.frames[n].depth[v * 96 + (u + 3 * n)] = 500;
+    }
+    EXPECT_LT(agreeing(), 0.9);
+    EXPECT_FALSE(verdict_of(still).moved);
 }
 
 // Poses that drift or are off in scale agree badly, and in no other convention better.

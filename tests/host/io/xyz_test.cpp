@@ -35,6 +35,44 @@ TEST_F(Xyz, separators_comments_and_extra_columns) {
     }
 }
 
+TEST_F(Xyz, poses_are_no_points) {
+    const std::string tum = "# t x y z qx qy qz qw\n1.0 0 0 1 0.5 -0.5 0.5 -0.5\n",
+                      open3d = "0 0 1\n1 0 0 2\n0 0 -1 0\n0 1 0 1\n0 0 0 1\n";
+    for (const std::string& text :
+         {tum, tum + "1.1 0 0 1 0.1 0.7 0.1 0.7\n", tum + "1.1 0 0 1 1e-3 0 0.6 0.8",
+          std::string("timestamp,tx,ty,tz,qx,qy,qz,qw\n1,0,0,1,0.5,-0.5,0.5,-0.5\n"),
+          std::string("1 0 0 2 0 0 -1 0 0 1 0 1\n0.6 -0.8 0 2 0.8 0.6 0 0 0 0 1 1\n"), open3d,
+          open3d.substr(6)}) {
+        for (const char* name : {"trajectory.txt", "poses.csv", "a.xyz"}) {
+            SCOPED_TRACE(text);
+            expect_input_error([&] { read_cloud(write(name, text)); },
+                               {name, "poses, not of points", "give its folder"});
+        }
+    }
+}
+
+TEST_F(Xyz, points_are_no_poses) {
+    for (const char* text : {
+             // Intensity, normal, curvature; and the same with a first column that falls.
+             "1 2 3 9 0 0 1 0\n4 5 6 9 0.6 0.8 0 0.01\n",
+             "1 2 3 9 0.5 0.5 0.5 0.5\n0 5 6 9 0.5 -0.5 0.5 0.5\n",
+             // Longer than a quaternion, a row with other columns, and no rotation.
+             "1 2 3 9 0.5 0.5 0.5 0.6\n4 5 6 9 0.5 0.5 0.5 0.5\n",
+             "1 2 3 9 0.5 0.5 0.5 0.5\n4 5 6 9 0.5 0.5 0.5 0.5 1\n",
+             "1 0 0 2 0 1 0 0 0 0 2 1\n1 0 0 2 0 1 0 0 0 0 1 1\n",
+             "1 0 0 2\n0 1 0 0\n0 0 1 1\n0 0 1 1\n",
+             "1 2 3\n4 5 6\n",
+         }) {
+        SCOPED_TRACE(text);
+        EXPECT_GE(read_cloud(write("a.txt", text)).size(), 2u);
+    }
+    // Rows beyond those that are looked at are nothing but points.
+    std::string many;
+    for (int n = 0; n < 20; ++n)
+        many += std::to_string(n) + (n < 9 ? " 0 0 1 0.5 0.5 0.5 0.5\n" : " 0 0 1 7 7 7 7\n");
+    EXPECT_EQ(read_cloud(write("a.txt", many)).size(), 20u);
+}
+
 TEST_F(Xyz, six_columns_are_normals_only_where_they_have_unit_length) {
     const auto normals = read_cloud(write("a.xyz", "1 2 3 0 0 1\n4 5 6 0.6 -0.8 0\n"));
     EXPECT_EQ(normals.ny, (std::vector<float>{0, -0.8f}));

@@ -51,6 +51,11 @@ TEST(FrameChecks, PosesOfAnotherConvention) {
         for (std::size_t n = 0; n < poses.size(); ++n) frames.add(walk.frames[n], n);
         return pose_note(frames, origin);
     };
+    const auto note_of = [&](const std::vector<Mat4>& poses) {
+        geometry::PoseComparison frames(walk.intrinsics, poses, 2);
+        for (std::size_t n = 0; n < poses.size(); ++n) frames.add(walk.frames[n], n);
+        return pose_note(frames, ScanOrigin::frames_in_memory);
+    };
     EXPECT_EQ(note(false, ScanOrigin::frames_folder), "");
     EXPECT_THAT(note(true, ScanOrigin::frames_folder),
                 AllOf(HasSubstr("OpenGL"), HasSubstr("write into the file of poses"),
@@ -59,6 +64,39 @@ TEST(FrameChecks, PosesOfAnotherConvention) {
     EXPECT_THAT(note(false, ScanOrigin::frames_folder, true),
                 AllOf(HasSubstr("The frames contradict each other"), HasSubstr("in their order"),
                       HasSubstr("of intrinsics.json are")));
+    std::vector<Mat4> poses;
+    for (const DepthFrame& frame : walk.frames) {
+        poses.push_back(frame.camera_to_world);
+        std::swap(poses.back()[1], poses.back()[4]);
+        std::swap(poses.back()[2], poses.back()[8]);
+        std::swap(poses.back()[6], poses.back()[9]);
+    }
+    EXPECT_THAT(note_of(poses), AllOf(HasSubstr("transposed rotations (column-major, or "
+                                                "quaternions with x, y, z negated)"),
+                                      HasSubstr("matrices are row-major")));
+    poses.assign(30, walk.frames[0].camera_to_world);
+    EXPECT_THAT(note_of(poses),
+                AllOf(testing::StartsWith("All 30 poses are the same, but the images are not: "),
+                      testing::EndsWith("Were the poses filled in?")));
+    for (std::size_t n = 0; n < 10; ++n) poses[n] = walk.frames[n].camera_to_world;
+    EXPECT_THAT(note_of(poses), testing::StartsWith("21 of 30 poses are the same, "));
+}
+
+TEST(FrameChecks, StepsOfACameraInAnotherUnit) {
+    const auto message = [](double step) {
+        const std::vector<Vec3> places{{0, 0, 0}, {step, 0, 0}, {2 * step, 0, 0}};
+        try {
+            check_camera_steps(places, "frames");
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(message(9), "");
+    EXPECT_THAT(message(30),
+                testing::EndsWith("if these are mm, multiply them by 0.001, by 0.01 if "
+                                  "cm"));
+    EXPECT_THAT(message(3000), testing::EndsWith("if these are mm, multiply them by 0.001"));
 }
 
 }  // namespace

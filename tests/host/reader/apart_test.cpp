@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
+#include <gmock/gmock.h>
 #include <openvdb/openvdb.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
 
 #include "host/io/files.h"
 #include "host/io/mesh_files.h"
 #include "host/io/octomap_files.h"
 #include "reader/read_scan.h"
+#include "topple/device.h"
 
 namespace topple::reader {
 namespace {
@@ -105,6 +110,60 @@ TEST_F(Apart, what_crashes_there_is_an_error_here) {
         expect_input_error([&] { read_scan_apart(file, 1, {}); },
                            {"a.obj", c.message, "ParseOptions::isolate = false"});
     }
+}
+
+// As the dynamic loader ends a program that lacks a library; the file is not to blame.
+TEST_F(Apart, a_reader_that_does_not_start_says_so) {
+    const auto file = write("a.obj", test::box_obj());
+    const auto message = [&] {
+        try {
+            read_scan_apart(file, 1, {});
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    for (const char* code : {"126", "127"}) {
+        take_script("exit " + std::string(code));
+        const std::string program = path("topple-reader").string();
+        EXPECT_THAT(message(), testing::HasSubstr(program + " did not start (exit code " + code +
+                                                  "): a shared library that it needs is missing "
+                                                  "here (ldd " +
+                                                  program + ")"));
+        EXPECT_THAT(message(), testing::Not(testing::HasSubstr("damaged")));
+    }
+    std::ofstream(path("topple-reader")) << "no program";
+    EXPECT_THAT(message(), testing::HasSubstr("did not start: Exec format error"));
+}
+
+// Listed, not thrown.
+TEST_F(Apart, devices_are_listed_where_the_reader_does_not_start) {
+    const auto problems = [] {
+        std::vector<std::string> all;
+        for (const device::Listing& listing : device::list_devices())
+            if (listing.backend != device::Backend::native) all.push_back(listing.problem);
+        return all;
+    };
+    take_script("exit 127");
+    EXPECT_THAT(problems(), testing::AllOf(testing::SizeIs(2),
+                                           testing::Each(testing::AllOf(
+                                               testing::HasSubstr("topple-reader did not start"),
+                                               testing::HasSubstr("ldd "),
+                                               testing::Not(testing::HasSubstr("driver"))))));
+    take_script("exit 7");
+    EXPECT_THAT(problems(), testing::Each(testing::HasSubstr("its driver ended without")));
+    // Without descriptors there is no process.
+    rlimit before;
+    ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+    const int lowest = ::dup(0);
+    ::close(lowest);
+    const rlimit none{static_cast<rlim_t>(lowest), before.rlim_max};
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+    const std::vector<std::string> found = problems();
+    ::setrlimit(RLIMIT_NOFILE, &before);
+    EXPECT_THAT(found, testing::AllOf(testing::SizeIs(2),
+                                      testing::Each(testing::HasSubstr("raise the limits"))));
 }
 
 TEST_F(Apart, what_polls_ends_it) {

@@ -145,6 +145,7 @@ TEST_F(PageRisk, says_what_is_not_known_and_what_to_try_by_hand) {
     cup.unsafety_category = "none";
     cup.unsafety_certain = false;
     Object& ball = scene.objects[5];  // taken for a wardrobe
+    ball.barrier_J = 5;
     ball.size_m = {0.4, 2.7, 1.96};
     ball.instability = {{20, 595}};
     test::say_actions(scene);

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "arrays.h"
+#include "topple/object_at.h"
+#include "topple/stays.h"
+
+// What a result is asked about a place.
+namespace topple::python {
+
+void bind_places(py::module_& module) {
+    module.def("stays", [](const Parsed& parsed, std::size_t object, const Vec3& place_m,
+                           const std::optional<Vec3>& way, double force_N, double impulse_Ns,
+                           double slack_m) {
+        const Scene& scene = parsed.result.scene;
+        return stays(scene, scene.objects.at(object),
+                     {place_m, way.value_or(Vec3{}), force_N, impulse_Ns, slack_m});
+    });
+    // Of the columns that a pickle holds, too: coordinates, and the object of each point.
+    module.def("object_at", [](const std::vector<py::array>& points, const py::array& object,
+                               const Vec3& place_m, double within_m) {
+        const auto copied = [](auto& to, const auto& from) { to.assign(from.begin(), from.end()); };
+        ParseResult result;
+        ScenePoints& to = result.scene.points;
+        copied(to.x, row<const float>(points.at(0), "x"));
+        copied(to.y, row<const float>(points.at(1), "y"));
+        copied(to.z, row<const float>(points.at(2), "z"));
+        copied(to.object, row<const std::int32_t>(object, "point_object"));
+        if (to.y.size() != to.x.size() || to.z.size() != to.x.size())
+            throw Error(ErrorKind::usage, "object_at: the columns differ in length");
+        return object_at(result, place_m, within_m);
+    });
+}
+
+}  // namespace topple::python
