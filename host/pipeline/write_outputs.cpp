@@ -125,18 +125,13 @@ std::vector<std::function<void()>> writers(const std::filesystem::path& folder,
 void write_outputs(const ParseResult& result, const std::filesystem::path& folder,
                    const OutputOptions& options) {
     if (!result.tiled && !result.voxels)
-        throw Error(
-            ErrorKind::usage,
-            "write_outputs: the result has no voxels: no parse returned it, or it was moved "
-            "from");
+        throw Error(ErrorKind::usage,
+                    "write_outputs: the result was read from a folder, which has no voxel grids, "
+                    "or no parse returned it: parse the scan again, or copy that folder");
     if (result.scene.points.x.size() != result.scene.points.primitive.size()) {
         throw Error(ErrorKind::usage,
                     "the result has no coordinates of its points: call add_coordinates() first");
     }
-    if (!result.voxels && !result.tiled)
-        throw Error(ErrorKind::usage,
-                    "the result was read from a folder, which has no voxel grids to write: parse "
-                    "the scan again, or copy that folder");
     io::check_not_replaced(result.scene.source, folder);
     io::OutputFolder out(folder);
     const Poll poll = [&] {

@@ -57,7 +57,7 @@ ScannedMap read_scan_apart(const std::filesystem::path& file, double unit_m,
     const child::Ended ended =
         child::run(program.string(), {"scan", unit_text(unit_m), file.string()}, limits, poll);
     if (!ended.started)
-        throw Error(ErrorKind::usage, io::path_text(file) + ": is read by another program, and " +
+        throw Error(ErrorKind::input, io::path_text(file) + ": is read by another program, and " +
                                           ended.how +
                                           "; or, for a file that you trust, say "
                                           "ParseOptions::isolate = false");

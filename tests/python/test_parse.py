@@ -82,7 +82,7 @@ def test_the_unit_of_a_record_may_be_given(points, device, tmp_path):
         parsed = topple.parse(points[::6], device=device, disturbances='earthquake', accelerogram=tmp_path / 'quake.txt', **options)
         return next(note for note in parsed.notes if 'accelerogram' in note)
     assert '1 m/s^2' in by(accelerogram_unit='cm/s2')
-    with pytest.raises(topple.Error, match='quake.txt.*name it with accelerogram_unit g, m/s2 or cm/s2') as raised:
+    with pytest.raises(topple.Error, match='quake.txt.*name it with accelerogram_unit: g, m/s2 or cm/s2') as raised:
         by()
     assert raised.value.kind == 'input'
     for unit, options in (('ft', {'accelerogram': tmp_path / 'quake.txt'}), ('g', {})):

@@ -64,9 +64,10 @@ TEST(Options, AnEmptyPathIsNamed) {
 }
 
 TEST(Options, AResultOfNoParseIsRefused) {
-    EXPECT_EQ(
-        refusal_of([] { write_outputs(ParseResult{}, "out"); }),
-        "write_outputs: the result has no voxels: no parse returned it, or it was moved from");
+    EXPECT_EQ(refusal_of([] { write_outputs(ParseResult{}, "out"); }),
+              "write_outputs: the result was read from a folder, which has no voxel grids, or no "
+              "parse returned it: "
+              "parse the scan again, or copy that folder");
 }
 
 TEST(Options, WhatIsForFilesIsRefusedOfWhatIsInMemory) {

@@ -119,7 +119,7 @@ TEST_F(Apart, a_reader_that_does_not_start_says_so) {
         try {
             read_scan_apart(file, 1, {});
         } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            EXPECT_EQ(error.kind(), ErrorKind::input);
             return std::string(error.what());
         }
         return std::string();
