@@ -109,7 +109,7 @@ TEST_P(CarveLeaves, SameBitsAsNative) {
     EXPECT_EQ(here.front, native.front);
 }
 
-TOPPLE_ON_EACH_BACKEND(CarveLeaves);
+TOPPLE_ON_EACH_FORM(CarveLeaves);
 
 }  // namespace
 }  // namespace topple::test

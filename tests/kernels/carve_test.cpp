@@ -95,7 +95,7 @@ TEST_P(Carve, SameBitsAsNative) {
     EXPECT_EQ(run(*device, c, all, 0), run(*device::open_device("native"), c, all, 0));
 }
 
-TOPPLE_ON_EACH_BACKEND(Carve);
+TOPPLE_ON_EACH_FORM(Carve);
 
 }  // namespace
 }  // namespace topple::test

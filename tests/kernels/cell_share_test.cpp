@@ -127,7 +127,7 @@ ShareVoxel voxel(Random& random) {
 }
 
 class CellShare : public EachBackend {};
-TOPPLE_ON_EACH_BACKEND(CellShare);
+TOPPLE_ON_EACH_FORM(CellShare);
 
 TEST_P(CellShare, MatchesTheOracleAndNativeToTheBit) {
     const auto native = device::open_native();

@@ -27,7 +27,7 @@ std::vector<std::uint32_t> counting(std::size_t count) {
 }
 
 class DeviceBuffer : public EachBackend {};
-TOPPLE_ON_EACH_BACKEND(DeviceBuffer);
+TOPPLE_ON_EACH_FORM(DeviceBuffer);
 
 TEST_P(DeviceBuffer, GivesBackWhatItTook) {
     for (const std::size_t count : {0, 1, 63, 64, 65, 997, 3'000'001}) {

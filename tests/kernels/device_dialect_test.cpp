@@ -94,7 +94,7 @@ std::vector<float> but_for_denormals(std::vector<float> got, const std::vector<f
 }
 
 class DeviceDialect : public EachBackend {};
-TOPPLE_ON_EACH_BACKEND(DeviceDialect);
+TOPPLE_ON_EACH_FORM(DeviceDialect);
 
 TEST_P(DeviceDialect, RoundsAsIeee754OnEveryBackend) {
     const Numbers in = numbers();

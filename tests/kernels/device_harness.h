@@ -13,7 +13,7 @@
 
 namespace topple::test {
 
-// A test that runs once on each backend, and by Vulkan also with the kernels' form for real GPUs. A
+// A test that runs once on each backend, of kernels by Vulkan also in their form for real GPUs. A
 // missing backend skips by name; with TOPPLE_REQUIRE_BACKENDS=1 (as in CI) it fails instead.
 class EachBackend : public ::testing::TestWithParam<const char*> {
   protected:
@@ -40,6 +40,10 @@ class EachBackend : public ::testing::TestWithParam<const char*> {
 };
 
 inline auto all_backends() {
+    return ::testing::Values("native", "opencl", "vulkan");
+}
+// And by Vulkan also as on a real GPU.
+inline auto all_forms() {
     return ::testing::Values("native", "opencl", "vulkan", "vulkan_as_gpu");
 }
 inline std::string backend_name(const ::testing::TestParamInfo<const char*>& info) {
@@ -50,4 +54,8 @@ inline std::string backend_name(const ::testing::TestParamInfo<const char*>& inf
 
 #define TOPPLE_ON_EACH_BACKEND(suite)                                     \
     INSTANTIATE_TEST_SUITE_P(Device, suite, topple::test::all_backends(), \
+                             topple::test::backend_name)
+// Of kernels: each form of theirs.
+#define TOPPLE_ON_EACH_FORM(suite)                                     \
+    INSTANTIATE_TEST_SUITE_P(Device, suite, topple::test::all_forms(), \
                              topple::test::backend_name)

@@ -22,7 +22,7 @@ class DeviceQueue : public EachBackend {
                                   {.count = count, .scale = scale});
     }
 };
-TOPPLE_ON_EACH_BACKEND(DeviceQueue);
+TOPPLE_ON_EACH_FORM(DeviceQueue);
 
 // 5000 steps of Fibonacci's numbers modulo what a float holds, each from the two before: longer
 // than one submit of any backend, and wrong as soon as one step misses another's writes.

@@ -231,7 +231,7 @@ TEST_P(DisturbanceKernels, SameBitsAsNative) {
     EXPECT_EQ(std::memcmp(want.data(), got.data(), want.size() * sizeof(float)), 0);
 }
 
-TOPPLE_ON_EACH_BACKEND(DisturbanceKernels);
+TOPPLE_ON_EACH_FORM(DisturbanceKernels);
 
 }  // namespace
 }  // namespace topple

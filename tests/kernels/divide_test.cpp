@@ -10,7 +10,7 @@ namespace topple::test {
 namespace {
 
 class Divide : public EachBackend {};
-TOPPLE_ON_EACH_BACKEND(Divide);
+TOPPLE_ON_EACH_FORM(Divide);
 
 // The count is a multiple of the elements that one work-item holds.
 TEST_P(Divide, MatchesTheOracle) {

@@ -10,7 +10,7 @@ namespace topple::test {
 namespace {
 
 class Gather : public EachBackend {};
-TOPPLE_ON_EACH_BACKEND(Gather);
+TOPPLE_ON_EACH_FORM(Gather);
 
 // The count is a multiple of the elements that one work-item holds.
 TEST_P(Gather, MatchesTheOracle) {

@@ -69,7 +69,7 @@ class GroupLandscape : public EachBackend {
         return energy.download();
     }
 };
-TOPPLE_ON_EACH_BACKEND(GroupLandscape);
+TOPPLE_ON_EACH_FORM(GroupLandscape);
 
 TEST_P(GroupLandscape, MatchesTheOracle) {
     for (const std::uint32_t candidates : {0u, 1u, 2u, 63u, 64u, 65u, 101u}) {

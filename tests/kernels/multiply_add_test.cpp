@@ -10,7 +10,7 @@ namespace topple::test {
 namespace {
 
 class MultiplyAdd : public EachBackend {};
-TOPPLE_ON_EACH_BACKEND(MultiplyAdd);
+TOPPLE_ON_EACH_FORM(MultiplyAdd);
 
 // The count is a multiple of the elements that one work-item holds.
 TEST_P(MultiplyAdd, MatchesTheOracle) {

@@ -10,7 +10,7 @@ namespace topple::test {
 namespace {
 
 class NormalCluster : public EachBackend {};
-TOPPLE_ON_EACH_BACKEND(NormalCluster);
+TOPPLE_ON_EACH_FORM(NormalCluster);
 
 std::array<double, 3> direction(Random& random) {
     const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);

@@ -95,7 +95,7 @@ std::vector<float> run(device::Device& device, const MeanInputs& in, int radius)
 }
 
 class PlaneMean : public EachBackend {};
-TOPPLE_ON_EACH_BACKEND(PlaneMean);
+TOPPLE_ON_EACH_FORM(PlaneMean);
 
 TEST_P(PlaneMean, MatchesTheOracleAndNativeToTheBit) {
     const auto native = device::open_native();

@@ -195,7 +195,7 @@ class RockingKernel : public EachBackend {
         return INFINITY;
     }
 };
-TOPPLE_ON_EACH_BACKEND(RockingKernel);
+TOPPLE_ON_EACH_FORM(RockingKernel);
 
 RockingCase random_case(Random& random, std::size_t bodies, std::size_t records,
                         std::size_t events_each) {

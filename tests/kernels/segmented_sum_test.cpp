@@ -53,7 +53,7 @@ class SegmentedSum : public EachBackend {
         EXPECT_TRUE(sum.untouched());
     }
 };
-TOPPLE_ON_EACH_BACKEND(SegmentedSum);
+TOPPLE_ON_EACH_FORM(SegmentedSum);
 
 TEST_P(SegmentedSum, MatchesTheOracle) {
     for (const std::vector<std::uint32_t>& lengths : std::vector<std::vector<std::uint32_t>>{

@@ -146,7 +146,7 @@ TEST_P(SixFillSweep, SameBitsAsNative) {
         EXPECT_EQ(run(*device, c, axis), run(*native, c, axis)) << "axis " << axis;
 }
 
-TOPPLE_ON_EACH_BACKEND(SixFillSweep);
+TOPPLE_ON_EACH_FORM(SixFillSweep);
 
 }  // namespace
 }  // namespace topple::test

@@ -93,7 +93,7 @@ TEST_P(SixFillVote, SameBitsAsNative) {
     EXPECT_EQ(run(*device, c, 2, true), run(*device::open_device("native"), c, 2, true));
 }
 
-TOPPLE_ON_EACH_BACKEND(SixFillVote);
+TOPPLE_ON_EACH_FORM(SixFillVote);
 
 }  // namespace
 }  // namespace topple::test

@@ -57,7 +57,7 @@ class SteepestDescent : public EachBackend {
         EXPECT_TRUE(down.untouched());
     }
 };
-TOPPLE_ON_EACH_BACKEND(SteepestDescent);
+TOPPLE_ON_EACH_FORM(SteepestDescent);
 
 TEST_P(SteepestDescent, MatchesTheOracle) {
     check(7, 5, 0, false);

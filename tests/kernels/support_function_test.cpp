@@ -61,7 +61,7 @@ std::vector<float> second_row(device::Device& device, const Vectors& points, std
 }
 
 class SupportFunction : public EachBackend {};
-TOPPLE_ON_EACH_BACKEND(SupportFunction);
+TOPPLE_ON_EACH_FORM(SupportFunction);
 
 TEST_P(SupportFunction, MatchesTheOracleAndTheNativeBackendsBits) {
     const auto native = device::open_native();

@@ -10,7 +10,7 @@ namespace topple::test {
 namespace {
 
 class Triad : public EachBackend {};
-TOPPLE_ON_EACH_BACKEND(Triad);
+TOPPLE_ON_EACH_FORM(Triad);
 
 TEST_P(Triad, MatchesTheOracle) {
     for (const std::size_t count : {0, 1, 63, 64, 65, 997, 100'003}) {

@@ -113,7 +113,7 @@ std::vector<float> run(device::Device& device, const Inputs& in, std::size_t cel
 }
 
 class VoxelNormals : public EachBackend {};
-TOPPLE_ON_EACH_BACKEND(VoxelNormals);
+TOPPLE_ON_EACH_FORM(VoxelNormals);
 
 TEST_P(VoxelNormals, MatchesTheOracleAndNativeToTheBit) {
     const auto native = device::open_native();
