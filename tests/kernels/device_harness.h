@@ -56,6 +56,5 @@ inline std::string backend_name(const ::testing::TestParamInfo<const char*>& inf
     INSTANTIATE_TEST_SUITE_P(Device, suite, topple::test::all_backends(), \
                              topple::test::backend_name)
 // Of kernels: each form of theirs.
-#define TOPPLE_ON_EACH_FORM(suite)                                     \
-    INSTANTIATE_TEST_SUITE_P(Device, suite, topple::test::all_forms(), \
-                             topple::test::backend_name)
+#define TOPPLE_ON_EACH_FORM(suite) \
+    INSTANTIATE_TEST_SUITE_P(Device, suite, topple::test::all_forms(), topple::test::backend_name)

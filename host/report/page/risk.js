@@ -88,12 +88,16 @@ function largestRiskText(object) {
   return `Risk ${number(risk)}${within(error)} J per ${event}`;
 }
 
+// Below this an object is about as likely two (docs/output.md, joint_probability).
+const doubtfulJoint = 0.6;
+
 // What may be otherwise, so that no figure is taken for more than it is.
 function howSureText(object) {
   if (object.grounded) return '';
   const share = value => `${Math.max(1, Math.round(100 * value))} %`, parts = [];
   parts.push(object.agreement >= 0.995 ? 'one thing in all searches'
     : object.agreement > 0.5 ? `one thing in ${share(object.agreement)} of the searches` : `one thing in only ${share(object.agreement)} of the searches: its parts may belong together otherwise`);
+  if (object.joint_probability < doubtfulJoint) parts.push(`perhaps two things, ${share(1 - object.joint_probability)} likely: look whether its parts ${object.weakest_joint.join(' and ')} are one`);
   const held = {seen: 'seen', near: 'a gap that the scan left is bridged', leaning: 'it leans on what is beside it', hidden: 'not seen', none: 'not seen'}[object.rests_by];
   if (held && object.seen_enough === false) parts.push('what holds it was not seen');
   else if (held && object.rest_probability < 0.5) parts.push(`what holds it: ${held}, ${share(object.rest_probability)} likely, one of several readings`);

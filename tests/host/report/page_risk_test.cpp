@@ -71,6 +71,8 @@ TEST_F(PageRisk, lists_what_is_to_be_looked_at) {
     scene.objects[3].rest_probability = 0.4;
     scene.objects[2].piece_of = 1;
     scene.objects[2].piece_probability = 0.864;
+    scene.objects[2].joint_probability = 0.52;
+    scene.objects[2].weakest_joint = {3, 5};
     test::say_actions(scene);
     write_report(folder_ / "report.html", scene);
     const auto page = open(folder_ / "report.html", R"(
@@ -94,6 +96,7 @@ TEST_F(PageRisk, lists_what_is_to_be_looked_at) {
     EXPECT_EQ(page.data("advice"), "check");
     EXPECT_EQ(page.data("large"), "16,200, 0.0001");
     const std::vector<std::pair<const char*, const char*>> said{
+        {"card2", "perhaps two things, 48 % likely: look whether its parts 3 and 5 are one"},
         {"card1",
          "Nothing upsets it as measured; if its foot is one error smaller, it falls with up "
          "to 180 J: check that it stands firm."},
