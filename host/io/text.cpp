@@ -56,6 +56,10 @@ std::string counted(std::uint64_t count, const char* noun) {
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
+std::string vector_text(const std::array<double, 3>& v) {
+    return "(" + short_number(v[0]) + ", " + short_number(v[1]) + ", " + short_number(v[2]) + ")";
+}
+
 std::string two_digits(double value) {
     char digits[64];
     const double size = std::abs(value);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -28,6 +29,8 @@ std::string path_text(const std::filesystem::path& path);
 
 // "3 points", "1 point".
 std::string counted(std::uint64_t count, const char* noun);
+// "(1, 2, 0.5)", each as short_number().
+std::string vector_text(const std::array<double, 3>& v);
 // Two digits, or all before the point, without an exponent; below half a thousandth it is nothing.
 std::string two_digits(double value);
 

@@ -12,15 +12,13 @@ namespace topple {
 
 std::int32_t object_at(const ParseResult& result, const Vec3& place_m, double within_m) {
     const ScenePoints& points = result.scene.points;
-    const auto number = io::short_number;
     if (!std::ranges::all_of(place_m, [](double x) { return std::isfinite(x); }))
-        throw Error(ErrorKind::usage, "object_at: place_m (" + number(place_m[0]) + ", " +
-                                          number(place_m[1]) + ", " + number(place_m[2]) +
-                                          "): expected metres in the frame of the result's "
+        throw Error(ErrorKind::usage, "object_at: place_m " + io::vector_text(place_m) +
+                                          ": expected metres in the frame of the result's "
                                           "points, all finite");
     if (!(within_m >= 0))  // NaN, too
         throw Error(ErrorKind::usage,
-                    "object_at: within_m " + number(within_m) + ": expected metres from 0 on");
+                    "object_at: within_m " + io::short_number(within_m) + ": expected metres from 0 on");
     if (points.x.size() != points.object.size())
         throw Error(ErrorKind::usage,
                     "object_at: the result has no coordinates of its points; add_coordinates() "

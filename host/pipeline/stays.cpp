@@ -14,11 +14,6 @@
 namespace topple {
 namespace {
 
-std::string vector_text(const Vec3& v) {
-    return "(" + io::short_number(v[0]) + ", " + io::short_number(v[1]) + ", " +
-           io::short_number(v[2]) + ")";
-}
-
 [[noreturn]] void refuse(const std::string& what) {
     throw Error(ErrorKind::usage, "stays: " + what);
 }
@@ -36,16 +31,16 @@ void check(const Scene& scene, const Object& object, const Touch& touch) {
                std::to_string(scene.objects.size()) + "; give one of scene.objects");
     const auto finite = [](double x) { return std::isfinite(x); };
     if (!std::ranges::all_of(touch.place_m, finite))
-        refuse("place_m " + vector_text(touch.place_m) +
+        refuse("place_m " + io::vector_text(touch.place_m) +
                ": expected metres in the frame of the result's points, all finite");
     if (touch.way != Vec3{}) {
         constexpr double unit_within = 1e-3, most_slope = 0.0872;  // sine of 5 degrees
         const double long_as = std::sqrt(dot(touch.way, touch.way)), up = dot(scene.up, touch.way);
         if (!(std::abs(long_as - 1) <= unit_within))  // NaN, too
-            refuse("way " + vector_text(touch.way) + " is " + io::short_number(long_as) +
+            refuse("way " + io::vector_text(touch.way) + " is " + io::short_number(long_as) +
                    " long: expected a unit vector, or zeros for any way; divide it by its length");
         if (!(std::abs(up) <= most_slope))
-            refuse("way " + vector_text(touch.way) + " leads up or down by " +
+            refuse("way " + io::vector_text(touch.way) + " leads up or down by " +
                    io::short_number(up) +
                    ": expected a level way, to 5 degrees; take its part along scene.up off, and "
                    "divide what is left by its length");

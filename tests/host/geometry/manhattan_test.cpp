@@ -14,6 +14,19 @@ namespace {
 
 using Eigen::Vector3d;
 
+// Of radius 1 m, which has no direction of its own.
+PointCloud ball() {
+    test::Random random(9);
+    PointCloud out;
+    for (int i = 0; i < 40'000; ++i) {
+        const Vector3d p = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+        out.x.push_back(static_cast<float>(p[0]));
+        out.y.push_back(static_cast<float>(p[1]));
+        out.z.push_back(static_cast<float>(p[2]));
+    }
+    return out;
+}
+
 // A room with floor, four walls and a table, turned by `turn`; +-3 mm of noise.
 PointCloud room(const Eigen::Matrix3d& turn, bool walls, std::uint64_t seed) {
     test::Random random(seed);
@@ -120,15 +133,7 @@ TEST_F(Manhattan, AnUpThatTheScanContradictsIsNoted) {
 
 // Where the surfaces don't tell, nobody is told that they do.
 TEST_F(Manhattan, AnUpThatNothingContradictsIsNot) {
-    test::Random random(9);
-    PointCloud ball;
-    for (int i = 0; i < 40'000; ++i) {
-        const Vector3d p = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
-        ball.x.push_back(static_cast<float>(p[0]));
-        ball.y.push_back(static_cast<float>(p[1]));
-        ball.z.push_back(static_cast<float>(p[2]));
-    }
-    const Surfels s = make_surfels(*device, ball, 0.03, {}, {});
+    const Surfels s = make_surfels(*device, ball(), 0.03, {}, {});
     const Surfels none = make_surfels(*device, {}, 0.02, {}, {});
     for (const Vec3& up : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{1, 0, 0}}) {
         for (const auto& camera : {std::optional<Vec3>(), std::optional(Vec3{0, -1, 0})}) {
@@ -156,16 +161,8 @@ TEST_F(Manhattan, NothingToGoBy) {
         find_scene_frame(*device, none, {.up = {}, .camera_up = Vec3{0, -1, 0}});
     EXPECT_EQ(frame.axes[2], (Vec3{0, -1, 0}));
     EXPECT_FALSE(frame.found);
-    // A ball has no direction of its own: no axes may be claimed.
-    test::Random random(9);
-    PointCloud ball;
-    for (int i = 0; i < 40'000; ++i) {
-        const Vector3d p = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
-        ball.x.push_back(static_cast<float>(p[0]));
-        ball.y.push_back(static_cast<float>(p[1]));
-        ball.z.push_back(static_cast<float>(p[2]));
-    }
-    EXPECT_FALSE(find_scene_frame(*device, make_surfels(*device, ball, 0.03, {}, {}), {}).found);
+    // Of a ball no axes may be claimed.
+    EXPECT_FALSE(find_scene_frame(*device, make_surfels(*device, ball(), 0.03, {}, {}), {}).found);
 }
 
 // A rectangle with corner `at` and sides `a`, `b`, sampled every centimetre, seen from the origin.
