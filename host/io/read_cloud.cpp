@@ -122,10 +122,10 @@ void scale(PointCloud& cloud, double unit_m) {
 
 void note_offset(PointCloud& cloud) {
     if (cloud.offset_m == Vec3{0, 0, 0}) return;
-    cloud.notes.push_back("The file's coordinates lie far from the origin, and were moved by " +
-                          vector_text({-cloud.offset_m[0], -cloud.offset_m[1],
-                                       -cloud.offset_m[2]}) +
-                          " m, about; offset_m in scene.json has the exact way back.");
+    cloud.notes.push_back(
+        "The file's coordinates lie far from the origin, and were moved by " +
+        vector_text({-cloud.offset_m[0], -cloud.offset_m[1], -cloud.offset_m[2]}) +
+        " m, about; offset_m in scene.json has the exact way back.");
 }
 
 bool is_mesh(const std::filesystem::path& file) {

@@ -17,8 +17,8 @@ std::int32_t object_at(const ParseResult& result, const Vec3& place_m, double wi
                                           ": expected metres in the frame of the result's "
                                           "points, all finite");
     if (!(within_m >= 0))  // NaN, too
-        throw Error(ErrorKind::usage,
-                    "object_at: within_m " + io::short_number(within_m) + ": expected metres from 0 on");
+        throw Error(ErrorKind::usage, "object_at: within_m " + io::short_number(within_m) +
+                                          ": expected metres from 0 on");
     if (points.x.size() != points.object.size())
         throw Error(ErrorKind::usage,
                     "object_at: the result has no coordinates of its points; add_coordinates() "
