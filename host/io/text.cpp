@@ -57,7 +57,7 @@ std::string counted(std::uint64_t count, const char* noun) {
 }
 
 std::string vector_text(const std::array<double, 3>& v) {
-    return "(" + short_number(v[0]) + ", " + short_number(v[1]) + ", " + short_number(v[2]) + ")";
+    return std::string("(") + short_number(v[0]) + ", " + short_number(v[1]) + ", " + short_number(v[2]) + ")";
 }
 
 std::string two_digits(double value) {
