@@ -244,11 +244,11 @@ bool coherent(const Groundwork& g, const FlatSolids& solids) {
             (g.points.index.empty() || g.points.index.size() == points);
     const geometry::SurfaceSamples& samples = g.parts.samples;
     const auto columns = geometry::columns_of(samples);
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-        const bool colour = columns[c] == &samples.lab_l || columns[c] == &samples.lab_a ||
-                            columns[c] == &samples.lab_b;
-        right = right && columns[c]->size() ==
-                             (colour && !samples.coloured() ? 0 : samples.primitive.size());
+    for (const auto* column : columns) {
+        const bool colour =
+            column == &samples.lab_l || column == &samples.lab_a || column == &samples.lab_b;
+        right = right &&
+                column->size() == (colour && !samples.coloured() ? 0 : samples.primitive.size());
     }
     right = right && std::ranges::all_of(samples.primitive, is_label) &&
             std::ranges::is_sorted(samples.primitive);
