@@ -5,7 +5,8 @@
 Every relative link and picture in README.md, CHANGELOG.md, SECURITY.md, docs and kernels/README.md leads to a file, and to a heading
 of it where it names one; every page of docs is linked from README.md. With the program TOPPLE, every option that a page gives to a command
 of topple is one that the command's --help lists, and the files that docs/disturbances.md and docs/corrections.md show are read.
-docs/parameters.md has the constants of the stages as they stand in the code, and all of them.
+docs/parameters.md has the constants of the stages as they stand in the code, and all of them. Measured figures in the pages are those of the
+newest row of perf/results.
 """
 import glob
 import os
@@ -165,9 +166,14 @@ def check_parameters(source):
     return problems
 
 
+def check_figures(source):
+    done = subprocess.run([sys.executable, os.path.join(source, 'perf', 'quote'), '--check', source], stderr=subprocess.PIPE, text=True, timeout=60)
+    return done.stderr.splitlines()
+
+
 def main():
     source = sys.argv[1]
-    problems = check_links(source) + check_parameters(source)
+    problems = check_links(source) + check_parameters(source) + check_figures(source)
     if len(sys.argv) > 2:
         problems += check_options(source, sys.argv[2]) + check_examples(source, sys.argv[2])
     sys.exit('\n'.join(problems) if problems else 0)
