@@ -38,7 +38,7 @@ typedef struct topple_status {
     char message[1020]; /* ends with 0; cut where it is longer; empty for TOPPLE_OK */
 } topple_status;
 
-/* "0.1.0"; and 10000 * major + 100 * minor + patch. */
+/* "0.2.0"; and 10000 * major + 100 * minor + patch. */
 const char* topple_version(void);
 uint32_t topple_version_number(void);
 

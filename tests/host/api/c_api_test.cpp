@@ -14,8 +14,8 @@ namespace topple::test {
 namespace {
 
 TEST_F(CApi, TellsItsVersionAndDevices) {
-    EXPECT_EQ(topple_version_number(), 100u);
-    EXPECT_STREQ(topple_version(), "0.1.0");
+    EXPECT_EQ(topple_version_number(), 200u);
+    EXPECT_STREQ(topple_version(), "0.2.0");
     EXPECT_STREQ(topple_device_backend(device), "native");
     std::uint64_t count = 0;
     topple_device_info first{};
