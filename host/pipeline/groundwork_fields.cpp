@@ -12,6 +12,9 @@
 namespace topple {
 namespace {
 
+// Metres, and what there may be of anything: what is reckoned with such numbers is finite.
+constexpr auto place = rules::within(-1e7, 1e7), amount = rules::within(0, 1e12);
+
 // Structs with gaps between their members go by members: equal groundwork is equal files.
 template <class Io, class Contacts>
 void contact_fields(Io& io, Contacts& c, std::size_t count) {
@@ -20,37 +23,37 @@ void contact_fields(Io& io, Contacts& c, std::size_t count) {
     io(c.voxel_m, within(0, 1));
     io(c.pairs, of_all([count](const physics::TouchingPair& pair, const auto& must) {
            must(pair.a, ids(count)), must(pair.b, ids(count));
-           must(pair.area_m2, finite), must(pair.normal, finite);
-           must(pair.center, finite), must(pair.ends, finite);
+           must(pair.area_m2, amount), must(pair.normal, within(-1.001, 1.001));
+           must(pair.center, place), must(pair.ends, place);
        }));
     io.expect(
         std::ranges::is_sorted(c.pairs, {}, [](const auto& p) { return std::pair(p.a, p.b); }));
     list_fields(io, c.carryings, [count](auto& each, auto& carrying) {
         each(carrying.supporter, labels(count));
         each(carrying.supported, ids(count));
-        each(carrying.area_m2, finite);
-        each(carrying.height_m, finite);
-        each(carrying.outline, finite);
-        each(carrying.border_error_m, finite);
+        each(carrying.area_m2, amount);
+        each(carrying.height_m, place);
+        each(carrying.outline, place);
+        each(carrying.border_error_m, amount);
     });
     io.expect(std::ranges::is_sorted(
         c.carryings, {}, [](const auto& one) { return std::pair(one.supported, one.supporter); }));
     io(c.leanings, of_all([count](const graph::Leaning& l, const auto& must) {
            must(l.primitive, ids(count)), must(l.against, ids(count));
-           must(l.height_m, finite), must(l.outline, finite);
+           must(l.height_m, place), must(l.outline, place);
        }));
     io.expect(std::ranges::is_sorted(c.leanings, {}, &graph::Leaning::primitive));
-    io(c.silhouette_m2, length(count), finite);
+    io(c.silhouette_m2, length(count), amount);
     list_fields(io, c.clearances, [count](auto& each, auto& of_primitive) {
         list_fields(each, of_primitive, [count](auto& one, auto& clearance) {
             one(clearance.below, labels(count));
-            one(clearance.gap_m, finite);
-            one(clearance.area_m2, finite);
+            one(clearance.gap_m, place);
+            one(clearance.area_m2, amount);
         });
     });
     io.expect(c.clearances.size() == count);
     for (auto* values : {&c.lowest_m, &c.highest_m}) io(*values, length(count), no_nan);
-    io(c.section_m2, length(count), finite);
+    io(c.section_m2, length(count), amount);
 }
 
 // What else they are is asked where a scene is made of them.
@@ -99,7 +102,7 @@ void point_fields(Io& io, Points& p, std::size_t count) {
     using namespace rules;
     io(p.primitive, labels(count));
     const std::size_t points = p.primitive.size();
-    for (auto* values : {&p.x, &p.y, &p.z}) io(*values, length_or_none(points), finite);
+    for (auto* values : {&p.x, &p.y, &p.z}) io(*values, length_or_none(points), place);
     io.expect(p.y.size() == p.x.size() && p.z.size() == p.x.size());
     for (auto* values : {&p.nx, &p.ny, &p.nz}) io(*values, length(points), finite);
     io(p.region, length(points));
@@ -111,11 +114,12 @@ void point_fields(Io& io, Points& p, std::size_t count) {
 template <class Io, class Samples>
 void sample_fields(Io& io, Samples& s, std::size_t count) {
     using namespace rules;
-    io(s.edge_m, finite);
-    io(s.spacing_m, finite);
+    io(s.edge_m, within(1e-6, 1e3));
+    io(s.spacing_m, within(1e-6, 1e3));
     io(s.primitive, labels(count), [](const auto& p) { return std::ranges::is_sorted(p); });
     const std::size_t size = s.primitive.size();
-    for (auto* values : {&s.x, &s.y, &s.z, &s.nx, &s.ny, &s.nz}) io(*values, length(size), finite);
+    for (auto* values : {&s.x, &s.y, &s.z}) io(*values, length(size), place);
+    for (auto* values : {&s.nx, &s.ny, &s.nz}) io(*values, length(size), finite);
     io(s.lab_l, length_or_none(size));
     for (auto* values : {&s.lab_a, &s.lab_b}) io(*values, length(s.lab_l.size()));
 }
@@ -142,7 +146,7 @@ void ground_fields(Io& io, Ground& g) {
     io(g.parts.points, length(count));
     sample_fields(io, g.parts.samples, count);
     io(g.weighed.bodies, length(count), of_all([](const physics::Body& body, const auto& must) {
-           must(body.volume_m3, finite), must(body.mass_kg, finite), must(body.center, finite);
+           must(body.volume_m3, amount), must(body.mass_kg, amount), must(body.center, place);
        }));
     contact_fields(io, g.weighed.contacts, count);
     io(g.weighed.joints, of_all([count](const graph::Joint& joint, const auto& must) {
@@ -165,7 +169,8 @@ Groundwork read_groundwork(tiles::BinaryReader& file) {
     const std::size_t count = out.parts.model.size();
     solid_fields(file, solids, count);
     voxel_fields(file, voxels, count);
-    file.expect(solids.cells.voxel_m == out.voxel_m && voxels.frame.voxel_m == out.voxel_m);
+    file.expect(solids.cells.voxel_m == out.voxel_m && voxels.frame.voxel_m == out.voxel_m &&
+                voxels.frame.grid_from_input == out.parts.frame.axes);
     out.parts.solids = scene_of(std::move(solids));
     out.voxels = std::make_shared<vdb::VoxelScene>(voxels);
     store_fractions(*out.parts.solids, *out.voxels);
