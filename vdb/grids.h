@@ -17,6 +17,12 @@
 
 namespace topple::vdb {
 
+// Of the scene's bounds.
+inline constexpr std::uint64_t max_leaves = std::uint64_t{1} << 23;
+
+// Throws Error(usage) unless voxels have a size and the grid is turned, not sheared.
+void check(const VoxelFrame& frame);
+
 using StateTree = openvdb::Int32Tree;
 using StateLeaf = StateTree::LeafNodeType;
 

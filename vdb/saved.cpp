@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <set>
+#include <span>
 
+#include "core/voxel_spread.h"
 #include "topple/error.h"
 #include "vdb/grids.h"
 
@@ -15,34 +18,72 @@ Voxel voxel_of(const openvdb::Coord& at) {
     return {at.x(), at.y(), at.z()};
 }
 
+// Whether sums of such places are no overflow.
+bool is_near(const Voxel& at) {
+    constexpr std::int32_t farthest = 1 << 30;
+    return std::ranges::all_of(at, [](auto x) { return x > -farthest && x < farthest; });
+}
+// The same of leaves by their number.
+bool is_near_leaf(const Voxel& leaf) {
+    constexpr std::int32_t farthest = 1 << 27;
+    return std::ranges::all_of(leaf, [](auto x) { return x > -farthest && x < farthest; });
+}
+
 bool is_leaf(const Voxel& lowest) {
-    for (const std::int32_t x : lowest)
-        if ((x & 7) != 0) return false;
-    return true;
+    return std::ranges::all_of(lowest, [](auto x) { return (x & 7) == 0; });
+}
+
+// No more leaves than a scene has.
+bool is_box(const Voxel& count) {
+    std::uint64_t leaves = 1;
+    for (const std::int32_t along : count) {
+        if (along < 0 || along > 1 << 21) return false;
+        leaves *= static_cast<std::uint64_t>(along);
+    }
+    return leaves <= max_leaves;
+}
+
+constexpr auto last_state = static_cast<std::int32_t>(State::completed);
+
+bool is_tile(const SavedVoxels::Tile& tile) {
+    const bool known = tile.value >= 0 && tile.value <= last_state;
+    return tile.level > 0 && tile.level <= 3 && tile.active == 0 && known;
+}
+
+// Whether all that is stored lies together: of trees of voxels each part takes memory.
+bool lies_together(const SavedVoxels& s) {
+    VoxelSpread spread;
+    const auto add = [&](const Voxel& at) { return spread.add(at[0], at[1], at[2]); };
+    return std::ranges::all_of(s.leaves, add) && std::ranges::all_of(s.labelled, add) &&
+           std::ranges::all_of(s.tiles, [&](const SavedVoxels::Tile& tile) {
+               return spread.add(tile.i, tile.j, tile.k);
+           });
 }
 
 bool fits(const SavedVoxels& s) {
     std::size_t labels = 0;
     for (const std::uint64_t word : s.has_label)
         labels += static_cast<std::size_t>(std::popcount(word));
-    bool right =
+    const auto lengths =
         s.states.size() == leaf_voxels * s.leaves.size() && s.solid.size() == s.states.size() &&
-        s.has_label.size() == leaf_words * s.labelled.size() && s.label.size() == labels &&
-        std::ranges::all_of(s.leaves, is_leaf) && std::ranges::all_of(s.labelled, is_leaf) &&
-        std::ranges::is_sorted(s.beyond) && s.frame.voxel_m > 0;
-    for (const std::int32_t count : s.bounds[1]) right = right && count >= 0 && count < 1 << 20;
-    for (const SavedVoxels::Tile& tile : s.tiles)
-        right =
-            right && tile.level > 0 && tile.level <= 3 && (tile.active == 0 || tile.active == 1);
+        s.has_label.size() == leaf_words * s.labelled.size() && s.label.size() == labels;
+    const bool right =
+        lengths && std::ranges::all_of(s.leaves, is_leaf) &&
+        std::ranges::all_of(s.labelled, is_leaf) && std::ranges::all_of(s.tiles, is_tile) &&
+        std::ranges::all_of(s.states, [](std::uint8_t state) { return state <= last_state; }) &&
+        std::ranges::is_sorted(s.beyond) && std::ranges::all_of(s.beyond, is_near_leaf) &&
+        is_near_leaf(s.bounds[0]) && is_box(s.bounds[1]) && is_near(s.bounds[2]) &&
+        is_near(s.bounds[3]) && lies_together(s);
+    if (!right) return false;
     // What is solid has a label, if that is of none.
     const std::set<Voxel> labelled(s.labelled.begin(), s.labelled.end());
-    for (std::size_t l = 0; right && l < s.leaves.size(); ++l) {
-        const auto first = s.solid.begin() + static_cast<std::ptrdiff_t>(l * leaf_voxels);
-        const bool any =
-            std::any_of(first, first + leaf_voxels, [](auto solid) { return solid != 0; });
-        right = !any || labelled.contains(s.leaves[l]);
+    for (std::size_t l = 0; l < s.leaves.size(); ++l) {
+        const auto solid = std::span(s.solid).subspan(l * leaf_voxels, leaf_voxels);
+        if (std::ranges::any_of(solid, [](auto v) { return v != 0; }) &&
+            !labelled.contains(s.leaves[l]))
+            return false;
     }
-    return right;
+    return true;
 }
 
 }  // namespace
@@ -83,6 +124,7 @@ SavedVoxels VoxelScene::saved() const {
 }
 
 VoxelScene::VoxelScene(const SavedVoxels& saved) : VoxelScene(saved.frame) {
+    check(saved.frame);
     if (!fits(saved)) throw Error(ErrorKind::input, "saved voxels: they are no scene's");
     Grids& g = *grids_;
     g.leaves = {saved.bounds[0], saved.bounds[1], saved.beyond};

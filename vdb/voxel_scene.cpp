@@ -18,24 +18,6 @@ namespace topple::vdb {
 namespace {
 
 constexpr std::int32_t window = 1 << 20;  // voxels from the points' median, either way
-constexpr std::uint64_t max_leaves = std::uint64_t{1} << 23;
-
-void check(const VoxelFrame& frame) {
-    if (!(frame.voxel_m > 0) || !std::isfinite(frame.voxel_m)) {
-        throw Error(ErrorKind::usage,
-                    "voxel size " + short_number(frame.voxel_m) + " m: it must be positive");
-    }
-    for (int a = 0; a < 3; ++a) {
-        for (int b = 0; b < 3; ++b) {
-            double dot = 0;
-            for (int d = 0; d < 3; ++d)
-                dot += frame.grid_from_input[a][d] * frame.grid_from_input[b][d];
-            if (!(std::abs(dot - (a == b)) < 1e-6)) {
-                throw Error(ErrorKind::usage, "voxel frame: its rows are not orthonormal");
-            }
-        }
-    }
-}
 
 void check(const CloudView& cloud, std::span<const std::int32_t> label) {
     if (label.size() != cloud.size()) {
@@ -270,6 +252,23 @@ void mark_labels(const SortedPoints& points, std::span<const std::int32_t> label
 }
 
 }  // namespace
+
+void check(const VoxelFrame& frame) {
+    if (!(frame.voxel_m > 0) || !std::isfinite(frame.voxel_m)) {
+        throw Error(ErrorKind::usage,
+                    "voxel size " + short_number(frame.voxel_m) + " m: it must be positive");
+    }
+    for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) {
+            double dot = 0;
+            for (int d = 0; d < 3; ++d)
+                dot += frame.grid_from_input[a][d] * frame.grid_from_input[b][d];
+            if (!(std::abs(dot - (a == b)) < 1e-6)) {
+                throw Error(ErrorKind::usage, "voxel frame: its rows are not orthonormal");
+            }
+        }
+    }
+}
 
 VoxelScene::VoxelScene(const VoxelFrame& frame) : grids_(std::make_unique<Grids>()) {
     openvdb::initialize();

@@ -78,6 +78,7 @@ CloudView view_of(const topple_cloud* cloud) {
         all("viewpoint_x, viewpoint_y and viewpoint_z, where one is given,", c.viewpoint_x,
             c.viewpoint_y, c.viewpoint_z);
     }
+    array(c.x, "cloud: x", c.count);
     CloudView view;
     view.x = {c.x, c.count, stride(c.stride_bytes)};
     view.y = {c.y, c.count, stride(c.stride_bytes)};

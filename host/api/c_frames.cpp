@@ -52,6 +52,7 @@ FramesView frames_of(const topple_frames* frames) {
         throw Error(ErrorKind::usage,
                     "frames: camera_to_world is NULL, which is for one frame, but count is " +
                         std::to_string(f.count));
+    array(f.camera_to_world, "frames: camera_to_world", f.camera_to_world ? f.count : 0, 16);
     for (std::uint64_t n = 0; f.camera_to_world && n < f.count; ++n)
         std::copy_n(f.camera_to_world + 16 * n, 16, view.camera_to_world.emplace_back().begin());
     if (f.load) {
@@ -64,6 +65,7 @@ FramesView frames_of(const topple_frames* frames) {
         };
         return view;
     }
+    if (f.frames) check_size<topple_frame>(f.frames->size, "frame");
     const auto* at = reinterpret_cast<const std::byte*>(f.frames);
     for (std::uint64_t n = 0; n < f.count; ++n, at += f.frames->size) {
         const auto* frame = reinterpret_cast<const topple_frame*>(at);

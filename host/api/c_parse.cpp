@@ -70,6 +70,7 @@ ParseOptions parse_options(const topple_options& o) {
         if (!o.hazard_pga_g || !o.hazard_per_year)
             throw Error(ErrorKind::usage, "hazard_points: " + std::to_string(o.hazard_points) +
                                               ", but hazard_pga_g or hazard_per_year is NULL");
+        array(o.hazard_pga_g, "hazard_pga_g", o.hazard_points);
         to.hazard = HazardCurve{{o.hazard_pga_g, o.hazard_pga_g + o.hazard_points},
                                 {o.hazard_per_year, o.hazard_per_year + o.hazard_points},
                                 "hazard_pga_g"};

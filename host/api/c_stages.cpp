@@ -17,10 +17,10 @@ namespace {
 template <class T>
 stages::Array<T> array_of(const topple_array& from, const char* name) {
     if (from.buffer_bytes > 0) {
-        array(from.data, name, 1);
+        array(static_cast<T*>(from.data), name, 1);
         return {{from.data, from.buffer_bytes, from.offset_bytes}, from.count};
     }
-    return std::span<T>(static_cast<T*>(array(from.data, name, from.count)), from.count);
+    return std::span<T>(array(static_cast<T*>(from.data), name, from.count), from.count);
 }
 
 stages::Coordinates coordinates(const topple_array* from, const char* name) {
@@ -60,9 +60,10 @@ int topple_support_functions(topple_device* device, const topple_array vertices[
                              const uint64_t* first, uint64_t sets, const topple_array directions[3],
                              const topple_array* out, topple_status* status) {
     return guarded(status, [&] {
-        stages::support_functions(
-            opened(device), coordinates(vertices, "vertices"), {&needed(first, "first"), sets + 1},
-            coordinates(directions, "directions"), array_of<float>(needed(out, "out"), "out"));
+        array(&needed(first, "first"), "first", sets);
+        stages::support_functions(opened(device), coordinates(vertices, "vertices"),
+                                  {first, sets + 1}, coordinates(directions, "directions"),
+                                  array_of<float>(needed(out, "out"), "out"));
     });
 }
 
@@ -71,14 +72,14 @@ int topple_barriers(topple_device* device, const double* points, const uint64_t*
                     double resolution_m, double* barrier_J, double* release_J,
                     topple_status* status) {
     return guarded(status, [&] {
-        needed(first, "first");
+        array(&needed(first, "first"), "first", bodies);
         array(mass_kg, "mass_kg", bodies);
-        array(center_of_mass_m, "center_of_mass_m", bodies);
+        array(center_of_mass_m, "center_of_mass_m", bodies, 3);
         array(barrier_J, "barrier_J", bodies);
         array(release_J, "release_J", bodies);
         if (first[0] != 0 || !std::is_sorted(first, first + bodies + 1))
             throw Error(ErrorKind::usage, "first must rise from 0");
-        array(points, "points", first[bodies]);
+        array(points, "points", first[bodies], 3);
         std::vector<std::vector<Vec3>> sets(bodies);
         std::vector<stages::StandingBody> standing(bodies);
         for (std::uint64_t n = 0; n < bodies; ++n) {
@@ -129,8 +130,8 @@ int topple_volume_carve(topple_volume* volume, topple_device* device,
     return guarded(status, [&] {
         const topple_intrinsics& from = needed(intrinsics, "intrinsics");
         const std::uint64_t pixels = std::uint64_t{from.width} * from.height;
-        array(depth, "depth", frames);
-        array(camera_to_world, "camera_to_world", frames);
+        array(depth, "depth", frames, std::max(pixels, std::uint64_t{1}));
+        array(camera_to_world, "camera_to_world", frames, 16);
         std::vector<stages::DepthView> views(frames);
         for (std::uint64_t f = 0; f < frames; ++f) {
             views[f].depth = {depth + f * pixels, pixels};

@@ -59,10 +59,22 @@ T& needed(T* argument, const char* name) {
     if (!argument) throw Error(ErrorKind::usage, std::string(name) + " is NULL");
     return *argument;
 }
+// Of an array of so many: more than that is nowhere in memory, and would overflow what is reckoned
+// with it.
 template <class T>
 T* array(T* argument, const char* name, std::uint64_t count) {
+    constexpr std::uint64_t most = (std::uint64_t{1} << 47) / sizeof(T);
     if (!argument && count > 0) throw Error(ErrorKind::usage, std::string(name) + " is NULL");
+    if (count > most)
+        throw Error(ErrorKind::usage, std::string(name) + ": " + std::to_string(count) +
+                                          " of them are more than fit into memory");
     return argument;
+}
+// Of rows of `each`.
+template <class T>
+T* array(T* argument, const char* name, std::uint64_t rows, std::uint64_t each) {
+    constexpr std::uint64_t all = ~std::uint64_t{0};
+    return array(argument, name, each > 0 && rows > all / each ? all : rows * each);
 }
 
 // Of any version of a struct, sizeof is a multiple of its alignment: another size would cut a

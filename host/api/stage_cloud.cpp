@@ -166,13 +166,13 @@ Volume::Volume(const CloudView& cloud, std::span<const std::int32_t> label, doub
     std::vector<std::int32_t> kept;
     for (std::size_t i = 0; i < usable.view().size(); ++i) {
         kept.push_back(label[usable.place(i)]);
-        require(kept.back() >= -1, "Volume",
-                "a label of " + std::to_string(kept.back()) + ": they count from 0, or are -1");
+        // The kernels keep labels in 16 bits beside three states.
+        constexpr std::int32_t most = 64998;
+        require(kept.back() >= -1 && kept.back() <= most, "Volume",
+                "a label of " + std::to_string(kept.back()) + ": they count from 0 to " +
+                    std::to_string(most) + ", or are -1");
         labels_ = std::max(labels_, kept.back() + 1);
     }
-    // The kernels keep labels in 16 bits beside three states.
-    require(labels_ < 65000, "Volume",
-            "labels up to " + std::to_string(labels_ - 1) + ", more than 64999");
     vdb::VoxelFrame frame;
     frame.voxel_m = voxel_m;
     scene_ = std::make_unique<vdb::VoxelScene>(frame, usable.view(), kept);

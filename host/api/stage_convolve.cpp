@@ -47,8 +47,8 @@ void check(const MapShape& s, std::uint32_t reach, std::span<const FootprintEntr
     require(reach < s.margin, convolve_stage,
             "a footprint that reaches " + std::to_string(reach) +
                 " cells takes a wider margin than " + std::to_string(s.margin));
-    require(s.width % block == 0 && s.height > 2 * s.margin && s.width > 2 * s.margin,
-            convolve_stage,
+    const std::uint64_t margins = 2 * std::uint64_t{s.margin};
+    require(s.width % block == 0 && s.height > margins && s.width > margins, convolve_stage,
             "with a margin, width must be a multiple of 64, and both sides larger than twice it");
 }
 

@@ -58,21 +58,27 @@ std::size_t BoundaryCells::find(std::int32_t vi, std::int32_t vj, std::int32_t v
 }
 
 bool BoundaryCells::fits(std::size_t primitives) const {
+    // Of patches: what follows from such numbers is finite.
+    constexpr double most = 1e12;
     bool right = j.size() == size() && k.size() == size() && primitive.size() == size() &&
                  form.size() == size() && share.size() == size();
     for (const auto& patch : slot) right = right && patch.size() == size();
     for (const auto& along : moment) right = right && along.size() == size();
+    const auto is_primitive = [&](std::int32_t p) {
+        return p >= 0 && static_cast<std::size_t>(p) < primitives;
+    };
+    const auto place = [&](std::size_t n) { return std::tie(i[n], j[n], k[n], primitive[n]); };
     for (std::size_t n = 0; right && n < size(); ++n) {
-        right = primitive[n] >= 0 && static_cast<std::size_t>(primitive[n]) < primitives &&
-                share[n] <= whole && slots_used(n) <= slots;
+        right = is_primitive(primitive[n]) && share[n] <= whole && slots_used(n) <= slots &&
+                (n == 0 || place(n - 1) < place(n));
         for (std::size_t s = 0; right && s < slots_used(n); ++s)
             right = slot[s][n] < patches.size();
     }
     for (const SurfacePatch& patch : patches) {
-        double sum = patch.noise_m + patch.offset_m;
+        double sum = std::abs(patch.noise_m) + std::abs(patch.offset_m);
         for (const double x : patch.c) sum += std::abs(x);
         for (const double x : patch.origin) sum += std::abs(x);
-        right = right && std::isfinite(sum);
+        right = right && sum < most && (patch.primitive == -1 || is_primitive(patch.primitive));
     }
     return right;
 }

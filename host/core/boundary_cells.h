@@ -88,7 +88,7 @@ struct BoundaryCells {
     std::size_t first_from(std::int32_t vi, std::int32_t vj, std::int32_t vk, std::int32_t p) const;
     static constexpr std::size_t absent = ~std::size_t{0};
     std::size_t find(std::int32_t vi, std::int32_t vj, std::int32_t vk, std::int32_t p) const;
-    // Whether all that it refers to is there: patches, and primitives of so many.
+    // Whether it is sorted and all that it refers to is there: patches, and primitives of so many.
     bool fits(std::size_t primitives) const;
     // Those that are kept, in their order, with all patches.
     BoundaryCells only(const std::vector<bool>& kept) const;

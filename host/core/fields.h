@@ -9,7 +9,8 @@
 #include <vector>
 
 // Values as fields in a row, in this machine's byte order. Writers and readers take the same calls,
-// so that one function lists a type's fields for both ways.
+// so that one function lists a type's fields for both ways. After a value come the rules that it
+// keeps to (core/field_rules.h): a reader refuses what breaks one, whatever checksum it has.
 namespace topple {
 
 template <class T>
@@ -40,6 +41,11 @@ class FieldWriter {
             for (const T& value : values) (*this)(value);
         }
     }
+    template <class T, class Rule, class... Rules>
+    void operator()(const T& value, const Rule&, const Rules&...) {
+        (*this)(value);
+    }
+    void expect(bool) {}
 
   private:
     void put(const void* data, std::size_t size) { static_cast<Sink&>(*this).put(data, size); }
@@ -60,7 +66,7 @@ class FieldReader {
     void operator()(bool& value) {
         std::uint8_t byte = 0;
         (*this)(byte);
-        if (byte > 1) source().refuse();
+        expect(byte <= 1);
         value = byte != 0;
     }
     void operator()(std::string& text) {
@@ -84,6 +90,15 @@ class FieldReader {
             }
         }
     }
+    template <class T, class Rule, class... Rules>
+    void operator()(T& value, const Rule& rule, const Rules&... rules) {
+        (*this)(value);
+        expect(rule(value) && (rules(value) && ...));
+    }
+    // For rules about several values.
+    void expect(bool holds) {
+        if (!holds) source().refuse();
+    }
     // The next value by itself.
     template <class T>
     T value() {
@@ -94,7 +109,7 @@ class FieldReader {
     // How many fields follow: each takes a byte at least.
     std::uint64_t count() {
         const auto size = value<std::uint64_t>();
-        if (size > source().left()) source().refuse();
+        expect(size <= source().left());
         return size;
     }
 

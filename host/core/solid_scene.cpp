@@ -9,6 +9,10 @@
 namespace topple {
 namespace {
 
+[[noreturn]] void refuse(const std::string& why) {
+    throw Error(ErrorKind::usage, "solid scene: " + why);
+}
+
 std::array<std::int32_t, 3> place(const SolidCells& cells, std::size_t n) {
     return {cells.i[n], cells.j[n], cells.k[n]};
 }
@@ -18,17 +22,16 @@ void check(const SolidCells& cells, std::size_t primitives) {
     const bool whole = cells.j.size() == count && cells.k.size() == count &&
                        cells.primitive.size() == count && cells.basis.size() == count &&
                        (cells.unseen_below.empty() || cells.unseen_below.size() == count);
-    if (!whole) throw Error(ErrorKind::usage, "solid scene: arrays of cells that differ in length");
+    if (!whole) refuse("arrays of cells that differ in length");
     for (std::size_t n = 0; n < count; ++n) {
         if (n > 0 && place(cells, n) <= place(cells, n - 1))
-            throw Error(
-                ErrorKind::usage,
-                "solid scene: cells are not sorted by (i, j, k) at cell " + std::to_string(n));
-        if (cells.primitive[n] >= static_cast<std::int64_t>(primitives))
-            throw Error(ErrorKind::usage,
-                        "solid scene: cell " + std::to_string(n) + " is of primitive " +
-                            std::to_string(cells.primitive[n]) + ", but there are roles of " +
-                            std::to_string(primitives) + " only");
+            refuse("cells are not sorted by (i, j, k) at cell " + std::to_string(n));
+        if (cells.primitive[n] < -1 || cells.primitive[n] >= static_cast<std::int64_t>(primitives))
+            refuse("cell " + std::to_string(n) + " is of primitive " +
+                   std::to_string(cells.primitive[n]) + ", but there are roles of " +
+                   std::to_string(primitives) + " only");
+        if (static_cast<std::uint8_t>(cells.basis[n]) >= basis_count)
+            refuse("cell " + std::to_string(n) + " is solid for no reason that there is");
     }
 }
 
@@ -47,10 +50,12 @@ SolidScene::SolidScene(SolidCells cells, std::vector<Role> roles, SolidCells str
     : cells_(std::move(cells)),
       strays_(std::move(strays)),
       boundary_(std::move(boundary)),
-      columns_(cells_),
       roles_(std::move(roles)) {
     check(cells_, roles_.size());
     check(strays_, 0);
+    if (!boundary_.fits(roles_.size()))
+        refuse("a boundary that is not sorted, or names what is not there");
+    columns_ = CellColumns(cells_);
 }
 
 SolidCells SolidScene::with_strays() const {

@@ -17,9 +17,11 @@ namespace topple {
 class SolidScene {
   public:
     // cells: sorted by (i, j, k). roles: by primitive. strays: cells far from all others, sorted;
-    // they are solid, but no primitive's, and in nobody's way. Throws Error(usage) for cells that
-    // are not sorted, whose arrays differ in length, or whose primitive has no role.
-    // boundary: what bounds the solids within voxels; none: all cells are solid as wholes.
+    // they are solid, but no primitive's, and in nobody's way. boundary: what bounds the solids
+    // within voxels; none: all cells are solid as wholes. Throws Error(usage) for what is not
+    // sorted, whose arrays differ in length, whose primitive has no role, or that refers to what is
+    // not there: nothing is made of the parts before that. What comes from a file is more
+    // (core/saved_solids.h).
     SolidScene(SolidCells cells, std::vector<Role> roles, SolidCells strays = {},
                BoundaryCells boundary = {});
 

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "core/solid_scene.h"
@@ -27,7 +26,7 @@ struct VoxelBox {
         }
     }
     std::size_t layers(std::size_t axis) const {
-        return static_cast<std::size_t>(high[axis] - low[axis]) + 1;
+        return static_cast<std::size_t>(std::int64_t{high[axis]} - low[axis]) + 1;
     }
 
   private:
@@ -42,49 +41,31 @@ struct Cell {
     bool whole() const { return boundary == BoundaryCells::absent; }
 };
 
-// The cells of a clump in the box around it, and which piece each belongs to.
+// The cells of a clump, which of them lie beside one another, and which piece each belongs to.
+// Takes memory by their number, however far apart they lie.
 class CellGrid {
   public:
-    explicit CellGrid(std::vector<Cell> cells) : cells_(std::move(cells)) {
-        VoxelBox box;
-        for (const Cell& cell : cells_) box.add(cell.at);
-        low_ = box.low;
-        for (std::size_t a = 0; a < 3; ++a) size_[a] = box.layers(a);
-        piece_.assign(size_[0] * size_[1] * size_[2], -1);
-        index_.assign(piece_.size(), 0);
-        for (std::size_t n = 0; n < cells_.size(); ++n)
-            index_[place(cells_[n].at)] = static_cast<std::uint32_t>(n);
-    }
+    static constexpr std::uint32_t none = ~std::uint32_t{0};
+
+    // Throws Error(input) for cells that are strewn as those of no solid are.
+    explicit CellGrid(std::vector<Cell> cells);
 
     const std::vector<Cell>& cells() const { return cells_; }
     const Cell& operator[](std::size_t n) const { return cells_[n]; }
-    // The cell at a voxel that is one's.
-    const Cell& at(const Voxel& voxel) const { return cells_[index_[place(voxel)]]; }
-
-    bool is(std::int32_t piece, const Voxel& voxel) const {
-        return inside(voxel) && piece_[place(voxel)] == piece;
+    // The cell in the next voxel along an axis, upwards or downwards; or none.
+    std::uint32_t beside(std::size_t cell, std::size_t axis, bool up) const {
+        return beside_[2 * axis + up][cell];
     }
-    void mark(std::size_t cell, std::int32_t piece) { piece_[place(cells_[cell].at)] = piece; }
+    // Whether a cell, or none, is a piece's.
+    bool is(std::int32_t piece, std::uint32_t cell) const {
+        return cell != none && piece_[cell] == piece;
+    }
+    void mark(std::size_t cell, std::int32_t piece) { piece_[cell] = piece; }
 
   private:
-    std::size_t place(const Voxel& at) const {
-        return (static_cast<std::size_t>(at[0] - low_[0]) * size_[1] +
-                static_cast<std::size_t>(at[1] - low_[1])) *
-                   size_[2] +
-               static_cast<std::size_t>(at[2] - low_[2]);
-    }
-    bool inside(const Voxel& at) const {
-        for (std::size_t a = 0; a < 3; ++a)
-            if (at[a] < low_[a] || at[a] >= low_[a] + static_cast<std::int32_t>(size_[a]))
-                return false;
-        return true;
-    }
-
     std::vector<Cell> cells_;
-    Voxel low_{};
-    std::array<std::size_t, 3> size_{};
-    std::vector<std::int32_t> piece_;   // by voxel of the box
-    std::vector<std::uint32_t> index_;  // of the cell there
+    std::vector<std::int32_t> piece_;                   // by cell
+    std::array<std::vector<std::uint32_t>, 6> beside_;  // by direction (-x, x, -y ..) and cell
 };
 
 }  // namespace topple::exports

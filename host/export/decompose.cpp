@@ -172,15 +172,14 @@ class Decomposition {
         for (const std::size_t n : piece.cells) {
             const Voxel& at = grid_[n].at;
             const std::size_t slab = slab_of(at);
-            const auto ends_at = [&](std::size_t a, std::int32_t step) {
-                Voxel next = at;
-                next[a] += step;
-                return !grid_.is(piece.id, next) || slab_of(next) != slab;
+            const auto ends_at = [&](std::size_t a, bool up) {
+                const std::uint32_t next = grid_.beside(n, a, up);
+                return !grid_.is(piece.id, next) || slab_of(grid_[next].at) != slab;
             };
             std::array<std::array<bool, 2>, 3> ends{};
             bool corner = true;
             for (std::size_t a = 0; a < 3 && corner; ++a) {
-                ends[a] = {ends_at(a, -1), ends_at(a, 1)};
+                ends[a] = {ends_at(a, false), ends_at(a, true)};
                 corner = ends[a][0] || ends[a][1];
             }
             if (!corner) continue;

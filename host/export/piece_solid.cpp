@@ -32,7 +32,7 @@ PieceSolid PieceSolids::of(std::int32_t piece, std::span<const std::size_t> cell
         const Cell& cell = grid_[n];
         out.m3 += cell.whole() ? voxel_m3
                                : boundary.share[cell.boundary] * voxel_m3 / BoundaryCells::whole;
-        if (!between_alike(cell, piece)) add_corners(n, points);
+        if (!between_alike(n, piece)) add_corners(n, points);
     }
     constexpr double alike = 0.005;  // of a voxel
     out.hull = hull_part(physics::welded(points, alike * h));
@@ -75,13 +75,12 @@ std::vector<HalfSpace> PieceSolids::flat_sides(std::span<const std::size_t> cell
 
 // Whether a cell lies between two of its piece that are bounded as it is, so that no corner of the
 // piece's hull is in it.
-bool PieceSolids::between_alike(const Cell& cell, std::int32_t piece) const {
+bool PieceSolids::between_alike(std::size_t cell, std::int32_t piece) const {
     for (std::size_t a = 0; a < 3; ++a) {
-        Voxel before = cell.at, after = cell.at;
-        --before[a];
-        ++after[a];
-        if (grid_.is(piece, before) && grid_.is(piece, after) && alike(cell, grid_.at(before)) &&
-            alike(cell, grid_.at(after)))
+        const std::uint32_t before = grid_.beside(cell, a, false);
+        const std::uint32_t after = grid_.beside(cell, a, true);
+        if (grid_.is(piece, before) && grid_.is(piece, after) &&
+            alike(grid_[cell], grid_[before]) && alike(grid_[cell], grid_[after]))
             return true;
     }
     return false;

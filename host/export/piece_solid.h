@@ -34,7 +34,7 @@ class PieceSolids {
     std::vector<HalfSpace> flat_sides(std::span<const std::size_t> cells, std::size_t most) const;
 
   private:
-    bool between_alike(const Cell& cell, std::int32_t piece) const;
+    bool between_alike(std::size_t cell, std::int32_t piece) const;
     bool alike(const Cell& one, const Cell& other) const;
     void sample(std::span<const std::size_t> cells, double solid_m3, ConvexPart& part);
     void add_corners(std::size_t cell, std::vector<Vec3>& out);

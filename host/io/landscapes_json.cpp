@@ -114,7 +114,7 @@ Landscape landscape_of(const Json& json, const std::filesystem::path& file) {
     l.now = pose_of(json.at("now"), poses.size(), file);
     for (const Json& pose : poses) {
         l.poses.push_back(
-            {finite_vector_of(pose.at("up")), number_of(pose.at("energy_J"), nan),
+            {finite_vector_of(pose.at("up")), pose.at("energy_J").get<double>(),
              number_of(pose.at("joins_at_J"), std::numeric_limits<double>::infinity()),
              pose_of(pose.at("joins"), poses.size(), file),
              number_of(pose.at("probability"), nan)});
@@ -123,7 +123,7 @@ Landscape landscape_of(const Json& json, const std::filesystem::path& file) {
     for (const Json& pass : json.at("passes")) {
         const Json& sides = pass.at("poses");
         Landscape::Pass out{finite_vector_of(pass.at("up")),
-                            number_of(pass.at("energy_J"), nan),
+                            pass.at("energy_J").get<double>(),
                             {},
                             vectors_of(pass.at("border"))};
         for (std::size_t side = 0; side < 2; ++side) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/json.h"
+#include "io/check_scene.h"
 #include "io/corrections_json.h"
 #include "io/file_writer.h"
 #include "io/json_text.h"
@@ -165,7 +166,9 @@ Scene read_scene_json(const std::filesystem::path& file) {
         if (json.at("schema") != scene_schema) {
             fail(file, "its schema is not " + std::string(scene_schema));
         }
-        return scene_of(json);
+        Scene scene = scene_of(json);
+        check_scene(scene, file);
+        return scene;
     } catch (const Json::exception& error) {
         fail(file, "is no scene.json: " + json_problem(error));
     }

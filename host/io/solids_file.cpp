@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <string_view>
 #include <type_traits>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "core/checksum.h"
+#include "core/saved_solids.h"
 #include "io/file_writer.h"
 #include "io/text.h"
 
@@ -60,15 +60,16 @@ std::vector<SurfacePatch> patches_of(const FlatPatches& flat) {
 }
 
 // All arrays in their order in the file: visit(array, how many).
-template <class Cells, class Boundary, class Patches, class Roles, class Visit>
-void each_array(Cells& cells, Cells& strays, Boundary& boundary, Patches& patches, Roles& roles,
-                const Head& head, const Visit& visit) {
-    for (auto* array : {&cells.i, &cells.j, &cells.k, &cells.primitive}) visit(*array, head.cells);
-    visit(cells.basis, head.cells);
-    visit(cells.unseen_below, head.below);
-    for (auto* array : {&strays.i, &strays.j, &strays.k, &strays.primitive})
-        visit(*array, head.strays);
-    visit(strays.basis, head.strays);
+template <class Solids, class Patches, class Visit>
+void each_array(Solids& solids, Patches& patches, const Head& head, const Visit& visit) {
+    const auto visit_cells = [&](auto& cells, std::uint64_t count) {
+        for (auto* array : {&cells.i, &cells.j, &cells.k, &cells.primitive}) visit(*array, count);
+        visit(cells.basis, count);
+    };
+    visit_cells(solids.cells, head.cells);
+    visit(solids.cells.unseen_below, head.below);
+    visit_cells(solids.strays, head.strays);
+    auto& boundary = solids.boundary;
     for (auto* array : {&boundary.i, &boundary.j, &boundary.k, &boundary.primitive})
         visit(*array, head.boundary);
     for (auto& slot : boundary.slot) visit(slot, head.boundary);
@@ -77,14 +78,7 @@ void each_array(Cells& cells, Cells& strays, Boundary& boundary, Patches& patche
     for (auto& moment : boundary.moment) visit(moment, head.boundary);
     visit(patches.form, head.patches);
     visit(patches.primitive, head.patches);
-    visit(roles, head.primitives);
-}
-
-std::vector<Role> roles_of(const SolidScene& solids) {
-    std::vector<Role> out;
-    for (std::size_t p = 0; p < solids.primitives(); ++p)
-        out.push_back(solids.role(static_cast<std::int32_t>(p)));
-    return out;
+    visit(solids.roles, head.primitives);
 }
 
 class SolidsReader {
@@ -94,33 +88,28 @@ class SolidsReader {
 
     std::shared_ptr<const SolidScene> read() {
         check_whole();
-        SolidCells cells, strays;
-        BoundaryCells boundary;
-        cells.voxel_m = strays.voxel_m = head_.voxel_m;
+        SavedSolids solids;
+        solids.cells.voxel_m = solids.strays.voxel_m = head_.voxel_m;
         FlatPatches patches;
-        std::vector<Role> roles;
         const auto take = [&](auto& array, std::uint64_t count) {
             using Item = typename std::remove_reference_t<decltype(array)>::value_type;
             array.resize(count);
             if (count > 0) std::memcpy(array.data(), bytes_.data() + at_, count * sizeof(Item));
             at_ += count * sizeof(Item);
         };
-        each_array(cells, strays, boundary, patches, roles, head_, take);
-        boundary.patches = patches_of(patches);
-        check(boundary, roles);
-        for (const auto* solid : {&cells, &strays})
-            for (const Basis basis : solid->basis)
-                expect(static_cast<std::uint8_t>(basis) < basis_count);
+        each_array(solids, patches, head_, take);
+        solids.boundary.patches = patches_of(patches);
         try {
-            return std::make_shared<const SolidScene>(std::move(cells), std::move(roles),
-                                                      std::move(strays), std::move(boundary));
-        } catch (const Error&) {
-            damaged();
+            return scene_of(std::move(solids));
+        } catch (const Error& error) {
+            damaged(std::string(": ") + error.what());
         }
     }
 
   private:
-    [[noreturn]] void damaged() const { fail(file_, "is damaged; parse the scan again"); }
+    [[noreturn]] void damaged(const std::string& why = "") const {
+        fail(file_, "is damaged" + why + "; parse the scan again");
+    }
     void expect(bool right) const {
         if (!right) damaged();
     }
@@ -139,21 +128,13 @@ class SolidsReader {
             expect(count <= bytes_.size());
             size += count * sizeof(Item);
         };
-        SolidCells none;
-        BoundaryCells nothing;
+        SavedSolids none;
         FlatPatches patches;
-        std::vector<Role> roles;
-        each_array(none, none, nothing, patches, roles, head_, add);
+        each_array(none, patches, head_, add);
         expect(size == bytes_.size());
         const std::size_t summed = bytes_.size() - sizeof(Checksum::Value);
         const Checksum::Value sum = Checksum::of(bytes_.data(), summed);
         expect(std::memcmp(&sum, bytes_.data() + summed, sizeof(sum)) == 0);
-        expect(std::isfinite(head_.voxel_m) && head_.voxel_m > 0 && head_.voxel_m <= 1);
-    }
-
-    void check(const BoundaryCells& boundary, const std::vector<Role>& roles) const {
-        for (const Role role : roles) expect(role <= Role::fixture);
-        expect(boundary.fits(roles.size()));
     }
 
     const std::filesystem::path& file_;
@@ -164,17 +145,16 @@ class SolidsReader {
 
 }  // namespace
 
-void write_solids(const std::filesystem::path& file, const SolidScene& solids) {
-    const SolidCells &cells = solids.cells(), &strays = solids.strays();
-    const BoundaryCells& boundary = solids.boundary();
+void write_solids(const std::filesystem::path& file, const SolidScene& scene) {
+    const SavedSolids solids = saved(scene);
     Head head;
-    head.voxel_m = solids.voxel_m();
-    head.cells = cells.size();
-    head.below = cells.unseen_below.size();
-    head.strays = strays.size();
-    head.boundary = boundary.size();
-    head.patches = boundary.patches.size();
-    head.primitives = solids.primitives();
+    head.voxel_m = scene.voxel_m();
+    head.cells = solids.cells.size();
+    head.below = solids.cells.unseen_below.size();
+    head.strays = solids.strays.size();
+    head.boundary = solids.boundary.size();
+    head.patches = solids.boundary.patches.size();
+    head.primitives = solids.roles.size();
     FileWriter out(file);
     Checksum sum;
     const auto put = [&](const void* bytes, std::size_t count) {
@@ -185,9 +165,8 @@ void write_solids(const std::filesystem::path& file, const SolidScene& solids) {
     const auto put_array = [&](const auto& array, std::uint64_t) {
         put(array.data(), array.size() * sizeof(array[0]));
     };
-    const FlatPatches patches = flattened(boundary.patches);
-    const std::vector<Role> roles = roles_of(solids);
-    each_array(cells, strays, boundary, patches, roles, head, put_array);
+    const FlatPatches patches = flattened(solids.boundary.patches);
+    each_array(solids, patches, head, put_array);
     const Checksum::Value value = sum.value();
     out.write(&value, sizeof(value));
     out.close();

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <tuple>
 
 #include "physics/solid_pieces.h"
+#include "topple/error.h"
 
 namespace topple::physics {
 namespace {
@@ -53,9 +55,15 @@ class ShellDepths {
             --low_[a];
             count_[a] = high[a] - low_[a] + 2;
         }
-        share_.assign(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) *
-                          static_cast<std::size_t>(count_[2]),
-                      0);
+        std::size_t voxels = 1;
+        for (const std::int32_t along : count_) voxels *= static_cast<std::size_t>(along);
+        constexpr std::size_t most_voxels = std::size_t{1} << 28;  // each takes 16 bytes
+        if (voxels > most_voxels)
+            throw Error(ErrorKind::input, "what is said to be hollow spans " +
+                                              std::to_string(voxels) + " voxels, of " +
+                                              std::to_string(most_voxels) +
+                                              " at most; use a larger ParseOptions::voxel_m");
+        share_.assign(voxels, 0);
         for (const HollowPiece& p : pieces) share_[index(p.at)] += p.share;
         find_surface();
         sweep();

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "core/field_rules.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/ingest.h"
 #include "pipeline/solid_stage.h"
@@ -67,24 +68,38 @@ struct SeamRecord {
 
 template <class Io, class Parts, class Seams>
 void block_fields(Io& io, Parts& parts, Seams& seams) {
-    io(parts.primitives);
+    using namespace rules;
+    io(parts.primitives, of_all([](const BlockParts::Primitive& p, const auto& must) {
+           must(p.role, up_to(Role::fixture)), must(p.shell_log_odds, finite);
+       }));
+    const std::size_t count = parts.primitives.size();
     auto& c = parts.cells;
-    for (auto* values : {&c.i, &c.j, &c.k, &c.primitive}) io(*values);
-    io(c.basis);
-    io(c.unseen_below);
-    io(seams);
+    for (auto* values : {&c.i, &c.j, &c.k}) io(*values, tiles::voxels);
+    io(c.primitive, labels(count));
+    const std::size_t cells = c.primitive.size();
+    for (const auto* values : {&c.i, &c.j, &c.k}) io.expect(values->size() == cells);
+    io(c.basis, length(cells), up_to(Basis{basis_count - 1}));
+    io(c.unseen_below, length(cells));
+    io(seams, of_all([count](const SeamRecord& seam, const auto& must) {
+           must(seam.b, ids(count)), must(seam.a, ids(static_cast<std::size_t>(seam.b) + 1));
+           must(seam.variation, finite);
+       }));
     auto& samples = parts.samples;
-    io(samples.edge_m);
-    io(samples.spacing_m);
-    for (auto* values : geometry::columns_of(samples)) io(*values);
-    io(samples.primitive);
-    io(parts.empty_leaves);
-    io(parts.leaves);
-    io(parts.states);
-    list_fields(io, parts.labels, [](auto& each, auto& labels) {
-        each(labels.bin);
-        each(labels.cells);
-        each(labels.primitive);
+    io(samples.edge_m, finite);
+    io(samples.spacing_m, finite);
+    io(samples.primitive, ids(count));
+    const std::size_t size = samples.primitive.size();
+    for (auto* values : {&samples.x, &samples.y, &samples.z, &samples.nx, &samples.ny, &samples.nz})
+        io(*values, length(size), finite);
+    io(samples.lab_l, length_or_none(size));
+    for (auto* values : {&samples.lab_a, &samples.lab_b}) io(*values, length(samples.lab_l.size()));
+    for (auto* leaves : {&parts.empty_leaves, &parts.leaves})
+        io(*leaves, tiles::voxels, [](const auto& at) { return at.size() % 3 == 0; });
+    io(parts.states, length(parts.leaves.size() / 3 * 512), within(0, 3));
+    list_fields(io, parts.labels, [count](auto& each, auto& of_bin) {
+        each(of_bin.bin);
+        each(of_bin.primitive, labels(count));
+        each(of_bin.cells, length(of_bin.primitive.size()));
     });
 }
 
@@ -153,42 +168,25 @@ void write_block(const std::filesystem::path& folder, std::size_t block, const B
 }
 
 BlockParts read_block(const std::filesystem::path& folder, std::size_t block) {
-    tiles::BinaryReader in(block_file(folder, block));
     BlockParts out;
     std::vector<SeamRecord> seams;
-    block_fields(in, out, seams);
-    const auto count = static_cast<std::int32_t>(out.primitives.size());
-    const SolidCells& c = out.cells;
-    if (c.j.size() != c.size() || c.k.size() != c.size() || c.primitive.size() != c.size() ||
-        c.basis.size() != c.size() || c.unseen_below.size() != c.size())
-        in.damaged();
-    const auto is_basis = [](Basis b) { return static_cast<std::uint8_t>(b) < basis_count; };
-    if (!std::ranges::all_of(c.basis, is_basis)) in.damaged();
-    const auto is_primitive = [&](std::int32_t p) { return p >= -1 && p < count; };
-    if (!std::ranges::all_of(c.primitive, is_primitive)) in.damaged();
+    try {
+        tiles::BinaryReader in(block_file(folder, block));
+        block_fields(in, out, seams);
+    } catch (const Error&) {
+        // What its checksum does not tell no later run would find before it is here.
+        std::error_code error;
+        std::filesystem::remove(block_file(folder, block), error);
+        throw;
+    }
     out.seams.inside.resize(out.primitives.size());
     for (const SeamRecord& s : seams) {
-        if (s.a < 0 || s.b < s.a || s.b >= count) in.damaged();
         const graph::Seam seam{s.variation, s.pairs, s.flush, s.ledge};
         if (s.a == s.b) {
             out.seams.inside[static_cast<std::size_t>(s.a)] = seam;
         } else {
             out.seams.between[{s.a, s.b}] = seam;
         }
-    }
-    const geometry::SurfaceSamples& samples = out.samples;
-    for (const auto* values : geometry::columns_of(samples)) {
-        if (!values->empty() && values->size() != samples.primitive.size()) in.damaged();
-    }
-    if (!std::ranges::all_of(samples.primitive,
-                             [&](std::int32_t p) { return p >= 0 && p < count; }))
-        in.damaged();
-    if (out.empty_leaves.size() % 3 || out.states.size() != out.leaves.size() / 3 * 512)
-        in.damaged();
-    for (const BlockParts::Labels& labels : out.labels) {
-        if (labels.primitive.size() != labels.cells.size() ||
-            !std::ranges::all_of(labels.primitive, is_primitive))
-            in.damaged();
     }
     return out;
 }

@@ -10,6 +10,7 @@
 #include "export/separate.h"
 #include "export/sim_scene.h"
 #include "export/summary_notes.h"
+#include "io/check_scene.h"
 #include "io/frame_sequence.h"
 #include "io/output_folder.h"
 #include "io/read_result_ply.h"
@@ -17,7 +18,6 @@
 #include "io/scene_json.h"
 #include "io/solids_file.h"
 #include "io/text.h"
-#include "pipeline/check_scene.h"
 #include "pipeline/make_sim_scene.h"
 #include "topple/export.h"
 
@@ -126,7 +126,7 @@ ExportSummary export_output(const std::filesystem::path& output, const ExportOpt
     io::check_output(output);
     const std::filesystem::path file = output / "scene.json", solids = output / "solids.bin";
     Scene scene = io::read_scene_json(file);
-    check_scene(scene, file);
+    io::check_bodies(scene, file);
     std::error_code error;
     if (!std::filesystem::exists(solids, error))
         io::fail(solids,

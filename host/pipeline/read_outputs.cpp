@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 #include <string>
 #include <system_error>
 
+#include "core/field_rules.h"
+#include "io/check_scene.h"
 #include "io/landscapes_json.h"
 #include "io/output_folder.h"
 #include "io/read_result_ply.h"
 #include "io/scene_json.h"
 #include "io/solids_file.h"
 #include "io/text.h"
-#include "pipeline/check_scene.h"
 #include "topple/parse.h"
 
 namespace topple {
@@ -17,12 +17,8 @@ namespace {
 
 void check_labels(const Scene& scene, const std::vector<std::int32_t>& primitive,
                   const std::vector<std::int32_t>& object, const std::filesystem::path& file) {
-    const auto all_of = [](const std::vector<std::int32_t>& ids, std::size_t count) {
-        return std::ranges::all_of(ids, [&](std::int32_t id) {
-            return id >= -1 && id < static_cast<std::int32_t>(count);
-        });
-    };
-    if (!all_of(primitive, scene.primitives.size()) || !all_of(object, scene.objects.size()))
+    if (!rules::labels(scene.primitives.size())(primitive) ||
+        !rules::labels(scene.objects.size())(object))
         io::fail(file, "is of another scene: it names an id that scene.json has not");
 }
 
@@ -33,7 +29,7 @@ ParseResult read_outputs(const std::filesystem::path& folder) {
     const auto file = [&](const char* name) { return folder / name; };
     ParseResult out;
     Scene& scene = out.scene = io::read_scene_json(file("scene.json"));
-    check_scene(scene, file("scene.json"));
+    io::check_bodies(scene, file("scene.json"));
     io::read_landscapes_json(file("landscapes.json"), scene);
     scene.points = io::read_points_ply(file("points.ply"));
     check_labels(scene, scene.points.primitive, scene.points.object, file("points.ply"));

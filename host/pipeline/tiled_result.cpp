@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/colour_space.h"
+#include "core/field_rules.h"
 #include "io/read_cloud.h"
 #include "io/text.h"
 #include "io/write_ply.h"
@@ -26,10 +27,13 @@ TiledResult::TiledResult(std::unique_ptr<tiles::WorkFolder> work, std::filesyste
         label_.emplace_back(tiles::read_thinned(work_->path(), bin).size(), -1);
     for (std::size_t b = 0; b < layout_.blocks.size(); ++b) {
         for (const BlockParts::Labels& labels : read_block(work_->path(), b).labels) {
-            std::vector<std::int32_t>& of_bin = label_.at(labels.bin);
+            if (labels.bin >= label_.size()) tiles::damaged_file(block_file(work_->path(), b));
+            std::vector<std::int32_t>& of_bin = label_[labels.bin];
+            if (!rules::ids(of_bin.size())(labels.cells))
+                tiles::damaged_file(block_file(work_->path(), b));
             for (std::size_t n = 0; n < labels.cells.size(); ++n) {
                 const std::int32_t p = labels.primitive[n];
-                of_bin.at(labels.cells[n]) = p < 0 ? -1 : number_[b][static_cast<std::size_t>(p)];
+                of_bin[labels.cells[n]] = p < 0 ? -1 : number_[b][static_cast<std::size_t>(p)];
             }
         }
     }

@@ -53,7 +53,7 @@ class Tree {
             if (pose.joins >= 0)
                 joins_.push_back({pose.joins_at_J, n, static_cast<std::size_t>(pose.joins), false});
         }
-        if (object_.why.drop_m > 0) {
+        if (object_.why.drop_m > 0 && l_.now >= 0) {
             // Work against friction is no height to fall from.
             const double from = object_.mode == "slide" ? 0 : object_.why.W_J;
             fallen_ = energy_.size();

@@ -205,14 +205,18 @@ namespace {
 
 template <class Io, class Of>
 void layout_fields(Io& io, Of& layout) {
-    io(layout.cell_m);
-    io(layout.voxel_m);
-    io(layout.halo);
-    io(layout.frame.axes);
+    using namespace rules;
+    io(layout.cell_m, within(1e-6, bin_edge_m));
+    io(layout.voxel_m, within(1e-6, bin_edge_m));
+    io(layout.halo, voxels);
+    io(layout.frame.axes, within(-1.001, 1.001));
     io(layout.frame.found);
-    io(layout.frame.up_method);
-    io(layout.frame.note);
-    io(layout.blocks);
+    io(layout.frame.up_method, shown);
+    io(layout.frame.note, shown);
+    io(layout.blocks, of_all([](const Block& block, const auto& must) {
+           for (const VoxelBox* box : {&block.core, &block.seen})
+               must(box->low, voxels), must(box->high, voxels);
+       }));
 }
 
 }  // namespace

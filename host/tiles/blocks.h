@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/field_rules.h"
 #include "geometry/manhattan.h"
 #include "tiles/thinned_bin.h"
 
@@ -26,6 +27,9 @@ struct VoxelBox {
         return out;
     }
 };
+
+// Of what a file says of voxels: a rule (core/field_rules.h) that leaves room for halos.
+inline constexpr auto voxels = rules::within(-(1 << 27), 1 << 27);
 
 // Part of a storey that is looked at in one piece. Each voxel is in the core of one block; around
 // its core a block sees `Layout::halo` voxels more, but nothing of the floor above.

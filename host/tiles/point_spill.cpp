@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "core/field_rules.h"
+
 namespace topple::tiles {
 namespace {
 
@@ -28,12 +30,20 @@ std::uint64_t key_of(const Bin& bin) {
 
 // Of the file of bins.
 template <class Io, class Bins>
-void bin_fields(Io& io, Bins& bins) {
-    list_fields(io, bins, [](auto& each, auto& bin) {
-        each(bin.bin);
+void bin_fields(Io& io, Bins& bins, std::uint64_t points) {
+    const auto in_file = [points](const std::vector<SpilledPoints::Portion>& portions) {
+        return std::ranges::all_of(portions, [&](const SpilledPoints::Portion& p) {
+            return p.points <= portion_points && p.before <= points &&
+                   p.points <= points - p.before;
+        });
+    };
+    list_fields(io, bins, [&](auto& each, auto& bin) {
+        each(bin.bin, rules::within(-(1 << 20), 1 << 20));
         each(bin.points);
-        each(bin.portions);
+        each(bin.portions, in_file);
     });
+    io.expect(bins.size() <= most_bins &&
+              std::ranges::is_sorted(bins, {}, [](const auto& bin) { return bin.bin; }));
 }
 
 }  // namespace
@@ -43,10 +53,9 @@ SpilledPoints::SpilledPoints(const fs::path& folder)
     BinaryReader in(folder / "bins.bin");
     in(points_);
     in(dropped_);
-    in(offset_m_);
+    in(offset_m_, rules::finite);
     in(coloured_);
-    bin_fields(in, bins_);
-    if (bins_.size() > most_bins) in.damaged();
+    bin_fields(in, bins_, points_);
     if (!PortionReader::holds<Point>(file_, points_)) damaged_file(file_);
     if (coloured_ && !PortionReader::holds<Rgb8>(colour_file_, points_)) damaged_file(colour_file_);
 }
@@ -157,7 +166,7 @@ void PointSpill::finish(const Vec3& offset_m) {
     out(any_colour_);
     std::vector<SpilledPoints::BinPoints> written;
     for (const Open& bin : bins_) written.push_back(bin.written);
-    bin_fields(out, written);
+    bin_fields(out, written, points_);
     out.finish();
 }
 

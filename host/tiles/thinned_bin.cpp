@@ -7,6 +7,7 @@
 #include <string>
 #include <system_error>
 
+#include "core/field_rules.h"
 #include "core/sorted_order.h"
 #include "geometry/cell_grid.h"
 #include "tiles/binary_file.h"
@@ -33,9 +34,13 @@ fs::path cells_file(const fs::path& folder, const Bin& bin) {
 
 template <class Io, class Cells>
 void cell_fields(Io& io, Cells& cells) {
-    for (auto* values : {&cells.x, &cells.y, &cells.z}) io(*values);
-    io(cells.points);
-    for (auto* channel : {&cells.red, &cells.green, &cells.blue}) io(*channel);
+    using namespace rules;
+    io(cells.x, finite);
+    const std::size_t count = cells.x.size();
+    for (auto* values : {&cells.y, &cells.z}) io(*values, length(count), finite);
+    io(cells.points, length(count));
+    io(cells.red, length_or_none(count));
+    for (auto* channel : {&cells.green, &cells.blue}) io(*channel, length(cells.red.size()));
 }
 
 // Points whose cells are read at a time.
@@ -224,8 +229,7 @@ CellsOfPoints::CellsOfPoints(const fs::path& folder, const Bin& bin)
     BinaryReader order(order_file(folder, bin));
     order(cell_of_place_);
     order(points_);
-    order(sums_);
-    if (sums_.size() != (points_ + thinned_portion - 1) / thinned_portion) order.damaged();
+    order(sums_, rules::length(points_ / thinned_portion + (points_ % thinned_portion > 0)));
     if (!PortionReader::holds<std::uint32_t>(file_, points_)) damaged_file(file_);
 }
 
@@ -268,10 +272,6 @@ ThinnedBin read_thinned(const fs::path& folder, const Bin& bin) {
     BinaryReader in(cells_file(folder, bin));
     ThinnedBin out;
     cell_fields(in, out);
-    for (const auto* channel : {&out.red, &out.green, &out.blue})
-        if (!channel->empty() && channel->size() != out.size()) in.damaged();
-    if (out.y.size() != out.size() || out.z.size() != out.size() || out.points.size() != out.size())
-        in.damaged();
     return out;
 }
 

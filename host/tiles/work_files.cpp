@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view part_suffix = ".part";
 
-// Reads a file from end to end.
+// Reads a file from end to end. What is in it whoever reads it asks.
 void check_binary(const fs::path& file) {
     const BinaryReader whole(file);
 }
@@ -94,7 +94,13 @@ std::vector<std::string> remove_damaged(const fs::path& folder, const std::funct
             remove_thinned(folder, *bin);
         } else if (name == layout_name || name.starts_with(block_prefix)) {
             poll();
-            if (is_whole([&] { check_binary(folder / name); })) continue;
+            const bool whole = is_whole([&] {
+                if (name == layout_name)
+                    read_layout(folder);
+                else
+                    check_binary(folder / name);
+            });
+            if (whole) continue;
             damaged.push_back(name);
             remove(name);
         } else if (name == "bins.bin") {

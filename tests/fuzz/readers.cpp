@@ -3,12 +3,15 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <new>
 
+#include "fuzz/own_files.h"
 #include "io/frame_sequence.h"
 #include "io/landscapes_json.h"
 #include "io/octomap.h"
 #include "io/read_cloud.h"
+#include "io/read_result_ply.h"
 #include "io/scene_json.h"
 #include "io/text.h"
 #include "io/volume_checks.h"
@@ -115,7 +118,12 @@ constexpr Reader all[] = {
     {"record_text", "in.txt", read_as_record},
     {"hazard", "in.txt", read_as_hazard},
     {"corrections", "in.json", read_as_corrections},
-    {"scene", "in.json", [](const fs::path& file) { io::read_scene_json(file); }},
+    {"scene", "in.json", [](const fs::path& file) { io::scene_json(io::read_scene_json(file)); }},
+    {"result", "in.ply",
+     [](const fs::path& file) {
+         const ScenePoints points = io::read_points_ply(file);
+         expect(points.primitive.size() == points.x.size(), "labels are not one a point");
+     }},
     {"landscapes", "in.json",
      [](const fs::path& file) {
          Scene scene;
@@ -126,8 +134,11 @@ constexpr Reader all[] = {
 
 }  // namespace
 
-std::span<const Reader> readers() {
-    return all;
+std::vector<Reader> readers() {
+    std::vector<Reader> out(std::begin(all), std::end(all));
+    const auto own = own_files();
+    out.insert(out.end(), own.begin(), own.end());
+    return out;
 }
 
 std::string try_file(const Reader& reader, const fs::path& file) {
@@ -150,8 +161,10 @@ std::string try_file(const Reader& reader, const fs::path& file) {
 
 std::string try_input(const Reader& reader, const fs::path& folder, std::string_view bytes) {
     const fs::path file = folder / reader.file;
+    if (reader.put_beside) reader.put_beside(folder);
+    const std::string made = reader.made ? reader.made(bytes) : std::string(bytes);
     std::ofstream(file, std::ios::binary)
-        .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        .write(made.data(), static_cast<std::streamsize>(made.size()));
     return try_file(reader, file);
 }
 

@@ -32,7 +32,7 @@ TEST_P(Corpus, is_read_or_refused) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Readers, Corpus, ::testing::ValuesIn(readers().begin(), readers().end()),
+INSTANTIATE_TEST_SUITE_P(Readers, Corpus, ::testing::ValuesIn(readers()),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

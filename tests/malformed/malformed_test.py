@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs topple on inputs that are damaged or made to harm (inputs.py), each with limits.
+"""Runs topple on inputs, and on files of its own (own_files.py), that are damaged or made to harm, each with limits.
 
-  malformed_test.py --program TOPPLE --work DIR [--every N] [--each N] [--jobs N] [--only TEXT] [--table FILE]
+  malformed_test.py --program TOPPLE --work DIR [--every N] [--each N] [--seed N] [--jobs N] [--only TEXT] [--table FILE]
+                    [--python PYTHON]
 
 --every N runs each N-th of the cases; --each N makes as many of each change to each good file, as a measure of
-how many cases there are. A case passes where topple ends with 0, 1 or 2, in 10 s of processor time, with at most
+how many cases there are. --python names one that has the package: without, topple.load is left out. A case passes where topple ends with 0, 1 or 2, in 10 s of processor time, with at most
 200 MB + 20 times the input's size of memory, and, unless with 0, one line on stderr and no output. Exit code 1
 where any case does not, 0 otherwise.
 """
@@ -24,7 +25,16 @@ import tempfile
 import time
 
 import inputs
+import own_files
 
+# Like the program: one line where it fails.
+LOAD = """
+import sys, topple
+try:
+    topple.load(sys.argv[1])
+except topple.Error as error:
+    sys.exit(str(error))
+"""
 SECONDS, PATIENCE = 10, 120  # of processor time; by the clock, on a busy machine
 FIXED_KB, OF_SIZE = 200_000, 20
 
@@ -38,8 +48,8 @@ def input_bytes(folder):
 
 
 class Case:
-    def __init__(self, number, name, folder):
-        self.number, self.name, self.folder = number, name, folder
+    def __init__(self, number, name, folder, python):
+        self.number, self.name, self.folder, self.python = number, name, folder, python
         self.faults, self.code, self.seconds, self.peak_kb, self.error = [], None, 0.0, 0, ''
 
     def expect(self, holds, fault):
@@ -58,7 +68,8 @@ class Case:
         elif words[0] == 'estimate':
             words += ['--backend', 'native', '--quiet']
         with open(self.folder / 'stderr', 'wb') as error:
-            child = subprocess.Popen([str(program), *words], cwd=self.folder, stdin=subprocess.DEVNULL,
+            start = [str(program), *words] if words[0] != 'load' else [self.python, '-c', LOAD, *words[1:]]
+            child = subprocess.Popen(start, cwd=self.folder, stdin=subprocess.DEVNULL,
                                      stdout=subprocess.DEVNULL, stderr=error, start_new_session=True)
             self.wait(child)
         self.error = (self.folder / 'stderr').read_bytes().decode('utf-8', 'replace')
@@ -101,8 +112,8 @@ def good_results(program, work):
     return work / 'good'
 
 
-def run_case(number, name, folder, program, words):
-    return Case(number, name, folder).run(program, words)
+def run_case(number, name, folder, program, python, words):
+    return Case(number, name, folder, python).run(program, words)
 
 
 def run_all(a, small, chosen):
@@ -110,7 +121,7 @@ def run_all(a, small, chosen):
         number, name, make = case
         folder = a.work / str(number) / 'in'
         folder.mkdir(parents=True)
-        result = small.submit(run_case, number, name, folder, a.program, make(folder)).result()
+        result = small.submit(run_case, number, name, folder, a.program, a.python, make(folder)).result()
         if not result.faults:
             shutil.rmtree(folder.parent)
         return result
@@ -135,6 +146,8 @@ def main():
     parser.add_argument('--work', required=True, type=pathlib.Path)
     parser.add_argument('--every', type=int, default=1)
     parser.add_argument('--each', type=int, default=12)
+    parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--python')
     parser.add_argument('--jobs', type=int, default=2)
     parser.add_argument('--only', default='')
     parser.add_argument('--table', type=pathlib.Path)
@@ -142,8 +155,10 @@ def main():
     a.program = a.program.resolve()
     shutil.rmtree(a.work, ignore_errors=True)
     good = good_results(a.program, a.work)
-    chosen = [(number, name, make) for number, (name, make) in enumerate(inputs.cases(good, random.Random(1), a.each))
-              if number % a.every == 0 and a.only in name]
+    every = list(inputs.cases(good, random.Random(a.seed), a.each))
+    every += own_files.cases(a.program, good, random.Random(a.seed), a.each)
+    chosen = [(number, name, make) for number, (name, make) in enumerate(every)
+              if number % a.every == 0 and a.only in name and (a.python or not name.startswith('own load'))]
 
     # A process's peak of memory begins with that of the one that started it: not this one's.
     small = concurrent.futures.ProcessPoolExecutor(a.jobs, multiprocessing.get_context('spawn'))

@@ -2,6 +2,7 @@
 #include "fuzz/libfuzzer/file_in_memory.h"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/types.h>
 #include <unistd.h>
@@ -37,6 +38,9 @@ int __real_open(const char* path, int flags, mode_t mode);
 int __real_fstat(int file, struct stat* status);
 ssize_t __real_read(int file, void* out, size_t size);
 int __real_close(int file);
+void* __real_mmap(void* at, size_t size, int protection, int flags, int file, off_t offset);
+int __real_madvise(void* at, size_t size, int advice);
+int __real_munmap(void* at, size_t size);
 
 int __wrap_open(const char* path, int flags, ...) {
     if (std::strcmp(path, shown.path) == 0) {
@@ -64,6 +68,20 @@ ssize_t __wrap_read(int file, void* out, size_t size) {
     std::memcpy(out, shown.bytes.data() + shown.read, taken);
     shown.read += taken;
     return static_cast<ssize_t>(taken);
+}
+
+// Read only, so that the bytes need not be copied.
+void* __wrap_mmap(void* at, size_t size, int protection, int flags, int file, off_t offset) {
+    if (file != descriptor) return __real_mmap(at, size, protection, flags, file, offset);
+    return const_cast<char*>(shown.bytes.data());
+}
+
+int __wrap_madvise(void* at, size_t size, int advice) {
+    return at == shown.bytes.data() ? 0 : __real_madvise(at, size, advice);
+}
+
+int __wrap_munmap(void* at, size_t size) {
+    return at == shown.bytes.data() ? 0 : __real_munmap(at, size);
 }
 
 int __wrap_close(int file) {
