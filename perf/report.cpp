@@ -3,13 +3,12 @@
 
 #include <cinttypes>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
-#include "topple/error.h"
+#include "io/replace_file.h"
 #include "topple/version.h"
 
 namespace topple::perf {
@@ -51,16 +50,6 @@ std::string quoted(const std::string& text) {
         out += c;
     }
     return out += '"';
-}
-
-void write_text(const std::string& path, const std::string& text) {
-    const std::string part = path + ".part";
-    std::ofstream out(part, std::ios::binary);
-    out << text;
-    out.close();
-    std::error_code error;
-    if (out) std::filesystem::rename(part, path, error);
-    if (!out || error) throw Error(ErrorKind::input, path + ": can't be written");
 }
 
 }  // namespace
@@ -133,7 +122,7 @@ void write_json(const std::string& path, const std::vector<Result>& results) {
         {"topple_version", version},
         {"machine", {{"cpu", cpu_name()}, {"cores", std::thread::hardware_concurrency()}}},
         {"results", list}};
-    write_text(path, root.dump(1) + "\n");
+    io::replace_file(path, root.dump(1) + "\n");
 }
 
 void write_csv(const std::string& path, const std::vector<Result>& results) {
@@ -152,7 +141,7 @@ void write_csv(const std::string& path, const std::vector<Result>& results) {
             << ',' << r.counters.bytes_read << ',' << r.counters.bytes_bound << ','
             << r.counters.kernel_builds << ',' << hex(r.hash) << '\n';
     }
-    write_text(path, out.str());
+    io::replace_file(path, out.str());
 }
 
 }  // namespace topple::perf

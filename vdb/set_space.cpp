@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/short_number.h"
 #include "topple/error.h"
 #include "vdb/completion.h"
 #include "vdb/grids.h"
@@ -145,7 +146,7 @@ void set_leaf_free(VoxelScene::Grids& g, const LeafTable::Leaf& leaf,
 
 void check(const SpaceMap& map) {
     if (map.voxel_m > 0 && std::isfinite(map.voxel_m)) return;
-    throw Error(ErrorKind::usage, "a map of voxels of " + std::to_string(map.voxel_m) +
+    throw Error(ErrorKind::usage, "a map of voxels of " + short_number(map.voxel_m) +
                                       " m: their size must be positive");
 }
 

@@ -131,7 +131,7 @@ SortedPoints sort_points(const VoxelFrame& frame, const CloudView& cloud) {
     for (int a = 0; a < 3; ++a) {
         if (!(std::abs(placed.median[a]) < 1e9)) {
             throw Error(ErrorKind::input, "the points lie " +
-                                              std::to_string(placed.median[a] * frame.voxel_m) +
+                                              short_number(placed.median[a] * frame.voxel_m) +
                                               " m from the origin, too far for voxels of " +
                                               short_number(frame.voxel_m) + " m; move the cloud");
         }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/checksum.h"
+#include "io/file_writer.h"
 #include "topple/error.h"
 #include "vdb/grids.h"
 
@@ -75,6 +76,7 @@ void write_archive(const std::filesystem::path& path, const openvdb::GridPtrVec&
     try {
         std::ofstream out;
         out.exceptions(std::ios::failbit | std::ios::badbit);
+        io::write_file(path, "");  // a new file, whatever had its name
         out.open(path, std::ios::binary | std::ios::trunc);
         CheckedArchive().write_to(out, grids, meta);
         out.close();

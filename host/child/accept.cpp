@@ -62,6 +62,8 @@ std::vector<std::string> accept_task(int argc, char** argv) {
     ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL, 0, 0, 0);
     if (std::to_string(::getppid()) != argv[2]) std::_Exit(1);  // it has died already
+    const AnswerHead begun{begun_magic, 0};
+    if (::pwrite(answer_descriptor, &begun, sizeof(begun), 0) != sizeof(begun)) std::_Exit(1);
     take_limits(std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10));
     return {argv + 5, argv + argc};
 }

@@ -132,6 +132,7 @@ class Child {
         }
     }
     // The exit code of the dynamic loader, and of shells, for a program that can't be run; else 0.
+    // A program that has begun may end with the same ones.
     int loader_failed() const {
         const int code = known_ && WIFEXITED(status_) ? WEXITSTATUS(status_) : 0;
         return code == 126 || code == 127 ? code : 0;
@@ -222,9 +223,12 @@ Ended run_started(const std::string& program, const std::vector<std::string>& ta
                                   std::to_string(static_cast<std::uint64_t>(limits.wall_s)) + " s"};
         }
     }
+    AnswerHead head;
+    const bool begun =
+        ::pread(answer.get(), &head, sizeof(head), 0) == sizeof(head) && head.magic == begun_magic;
     Answer got(answer.take());
     if (got.whole()) return {std::move(got), ""};
-    if (const int code = child.loader_failed()) {
+    if (const int code = begun ? 0 : child.loader_failed()) {
         return {Answer(),
                 program + " did not start (exit code " + std::to_string(code) +
                     "): a shared library that it needs is missing here (ldd " + program +

@@ -2,8 +2,8 @@
 #include "cli/before.h"
 
 #include <cstdio>
-#include <system_error>
 
+#include "cli/print.h"
 #include "cli/urgency.h"
 #include "io/scene_json.h"
 #include "io/text.h"
@@ -31,19 +31,19 @@ std::string worst_text(const Scene& scene) {
 
 }  // namespace
 
-std::optional<Worst> worst_of(const std::filesystem::path& scene_json) {
-    std::error_code error;
-    if (!std::filesystem::exists(scene_json, error)) return std::nullopt;
+std::optional<Worst> worst_of(const std::filesystem::path& output) {
+    const io::FileName file = io::FileName::in(output, "scene.json");
+    if (!file.is_there()) return std::nullopt;
     try {
-        return Worst{worst_text(io::read_scene_json(scene_json)), scene_json};
+        return Worst{worst_text(io::read_scene_json(file)), file.path()};
     } catch (const Error&) {
         return std::nullopt;  // of another version, or damaged: nothing to compare with
     }
 }
 
 void print_change(const Worst& before, const Scene& now) {
-    std::printf("Worst before (%s): %s; now: %s.\n", io::path_text(before.of).c_str(),
-                before.text.c_str(), worst_text(now).c_str());
+    print("Worst before (%s): %s; now: %s.\n", io::path_text(before.of).c_str(),
+          before.text.c_str(), worst_text(now).c_str());
 }
 
 }  // namespace topple::cli

@@ -16,7 +16,7 @@ struct Worst {
 };
 
 // Of an earlier output; none where there is none that can be read.
-std::optional<Worst> worst_of(const std::filesystem::path& scene_json);
+std::optional<Worst> worst_of(const std::filesystem::path& output);
 
 void print_change(const Worst& before, const Scene& now);
 

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "cli/command_line.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
 #include <cstddef>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <map>
@@ -10,6 +16,8 @@
 #include <span>
 #include <string>
 
+#include "cli/interrupt.h"
+#include "cli/print.h"
 #include "cli/unknown_option.h"
 #include "topple/option_names.h"
 #include "topple/version.h"
@@ -33,6 +41,22 @@ void check_values(const CLI::App& command) {
     }
 }
 
+// Where one of the standard descriptors is closed the next file would get its number, and with it
+// what is printed. What stands in its place can't be written, or read.
+void open_standard_files() {
+    for (const int fd : {0, 1, 2})
+        if (::fcntl(fd, F_GETFD) < 0) ::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
+}
+
+// What was printed may have gone nowhere, as on a full disk.
+int with_output_written(int code) {
+    errno = 0;
+    if (code != 0 || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)) return code;
+    if (interrupted() == SIGPIPE) return 128 + SIGPIPE;
+    throw Error(ErrorKind::input, std::string("standard output can't be written: ") +
+                                      std::strerror(errno != 0 ? errno : EIO));
+}
+
 int run(std::span<const CommandEntry> entries, int argc, char** argv) {
     CLI::App app{
         "topple tells which things in a 3D scan of a room are one solid object, what holds what "
@@ -46,7 +70,8 @@ int run(std::span<const CommandEntry> entries, int argc, char** argv) {
     app.footer(
         "Exit codes: 0 done; 1 the input can't be parsed, or the output can't be written; 2 wrong "
         "usage;\n"
-        "3 the asked-for backend or device can't be used; 130 stopped by Ctrl-C, 143 by SIGTERM.");
+        "3 the asked-for backend or device can't be used; 130 stopped by Ctrl-C, 143 by SIGTERM,\n"
+        "128 + N by another signal N.");
     std::map<const CLI::App*, Command> commands;
     for (const CommandEntry& entry : entries) {
         CLI::App* sub = app.add_subcommand(entry.name, entry.what);
@@ -100,7 +125,7 @@ int exit_code(ErrorKind kind) {
 }
 
 void print_error(const Error& error) {
-    std::fprintf(stderr, "topple: %s\n", error.what());
+    print_to(stderr, "topple: %s\n", error.what());
 }
 
 int run_command_line(std::span<const CommandEntry> commands, int argc, char** argv,
@@ -109,8 +134,10 @@ int run_command_line(std::span<const CommandEntry> commands, int argc, char** ar
         tell({error.kind(), in_words_of(Interface::command_line, error.what())});
         return exit_code(error.kind());
     };
+    open_standard_files();
+    end_on_signals();
     try {
-        return run(commands, argc, argv);
+        return with_output_written(run(commands, argc, argv));
     } catch (const Error& error) {
         return fail(error);
     } catch (const std::bad_alloc&) {

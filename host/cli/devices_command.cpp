@@ -3,6 +3,7 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/print.h"
 #include "topple/device.h"
 
 namespace topple::cli {
@@ -18,12 +19,11 @@ Command add_devices(CLI::App&) {
     return [] {
         for (const device::Listing& l : device::list_devices()) {
             if (!l.usable) {
-                std::printf("%-7s not usable: %s\n", device::to_string(l.backend),
-                            l.problem.c_str());
+                print("%-7s not usable: %s\n", device::to_string(l.backend), l.problem.c_str());
                 continue;
             }
             const device::Limits& limits = l.info.limits;
-            std::printf(
+            print(
                 "%-7s %s%s\n        driver %s\n        memory %s, one allocation %s, one binding "
                 "%s, group %u, shared %u KiB\n",
                 device::to_string(l.backend), l.info.name.c_str(), l.info.gpu ? " (GPU)" : "",

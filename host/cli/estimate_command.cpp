@@ -9,6 +9,7 @@
 #include "cli/isolate_option.h"
 #include "cli/long_run.h"
 #include "cli/max_memory_option.h"
+#include "cli/print.h"
 #include "cli/unit_option.h"
 #include "core/json.h"
 #include "io/read_cloud.h"
@@ -71,7 +72,7 @@ void print_json(const Estimate& e) {
         {"work_bytes", e.work_bytes},
         {"output_bytes", e.output_bytes},
     };
-    std::printf("%s\n", json.dump(1).c_str());
+    print("%s\n", json.dump(1).c_str());
 }
 
 int run(EstimateArguments& a) {
@@ -83,27 +84,25 @@ int run(EstimateArguments& a) {
         progress.finish();
         if (a.json) return print_json(e);
         if (e.frames > 0)
-            std::printf("input    %llu frames, about %.2g million points when fused\n",
-                        static_cast<unsigned long long>(e.frames),
-                        static_cast<double>(e.points) / 1e6);
+            print("input    %llu frames, about %.2g million points when fused\n",
+                  static_cast<unsigned long long>(e.frames), static_cast<double>(e.points) / 1e6);
         else
-            std::printf("input    %llu points\n", static_cast<unsigned long long>(e.points));
-        std::printf("surface  about %.3g m2\n", e.surface_m2);
+            print("input    %llu points\n", static_cast<unsigned long long>(e.points));
+        print("surface  about %.3g m2\n", e.surface_m2);
         if (e.tiled)
-            std::printf("parsed   in blocks, thinned to one point per %.3g mm\n", 1000 * e.cell_m);
+            print("parsed   in blocks, thinned to one point per %.3g mm\n", 1000 * e.cell_m);
         else
-            std::printf("parsed   in one piece, voxels of %s m, points about %s mm apart\n",
-                        io::short_number(e.voxel_m).c_str(),
-                        io::two_digits(1000 * e.spacing_m).c_str());
-        std::printf("time     about %s\n", time_text(e.seconds).c_str());
-        std::printf("memory   about %s\n", io::bytes_text(e.memory_bytes).c_str());
+            print("parsed   in one piece, voxels of %s m, points about %s mm apart\n",
+                  io::short_number(e.voxel_m).c_str(), io::two_digits(1000 * e.spacing_m).c_str());
+        print("time     about %s\n", time_text(e.seconds).c_str());
+        print("memory   about %s\n", io::bytes_text(e.memory_bytes).c_str());
         if (a.options.max_memory_bytes > 0)
-            std::printf("limit    %s\n",
-                        limit_text(e, io::can_stream(a.input), a.options.max_memory_bytes).c_str());
+            print("limit    %s\n",
+                  limit_text(e, io::can_stream(a.input), a.options.max_memory_bytes).c_str());
         if (e.work_bytes > 0)
-            std::printf("disk     about %s while it works\n", io::bytes_text(e.work_bytes).c_str());
-        std::printf("results  about %s%s\n", io::bytes_text(e.output_bytes).c_str(),
-                    e.tiled ? "" : ", with parse.cache");
+            print("disk     about %s while it works\n", io::bytes_text(e.work_bytes).c_str());
+        print("results  about %s%s\n", io::bytes_text(e.output_bytes).c_str(),
+              e.tiled ? "" : ", with parse.cache");
     });
 }
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +11,7 @@
 #include "cli/choice.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/print.h"
 #include "evaluation/bases.h"
 #include "evaluation/groupings.h"
 #include "evaluation/joint_weights.h"
@@ -20,6 +20,7 @@
 #include "evaluation/pictures.h"
 #include "evaluation/room.h"
 #include "evaluation/tables.h"
+#include "io/replace_file.h"
 #include "scenes/kinds/kinds.h"
 #include "topple/device.h"
 #include "topple/error.h"
@@ -59,19 +60,12 @@ void make_folder(const std::filesystem::path& folder) {
     if (error) throw Error(ErrorKind::input, folder.string() + ": " + error.message());
 }
 
-void write(const std::filesystem::path& path, const std::string& text) {
-    std::ofstream out(path, std::ios::binary);
-    out << text;
-    out.flush();
-    if (!out) throw Error(ErrorKind::input, path.string() + ": can't be written");
-}
-
 // Calls use() once for each room, with its options.
 template <typename Use>
 void for_each_room(EvaluateArguments& a, const Use& use) {
     for (unsigned n = 0; n < a.seeds; ++n) {
         a.options.room.seed = a.options.camera.seed = a.first + n;
-        std::fprintf(stderr, "room %u of %u\n", n + 1, a.seeds);
+        print_to(stderr, "room %u of %u\n", n + 1, a.seeds);
         use();
     }
 }
@@ -81,8 +75,8 @@ void print_weights(EvaluateArguments& a) {
     for_each_room(a,
                   [&] { evaluation::add_examples(evaluation::scan_parts(a.options), examples); });
     for (const double w : evaluation::fit_joints(examples.joints, examples.fixed))
-        std::printf("%.4f, ", w);
-    std::printf("\n%zu joints of %u rooms\n", examples.joints.size(), a.seeds);
+        print("%.4f, ", w);
+    print("\n%zu joints of %u rooms\n", examples.joints.size(), a.seeds);
 }
 
 void compare_groupings(EvaluateArguments& a) {
@@ -94,7 +88,7 @@ void compare_groupings(EvaluateArguments& a) {
     });
     const std::string table = evaluation::table_of(rooms);
     std::fputs(table.c_str(), stdout);
-    write(std::filesystem::path(a.out) / "groupings.txt", table);
+    io::replace_file(std::filesystem::path(a.out) / "groupings.txt", table);
 }
 
 void judge_bases(EvaluateArguments& a) {
@@ -105,7 +99,7 @@ void judge_bases(EvaluateArguments& a) {
     });
     const std::string table = evaluation::table_of(counts);
     std::fputs(table.c_str(), stdout);
-    write(std::filesystem::path(a.out) / "bases.txt", table);
+    io::replace_file(std::filesystem::path(a.out) / "bases.txt", table);
 }
 
 void judge_parses(EvaluateArguments& a) {
@@ -119,13 +113,13 @@ void judge_parses(EvaluateArguments& a) {
     });
     const std::string tables = evaluation::tables(scores);
     std::fputs(tables.c_str(), stdout);
-    write(out / "tables.txt", tables);
-    write(out / "scores.csv", evaluation::csv(scores));
+    io::replace_file(out / "tables.txt", tables);
+    io::replace_file(out / "scores.csv", evaluation::csv(scores));
     evaluation::draw_segments(*first, out / "segments.png");
     evaluation::draw_slices(*first, out / "slices.png");
     evaluation::draw_segmentation_chart(scores, out / "segmentation.svg");
     evaluation::draw_volume_chart(scores, out / "volume.svg");
-    std::printf("\nPictures of the first room, charts and all figures: %s\n", a.out.c_str());
+    print("\nPictures of the first room, charts and all figures: %s\n", a.out.c_str());
 }
 
 void judge_kinds(EvaluateArguments& a) {
@@ -133,14 +127,14 @@ void judge_kinds(EvaluateArguments& a) {
     for (const std::string& kind : a.kinds) {
         for (unsigned n = 0; n < a.seeds; ++n) {
             a.scan.seed = a.first + n;
-            std::fprintf(stderr, "%s %u of %u\n", kind.c_str(), n + 1, a.seeds);
+            print_to(stderr, "%s %u of %u\n", kind.c_str(), n + 1, a.seeds);
             scores.push_back(evaluation::scan_and_judge({kind, a.scan, a.options.parse}));
         }
     }
     const std::string table = evaluation::kinds_table(scores);
     std::fputs(table.c_str(), stdout);
-    write(std::filesystem::path(a.out) / "kinds.txt", table);
-    write(std::filesystem::path(a.out) / "kinds.csv", evaluation::kinds_csv(scores));
+    io::replace_file(std::filesystem::path(a.out) / "kinds.txt", table);
+    io::replace_file(std::filesystem::path(a.out) / "kinds.csv", evaluation::kinds_csv(scores));
 }
 
 void judge_measures(EvaluateArguments& a) {
@@ -155,14 +149,15 @@ void judge_measures(EvaluateArguments& a) {
     }
     std::vector<evaluation::MeasureScore> scores;
     for (std::size_t s = 0; s < shapes.size(); ++s) {
-        std::fprintf(stderr, "%s, %zu of %zu\n", shapes[s].name.c_str(), s + 1, shapes.size());
+        print_to(stderr, "%s, %zu of %zu\n", shapes[s].name.c_str(), s + 1, shapes.size());
         for (unsigned n = 0; n < a.seeds; ++n)
             scores.push_back(evaluation::measure(shapes[s], a.first + n, options));
     }
     const std::string table = evaluation::measures_table(scores);
     std::fputs(table.c_str(), stdout);
-    write(std::filesystem::path(a.out) / "measures.txt", table);
-    write(std::filesystem::path(a.out) / "measures.csv", evaluation::measures_csv(scores));
+    io::replace_file(std::filesystem::path(a.out) / "measures.txt", table);
+    io::replace_file(std::filesystem::path(a.out) / "measures.csv",
+                     evaluation::measures_csv(scores));
 }
 
 int run(EvaluateArguments& a) {

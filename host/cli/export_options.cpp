@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 
+#include "cli/print.h"
 #include "export/formats.h"
 
 namespace topple::cli {
@@ -36,18 +37,18 @@ void print_export(const ExportSummary& summary) {
         free += !body.fixed;
         furthest_m = std::max(furthest_m, std::abs(body.moved_m[2]));
     }
-    std::printf(
+    print(
         "%llu free bodies, %llu convex parts in all, deepest overlap %.3f mm; let down by at most "
         "%.1f mm\n",
         static_cast<unsigned long long>(free), static_cast<unsigned long long>(parts),
         1e3 * summary.deepest_overlap_m, 1e3 * furthest_m);
-    for (const std::string& note : summary.notes) std::printf("%s\n", note.c_str());
+    for (const std::string& note : summary.notes) print("%s\n", note.c_str());
     if (!std::isfinite(summary.floor_m)) return;
-    std::printf("The floor lies at z = %.3f m", summary.floor_m);
+    print("The floor lies at z = %.3f m", summary.floor_m);
     if (summary.free_radius_m > 0)
-        std::printf("; within %.2f m of x = %.2f, y = %.2f nothing stands on it",
-                    summary.free_radius_m, summary.free_place_m[0], summary.free_place_m[1]);
-    std::printf("\n");
+        print("; within %.2f m of x = %.2f, y = %.2f nothing stands on it", summary.free_radius_m,
+              summary.free_place_m[0], summary.free_place_m[1]);
+    print("\n");
 }
 
 }  // namespace topple::cli

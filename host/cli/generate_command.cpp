@@ -7,9 +7,12 @@
 #include "cli/choice.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/print.h"
+#include "io/output_folder.h"
 #include "io/text.h"
 #include "scenes/building.h"
 #include "scenes/depth_camera.h"
+#include "scenes/files.h"
 #include "scenes/furnished_room.h"
 #include "scenes/ground_truth.h"
 #include "scenes/kinds/kinds.h"
@@ -37,23 +40,25 @@ int run_building(const GenerateArguments& a) {
     const auto summary = scenes::write_building(
         a.out, a.building, [](std::size_t, std::size_t) { return interrupted() == 0; });
     if (interrupted() != 0) return interrupted_exit();
-    std::printf("%s: %s, %.1f mm apart, in %s on %s, %s\n", a.out.c_str(),
-                io::counted(a.building.points, "point").c_str(), 1000 * summary.spacing_m,
-                io::counted(summary.rooms, "room").c_str(),
-                io::counted(summary.storeys, "storey").c_str(),
-                io::counted(summary.objects, "object").c_str());
+    print("%s: %s, %.1f mm apart, in %s on %s, %s\n", a.out.c_str(),
+          io::counted(a.building.points, "point").c_str(), 1000 * summary.spacing_m,
+          io::counted(summary.rooms, "room").c_str(),
+          io::counted(summary.storeys, "storey").c_str(),
+          io::counted(summary.objects, "object").c_str());
     return 0;
 }
 
 int run_kind(const GenerateArguments& a) {
+    io::OutputFolder out(a.out, scenes::generated_scan);
     const scenes::World world = scenes::make_world(a.kind, a.scan.seed);
     const scenes::Scan scan = scenes::scan(world, a.scan);
-    scenes::write_scan(a.out, world, scan, a.scan, a.kind);
-    std::printf("%s: %s of a %s room, %s, %s, %s\n", a.out.c_str(), to_string(a.scan.kind),
-                a.kind.c_str(), io::counted(world.objects.size() - 1, "object").c_str(),
-                scan.frames.empty() ? io::counted(scan.cloud.size(), "point").c_str()
-                                    : io::counted(scan.frames.size(), "frame").c_str(),
-                io::counted(scan.truth.size(), "true point").c_str());
+    scenes::write_scan(out.folder(), world, scan, a.scan, a.kind);
+    out.commit();
+    print("%s: %s of a %s room, %s, %s, %s\n", a.out.c_str(), to_string(a.scan.kind),
+          a.kind.c_str(), io::counted(world.objects.size() - 1, "object").c_str(),
+          scan.frames.empty() ? io::counted(scan.cloud.size(), "point").c_str()
+                              : io::counted(scan.frames.size(), "frame").c_str(),
+          io::counted(scan.truth.size(), "true point").c_str());
     return 0;
 }
 
@@ -62,12 +67,13 @@ int run(const GenerateArguments& a) {
         throw Error(ErrorKind::usage,
                     "--frames " + std::to_string(a.camera.frames) + ": expected 1 to 10000");
     }
+    io::OutputFolder out(a.out, scenes::generated_scan);
     const scenes::World world = scenes::furnished_room(a.room);
     const scenes::Sequence sequence = scenes::walk(world, a.camera);
-    scenes::write_sequence(a.out, world, sequence);
-    std::printf("%s: %zu frames, %zu fused points, %zu parts, %zu objects\n", a.out.c_str(),
-                sequence.frames.size(), sequence.cloud.size(), world.parts.size(),
-                world.objects.size());
+    scenes::write_sequence(out.folder(), world, sequence);
+    out.commit();
+    print("%s: %zu frames, %zu fused points, %zu parts, %zu objects\n", a.out.c_str(),
+          sequence.frames.size(), sequence.cloud.size(), world.parts.size(), world.objects.size());
     return 0;
 }
 

@@ -7,8 +7,10 @@
 
 #include "cli/commands.h"
 #include "cli/landscape_picture.h"
+#include "cli/print.h"
 #include "io/landscapes_json.h"
 #include "io/output_folder.h"
+#include "io/replace_file.h"
 #include "io/scene_json.h"
 #include "io/text.h"
 #include "topple/error.h"
@@ -53,16 +55,23 @@ void check_ending(const std::string& out) {
                 "--output " + io::printable(out) + ": expected a name that ends in .png or .svg");
 }
 
+// One that is replaced must be a picture itself: not a text that a slip of the hand names.
+void check_own_picture(const std::string& out) {
+    io::check_own_file(out, std::string_view(out).ends_with(".svg") ? "<svg" : "\x89PNG",
+                       "is no picture; choose another name");
+}
+
 int run(const LandscapeArguments& a) {
     if (!a.out.empty()) check_ending(a.out);
     const std::filesystem::path folder = a.parsed;
     io::check_output(folder);
-    Scene scene = io::read_scene_json(folder / "scene.json");
-    io::read_landscapes_json(folder / "landscapes.json", scene);
+    Scene scene = io::read_scene_json(io::FileName::in(folder, "scene.json"));
+    io::read_landscapes_json(io::FileName::in(folder, "landscapes.json"), scene);
     const Object& object = chosen(scene, a.object);
     const std::string out = a.out.empty() ? "object-" + std::to_string(object.id) + ".png" : a.out;
+    check_own_picture(out);
     draw_landscape(scene, object, out);
-    std::printf("Object %d: %s\n%s\n", object.id, object.why.sentence.c_str(), out.c_str());
+    print("Object %d: %s\n%s\n", object.id, object.why.sentence.c_str(), out.c_str());
     return 0;
 }
 

@@ -19,12 +19,14 @@
 #include "cli/isolate_option.h"
 #include "cli/long_run.h"
 #include "cli/max_memory_option.h"
+#include "cli/print.h"
 #include "cli/summary.h"
 #include "cli/unit_option.h"
 #include "io/output_folder.h"
 #include "io/text.h"
 #include "pipeline/tiled_parse.h"
 #include "safety/earthquake/intensity.h"
+#include "tiles/work_files.h"
 #include "topple/device.h"
 #include "topple/export.h"
 #include "topple/option_names.h"
@@ -182,6 +184,7 @@ void keep_cache(const io::OutputFolder& room, ParseArguments& a) {
     a.output.cache_file = a.options.cache_file = room.folder() / "parse.cache";
     std::error_code error;
     const std::filesystem::path earlier = room.destination() / "parse.cache";
+    if (!tiles::has_mark(earlier)) return;
     std::filesystem::create_hard_link(earlier, a.options.cache_file, error);
     if (error) std::filesystem::copy_file(earlier, a.options.cache_file, error);
 }
@@ -197,7 +200,7 @@ std::optional<Worst> worst_before(const ParseArguments& a, const std::filesystem
     if (!a.corrections || a.quiet) return std::nullopt;
     std::filesystem::path folder = out;
     if (a.cache) folder = std::filesystem::path(*a.cache).parent_path();
-    return worst_of(folder / "scene.json");
+    return worst_of(folder);
 }
 
 int run(ParseArguments& a) {
@@ -229,7 +232,7 @@ int run(ParseArguments& a) {
         a.options.notice = [&](const std::string& line) {
             progress.finish();
             if (!a.quiet)
-                std::fprintf(stderr, "%s\n", in_words_of(Interface::command_line, line).c_str());
+                print_to(stderr, "%s\n", in_words_of(Interface::command_line, line).c_str());
         };
         ParseResult result = parse(a.input, a.options);
         keep_peak_as_written(a, result.scene);

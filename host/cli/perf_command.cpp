@@ -6,6 +6,8 @@
 #include <system_error>
 
 #include "cli/commands.h"
+#include "cli/print.h"
+#include "io/replace_file.h"
 #include "perf/profile.h"
 #include "perf/report.h"
 #include "perf/suite.h"
@@ -23,7 +25,7 @@ struct PerfArguments {
 
 int run(const PerfArguments& a) {
     if (a.list) {
-        for (const std::string& name : perf::case_names()) std::printf("%s\n", name.c_str());
+        for (const std::string& name : perf::case_names()) print("%s\n", name.c_str());
         return 0;
     }
     if (!a.profile.empty()) {
@@ -35,10 +37,13 @@ int run(const PerfArguments& a) {
     }
     // Told before the measuring, which takes minutes.
     for (const std::string& path : {a.json, a.csv}) {
+        if (path.empty()) continue;
         const auto folder = std::filesystem::path(path).parent_path();
         std::error_code error;
         if (!folder.empty() && !std::filesystem::is_directory(folder, error))
             throw Error(ErrorKind::input, path + ": there is no folder " + folder.string());
+        io::check_own_file(path, path == a.json ? "topple.perf/" : "backend,device,driver,",
+                           "is no result of topple perf; choose another name");
     }
     const auto results = perf::run_suite(a.suite);
     if (!a.json.empty()) perf::write_json(a.json, results);

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/print.h"
 #include "cli/urgency.h"
 #include "core/listed.h"
 #include "io/text.h"
@@ -156,28 +157,28 @@ void print_sentences(const std::vector<const Object*>& riskiest_first, const Sce
     const auto& told = doubts ? doubtful : known;
     if (told.empty()) {
         if (!unseen.empty())
-            std::printf("\nNothing was seen to hold what may move here: it has no rank.\n");
+            print("\nNothing was seen to hold what may move here: it has no rank.\n");
         return;
     }
     const auto risky = static_cast<std::size_t>(std::ranges::count_if(told, at_risk));
     const std::size_t shown = std::min(sentences_shown, risky > 0 ? risky : told.size());
-    std::printf("\n%s whose barrier is %s its error",
-                first_text({told.data(), shown}, told.size()).c_str(), doubts ? "within" : "above");
+    print("\n%s whose barrier is %s its error",
+          first_text({told.data(), shown}, told.size()).c_str(), doubts ? "within" : "above");
     if (const std::size_t more = doubtful.size(); !doubts && more > 0)
-        std::printf(
+        print(
             "; that of %zu more is within its error of 0: %s on edge, or the scan hardly shows "
             "%s support",
             more, more == 1 ? "it stands" : "they stand", more == 1 ? "its" : "their");
     if (const std::size_t more = unseen.size(); more > 0)
-        std::printf("; %zu more %s no rank, since nothing was seen to hold %s", more,
-                    more == 1 ? "has" : "have", more == 1 ? "it" : "them");
-    std::printf(":\n");
+        print("; %zu more %s no rank, since nothing was seen to hold %s", more,
+              more == 1 ? "has" : "have", more == 1 ? "it" : "them");
+    print(":\n");
     for (std::size_t i = 0; i < shown; ++i) {
         const Object& o = *told[i];
         const std::string& action = o.advice.action;
-        std::printf("Object %d%s%s: %s%s%s%s%s\n", o.id, name_text(o).c_str(), size_text(o).c_str(),
-                    o.why.sentence.c_str(), people_text(o).c_str(), years_text(o, scene).c_str(),
-                    action.empty() ? "" : " ", action.c_str());
+        print("Object %d%s%s: %s%s%s%s%s\n", o.id, name_text(o).c_str(), size_text(o).c_str(),
+              o.why.sentence.c_str(), people_text(o).c_str(), years_text(o, scene).c_str(),
+              action.empty() ? "" : " ", action.c_str());
     }
 }
 
@@ -204,27 +205,27 @@ void print_objects(const Scene& scene) {
         return urgency_of(*a) > urgency_of(*b);
     });
     const auto kinds = reckoned_kinds(scene);
-    std::printf("\n%-12s %8s %8s %8s %9s %9s %6s ", "object", "category", "unsafety", "mass kg",
-                "barrier J", "release J", "mode");
-    for (const safety::DisturbanceKind* kind : kinds) std::printf("%8s J ", kind->words.column);
-    std::printf(" rests on\n");
+    print("\n%-12s %8s %8s %8s %9s %9s %6s ", "object", "category", "unsafety", "mass kg",
+          "barrier J", "release J", "mode");
+    for (const safety::DisturbanceKind* kind : kinds) print("%8s J ", kind->words.column);
+    print(" rests on\n");
     for (std::size_t i = 0; i < std::min(rows_shown, movable.size()); ++i) {
         const Object& o = *movable[i];
         char unsafety[32] = "-";
         if (std::isfinite(o.unsafety))
             std::snprintf(unsafety, sizeof(unsafety), "%.1f", o.unsafety);
         const std::string barrier = barrier_text(o);
-        std::printf("%-12s %8s %8s %8s %9s %9s %6s ", (std::to_string(o.id) + name_text(o)).c_str(),
-                    category_text(o).c_str(), unsafety, three_digits(o.mass_kg).c_str(),
-                    barrier.c_str(), three_digits(safety::released_J(o)).c_str(), o.mode.c_str());
+        print("%-12s %8s %8s %8s %9s %9s %6s ", (std::to_string(o.id) + name_text(o)).c_str(),
+              category_text(o).c_str(), unsafety, three_digits(o.mass_kg).c_str(), barrier.c_str(),
+              three_digits(safety::released_J(o)).c_str(), o.mode.c_str());
         for (const safety::DisturbanceKind* kind : kinds)
-            std::printf("%10s ", risk_text(o, kind->name).c_str());
-        std::printf(" %s\n", rests_on.contains(o.id) ? rests_on[o.id].c_str() : "-");
+            print("%10s ", risk_text(o, kind->name).c_str());
+        print(" %s\n", rests_on.contains(o.id) ? rests_on[o.id].c_str() : "-");
     }
     if (movable.size() > rows_shown)
-        std::printf("   ... and %zu more in scene.json\n", movable.size() - rows_shown);
+        print("   ... and %zu more in scene.json\n", movable.size() - rows_shown);
     if (!movable.empty())
-        std::printf(
+        print(
             "   Act from the top: by category, which is how often the thing falls and how hard, at "
             "the worse end of its error\n   (? where the better end says less, or it may be a "
             "piece of another thing), within one what has\n   no ? first, and then by unsafety, "
@@ -246,25 +247,24 @@ void print_summary(const Scene& scene, const std::filesystem::path& out, double 
     // Clouds that are parsed in blocks are known by a sample; their parts count all points.
     const char* sample = counted > scene.points.x.size() ? " (samples of the scan)" : "";
     for (const Object& o : scene.objects) grounded += o.grounded;
-    std::printf(
-        "%s%s, voxels of %.3g cm, %s, %s (%zu fixed to the ground), %s; %.1f s on %s (%s)\n",
-        io::counted(scene.points.x.size(), "point").c_str(), sample, 100 * scene.voxel_size_m,
-        io::counted(scene.primitives.size(), "primitive").c_str(),
-        io::counted(scene.objects.size(), "object").c_str(), grounded,
-        io::counted(scene.supports.size(), "support").c_str(), seconds, scene.backend.c_str(),
-        scene.device.c_str());
+    print("%s%s, voxels of %.3g cm, %s, %s (%zu fixed to the ground), %s; %.1f s on %s (%s)\n",
+          io::counted(scene.points.x.size(), "point").c_str(), sample, 100 * scene.voxel_size_m,
+          io::counted(scene.primitives.size(), "primitive").c_str(),
+          io::counted(scene.objects.size(), "object").c_str(), grounded,
+          io::counted(scene.supports.size(), "support").c_str(), seconds, scene.backend.c_str(),
+          scene.device.c_str());
     print_objects(scene);
     if (!scene.corrections.empty()) {
         const std::vector<std::size_t> said = told_sentences(scene.corrections);
         std::vector<bool> held(said.back(), true);
         for (std::size_t n = 0; n < said.size(); ++n)
             held[said[n] - 1] = held[said[n] - 1] && scene.corrections[n].held;
-        std::printf("\n%zu of %s held.\n", static_cast<std::size_t>(std::ranges::count(held, true)),
-                    io::counted(held.size(), "correction").c_str());
+        print("\n%zu of %s held.\n", static_cast<std::size_t>(std::ranges::count(held, true)),
+              io::counted(held.size(), "correction").c_str());
     }
     if (before) print_change(*before, scene);
-    for (const std::string& note : scene.notes) std::printf("Note: %s\n", note.c_str());
-    std::printf("\nReport: %s\n", (out / "report.html").c_str());
+    for (const std::string& note : scene.notes) print("Note: %s\n", note.c_str());
+    print("\nReport: %s\n", (out / "report.html").c_str());
 }
 
 }  // namespace topple::cli

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <stdlib.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -10,10 +8,12 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/print.h"
 #include "cli/progress.h"
 #include "io/output_folder.h"
 #include "io/replace_file.h"
 #include "io/scene_json.h"
+#include "io/staging_folder.h"
 #include "io/text.h"
 #include "mujoco/settle_apart.h"
 #include "mujoco/verdict.h"
@@ -30,46 +30,23 @@ struct VerifyArguments {
     bool json = false;
 };
 
-// A folder for what is needed meanwhile.
-class Scratch {
-  public:
-    Scratch() {
-        std::error_code error;
-        std::string name =
-            (std::filesystem::temp_directory_path(error) / "topple-verify-XXXXXX").string();
-        if (error || !::mkdtemp(name.data()))
-            throw Error(ErrorKind::input, name +
-                                              ": no such temporary folder can be made; name "
-                                              "another place in TMPDIR");
-        folder_ = name;
-    }
-    Scratch(const Scratch&) = delete;
-    Scratch& operator=(const Scratch&) = delete;
-    ~Scratch() {
-        std::error_code error;
-        std::filesystem::remove_all(folder_, error);
-    }
-    const std::filesystem::path& folder() const { return folder_; }
-
-  private:
-    std::filesystem::path folder_;
-};
-
 mujoco::Verdict verify(const VerifyArguments& a, Progress& progress) {
     // What is missing is told before the work.
     io::check_output(a.parsed);
-    const Scene scene = io::read_scene_json(std::filesystem::path(a.parsed) / "scene.json");
+    for (const char* name : {"verify.json", "report.html"})
+        io::check_replaceable_file(std::filesystem::path(a.parsed) / name);
+    const Scene scene = io::read_scene_json(io::FileName::in(a.parsed, "scene.json"));
     mujoco::find_simulator();
-    const Scratch scratch;
+    const io::StagingFolder scratch = io::StagingFolder::temporary();
     ExportOptions options;
-    options.mjcf = scratch.folder();
+    options.mjcf = scratch.path();
     options.threads = a.threads;
     options.cancelled = [] { return interrupted() != 0; };
     progress("export", 0);
     const ExportSummary exported = export_output(a.parsed, options);
     progress("MuJoCo", 0);
     mujoco::Settled run =
-        mujoco::settle_apart(scratch.folder() / "scene.xml", a.seconds, a.time_limit_s, [] {
+        mujoco::settle_apart(scratch.path() / "scene.xml", a.seconds, a.time_limit_s, [] {
             if (interrupted() != 0) throw Error(ErrorKind::cancelled, "cancelled");
         });
     return mujoco::judge(scene, exported, std::move(run), a.seconds);
@@ -81,8 +58,8 @@ void keep(const std::filesystem::path& folder, const std::string& json) {
     const std::filesystem::path report = folder / "report.html";
     std::error_code error;
     if (std::filesystem::exists(report, error) && !report::add_verification(report, json))
-        std::fprintf(stderr, "%s: has no place for it; parse the scan again\n",
-                     io::path_text(report).c_str());
+        print_to(stderr, "%s: has no place for it; parse the scan again\n",
+                 io::path_text(report).c_str());
 }
 
 void check(const VerifyArguments& a) {

@@ -12,6 +12,7 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/print.h"
 #include "cli/view_server.h"
 #include "io/output_folder.h"
 #include "io/text.h"
@@ -48,9 +49,8 @@ int run(const ViewArguments& a) {
     catch_interrupts();
     pid_t opener = 0;
     const bool opened = !a.no_browser && open_browser(server.url(), opener);
-    std::printf("%s shows %s; Ctrl-C ends this.%s\n", server.url().c_str(),
-                io::path_text(a.parsed).c_str(),
-                opened || a.no_browser ? "" : " Open it in a browser.");
+    print("%s shows %s; Ctrl-C ends this.%s\n", server.url().c_str(),
+          io::path_text(a.parsed).c_str(), opened || a.no_browser ? "" : " Open it in a browser.");
     std::fflush(stdout);
     server.run([&] {
         if (opener > 0 && waitpid(opener, nullptr, WNOHANG) != 0) opener = 0;

@@ -1,14 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include "core/short_number.h"
 
-#include <cstdio>
+#include <array>
+#include <charconv>
 
 namespace topple {
+namespace {
+
+std::string written(double value, std::chars_format format, int precision) {
+    std::array<char, 400> text;  // the largest double has 309 digits before the point
+    const auto end =
+        std::to_chars(text.data(), text.data() + text.size(), value, format, precision);
+    return {text.data(), end.ptr};
+}
+
+}  // namespace
 
 std::string short_number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.6g", value);
-    return text;
+    return to_digits(value, 6);
+}
+
+std::string to_digits(double value, int digits) {
+    return written(value, std::chars_format::general, digits);
+}
+
+std::string to_places(double value, int places) {
+    return written(value, std::chars_format::fixed, places);
 }
 
 }  // namespace topple

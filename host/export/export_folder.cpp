@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "export/export_folder.h"
 
-#include <algorithm>
-#include <array>
-#include <fstream>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <system_error>
 
 #include "export/colour_texture.h"
@@ -17,14 +19,23 @@ namespace fs = std::filesystem;
 namespace {
 
 bool begins_as_ours(const fs::path& file) {
-    std::array<char, 64> start{};
-    std::ifstream stream(file, std::ios::binary);
-    stream.read(start.data(), start.size());
-    const std::string_view text(start.data(), static_cast<std::size_t>(stream.gcount()));
+    const std::string text = io::beginning_of(file, 64);
     return text.starts_with(xml_mark) || text.starts_with(text_mark) || text.starts_with(usd_mark);
 }
 
-// Throws unless a folder is missing, or holds nothing but what an export puts there.
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) io::fail(folder, "can't be made: " + error.message());
+}
+
+void put(const fs::path& from, const fs::path& to) {
+    if (std::rename(from.c_str(), to.c_str()) != 0)
+        io::fail(to, std::string("can't be written: ") + std::strerror(errno));
+}
+
+}  // namespace
+
 void check_folder_ours(const fs::path& folder) {
     std::error_code error;
     const auto status = fs::symlink_status(folder, error);
@@ -43,25 +54,14 @@ void check_folder_ours(const fs::path& folder) {
     if (error) io::fail(folder, "can't be listed: " + error.message());
 }
 
-void make_folder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) io::fail(folder, "can't be made: " + error.message());
+std::string name_beside(std::string_view format) {
+    return std::string("scene_").append(format);
 }
-
-void put(const fs::path& from, const fs::path& to) {
-    std::error_code error;
-    fs::rename(from, to, error);
-    if (error) io::fail(to, "can't be written: " + error.message());
-}
-
-}  // namespace
 
 void check_ours(const fs::path& file) {
+    io::check_replaceable_file(file);
     std::error_code error;
-    const auto status = fs::status(file, error);
-    if (status.type() == fs::file_type::not_found) return;
-    if (status.type() != fs::file_type::regular || !begins_as_ours(file))
+    if (fs::exists(file, error) && !begins_as_ours(file))
         io::fail(file, "exists and is no export of topple; choose another folder");
 }
 
@@ -73,29 +73,16 @@ void replace_file(const fs::path& file, std::string_view text) {
 
 ExportFolder::ExportFolder(const fs::path& folder, const std::string& format,
                            const std::string& top)
-    : folder_(folder), top_(top) {
-    beside_ = "scene_";
-    beside_ += format;
-    std::string name = ".";
-    name += beside_;
-    name += ".topple-tmp";
+    : folder_(folder), beside_(name_beside(format)), top_(top) {
     check_ours(folder_ / top_);
     check_folder_ours(folder_ / beside_);
     make_folder(folder_);
-    // What an export left that was interrupted.
-    std::error_code error;
-    fs::remove_all(folder_ / name, error);
-    make_folder(folder_ / name / beside_);
-    temporary_ = folder_ / name;
-}
-
-ExportFolder::~ExportFolder() {
-    std::error_code ignored;
-    fs::remove_all(temporary_, ignored);
+    staging_.emplace(folder_);
+    make_folder(staging_->path() / beside_);
 }
 
 void ExportFolder::add(const std::string& name, std::string_view text) {
-    io::write_file(temporary_ / beside_ / name, text);
+    io::write_file(staging_->path() / beside_ / name, text);
 }
 
 bool ExportFolder::add_visuals(std::span<const NamedBody> bodies) {
@@ -119,16 +106,18 @@ void ExportFolder::add_parts(std::span<const NamedBody> bodies) {
 }
 
 void ExportFolder::commit(std::string_view top_text) {
-    io::write_file(temporary_ / top_, top_text);
+    io::write_file(staging_->path() / top_, top_text);
+    // The earlier one goes as a whole, before anything of it changes: its own folder into the
+    // staging folder, of which it goes for good.
+    check_ours(folder_ / top_);
+    check_folder_ours(folder_ / beside_);
+    const fs::path earlier = staging_->path() / "earlier", files = staging_->path() / beside_;
     std::error_code error;
-    // The earlier one goes as a whole, before anything of it changes.
-    fs::remove(folder_ / top_, error);
-    if (error) io::fail(folder_ / top_, "can't be replaced: " + error.message());
-    fs::remove_all(folder_ / beside_, error);
-    if (error) io::fail(folder_ / beside_, "can't be replaced: " + error.message());
-    const fs::path files = temporary_ / beside_;
+    if (::unlink((folder_ / top_).c_str()) != 0 && errno != ENOENT)
+        io::fail(folder_ / top_, std::string("can't be replaced: ") + std::strerror(errno));
+    if (fs::exists(folder_ / beside_, error)) put(folder_ / beside_, earlier);
     if (!fs::is_empty(files, error)) put(files, folder_ / beside_);
-    put(temporary_ / top_, folder_ / top_);
+    put(staging_->path() / top_, folder_ / top_);
 }
 
 }  // namespace topple::exports

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "export/named_bodies.h"
+#include "io/staging_folder.h"
 
 namespace topple::exports {
 
@@ -17,6 +19,9 @@ inline constexpr std::string_view usd_mark = "#usda 1.0\n# topple export\n";
 
 // Throws Error(input): the file is there, and another one's.
 void check_ours(const std::filesystem::path& file);
+// The same of the folder that an export has beside the file that is loaded.
+void check_folder_ours(const std::filesystem::path& folder);
+std::string name_beside(std::string_view format);
 
 // Writes a file beside its place and then puts it there in one step. Throws Error(input): it is
 // another one's, or can't be written.
@@ -31,9 +36,6 @@ class ExportFolder {
     // folder: made where it is missing.
     ExportFolder(const std::filesystem::path& folder, const std::string& format,
                  const std::string& top);
-    ~ExportFolder();  // removes what was not committed
-    ExportFolder(const ExportFolder&) = delete;
-    ExportFolder& operator=(const ExportFolder&) = delete;
 
     // The name of the folder for what is referred to.
     const std::string& beside() const { return beside_; }
@@ -48,8 +50,9 @@ class ExportFolder {
     void commit(std::string_view top_text);
 
   private:
-    std::filesystem::path folder_, temporary_;
+    std::filesystem::path folder_;
     std::string beside_, top_;
+    std::optional<io::StagingFolder> staging_;
 };
 
 }  // namespace topple::exports

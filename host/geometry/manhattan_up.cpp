@@ -4,9 +4,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
+#include "core/short_number.h"
 #include "geometry/manhattan_profile.h"
 
 namespace topple::geometry {
@@ -196,9 +196,8 @@ double log_odds_of(const Surfels& surfels, const WeightedNormals& normals, const
 std::string text_of(const Vec3& v) {
     std::string text;
     for (const double value : v) {
-        char digits[32];
-        std::snprintf(digits, sizeof(digits), "%.3g", std::round(value * 100) / 100 + 0.0);
-        text.append(text.empty() ? "(" : ", ").append(digits);
+        text.append(text.empty() ? "(" : ", ");
+        text.append(to_digits(std::round(value * 100) / 100 + 0.0, 3));
     }
     return text.append(")");
 }

@@ -20,26 +20,27 @@ namespace fs = std::filesystem;
 constexpr double same_proportions = 0.02;
 
 // The images in color/ by their names without extension; hidden files are other programs'.
-std::map<fs::path, fs::path> images_in(const fs::path& folder) {
-    std::map<fs::path, fs::path> out;
+std::map<fs::path, std::string> images_in(const fs::path& scan) {
+    const fs::path folder = scan / "color";
+    std::map<fs::path, std::string> out;
     std::error_code error;
     if (!fs::is_directory(folder, error)) return out;
-    const std::vector<std::string> names = folder_names(folder, error);
-    if (error) fail(folder, "can't be listed: " + error.message());
+    const std::vector<std::string> names = folder_names(FileName::in(scan, "color"), error);
+    if (error) fail(folder, why_not_opened(error.value()));
     for (const std::string& name : names) {
-        const fs::path file = folder / name;
+        const fs::path file = name;
         auto extension = file.extension().string();
         std::transform(extension.begin(), extension.end(), extension.begin(),
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         if ((extension != ".png" && extension != ".jpg" && extension != ".jpeg") ||
             name.front() == '.')
             continue;
-        const auto [at, fresh] = out.try_emplace(file.stem(), file);
+        const auto [at, fresh] = out.try_emplace(file.stem(), name);
         if (!fresh) {
             // Of a list: by reference, it would return the names of two files that are gone.
-            const auto both = std::minmax({at->second.filename(), file.filename()});
-            fail(folder, "has both " + both.first.string() + " and " + both.second.string() +
-                             "; keep the one that is meant");
+            const auto both = std::minmax({at->second, name});
+            fail(folder,
+                 "has both " + both.first + " and " + both.second + "; keep the one that is meant");
         }
     }
     return out;
@@ -115,21 +116,23 @@ std::vector<std::uint8_t> seen_by(const Intrinsics& other, const Intrinsics& cam
     return out;
 }
 
-ColourFrames ColourFrames::open(const fs::path& folder, const std::vector<fs::path>& depth_images,
+ColourFrames ColourFrames::open(const fs::path& folder, const std::vector<FileName>& depth_images,
                                 const Intrinsics& depth) {
     ColourFrames out;
-    const auto images = images_in(folder / "color");
+    const auto images = images_in(folder);
     if (images.empty()) return out;
     std::size_t found = 0;
-    for (const fs::path& frame : depth_images) {
-        const auto at = images.find(frame.stem());
-        out.images_.push_back(at == images.end() ? fs::path() : at->second);
-        found += at != images.end();
+    for (const FileName& frame : depth_images) {
+        const auto at = images.find(frame.path().stem());
+        out.images_.emplace_back();
+        if (at == images.end()) continue;
+        out.images_.back() = FileName::in(folder, fs::path("color") / at->second);
+        ++found;
     }
     if (found == 0) {
         out.images_.clear();
         out.notes_.push_back("No image in color/ is named like a depth image, such as " +
-                             depth_images.front().stem().string() +
+                             depth_images.front().path().stem().string() +
                              ".jpg, so the scan has no colours.");
         return out;
     }
@@ -164,13 +167,14 @@ std::vector<std::uint8_t> ColourCamera::seen_by_depth(const ColourImage& image) 
 }
 
 std::vector<std::uint8_t> ColourFrames::load(std::size_t index) const {
-    if (images_.empty() || images_.at(index).empty()) return {};
-    const fs::path& file = images_[index];
+    if (images_.empty() || !images_.at(index)) return {};
+    const FileName& name = *images_[index];
+    const fs::path& file = name.path();
     const char* const mend =
         "give the colour camera's intrinsics as \"color_intrinsics\" in intrinsics.json, or move "
         "color/ away";
     const ColourImage image =
-        decode_colour_image(file, read_file(file).text(), [&](std::uint32_t w, std::uint32_t h) {
+        decode_colour_image(file, read_file(name).text(), [&](std::uint32_t w, std::uint32_t h) {
             if (const auto fault = camera_.size_fault(w, h, mend)) fail(file, *fault);
         });
     return camera_.seen_by_depth(image);

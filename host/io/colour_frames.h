@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/colour_image.h"
+#include "io/open_file.h"
 #include "topple/input.h"
 
 namespace topple::io {
@@ -37,8 +38,7 @@ class ColourFrames {
     // depth_images: the frames, of `depth`. Throws Error(input) where intrinsics are wrong; the
     // images are not opened.
     static ColourFrames open(const std::filesystem::path& folder,
-                             const std::vector<std::filesystem::path>& depth_images,
-                             const Intrinsics& depth);
+                             const std::vector<FileName>& depth_images, const Intrinsics& depth);
 
     bool empty() const { return images_.empty(); }  // no frame has one
 
@@ -52,7 +52,7 @@ class ColourFrames {
 
   private:
     ColourCamera camera_;
-    std::vector<std::filesystem::path> images_;  // by frame; an empty path: it has none
+    std::vector<std::optional<FileName>> images_;  // by frame; none: it has none
     std::vector<std::string> notes_;
 };
 

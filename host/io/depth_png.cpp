@@ -32,9 +32,10 @@ const char* colour_name(int colour) {
 
 }  // namespace
 
-std::vector<std::uint16_t> read_depth_png(const std::filesystem::path& file, std::uint32_t width,
+std::vector<std::uint16_t> read_depth_png(const FileName& name, std::uint32_t width,
                                           std::uint32_t height) {
-    const auto bytes = read_file(file);
+    const std::filesystem::path& file = name.path();
+    const auto bytes = read_file(name);
     if (!starts_as_png(bytes.text())) {
         fail(file, "is no PNG file; a depth image must be a 16-bit grey PNG");
     }

@@ -30,7 +30,10 @@ bool has_no_sync(int error) {
 
 FileWriter::FileWriter(const std::filesystem::path& file) : file_(file) {
     buffer_.reserve(buffer_bytes);  // first: what throws from here on would leave the file open
-    descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    const int flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+    descriptor_ = ::open(file.c_str(), flags, 0666);
+    if (descriptor_ < 0 && errno == EEXIST && ::unlink(file.c_str()) == 0)
+        descriptor_ = ::open(file.c_str(), flags, 0666);
     if (descriptor_ < 0) can_not_write(file_, errno);
 }
 

@@ -8,8 +8,10 @@
 
 namespace topple::io {
 
-// Writes one file through a buffer and notices every error, at the latest in close(): a full disk
-// may show only then. Errors are Error(input) that name the file and the system's reason.
+// Writes one new file through a buffer and notices every error, at the latest in close(): a full
+// disk may show only then. For folders that nobody else writes into, such as a StagingFolder: what
+// had the name before goes, a link itself and not what it leads to. Errors are Error(input) that
+// name the file and the system's reason.
 class FileWriter {
   public:
     explicit FileWriter(const std::filesystem::path& file);

@@ -2,11 +2,15 @@
 #pragma once
 
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "io/gltf_checks.h"
+#include "io/mapped_file.h"
 #include "topple/error.h"
 
 namespace topple::io {
@@ -18,25 +22,38 @@ class FilesBeside final : public Assimp::DefaultIOSystem {
     FilesBeside(std::filesystem::path file, bool has_parts)
         : file_(std::move(file)), has_parts_(has_parts) {}
 
-    bool Exists(const char* name) const override { return !resolved(name).empty(); }
+    bool Exists(const char* name) const override { return resolved(name).has_value(); }
     Assimp::IOStream* Open(const char* name, const char* mode) override {
-        const std::string path = resolved(name);
-        return path.empty() || mode[0] != 'r' ? nullptr : DefaultIOSystem::Open(path.c_str(), mode);
+        const std::optional<FileName> found = resolved(name);
+        if (!found || mode[0] != 'r') return nullptr;
+        try {
+            return new Stream(*found);
+        } catch (const Error&) {
+            return nullptr;
+        }
     }
 
   private:
-    // Empty: not to be opened. The library puts the folder before names, or not.
-    std::string resolved(const std::string& name) const {
-        if (!has_parts_) return {};
-        if (name == file_.string()) return name;
+    // Of what is open, so that nothing is looked up by name once more.
+    class Stream final : private MappedFile, public Assimp::MemoryIOStream {
+      public:
+        explicit Stream(const FileName& name)
+            : MappedFile(name),
+              MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text().data()), text().size()) {}
+    };
+
+    // None: not to be opened. The library puts the folder before names, or not.
+    std::optional<FileName> resolved(const std::string& name) const {
+        if (!has_parts_) return std::nullopt;
+        if (name == file_.string()) return file_;
         const std::filesystem::path folder = file_.parent_path();
         const std::filesystem::path relative =
             folder.empty() ? std::filesystem::path(name)
                            : std::filesystem::path(name).lexically_relative(folder);
         try {
-            return file_beside(file_, relative.string()).string();
+            return file_beside(file_, relative.string());
         } catch (const Error&) {
-            return {};
+            return std::nullopt;
         }
     }
 

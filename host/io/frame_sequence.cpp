@@ -15,42 +15,44 @@ namespace fs = std::filesystem;
 namespace {
 
 // The one file of poses that the folder has, if any.
-std::optional<fs::path> find_trajectory(const fs::path& folder) {
-    std::optional<fs::path> found;
-    std::error_code error;
+std::optional<FileName> find_trajectory(const fs::path& folder) {
+    std::optional<FileName> found;
     for (const char* name : {"trajectory.txt", "trajectory.log", "poses.txt"}) {
-        if (!fs::exists(folder / name, error)) continue;
+        const FileName file = FileName::in(folder, name);
+        if (!file.is_there()) continue;
         if (found) {
-            fail(folder, "has both " + found->filename().string() + " and " + name +
+            fail(folder, "has both " + found->path().filename().string() + " and " + name +
                              "; keep the one whose poses are meant");
         }
-        found = folder / name;
+        found = file;
     }
     return found;
 }
 
 // depth/*.png by name; hidden files are other programs'.
-std::vector<fs::path> list_images(const fs::path& folder) {
-    const auto depth = folder / "depth";
+std::vector<FileName> list_images(const fs::path& folder) {
+    const fs::path depth = folder / "depth";
     std::error_code error;
     if (!fs::is_directory(depth, error)) {
         fail(folder,
              "has no folder depth/; a sequence has depth/*.png, intrinsics.json and "
              "a trajectory.txt, trajectory.log or poses.txt");
     }
-    std::vector<fs::path> images;
-    const std::vector<std::string> names = folder_names(depth, error);
-    if (error) fail(depth, "can't be listed: " + error.message());
+    std::vector<std::string> images;
+    const std::vector<std::string> names = folder_names(FileName::in(folder, "depth"), error);
+    if (error) fail(depth, why_not_opened(error.value()));
     for (const fs::path name : names) {
         auto extension = name.extension().string();
         std::transform(extension.begin(), extension.end(), extension.begin(),
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        if (extension == ".png" && name.native().front() != '.') images.push_back(depth / name);
+        if (extension == ".png" && name.native().front() != '.') images.push_back(name);
     }
     if (images.empty()) fail(depth, "has no .png; a sequence needs at least one depth image");
-    std::sort(images.begin(), images.end(),
-              [](const fs::path& a, const fs::path& b) { return a.native() < b.native(); });
-    return images;
+    std::sort(images.begin(), images.end());
+    std::vector<FileName> files;
+    for (const std::string& name : images)
+        files.push_back(FileName::in(folder, fs::path("depth") / name));
+    return files;
 }
 
 }  // namespace
@@ -58,9 +60,8 @@ std::vector<fs::path> list_images(const fs::path& folder) {
 FrameSequence FrameSequence::open(const fs::path& folder) {
     FrameSequence sequence;
     sequence.images_ = list_images(folder);
-    const auto intrinsics = folder / "intrinsics.json";
-    std::error_code error;
-    if (!fs::exists(intrinsics, error)) {
+    const FileName intrinsics = FileName::in(folder, "intrinsics.json");
+    if (!intrinsics.is_there()) {
         fail(folder,
              "has no intrinsics.json; add one with width, height, fx, fy, cx, cy and "
              "depth_scale");
@@ -74,8 +75,9 @@ FrameSequence FrameSequence::open(const fs::path& folder) {
     if (trajectory) {
         sequence.poses_ = read_trajectory(*trajectory);
         if (sequence.poses_.size() != frames) {
-            fail(*trajectory, "has " + counted(sequence.poses_.size(), "pose") + " for " +
-                                  counted(frames, "depth image") + "; it must have one for each");
+            fail(trajectory->path(), "has " + counted(sequence.poses_.size(), "pose") + " for " +
+                                         counted(frames, "depth image") +
+                                         "; it must have one for each");
         }
     } else if (frames == 1) {
         sequence.poses_.push_back(DepthFrame{}.camera_to_world);

@@ -27,7 +27,7 @@ class FrameSequence {
     const Intrinsics& intrinsics() const { return intrinsics_; }
     std::size_t size() const { return images_.size(); }
     bool posed() const { return posed_; }  // there is a file of poses
-    const std::filesystem::path& image(std::size_t index) const { return images_.at(index); }
+    const std::filesystem::path& image(std::size_t index) const { return images_.at(index).path(); }
     const Mat4& camera_to_world(std::size_t index) const { return poses_.at(index); }
 
     // Reads image `index` < size(). May be called from several threads at once. Throws Error(input)
@@ -42,7 +42,7 @@ class FrameSequence {
 
   private:
     Intrinsics intrinsics_;
-    std::vector<std::filesystem::path> images_;
+    std::vector<FileName> images_;
     std::vector<Mat4> poses_;
     ColourFrames colours_;
     bool posed_ = false;
@@ -56,8 +56,8 @@ std::optional<std::string> depth_intrinsics_fault(const Intrinsics& intrinsics);
 std::optional<std::string> pinhole_fault(const Intrinsics& intrinsics);
 
 // The parts of open() and load(), for tests.
-Intrinsics read_intrinsics(const std::filesystem::path& file);
-std::vector<std::uint16_t> read_depth_png(const std::filesystem::path& file, std::uint32_t width,
+Intrinsics read_intrinsics(const FileName& file);
+std::vector<std::uint16_t> read_depth_png(const FileName& file, std::uint32_t width,
                                           std::uint32_t height);
 
 // Poses, camera to world, the first of the first image in order of name. Whatever the file's name,
@@ -67,6 +67,6 @@ std::vector<std::uint16_t> read_depth_png(const std::filesystem::path& file, std
 //   3 numbers   Open3D: a line of three whole numbers, of which the first is the number of the
 //               image, from 0, then four lines of a 4x4 matrix. Any order; each image once.
 // Matrices must be rotations to 1e-3, and are made so exactly. Throws Error(input) naming the line.
-std::vector<Mat4> read_trajectory(const std::filesystem::path& file);
+std::vector<Mat4> read_trajectory(const FileName& file);
 
 }  // namespace topple::io

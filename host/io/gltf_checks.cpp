@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "io/gltf_checks.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -107,7 +112,7 @@ class GltfChecks {
                     fail(file_, "one of its buffers is the file " + in_quotes(*uri) +
                                     "; of a GLB only what lies in it is read");
                 }
-                there = fs::file_size(file_beside(file_, *uri));
+                there = OpenFile(file_beside(file_, *uri)).size;
             } else if (binary_bytes_ && buffers_.empty() && !buffer.contains("uri")) {
                 there = *binary_bytes_;
             }
@@ -295,28 +300,20 @@ class GltfChecks {
 
 }  // namespace
 
-fs::path file_beside(const fs::path& file, std::string_view uri) {
+FileName file_beside(const fs::path& file, std::string_view uri) {
     const std::string name = percent_decoded(uri);
-    const fs::path relative(name);
-    const bool plain = !relative.empty() && relative.is_relative() &&
-                       name.find('\0') == std::string::npos &&
-                       name.find("://") == std::string::npos &&
-                       std::ranges::find(relative, "..") == relative.end();
-    const auto outside = [&] {
+    const FileName there = FileName::beside(file, name);
+    const bool plain =
+        name.find('\0') == std::string::npos && name.find("://") == std::string::npos;
+    const Descriptor open(plain ? there.open(O_PATH) : -1);
+    struct stat status {};
+    if (!plain || (open.get() < 0 && (errno == EXDEV || errno == ELOOP)))
         fail(file, "names the file " + in_quotes(uri) +
-                       ", which is not in its own folder; only files there are read");
-    };
-    if (!plain) outside();
-    std::error_code error;
-    const fs::path folder = fs::canonical(fs::absolute(file).parent_path(), error);
-    const fs::path there = fs::canonical(folder / relative, error);
-    if (error)
+                       ", which is not in its own folder; only files there are read, and no links");
+    if (open.get() < 0 || ::fstat(open.get(), &status) != 0)
         fail(file, "names the file " + in_quotes(uri) +
-                       ", which can't be opened: " + error.message() + "; copy it there, too");
-    if (std::mismatch(folder.begin(), folder.end(), there.begin(), there.end()).first !=
-        folder.end())
-        outside();
-    if (!fs::is_regular_file(there, error))
+                       ", which can't be opened: " + std::strerror(errno) + "; copy it there, too");
+    if (!S_ISREG(status.st_mode))
         fail(file, "names the file " + in_quotes(uri) + ", which is not a regular file");
     return there;
 }

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string_view>
 
+#include "io/open_file.h"
+
 namespace topple::io {
 
 // Throws Error(input) where the JSON of a glTF contradicts itself or its buffers, would take much
@@ -21,8 +23,8 @@ namespace topple::io {
 void check_gltf(const std::filesystem::path& file, std::string_view text,
                 std::optional<std::uint64_t> binary_bytes);
 
-// Where a file that `uri` names beside `folder`'s other files lies; throws Error(input), with
+// The file that `uri` names beside `file`; throws Error(input), with
 // `file` in its message, where it is not there, or is not to be opened, as above.
-std::filesystem::path file_beside(const std::filesystem::path& file, std::string_view uri);
+FileName file_beside(const std::filesystem::path& file, std::string_view uri);
 
 }  // namespace topple::io

@@ -43,8 +43,9 @@ std::uint32_t side(const fs::path& file, const Json& json, const char* key) {
     return static_cast<std::uint32_t>(value);
 }
 
-Json read_object(const fs::path& file) {
-    const auto bytes = read_file(file, 1 << 20);
+Json read_object(const FileName& name) {
+    const fs::path& file = name.path();
+    const auto bytes = read_file(name, 1 << 20);
     Json json = parse_json(file, bytes.text());
     if (!json.is_object()) {
         fail(file, std::string("must hold a JSON object, not ") + json.type_name());
@@ -100,8 +101,9 @@ std::optional<std::string> depth_intrinsics_fault(const Intrinsics& k) {
     return std::nullopt;
 }
 
-Intrinsics read_intrinsics(const fs::path& file) {
-    const Json json = read_object(file);
+Intrinsics read_intrinsics(const FileName& name) {
+    const fs::path& file = name.path();
+    const Json json = read_object(name);
     Intrinsics intrinsics = pinhole(file, json);
     if (!json.contains("depth_scale")) {
         fail(file,
@@ -114,17 +116,18 @@ Intrinsics read_intrinsics(const fs::path& file) {
 }
 
 std::optional<Intrinsics> read_colour_intrinsics(const fs::path& folder) {
-    const fs::path file = folder / "intrinsics.json", own = folder / "color" / "intrinsics.json";
-    const Json json = read_object(file);
+    const FileName name = FileName::in(folder, "intrinsics.json"),
+                   own = FileName::in(folder, "color/intrinsics.json");
+    const fs::path& file = name.path();
+    const Json json = read_object(name);
     const auto inner = json.find("color_intrinsics");
-    std::error_code error;
-    if (fs::exists(own, error)) {
+    if (own.is_there()) {
         if (inner != json.end()) {
-            fail(own,
+            fail(own.path(),
                  "is there, and intrinsics.json has \"color_intrinsics\", too; keep the one "
                  "that is meant");
         }
-        return pinhole(own, read_object(own));
+        return pinhole(own.path(), read_object(own));
     }
     if (inner == json.end()) return std::nullopt;
     if (!inner->is_object()) {

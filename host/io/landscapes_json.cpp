@@ -158,8 +158,9 @@ void write_landscapes_json(const std::filesystem::path& file, const Scene& scene
     write_file(file, json.dump() + "\n");
 }
 
-void read_landscapes_json(const std::filesystem::path& file, Scene& scene) {
-    const auto bytes = read_file(file);
+void read_landscapes_json(const FileName& name, Scene& scene) {
+    const std::filesystem::path& file = name.path();
+    const auto bytes = read_file(name);
     const auto text = bytes.text();
     check_json_nesting(file, text);
     try {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "io/open_file.h"
 #include "topple/scene.h"
 
 namespace topple::io {
@@ -13,6 +14,6 @@ void write_landscapes_json(const std::filesystem::path& file, const Scene& scene
 
 // Fills in the landscapes of the scene that was written with it. Throws Error(input) naming the
 // file where it is missing, breaks the format or is not of this scene.
-void read_landscapes_json(const std::filesystem::path& file, Scene& scene);
+void read_landscapes_json(const FileName& name, Scene& scene);
 
 }  // namespace topple::io

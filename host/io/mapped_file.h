@@ -2,8 +2,9 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <string_view>
+
+#include "io/open_file.h"
 
 namespace topple::io {
 
@@ -12,7 +13,7 @@ namespace topple::io {
 // empty. Nobody may shorten the file meanwhile: reading beyond its end is a bus error.
 class MappedFile {
   public:
-    explicit MappedFile(const std::filesystem::path& file);
+    explicit MappedFile(const FileName& name);
     ~MappedFile();
     MappedFile(const MappedFile&) = delete;
     MappedFile& operator=(const MappedFile&) = delete;

@@ -10,37 +10,47 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <system_error>
 
 #include "io/folder_names.h"
 #include "io/pending_outputs.h"
+#include "io/replace_file.h"
 #include "io/text.h"
 
 namespace topple::io {
 namespace fs = std::filesystem;
 namespace {
 
-// What topple writes; an earlier output may hold these and nothing else. scene.json is written
-// last.
-constexpr std::array<std::string_view, 18> our_files{
+constexpr const char* foreign =
+    ", which topple did not write; move it away or choose another folder";
+
+constexpr std::array<std::string_view, 18> parse_files{
     "parse.cache",     "solids.bin",     "points.ply",     "solid.ply",      "volume.vdb",
     "report.html",     "objects.glb",    "map.bt",         "view-photo.png", "view-objects.png",
     "view-risk.png",   "view-walks.png", "view-human.png", "view-wind.png",  "view-earthquake.png",
     "landscapes.json", "verify.json",    "scene.json"};
 
-bool is_our_scene(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::string start(256, '\0');
-    stream.read(start.data(), static_cast<std::streamsize>(start.size()));
-    start.resize(static_cast<std::size_t>(stream.gcount()));
-    return start.find("topple.scene/") != std::string::npos;
+bool is_numbered_image(std::string_view name) {
+    return name.ends_with(".png") && name.find_first_not_of("0123456789") == name.size() - 4;
+}
+
+void check_images(const fs::path& folder) {
+    std::error_code error;
+    const auto type = fs::symlink_status(folder, error).type();
+    if (type == fs::file_type::not_found) return;
+    if (type != fs::file_type::directory) fail(folder, std::string("is no folder") + foreign);
+    for (const std::string& name : folder_names(folder, error)) {
+        if (!is_numbered_image(name)) fail(folder, "holds " + in_quotes(name) + foreign);
+        check_replaceable_file(folder / name);
+    }
+    if (error) fail(folder, "can't be listed: " + error.message());
 }
 
 // Throws unless `folder` is missing, empty or an earlier output. `ignored`: a name not to look at.
-void check_replaceable(const fs::path& folder, const fs::path& ignored) {
+void check_replaceable(const fs::path& folder, const OutputKind& kind,
+                       const fs::path& ignored = {}) {
     std::error_code error;
     const auto status = fs::symlink_status(folder, error);
     if (status.type() == fs::file_type::not_found) return;
@@ -52,15 +62,19 @@ void check_replaceable(const fs::path& folder, const fs::path& ignored) {
     if (error) fail(folder, "can't be listed: " + error.message());
     if (names.empty()) return;
     std::sort(names.begin(), names.end());
-    if (!is_our_scene(folder / "scene.json")) {
-        fail(folder, "holds files (" + printable(names.front()) +
-                         ") but no scene.json, so it is no output of topple and is left as it is; "
-                         "choose an empty or a new folder");
+    const std::string_view told_by = kind.files.back();
+    if (beginning_of(folder / told_by, 256).find(kind.mark) == std::string::npos) {
+        fail(folder, "holds files (" + printable(names.front()) + ") but no " +
+                         std::string(told_by) + " that topple wrote, so it is no " + kind.what +
+                         " and is left as it is; choose an empty or a new folder");
     }
     for (const auto& name : names) {
-        if (std::find(our_files.begin(), our_files.end(), name) == our_files.end()) {
-            fail(folder, "holds " + in_quotes(name) +
-                             ", which topple did not write; move it away or choose another folder");
+        if (std::ranges::find(kind.folders, name) != kind.folders.end()) {
+            check_images(folder / name);
+        } else if (std::ranges::find(kind.files, name) != kind.files.end()) {
+            check_replaceable_file(folder / name);
+        } else {
+            fail(folder, "holds " + in_quotes(name) + foreign);
         }
     }
 }
@@ -87,38 +101,41 @@ bool is_current_folder(const fs::path& folder) {
     return fs::equivalent(folder, fs::current_path(error), error);
 }
 
-// Moves a file, by copy where the two places are on different file systems. The target appears
-// whole.
-void move_file(const fs::path& from, const fs::path& to) {
-    if (std::rename(from.c_str(), to.c_str()) == 0) return;
-    if (errno != EXDEV) fail(to, std::string("can't be written: ") + std::strerror(errno));
-    const auto part = to.parent_path() / (".part-" + to.filename().string());
+// Moves our files from one folder into another, by copies where the two are on different file
+// systems; each appears whole. The last of the kind goes first from the target: its presence says
+// that the others belong to it.
+void move_files(const fs::path& from, const fs::path& to, const OutputKind& kind) {
+    std::optional<StagingFolder> copies;
     std::error_code error;
-    fs::copy_file(from, part, fs::copy_options::overwrite_existing, error);
-    if (!error) fs::rename(part, to, error);
-    if (error) {
-        std::error_code ignored;
-        fs::remove(part, ignored);
-        fail(to, "can't be written: " + error.message());
-    }
-    fs::remove(from, error);
-}
-
-// Moves our files from one folder into another. scene.json goes first from the target and comes
-// last: its presence says that the others belong to it.
-void move_files(const fs::path& from, const fs::path& to) {
-    std::error_code error;
-    fs::remove(to / "scene.json", error);
-    for (const auto name : our_files) {
-        if (fs::exists(from / name, error)) {
-            move_file(from / name, to / name);
-        } else {
-            fs::remove(to / name, error);
+    const auto move_one = [&](const fs::path& name) {
+        if (std::rename((from / name).c_str(), (to / name).c_str()) == 0) return;
+        error.assign(errno, std::generic_category());
+        if (errno == EXDEV) {
+            if (!copies) copies.emplace(to);
+            error.clear();
+            fs::copy(from / name, copies->path() / name, fs::copy_options::recursive, error);
+            if (!error) fs::rename(copies->path() / name, to / name, error);
         }
+        if (error) fail(to / name, "can't be written: " + error.message());
+    };
+    ::unlink((to / kind.files.back()).c_str());
+    for (const auto name : kind.folders) {
+        check_images(to / name);
+        remove_tree((to / name).c_str());
+        if (fs::exists(from / name, error)) move_one(name);
+    }
+    for (const auto name : kind.files) {
+        check_replaceable_file(to / name);
+        if (fs::exists(from / name, error))
+            move_one(name);
+        else
+            ::unlink((to / name).c_str());
     }
 }
 
 }  // namespace
+
+const OutputKind output_of_parse{parse_files, "topple.scene/", {}, "output of topple"};
 
 void check_output(const fs::path& folder) {
     std::error_code error;
@@ -142,89 +159,92 @@ void check_not_replaced(const fs::path& input, const fs::path& destination) {
                                       ", which is replaced; choose another with -o");
 }
 
-OutputFolder::OutputFolder(const fs::path& destination) : destination_(resolved(destination)) {
-    check_replaceable(destination_, {});
-    std::error_code error;
-    for (auto parent = destination_.parent_path();
-         parent.has_relative_path() && !fs::exists(parent, error) && !error;
-         parent = parent.parent_path()) {
-        made_parents_.insert(made_parents_.begin(), parent);
-    }
-    for (auto made = made_parents_.begin(); made != made_parents_.end(); ++made) {
-        if (::mkdir(made->c_str(), 0777) != 0 && errno != EEXIST) {
-            const int reason = errno;
-            const auto failed = *made;
-            made_parents_.erase(made, made_parents_.end());
-            forget();
-            fail(failed, std::string("can't be made: ") + std::strerror(reason));
-        }
-    }
+OutputFolder::OutputFolder(const fs::path& destination, const OutputKind& kind)
+    : kind_(kind), destination_(resolved(destination)) {
+    remove_abandoned(destination_);
+    check_replaceable(destination_, kind_);
     try {
-        make_temporary();
+        make_parents();
+        make_staging();
     } catch (...) {
-        forget();
+        remove_parents();
         throw;
     }
-    slot_ = add_pending(temporary_, static_cast<int>(made_parents_.size()));
 }
 
-void OutputFolder::make_temporary() {
-    auto parent = destination_.parent_path();
-    for (int n = 0; n < 1000; ++n) {
-        temporary_ = parent / (".topple-" + std::to_string(::getpid()) + "-" + std::to_string(n));
-        if (::mkdir(temporary_.c_str(), 0777) == 0) return;
-        if (errno == EEXIST) continue;
-        const int reason = errno;
-        std::error_code error;
-        if (parent != destination_ && fs::is_directory(destination_, error)) {
-            parent = destination_;  // it may be writable where its parent is not
-            continue;
-        }
-        temporary_.clear();
-        fail(parent, std::string("can't be written to: ") + std::strerror(reason) +
-                         "; choose another output folder");
+void OutputFolder::make_parents() {
+    std::error_code error;
+    std::vector<fs::path> missing;
+    for (auto parent = destination_.parent_path();
+         parent.has_relative_path() && !fs::exists(parent, error) && !error;
+         parent = parent.parent_path())
+        missing.insert(missing.begin(), parent);
+    for (const fs::path& parent : missing) {
+        if (::mkdir(parent.c_str(), 0777) == 0)
+            made_parents_.push_back(parent);
+        else if (errno != EEXIST)
+            fail(parent, std::string("can't be made: ") + std::strerror(errno));
     }
-    temporary_.clear();
-    fail(parent, "is full of folders named .topple-*; remove those");
+}
+
+void OutputFolder::make_staging() {
+    std::error_code error;
+    const bool exists = fs::is_directory(destination_, error);
+    try {
+        staging_.emplace(destination_.parent_path(), static_cast<int>(made_parents_.size()));
+    } catch (const Error&) {
+        if (!exists) throw;
+        staging_.emplace(destination_);  // it may be writable where its parent is not
+    }
+    if (::mkdir(folder().c_str(), 0777) != 0)
+        fail(folder(), std::string("can't be made: ") + std::strerror(errno));
 }
 
 void OutputFolder::commit() {
-    const bool inside = temporary_.parent_path() == destination_;
-    check_replaceable(destination_, inside ? temporary_.filename() : fs::path());
-    struct stat status {};
-    const bool exists = ::stat(destination_.c_str(), &status) == 0;
-    if (!exists) {
-        if (std::rename(temporary_.c_str(), destination_.c_str()) != 0) {
+    const bool inside = staging_->path().parent_path() == destination_;
+    check_replaceable(destination_, kind_, inside ? staging_->path().filename() : fs::path());
+    std::error_code error;
+    if (!fs::exists(fs::symlink_status(destination_, error))) {
+        if (std::rename(folder().c_str(), destination_.c_str()) != 0) {
             fail(destination_, std::string("can't be written: ") + std::strerror(errno));
         }
-        temporary_.clear();
-        made_parents_.clear();
-    } else if (!inside && !is_current_folder(destination_) &&
-               ::chmod(temporary_.c_str(), status.st_mode & 07777) == 0 &&
-               ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, destination_.c_str(),
-                           RENAME_EXCHANGE) == 0) {
-        // The temporary folder is now the earlier output, which goes with it.
-    } else {
-        move_files(temporary_, destination_);
+    } else if (inside || is_current_folder(destination_) || !exchange()) {
+        move_files(folder(), destination_, kind_);
     }
     made_parents_.clear();
-    forget();
+    staging_.reset();
 }
 
-void OutputFolder::forget() {
-    if (!temporary_.empty()) remove_flat_folder(temporary_.c_str());
-    temporary_.clear();
-    std::error_code error;
-    for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) {
-        fs::remove(*parent, error);
+// Whether the two could be exchanged: the earlier output is then in the staging folder, and goes
+// with it. Not without one more look: somebody may have put a file in meanwhile.
+bool OutputFolder::exchange() {
+    struct stat status {};
+    const fs::path made = folder();
+    const auto turn = [&] {
+        return ::renameat2(AT_FDCWD, made.c_str(), AT_FDCWD, destination_.c_str(),
+                           RENAME_EXCHANGE) == 0;
+    };
+    if (::lstat(destination_.c_str(), &status) != 0 ||
+        ::chmod(made.c_str(), status.st_mode & 07777) != 0 || !turn())
+        return false;
+    try {
+        check_replaceable(made, kind_);
+    } catch (const Error&) {
+        if (turn()) check_replaceable(destination_, kind_);
+        throw;
     }
+    return true;
+}
+
+void OutputFolder::remove_parents() noexcept {
+    for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent)
+        ::rmdir(parent->c_str());
     made_parents_.clear();
-    forget_pending(slot_);
-    slot_ = -1;
 }
 
 OutputFolder::~OutputFolder() {
-    forget();
+    staging_.reset();
+    remove_parents();
 }
 
 }  // namespace topple::io

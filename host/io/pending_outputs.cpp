@@ -11,8 +11,6 @@
 #include <cstdint>
 #include <cstring>
 
-#include "io/output_folder.h"
-
 namespace topple::io {
 namespace {
 
@@ -36,17 +34,28 @@ struct Entry {
     char name[1];
 };
 
-void unlink_all(int folder) {
-    alignas(Entry) char buffer[4096];
+// Nothing that is written is nested deeper.
+constexpr int deepest = 6;
+
+// All but the lock of the outermost folder.
+void unlink_all(int folder, int depth) {
+    alignas(Entry) char buffer[2048];
     for (;;) {
         const long bytes = ::syscall(SYS_getdents64, folder, buffer, sizeof(buffer));
         if (bytes <= 0) return;
         for (long at = 0; at < bytes;) {
             const auto* entry = reinterpret_cast<const Entry*>(buffer + at);
             const char* name = buffer + at + offsetof(Entry, name);
-            const bool dots = name[0] == '.' && (name[1] == 0 || (name[1] == '.' && name[2] == 0));
-            if (!dots) ::unlinkat(folder, name, 0);
             at += entry->length;
+            const bool dots = name[0] == '.' && (name[1] == 0 || (name[1] == '.' && name[2] == 0));
+            if (dots || (depth == 0 && std::strcmp(name, staging_lock) == 0)) continue;
+            if (::unlinkat(folder, name, 0) == 0 || depth == deepest) continue;
+            const int inner =
+                ::openat(folder, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+            if (inner < 0) continue;
+            unlink_all(inner, depth + 1);
+            ::close(inner);
+            ::unlinkat(folder, name, AT_REMOVEDIR);
         }
     }
 }
@@ -71,26 +80,34 @@ void forget_pending(int slot) noexcept {
     if (slot >= 0) slots[static_cast<std::size_t>(slot)].state.store(free_slot);
 }
 
-void remove_flat_folder(const char* path) noexcept {
-    // Another thread may add a file while we remove: look again a few times.
-    for (int attempt = 0; attempt < 3; ++attempt) {
+void remove_tree(const char* path) noexcept {
+    // Another thread may add a file while we remove: look again.
+    for (int attempt = 0; attempt < 100; ++attempt) {
         const int folder = ::open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
         if (folder < 0) return;
-        unlink_all(folder);
+        unlink_all(folder, 0);
+        ::unlinkat(folder, staging_lock, 0);
         ::close(folder);
         if (::rmdir(path) == 0) return;
     }
 }
 
 void remove_pending_outputs() noexcept {
-    for (auto& slot : slots) {
-        if (slot.state.load() != pending) continue;
-        remove_flat_folder(slot.path);
-        for (int i = 0; i < slot.parents; ++i) {
-            char* end = std::strrchr(slot.path, '/');
-            if (!end || end == slot.path) break;
-            *end = 0;
-            ::rmdir(slot.path);
+    // Another thread may just have begun with one more.
+    for (int round = 0; round < 2; ++round) {
+        for (auto& slot : slots) {
+            if (slot.state.load() != pending) continue;
+            remove_tree(slot.path);
+            std::size_t end = std::strlen(slot.path);
+            for (int i = 0; i < slot.parents; ++i) {
+                char parent[PATH_MAX];
+                while (end > 0 && slot.path[end - 1] != '/') --end;
+                if (end <= 1) break;
+                --end;
+                std::memcpy(parent, slot.path, end);
+                parent[end] = 0;
+                ::rmdir(parent);
+            }
         }
     }
 }

@@ -123,6 +123,7 @@ class Occupied {
 Tree read_tree(const std::filesystem::path& file, const OctomapFile& stored) {
     Tree tree(stored.resolution_m);
     std::istringstream stream{std::string(stored.tree)};
+    stream.imbue(std::locale::classic());
     if (stored.binary) {
         tree.readBinaryData(stream);
     } else {

@@ -23,8 +23,8 @@ constexpr Scalar stored_as = std::is_same_v<T, float>          ? Scalar::f32
 // The vertices of a binary PLY that holds nothing else, by property.
 class ResultVertices {
   public:
-    explicit ResultVertices(const std::filesystem::path& file)
-        : file_(file), mapped_(file), header_(parse_ply_header(file, mapped_.text())) {
+    explicit ResultVertices(const FileName& file)
+        : file_(file.path()), mapped_(file), header_(parse_ply_header(file_, mapped_.text())) {
         if (header_.encoding == PlyEncoding::ascii || header_.elements.size() != 1 ||
             header_.elements[0].name != "vertex" || header_.elements[0].has_lists())
             refuse();
@@ -84,7 +84,7 @@ void read_labelled(const ResultVertices& vertices, Points& out) {
 
 }  // namespace
 
-ScenePoints read_points_ply(const std::filesystem::path& file) {
+ScenePoints read_points_ply(const FileName& file) {
     const ResultVertices vertices(file);
     ScenePoints out;
     read_labelled(vertices, out);
@@ -102,7 +102,7 @@ ScenePoints read_points_ply(const std::filesystem::path& file) {
     return out;
 }
 
-SolidVoxels read_solid_ply(const std::filesystem::path& file) {
+SolidVoxels read_solid_ply(const FileName& file) {
     const ResultVertices vertices(file);
     SolidVoxels out;
     read_labelled(vertices, out);

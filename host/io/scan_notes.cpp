@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "io/scan_notes.h"
 
-#include <fstream>
 #include <string_view>
 #include <system_error>
 
@@ -12,26 +11,27 @@ namespace {
 
 constexpr std::size_t most_notes = 50, longest_note = 1000;
 
-std::filesystem::path notes_file(const std::filesystem::path& scan) {
+FileName notes_file(const std::filesystem::path& scan) {
     constexpr const char* name = "topple-notes.txt";
     std::error_code error;
-    if (std::filesystem::is_directory(scan, error)) return scan / name;
-    return scan.string() + "." + name;
+    if (std::filesystem::is_directory(scan, error)) return FileName::in(scan, name);
+    return FileName::beside(scan, scan.filename().string() + "." + name);
 }
 
 }  // namespace
 
 std::vector<std::string> scan_notes(const std::filesystem::path& scan) {
-    const std::filesystem::path file = notes_file(scan);
+    const FileName name = notes_file(scan);
+    const std::filesystem::path& file = name.path();
     std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error)) return {};
-    std::ifstream in(file, std::ios::binary);
+    if (!name.is_there() ||
+        std::filesystem::is_directory(std::filesystem::symlink_status(file, error)))
+        return {};
+    const OpenFile open(name);
     // No more than can be taken is read, however large it is.
     std::string text(most_notes * (longest_note + 2), '\0');
-    in.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!in && !in.eof()) fail(file, "can't be read; delete it, if it isn't needed");
-    text.resize(static_cast<std::size_t>(in.gcount()));
-    bool whole = in.eof();
+    text.resize(open.read(text.data(), text.size()));
+    bool whole = text.size() == open.size;
     std::vector<std::string> out;
     Lines lines(text);
     for (std::string_view line; lines.next(line);) {

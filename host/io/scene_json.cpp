@@ -157,8 +157,9 @@ void write_scene_json(const std::filesystem::path& file, const Scene& scene) {
     write_file(file, scene_json(scene));
 }
 
-Scene read_scene_json(const std::filesystem::path& file) {
-    const auto bytes = read_file(file);
+Scene read_scene_json(const FileName& name) {
+    const std::filesystem::path& file = name.path();
+    const auto bytes = read_file(name);
     const auto text = bytes.text();
     check_json_nesting(file, text);
     try {

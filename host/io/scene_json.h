@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/json.h"
+#include "io/open_file.h"
 #include "topple/scene.h"
 
 // scene.json, schema "topple.scene/1": all of a Scene but its points, voxels and fields. A number
@@ -19,6 +20,6 @@ OrderedJson scene_document(const Scene& scene);
 void write_scene_json(const std::filesystem::path& file, const Scene& scene);
 
 // Throws Error(input) naming the file and the member that is missing or of the wrong type.
-Scene read_scene_json(const std::filesystem::path& file);
+Scene read_scene_json(const FileName& name);
 
 }  // namespace topple::io

@@ -172,8 +172,9 @@ void write_solids(const std::filesystem::path& file, const SolidScene& scene) {
     out.close();
 }
 
-std::shared_ptr<const SolidScene> read_solids(const std::filesystem::path& file) {
-    const FileBytes bytes = read_file(file);
+std::shared_ptr<const SolidScene> read_solids(const FileName& name) {
+    const std::filesystem::path& file = name.path();
+    const FileBytes bytes = read_file(name);
     return SolidsReader(file, bytes.text()).read();
 }
 

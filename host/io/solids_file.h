@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/solid_scene.h"
+#include "io/open_file.h"
 
 // solids.bin: the solids of a scene as finely as they are known, from which exports are made
 // without another parse. Grid frame; the scene's manhattan_from_input leads there.
@@ -14,6 +15,6 @@ namespace topple::io {
 void write_solids(const std::filesystem::path& file, const SolidScene& solids);
 
 // Throws Error(input) that names the file where it is missing, damaged, or of another version.
-std::shared_ptr<const SolidScene> read_solids(const std::filesystem::path& file);
+std::shared_ptr<const SolidScene> read_solids(const FileName& name);
 
 }  // namespace topple::io

@@ -1,36 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "io/text.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include <locale.h>
+#include <stdlib.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <new>
 
 namespace topple::io {
-namespace {
-
-// Closes the descriptor when it goes.
-struct Descriptor {
-    int value;
-    explicit Descriptor(int descriptor) : value(descriptor) {}
-    ~Descriptor() {
-        if (value >= 0) ::close(value);
-    }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-};
-
-}  // namespace
-
+namespace fs = std::filesystem;
 std::string lower_case(std::string_view text) {
     std::string out(text);
     for (char& c : out) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
@@ -57,16 +38,15 @@ std::string counted(std::uint64_t count, const char* noun) {
 }
 
 std::string vector_text(const std::array<double, 3>& v) {
-    return std::string("(") + short_number(v[0]) + ", " + short_number(v[1]) + ", " + short_number(v[2]) + ")";
+    return std::string("(") + short_number(v[0]) + ", " + short_number(v[1]) + ", " +
+           short_number(v[2]) + ")";
 }
 
 std::string two_digits(double value) {
-    char digits[64];
     const double size = std::abs(value);
     if (size < 0.0005) return "0";
     const int before = static_cast<int>(std::floor(std::log10(size))) + 1;
-    std::snprintf(digits, sizeof(digits), "%.*f", std::max(0, 2 - before), value);
-    return digits;
+    return to_places(value, std::max(0, 2 - before));
 }
 
 namespace {
@@ -75,9 +55,7 @@ std::string bytes_text_of(double value, int digits) {
     static constexpr std::array<const char*, 5> units{"B", "KiB", "MiB", "GiB", "TiB"};
     std::size_t unit = 0;
     for (; unit + 1 < units.size() && value >= 999.5; ++unit) value /= 1024;
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.*g %s", digits, value, units[unit]);
-    return text;
+    return to_digits(value, digits) + " " + units[unit];
 }
 
 }  // namespace
@@ -94,37 +72,24 @@ std::string sufficient_bytes_text(std::uint64_t bytes) {
     return bytes_text_of(std::ceil(value / last) * last * unit, 3);
 }
 
-FileBytes read_file(const std::filesystem::path& file, std::uint64_t limit) {
-    // Opening a FIFO without O_NONBLOCK would wait for a writer.
-    const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-    struct stat status {};
-    if (descriptor.value < 0 || ::fstat(descriptor.value, &status) != 0) {
-        fail(file, std::string("can't be read: ") + std::strerror(errno));
-    }
-    if (!S_ISREG(status.st_mode)) {
-        fail(file, S_ISDIR(status.st_mode) ? "is a folder, not a file" : "is not a regular file");
-    }
-    const auto size = static_cast<std::uint64_t>(status.st_size);
-    if (size == 0) fail(file, "is empty (0 bytes)");
-    if (size > limit) {
-        fail(file, "has " + counted(size, "byte") + ", more than the " + std::to_string(limit) +
-                       " that such a file may have");
+FileBytes read_file(const FileName& name, std::uint64_t limit) {
+    const OpenFile open(name);
+    const fs::path& file = name.path();
+    if (open.size == 0) fail(file, "is empty (0 bytes)");
+    if (open.size > limit) {
+        fail(file, "has " + counted(open.size, "byte") + ", more than the " +
+                       std::to_string(limit) + " that such a file may have");
     }
     FileBytes bytes;
     try {
-        bytes.data = std::make_unique_for_overwrite<char[]>(size);
+        bytes.data = std::make_unique_for_overwrite<char[]>(open.size);
     } catch (const std::bad_alloc&) {
-        fail(file, "has " + counted(size, "byte") + ", which don't fit into memory");
+        fail(file, "has " + counted(open.size, "byte") + ", which don't fit into memory");
     }
-    while (bytes.size < size) {
-        const auto got = ::read(descriptor.value, bytes.data.get() + bytes.size, size - bytes.size);
-        if (got < 0 && errno == EINTR) continue;
-        if (got < 0) fail(file, std::string("can't be read: ") + std::strerror(errno));
-        if (got == 0) {
-            fail(file, "shrank while it was read: " + counted(size, "byte") + " expected, " +
-                           std::to_string(bytes.size) + " found");
-        }
-        bytes.size += static_cast<std::size_t>(got);
+    bytes.size = open.read(bytes.data.get(), open.size);
+    if (bytes.size < open.size) {
+        fail(file, "shrank while it was read: " + counted(open.size, "byte") + " expected, " +
+                       std::to_string(bytes.size) + " found");
     }
     return bytes;
 }
@@ -140,7 +105,8 @@ bool parse_number(std::string_view token, double& value) {
     if (result.ptr != last || result.ec == std::errc::invalid_argument) return false;
     if (result.ec == std::errc::result_out_of_range) {
         // from_chars does not tell too large from too small; strtod does, and this is rare.
-        value = std::strtod(std::string(token).c_str(), nullptr);
+        static const locale_t classic = ::newlocale(LC_ALL_MASK, "C", nullptr);
+        value = ::strtod_l(std::string(token).c_str(), nullptr, classic);
     }
     return true;
 }

@@ -173,9 +173,9 @@ class TrajectoryParser {
 
 }  // namespace
 
-std::vector<Mat4> read_trajectory(const std::filesystem::path& file) {
+std::vector<Mat4> read_trajectory(const FileName& file) {
     const auto bytes = read_file(file);
-    return TrajectoryParser(file, bytes.text()).parse();
+    return TrajectoryParser(file.path(), bytes.text()).parse();
 }
 
 }  // namespace topple::io

@@ -2,6 +2,7 @@
 #include "physics/hull_polytope.h"
 
 #include <algorithm>
+#include <locale>
 #include <sstream>
 
 #include "physics/infinity.h"
@@ -14,6 +15,7 @@ namespace {
 template <typename... Parts>
 [[noreturn]] void refuse(const Parts&... parts) {
     std::ostringstream text;
+    text.imbue(std::locale::classic());
     text << "hull_landscape: ";
     (text << ... << parts);
     throw Error(ErrorKind::input, text.str());

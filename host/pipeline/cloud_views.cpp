@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
@@ -42,9 +41,7 @@ constexpr std::size_t most_sensors = 24;
 constexpr double most_hidden = 0.5;
 
 std::string position_text(const Vec3& p) {
-    char text[96];
-    std::snprintf(text, sizeof(text), "(%.2f, %.2f, %.2f)", p[0], p[1], p[2]);
-    return text;
+    return "(" + to_places(p[0], 2) + ", " + to_places(p[1], 2) + ", " + to_places(p[2], 2) + ")";
 }
 
 constexpr auto places_must = "places of sensors must be in the points' frame, and in metres.";

@@ -106,6 +106,7 @@ void check_export(const ExportOptions& options) {
             io::fail(folder_of(format, path),
                      "holds a scan's depth frames; choose another folder for the export");
         exports::check_ours(exports::scene_file(format, path));
+        if (format.file) exports::check_folder_ours(path / exports::name_beside(format.name));
         io::check_own_file(exports::bodies_file(format, path), exports::bodies_schema);
     }
     if (!any) throw Error(ErrorKind::usage, "export: say what to write, and where to: " + known);
@@ -124,18 +125,16 @@ ExportSummary export_scene(const ParseResult& result, const ExportOptions& optio
 ExportSummary export_output(const std::filesystem::path& output, const ExportOptions& options) {
     check_export(options);
     io::check_output(output);
-    const std::filesystem::path file = output / "scene.json", solids = output / "solids.bin";
-    Scene scene = io::read_scene_json(file);
-    io::check_bodies(scene, file);
-    std::error_code error;
-    if (!std::filesystem::exists(solids, error))
-        io::fail(solids,
+    const auto named = [&](const char* name) { return io::FileName::in(output, name); };
+    const io::FileName solids = named("solids.bin"), points = named("points.ply");
+    Scene scene = io::read_scene_json(named("scene.json"));
+    io::check_bodies(scene, output / "scene.json");
+    if (!solids.is_there())
+        io::fail(solids.path(),
                  "is missing; parse the scan again (a cloud that was parsed in blocks has none and "
                  "can't be exported)");
     // Only for colours.
-    const std::filesystem::path points = output / "points.ply";
-    if (options.visuals && std::filesystem::exists(points, error))
-        scene.points = io::read_points_ply(points);
+    if (options.visuals && points.is_there()) scene.points = io::read_points_ply(points);
     return write_formats(scene, *io::read_solids(solids), options);
 }
 

@@ -3,16 +3,19 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
+#include <optional>
 #include <system_error>
 #include <type_traits>
 #include <utility>
 
 #include "core/build_id.h"
 #include "io/folder_names.h"
+#include "io/replace_file.h"
 #include "io/text.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/groundwork_fields.h"
+#include "tiles/binary_file.h"
+#include "tiles/work_files.h"
 #include "topple/version.h"
 
 namespace topple {
@@ -33,35 +36,39 @@ void add_text(Checksum& sum, std::string_view text) {
 constexpr std::uint64_t largest_file_bytes = std::uint64_t{4} << 30;
 
 // False where it can't be read: whoever reads it next says why.
-bool add_file(Checksum& sum, const fs::path& file, const ParseOptions& options) {
-    std::error_code error;
-    if (!fs::is_regular_file(file, error)) return false;
-    const std::uint64_t size = fs::file_size(file, error);
-    if (error || size > largest_file_bytes) return false;
-    add_text(sum, file.filename().string());
+bool add_file(Checksum& sum, const io::FileName& name, const ParseOptions& options) {
+    std::optional<io::OpenFile> file;
+    try {
+        file.emplace(name);
+    } catch (const Error&) {
+        return false;
+    }
+    const std::uint64_t size = file->size;
+    if (size > largest_file_bytes) return false;
+    add_text(sum, name.path().filename().string());
     sum.add(&size, sizeof(size));
-    std::ifstream stream(file, std::ios::binary);
     std::vector<char> piece(1 << 20);
     for (std::uint64_t left = size; left > 0;) {
         end_if_cancelled(options);
         const std::uint64_t count = std::min<std::uint64_t>(left, piece.size());
-        if (!stream.read(piece.data(), static_cast<std::streamsize>(count))) return false;
+        if (file->read(piece.data(), count) < count) return false;
         sum.add(piece.data(), count);
         left -= count;
     }
     return true;
 }
 
-// The files right in a folder, by name.
-bool add_files_of(Checksum& sum, const fs::path& folder, const ParseOptions& options) {
+// The files right in a folder of the scan, by name; part: "." for the scan's own.
+bool add_files_of(Checksum& sum, const fs::path& scan, const fs::path& part,
+                  const ParseOptions& options) {
     std::error_code error;
-    if (!fs::is_directory(folder, error)) return true;
-    std::vector<std::string> names = io::folder_names(folder, error);
+    if (!fs::is_directory(scan / part, error)) return true;
+    std::vector<std::string> names = io::folder_names(io::FileName::in(scan, part), error);
     if (error) return false;
     std::ranges::sort(names);
     for (const std::string& name : names) {
-        if (!fs::is_regular_file(folder / name, error)) continue;
-        if (!add_file(sum, folder / name, options)) return false;
+        if (!fs::is_regular_file(scan / part / name, error)) continue;
+        if (!add_file(sum, io::FileName::in(scan, part / name), options)) return false;
     }
     return true;
 }
@@ -75,7 +82,7 @@ bool add_input(Checksum& sum, const fs::path& input, const ParseOptions& options
     }
     for (const char* part : {"", "depth", "color"}) {
         add_text(sum, part);
-        if (!add_files_of(sum, *part ? input / part : input, options)) return false;
+        if (!add_files_of(sum, input, *part ? part : ".", options)) return false;
     }
     return true;
 }
@@ -103,6 +110,9 @@ void add_options(Checksum& sum, const ParseOptions& options) {
 
 GroundworkFile::GroundworkFile(const fs::path& input, const ParseOptions& options)
     : file_(options.cache_file), notice_(options.notice) {
+    io::check_replaceable_file(file_);
+    if (!tiles::has_mark(file_))
+        io::fail(file_, "exists and is no cache of topple; choose another name");
     Checksum sum;
     add_text(sum, groundwork_mark);
     add_options(sum, options);
@@ -130,19 +140,15 @@ std::optional<Groundwork> GroundworkFile::read() const {
 }
 
 void GroundworkFile::write(const Groundwork& ground) const {
-    const fs::path part = file_.native() + ".part";
-    std::error_code error;
     try {
-        tiles::BinaryWriter file(file_);
+        io::PendingFile pending(file_);
+        tiles::BinaryWriter file(pending.path());
         file(*key_);
         write_groundwork(file, ground);
         file.finish(false);
+        pending.commit();
     } catch (const Error& failed) {
-        fs::remove(part, error);
         if (notice_) notice_(std::string(failed.what()) + "; the next parse begins anew");
-    } catch (...) {
-        fs::remove(part, error);
-        throw;
     }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <system_error>
 #include <utility>
 
@@ -27,18 +26,13 @@
 namespace topple {
 namespace {
 
-std::string number_text(double value) {
-    char digits[32];
-    std::snprintf(digits, sizeof(digits), "%g", value);
-    return digits;
-}
-
 void check_range(const char* option, double value, double lowest, double highest) {
     if (value > 0 && value >= lowest && value <= highest) return;  // false for NaN
-    throw Error(ErrorKind::usage,
-                std::string(option) + " " + number_text(value) + ": expected a number " +
-                    (lowest > 0 ? "from " + number_text(lowest) + " to " : "above 0 and at most ") +
-                    number_text(highest));
+    throw Error(
+        ErrorKind::usage,
+        std::string(option) + " " + short_number(value) + ": expected a number " +
+            (lowest > 0 ? "from " + short_number(lowest) + " to " : "above 0 and at most ") +
+            short_number(highest));
 }
 
 // Objects and what may happen to them, from the groundwork on.
@@ -103,7 +97,7 @@ void refuse_file_options(const ParseOptions& options) {
 void refuse_tiles(const ParseOptions& options) {
     if (options.tile_m == 0) return;
     throw Error(ErrorKind::usage,
-                "ParseOptions::tile_m " + number_text(options.tile_m) +
+                "ParseOptions::tile_m " + short_number(options.tile_m) +
                     ": only clouds in files are parsed in blocks (.ply, .pcd, .las and .xyz); "
                     "leave it out");
 }
@@ -149,7 +143,7 @@ void check_options(const ParseOptions& o) {
     // 0 is north, so the range is none of those that begin above 0.
     if (o.wind_from_deg && !(std::abs(*o.wind_from_deg) <= 360))
         throw Error(ErrorKind::usage,
-                    "ParseOptions::wind_from_deg " + number_text(*o.wind_from_deg) +
+                    "ParseOptions::wind_from_deg " + short_number(*o.wind_from_deg) +
                         ": expected degrees clockwise from the scene's north, from -360 to 360");
     if (o.pga_m_s2) check_range("ParseOptions::pga_m_s2", *o.pga_m_s2, 0, 50);
     if (o.accelerogram) {

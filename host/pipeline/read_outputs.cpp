@@ -26,19 +26,18 @@ void check_labels(const Scene& scene, const std::vector<std::int32_t>& primitive
 
 ParseResult read_outputs(const std::filesystem::path& folder) {
     io::check_output(folder);
-    const auto file = [&](const char* name) { return folder / name; };
+    const auto file = [&](const char* name) { return io::FileName::in(folder, name); };
     ParseResult out;
     Scene& scene = out.scene = io::read_scene_json(file("scene.json"));
-    io::check_bodies(scene, file("scene.json"));
+    io::check_bodies(scene, folder / "scene.json");
     io::read_landscapes_json(file("landscapes.json"), scene);
     scene.points = io::read_points_ply(file("points.ply"));
-    check_labels(scene, scene.points.primitive, scene.points.object, file("points.ply"));
+    check_labels(scene, scene.points.primitive, scene.points.object, folder / "points.ply");
     scene.solid = io::read_solid_ply(file("solid.ply"));
-    check_labels(scene, scene.solid.primitive, scene.solid.object, file("solid.ply"));
-    std::error_code error;
+    check_labels(scene, scene.solid.primitive, scene.solid.object, folder / "solid.ply");
     // Of a cloud that was parsed in blocks there are none.
-    if (std::filesystem::exists(file("solids.bin"), error))
-        out.solids = io::read_solids(file("solids.bin"));
+    if (const io::FileName solids = file("solids.bin"); solids.is_there())
+        out.solids = io::read_solids(solids);
     return out;
 }
 

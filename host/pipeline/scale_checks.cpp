@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string_view>
 #include <utility>
 
@@ -23,9 +22,7 @@ constexpr double least_table_m = 0.2;
 
 // To three digits, or all before the point.
 std::string text_of(double value) {
-    char digits[32];
-    std::snprintf(digits, sizeof(digits), value >= 1000 && value < 1e9 ? "%.0f" : "%.3g", value);
-    return digits;
+    return value >= 1000 && value < 1e9 ? to_places(value, 0) : to_digits(value, 3);
 }
 
 // "if the coordinates are in mm, multiply them by 0.001 (0.94 m), in cm by 0.01 (9.4 m)": the units

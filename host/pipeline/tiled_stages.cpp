@@ -36,10 +36,8 @@ struct Order {
     double size_m = 0;  // of the thinning's cells, or of the blocks' tiles
 
     std::string text() const {
-        char size[40];
-        std::snprintf(size, sizeof(size), "%a", size_m);
         std::string out = stage;
-        for (const std::string& part : {folder.string(), manifest, std::string(size)})
+        for (const std::string& part : {folder.string(), manifest, to_digits(size_m, 17)})
             out.append(1, '\0').append(part);
         return out;
     }
@@ -54,7 +52,9 @@ struct Order {
         }
         if (parts.size() != 4)
             throw Error(ErrorKind::input, "the leader's order is of another version of topple");
-        return {parts[0], parts[1], parts[2], std::strtod(parts[3].c_str(), nullptr)};
+        double size_m = 0;
+        io::parse_number(parts[3], size_m);
+        return {parts[0], parts[1], parts[2], size_m};
     }
 };
 

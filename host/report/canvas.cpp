@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <numbers>
 
-#include "topple/error.h"
+#include "io/replace_file.h"
+#include "io/text.h"
 
 namespace topple::report {
 namespace {
@@ -25,13 +27,14 @@ std::uint32_t packed(const Colour& c) {
 struct Canvas::Page {
     std::filesystem::path path;
     bool svg;
+    std::string written;
     cairo_surface_t* surface;
     cairo_t* context;
 
     Page(const std::filesystem::path& file, int width, int height)
         : path(file),
           svg(file.extension() == ".svg"),
-          surface(svg ? cairo_svg_surface_create(file.c_str(), width, height)
+          surface(svg ? cairo_svg_surface_create_for_stream(append, this, width, height)
                       : cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)),
           context(cairo_create(surface)) {
         if (svg) cairo_svg_surface_set_document_unit(surface, CAIRO_SVG_UNIT_PX);
@@ -44,15 +47,16 @@ struct Canvas::Page {
     }
     void check(cairo_status_t status) const {
         if (status == CAIRO_STATUS_SUCCESS) return;
-        const auto folder =
-            path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-        std::error_code error;
-        if (status == CAIRO_STATUS_WRITE_ERROR && !std::filesystem::is_directory(folder, error)) {
-            throw Error(ErrorKind::input, path.string() + " can't be written: there is no folder " +
-                                              folder.string() + "; make it first");
+        if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
+        io::fail(path, std::string("can't be drawn: ") + cairo_status_to_string(status));
+    }
+    static cairo_status_t append(void* page, const unsigned char* bytes, unsigned count) {
+        try {
+            static_cast<Page*>(page)->written.append(reinterpret_cast<const char*>(bytes), count);
+        } catch (const std::bad_alloc&) {
+            return CAIRO_STATUS_NO_MEMORY;
         }
-        throw Error(ErrorKind::input,
-                    path.string() + " can't be written: " + cairo_status_to_string(status));
+        return CAIRO_STATUS_SUCCESS;
     }
     void choose(const Font& font) const {
         cairo_select_font_face(context, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
@@ -146,9 +150,11 @@ void Canvas::image(double x, double y, const Raster& raster) {
 
 void Canvas::save() {
     page_->check(cairo_status(page_->context));
-    if (!page_->svg) page_->check(cairo_surface_write_to_png(page_->surface, page_->path.c_str()));
+    if (!page_->svg)
+        page_->check(cairo_surface_write_to_png_stream(page_->surface, Page::append, page_.get()));
     cairo_surface_finish(page_->surface);
     page_->check(cairo_surface_status(page_->surface));
+    io::replace_file(page_->path, page_->written);
 }
 
 }  // namespace topple::report

@@ -3,20 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <limits>
 #include <numeric>
 
+#include "core/short_number.h"
 #include "report/drawing_parts.h"
 
 namespace topple::report {
 
 std::string joules(double value) {
-    char text[40];
     if (std::abs(value) < 0.0005) return "0 J";
-    std::snprintf(text, sizeof(text), std::abs(value) < 999.5 ? "%.3g J" : "%.0f J", value);
-    return text;
+    return (std::abs(value) < 999.5 ? to_digits(value, 3) : to_places(value, 0)) + " J";
 }
 
 double lowest_of(const std::vector<Vec3>& corners, const Vec3& d) {

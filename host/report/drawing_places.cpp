@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
+#include "core/short_number.h"
 #include "report/drawing_parts.h"
 
 namespace topple::report {
@@ -61,10 +61,11 @@ Drawing draw_places(const Landscape::Places& places) {
     out.strokes.push_back(
         {Style::axis, {{left, top}, {right, top}, {right, bottom}, {left, bottom}, {left, top}}});
     out.dots.push_back({Style::now, {left + size / 2, top + size / 2}, 4});
-    char across[64];
-    std::snprintf(across, sizeof(across), "%.2g m across, north at the top",
-                  places.side * places.step_m);
-    out.labels.push_back({{left, bottom + 16}, Anchor::start, false, across});
+    out.labels.push_back(
+        {{left, bottom + 16},
+         Anchor::start,
+         false,
+         to_digits(places.side * places.step_m, 2) + " m across, north at the top"});
     double y = top + 4;
     const auto key = [&](std::uint8_t code, const std::string& text) {
         out.swatches.push_back({{right + 12, y}, 14, 12, raster.palette[code]});

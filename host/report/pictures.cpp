@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <limits>
 #include <numbers>
 #include <string>
 
+#include "core/short_number.h"
 #include "core/vectors.h"
 #include "io/palette.h"
 #include "report/scene_image.h"
@@ -22,12 +22,6 @@ using Overlay = SceneImage::Overlay;
 constexpr int width = 1280, height = 800;
 constexpr std::array<double, 4> margin{24, 24, 76, 24};
 constexpr std::size_t labelled = 10;
-
-std::string text(const char* format, double value) {
-    char digits[64];
-    std::snprintf(digits, sizeof(digits), format, value);
-    return digits;
-}
 
 Bytes3 faded(const Bytes3& colour, double share) {
     constexpr Bytes3 pale{222, 223, 222};
@@ -153,7 +147,7 @@ class Pictures {
         Canvas canvas = page("walks", colours(false, 0.6), overlay, "Where people walk",
                              "The floor by how many of 100 walks pass there; white: the ways of "
                              "some walks.");
-        legend(canvas, ramp, "0", text("%.3g of 100 walks", 100 * walks.most));
+        legend(canvas, ramp, "0", to_digits(100 * walks.most, 3) + " of 100 walks");
         canvas.save();
     }
 
@@ -198,7 +192,7 @@ class Pictures {
             add_arrow(overlay, arrows[n], share, style.at_tip ? 1 : 0);
         }
         Canvas canvas = page(name, colours(false, 0.6), overlay, style.title, style.says);
-        legend(canvas, ramp, "0", text("%.3g ", style.scale * strongest) + style.unit);
+        legend(canvas, ramp, "0", to_digits(style.scale * strongest, 3) + " " + style.unit);
         canvas.save();
     }
 
@@ -287,7 +281,8 @@ class Pictures {
         const std::string number = std::to_string(object.id);
         std::string says = number;
         if (unsafety)
-            says += text(": %.1f", object.unsafety) + (barrier_within_error(object) ? " ?" : "");
+            says +=
+                ": " + to_places(object.unsafety, 1) + (barrier_within_error(object) ? " ?" : "");
         const Font font{.size = 14, .bold = true};
         const double wide = canvas.text_width(says, font) + 12, tall = 21;
         std::array<double, 4> box{x - wide / 2, y - tall / 2, wide, tall};

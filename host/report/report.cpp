@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/json.h"
+#include "core/printable.h"
 #include "core/thread_pool.h"
 #include "io/file_writer.h"
 #include "io/palette.h"
@@ -328,6 +329,16 @@ std::string source_name(const std::string& source) {
                          slash == std::string::npos ? end + 1 : end - slash);
 }
 
+// All that a stranger may have written is read by a person: what steers a terminal or turns the
+// direction of text is not to be in it.
+void make_printable(Json& json) {
+    if (json.is_string()) {
+        json = printable(json.get_ref<const std::string&>(), std::string::npos);
+    } else if (json.is_structured()) {
+        for (Json& inner : json) make_printable(inner);
+    }
+}
+
 // In universal time: "2026-01-31".
 std::string today() {
     const std::time_t now = std::time(nullptr);
@@ -360,12 +371,14 @@ struct Report::Parts {
 };
 
 Report::Report(const Scene& scene, bool with_surfaces, ReportWords words)
-    : parts_(new Parts{words.title.empty() ? source_name(scene.source) : words.title,
+    : parts_(new Parts{printable(words.title.empty() ? source_name(scene.source) : words.title,
+                                 std::string::npos),
                        {scene, {}, with_surfaces},
                        io::scene_document(scene),
                        {}}) {
     parts_->points = points_json(parts_->view.points());
     Json& json = parts_->data;
+    make_printable(json);
     // What is long and nobody but the page reads there.
     for (const char* bulk : {"primitives", "contacts", "swc_energy"})
         json[bulk] = deflated(json[bulk].dump());
@@ -381,6 +394,7 @@ Report::Report(const Scene& scene, bool with_surfaces, ReportWords words)
     json["made"] = today();
     if (words.command.empty()) words.command = {"topple", "parse", scene.source, "-o", "OUT"};
     json["command"] = std::move(words.command);
+    make_printable(json["command"]);
 }
 Report::~Report() = default;
 

@@ -12,7 +12,8 @@ namespace topple::report {
 bool add_verification(const std::filesystem::path& report, const std::string& json) {
     constexpr std::string_view begin = "<script type=\"application/json\" id=\"verified\">";
     constexpr std::string_view end = "</script>";
-    const io::FileBytes bytes = io::read_file(report, std::uint64_t{256} << 20);
+    const io::FileBytes bytes =
+        io::read_file(io::FileName::beside(report, report.filename()), std::uint64_t{256} << 20);
     const std::string_view page = bytes.text();
     // In what is embedded before it no < begins anything: the first is the page's own.
     const std::size_t at = page.find(begin);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/file_writer.h"
+#include "io/replace_file.h"
 #include "scenes/building.h"
 #include "scenes/parallel.h"
 #include "scenes/part_json.h"
@@ -30,41 +31,9 @@ static_assert(sizeof(Vertex) == 16 && std::endian::native == std::endian::little
               "vertices are written as they lie in memory");
 
 constexpr std::uint64_t block_points = 1'000'000;  // points that are in memory at a time
+// In the head of a cloud, by which an earlier one is known.
+constexpr const char* building_mark = "property int truth_object";
 constexpr std::uint64_t noise_stream = 5ULL << 40;
-
-// A file that gets its name when it is complete, and else goes away.
-class PendingFile {
-  public:
-    explicit PendingFile(fs::path file)
-        : file_(std::move(file)), temporary_(file_.string() + ".part"), writer_(temporary_) {
-        if (fs::is_directory(file_)) {
-            fs::remove(temporary_);
-            throw Error(ErrorKind::input, file_.string() + ": is a folder; choose another name");
-        }
-    }
-    ~PendingFile() {
-        std::error_code ignored;
-        if (!temporary_.empty()) fs::remove(temporary_, ignored);
-    }
-    PendingFile(const PendingFile&) = delete;
-    PendingFile& operator=(const PendingFile&) = delete;
-
-    io::FileWriter& writer() { return writer_; }
-    void close() { writer_.close(); }
-    void rename() {
-        std::error_code error;
-        fs::rename(temporary_, file_, error);
-        if (error) {
-            throw Error(ErrorKind::input,
-                        file_.string() + ": can't be written: " + error.message());
-        }
-        temporary_.clear();
-    }
-
-  private:
-    fs::path file_, temporary_;
-    io::FileWriter writer_;
-};
 
 Vec3 moved(const Vec3& origin, const Vec3& p) {
     return {origin[0] + p[0], origin[1] + p[1], origin[2] + p[2]};
@@ -181,8 +150,8 @@ class CloudWriter {
         : out_(out), options_(options), area_m2_(area_m2) {
         out_.write("ply\nformat binary_little_endian 1.0\ncomment metres\nelement vertex " +
                    std::to_string(options.points) +
-                   "\nproperty float x\nproperty float y\nproperty float z\n"
-                   "property int truth_object\nend_header\n");
+                   "\nproperty float x\nproperty float y\nproperty float z\n" + building_mark +
+                   "\nend_header\n");
     }
 
     // How many points there are on each object. `before` and `after`: the area of the rooms before
@@ -263,8 +232,10 @@ fs::path truth_of(const fs::path& cloud) {
 BuildingSummary write_building(const fs::path& cloud, const BuildingOptions& options,
                                const std::function<bool(std::size_t, std::size_t)>& keep_going) {
     const Building building(options);
-    PendingFile points(cloud), truth(truth_of(cloud));
-    TruthWriter truth_out(truth.writer(), building);
+    io::check_own_file(cloud, building_mark, "is no building of topple; choose another name");
+    io::PendingFile points(cloud), truth(truth_of(cloud));
+    io::FileWriter points_file(points.path()), truth_file(truth.path());
+    TruthWriter truth_out(truth_file, building);
 
     // How much there is to see, before the first point is written: each takes its share of it.
     std::vector<double> up_to{0};  // area of the rooms before this one
@@ -282,7 +253,7 @@ BuildingSummary write_building(const fs::path& cloud, const BuildingOptions& opt
     const double spacing = std::sqrt(up_to.back() / static_cast<double>(options.points));
     truth_out.end_rooms(spacing);
 
-    CloudWriter cloud_out(points.writer(), options, up_to.back());
+    CloudWriter cloud_out(points_file, options, up_to.back());
     for (std::size_t k = 0; k < building.rooms(); ++k) {
         if (!keep_going(building.rooms() + k, 2 * building.rooms())) return {};
         const Building::Room room = building.room(k);
@@ -291,10 +262,10 @@ BuildingSummary write_building(const fs::path& cloud, const BuildingOptions& opt
         truth_out.objects(room, first_object[k], counts);
     }
     truth_out.end();
-    points.close();
-    truth.close();
-    truth.rename();
-    points.rename();
+    points_file.close();
+    truth_file.close();
+    truth.commit();
+    points.commit();
     return {building.rooms(), building.storeys(), first_object.back(), spacing};
 }
 

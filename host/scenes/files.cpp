@@ -5,12 +5,12 @@
 
 #include <csetjmp>
 #include <cstdio>
-#include <fstream>
 #include <iomanip>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "io/file_writer.h"
 #include "topple/error.h"
 
 namespace topple::scenes {
@@ -40,6 +40,7 @@ bool encode(std::FILE* file, png_struct* png, png_info* info, const Image& image
 }
 
 void write_png(const std::filesystem::path& path, const Image& image) {
+    io::write_file(path, "");  // a new file, whatever had its name
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "wb"),
                                                                std::fclose);
     png_struct* png = file ? png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr,
@@ -72,7 +73,13 @@ std::array<double, 4> quaternion(const Mat4& m) {
     return {(m[2] + m[8]) / s, (m[6] + m[9]) / s, s / 4, (m[4] - m[1]) / s};
 }
 
+constexpr std::array<std::string_view, 5> scan_files{"cloud.ply", "truth.ply", "trajectory.txt",
+                                                     "intrinsics.json", "truth.json"};
+constexpr std::array<std::string_view, 2> scan_folders{"depth", "color"};
+
 }  // namespace
+
+const io::OutputKind generated_scan{scan_files, "{", scan_folders, "scan that topple made"};
 
 void write_depth_png(const std::filesystem::path& path, std::uint32_t width,
                      const std::vector<std::uint16_t>& depth) {
@@ -88,10 +95,7 @@ void write_colour_png(const std::filesystem::path& path, std::uint32_t width,
 }
 
 void write_text(const std::filesystem::path& path, const std::string& text) {
-    std::ofstream out(path, std::ios::binary);
-    out << text;
-    out.flush();
-    if (!out) throw Error(ErrorKind::input, path.string() + ": can't be written");
+    io::write_file(path, text);
 }
 
 void make_folder(const std::filesystem::path& folder) {

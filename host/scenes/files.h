@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/output_folder.h"
 #include "topple/input.h"
 
 // Files of a scan. All throw Error(input) where they can't write.
@@ -20,6 +21,9 @@ void write_colour_png(const std::filesystem::path& path, std::uint32_t width,
                       const std::vector<std::array<std::uint8_t, 3>>& colour);
 void write_text(const std::filesystem::path& path, const std::string& text);
 void make_folder(const std::filesystem::path& folder);
+
+// What `topple generate` makes, a scan with its truth.
+extern const io::OutputKind generated_scan;
 
 // The line of trajectory.txt for a pose, camera to world: t x y z qx qy qz qw.
 std::string trajectory_line(double time_s, const Mat4& pose);

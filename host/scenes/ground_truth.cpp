@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/ground_truth.h"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "io/file_writer.h"
+#include "io/text.h"
 #include "scenes/part_json.h"
 #include "topple/error.h"
 
@@ -102,17 +103,13 @@ void write_truth(const std::filesystem::path& path, const World& world) {
                     {"objects", objects},
                     {"fixed", world.fixed},
                     {"support", world.support}};
-    std::ofstream out(path, std::ios::binary);
-    out << root.dump(1) << '\n';
-    out.flush();
-    if (!out) throw Error(ErrorKind::input, path.string() + ": can't be written");
+    io::write_file(path, root.dump(1) + "\n");
 }
 
 World read_truth(const std::filesystem::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    if (!in) throw Error(ErrorKind::input, path.string() + ": can't be read");
+    const io::FileBytes bytes = io::read_file(path);
     try {
-        return from_json(json::parse(in));
+        return from_json(json::parse(bytes.text()));
     } catch (const json::exception& error) {
         throw Error(ErrorKind::input, path.string() + ": " + error.what());
     }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <stdlib.h>
-
 #include <filesystem>
 #include <string>
 #include <system_error>
 
+#include "io/staging_folder.h"
 #include "topple/error.h"
 
 namespace topple::scenes {
@@ -15,20 +14,16 @@ namespace topple::scenes {
 // Error(input) where it can't be made.
 class TemporaryFolder {
   public:
-    explicit TemporaryFolder(const std::string& prefix) {
-        std::string name = std::filesystem::temp_directory_path() / (prefix + "_XXXXXX");
-        if (!::mkdtemp(name.data())) throw Error(ErrorKind::input, name + ": can't be made");
-        path_ = name;
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
+    explicit TemporaryFolder(const std::string& name)
+        : staging_(io::StagingFolder::temporary()), path_(staging_.path() / name) {
+        std::error_code error;
+        if (!std::filesystem::create_directory(path_, error))
+            throw Error(ErrorKind::input, path_.string() + ": can't be made");
     }
     const std::filesystem::path& path() const { return path_; }
 
   private:
+    io::StagingFolder staging_;
     std::filesystem::path path_;
 };
 

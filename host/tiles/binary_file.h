@@ -28,7 +28,8 @@ inline constexpr std::string_view file_mark = "topple.w";
     io::fail(file, "is damaged or cut short; the same command makes it anew");
 }
 
-// Writes beside the file and renames: it is there whole or not at all, after a loss of power, too.
+// For the work folder and others that only topple writes into. Writes beside the file and renames:
+// it is there whole or not at all, after a loss of power, too.
 class BinaryWriter : public FieldWriter<BinaryWriter> {
   public:
     explicit BinaryWriter(std::filesystem::path file)

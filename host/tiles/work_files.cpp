@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <system_error>
 
 #include "io/folder_names.h"
+#include "io/replace_file.h"
 #include "io/text.h"
 #include "tiles/binary_file.h"
 #include "tiles/blocks.h"
@@ -69,11 +69,7 @@ bool is_work_file(const std::string& name) {
 }
 
 bool has_mark(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::string front(file_mark.size(), '\0');
-    stream.read(front.data(), static_cast<std::streamsize>(front.size()));
-    front.resize(static_cast<std::size_t>(stream.gcount()));
-    return file_mark.starts_with(front);
+    return file_mark.starts_with(io::beginning_of(file, file_mark.size()));
 }
 
 std::vector<std::string> remove_damaged(const fs::path& folder, const std::function<void()>& poll) {

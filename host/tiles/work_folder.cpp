@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tiles/work_folder.h"
 
-#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,6 +12,7 @@
 #include <system_error>
 
 #include "io/file_writer.h"
+#include "io/replace_file.h"
 #include "io/text.h"
 #include "tiles/work_files.h"
 
@@ -37,15 +37,6 @@ std::string manifest_of(const fs::path& folder) {
     } catch (const Error&) {  // empty, as a full disk leaves it
         return {};
     }
-}
-
-fs::path temporary_folder() {
-    std::error_code error;
-    fs::path pattern = fs::temp_directory_path(error);
-    if (error) pattern = "/tmp";
-    std::string name = pattern / "topple-XXXXXX";
-    if (!::mkdtemp(name.data())) io::fail(pattern, "no folder can be made there");
-    return name;
 }
 
 constexpr const char* other_place =
@@ -83,6 +74,7 @@ WorkFolder::WorkFolder(const fs::path& folder, const std::string& manifest,
                        const std::function<void()>& poll) {
     make(folder);
     try {
+        io::remove_abandoned(folder_);
         check_contents(folder_);
         lock_.emplace(folder_);
         take_up(manifest_text(manifest), poll);
@@ -99,11 +91,8 @@ WorkFolder::WorkFolder(const fs::path& folder, const std::string& manifest,
 
 void WorkFolder::make(const fs::path& folder) {
     remove_ = true;  // who makes it removes it, until it is ready to be worked in
-    if (folder.empty()) {
-        folder_ = temporary_folder();
-        return;
-    }
-    folder_ = folder;
+    if (folder.empty()) temporary_.emplace(io::StagingFolder::temporary());
+    folder_ = temporary_ ? temporary_->path() / "work" : folder;
     std::error_code error;
     if (folder_.has_parent_path()) fs::create_directories(folder_.parent_path(), error);
     if (::mkdir(folder_.c_str(), 0700) == 0) return;
@@ -125,11 +114,7 @@ void WorkFolder::take_up(const std::string& text, const std::function<void()>& p
         if (name != FolderLock::file_name) fs::remove(folder_ / name, error);
         if (error) io::fail(folder_ / name, "can't be removed: " + error.message());
     }
-    // Whole or not at all, too.
-    const fs::path part = folder_ / (std::string(manifest_name) + ".part");
-    io::write_file(part, text);
-    fs::rename(part, folder_ / manifest_name, error);
-    if (error) io::fail(folder_ / manifest_name, "can't be written: " + error.message());
+    io::replace_file(folder_ / manifest_name, text);  // whole or not at all, too
     io::sync_folder(folder_);
 }
 

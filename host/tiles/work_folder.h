@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/staging_folder.h"
 #include "tiles/folder_lock.h"
 
 namespace topple::tiles {
@@ -42,6 +43,7 @@ class WorkFolder {
     void remove_all() noexcept;
 
     std::filesystem::path folder_;
+    std::optional<io::StagingFolder> temporary_;
     std::optional<FolderLock> lock_;
     std::vector<std::string> damaged_;
     bool remove_ = false, taken_up_ = false;

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <memory>
 #include <numbers>
 
 #include "core/random.h"
+#include "core/short_number.h"
 #include "core/thread_pool.h"
 #include "physics/landscape.h"
 #include "safety/columns.h"
@@ -175,10 +175,9 @@ ShakenObject where_it_stands(const RiskObject& object, ShakenObject shaken) {
 
 void note_record(const Accelerogram& record, std::vector<std::string>& notes) {
     notes = record.notes;
-    char figures[80];
-    std::snprintf(figures, sizeof(figures), "%.3g s with a peak of %.3g m/s^2.",
-                  record.duration_s(), record.peak_m_s2());
-    notes.push_back("The earthquake is the accelerogram " + record.source + ", " + figures);
+    notes.push_back("The earthquake is the accelerogram " + record.source + ", " +
+                    to_digits(record.duration_s(), 3) + " s with a peak of " +
+                    to_digits(record.peak_m_s2(), 3) + " m/s^2.");
 }
 
 // Arrows at the contact surface: the objects' lowest cells.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <limits>
 
 #include "io/text.h"
@@ -40,9 +39,7 @@ std::string unlikely_peak_note(double pga_m_s2) {
     const bool weak = pga_m_s2 < hardly_meant_m_s2;
     if (!weak && in_g < hardly_recorded_g) return "";
     const std::string given = io::short_number(pga_m_s2);
-    char meant[32];
-    std::snprintf(meant, sizeof(meant), "%.3g",
-                  pga_m_s2 * physics::gravity * (weak ? 1 : hundredth));
+    const std::string meant = to_digits(pga_m_s2 * physics::gravity * (weak ? 1 : hundredth), 3);
     std::string note = "ParseOptions::pga_m_s2 = " + given;
     note.append(" is ").append(io::two_digits(in_g)).append(" g (");
     note.append(shaking_text(in_g)).append(")");

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 
 #include "core/room_measures.h"
+#include "core/short_number.h"
 #include "safety/human/human_field.h"
 #include "safety/objects.h"
 
@@ -232,9 +232,7 @@ WalkableMap walkable_map(const Surroundings& surroundings, const HumanOptions& o
     }
     const double area = static_cast<double>(map.walkable.size()) * map.cell_m * map.cell_m;
     if (area < least_floor_m2) {
-        char text[32];
-        std::snprintf(text, sizeof(text), "%.1f", area);
-        map.notes.push_back(std::string("People walk on only ") + text +
+        map.notes.push_back("People walk on only " + to_places(area, 1) +
                             " square metres: either the floor was hardly scanned, so that people "
                             "are missed, or the lowest level surface is no floor but a table top "
                             "or the like, where nobody walks: then leave human out of the "

@@ -7,6 +7,7 @@
 
 #include "files.h"
 #include "io/file_writer.h"
+#include "io/pending_outputs.h"
 
 namespace topple::io {
 namespace {
@@ -115,6 +116,12 @@ TEST_F(Output, never_deletes_what_is_not_its_own) {
     write("out/scene.json", our_scene);
     write("out/my notes.txt", "dear diary");
     expect_input_error([&] { OutputFolder out(path("out")); }, {"my notes.txt", "move it away"});
+    fs::remove(path("out/my notes.txt"));
+    write("out/points.ply/thesis.tex", "years");
+    expect_input_error([&] { OutputFolder out(path("out")); }, {"points.ply", "a folder"});
+    fs::remove_all(path("out/points.ply"));
+    fs::create_symlink(path("photos/cat.jpg"), path("out/points.ply"));
+    expect_input_error([&] { OutputFolder out(path("out")); }, {"points.ply", "a link"});
     write("file", "a file");
     expect_input_error([&] { OutputFolder out(path("file")); }, {"file", "no folder"});
     EXPECT_EQ(bytes_of_file(path("photos/cat.jpg")), "cat");

@@ -24,6 +24,17 @@ TEST_F(ScanNotes, AreTheLinesBesideAFileOrWithinAFolder) {
     EXPECT_EQ(scan_notes(folder), std::vector<std::string>{"One."});
 }
 
+TEST_F(ScanNotes, AreNotOfOthers) {
+    write("secret.txt", "4711");
+    const auto scan = write("in/scan.ply", "ply\n"), notes = path("in/scan.ply.topple-notes.txt");
+    for (const char* target : {"../secret.txt", "scan.ply"}) {
+        std::filesystem::create_symlink(target, notes);
+        test::expect_input_error([&] { scan_notes(scan); },
+                                 {"scan.ply.topple-notes.txt", "a link"});
+        std::filesystem::remove(notes);
+    }
+}
+
 TEST_F(ScanNotes, OfAnySizeAreFew) {
     const auto scan = write("scan.ply", "ply\n");
     std::string many;
