@@ -40,7 +40,8 @@ Settled settle_apart(const std::filesystem::path& file, double seconds, double p
     limits.cpu_s = static_cast<std::uint64_t>(limits.wall_s);
     const child::Ended ended =
         child::run(program.string(),
-                   {"settle", std::to_string(seconds), std::to_string(patience_s), file.string()},
+                   {"settle", std::to_string(seconds), std::to_string(patience_s),
+                    std::filesystem::absolute(file).string()},
                    limits, poll);
     Settled out;
     try {
