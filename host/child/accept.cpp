@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <malloc.h>
-#include <signal.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -10,6 +8,7 @@
 #include <cstdlib>
 
 #include "child/answer_head.h"
+#include "child/confine.h"
 #include "child/process.h"
 #include "topple/version.h"
 
@@ -46,6 +45,9 @@ void take_limits(std::uint64_t memory_bytes, std::uint64_t cpu_s) {
         // One arena: others each reserve 64 MiB of address space.
         ::mallopt(M_ARENA_MAX, 1);
         limit(RLIMIT_AS, address_space_bytes() + memory_bytes);
+        // The answer's memory is nobody's address space until it is mapped.
+        limit(RLIMIT_FSIZE, memory_bytes);
+        limit(RLIMIT_NOFILE, 64);
     }
     if (cpu_s > 0) {
         const rlimit cpu{cpu_s, cpu_s + 1};
@@ -59,9 +61,7 @@ std::vector<std::string> accept_task(int argc, char** argv) {
     struct stat status {};
     if (argc < 6 || std::string(argv[1]) != version || ::fstat(answer_descriptor, &status) != 0)
         return {};
-    ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL, 0, 0, 0);
-    if (std::to_string(::getppid()) != argv[2]) std::_Exit(1);  // it has died already
+    end_with(std::strtol(argv[2], nullptr, 10));
     const AnswerHead begun{begun_magic, 0};
     if (::pwrite(answer_descriptor, &begun, sizeof(begun), 0) != sizeof(begun)) std::_Exit(1);
     take_limits(std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10));

@@ -13,9 +13,11 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "child/answer_head.h"
+#include "child/environment.h"
 #include "topple/version.h"
 
 namespace topple::child {
@@ -61,6 +63,13 @@ Descriptor moved_up(int descriptor) {
     return Descriptor(up);
 }
 
+std::vector<char*> pointers(std::vector<std::string>& words) {
+    std::vector<char*> out;
+    for (std::string& word : words) out.push_back(word.data());
+    out.push_back(nullptr);
+    return out;
+}
+
 class Spawning {
   public:
     Spawning() {
@@ -74,9 +83,12 @@ class Spawning {
         ::posix_spawnattr_destroy(&attributes_);
     }
 
-    // Without the host's descriptors, signal handlers and masks; and in a group of its own, so that
-    // Ctrl-C is the parent's business.
-    pid_t start(const std::string& program, std::vector<std::string>& words, int answer, int life) {
+    // Without the host's descriptors, signal handlers and masks; in a group of its own, so that
+    // Ctrl-C is the parent's business; and in no folder of a scan, where a stranger's library may
+    // lie.
+    pid_t start(const std::string& program, std::vector<std::string>& words, int answer, int life,
+                std::optional<std::vector<std::string>> variables) {
+        ::posix_spawn_file_actions_addchdir_np(&actions_, "/");
         ::posix_spawn_file_actions_addopen(&actions_, 0, "/dev/null", O_RDONLY, 0);
         ::posix_spawn_file_actions_addopen(&actions_, 1, "/dev/null", O_WRONLY, 0);
         ::posix_spawn_file_actions_addopen(&actions_, 2, "/dev/null", O_WRONLY, 0);
@@ -91,12 +103,12 @@ class Spawning {
         ::posix_spawnattr_setpgroup(&attributes_, 0);
         ::posix_spawnattr_setflags(
             &attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-        std::vector<char*> argv;
-        for (std::string& word : words) argv.push_back(word.data());
-        argv.push_back(nullptr);
+        const std::vector<char*> argv = pointers(words);
+        std::vector<char*> chosen;
+        if (variables) chosen = pointers(*variables);
         pid_t child = -1;
-        const int error =
-            ::posix_spawn(&child, program.c_str(), &actions_, &attributes_, argv.data(), environ);
+        const int error = ::posix_spawn(&child, program.c_str(), &actions_, &attributes_,
+                                        argv.data(), variables ? chosen.data() : environ);
         if (error != 0)
             not_started(::access("/dev/null", R_OK | W_OK) == 0 ? "" : "/dev/null: ", error);
         return child;
@@ -204,7 +216,9 @@ Ended run_started(const std::string& program, const std::vector<std::string>& ta
                                    std::to_string(limits.memory_bytes),
                                    std::to_string(limits.cpu_s)};
     words.insert(words.end(), task.begin(), task.end());
-    Child child(Spawning().start(program, words, answer.get(), life.get()));
+    Child child(Spawning().start(
+        program, words, answer.get(), life.get(),
+        limits.whole_environment ? std::nullopt : std::optional(plain_environment())));
     life.close();
     const auto start = std::chrono::steady_clock::now();
     pollfd ends{alive.get(), POLLIN, 0};

@@ -15,6 +15,7 @@ struct Limits {
     std::uint64_t memory_bytes = 0;  // of address space, beyond what it starts with; 0: no limit
     std::uint64_t cpu_s = 0;
     double wall_s = 0;
+    bool whole_environment = false;  // else what plain_environment() has
 };
 
 // What a child wrote into memory that it shares with its parent: sealed, so that nobody changes it
@@ -51,9 +52,9 @@ inline constexpr int answer_descriptor = 3;
 inline constexpr std::size_t answer_head = 16;
 void end_of_answer(int descriptor = answer_descriptor);
 
-// Runs one of program.h on a task: words that it knows. It gets no descriptors
-// but the answer's, no terminal, and ends with the caller's thread. poll: called about 50 times a
-// second; what it throws ends the child, and is thrown on.
+// Runs one of program.h on a task: words that it knows, with absolute paths. It gets no descriptors
+// but the answer's, no terminal, / as its folder, and ends with the caller's thread. poll: called
+// about 50 times a second; what it throws ends the child, and is thrown on.
 Ended run(const std::string& program, const std::vector<std::string>& task, const Limits& limits,
           const std::function<void()>& poll);
 

@@ -40,7 +40,7 @@ std::vector<fs::path> own_folders() {
 
 fs::path find_program(const char* name) {
     if (const char* folder = ::secure_getenv("TOPPLE_READERS"); folder && *folder) {
-        const fs::path file = fs::path(folder) / name;
+        const fs::path file = fs::absolute(folder) / name;
         if (can_be_run(file)) return file;
         throw Error(ErrorKind::usage,
                     "TOPPLE_READERS=" + std::string(folder) + ": there is no program " + name +

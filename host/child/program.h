@@ -12,8 +12,8 @@ inline constexpr const char* volume_program = "topple-volume-reader";  // OpenVD
 
 // Where one of them lies: in the folder that the environment variable TOPPLE_READERS names, if it
 // is set; else beside the program, or the library, that holds this code, in libexec/topple beside
-// their folder, or where it was installed at first. Empty: in none of these places. Throws
-// Error(usage) where TOPPLE_READERS is set and it is not there.
+// their folder, or where it was installed at first. An absolute path. Empty: in none of these
+// places. Throws Error(usage) where TOPPLE_READERS is set and it is not there.
 std::filesystem::path find_program(const char* name);
 
 }  // namespace topple::child

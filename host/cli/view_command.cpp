@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 
+#include "child/environment.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/print.h"
@@ -31,14 +32,17 @@ struct ViewArguments {
 // browser for terminals would take this one.
 bool open_browser(std::string url, pid_t& opener) {
     if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return false;
-    std::string program = "xdg-open";
+    std::string program = child::found_in_path("xdg-open");
+    if (program.empty()) return false;
     const std::array<char*, 3> words{program.data(), url.data(), nullptr};
     posix_spawn_file_actions_t files;
     posix_spawn_file_actions_init(&files);
+    // It runs what it finds by relative names, too; here a stranger's files may lie.
+    posix_spawn_file_actions_addchdir_np(&files, "/");
     for (const int fd : {0, 1, 2})
         posix_spawn_file_actions_addopen(&files, fd, "/dev/null", fd == 0 ? O_RDONLY : O_WRONLY, 0);
     const int failed =
-        posix_spawnp(&opener, program.c_str(), &files, nullptr, words.data(), environ);
+        posix_spawn(&opener, program.c_str(), &files, nullptr, words.data(), environ);
     posix_spawn_file_actions_destroy(&files);
     return failed == 0;
 }

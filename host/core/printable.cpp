@@ -3,23 +3,49 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace topple {
 namespace {
 
-// Length of the UTF-8 sequence at the front of `text`, 0 where there is none.
-std::size_t utf8_length(std::string_view text) {
+// A character, and how many bytes it has; none where the front of `text` is no UTF-8.
+struct Character {
+    char32_t value = 0;
+    std::size_t length = 0;
+};
+
+Character first_of(std::string_view text) {
     const auto lead = static_cast<unsigned char>(text[0]);
     const std::size_t length = lead < 0x80                    ? 1
                                : lead >= 0xC2 && lead <= 0xDF ? 2
                                : lead >= 0xE0 && lead <= 0xEF ? 3
                                : lead >= 0xF0 && lead <= 0xF4 ? 4
                                                               : 0;
-    if (length > text.size()) return 0;
+    if (length == 0 || length > text.size()) return {};
+    char32_t value = length == 1 ? lead : lead & (0x7Fu >> length);
     for (std::size_t i = 1; i < length; ++i) {
-        if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) return 0;
+        const auto next = static_cast<unsigned char>(text[i]);
+        if ((next & 0xC0) != 0x80) return {};
+        value = value << 6 | (next & 0x3Fu);
     }
-    return length;
+    const bool overlong = value < (length == 3 ? 0x800u : length == 4 ? 0x10000u : 0u);
+    const bool surrogate = value >= 0xD800 && value <= 0xDFFF;
+    if (overlong || surrogate || value > 0x10FFFF) return {};
+    return {value, length};
+}
+
+// Of Unicode's classes Cc, Cf, Zl and Zp, and what is no character: these steer terminals, are not
+// seen, or turn the order of what stands beside them.
+bool steers(char32_t c) {
+    constexpr std::pair<char32_t, char32_t> ranges[] = {
+        {0, 0x1F},          {0x7F, 0x9F},       {0xAD, 0xAD},       {0x600, 0x605},
+        {0x61C, 0x61C},     {0x6DD, 0x6DD},     {0x70F, 0x70F},     {0x890, 0x891},
+        {0x8E2, 0x8E2},     {0x180E, 0x180E},   {0x200B, 0x200F},   {0x2028, 0x202E},
+        {0x2060, 0x206F},   {0xFEFF, 0xFEFF},   {0xFFF0, 0xFFFB},   {0xFFFE, 0xFFFF},
+        {0x110BD, 0x110BD}, {0x110CD, 0x110CD}, {0x13430, 0x1343F}, {0x1BCA0, 0x1BCA3},
+        {0x1D173, 0x1D17A}, {0xE0000, 0xE007F}};
+    return std::ranges::any_of(
+        ranges, [&](const auto& range) { return c >= range.first && c <= range.second; });
 }
 
 }  // namespace
@@ -37,13 +63,9 @@ std::string printable(std::string_view text, std::size_t most) {
             text.remove_prefix(plain);
             continue;
         }
-        const auto length = utf8_length(text);
-        const auto byte = static_cast<unsigned char>(text[0]);
-        // C1 control characters (U+0080 to U+009F) steer terminals as C0 ones do.
-        const bool control = length == 0 || byte < 0x20 || byte == 0x7F ||
-                             (byte == 0xC2 && static_cast<unsigned char>(text[1]) < 0xA0);
-        const std::size_t taken = length == 0 ? 1 : length;
-        if (!control) {
+        const Character character = first_of(text);
+        const std::size_t taken = std::max<std::size_t>(character.length, 1);
+        if (character.length > 0 && !steers(character.value)) {
             out.append(text.substr(0, taken));
         } else {
             for (std::size_t i = 0; i < taken; ++i) {

@@ -7,8 +7,8 @@
 
 namespace topple {
 
-// `text` with control characters and bytes that are no UTF-8 written as \xNN, cut after `most`
-// bytes.
+// `text` with what steers terminals (control and format characters), and what is no UTF-8, written
+// as \xNN, cut after `most` bytes.
 std::string printable(std::string_view text, std::size_t most = 60);
 
 }  // namespace topple

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "device/listing_message.h"
 
+#include <algorithm>
+
 #include "child/message.h"
+#include "core/printable.h"
 #include "device/devices.h"
 
 namespace topple::device {
@@ -18,11 +21,11 @@ void fields(Archive& a, Info& listing) {
     a(info.limits);
 }
 
-// Drivers' texts are printed.
+// Drivers' texts are printed, in a line.
 void make_printable(std::string& text) {
-    for (char& c : text) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
-    }
+    std::ranges::replace_if(
+        text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+    text = printable(text, std::string::npos);
 }
 
 }  // namespace

@@ -28,9 +28,10 @@ std::string of_driver(const std::string& what) {
            " when it was tried in a process of its own; mend or remove the driver";
 }
 
+// With the environment that steers drivers, as they would have it here.
 std::vector<Listing> probe_apart(const std::string& program, Backend backend) {
-    const child::Ended ended =
-        child::run(program, {"devices", to_string(backend)}, {.wall_s = patience_s}, [] {});
+    const child::Ended ended = child::run(program, {"devices", to_string(backend)},
+                                          {.wall_s = patience_s, .whole_environment = true}, [] {});
     if (!ended.answer.whole())
         return {unusable(backend, ended.started ? of_driver(ended.how) : ended.how)};
     try {

@@ -38,9 +38,11 @@ Settled settle_apart(const std::filesystem::path& file, double seconds, double p
     limits.memory_bytes = memory_bytes;
     limits.wall_s = patience_s + loading_s;
     limits.cpu_s = static_cast<std::uint64_t>(limits.wall_s);
-    const child::Ended ended = child::run(
-        program.string(),
-        {"settle", to_digits(seconds, 17), to_digits(patience_s, 17), file.string()}, limits, poll);
+    const child::Ended ended =
+        child::run(program.string(),
+                   {"settle", to_digits(seconds, 17), to_digits(patience_s, 17),
+                    std::filesystem::absolute(file).string()},
+                   limits, poll);
     Settled out;
     try {
         if (!ended.answer.whole())

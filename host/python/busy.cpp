@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "busy.h"
 
+#include <pthread.h>
+
 #include <condition_variable>
+#include <cstdio>
+#include <cstdlib>
 #include <mutex>
 
 #include "topple/error.h"
@@ -17,8 +21,24 @@ struct State {
 };
 
 // Never destroyed: threads may come here while the process ends.
+State* only = new State;
+
+// A process that is forked off has no threads but one. None are at work in it; and it ends without
+// the libraries' own ends, of which those that wait for their threads, as log4cplus' does, would
+// wait for ever.
+void begin_anew() {
+    only = new State;
+    ::on_exit(
+        [](int status, void*) {
+            std::fflush(nullptr);
+            std::_Exit(status);
+        },
+        nullptr);
+}
+
+[[maybe_unused]] const int at_fork = ::pthread_atfork(nullptr, nullptr, begin_anew);
+
 State& state() {
-    static State* const only = new State;
     return *only;
 }
 

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <pybind11/numpy.h>
+
 #include <string>
+#include <string_view>
 
 #include "busy.h"
+#include "child/confine.h"
+#include "core/printable.h"
 #include "python.h"
 #include "topple/option_names.h"
 #include "topple/stages.h"
@@ -83,11 +88,27 @@ void bind_devices(py::module_& module) {
     });
 }
 
+// For the Python files alone.
+void bind_shared(py::module_& module) {
+    module.def("printable", [](const py::bytes& text, std::size_t most) {
+        return printable(static_cast<std::string_view>(text), most);
+    });
+    module.def("confine", [](const std::vector<std::string>& read,
+                             const std::vector<std::string>& write, long parent) {
+        child::end_with(parent);
+        child::confine({{read.begin(), read.end()}, {write.begin(), write.end()}});
+    });
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_topple, module) {
+    // What pybind11 takes of NumPy it looks up once, behind a lock, and importing lets go of the
+    // interpreter's meanwhile: two threads at their first array would each wait for the other's.
+    py::detail::npy_api::get();
     module.attr("__version__") = version;
     bind_error(module);
+    bind_shared(module);
     bind_devices(module);
     bind_result(module);
     bind_parse(module);

@@ -87,7 +87,7 @@ std::shared_ptr<Parsed> run(const std::shared_ptr<SharedDevice>& device, ParseOp
     options.progress = [&](const std::string& stage, double done) { caller.progress(stage, done); };
     options.cancelled = [&] { return caller.cancelled(); };
     options.notice = [&](const std::string& line) { caller.notice(line); };
-    if (device) options.device = device->device;
+    if (device) options.device = device->here();
     auto out = std::make_shared<Parsed>();
     try {
         const Busy busy;

@@ -4,10 +4,13 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <unistd.h>
 
 #include <memory>
 #include <string>
+#include <utility>
 
+#include "topple/error.h"
 #include "topple/parse.h"
 
 // What the parts of the Python module share.
@@ -15,8 +18,25 @@ namespace topple::python {
 
 namespace py = pybind11;
 
+// A device's threads, and its driver's, are not in a process that was forked from its own.
 struct SharedDevice {
+    SharedDevice() = default;
+    SharedDevice(const SharedDevice&) = delete;
+    SharedDevice& operator=(const SharedDevice&) = delete;
+    ~SharedDevice() {
+        // It would wait for its threads; so it stays.
+        if (process != ::getpid()) new std::shared_ptr(std::move(device));
+    }
+    const std::shared_ptr<device::Device>& here() const {
+        if (process != ::getpid())
+            throw Error(ErrorKind::usage,
+                        "the device was opened by another process, from which this one was forked; "
+                        "open it here, by topple.open_device()");
+        return device;
+    }
+
     std::shared_ptr<device::Device> device;
+    const pid_t process = ::getpid();
 };
 
 // A result that arrays borrow from: it lives as long as the last of them.

@@ -56,7 +56,7 @@ py::list barriers(const std::vector<PyBody>& given, double resolution_m, const D
                           center_of_mass_m});
     }
     std::vector<stages::Barrier> found =
-        unlocked([&] { return stages::barriers(*device->device, bodies, resolution_m); });
+        unlocked([&] { return stages::barriers(*device->here(), bodies, resolution_m); });
     py::list out;
     for (const stages::Barrier& b : found) {
         std::vector<double> curve;
@@ -91,13 +91,13 @@ void bind_volume(py::module_& module) {
                      std::ranges::copy(pose.subspan(16 * n, 16), frames[n].camera_to_world.begin());
                  }
                  const auto volume = alone(self);
-                 unlocked([&] { self->volume.carve(*device->device, intrinsics, frames); });
+                 unlocked([&] { self->volume.carve(*device->here(), intrinsics, frames); });
              })
         .def("fill",
              [](const Volume& self, unsigned votes, const std::vector<std::int32_t>& hollow,
                 const Device& device) {
                  const auto volume = alone(self);
-                 return unlocked([&] { return self->volume.fill(*device->device, votes, hollow); });
+                 return unlocked([&] { return self->volume.fill(*device->here(), votes, hollow); });
              })
         .def("state_at",
              [](const Volume& self, const py::array& i, const py::array& j, const py::array& k) {
@@ -139,7 +139,7 @@ void bind_stages(py::module_& parent) {
         const auto nx = row<float>(out.at(0), "out"), ny = row<float>(out.at(1), "out"),
                    nz = row<float>(out.at(2), "out");
         unlocked([&] {
-            stages::normals(*device->device, view, cell_m, eye_m ? &*eye_m : nullptr, nx, ny, nz);
+            stages::normals(*device->here(), view, cell_m, eye_m ? &*eye_m : nullptr, nx, ny, nz);
         });
     });
     module.def(
@@ -150,7 +150,7 @@ void bind_stages(py::module_& parent) {
                                       d = coordinates(directions, "directions");
             const auto starts = row<const std::uint64_t>(first, "first");
             const stages::Array<float> values(row<float>(out, "out"));
-            unlocked([&] { stages::support_functions(*device->device, v, starts, d, values); });
+            unlocked([&] { stages::support_functions(*device->here(), v, starts, d, values); });
         });
     module.def("barriers", barriers);
     module.def("label_spots", [](const std::vector<py::array>& cells, const py::array& label,
@@ -179,7 +179,7 @@ void bind_stages(py::module_& parent) {
         for (std::size_t n = 0; n < weight.size(); ++n)
             entries.push_back({dx[n], dy[n], weight[n]});
         const stages::MapShape map{width, height, directions, 0};
-        unlocked([&] { stages::convolve(*device->device, map, from, entries, starts, to); });
+        unlocked([&] { stages::convolve(*device->here(), map, from, entries, starts, to); });
     });
     bind_volume(module);
 }

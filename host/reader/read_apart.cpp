@@ -35,6 +35,21 @@ child::Limits limits_of(const std::filesystem::path& file) {
     return limits;
 }
 
+// What a child answered, who knows the file by another name.
+ScannedMap named_as_here(const child::Answer& answer, const std::filesystem::path& there,
+                         const std::filesystem::path& file) {
+    try {
+        ScannedMap map = take_scan(answer);
+        map.cloud.source = io::path_text(file);
+        return map;
+    } catch (const Error& error) {
+        std::string text = error.what();
+        const std::string name = io::path_text(there);
+        if (text.starts_with(name)) text.replace(0, name.size(), io::path_text(file));
+        throw Error(error.kind(), text);
+    }
+}
+
 }  // namespace
 
 ScannedMap read_scan_apart(const std::filesystem::path& file, double unit_m,
@@ -54,15 +69,16 @@ ScannedMap read_scan_apart(const std::filesystem::path& file, double unit_m,
                         "you trust, say ParseOptions::isolate = false");
     }
     const child::Limits limits = limits_of(file);
+    const std::filesystem::path there = std::filesystem::absolute(file);
     const child::Ended ended =
-        child::run(program.string(), {"scan", unit_text(unit_m), file.string()}, limits, poll);
+        child::run(program.string(), {"scan", unit_text(unit_m), there.string()}, limits, poll);
     if (!ended.started)
         throw Error(ErrorKind::input, io::path_text(file) + ": is read by another program, and " +
                                           ended.how +
                                           "; or, for a file that you trust, say "
                                           "ParseOptions::isolate = false");
     try {
-        if (ended.answer.whole()) return take_scan(ended.answer);
+        if (ended.answer.whole()) return named_as_here(ended.answer, there, file);
     } catch (const child::BadAnswer&) {
     }
     io::fail(file, "can't be read: its reader " +

@@ -116,7 +116,6 @@ ScannedMap take_scan(const child::Answer& answer) {
     in.finish();
     check(map.cloud);
     check(map.space);
-    map.cloud.source = io::printable(map.cloud.source, 4096);
     for (std::string& note : map.cloud.notes) note = io::printable(note, 8192);
     return map;
 }

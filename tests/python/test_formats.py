@@ -100,7 +100,7 @@ def test_e57(device, tmp_path):
 
 def test_e57_of_one_scan_knows_its_scanner(points, device, tmp_path):
     eye = np.array([0.3, 0.4, 1.3])
-    scan = topple.formats.e57.read(e57(tmp_path / 'one.e57', [(points - eye, [1, 0, 0, 0], eye)]))
+    scan = topple.formats.e57.read(e57(tmp_path / 'one.e57', [(points - eye, [1, 0, 0, 0], eye)]), topple.formats.Options())
     assert np.allclose(scan.viewpoint, eye) and np.abs(scan.points - points).max() < 1e-6
     assert (scan.colours == colours_of(points - eye)).all()
     result = parsed(tmp_path / 'one.e57', device)
@@ -145,7 +145,8 @@ def test_colmap_sparse(points, ply, device, tmp_path, binary):
     result = parsed(tmp_path / 'scan', device)
     same_objects(result, ply, within=0.0 if binary else 1e-3)
     assert any('sparse' in note for note in result.notes)
-    alone = topple.formats.colmap.read_points(model / ('points3D.bin' if binary else 'points3D.txt'))
+    file = topple.formats.colmap.read_file(model / ('points3D.bin' if binary else 'points3D.txt'))
+    alone = topple.formats.colmap.points_of(file)
     assert np.abs(alone.points - points).max() < 1e-6 and (alone.colours == colours_of(points)).all()
 
 
@@ -308,17 +309,16 @@ def test_record3d_of_a_sensor_on_its_side():
 
 def test_what_crashes_crashes_apart(points, device, tmp_path, monkeypatch):
     """A reader that dies, or takes more than it may, is an Error that names the file."""
-    (tmp_path / 'sitecustomize.py').write_text(
-        'import os, sys\n'
-        'class Dies:\n'
-        '    def find_spec(self, name, path=None, target=None):\n'
-        '        if name == "lazrs": os.abort()\n'
-        '        if name == "pye57": bytearray(1 << 40)\n'
-        'sys.meta_path.insert(0, Dies())\n')
-    monkeypatch.setattr(sys, 'path', [str(tmp_path), *sys.path])
-    for name, part in (('room.laz', 'SIGABRT'), ('room.e57', 'address space')):
-        (tmp_path / name).write_bytes(b'LASF')
-        refused(tmp_path / name, device, part)
+    packages, scans = tmp_path / 'packages', tmp_path / 'scans'
+    packages.mkdir()
+    scans.mkdir()
+    monkeypatch.setattr(sys, 'path', [str(packages), *sys.path])
+    for package, code, name, part in (('lazrs', 'import os; os.abort()', 'room.laz', 'SIGABRT'),
+                                      ('pye57', 'bytearray(1 << 40)', 'room.e57', 'memory'),
+                                      ('rosbags', 'import os; os._exit(7)', 'room.bag', 'exit code 7')):
+        (packages / f'{package}.py').write_text(code)
+        (scans / name).write_bytes(b'LASF')
+        refused(scans / name, device, part)
 
 
 def test_a_conversion_is_cancelled(points, device, tmp_path):

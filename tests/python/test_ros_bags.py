@@ -10,6 +10,7 @@ import topple.formats
 from made_scans import CAMERA, POSES, colours_of, parsed, quaternion, refused, same_objects, truncated
 from topple.formats import ros_bag
 from topple.formats.frames import png
+from topple.formats.limits import Budget
 from topple.formats.transforms import Transforms
 
 rosbags = pytest.importorskip('rosbags')
@@ -162,8 +163,9 @@ def test_compressed_depth_images(walk, tmp_path, kind, within):
             depth = walk[time // SECOND - 1][1]
             topic, name, message = f'{topic}/compressedDepth', 'sensor_msgs/msg/CompressedImage', packed_image(time, depth, kind)
         packed.append((topic, name, time, message))
-    with ros_bag.Bag(write_bag(tmp_path / 'packed', 'mcap', packed)) as bag:
-        seen = [ros_bag._depth(message, bag.path) for _, message in bag.messages('/camera/depth/image_raw/compressedDepth')]
+    path = write_bag(tmp_path / 'packed', 'mcap', packed)
+    with ros_bag.Bag(path, Budget(path, topple.formats.Options())) as bag:
+        seen = [ros_bag._depth(message, bag.path, bag.budget) for _, message in bag.messages('/camera/depth/image_raw/compressedDepth')]
     for got, (_, depth) in zip(seen, walk):
         assert got == pytest.approx(depth, rel=within)
     done = topple.formats.convert(tmp_path / 'packed', tmp_path / 'out')

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "child/confine.h"
 #include "child/process.h"
 #include "mujoco/message.h"
 #include "mujoco/running.h"
@@ -30,6 +31,7 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "topple-mujoco %s belongs to topple, which runs it\n", version);
         return 2;
     }
+    child::confine({{std::filesystem::path(task[3]).parent_path()}, {}});
     mujoco::Running::set_on_error(tell_error);
     mujoco::Running running(task[3]);
     if (!running.trouble().empty()) tell_error(running.trouble().c_str());

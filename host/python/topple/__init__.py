@@ -17,6 +17,7 @@ import os
 import threading
 from typing import NamedTuple
 
+from . import _interpreter  # before what it keeps out of other interpreters
 import numpy as np
 
 from . import _described, _labels, _removal, _shown, _snapshot, _spots, _tables, _topple, formats, plot, stages
@@ -269,9 +270,13 @@ def _files(given):
 
 def _file(name, given):
     try:
-        return os.fspath(given)
-    except TypeError:
+        given = os.fspath(given)
+        given.encode()
+        return given
+    except (TypeError, AttributeError):
         raise _usage(f'{name}: expected a file, not {given!r}'[:200]) from None
+    except UnicodeEncodeError:
+        raise _usage(f'{name}: the name {given} is no UTF-8; rename the file') from None
 
 
 def _corrections_text(corrections):
@@ -388,16 +393,17 @@ def parse(source=None, *, device=None, voxel_m=0.0, unit_m=1.0, up=None, disturb
     if frames is None and not (camera_to_world is None and intrinsics is None and colour_intrinsics is None):
         raise _usage('camera_to_world, intrinsics and colour_intrinsics are for frames in memory')
     if isinstance(source, (str, os.PathLike)):
+        source = _file('source', source)
         if normals is not None or viewpoint is not None or colours is not None or name is not None:
             raise _usage('normals, colours, viewpoint and name are for points in memory; a file brings its own')
         with formats.opened(source, formats.Options(unit_m=unit_m, isolate=isolate), cancelled) as converted:
             if converted is None:
-                parsed = _topple.parse_path(os.fspath(source), device, options, progress, cancelled)
-                return Result(parsed, None, frames=os.fspath(source))
+                parsed = _topple.parse_path(source, device, options, progress, cancelled)
+                return Result(parsed, None, frames=source)
             if converted.is_sequence:
                 options.unit_m = 1.0
             parsed = _topple.parse_path(os.fspath(converted.path), device, options, progress, cancelled)
-            _topple.came_from(parsed, os.fspath(source), converted.notes, list(converted.offset * unit_m))
+            _topple.came_from(parsed, source, converted.notes, list(converted.offset * unit_m))
             converted.needed_by = result = Result(parsed, None, frames=os.fspath(converted.path))
             return result
     if name is None:

@@ -5,11 +5,24 @@ import warnings
 
 import numpy as np
 
+from . import _topple
 from ._topple import Error
 
 
+MOST_ROWS = 2 ** 32 - 1
+
+
+def printable(text, most=8192):
+    """As core/printable.h has it: what a file says may steer a terminal."""
+    try:
+        raw = text.encode('utf-8', 'surrogateescape')
+    except UnicodeEncodeError:
+        raw = text.encode('utf-8', 'surrogatepass')
+    return _topple.printable(raw, most)
+
+
 def error(kind, message):
-    made = Error(message)
+    made = Error(printable(message))
     made.kind = kind
     return made
 
@@ -26,9 +39,14 @@ def warn(message):
     warnings.warn(message, RuntimeWarning, stacklevel=level)
 
 
+def is_masked(source):
+    """Without importing what NumPy keeps for later: where nobody has, there is no such array."""
+    return isinstance(source, getattr(sys.modules.get('numpy.ma'), 'MaskedArray', ()))
+
+
 def as_array(source, name):
     """A NumPy array of the same memory, of whatever has __dlpack__ too. What is masked is NaN."""
-    if isinstance(source, np.ma.MaskedArray):
+    if is_masked(source):
         return _unmasked(source, name)
     if hasattr(source, '__dlpack__') and not isinstance(source, np.ndarray):
         try:
@@ -95,7 +113,14 @@ def column(values, name, variable):
     values = as_array(values, name)
     if values.ndim != 1 or values.dtype.kind != 'f':
         raise wrong_array(values, name, '(N,)', variable)
-    return values if values.dtype == np.float32 else values.astype(np.float32)
+    return _as_float32(values, name)
+
+
+def _as_float32(values, name):
+    """Where it lies, if it is that already, and lies as C++ takes it."""
+    if len(values) > MOST_ROWS:  # of one row that stands for all, say, which takes no memory
+        raise usage(f'{name}: {len(values)} rows; {MOST_ROWS} are the most')
+    return values if values.dtype == np.float32 and values.flags.aligned else values.astype(np.float32)
 
 
 def columns(source, names, what):
@@ -114,8 +139,7 @@ def columns(source, names, what):
     if source.ndim != 2 or source.shape[1] != 3 or source.dtype.kind != 'f':
         raise wrong_array(source, what, '(N, 3)', what,
                           '[:, :3]' if source.ndim == 2 and source.shape[1] > 3 and source.shape[0] != 3 else '', given)
-    if source.dtype != np.float32:
-        source = source.astype(np.float32)
+    source = _as_float32(source, what)
     return [source[:, axis] for axis in range(3)]
 
 

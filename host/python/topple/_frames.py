@@ -3,13 +3,13 @@
 import numpy as np
 
 from . import _topple
-from ._arrays import as_array, error, exactly, usage
+from ._arrays import as_array, error, exactly, is_masked, usage
 from .stages import camera
 
 
 def _depth(source, name):
     """(height, width) uint16 or float32, its rows without gaps."""
-    if isinstance(source, np.ma.MaskedArray) and source.dtype.kind == 'u':
+    if is_masked(source) and source.dtype.kind == 'u':
         source = source.filled(0)
     values = as_array(source, name)
     if values.ndim != 2 or (values.dtype.kind != 'f' and values.dtype != np.uint16):

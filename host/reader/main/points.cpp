@@ -6,8 +6,10 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "child/confine.h"
 #include "child/process.h"
 #include "device/listing_message.h"
+#include "io/text.h"
 #include "reader/answer_scan.h"
 #include "reader/read_scan.h"
 #include "topple/version.h"
@@ -17,6 +19,11 @@ using namespace topple;
 int main(int argc, char** argv) {
     const std::vector<std::string> task = child::accept_task(argc, argv);
     if (task.size() == 3 && task[0] == "scan") {
+        // A glTF has files of its own, in its folder.
+        const std::filesystem::path scan = task[2];
+        child::confine(
+            {{io::lower_case(scan.extension().string()) == ".gltf" ? scan.parent_path() : scan},
+             {}});
         reader::answer_scan(task[1], task[2], [](const std::filesystem::path& file, double unit_m) {
             return reader::read_points(file, unit_m, [] {});
         });

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "child/confine.h"
 #include "child/process.h"
 #include "reader/answer_scan.h"
 #include "topple/version.h"
@@ -20,6 +21,7 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "topple-volume-reader %s belongs to topple, which runs it\n", version);
         return 2;
     }
+    child::confine({{task[2]}, {}});
     // Threads would reserve address space for their stacks, and nothing here gains by them.
     const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
     reader::answer_scan(task[1], task[2], vdb::read_volume);

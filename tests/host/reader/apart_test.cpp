@@ -166,6 +166,33 @@ TEST_F(Apart, devices_are_listed_where_the_reader_does_not_start) {
                                       testing::Each(testing::HasSubstr("raise the limits"))));
 }
 
+// A file may be named from the current folder, which the reader does not get.
+TEST_F(Apart, a_reader_has_another_folder_and_little_of_the_environment) {
+    const auto file = write("a.obj", test::box_obj()), broken = write("b.obj", "f 1 2 9\n");
+    const std::filesystem::path near = std::filesystem::relative(file);
+    EXPECT_EQ(read_scan_apart(near, 1, {}).cloud.source, near.string());
+    expect_input_error([&] { read_scan_apart(std::filesystem::relative(broken), 1, {}); },
+                       {std::filesystem::relative(broken).string() + ": "});
+    setenv("PYTHONPATH", ".", 1);
+    setenv("LD_PRELOAD", "", 1);
+    setenv("LANG", "C", 1);
+    take_script("{ pwd; tr '\\0' '\\n' < /proc/self/environ; } > " + path("told").string());
+    EXPECT_ANY_THROW(read_scan_apart(file, 1, {}));
+    unsetenv("PYTHONPATH");
+    unsetenv("LD_PRELOAD");
+    std::ifstream told(path("told"));
+    std::string folder, line;
+    std::getline(told, folder);
+    EXPECT_EQ(folder, "/");
+    bool language = false;
+    while (std::getline(told, line)) {
+        language |= line == "LANG=C";
+        for (const char* name : {"PYTHONPATH=", "LD_PRELOAD=", "PATH=", "HOME=", "TOPPLE_READERS="})
+            EXPECT_FALSE(line.starts_with(name)) << line;
+    }
+    EXPECT_TRUE(language);
+}
+
 TEST_F(Apart, what_polls_ends_it) {
     take_script("exec sleep 100");
     const auto file = write("a.obj", test::box_obj());

@@ -6,6 +6,7 @@ writes what topple reads itself into a folder, a cloud's file or a sequence of d
 what to add to its coordinates to have the scan's own (None: nothing). Packages that a format takes are imported when it is met."""
 import contextlib
 import dataclasses
+import os
 import pathlib
 import shutil
 import tempfile
@@ -15,7 +16,8 @@ from typing import List, Optional
 import numpy as np
 
 from . import apart, colmap, e57, laz, polycam, record3d, ros_bag
-from .errors import Error, wrong
+from .._arrays import printable
+from .errors import Error, reading, wrong
 
 FORMATS = (laz, e57, ros_bag, colmap, polycam, record3d)
 NOTES = 'topple-notes.txt'  # as host/io/scan_notes.h has it
@@ -49,11 +51,15 @@ def format_of(path):
     of the known exports."""
     path = pathlib.Path(path)
     try:
-        if not path.exists() or (path / 'intrinsics.json').exists():  # topple's own folder of frames
+        if not path.exists():
+            return None
+        if not (path.is_file() or path.is_dir()):
+            raise wrong(path, 'is no regular file')
+        if (path / 'intrinsics.json').exists():  # topple's own folder of frames
             return None
         found = next((module for module in FORMATS if module.recognises(path)), None)
-    except OSError as error:
-        raise wrong(path, error.strerror or str(error)) from None
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
+        raise wrong(path, getattr(error, 'strerror', None) or str(error)) from None
     if found is None and path.suffix.lower() == '.zip' and path.is_file():
         raise wrong(path, "is no raw data of Polycam (keyframes/depth/) and no EXR export of Record3D (metadata.json, depth/, rgb/); "
                           'unpack it, and give the scan that is in it')
@@ -76,8 +82,9 @@ def opened(path, options=Options(), cancelled=None):
         if options.isolate:
             place, notes, offset = apart.convert(module, path, folder, options, cancelled)
         else:
-            with np.errstate(all='ignore'):  # of damaged numbers; a library says nothing
+            with reading(path, module.FORMAT), np.errstate(all='ignore'):  # of damaged numbers; a library says nothing
                 place, notes, offset = module.convert(path, folder, options)
+            notes = [printable(note) for note in notes]
         if place.is_dir() and options.unit_m != 1 and module is not colmap:
             raise wrong(path, f'unit_m is for clouds and COLMAP; the depth of a {module.FORMAT} is in metres', 'usage')
         converted = Converted(place, notes, np.zeros(3) if offset is None else offset, module.FORMAT)
@@ -100,7 +107,7 @@ def convert(path, out, options=Options()):
     OUT.topple-notes.txt beside the file, where each parse of the scan takes them from. Returns the Converted. Raises topple.Error; out
     must not be there yet, and appears whole or not at all."""
     path, out = pathlib.Path(path), pathlib.Path(out)
-    if out.exists():
+    if os.path.lexists(out):
         raise wrong(out, 'is there already; name another, or delete it', 'usage')
     if not out.absolute().parent.is_dir():
         raise wrong(out, 'its folder is not there', 'usage')
@@ -110,25 +117,28 @@ def convert(path, out, options=Options()):
         if converted is None:
             raise wrong(path, 'needs no conversion: topple reads it itself, or not at all' if path.exists() else 'is not there')
         _check_ending(out, converted)
-        beside = tempfile.mkdtemp(prefix='.topple-', dir=out.absolute().parent)
-        try:
-            kept = pathlib.Path(beside) / 'scan'
-            (shutil.copytree if converted.is_sequence else shutil.copyfile)(converted.path, kept)
-            _keep_notes(kept, out, converted)
-            kept.rename(out)
-        finally:
-            shutil.rmtree(beside)
+        with reading(out, 'place to write to'):
+            beside = tempfile.mkdtemp(prefix='.topple-', dir=out.absolute().parent)
+            try:
+                kept = pathlib.Path(beside) / 'scan'
+                (shutil.copytree if converted.is_sequence else shutil.copyfile)(converted.path, kept)
+                _keep_notes(kept, out, converted)
+                kept.rename(out)
+            finally:
+                shutil.rmtree(beside)
         return dataclasses.replace(converted, path=out)
 
 
 def _keep_notes(kept, out, converted):
     """The notes, a line each, where topple looks for them: before the scan is there, so that no parse of it misses them."""
     text = ''.join(' '.join(note.split()) + '\n' for note in converted.notes)
-    file = kept / NOTES if converted.is_sequence else out.with_name(f'{out.name}.{NOTES}')
+    place = kept / NOTES if converted.is_sequence else out.with_name(f'{out.name}.{NOTES}')
     if text:
-        file.write_text(text, encoding='utf-8')
+        made = kept.with_name(NOTES)
+        made.write_text(text, encoding='utf-8')
+        made.replace(place)  # whatever is there, a link to another file, say
     else:
-        file.unlink(missing_ok=True)  # of another scan that had this name
+        place.unlink(missing_ok=True)  # of another scan that had this name
 
 
 def _check_ending(out, converted):

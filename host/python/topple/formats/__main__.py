@@ -3,6 +3,7 @@
 import argparse
 import sys
 
+from .._arrays import printable
 from . import Options, convert
 from .errors import Error
 
@@ -27,7 +28,7 @@ def main():
         return EXIT_CODES.get(error.kind, 1)
     for note in converted.notes:
         print(note)
-    print(converted.path)
+    print(printable(str(converted.path)))
     return 0
 
 

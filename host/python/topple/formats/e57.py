@@ -4,6 +4,7 @@ import numpy as np
 
 from .cloud import Cloud, write_cloud
 from .errors import needs, reading, wrong
+from .limits import Budget
 
 FORMAT = 'E57 file'
 COLOURS = ('colorRed', 'colorGreen', 'colorBlue')
@@ -13,9 +14,11 @@ def recognises(path):
     return path.is_file() and path.suffix.lower() == '.e57'
 
 
-def _scan(file, index, notes):
+def _scan(file, index, notes, budget):
     """Points (N, 3), colours (N, 3) or None, and the scanner's place or None, in the file's frame."""
     header = file.get_header(index)
+    # Each is read as a double, and put together with the others.
+    budget.take(8 * header.point_count * len(header.point_fields), f'scan {index}, of {header.point_count} points,')
     coloured = all(name in header.point_fields for name in COLOURS)
     try:
         data = file.read_scan(index, colors=coloured, ignore_missing_fields=True)
@@ -31,14 +34,14 @@ def _scan(file, index, notes):
     return points, colours, np.array(header.translation, float) if own else None
 
 
-def read(path, unit_m=1.0):
+def read(path, options):
     """The Cloud of all scans."""
     pye57 = needs('pye57', 'pye57', path)
-    notes = []
+    notes, budget = [], Budget(path, options)
     with reading(path, FORMAT):
         file = pye57.E57(str(path))
         try:
-            scans = [_scan(file, index, notes) for index in range(file.scan_count)]
+            scans = [_scan(file, index, notes, budget) for index in range(file.scan_count)]
         finally:
             file.close()
     scans = [scan for scan in scans if len(scan[0])]
@@ -58,11 +61,11 @@ def read(path, unit_m=1.0):
         viewpoint = np.concatenate([np.tile(np.full(3, np.nan) if place is None else place, (len(p), 1))
                                     for (p, _, _), place in zip(scans, places)])
     return Cloud(np.concatenate([p for p, _, _ in scans]), colours, None if unplaced == len(scans) else viewpoint,
-                 notes=notes).moved_near(unit_m)
+                 notes=notes).moved_near(options.unit_m)
 
 
 def convert(path, folder, options):
-    cloud = read(path, options.unit_m)
+    cloud = read(path, options)
     out = folder / f'points{options.ending}'
     write_cloud(out, cloud, path)
     return out, cloud.notes, cloud.offset

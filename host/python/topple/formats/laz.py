@@ -4,6 +4,8 @@ import os
 import struct
 
 from .errors import needs, reading, wrong
+from .limits import Budget
+from .scan_folder import regular
 
 FORMAT = 'LAZ file'
 PORTION = 1_000_000  # points at a time
@@ -15,7 +17,7 @@ def recognises(path):
 
 def _check_header(path):
     """That the records before and after the points fit into the file: laspy goes through as many as are promised, at its end too."""
-    with reading(path, FORMAT), open(path, 'rb') as file:
+    with reading(path, FORMAT), regular(path) as file:
         size = os.fstat(file.fileno()).st_size
         head = file.read(375)
         if head[:4] != b'LASF':
@@ -36,6 +38,10 @@ def convert(path, folder, options):
     out = folder / 'points.las'
     with reading(path, FORMAT), laspy.open(path) as packed:
         promised, read = packed.header.point_count, 0
+        # Of a cloud-optimised one (COPC) the points lie in another order, which these records tell, and laspy does not write.
+        for record in [record for record in packed.header.vlrs if record.user_id == 'copc']:
+            packed.header.vlrs.remove(record)
+        Budget(path, options).take(promised * packed.header.point_format.size, f'its {promised} points')
         with laspy.open(out, mode='w', header=packed.header) as unpacked:
             for points in packed.chunk_iterator(PORTION):
                 unpacked.write_points(points)

@@ -2,12 +2,12 @@
 """Polycam's raw data of phones with LiDAR, as a zip archive or a folder: keyframes with depth and poses.
 
 Poses are Polycam's corrected ones where there are any. Depth beyond 5 m, and what the phone itself trusts least, is left out."""
-import io
-
 import numpy as np
 
-from .errors import needs, reading, wrong
+from . import images as pictures
+from .errors import reading, wrong
 from .frames import Camera, FrameFolder, by_phone, from_graphics
+from .limits import Budget
 from .packed_folder import PackedFolder, holds
 
 FORMAT = 'Polycam export'
@@ -19,13 +19,7 @@ def recognises(path):
 
 
 def _image(path, export, name):
-    """A grey PNG as an array (height, width) of integers."""
-    image = needs('PIL.Image', 'pillow', path)
-    with reading(path, f'export with a sound {name}'):
-        values = np.array(image.open(io.BytesIO(export.read(name))))
-        if values.ndim != 2 or values.dtype.kind not in 'ui':
-            raise wrong(path, f'{name} is no grey image')
-        return values.astype(np.int64)
+    return pictures.grey(export.read(name), path, name, export.budget)
 
 
 def _camera(path, export, name):
@@ -39,7 +33,7 @@ def _camera(path, export, name):
 
 def convert(path, folder, options):
     notes, depthless = [], 0
-    with PackedFolder(path, DEPTH) as export:
+    with PackedFolder(path, DEPTH, Budget(path, options)) as export:
         corrected = export.list('keyframes/corrected_cameras/', '.json')
         cameras = 'keyframes/corrected_cameras/' if corrected else 'keyframes/cameras/'
         images = 'keyframes/corrected_images/' if corrected else 'keyframes/images/'

@@ -8,6 +8,7 @@ import numpy as np
 
 from .errors import needs, reading, wrong
 from .frames import Camera, FrameFolder, by_phone, from_graphics, pose
+from .limits import Budget
 from .packed_folder import PackedFolder, holds
 
 FORMAT = 'Record3D recording'
@@ -38,13 +39,19 @@ def _camera(width, height, fx, fy, cx, cy):
     return Camera(width, height, fy, fx, cy, cx) if across < abs(cx - width / 2) + abs(cy - height / 2) else Camera(width, height, fx, fy, cx, cy)
 
 
-def _exr(path, name, data):
+def _exr(path, name, data, budget):
     """The one channel of an EXR image, float32, metres."""
     openexr = needs('OpenEXR', 'OpenEXR', path)
     with tempfile.TemporaryDirectory(prefix='topple-') as place:  # OpenEXR reads files only
         file = os.path.join(place, 'depth.exr')
         with open(file, 'wb') as out:
             out.write(data)
+        try:
+            window = openexr.File(file, header_only=True).header()['dataWindow']
+            width, height = (int(high) - int(low) + 1 for low, high in zip(*window))
+        except Exception:
+            raise wrong(path, f'{name} is no EXR image, cut short or damaged') from None
+        budget.take(16 * width * height, f'{name}, of {width} x {height} pixels,')
         try:
             channels = openexr.File(file, separate_channels=True).channels()
         except Exception:  # which would tell of the temporary file
@@ -60,9 +67,9 @@ def _numbers(names):
     return sorted((int(name) for name in names if name.isdigit()))
 
 
-def _recording(path, folder):
+def _recording(path, folder, budget):
     lzfse = needs('liblzfse', 'pyliblzfse', path)
-    with PackedFolder(path, 'metadata') as export:
+    with PackedFolder(path, 'metadata', budget) as export:
         metadata = export.json('metadata')
         numbers = _numbers(export.list('rgbd/', '.depth'))
         with reading(path, FORMAT):
@@ -71,6 +78,7 @@ def _recording(path, folder):
         def unpacked(name, kind):
             with reading(path, f'recording with a sound {name}'):
                 values = np.frombuffer(lzfse.decompress(export.read(name)), kind)
+                budget.take(values.nbytes, name)
                 if values.size != width * height:
                     raise wrong(path, f'{name} has {values.size} values for {width} x {height} pixels')
                 return values.reshape(height, width)
@@ -86,14 +94,14 @@ def _recording(path, folder):
         return folder, frames.finish(), None
 
 
-def _export(path, folder):
-    with PackedFolder(path, 'metadata.json') as export:
+def _export(path, folder, budget):
+    with PackedFolder(path, 'metadata.json', budget) as export:
         metadata = export.json('metadata.json')
         numbers = _numbers(export.list('depth/', '.exr'))
         frames = FrameFolder(folder, path)
         cameras = _cameras(path, metadata, numbers[-1] + 1 if numbers else 0)
         for number in numbers:
-            depth = _exr(path, f'depth/{number}.exr', export.read(f'depth/{number}.exr'))
+            depth = _exr(path, f'depth/{number}.exr', export.read(f'depth/{number}.exr'), budget)
             camera, camera_to_world = cameras[number]
             pictures = [name for name in (f'rgb/{number}.jpg', f'rgb/{number}.png') if export.has(name)]
             frames.add(camera.resized(depth.shape[1], depth.shape[0]), by_phone(depth, None), camera_to_world,
@@ -102,4 +110,5 @@ def _export(path, folder):
 
 
 def convert(path, folder, options):
-    return _recording(path, folder) if path.suffix.lower() == '.r3d' else _export(path, folder)
+    budget = Budget(path, options)
+    return _recording(path, folder, budget) if path.suffix.lower() == '.r3d' else _export(path, folder, budget)

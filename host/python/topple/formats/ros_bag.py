@@ -3,16 +3,19 @@
 
 Depth images with their CameraInfo and tf become frames; where there are none, PointCloud2 becomes a cloud in tf's root."""
 import contextlib
-import io
+import os
 import struct
 from collections import Counter
 
 import numpy as np
 
+from . import images
 from .cloud import Cloud, write_cloud
 from .errors import needs, reading, wrong
 from .frames import Camera, FrameFolder, png
+from .limits import Budget
 from .ros_colour import ColourImages, is_colour
+from .scan_folder import ScanFolder
 from .transforms import Transforms
 
 FORMAT = 'ROS bag'
@@ -30,14 +33,29 @@ def recognises(path):
     return path.suffix.lower() in ('.mcap', '.db3', '.bag')
 
 
+def _check_files(path):
+    """That rosbags, which opens what metadata.yaml names in the folder, is led to no other place."""
+    names = [path.name]
+    if path.is_dir():
+        scan, names = ScanFolder(path), os.listdir(path)
+        for name in names:
+            if not (path / name).is_dir() or (path / name).is_symlink():
+                scan.open(name).close()
+    # SQLite takes the name for an address, of which these are marks.
+    odd = next((name for name in names if '.db3' in name and set('%?#') & set(name)), None)
+    if odd is not None:
+        raise wrong(path, f'the name {odd} has one of % ? #, by which another file may be read; rename it')
+
+
 class Bag:
     """The messages of a bag, decoded."""
 
-    def __init__(self, path):
-        self.path = path
+    def __init__(self, path, budget):
+        self.path, self.budget = path, budget
         highlevel = needs('rosbags.highlevel', 'rosbags', path)
         typesys = needs('rosbags.typesys', 'rosbags', path)
         with reading(path, FORMAT):
+            _check_files(path)
             # Bags before MCAP don't say what their types are; those that are read here never changed.
             self.reader = highlevel.AnyReader([path], default_typestore=typesys.get_typestore(typesys.Stores.LATEST))
             self.reader.open()
@@ -118,7 +136,7 @@ def _colours(bag, depth_topic, depth_frame, transforms):
     if not found:
         return None
     _, _, topic, frame, camera = min(found, key=lambda one: one[:3])
-    return ColourImages(Bag(bag.path), topic, frame, camera)  # a reader goes through one topic at a time
+    return ColourImages(Bag(bag.path, bag.budget), topic, frame, camera)  # a reader goes through one topic at a time
 
 
 def _camera_beside(bag, topic):
@@ -166,16 +184,13 @@ def _camera(info, topic):
     return Camera(info.width, info.height, k[0], k[4], k[2], k[5]), bool(np.any(np.abs(d) > 1e-6))
 
 
-def _unpacked(message, path):
+def _unpacked(message, path, budget):
     """(height, width) in metres of an image that the plugin compressed_depth_image_transport packed: a head of 12 bytes, then a PNG of
     millimetres, or of inverse depth between two constants that are in the head."""
-    image = needs('PIL.Image', 'pillow', path)
     with reading(path, 'bag with sound compressedDepth images'):
         data = bytes(message.data)
         _, a, b = struct.unpack_from('<iff', data)
-        stored = np.array(image.open(io.BytesIO(data[12:])))
-        if stored.ndim != 2:
-            raise wrong(path, 'has a compressedDepth image that is not grey')
+        stored = images.grey(data[12:], path, 'compressedDepth image', budget)
         if message.format.startswith('16UC1'):
             return stored * 0.001
         if message.format.startswith('32FC1'):
@@ -184,10 +199,10 @@ def _unpacked(message, path):
     raise wrong(path, f'has a compressedDepth image of format {message.format}; 16UC1 and 32FC1 are read')
 
 
-def _depth(message, path):
+def _depth(message, path, budget):
     """(height, width) in metres."""
     if hasattr(message, 'format'):
-        return _unpacked(message, path)
+        return _unpacked(message, path, budget)
     if message.encoding not in DEPTH_ENCODINGS:
         raise wrong(path, f'has a depth image of encoding {message.encoding}; 16UC1 and 32FC1 are read')
     kind, metres = DEPTH_ENCODINGS[message.encoding]
@@ -239,16 +254,17 @@ def _frames(bag, folder, topic, others):
         if pose is None:
             unplaced += 1
         elif moved(pose):
-            depth = _depth(message, bag.path)
+            depth = _depth(message, bag.path, bag.budget)
             own = camera.resized(depth.shape[1], depth.shape[0])
             colours = pictures and pictures.of(depth, own, frame, transforms, _time(message.header), recorded)
             coloured += colours is not None
             frames.add(own, depth, pose, None if colours is None else png(colours))
     if unplaced == seen:
         raise wrong(bag.path, f'{topic}: tf does not say where {frame} was when any of its {seen} images was taken')
-    notes = [f'{len(frames.poses)} of the {seen} depth images of {topic} were taken: those before which the camera had moved by '
-             f'{STEP_M * 100:.0f} cm or turned by {np.rad2deg(TURN_RAD):.0f} degrees. Coordinates are in the frame '
-             f'"{transforms.root_of(frame)}".']
+    moves = f'those before which the camera had moved by {STEP_M * 100:.0f} cm or turned by {np.rad2deg(TURN_RAD):.0f} degrees'
+    notes = [f'{len(frames.poses)} of the {seen} depth images of {topic} were taken: '
+             f'{moves if len(frames.poses) > 1 else "by tf the camera stands still, so that one shows what all do"}. Coordinates are in the '
+             f'frame "{transforms.root_of(frame)}".']
     if pictures:
         notes.append(f'{coloured} of them have colours, of the images of {pictures.topic} that are nearest in time.')
     if unplaced:
@@ -333,7 +349,7 @@ def _cloud(bag, topic, others):
 
 
 def convert(path, folder, options):
-    with Bag(path) as bag:
+    with Bag(path, Budget(path, options)) as bag:
         depth, clouds = _depth_topics(bag), bag.topics(CLOUD)
         if depth and options.topic not in clouds:
             topic = _most(depth, options.topic, path, 'depth image')

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What a colour camera of a ROS bag saw of each pixel of a depth image, wherever it sits on the robot."""
-import io
-
 import numpy as np
 
-from .errors import needs, reading, wrong
+from . import images
+from .errors import wrong
 
 RAW = {'rgb8': (3, (0, 1, 2)), 'bgr8': (3, (2, 1, 0)), 'rgba8': (4, (0, 1, 2)), 'bgra8': (4, (2, 1, 0))}  # bytes a pixel, channels
 # Of a camera at 10 Hz or more one is this near in time; one that is farther off saw something else.
@@ -20,12 +19,10 @@ def is_colour(message):
     return 'compressedDepth' not in message.format and any(kind in message.format.lower() for kind in ('jpeg', 'jpg', 'png'))
 
 
-def pixels_of(message, path):
+def pixels_of(message, path, budget):
     """(height, width, 3) uint8."""
     if not hasattr(message, 'encoding'):
-        image = needs('PIL.Image', 'pillow', path)
-        with reading(path, 'bag with sound colour images'):
-            return np.array(image.open(io.BytesIO(bytes(message.data))).convert('RGB'))
+        return images.coloured(bytes(message.data), path, 'colour image', budget)
     size, channels = RAW[message.encoding]
     data = np.asarray(message.data, np.uint8)
     if message.step < message.width * size or len(data) < message.step * message.height or message.height == 0 or message.width == 0:
@@ -79,6 +76,6 @@ class ColourImages:
             if depth_pose is None or colour_pose is None or transforms.root_of(depth_frame) != transforms.root_of(self.frame):
                 return None
             to_colour = np.linalg.inv(colour_pose) @ depth_pose
-        pixels = pixels_of(message, self.bag.path)
+        pixels = pixels_of(message, self.bag.path, self.bag.budget)
         camera = (self.camera or depth_camera).resized(pixels.shape[1], pixels.shape[0])
         return laid_on(depth_m, depth_camera, pixels, camera, to_colour)

@@ -37,6 +37,11 @@ class _Edge:
         order = sorted(range(len(self.times)), key=self.times.__getitem__)
         self.times = [self.times[n] for n in order]
         self.values = [self.values[n] for n in order]
+        # Of what does not move, few messages tell all, however far from them in time.
+        if self.values and not self.fixed:
+            turns, places = (np.array(column) for column in zip(*self.values))
+            if np.allclose(np.abs(turns @ turns[0]), 1, atol=1e-12) and np.allclose(places, places[0], rtol=0, atol=1e-9):
+                self.fixed = self.values[0]
 
     def at(self, time):
         """4 x 4, child to parent; None where no transform is near enough in time."""
