@@ -13,7 +13,6 @@ namespace topple::physics {
 namespace {
 
 constexpr Vec3 as_scanned{0, 0, 1};
-constexpr double alike = 1e-6;  // of unit directions
 
 Landscape of_hull(const HullPolytope& hull, double weight_N, double resolution_m) {
     HullLandscape found = hull_landscape(hull, {.resolution_m = resolution_m, .borders = true});
@@ -45,6 +44,7 @@ std::int32_t insert_pose(const Landscape::Pose& pose, Landscape& l) {
 // What stood is in a pose of its own, however shallow, though the hull by itself would leave it. So
 // is what hangs: its hull's are those in which it could stand.
 void add_pose_as_scanned(bool hangs, Landscape& l) {
+    constexpr double alike = 1e-6;  // of unit directions
     const bool none = l.poses.empty();
     if (hangs || none || dot(l.poses[static_cast<std::size_t>(l.now)].up, as_scanned) < 1 - alike) {
         constexpr double nan = std::numeric_limits<double>::quiet_NaN();
