@@ -5,20 +5,15 @@
 
 namespace topple::graph {
 
-std::vector<Joint> biased_joints(std::span<const Joint> joints, std::int32_t primitives,
+std::vector<Joint> biased_joints(std::span<const Joint> joints, const std::vector<bool>& pinned,
                                  double bias) {
-    std::vector<std::int32_t> likely(static_cast<std::size_t>(primitives), 0);
-    for (const Joint& j : joints) {
-        if (j.log_odds <= 0) continue;
-        ++likely[static_cast<std::size_t>(j.a)];
-        ++likely[static_cast<std::size_t>(j.b)];
-    }
+    const auto free = [&](std::int32_t p) { return !pinned[static_cast<std::size_t>(p)]; };
+    const auto things = static_cast<double>(std::ranges::count(pinned, false));
+    const auto between = static_cast<double>(
+        std::ranges::count_if(joints, [&](const Joint& j) { return free(j.a) && free(j.b); }));
+    const double crowded = things > 0 ? std::max(1.0, 2 * between / things / most_neighbours) : 1;
     std::vector<Joint> out(joints.begin(), joints.end());
-    for (Joint& j : out) {
-        const std::int32_t witnesses =
-            std::min(likely[static_cast<std::size_t>(j.a)], likely[static_cast<std::size_t>(j.b)]);
-        j.log_odds += bias * (1 - 1.0 / std::max(1, witnesses));
-    }
+    for (Joint& j : out) j.log_odds += bias * crowded * crowded * crowded;
     return out;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -9,11 +8,18 @@
 
 namespace topple::graph {
 
+// Surfaces that each meet those around them have fewer neighbours than this, in the mean (Euler's
+// formula for planar graphs); in scans of rooms and tables they have one to five. Where noise
+// breaks surfaces into fragments, joints reach past the nearest, to seven or eight of them, and say
+// the same thing several times.
+inline constexpr double most_neighbours = 6;
+
 // The joints around a primitive look at the same surfaces: they are no independent witnesses, and
-// the sum of their log-odds says too much. Each joint gets bias * (1 - 1 / k), nats, k being how
-// many likely joints (log-odds above 0) that one of its two primitives has that has fewer of them:
-// a joint that is alone is believed as it is. Same order.
-std::vector<Joint> biased_joints(std::span<const Joint> joints, std::int32_t primitives,
+// the sum of their log-odds says too much. Each gets bias * max(1, k / most_neighbours)^3, nats, k
+// being the mean number of neighbours of what is not pinned to the room. All get the same, those
+// that are alone as well: what touches another thing once is no likelier to be a part of it. Same
+// order.
+std::vector<Joint> biased_joints(std::span<const Joint> joints, const std::vector<bool>& pinned,
                                  double bias);
 
 }  // namespace topple::graph

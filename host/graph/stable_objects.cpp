@@ -106,7 +106,7 @@ double standing_cost(const physics::Candidate& c, double noise_m) {
 Grouping group_primitives(const ContactGraph& graph, std::span<const physics::Body> bodies,
                           std::span<const Joint> joints, const ShellOdds& shell,
                           const GroupingOptions& options, unsigned threads) {
-    const std::vector<Joint> biased = biased_joints(joints, graph.primitives, options.joint_bias);
+    const std::vector<Joint> biased = biased_joints(joints, shell.pinned, options.joint_bias);
     const GroupEnergy energy(graph, bodies, biased, shell, options.standing_weight);
     // What is one object for sure is one node.
     const LinkedNodes nodes(graph.primitives, options.links);

@@ -22,10 +22,10 @@ struct ShellOdds {
 
 struct GroupingOptions {
     std::uint64_t seed = 1;
-    // Found on generated rooms that no model was fitted on (docs/testing.md): the weight of S(O, W)
-    // beside the joints' log-odds, and the bias of joints among others (graph/joint_bias.h), nats.
+    // Found on rooms that no model was fitted on (docs/testing.md): the weight of S(O, W) beside
+    // the joints' log-odds, and the bias of each joint (graph/joint_bias.h), nats.
     double standing_weight = 0.3;
-    double joint_bias = -1.5;
+    double joint_bias = -1.2;
     double time_limit_s = 0;  // see SwendsenWangOptions
     std::function<bool()> cancelled;
     KnownLinks links;

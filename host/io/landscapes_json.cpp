@@ -2,6 +2,7 @@
 #include "io/landscapes_json.h"
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 
@@ -40,18 +41,27 @@ Json rounded_vectors(const std::vector<Vec3>& all) {
     return json;
 }
 
-Json places_json(const Landscape::Places& places) {
-    auto energy = Json::array();
-    for (const float value : places.energy_J) {
-        if (std::isnan(value)) {
-            energy.push_back(nullptr);
-        } else if (std::isinf(value)) {
-            energy.push_back(false);
-        } else {
-            energy.push_back(rounded(double{value}, 3));
-        }
+// A line, of which points that are one after rounding are written once.
+Json rounded_line(const std::vector<Vec3>& all) {
+    auto json = Json::array();
+    for (const Vec3& v : all) {
+        Json point = rounded_vector(v);
+        if (json.empty() || point != json.back()) json.push_back(std::move(point));
     }
-    return {{"side", places.side}, {"step_m", places.step_m}, {"energy_J", std::move(energy)}};
+    return json;
+}
+
+Json places_json(const Landscape::Places& places) {
+    auto energy = Json::array(), blocked = Json::array();
+    for (std::size_t n = 0; n < places.energy_J.size(); ++n) {
+        const float value = places.energy_J[n];
+        energy.push_back(std::isfinite(value) ? Json(rounded(double{value}, 3)) : Json(nullptr));
+        if (std::isinf(value)) blocked.push_back(n);
+    }
+    return {{"side", places.side},
+            {"step_m", places.step_m},
+            {"energy_J", std::move(energy)},
+            {"blocked", std::move(blocked)}};
 }
 
 Json landscape_json(const Object& object) {
@@ -68,7 +78,7 @@ Json landscape_json(const Object& object) {
         passes.push_back({{"up", rounded_vector(pass.up)},
                           {"energy_J", rounded_number(pass.energy_J)},
                           {"poses", pass.poses},
-                          {"border", rounded_vectors(pass.border)}});
+                          {"border", rounded_line(pass.border)}});
     }
     return {{"id", object.id},
             {"hull_m", rounded_vectors(l.hull_m)},
@@ -135,10 +145,13 @@ Landscape landscape_of(const Json& json, const std::filesystem::path& file) {
     const Json& places = json.at("places");
     l.places.side = places.at("side").get<std::int32_t>();
     l.places.step_m = places.at("step_m").get<double>();
-    for (const Json& value : places.at("energy_J")) {
-        l.places.energy_J.push_back(value.is_null()      ? nan
-                                    : value.is_boolean() ? std::numeric_limits<float>::infinity()
-                                                         : value.get<float>());
+    for (const Json& value : places.at("energy_J"))
+        l.places.energy_J.push_back(value.is_number() ? value.get<float>() : nan);
+    for (const Json& place : places.value("blocked", Json::array())) {  // not in older outputs
+        const auto n = place.get<std::uint64_t>();
+        if (n >= l.places.energy_J.size())
+            fail(file, "has no place " + std::to_string(n) + ", which something is in the way of");
+        l.places.energy_J[n] = std::numeric_limits<float>::infinity();
     }
     const std::int64_t side = l.places.side;
     if (side < 0 || side * side != static_cast<std::int64_t>(l.places.energy_J.size()))

@@ -8,11 +8,9 @@
 #include <optional>
 #include <string>
 
-#include "physics/body_landscape.h"
-#include "physics/hull_ways.h"
 #include "physics/pose_passes.h"
+#include "physics/standing_hull.h"
 #include "physics/tipping.h"
-#include "physics/weld.h"
 #include "topple/error.h"
 
 namespace topple::physics {
@@ -60,19 +58,6 @@ struct Opening {
     double level_m = 0;
     PosePass pass;
 };
-
-// How far a candidate may rock by what is not known of its contacts, if its footing holds it: two
-// voxels of height over the distance at which it does.
-std::optional<double> dent_angle(const SupportTable::Rows& rows, const Candidate& candidate) {
-    if (candidate.support_polygon.empty() || !(rows.resolution_m > 0)) return std::nullopt;
-    const Vec3& c = candidate.body.center;
-    const double margin = footing(candidate.support_polygon, c[0], c[1]).margin_m;
-    if (!(margin > 0)) return std::nullopt;
-    return std::min(std::atan(2 * rows.resolution_m / std::max(margin, rows.resolution_m)), 0.5);
-}
-bool is_dent(const SupportTable::Rows& rows, double angle, const Vec3& bottom, double depth) {
-    return bottom[2] >= std::cos(angle) && depth <= 2 * rows.resolution_m;
-}
 
 // The direction to start from. It is direction 0, the pose as scanned, but for a candidate whose
 // footing holds it: contacts are known to a voxel or two, so that its hull may seem to rock by an
@@ -134,64 +119,18 @@ Surroundings sampled_surroundings(const Sampled& f, std::span<const Vec3> vertic
             rolls(f)};
 }
 
-// The body as its footing holds it: cut at the height of the support and as wide there as what it
-// stands on. What reaches lower is noise, or hangs beside the end of the support.
-std::vector<Vec3> held_vertices(const Candidate& candidate, std::span<const Vec3> vertices) {
-    const Vec3& c = candidate.body.center;
-    const double level = candidate.support_height_m - c[2];
-    std::vector<Vec3> held;
-    for (const Vec3& v : vertices) held.push_back({v[0], v[1], std::max(v[2], level)});
-    for (const auto& [x, y] : candidate.support_polygon)
-        held.push_back({x - c[0], y - c[1], level});
-    constexpr double alike_m = 1e-5;
-    return welded(held, alike_m);
-}
-
-// Nothing where the vertices have no hull about the centre of mass.
-std::shared_ptr<HullWays> hull_ways(std::span<const Vec3> vertices) {
-    try {
-        return std::make_shared<HullWays>(vertices, Vec3{0, 0, 1});
-    } catch (const Error& error) {
-        if (error.kind() != ErrorKind::input) throw;
-        return nullptr;
-    }
-}
-
 // Of what stood: any small thing is round to within a voxel, so that more than that must tell that
 // it rolls.
 constexpr double least_round = 0.125;  // of the height of its centre of mass
 
-bool is_held(const Candidate& candidate) {
-    const Vec3& c = candidate.body.center;
-    return !candidate.support_polygon.empty() &&
-           footing(candidate.support_polygon, c[0], c[1]).margin_m > 0;
-}
-
-// The ways of a hull that may rock by what is not known of its contacts.
-std::shared_ptr<HullWays> rocking_ways(const SupportTable::Rows& rows, const Candidate& candidate,
-                                       std::span<const Vec3> vertices) {
-    std::shared_ptr<HullWays> ways = hull_ways(vertices);
-    const std::optional<double> angle = dent_angle(rows, candidate);
-    if (!ways || !angle) return ways;
-    const double depth = ways->start_height() - ways->rest_height();
-    if (is_dent(rows, *angle, ways->rest(), depth)) {
-        ways->settle();
-        return ways;
-    }
-    // The hull would fall from a footing that holds the candidate.
-    return hull_ways(held_vertices(candidate, vertices));
-}
-
 std::optional<Surroundings> exact_surroundings(const SupportTable::Rows& rows,
-                                               const Candidate& candidate,
-                                               std::span<const Vec3> vertices, double noise) {
+                                               const Candidate& candidate, double noise) {
     const bool stood = candidate.stood && is_held(candidate);
     const double height = candidate.body.center[2] - candidate.support_height_m;
     // What hangs from above its centre of mass has no hull to turn on.
     if (stood && height <= 0)
         return Surroundings{height, {}, [](const Vec3&) { return std::nullopt; }, false};
-    const std::shared_ptr<HullWays> ways = stood ? hull_ways(held_vertices(candidate, vertices))
-                                                 : rocking_ways(rows, candidate, vertices);
+    const std::shared_ptr<const HullWays> ways = standing_hull(rows, candidate);
     if (!ways) return std::nullopt;
     const bool rolls =
         ways->rolls(stood ? std::min(noise, least_round * ways->start_height()) : noise);
@@ -339,11 +278,11 @@ Stability assess(const SupportTable::Rows& rows, const Candidate& candidate,
                     rows.spacing,
                     resolution,
                     resolution + rows.spacing / 2 * radius};
-    const std::vector<Vec3> vertices = vertices_of(rows, candidate);
     std::optional<Surroundings> found;
     if (passes == Passes::exact)
-        found = exact_surroundings(rows, candidate, vertices, rows.resolution_m + 1e-7 * radius);
-    const Surroundings around = found ? std::move(*found) : sampled_surroundings(f, vertices);
+        found = exact_surroundings(rows, candidate, rows.resolution_m + 1e-7 * radius);
+    const Surroundings around =
+        found ? std::move(*found) : sampled_surroundings(f, vertices_of(rows, candidate));
 
     Stability result;
     std::vector<TippingWay> ways;

@@ -87,12 +87,15 @@ std::vector<HullPass> make_passes(const HullPolytope& hull, const MergeTree& tre
 
 HullLandscape hull_landscape(std::span<const Vec3> points, const Vec3& center_of_mass,
                              const HullOptions& options) {
+    return hull_landscape(hull_polytope(points, center_of_mass), options);
+}
+
+HullLandscape hull_landscape(const HullPolytope& hull, const HullOptions& options) {
     if (!(options.resolution_m >= 0) || !std::isfinite(options.resolution_m)) {
         throw Error(ErrorKind::input, "hull_landscape: a resolution of " +
                                           short_number(options.resolution_m) +
                                           " m; it must be 0 or more");
     }
-    const HullPolytope hull = hull_polytope(points, center_of_mass);
     const double resolution = std::max(options.resolution_m / hull.radius, rounding);
     const MergeTree tree = merge_tree(hull, resolution);
     HullLandscape result;

@@ -78,5 +78,8 @@ struct HullOptions {
 // mass that is not inside of their hull, and for a resolution that is no number from 0 on.
 HullLandscape hull_landscape(std::span<const Vec3> points, const Vec3& center_of_mass,
                              const HullOptions& options = {});
+// Of a hull that is there already.
+struct HullPolytope;
+HullLandscape hull_landscape(const HullPolytope& hull, const HullOptions& options);
 
 }  // namespace topple::physics

@@ -17,6 +17,7 @@ class HullWays {
     // Error(input) as hull_landscape does.
     HullWays(std::span<const Vec3> vertices, const Vec3& start);
 
+    const HullPolytope& hull() const { return hull_; }
     double start_height() const { return start_height_m_; }
     // The pose at the end of the steepest way down from the start; settling makes it the start.
     Vec3 rest() const { return direction(rest_); }

@@ -286,7 +286,7 @@ void find_barriers(device::Device& device, const physics::SupportTable& table,
         if (!candidates[o].support_polygon.empty())
             objects[o].toppling = std::make_shared<physics::Toppling>(
                 toppling_of(objects[o], objects[o].tipping, friction));
-        objects[o].poses = physics::body_landscape(table, candidates[o]);
+        objects[o].poses = physics::body_landscape(table, candidates[o], objects[o].tipping.ways);
     });
 }
 

@@ -165,7 +165,7 @@ def landscapes():
              {"up": [1, 0, 0], "energy_J": 0.5, "joins_at_J": 1.5, "joins": 0, "probability": 0.4}]
     passes = [{"up": [0.7, 0, 0.7], "energy_J": 1.5, "poses": [0, 1], "border": [[0.7, 0.1, 0.7], [0.7, -0.1, 0.7]]}]
     one = {"id": 1, "hull_m": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], "now": 0, "poses": poses, "passes": passes,
-           "places": {"side": 1, "step_m": 0.02, "energy_J": [None]}}
+           "places": {"side": 1, "step_m": 0.02, "energy_J": [None], "blocked": [0]}}
     yield json.dumps({"schema": "topple.landscapes/1", "objects": [one]}).encode()
 
 

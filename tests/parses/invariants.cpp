@@ -201,12 +201,34 @@ void check_relations(const Scene& scene) {
     check_acyclic(stated, scene.objects.size());
 }
 
+// The landscape's pose "now" is the one that was scanned, and the lowest way out of it is the
+// barrier of what tips.
+void check_landscape(const Object& o, const Vec3& up) {
+    const Landscape& l = o.landscape;
+    expect(l.now >= 0 && static_cast<std::size_t>(l.now) < l.poses.size(),
+           "a landscape has no pose now");
+    const Landscape::Pose& now = l.poses[static_cast<std::size_t>(l.now)];
+    for (std::size_t a = 0; a < 3; ++a)
+        expect(std::abs(now.up[a] - up[a]) < 1e-6, "a landscape's pose now is another");
+    double barrier = now.joins_at_J;
+    for (const Landscape::Pose& pose : l.poses)
+        if (pose.joins == l.now) barrier = std::min(barrier, pose.joins_at_J);
+    if (o.mode == "tip")
+        expect(std::abs(barrier - now.energy_J - o.barrier_J) <=
+                   o.barrier_error_J + 1e-6 * (1 + o.barrier_J),
+               "a landscape's barrier is " + std::to_string(barrier - now.energy_J) + ", not " +
+                   std::to_string(o.barrier_J));
+}
+
 void check(const Scene& scene) {
     check_labels(scene.points.primitive, scene.points.object, scene, "points");
     check_labels(scene.solid.primitive, scene.solid.object, scene, "voxels");
     for (const std::uint8_t state : scene.solid.state) expect(state <= 1, "no state of a voxel");
     check_parts(scene);
-    for (const Object& o : scene.objects) check_object(o, scene.objects.size());
+    for (const Object& o : scene.objects) {
+        check_object(o, scene.objects.size());
+        if (!o.grounded) check_landscape(o, scene.up);
+    }
     check_relations(scene);
     for (const auto& [name, field] : scene.fields) {
         for (const auto* values : {&field.vx, &field.vy, &field.vz, &field.density})

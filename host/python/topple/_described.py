@@ -173,7 +173,7 @@ _ITEMS = {
         'action': 'str: Object.action.',
     }),
     'Landscape': ('The energy landscape of an object on level ground: its stable poses, by rising energy. Empty where nothing is known.', {
-        'now': 'int: the pose that it is in; -1: none of them.',
+        'now': 'int: the pose in which it was scanned; -1: of the ground.',
         'up': '(poses, 3): unit vectors of the object, as it was scanned, that point up then.',
         'energy_J': '(poses,): potential energy less that as it was scanned, joules.',
         'joins_at_J': '(poses,): the energy at which its basin joins that of a deeper pose; inf for the deepest.',

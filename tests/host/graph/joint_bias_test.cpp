@@ -3,35 +3,34 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace topple::graph {
 namespace {
 
-// 0 to 3 in a ring of likely joints with a chord, 4 at 0 alone, 5 beside 1 but unlikely.
-const std::vector<Joint> joints{{0, 1, 1}, {0, 2, 2},  {0, 3, 0.5},  {0, 4, 0.25},
-                                {1, 2, 3}, {1, 5, -2}, {2, 3, 0.125}};
-
-TEST(JointBias, WhatIsAloneIsBelieved) {
-    const auto out = biased_joints(joints, 6, -1.5);
-    ASSERT_EQ(out.size(), joints.size());
-    EXPECT_DOUBLE_EQ(out[3].log_odds, 0.25) << "4 has no other likely joint";
-    EXPECT_DOUBLE_EQ(out[5].log_odds, -2) << "5 has none at all";
+// Each of some primitives with each of the others, after one that is pinned and joined to all.
+std::vector<Joint> all_pairs(std::int32_t things) {
+    std::vector<Joint> out;
+    for (std::int32_t a = 0; a <= things; ++a)
+        for (std::int32_t b = a + 1; b <= things; ++b) out.push_back({a, b, 0.5 * a + b});
+    return out;
 }
 
-TEST(JointBias, GrowsWithTheWitnessesOfTheEndThatHasFewer) {
-    const auto out = biased_joints(joints, 6, -1.5);
-    EXPECT_DOUBLE_EQ(out[0].log_odds, 1 - 1.5 / 2) << "0 has four, 1 has two";
-    EXPECT_DOUBLE_EQ(out[1].log_odds, 2 - 1.5 * 2 / 3) << "0 has four, 2 has three";
-    EXPECT_DOUBLE_EQ(out[6].log_odds, 0.125 - 1.5 / 2) << "3 has two";
-    for (std::size_t n = 0; n < out.size(); ++n) {
-        EXPECT_EQ(out[n].a, joints[n].a);
-        EXPECT_EQ(out[n].b, joints[n].b);
+TEST(JointBias, EachJointHasItAndMoreWhereAllHaveManyNeighbours) {
+    for (const std::int32_t things : {0, 1, 2, 6, 8, 11}) {
+        std::vector<bool> pinned(static_cast<std::size_t>(things) + 1, false);
+        pinned[0] = true;
+        const std::vector<Joint> joints = all_pairs(things);
+        const std::vector<Joint> out = biased_joints(joints, pinned, -1.5);
+        const double crowded = std::max(1.0, (things - 1) / most_neighbours);
+        ASSERT_EQ(out.size(), joints.size());
+        for (std::size_t n = 0; n < out.size(); ++n) {
+            EXPECT_EQ(out[n].a, joints[n].a);
+            EXPECT_EQ(out[n].b, joints[n].b);
+            EXPECT_NEAR(out[n].log_odds, joints[n].log_odds - 1.5 * std::pow(crowded, 3), 1e-12);
+            EXPECT_EQ(biased_joints(joints, pinned, 0)[n].log_odds, joints[n].log_odds);
+        }
     }
-}
-
-TEST(JointBias, NothingMakesNothing) {
-    EXPECT_TRUE(biased_joints({}, 3, -1.5).empty());
-    for (std::size_t n = 0; n < joints.size(); ++n)
-        EXPECT_EQ(biased_joints(joints, 6, 0)[n].log_odds, joints[n].log_odds);
 }
 
 }  // namespace

@@ -97,9 +97,9 @@ TEST_P(Objects, WhatStandsByItselfStaysApart) {
     scene.add(box({0, 0, 0.2}, {0.3, 0.1, 0.4}));
     EXPECT_THAT(grouped(scene, {{0, 1, -4}, {1, 2, -0.4}}).group, ElementsAre(-1, 0, 1));
     EXPECT_THAT(grouped(scene, {{0, 1, -4}, {1, 2, 0.4}}).group, ElementsAre(-1, 0, 0));
-    // A bias takes from joints that have others beside them, not from one that is alone.
+    // A bias takes from each joint, one that is alone as well.
     EXPECT_THAT(grouped(scene, {{0, 1, -4}, {1, 2, 0.4}}, weighing(1, -1.2)).group,
-                ElementsAre(-1, 0, 0));
+                ElementsAre(-1, 0, 1));
     scene.add(box({0.3, 0, 0}, {0.6, 0.3, 0.2}));
     const std::vector<Joint> ring{{0, 1, -4}, {1, 2, 0.4}, {1, 3, 0.4}, {2, 3, 0.4}};
     EXPECT_THAT(grouped(scene, ring).group, ElementsAre(-1, 0, 0, 0));
