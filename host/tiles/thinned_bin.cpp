@@ -227,7 +227,7 @@ void thin_bin(const SpilledPoints& points, std::size_t bin, double cell_m, const
 CellsOfPoints::CellsOfPoints(const fs::path& folder, const Bin& bin)
     : file_(places_file(folder, bin)) {
     BinaryReader order(order_file(folder, bin));
-    order(cell_of_place_);
+    order(cell_of_place_, [](const auto& cells) { return rules::ids(cells.size())(cells); });
     order(points_);
     order(sums_, rules::length(points_ / thinned_portion + (points_ % thinned_portion > 0)));
     if (!PortionReader::holds<std::uint32_t>(file_, points_)) damaged_file(file_);
@@ -248,8 +248,9 @@ std::uint32_t CellsOfPoints::next() {
 }
 
 void check_thinned(const fs::path& folder, const Bin& bin) {
-    read_thinned(folder, bin);
+    const std::size_t count = read_thinned(folder, bin).size();
     CellsOfPoints cells(folder, bin);
+    if (cells.cells() != count) damaged_file(order_file(folder, bin));
     for (std::uint64_t n = 0; n < cells.points(); ++n) cells.next();
 }
 

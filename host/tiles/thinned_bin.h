@@ -41,6 +41,7 @@ class CellsOfPoints {
     // Throws Error(input) beyond the last point.
     std::uint32_t next();
     std::uint64_t points() const { return points_; }
+    std::size_t cells() const { return cell_of_place_.size(); }
 
   private:
     std::filesystem::path file_;

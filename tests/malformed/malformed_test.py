@@ -79,6 +79,7 @@ class Case:
             self.expect(len(lines) == 1, '%d lines on stderr' % len(lines))
             left = set(os.listdir(self.folder)) - before - {'stderr'}
             self.expect(not left, 'left behind: %s' % ', '.join(sorted(left)))
+        self.expect('_M_' not in self.error, 'an exception of the standard library')
         self.expect(all(c.isprintable() for line in lines for c in line), 'control characters on stderr')
         self.expect(self.seconds <= SECONDS, '%.1f s of processor time' % self.seconds)
         limit = FIXED_KB + OF_SIZE * size // 1000

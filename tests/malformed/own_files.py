@@ -62,7 +62,7 @@ def forged(data, rng, first):
             other = rng.randrange(first, end - 8)
             out[at:at + 4], out[other:other + 4] = out[other:other + 4], out[at:at + 4]
         else:
-            out[at:at + 4] = struct.pack('<f', rng.choice(DOUBLES[:3]))
+            out[at:at + 4] = struct.pack('<f', rng.choice((float('nan'), float('inf'), -1e38)))
     return out
 
 
