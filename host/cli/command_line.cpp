@@ -15,6 +15,7 @@
 #include <new>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "cli/interrupt.h"
 #include "cli/print.h"
@@ -109,6 +110,9 @@ int run(std::span<const CommandEntry> entries, int argc, char** argv) {
     return commands.at(&chosen)();
 }
 
+constexpr const char* out_of_memory_text =
+    "out of memory; use a larger --voxel, or allow more with --max-memory where there is more";
+
 }  // namespace
 
 int exit_code(ErrorKind kind) {
@@ -128,6 +132,11 @@ void print_error(const Error& error) {
     print_to(stderr, "topple: %s\n", error.what());
 }
 
+void print_out_of_memory() noexcept {
+    for (const std::string_view part : {"topple: ", out_of_memory_text, "\n"})
+        [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, part.data(), part.size());
+}
+
 int run_command_line(std::span<const CommandEntry> commands, int argc, char** argv,
                      const std::function<void(const Error&)>& tell) {
     const auto fail = [&](const Error& error) {
@@ -137,17 +146,28 @@ int run_command_line(std::span<const CommandEntry> commands, int argc, char** ar
     open_standard_files();
     end_on_signals();
     try {
-        return with_output_written(run(commands, argc, argv));
-    } catch (const Error& error) {
-        return fail(error);
+        // Made while there is memory for it.
+        const Error out_of_memory(ErrorKind::input, out_of_memory_text);
+        try {
+            try {
+                return with_output_written(run(commands, argc, argv));
+            } catch (const Error& error) {
+                return fail(error);
+            } catch (const std::bad_alloc&) {
+                throw;
+            } catch (const std::filesystem::filesystem_error& error) {
+                return fail(
+                    {ErrorKind::input, error.path1().string() + ": " + error.code().message()});
+            } catch (const std::exception& error) {
+                return fail({ErrorKind::input, error.what()});
+            }
+        } catch (const std::bad_alloc&) {
+            tell(out_of_memory);
+            return exit_code(out_of_memory.kind());
+        }
     } catch (const std::bad_alloc&) {
-        // What held the memory is gone.
-        return fail({ErrorKind::input,
-                     "out of memory; use a larger --voxel or set --max-memory to be told earlier"});
-    } catch (const std::filesystem::filesystem_error& error) {
-        return fail({ErrorKind::input, error.path1().string() + ": " + error.code().message()});
-    } catch (const std::exception& error) {
-        return fail({ErrorKind::input, error.what()});
+        print_out_of_memory();
+        return exit_code(ErrorKind::input);
     }
 }
 

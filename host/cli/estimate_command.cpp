@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -14,8 +13,10 @@
 #include "core/json.h"
 #include "io/read_cloud.h"
 #include "io/text.h"
+#include "pipeline/budget.h"
 #include "pipeline/estimate.h"
 #include "topple/device.h"
+#include "topple/option_names.h"
 
 namespace topple::cli {
 namespace {
@@ -26,17 +27,6 @@ struct EstimateArguments {
     bool quiet = false, json = false;
     ParseOptions options;
 };
-
-std::string time_text(double seconds) {
-    char text[32];
-    if (seconds < 9.5)
-        std::snprintf(text, sizeof(text), "%.2g s", seconds);
-    else if (seconds < 90)
-        std::snprintf(text, sizeof(text), "%.0f s", std::ceil(seconds));
-    else
-        std::snprintf(text, sizeof(text), "%.0f min", std::ceil(seconds / 60));
-    return text;
-}
 
 // Whether the parse would be refused, as far as an estimate tells.
 std::string limit_text(const Estimate& e, bool may_be_tiled, std::uint64_t max_memory_bytes) {
@@ -64,11 +54,14 @@ void print_json(const Estimate& e) {
         {"ground_m2", e.ground_m2},
         {"rough_surfels", e.rough_surfels},
         {"box_voxels", e.box_voxels},
+        {"surface_voxels", e.surface_voxels},
         {"seconds", e.seconds},
         {"processor_s", e.processor_s},
         {"probe_s", e.probe_s},
         {"least_bytes", e.least_bytes},
         {"memory_bytes", e.memory_bytes},
+        {"allowed_bytes", e.allowed_bytes},
+        {"refusal", in_words_of(Interface::command_line, e.refusal)},
         {"work_bytes", e.work_bytes},
         {"output_bytes", e.output_bytes},
     };
@@ -94,11 +87,14 @@ int run(EstimateArguments& a) {
         else
             print("parsed   in one piece, voxels of %s m, points about %s mm apart\n",
                   io::short_number(e.voxel_m).c_str(), io::two_digits(1000 * e.spacing_m).c_str());
-        print("time     about %s\n", time_text(e.seconds).c_str());
+        print("time     about %s\n", duration_text(e.seconds).c_str());
         print("memory   about %s\n", io::bytes_text(e.memory_bytes).c_str());
         if (a.options.max_memory_bytes > 0)
             print("limit    %s\n",
                   limit_text(e, io::can_stream(a.input), a.options.max_memory_bytes).c_str());
+        else if (!e.refusal.empty())
+            print("limit    the parse would be refused: %s\n",
+                  in_words_of(Interface::command_line, e.refusal).c_str());
         if (e.work_bytes > 0)
             print("disk     about %s while it works\n", io::bytes_text(e.work_bytes).c_str());
         print("results  about %s%s\n", io::bytes_text(e.output_bytes).c_str(),

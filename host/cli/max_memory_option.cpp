@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "cli/max_memory_option.h"
 
+#include <sys/resource.h>
+
+#include <algorithm>
 #include <cstddef>
 #include <exception>
 #include <map>
+#include <thread>
 
+#include "core/process_memory.h"
+#include "pipeline/budget.h"
 #include "topple/error.h"
 
 namespace topple::cli {
@@ -41,6 +47,21 @@ void add_max_memory_option(CLI::App& app, std::uint64_t& bytes, const std::strin
     app.add_option_function<std::string>(
         "--max-memory", [&bytes](const std::string& text) { bytes = parse_size(text); },
         purpose + "\n(4G and 4GiB are 4 * 1024^3 bytes, 4GB is 4 * 1000^3; so are M, K and T)");
+}
+
+void keep_to_budget(const std::string& input, const ParseOptions& options) {
+    // What threads to come reserve for their stacks, which is hardly used.
+    constexpr std::uint64_t stack_bytes = std::uint64_t{8} << 20;
+    const std::uint64_t threads = std::thread::hardware_concurrency() + 2;
+    const ProcessMemory now = process_memory();
+    rlimit limit{};
+    if (now.reserved == 0 || ::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+    const std::uint64_t unused = now.reserved - std::min(now.reserved, now.own);
+    const std::uint64_t bytes =
+        std::max(Budget::least_bytes, Budget(input, bytes_of_input(input), options).bytes());
+    const std::uint64_t own = bytes - std::min(bytes / 4, now.of_files);
+    limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, own + unused + threads * stack_bytes);
+    ::setrlimit(RLIMIT_DATA, &limit);
 }
 
 }  // namespace topple::cli

@@ -228,6 +228,9 @@ int run(ParseArguments& a) {
     // Beside the output, where there is room for it, and where the next run finds it.
     a.options.work_folder = out.parent_path() / ("." + out.filename().string() + ".topple-work");
     get_ready(a);
+    // Drivers of GPUs reserve what they never use.
+    if (device::describe(*a.options.device).backend == device::Backend::native)
+        keep_to_budget(a.input, a.options);
     const auto work = [&](Progress& progress) {
         a.options.notice = [&](const std::string& line) {
             progress.finish();
@@ -375,7 +378,8 @@ Command add_parse(CLI::App& app, std::vector<std::string> typed, const Team& tea
         "are read and handed out together (default: one by one; the result is the same)");
     add_max_memory_option(app, a->options.max_memory_bytes,
                           "Memory to keep to: in blocks fewer are held at a time, and a scan that\n"
-                          "would need more is refused");
+                          "would need more is refused (default: 3/4 of what is free; of inputs of\n"
+                          "megabytes 2 GB a MB)");
     app.add_flag("--png", a->output.pictures,
                  "Write the report's main views as pictures, too: view-*.png");
     app.add_flag(

@@ -19,6 +19,8 @@
 #include "io/frame_sequence.h"
 #include "io/octomap.h"
 #include "io/read_cloud.h"
+#include "io/text.h"
+#include "pipeline/budget.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/ingest.h"
 #include "pipeline/parse_memory.h"
@@ -27,20 +29,17 @@
 #include "pipeline/surface_extent.h"
 #include "pipeline/tiled_parse.h"
 #include "pipeline/voxel_size.h"
+#include "pipeline/work_check.h"
 
 namespace topple {
 namespace {
 
-// Seconds of the processor that the stages take together where the probe takes probe_reference_s,
-// fitted by their logarithms. In one piece: of a point, of a frame's pixel, of a voxel of the grid
-// (as many as the geometric mean of those of the surface and those of the box), of a metre of
-// patches and of a surfel as rough as it is wide (scan_look.h), and of every run. In blocks: of a
-// point (sorting, thinning, writing), a thinned cell, a square metre of surface, whatever its
-// resolution, and every run. tests/estimates/estimates.py fits them, but for those of a pixel, and
-// of a point and a cell in blocks: two long sequences and two large buildings gave them.
+// Seconds of the processor that the stages take together in blocks where the probe takes
+// probe_reference_s: of a point (sorting, thinning, writing), a thinned cell, a square metre of
+// surface, whatever its resolution, and every run. tests/estimates/estimates.py fits them and those
+// of parse_memory.h, but for those of a pixel, and of a point and a cell in blocks: two long
+// sequences and two large buildings gave them.
 constexpr double probe_reference_s = 0.027;
-constexpr double point_s = 2.57e-6, pixel_s = 6e-8, voxel_s = 2.53e-6, patch_m_s = 0.0224,
-                 rough_surfel_s = 2.03e-4, fixed_s = 0.095;
 constexpr double tiled_point_s = 0.27e-6, tiled_cell_s = 3.4e-6, tiled_m2_s = 0.014,
                  tiled_fixed_s = 0.01;
 // What of that one thread does alone; threads share the rest.
@@ -95,15 +94,6 @@ struct Looked {
     double seen_m3 = INFINITY;  // of a single view: the space before what it shows
     double fused_bytes = 0;     // of frames: while they are fused
 };
-
-double seen_m3(const DepthFrame& frame, const Intrinsics& k) {
-    double sum = 0;
-    for (const std::uint16_t stored : frame.depth) {
-        const double z = stored / k.depth_scale;
-        sum += z * z * z;
-    }
-    return sum / (3 * k.fx * k.fy);
-}
 
 void add(const CloudView& portion, Looked& to) {
     for (std::size_t n = 0; n < portion.size(); ++n)
@@ -346,6 +336,17 @@ void reckon_blocks(device::Device& device, const ParseOptions& options, Estimate
     out.output_bytes = static_cast<std::uint64_t>(tiled_output_point_bytes * points + 15 * thinned);
 }
 
+OnePiece piece_of(const Estimate& e) {
+    return {static_cast<double>(e.points),
+            e.surface_voxels,
+            e.box_voxels,
+            e.ground_m2,
+            e.patches_m,
+            e.views,
+            static_cast<double>(e.pixels),
+            e.rough_surfels};
+}
+
 void reckon_one_piece(device::Device& device, const ParseOptions& options, Looked& looked,
                       Estimate& out) {
     const auto points = static_cast<double>(out.points);
@@ -355,23 +356,30 @@ void reckon_one_piece(device::Device& device, const ParseOptions& options, Looke
     if (options.up) looked.hints.up = options.up;
     const ScanLook look =
         look_at_scan(device, looked.cloud, out.cell_m, out.surface_m2, looked.hints);
-    const double h = out.voxel_m, surface = out.surface_m2 / (h * h);
+    const double h = out.voxel_m;
     const double surfel_m = surfel_cells * out.cell_m;
     out.views = looked.views;
     out.patches_m = look.patches_m;
     out.rough_surfels = look.roughness * std::min(points, out.surface_m2 / (surfel_m * surfel_m));
-    out.ground_m2 = look.ground_m2;
-    out.box_voxels = std::min(look.box_m3, looked.seen_m3) / (h * h * h);
-    const double grid_voxels = std::sqrt(surface * out.box_voxels);
-    out.output_bytes += static_cast<std::uint64_t>(output_voxel_bytes * grid_voxels);
-    out.processor_s = fixed_s + point_s * points + pixel_s * static_cast<double>(out.pixels) +
-                      voxel_s * grid_voxels + patch_m_s * out.patches_m +
-                      rough_surfel_s * out.rough_surfels;
-    out.memory_bytes = static_cast<std::uint64_t>(
-        std::max(looked.fused_bytes, one_piece_peak({points, surface, out.box_voxels, out.ground_m2,
-                                                     out.patches_m, out.views})));
+    out.ground_m2 = look.box.ground_m2;
+    out.box_voxels = std::min(look.box.m3(), looked.seen_m3) / (h * h * h);
+    out.surface_voxels = looked.surface.area_m2(out.spacing_m) / (h * h);
+    const OnePiece piece = piece_of(out);
+    out.output_bytes += static_cast<std::uint64_t>(output_voxel_bytes * piece.grid_voxels());
+    out.processor_s = one_piece_seconds(piece);
+    out.memory_bytes =
+        static_cast<std::uint64_t>(std::max(looked.fused_bytes, one_piece_peak(piece)));
     out.least_bytes = std::max(one_piece_bytes(points, out.surface_m2, bounds_of(looked.cloud), h),
                                static_cast<std::uint64_t>(looked.fused_bytes));
+}
+
+// As a parse asks before its work.
+void check_work(const Estimate& e, const std::filesystem::path& input, Budget& budget) {
+    const std::string source = io::path_text(input);
+    if (e.tiled)
+        return budget.check(source + ": in blocks it would need about", e.least_bytes,
+                            "use a larger ParseOptions::voxel_m");
+    if (e.voxel_m > 0) topple::check_work(source, piece_of(e), e.voxel_m, budget);
 }
 
 }  // namespace
@@ -396,6 +404,13 @@ Estimate estimate(const std::filesystem::path& input, const ParseOptions& option
         reckon_one_piece(*device, options, looked, out);
     out.probe_s = probe();
     out.processor_s *= out.probe_s / probe_reference_s;
+    Budget budget(io::path_text(input), bytes_of_input(input), options);
+    out.allowed_bytes = budget.bytes();
+    try {
+        check_work(out, input, budget);
+    } catch (const Error& refused) {
+        out.refusal = refused.what();
+    }
     const double threads = device->threads().threads();
     out.seconds = out.processor_s * (serial_share + (1 - serial_share) / threads);
     return out;

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "io/text.h"
-#include "pipeline/memory_limit.h"
+#include "pipeline/budget.h"
 #include "pipeline/parse_memory.h"
 #include "pipeline/scale_checks.h"
 #include "pipeline/solid_stage.h"

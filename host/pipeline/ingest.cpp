@@ -25,6 +25,7 @@
 #include "pipeline/memory_stream.h"
 #include "pipeline/scale_checks.h"
 #include "pipeline/voxel_stage.h"
+#include "pipeline/work_check.h"
 #include "reader/read_scan.h"
 #include "vdb/read_volume.h"
 
@@ -236,6 +237,7 @@ void look_at_cloud(device::Device& device, const ParseOptions& options, Ingested
     const auto tell = [&](double done) {
         if (options.progress) options.progress("ingest", read_share + (1 - read_share) * done);
     };
+    if (Budget* budget = Budget::current()) check_surface(out, spacing.around_m, options, *budget);
     look_from_free_places(device, scan, spacing, tell, out);
 }
 

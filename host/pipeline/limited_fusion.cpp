@@ -2,7 +2,7 @@
 #include "pipeline/limited_fusion.h"
 
 #include "io/text.h"
-#include "pipeline/memory_limit.h"
+#include "pipeline/budget.h"
 #include "pipeline/parse_memory.h"
 #include "topple/error.h"
 
@@ -11,14 +11,14 @@ namespace topple {
 LimitedFusion::LimitedFusion(const Frames& frames, double cell_m, const ParseOptions& options,
                              unsigned threads)
     : frames_(frames), options_(options), fusion_(frames.intrinsics, cell_m, threads) {
-    if (options.max_memory_bytes == 0) return;
+    if (memory_bound(options) == UINT64_MAX) return;
     const auto pixels =
         static_cast<double>(frames.count) * frames.intrinsics.width * frames.intrinsics.height;
     const auto beside = static_cast<std::uint64_t>(fusion_beside(pixels));
     check_memory(
         frames.source + ": to fuse " + io::counted(frames.count, "depth frame") + " takes at least",
         beside, options, "give points in their place");
-    most_bytes_ = options.max_memory_bytes - beside;
+    most_bytes_ = memory_bound(options) - beside;
     fusion_.set_most_bytes(most_bytes_);
 }
 
@@ -42,8 +42,7 @@ void LimitedFusion::check() const {
                                    : io::counted(frames_.count, "depth frame");
     throw Error(ErrorKind::input,
                 frames_.source + ": the surfaces of " + frames + " take more than the " +
-                    io::bytes_text(options_.max_memory_bytes) +
-                    " of ParseOptions::max_memory_bytes; allow more, or give fewer frames; " +
+                    memory_bound_text(options_) + "; allow more, or give fewer frames; " +
                     depth_scale_hint(frames_.count, frames_.intrinsics.depth_scale,
                                      frames_.typical_depth_m, frames_.origin));
 }

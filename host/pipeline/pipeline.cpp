@@ -9,6 +9,7 @@
 #include "io/scan_notes.h"
 #include "io/text.h"
 #include "pipeline/assemble.h"
+#include "pipeline/budget.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/groundwork.h"
 #include "pipeline/groundwork_file.h"
@@ -246,9 +247,10 @@ ParseResult parse(const std::filesystem::path& input, const ParseOptions& option
     std::vector<std::string> notes = io::scan_notes(input);
     const auto kind =
         io::looks_like_sequence(input) ? WholeProgress::Input::frames : WholeProgress::Input::cloud;
-    return noted(
-        tell_whole(kind, options, [&](const ParseOptions& o) { return parse_scan(input, o); }),
-        options, std::move(notes));
+    Budget budget(io::path_text(input), bytes_of_input(input), options);
+    return noted(tell_whole(kind, budget.polled(),
+                            [&](const ParseOptions& o) { return parse_scan(input, o); }),
+                 options, std::move(notes));
 }
 
 ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
@@ -262,7 +264,8 @@ ParseResult parse(const CloudView& cloud, const ParseOptions& options) {
             return lay_groundwork(device, std::move(input), o, source, stage);
         });
     };
-    return noted(tell_whole(WholeProgress::Input::cloud, options, parse_view), options);
+    Budget budget(source, 3 * sizeof(float) * cloud.size(), options);
+    return noted(tell_whole(WholeProgress::Input::cloud, budget.polled(), parse_view), options);
 }
 
 ParseResult parse(const FramesView& frames, const ParseOptions& options) {
@@ -276,7 +279,12 @@ ParseResult parse(const FramesView& frames, const ParseOptions& options) {
             return lay_groundwork(device, std::move(input), o, source, stage);
         });
     };
-    return noted(tell_whole(WholeProgress::Input::frames, options, parse_view), options);
+    const std::size_t count =
+        std::max({frames.images.size(), frames.camera_to_world.size(), std::size_t{1}});
+    const std::uint64_t pixels = io::saturating_multiply(
+        std::uint64_t{frames.intrinsics.width} * frames.intrinsics.height, count);
+    Budget budget(source, io::saturating_multiply(sizeof(std::uint16_t), pixels), options);
+    return noted(tell_whole(WholeProgress::Input::frames, budget.polled(), parse_view), options);
 }
 
 void add_coordinates(const CloudView& cloud, ParseResult& result) {

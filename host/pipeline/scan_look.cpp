@@ -40,12 +40,14 @@ PointCloud thinned(const PointCloud& cloud, double cell_m) {
     return out;
 }
 
-void span_box(const PointCloud& cloud, const geometry::SceneFrame& frame, ScanLook& out) {
+}  // namespace
+
+GridBox grid_box(const CloudView& cloud, const std::array<Vec3, 3>& axes) {
     const std::size_t step = 1 + cloud.size() / bounds_points;
     std::array<std::vector<float>, 3> at;
     for (std::size_t n = 0; n < cloud.size(); n += step) {
         for (std::size_t a = 0; a < 3; ++a) {
-            const Vec3& axis = frame.axes[a];
+            const Vec3& axis = axes[a];
             at[a].push_back(static_cast<float>(axis[0] * cloud.x[n] + axis[1] * cloud.y[n] +
                                                axis[2] * cloud.z[n]));
         }
@@ -54,11 +56,17 @@ void span_box(const PointCloud& cloud, const geometry::SceneFrame& frame, ScanLo
     const Bounds<float> bounds = scene_bounds<float>({at[0], at[1], at[2]}, least);
     std::array<double, 3> edge{};
     for (std::size_t a = 0; a < 3; ++a) edge[a] = std::max(bounds.high[a] - bounds.low[a], least);
-    out.ground_m2 = edge[0] * edge[1];
-    out.box_m3 = out.ground_m2 * edge[2];
+    return {edge[0] * edge[1], edge[2]};
 }
 
-}  // namespace
+double seen_m3(const DepthFrame& frame, const Intrinsics& k) {
+    double sum = 0;
+    for (const std::uint16_t stored : frame.depth) {
+        const double z = stored / k.depth_scale;
+        sum += z * z * z;
+    }
+    return sum / (3 * k.fx * k.fy);
+}
 
 ScanLook look_at_scan(device::Device& device, const PointCloud& cloud, double cell_m,
                       double surface_m2, const geometry::FrameHints& hints) {
@@ -66,7 +74,7 @@ ScanLook look_at_scan(device::Device& device, const PointCloud& cloud, double ce
     const geometry::Surfels surfels =
         geometry::make_surfels(device, thinned(cloud, surfel_m / thinned_cells), surfel_m, {}, {});
     ScanLook out;
-    span_box(cloud, geometry::find_scene_frame(device, surfels, hints), out);
+    out.box = grid_box(cloud, geometry::find_scene_frame(device, surfels, hints).axes);
     for (const geometry::Region& r : geometry::split(surfels, device.threads()).regions)
         out.patches_m += surfel_m * std::sqrt(static_cast<double>(r.surfels));
     std::vector<float> roughness = surfels.roughness_m;

@@ -4,10 +4,21 @@
 #include "device/device.h"
 #include "geometry/manhattan.h"
 #include "topple/cloud_view.h"
+#include "topple/input.h"
 
 // A quick look at a scan: what of it decides how much work its parse has. A twentieth of a second
 // for a room.
 namespace topple {
+
+// The box that a parse's grid spans, along the scene's axes.
+struct GridBox {
+    double ground_m2 = 0, height_m = 0;
+    double m3() const { return ground_m2 * height_m; }
+};
+// The cloud has a point or more.
+GridBox grid_box(const CloudView& cloud, const std::array<Vec3, 3>& axes);
+// The space before what a depth image shows.
+double seen_m3(const DepthFrame& frame, const Intrinsics& intrinsics);
 
 struct ScanLook {
     // Sum over the smooth patches of the surface of their edges as squares, metres: grows with how
@@ -16,8 +27,7 @@ struct ScanLook {
     // How rough the surface is: the median over its surfels of the rms distance of points from the
     // plane, over the surfel's edge. Noise and clutter make more, smaller patches.
     double roughness = 0;
-    // The box that the parse's grid spans, along the scene's axes: how large it is, and its ground.
-    double box_m3 = 0, ground_m2 = 0;
+    GridBox box;
 };
 
 // Splits the surface into smooth patches as a parse does, on surfels of the size that a parse with

@@ -4,12 +4,14 @@
 #include <utility>
 
 #include "pipeline/space_carving.h"
+#include "pipeline/work_check.h"
 
 namespace topple {
 
 SolidStage find_solids(device::Device& device, const Ingested& input, double voxel_m,
                        const ParseOptions& options, StageClock& stage, SolidDetail detail) {
     FramedSurfels surfels = find_surfels(device, input, options, stage);
+    if (Budget* budget = Budget::current()) check_work(input, surfels, voxel_m, *budget);
     SpaceCarving carving(device, input, {voxel_m, surfels.frame.axes});
     SolidStage out;
     out.geometry = find_primitives(device, input, std::move(surfels), stage);       // 2.1

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -34,6 +35,10 @@ class SurfaceExtent {
     }
     double area_m2() const {
         return static_cast<double>(cells_.size()) * cell_m * cell_m / cells_per_area;
+    }
+    // With what lies between points that are so far apart.
+    double area_m2(double pitch_m) const {
+        return std::max(area_m2(), static_cast<double>(cells_.size()) * pitch_m * pitch_m);
     }
 
   private:

@@ -15,12 +15,12 @@
 #include "io/text.h"
 #include "pipeline/assemble.h"
 #include "pipeline/block_stage.h"
+#include "pipeline/budget.h"
 #include "pipeline/callers_thread.h"
 #include "pipeline/cancelling.h"
 #include "pipeline/explain.h"
 #include "pipeline/ingest.h"
 #include "pipeline/join_blocks.h"
-#include "pipeline/memory_limit.h"
 #include "pipeline/object_stage.h"
 #include "pipeline/parse_memory.h"
 #include "pipeline/safety_stage.h"
@@ -61,8 +61,7 @@ std::string manifest(const fs::path& input, const ParseOptions& options) {
 // An eighth of what a run may take: the device, and the portion in hand, take theirs, too.
 std::uint64_t spill_bytes(const ParseOptions& options) {
     constexpr std::uint64_t most = std::uint64_t{256} << 20, least = std::uint64_t{16} << 20;
-    if (options.max_memory_bytes == 0) return most;
-    return std::clamp(options.max_memory_bytes / 8, least, most);
+    return std::clamp(memory_bound(options) / 8, least, most);
 }
 
 // Sorts the cloud's points into bins on disk.

@@ -16,6 +16,7 @@
 #include "core/thread_pool.h"
 #include "io/text.h"
 #include "pipeline/block_stage.h"
+#include "pipeline/budget.h"
 #include "pipeline/parse_memory.h"
 #include "pipeline/shared_stage.h"
 #include "tiles/work_files.h"
@@ -105,9 +106,9 @@ class BlockDevices {
 
   private:
     static unsigned most_lanes(const tiles::Layout& layout, const ParseOptions& options) {
-        if (options.max_memory_bytes == 0) return UINT_MAX;
+        if (memory_bound(options) == UINT64_MAX) return UINT_MAX;
         return static_cast<unsigned>(std::clamp(
-            static_cast<double>(options.max_memory_bytes) / block_bytes(largest_block(layout)), 1.0,
+            static_cast<double>(memory_bound(options)) / block_bytes(largest_block(layout)), 1.0,
             1024.0));
     }
 

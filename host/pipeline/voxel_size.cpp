@@ -11,7 +11,6 @@ namespace topple {
 namespace {
 
 constexpr std::array<double, 8> handy{0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05};
-constexpr double room_voxel_m = 0.02;
 constexpr double most_surface_voxels = 4e6;
 
 }  // namespace

@@ -17,6 +17,9 @@ inline constexpr double closing_cells = 1.75;
 // coarsest hardly shows a room.
 inline constexpr double least_voxel_m = 0.001, largest_voxel_m = 1;
 
+// Things in rooms are measured at this or finer.
+inline constexpr double room_voxel_m = 0.02;
+
 // Edge of a solid voxel, metres, whose surface has no gaps at a scan of this resolution: about two
 // cells, rounded to a handy value.
 double voxel_for_cell(double cell_m);

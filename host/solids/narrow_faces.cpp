@@ -61,6 +61,16 @@ std::vector<std::size_t> pieces_of(std::span<const Left> left) {
     return out;
 }
 
+// Of a piece's places in `left`, which ascend, the first in each cell: however many points lie
+// there.
+std::vector<std::size_t> firsts_of_cells(std::span<const Left> left,
+                                         std::span<const std::size_t> all) {
+    std::vector<std::size_t> out;
+    for (const std::size_t n : all)
+        if (out.empty() || left[n].cell != left[out.back()].cell) out.push_back(n);
+    return out;
+}
+
 // The plane through a piece's points, which faces nowhere yet.
 SurfacePatch patch_through(std::span<const Eigen::Vector3d> points) {
     const PlaneThrough plane(points);
@@ -176,6 +186,7 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
     std::vector<std::int32_t> room;
     for (const auto& [number, all] : members) {
         if (all.size() < least_points) continue;
+        const std::vector<std::size_t> one_a_cell = firsts_of_cells(left, all);
         constexpr double enough = 0.8;  // share of the points that the plane explains
         std::vector<Eigen::Vector3d> points;
         for (const std::size_t n : all) points.push_back(left[n].at);
@@ -186,13 +197,13 @@ void add_narrow_faces(const CloudView& cloud, const std::array<Vec3, 3>& axes, d
         if (static_cast<double>(face.points.size()) < enough * static_cast<double>(all.size()))
             continue;
         double noise = 0;  // the primitive's own here
-        for (const std::size_t n : all) {
+        for (const std::size_t n : one_a_cell) {
             for (const std::int32_t p : map.around(left[n].at, room))
                 if (primitive[static_cast<std::size_t>(p)] == face.primitive)
                     noise = std::max(noise, patches[static_cast<std::size_t>(p)].noise_m);
         }
         if (face.patch.noise_m > noise) continue;
-        for (const std::size_t n : all)
+        for (const std::size_t n : one_a_cell)
             for (const Key& key : around({face.primitive, left[n].cell}))
                 beside.emplace_back(key, faces.size());
         faces.push_back(std::move(face));

@@ -12,7 +12,7 @@ meshes, maps and volumes of an earlier parse; with a voxel and tiles by chance; 
 end the shares within a quarter, by kind. Time is compared by the processor's, which a busy machine leaves about as it
 is, and by the clock. Exit code 1 where a limit was not kept.
 
---fit prints constants of host/pipeline/estimate.cpp (time) and parse_memory.h (memory) that fit tables best.
+--fit prints constants of host/pipeline/estimate.cpp and parse_memory.h that fit tables best.
 """
 import argparse
 import json
@@ -307,7 +307,7 @@ def fit(a):
     def surface(row):
         return row['surface_m2'] / row['voxel_m'] ** 2
 
-    report('estimate.cpp', ('fixed_s', 'point_s', 'voxel_s', 'patch_m_s', 'rough_surfel_s'), [0.2, 3e-6, 3e-6, 0.04, 2e-4],
+    report('parse_memory.h', ('fixed', 'point', 'voxel', 'patch_m', 'rough_surfel'), [0.2, 3e-6, 3e-6, 0.04, 2e-4],
            [[1.0, r['points'], math.sqrt(surface(r) * r['box_voxels']), r['patches_m'], r['rough_surfels']] for r in whole],
            reference_s(whole), [PIXEL_S * r['pixels'] for r in whole])
     report('parse_memory.h', ('fixed', 'of_views', 'of_walks', 'a_point', 'a_surface_voxel', 'a_voxel', 'a_patch_m'),

@@ -175,6 +175,7 @@ def main():
     parser.add_argument("--faults", nargs="+", choices=["fork", "memory", *DISK_FAULTS], default=["fork", "memory", *DISK_FAULTS])
     parser.add_argument("--runs", type=int, default=0, help="of each kind and fault (default: all)")
     parser.add_argument("--every", type=int, default=1, help="of the fault fork: every so manyth allocation")
+    parser.add_argument("--lasting", action="store_true", help="all allocations after the one that fails do so, too")
     args = parser.parse_args()
     wrong = 0
     with tempfile.TemporaryDirectory(prefix="topple-faults-") as temporary:
@@ -197,7 +198,7 @@ def main():
                     work = folder / "work"
                     kind.prepare(work)
                     core = min(os.sched_getaffinity(0))
-                    code, err, report, _ = kind.run(work, "fork:%d" % args.every, threads=1, limit_s=36000, core=core)
+                    code, err, report, _ = kind.run(work, "fork:%d%s" % (args.every, "+" if args.lasting else ""), threads=1, limit_s=36000, core=core)
                     total = re.search(r"calls (\d+) children (\d+) refused (\d+) unaware (\d+) wrong (\d+)", report)
                     if code != 0 or not total:
                         print("%s %s: the run itself failed: %s %s" % (name, fault, err[:2], report[-300:]))
@@ -218,7 +219,7 @@ def main():
                     for n in spread(calls, args.runs):
                         runs += 1
                         try:
-                            refused += kind.try_fault("%s:%d" % (fault, n), folder / "work")
+                            refused += kind.try_fault("%s:%d%s" % (fault, n, "+" if args.lasting and fault == "memory" else ""), folder / "work")
                         except Failure as failure:
                             bad += 1
                             print("  %s %s:%d: %s" % (name, fault, n, failure))

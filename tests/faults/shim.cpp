@@ -9,6 +9,7 @@
 //   TOPPLE_FAULT=fork:K           every Kth allocation fails, each in a child of its own that is
 //                                 forked there; the program itself goes on as if nothing were
 //
+// With a + after the number of an allocation, as memory:N+, all that follow fail, too.
 // With N = 0 none fails. At the end a line with the number of calls goes to descriptor
 // TOPPLE_FAULT_TELL; of each child that did not end as it should, one with why. A child's calls
 // that would change what the program works on (rename, unlink, rmdir) are left out.
@@ -57,6 +58,7 @@ std::atomic<long> calls{0};
 long at = 0;  // the call that fails; of forks every `at`th
 std::atomic<bool> armed{false};
 bool is_child = false, traced = false;
+bool lasting = false;  // what failed once fails from then on
 bool cut = false;      // a short write was made
 bool outputs = false;  // files are being written: no more forks
 int tell = -1;
@@ -160,8 +162,12 @@ bool forked(long n) {
 }
 
 bool no_memory() {
+    if (is_child && lasting) return true;
     if (!armed.load(std::memory_order_relaxed)) return false;
-    if (kind == Kind::memory) return calls.fetch_add(1) + 1 == at;
+    if (kind == Kind::memory) {
+        const long n = calls.fetch_add(1) + 1;
+        return at > 0 && (lasting ? n >= at : n == at);
+    }
     if (kind != Kind::forking || outputs) return false;
     const long n = calls.fetch_add(1) + 1;
     return at > 0 && n % at == 0 && forked(n);
@@ -226,6 +232,7 @@ int counted_main(int argc, char** argv, char** environment) {
                : is("short")  ? Kind::cut_short
                               : Kind::none;
         at = number ? std::atol(number + 1) : 0;
+        lasting = number && std::strchr(number, '+');
         const char* descriptor = std::getenv("TOPPLE_FAULT_TELL");
         traced = std::getenv("TOPPLE_FAULT_TRACE") != nullptr;
         tell = descriptor ? std::atoi(descriptor) : -1;

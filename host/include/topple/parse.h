@@ -42,8 +42,8 @@ struct ParseOptions {
     // push or a blow does is known all the same.
     std::vector<std::string> disturbances = known_disturbances();
     std::uint64_t seed = 1;
-    std::uint64_t max_memory_bytes =
-        0;  // to keep to, about; inputs that would need more are refused. 0: no limit
+    std::uint64_t max_memory_bytes = 0;  // more is refused, or ends the parse. 0: 3/4 of what is
+    // free, and of inputs of megabytes no more than 2 GB for each begun one
     double density_kg_m3 = 700;
     double friction = 0.3;
     // What closed furniture (Object::mass_model) holds, over its inner volume; none: all is solid.

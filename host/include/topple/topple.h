@@ -156,7 +156,7 @@ typedef struct topple_options {
                                   topple_disturbance_name(n) */
     uint32_t walks;            /* 500 */
     uint64_t seed;             /* 1 */
-    uint64_t max_memory_bytes; /* 0: no limit */
+    uint64_t max_memory_bytes; /* 0: as ParseOptions::max_memory_bytes says */
     double density_kg_m3;      /* 700 */
     double friction;           /* 0.3 */
     double wind_m_s;           /* 12 */
