@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "core/field_rules.h"
@@ -173,6 +174,10 @@ BlockParts read_block(const std::filesystem::path& folder, std::size_t block) {
     try {
         tiles::BinaryReader in(block_file(folder, block));
         block_fields(in, out, seams);
+        const SolidCells& c = out.cells;
+        for (std::size_t n = 1; n < c.size(); ++n)
+            in.expect(std::tie(c.i[n - 1], c.j[n - 1], c.k[n - 1]) <
+                      std::tie(c.i[n], c.j[n], c.k[n]));
     } catch (const Error&) {
         // What its checksum does not tell no later run would find before it is here.
         std::error_code error;
