@@ -211,7 +211,8 @@ class Package:
         if missing:
             print(f'{self.a.venv_python} has no {", ".join(missing)}: ./dev setup')
             sys.exit(SKIPPED)
-        tests = [os.path.join(self.a.source, 'tests/python', name) for name in ('test_formats.py', 'test_ros_bags.py', 'test_strangers.py', 'test_viewers.py')]
+        tests = [os.path.join(self.a.source, 'tests/python', name) for name in ('test_formats.py', 'test_odd_callers.py', 'test_ros_bags.py', 'test_strangers.py',
+                                                                       'test_viewers.py')]
         print(run(self.a.venv_python, '-m', 'pytest', '-q', '-rs', '-p', 'no:cacheprovider', *tests))
 
     def python_example(self):

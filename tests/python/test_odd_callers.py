@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import topple
-from test_strangers import ends_soon, tried  # noqa: F401
+from made_scans import tried
 
 
 def python(code):

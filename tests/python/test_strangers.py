@@ -7,7 +7,6 @@ import pathlib
 import struct
 import subprocess
 import sys
-import time
 import zipfile
 import zlib
 
@@ -15,30 +14,11 @@ import numpy as np
 import pytest
 
 import topple
-from made_scans import CAMERA, POSES
+from made_scans import CAMERA, POSES, SECRET, tried
 from test_formats import colmap_dense, colmap_model
 from topple import _arrays, _topple, formats
 from topple.formats import apart, colmap, limits, packed_folder, polycam, record3d, scan_folder
 from topple.formats.frames import png
-
-SECRET = 'secret of the user'
-
-
-@pytest.fixture(autouse=True)
-def ends_soon():
-    start = time.monotonic()
-    yield
-    assert time.monotonic() - start < 60  # of a busy machine
-
-
-def tried(call, *arguments):
-    """Whether it returned; else it was an Error of one printable line."""
-    try:
-        call(*arguments)
-        return True
-    except topple.Error as error:
-        assert str(error).isprintable() and SECRET not in str(error), error
-        return False
 
 
 # Code beside a scan

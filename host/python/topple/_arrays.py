@@ -51,7 +51,7 @@ def as_array(source, name):
     if hasattr(source, '__dlpack__') and not isinstance(source, np.ndarray):
         try:
             return np.from_dlpack(source)
-        except (BufferError, RuntimeError, TypeError) as error:
+        except (AttributeError, BufferError, RuntimeError, TypeError) as error:
             mend = 'give .detach()' if 'grad' in str(error) else 'copy it to the CPU first, as .cpu() or .get() do'
             raise usage(f'{name}: its memory is not NumPy\'s to read ({error}); {mend}') from error
     try:
