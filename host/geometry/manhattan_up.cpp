@@ -92,7 +92,7 @@ struct Candidate {
     Vec3 up{};
     bool manhattan = false;
     double score = 0;
-    const char* doubt = "";     // as UpChoice::note
+    const char* doubt = "";       // as UpChoice::note
     std::optional<Vec3> other{};  // a direction about as likely
 };
 
